@@ -1,0 +1,110 @@
+// algo/laser_scan.hpp: one sweep of a scanner, with a status per beam so that a device code can
+// never be mistaken for a distance.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// What a beam's reading is. Only Ok carries a distance.
+enum class Beam : std::uint8_t {
+  Ok = 0,       // ranges[i] is a distance
+  Free = 1,     // nothing within range_max
+  Invalid = 2,  // the device could not measure; codes[i] says why
+};
+
+/// Last hex digit of an LMS2xx code (the top digits are the unit's mask).
+enum class BeamCode : std::uint8_t {
+  None = 0,
+  Unknown = 1,
+  BeyondRange = 7,
+  ReadError = 0xA,
+  WeakSignal = 0xB,
+  Overflow = 0xD,
+  Dazzled = 0xE,
+  NoEcho = 0xF,
+};
+
+/// Beam i points at angle_min + i * angle_increment in the mount frame, right to left.
+/// Beams are fired in `turns` interlaced mirror turns: beam i belongs to turn i % turns.
+struct LaserScan {
+  Pose2 mount_R{};           // of the scanner in R
+  double stamp = 0;          // [s] run clock, end of the sweep
+  double angle_min = 0;      // [rad]
+  double angle_increment = 0;  // [rad]
+  double range_max = 0;      // [m] a reading at or beyond it is Free
+  double turn_period = 0;    // [s] one mirror turn; 0 when all beams share one instant
+  std::uint32_t turns = 1;   // interlaced turns in a sweep
+  std::vector<double> ranges{};         // [m] B values; range_max where not Ok
+  std::vector<Beam> status{};           // B values
+  std::vector<BeamCode> codes{};        // B values, None where Ok
+
+  std::size_t size() const { return ranges.size(); }
+  double angle(std::size_t i) const {
+    return angle_min + static_cast<double>(i) * angle_increment;
+  }
+  /// [s] Duration of the whole sweep.
+  double sweep_time() const { return turn_period * static_cast<double>(turns); }
+  /// [s] Run-clock time at which beam `i` was fired: turn i % turns, (angle + 90 deg) / 360 of it.
+  double beam_time(std::size_t i) const {
+    const double turn = static_cast<double>(i % turns);
+    const double phase = (angle(i) + std::numbers::pi / 2) / (2 * std::numbers::pi);
+    return stamp - sweep_time() + (turn + phase) * turn_period;
+  }
+
+  void resize(std::size_t beams) {
+    ranges.resize(beams);
+    status.resize(beams);
+    codes.resize(beams);
+  }
+  void set_ok(std::size_t i, double range) { set(i, Beam::Ok, range, BeamCode::None); }
+  void set_free(std::size_t i) { set(i, Beam::Free, range_max, BeamCode::BeyondRange); }
+  void set_invalid(std::size_t i, BeamCode code) { set(i, Beam::Invalid, range_max, code); }
+
+ private:
+  void set(std::size_t i, Beam s, double range, BeamCode code) {
+    ranges[i] = range;
+    status[i] = s;
+    codes[i] = code;
+  }
+};
+
+// A beam on the wire and in the record: one uint16. Measured values are clipped below the codes.
+constexpr std::uint16_t kWireFree = 65535;
+constexpr std::uint16_t kWireCodeBase = 65519;  // + BeamCode (1..15) = 65520..65534
+constexpr std::uint16_t kWireMaxRange = 65519;  // [mm]
+
+/// Beam `i` of `scan` as its wire value; a range is rounded to the nearest millimetre.
+inline std::uint16_t beam_to_wire(const LaserScan& scan, std::size_t i) {
+  if (scan.status[i] == Beam::Free) return kWireFree;
+  if (scan.status[i] == Beam::Invalid) {
+    const auto code = static_cast<std::uint16_t>(scan.codes[i]);
+    return static_cast<std::uint16_t>(kWireCodeBase + (code == 0 ? 1 : code));
+  }
+  const double mm = std::nearbyint(scan.ranges[i] * 1000.0);
+  if (!(mm > 0)) return 0;
+  return mm >= kWireMaxRange ? kWireMaxRange : static_cast<std::uint16_t>(mm);
+}
+
+inline void beam_from_wire(LaserScan& scan, std::size_t i, std::uint16_t wire) {
+  if (wire == kWireFree) {
+    scan.set_free(i);
+  } else if (wire > kWireMaxRange) {
+    scan.set_invalid(i, static_cast<BeamCode>(wire - kWireCodeBase));
+  } else {
+    scan.set_ok(i, static_cast<double>(wire) / 1000.0);
+  }
+}
+
+/// Rounds every range to what the wire can hold. Each Robot calls it before a scan leaves the
+/// port, so that a stored run replays to identical commands.
+inline void quantise(LaserScan& scan) {
+  for (std::size_t i = 0; i < scan.size(); ++i) beam_from_wire(scan, i, beam_to_wire(scan, i));
+}
+
+}  // namespace algo

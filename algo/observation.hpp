@@ -1,0 +1,88 @@
+// algo/observation.hpp: everything a robot sensed by one instant. A sensor it lacks stays empty.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "algo/laser_scan.hpp"
+#include "algo/recycled.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// Pose integrated from the encoders, and the twist of the last period.
+struct Odometry {
+  double stamp = 0;  // [s] run clock
+  Pose2 pose{};      // of R in W
+  Twist2 twist{};
+  bool operator==(const Odometry&) const = default;
+};
+
+/// One reading of a sonar or infrared ring.
+struct RangeReading {
+  Pose2 mount_R{};
+  double stamp = 0;      // [s] run clock
+  double range = 0;      // [m] meaningful only where status is Ok
+  double range_max = 0;  // [m]
+  Beam status = Beam::Free;
+  bool operator==(const RangeReading&) const = default;
+};
+
+struct BumperReading {
+  Pose2 mount_R{};  // middle of the contact zone
+  double stamp = 0;
+  bool pressed = false;
+  bool operator==(const BumperReading&) const = default;
+};
+
+struct YawGyro {
+  double stamp = 0;
+  double rate = 0;  // [rad/s]
+  bool operator==(const YawGyro&) const = default;
+};
+
+struct Inclinometer {
+  double stamp = 0;
+  double roll = 0;   // [rad] left side up positive
+  double pitch = 0;  // [rad] nose down positive
+  bool operator==(const Inclinometer&) const = default;
+};
+
+/// Raw counts since reset; a difference is taken modulo 2^32 as signed.
+struct Encoders {
+  double stamp = 0;
+  std::uint32_t left = 0;
+  std::uint32_t right = 0;
+  bool operator==(const Encoders&) const = default;
+};
+
+struct Observation {
+  double stamp = 0;  // [s] run clock, the only clock algo sees
+  Odometry odometry{};
+  Recycled<LaserScan> scans{};         // empty when no new one came this tick
+  Recycled<RangeReading> sonar{};
+  Recycled<RangeReading> infrared{};
+  Recycled<BumperReading> bumpers{};
+  std::optional<YawGyro> gyro{};
+  std::optional<Inclinometer> inclinometer{};
+  std::optional<Encoders> encoders{};
+
+  bool bumper_pressed() const {
+    for (const BumperReading& bumper : bumpers) {
+      if (bumper.pressed) return true;
+    }
+    return false;
+  }
+  void clear_sensors() {
+    scans.clear();
+    sonar.clear();
+    infrared.clear();
+    bumpers.clear();
+    gyro.reset();
+    inclinometer.reset();
+    encoders.reset();
+  }
+};
+
+}  // namespace algo

@@ -1,0 +1,56 @@
+// algo/obstacle.hpp: the planar shapes a world is made of. Pure geometry, no physics.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "algo/types.hpp"
+
+namespace algo {
+
+struct Cylinder {
+  double radius = 0;  // [m]
+  bool operator==(const Cylinder&) const = default;
+};
+struct Box {
+  double length = 0;  // [m] along the obstacle's x axis
+  double width = 0;   // [m] along its y axis
+  bool operator==(const Box&) const = default;
+};
+/// Convex, vertices counter-clockwise in the obstacle's own frame.
+struct Polygon {
+  std::vector<Vec2> points{};  // [m] at least 3
+  bool operator==(const Polygon&) const = default;
+};
+/// From (-length/2, 0) to (length/2, 0) of the obstacle's frame.
+struct Wall {
+  double length = 0;     // [m]
+  double thickness = 0;  // [m]
+  bool operator==(const Wall&) const = default;
+};
+using Shape = std::variant<Cylinder, Box, Polygon, Wall>;
+
+struct Obstacle {
+  std::uint32_t id = 0;  // unique in its world
+  Pose2 pose_W{};
+  Shape shape{};
+  double height = 1.0;  // [m] it stands on the floor
+  /// Diffuse reflectivity of the surface to the laser, 0.02 to 1.
+  double reflectivity = 0.5;
+  bool specular = false;
+  bool operator==(const Obstacle&) const = default;
+};
+
+/// Vertices in W, counter-clockwise; empty for a cylinder. B = 4 for a box or wall.
+std::vector<Vec2> outline_W(const Obstacle& obstacle);
+
+/// [m] From `p_W` to the nearest surface point, negative inside.
+double signed_distance(const Obstacle& obstacle, const Vec2& p_W);
+
+/// What is wrong with the shape as a sentence part ("radius must be above 0"), or nothing.
+std::optional<std::string> defect(const Obstacle& obstacle);
+
+}  // namespace algo

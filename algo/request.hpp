@@ -1,0 +1,62 @@
+// algo/request.hpp: all a person or a script can ask for; the same values from browser, REST,
+// tests and the record.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include "algo/obstacle.hpp"
+#include "algo/parameters.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+struct SetGoal {
+  Vec2 position_W{0, 0};
+  std::optional<double> heading{};  // [rad] wanted on arrival; any when absent
+  bool operator==(const SetGoal&) const = default;
+};
+struct ClearGoal {
+  bool operator==(const ClearGoal&) const = default;
+};
+struct AddObstacle {
+  Obstacle obstacle{};
+  bool operator==(const AddObstacle&) const = default;
+};
+struct MoveObstacle {
+  std::uint32_t id = 0;
+  Pose2 pose_W{};
+  bool operator==(const MoveObstacle&) const = default;
+};
+struct RemoveObstacle {
+  std::uint32_t id = 0;
+  bool operator==(const RemoveObstacle&) const = default;
+};
+/// Stick of a manual driver, each axis in [-1, 1] of the robot's limits.
+struct Joystick {
+  double forward = 0;
+  double turn = 0;  // left positive
+  bool operator==(const Joystick&) const = default;
+};
+/// `engaged` latches the robot at rest until a Stop{false} releases it.
+struct Stop {
+  bool engaged = true;
+  bool operator==(const Stop&) const = default;
+};
+struct SetParameter {
+  Parameter parameter{};
+  double value = 0;  // in the parameter's unit
+  bool operator==(const SetParameter&) const = default;
+};
+
+using Request = std::variant<SetGoal,
+                             ClearGoal,
+                             AddObstacle,
+                             MoveObstacle,
+                             RemoveObstacle,
+                             Joystick,
+                             Stop,
+                             SetParameter>;
+
+}  // namespace algo

@@ -1,0 +1,80 @@
+// algo/telemetry.hpp: one tick as one value: what was sensed, asked, decided and commanded.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "algo/observation.hpp"
+#include "algo/recycled.hpp"
+#include "algo/request.hpp"
+#include "algo/robot.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// Nearest valid return of one side.
+struct Nearest {
+  std::uint32_t beam = 0;
+  Vec2 point_W{0, 0};
+  double distance = 0;  // [m] from the robot's centre, not the raw range
+  bool operator==(const Nearest&) const = default;
+};
+
+/// What perception makes of the newest scan. `scan` is filtered and may be older than this tick.
+struct Scene {
+  LaserScan scan{};
+  bool fresh = false;  // a new scan came this tick
+  std::optional<Nearest> left{};
+  std::optional<Nearest> right{};
+};
+
+/// One control point of the strip. Forces are displacements [m].
+struct Node {
+  Vec2 position_W{0, 0};
+  Vec2 internal_W{0, 0};
+  Vec2 external_W{0, 0};
+  bool operator==(const Node&) const = default;
+};
+
+enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
+
+/// What a controller decided and why.
+struct ControlOutput {
+  Twist2 twist{};
+  Recycled<Node> strip{};  // start .. end; the second is the pass point
+  Vec2 internal_W{0, 0};   // [m] F_int at the via point
+  Vec2 external_left_W{0, 0};
+  Vec2 external_right_W{0, 0};
+  Vec2 elastic_W{0, 0};  // [m] their sum, with the side choice's push
+  Vec2 pass_W{0, 0};     // where the base is sent
+  Side side = Side::None;   // the side on which the obstacle is passed
+  double side_since = 0;    // [s] run clock at which it was chosen
+  double side_alpha = 0;    // share of the side push, 0..1
+  std::int32_t blocked_beam = -1;
+};
+
+/// Why the gate replaced the command by zero.
+enum class Hold : std::uint8_t { None, Stopped, Bumper, StaleScan, NotFinite, LinkLost };
+
+/// The sequencing layer's state.
+enum class Mission : std::uint8_t { Idle, Driving, Arrived, Stuck, Held };
+
+/// The behaviour whose proposal was taken.
+enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
+
+struct Telemetry {
+  std::uint64_t tick = 0;
+  Recycled<Request> requests{};  // applied before this tick, in order
+  Observation observation{};
+  std::optional<GroundTruth> ground_truth{};
+  Scene scene{};
+  std::optional<SetGoal> goal{};
+  ControlOutput output{};
+  Command command{};
+  Hold hold = Hold::None;
+  Mission mission = Mission::Idle;
+  BehaviourId behaviour = BehaviourId::Rest;
+  double clearance = 0;  // [m] hull to nearest filtered return; range_max - radius when none
+};
+
+}  // namespace algo

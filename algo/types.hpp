@@ -1,0 +1,59 @@
+// algo/types.hpp: poses, twists and commands; metres, radians, seconds, ccw positive.
+//
+// Frames: world W, robot R (x ahead, y left), sensor mount in R. A trailing _W or _R names the
+// frame a quantity is expressed in.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+
+namespace algo {
+
+using Vec2 = Eigen::Vector2d;
+
+/// `angle` [rad] wrapped to (-pi, pi].
+inline double wrap_angle(double angle) {
+  const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
+  return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
+}
+
+/// Position and heading of a frame in its parent: of the robot R in W, of a sensor in R.
+struct Pose2 {
+  double x = 0;        // [m]
+  double y = 0;        // [m]
+  double heading = 0;  // [rad] ccw from the parent's x axis, in (-pi, pi]
+
+  Vec2 position() const { return {x, y}; }
+  bool operator==(const Pose2&) const = default;
+};
+
+/// Unit vector of bearing `angle` [rad].
+inline Vec2 direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+
+/// Point `p` of the child frame expressed in the parent of `pose`.
+inline Vec2 to_parent(const Pose2& pose, const Vec2& p) {
+  const double c = std::cos(pose.heading);
+  const double s = std::sin(pose.heading);
+  return {pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y()};
+}
+
+/// `inner` (a pose in the child frame of `outer`) expressed in the parent of `outer`.
+inline Pose2 compose(const Pose2& outer, const Pose2& inner) {
+  const Vec2 p = to_parent(outer, inner.position());
+  return {p.x(), p.y(), wrap_angle(outer.heading + inner.heading)};
+}
+
+struct Twist2 {
+  double v = 0;      // [m/s] along R's x axis
+  double omega = 0;  // [rad/s]
+  bool operator==(const Twist2&) const = default;
+};
+
+/// What the robot is told for one period.
+struct Command {
+  Twist2 base{};
+  bool operator==(const Command&) const = default;
+};
+
+}  // namespace algo
