@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
@@ -61,6 +62,11 @@ enum class Mission : std::uint8_t { Idle, Driving, Arrived, Stuck, Held };
 
 /// The behaviour whose proposal was taken.
 enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
+
+/// "stale_scan", "driving", "avoid": as REST and CSV spell them.
+std::string_view name(Hold hold);
+std::string_view name(Mission mission);
+std::string_view name(BehaviourId behaviour);
 
 struct Telemetry {
   std::uint64_t tick = 0;

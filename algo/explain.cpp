@@ -1,0 +1,102 @@
+// algo/explain.cpp: words for a tick.
+#include "algo/explain.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace algo {
+namespace {
+
+constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence
+
+template <typename... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 200> text{};
+  std::snprintf(text.data(), text.size(), pattern, args...);
+  return text.data();
+}
+
+const Nearest* nearest_of(const Telemetry& t) {
+  const auto& left = t.scene.left;
+  const auto& right = t.scene.right;
+  if (left && (!right || left->distance <= right->distance)) return &*left;
+  return right ? &*right : nullptr;
+}
+
+std::string surroundings(const Telemetry& t) {
+  const Nearest* nearest = nearest_of(t);
+  if (nearest == nullptr) return "The scanner sees nothing within range.";
+  return format("The nearest return is %.2f m from the robot's centre.", nearest->distance);
+}
+
+Explanation explain_hold(const Telemetry& t) {
+  switch (t.hold) {
+    case Hold::Stopped:
+      return {"Stopped", "Stop is engaged. The robot stays here until it is released."};
+    case Hold::Bumper:
+      return {"Touching something", "The bumper is pressed. Back away by hand, or reset."};
+    case Hold::StaleScan: {
+      const double age = t.observation.stamp - t.scene.scan.stamp;
+      if (t.scene.scan.size() == 0) {
+        return {"Waiting for the laser", "No scan has come yet. The robot waits."};
+      }
+      return {"Waiting for the laser", format("Scan is %.1f s old. The robot waits.", age)};
+    }
+    case Hold::NotFinite:
+      return {"Holding still", "A sensor or the controller gave a value that is not a number."};
+    case Hold::LinkLost: return {"Holding still", "The link to the robot is lost."};
+    case Hold::None: break;
+  }
+  return {};
+}
+
+Explanation explain_drive(const Telemetry& t, double to_goal) {
+  const ControlOutput& out = t.output;
+  const double left = out.external_left_W.norm();
+  const double right = out.external_right_W.norm();
+  const bool by_left = left >= right;
+  const char* side = by_left ? "left" : "right";
+  const auto& nearest = by_left ? t.scene.left : t.scene.right;
+  const double force = by_left ? left : right;
+
+  if (force < kNoticeable || !nearest) {
+    return {"Driving to the goal", format("%.2f m to go. ", to_goal) + surroundings(t)};
+  }
+  std::string why = format("External force %.2f m from the nearest %s return at %.2f m",
+                           force,
+                           side,
+                           nearest->distance);
+  if (out.side == Side::None) {
+    return {format("Keeping clear of the %s obstacle", side), why + "."};
+  }
+  const char* passed_on = out.side == Side::Left ? "left" : "right";
+  why += format("; side chosen %.1f s ago.", t.observation.stamp - out.side_since);
+  return {format("Passing the obstacle on its %s", passed_on), why};
+}
+
+}  // namespace
+
+Explanation explain(const Telemetry& t) {
+  if (t.hold != Hold::None) return explain_hold(t);
+  if (t.behaviour == BehaviourId::Manual) {
+    return {"Driven by hand",
+            format("%.2f m/s ahead, %.2f rad/s. ", t.command.base.v, t.command.base.omega) +
+                surroundings(t)};
+  }
+  if (!t.goal) return {"Waiting for a goal", surroundings(t)};
+  const double to_goal = (t.goal->position_W - t.observation.odometry.pose.position()).norm();
+  const Vec2& goal = t.goal->position_W;
+  switch (t.mission) {
+    case Mission::Arrived:
+      return {"Arrived", format("%.2f m from the goal at (%.2f, %.2f).", to_goal, goal.x(), goal.y())};
+    case Mission::Stuck:
+      return {"Stuck",
+              format("The pull to the goal and the push of %.2f m from obstacles cancel; ",
+                     t.output.elastic_W.norm()) +
+                  format("%.2f m to go. Move an obstacle or the goal.", to_goal)};
+    default: return explain_drive(t, to_goal);
+  }
+}
+
+}  // namespace algo

@@ -1,0 +1,32 @@
+// algo/gate.cpp: the checks, the worst first.
+#include "algo/gate.hpp"
+
+#include <cmath>
+
+namespace algo {
+namespace {
+
+bool finite(const Odometry& odometry) {
+  return std::isfinite(odometry.pose.x) && std::isfinite(odometry.pose.y) &&
+         std::isfinite(odometry.pose.heading) && std::isfinite(odometry.twist.v) &&
+         std::isfinite(odometry.twist.omega);
+}
+
+bool finite(const Twist2& twist) { return std::isfinite(twist.v) && std::isfinite(twist.omega); }
+
+}  // namespace
+
+Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
+  if (in.stopped) return Hold::Stopped;
+  if (in.link_lost) return Hold::LinkLost;
+  if (!std::isfinite(observation.stamp) || !finite(observation.odometry) ||
+      !finite(command.base)) {
+    return Hold::NotFinite;
+  }
+  if (observation.bumper_pressed() && !in.reversing_by_hand) return Hold::Bumper;
+  // Written so that a stamp that is not a number counts as stale.
+  const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
+  return fresh ? Hold::None : Hold::StaleScan;
+}
+
+}  // namespace algo

@@ -1,0 +1,19 @@
+// algo/gate.hpp: the last word before the motors: zero command, and why.
+#pragma once
+
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+struct GateInput {
+  bool stopped = false;             // Stop is latched
+  bool link_lost = false;
+  double scan_timeout = 0;          // [s]
+  std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
+  bool reversing_by_hand = false;   // the one motion allowed with a front bumper pressed
+};
+
+/// Why `command` must not be carried out, None when it may.
+Hold gate(const GateInput& in, const Observation& observation, const Command& command);
+
+}  // namespace algo

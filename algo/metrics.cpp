@@ -1,0 +1,77 @@
+// algo/metrics.cpp: the figures of one run.
+#include "algo/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace algo {
+namespace {
+
+constexpr double kResample = 0.050;    // [m] between kept positions
+constexpr double kViaSpacing = 0.500;  // [m] of the pass point, per axis
+
+}  // namespace
+
+std::string_view name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::Running: return "running";
+    case Outcome::Reached: return "reached";
+    case Outcome::Stuck: return "stuck";
+    case Outcome::OutOfTime: return "out_of_time";
+    case Outcome::Collided: return "collided";
+    case Outcome::Stopped: return "stopped";
+    case Outcome::EndOfLog: return "end_of_log";
+    case Outcome::Failed: return "failed";
+  }
+  return "failed";
+}
+
+void MetricsRecorder::reset(const RobotSpec& spec) {
+  *this = {};
+  radius_ = spec.radius;
+  period_ = spec.period;
+}
+
+void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
+  if (!first_stamp_) first_stamp_ = t.observation.stamp;
+  ++metrics_.ticks;
+  metrics_.time = t.observation.stamp - *first_stamp_;
+
+  const Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+  const double distance = t.ground_truth ? t.ground_truth->obstacle_distance : t.clearance + radius_;
+  const double d_safe = parameters[Parameter::SafetyDistance];
+  metrics_.min_clearance = std::min(metrics_.min_clearance, distance - radius_);
+  metrics_.intrusion = std::max(metrics_.intrusion, d_safe - distance);
+  if (distance < d_safe) metrics_.infringed_time += period_;
+  if (t.ground_truth && t.ground_truth->collided) metrics_.collided = true;
+
+  follow_path(pose.position());
+  count_via(t, d_safe + radius_);
+}
+
+void MetricsRecorder::follow_path(const Vec2& position_W) {
+  if (last_W_) metrics_.path_length += (position_W - *last_W_).norm();
+  last_W_ = position_W;
+  if (!kept_W_) {
+    kept_W_ = position_W;
+    return;
+  }
+  const Vec2 segment = position_W - *kept_W_;
+  if (segment.norm() < kResample) return;
+  const double heading = std::atan2(segment.y(), segment.x());
+  if (direction_) metrics_.turning += std::abs(wrap_angle(heading - *direction_));
+  direction_ = heading;
+  kept_W_ = position_W;
+}
+
+void MetricsRecorder::count_via(const Telemetry& t, double influence) {
+  if (t.output.strip.empty() || t.clearance + radius_ >= influence) return;
+  if (counted_pass_W_) {
+    const Vec2 step = t.output.pass_W - *counted_pass_W_;
+    if (step.cwiseAbs().maxCoeff() < kViaSpacing) return;
+  }
+  counted_pass_W_ = t.output.pass_W;
+  ++metrics_.via_points;
+}
+
+}  // namespace algo

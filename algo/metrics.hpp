@@ -1,0 +1,62 @@
+// algo/metrics.hpp: the figures of one run, as defined in scenarios.json `metrics`.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string_view>
+
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+/// How a run came out; Running until it is over.
+enum class Outcome : std::uint8_t {
+  Running,
+  Reached,
+  Stuck,
+  OutOfTime,
+  Collided,
+  Stopped,   // ended by a person: reset, another scenario, shutdown
+  EndOfLog,
+  Failed,    // the link was lost or something broke
+};
+/// "out_of_time": for REST, the database and the command line.
+std::string_view name(Outcome outcome);
+
+struct Metrics {
+  std::uint64_t ticks = 0;
+  double time = 0;         // [s]
+  double path_length = 0;  // [m] sum of the tick-to-tick distances
+  /// [m] least distance from the hull to an obstacle; infinite in an empty world.
+  double min_clearance = std::numeric_limits<double>::infinity();
+  double intrusion = 0;       // [m] depth into the circle of radius d_safe about the centre
+  double infringed_time = 0;  // [s] inside it
+  double turning = 0;         // [rad] of the path resampled at 50 mm
+  std::uint32_t via_points = 0;
+  bool collided = false;
+};
+
+/// Follows a run tick by tick. Uses the true pose and clearance where the robot has them, the
+/// odometry and the filtered scan where it has not.
+class MetricsRecorder {
+ public:
+  void reset(const RobotSpec& spec);
+  void add(const Telemetry& t, const Parameters& parameters);
+  const Metrics& metrics() const { return metrics_; }
+
+ private:
+  void follow_path(const Vec2& position_W);
+  void count_via(const Telemetry& t, double influence);
+
+  Metrics metrics_{};
+  double radius_ = 0;
+  double period_ = 0;
+  std::optional<double> first_stamp_{};
+  std::optional<Vec2> last_W_{};      // position one tick ago
+  std::optional<Vec2> kept_W_{};      // last position kept by the resampling
+  std::optional<double> direction_{};  // [rad] of the last kept segment
+  std::optional<Vec2> counted_pass_W_{};
+};
+
+}  // namespace algo

@@ -1,0 +1,144 @@
+// algo/pipeline.cpp: what the robot does every period, in the order it does it.
+#include "algo/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "algo/gate.hpp"
+#include "algo/perceive.hpp"
+
+namespace algo {
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+bool within_unit(double axis) { return axis >= -1.0 && axis <= 1.0; }  // false for NaN
+
+}  // namespace
+
+Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
+    : spec_(spec), filter_kind_(config.filter), initial_parameters_(config.parameters) {
+  coordinator_.add(std::make_unique<ManualBehaviour>());
+  coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
+  reset({});
+}
+
+void Pipeline::reset(const Pose2& start_W) {
+  parameters_ = initial_parameters_;
+  coordinator_.reset(start_W);
+  sequencer_.reset(spec_.period);
+  scene_ = {};
+  scan_stamp_.reset();
+  joystick_ = {};
+  joystick_ticks_ = 0;
+  stopped_ = false;
+  tick_ = 0;
+}
+
+std::optional<std::string> Pipeline::refusal(const Request& request) const {
+  if (const auto* set = std::get_if<SetParameter>(&request)) {
+    return algo::refusal(parameters_, set->parameter, set->value);
+  }
+  if (const auto* goal = std::get_if<SetGoal>(&request)) {
+    const bool finite = goal->position_W.allFinite() && std::isfinite(goal->heading.value_or(0));
+    if (!finite) return "The goal must be finite numbers.";
+    if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
+  }
+  if (const auto* stick = std::get_if<Joystick>(&request)) {
+    if (!within_unit(stick->forward) || !within_unit(stick->turn)) {
+      return "Joystick axes must lie between -1 and 1.";
+    }
+    if (!spec_.drives) return "This robot only replays a log; it cannot be driven.";
+  }
+  return std::nullopt;
+}
+
+void Pipeline::tick(Telemetry& t) {
+  t.tick = tick_++;
+  if (joystick_ticks_ > 0) --joystick_ticks_;
+  for (const Request& request : t.requests) apply(request);
+
+  sense(t);    // filter the newest scan, find the nearest return of each side
+  control(t);  // sequence the goal, let behaviours propose, pick one
+  hold(t);     // the gate has the last word
+}
+
+void Pipeline::apply(const Request& request) {
+  std::visit(
+      Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
+                 [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
+                 [&](const Joystick& stick) {
+                   // Whoever takes the stick takes over: a silent driver must leave a robot that
+                   // stands still, not one that drives off to an old goal.
+                   if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
+                   joystick_ = stick;
+                   joystick_ticks_ = static_cast<std::uint64_t>(
+                       std::ceil(parameters_[Parameter::JoystickTimeout] / spec_.period));
+                 },
+                 [&](const Stop& stop) { stopped_ = stop.engaged; },
+                 [&](const SetParameter& set) { parameters_.set(set.parameter, set.value); },
+                 [](const auto&) {}},  // obstacle edits were carried out by the robot
+      request);
+}
+
+void Pipeline::sense(Telemetry& t) {
+  scene_.fresh = !t.observation.scans.empty();
+  if (scene_.fresh) {
+    const LaserScan& front = t.observation.scans[0];
+    const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
+    filter_.apply(filter_kind_, half_width, front, scene_.scan);
+    scan_stamp_ = front.stamp;
+    perceive(t.observation.odometry.pose, scene_);
+    t.scene.scan = scene_.scan;
+  }
+  t.scene.fresh = scene_.fresh;
+  t.scene.left = scene_.left;
+  t.scene.right = scene_.right;
+
+  double nearest = scan_stamp_ ? scene_.scan.range_max : spec_.radius;
+  if (scene_.left) nearest = std::min(nearest, scene_.left->distance);
+  if (scene_.right) nearest = std::min(nearest, scene_.right->distance);
+  t.clearance = nearest - spec_.radius;
+}
+
+bool Pipeline::manual() const { return joystick_ticks_ > 0; }
+
+void Pipeline::control(Telemetry& t) {
+  t.goal = sequencer_.goal();
+  t.mission = sequencer_.update(t.observation.odometry.pose, parameters_);
+
+  Resource resource;
+  resource.dt = spec_.period;
+  resource.observation = &t.observation;
+  resource.scene = &scene_;
+  resource.parameters = &parameters_;
+  resource.spec = &spec_;
+  resource.goal = t.goal;
+  resource.mission = t.mission;
+  resource.joystick = joystick_;
+  resource.manual = manual();
+  const Decision decision = coordinator_.decide(resource, t.output);
+  t.behaviour = decision.winner;
+  t.command = actuate(decision.twist, spec_);
+}
+
+void Pipeline::hold(Telemetry& t) {
+  GateInput in;
+  in.stopped = stopped_;
+  in.scan_timeout = parameters_[Parameter::ScanTimeout];
+  in.scan_stamp = scan_stamp_;
+  in.reversing_by_hand = t.behaviour == BehaviourId::Manual && t.command.base.v < 0;
+  t.hold = gate(in, t.observation, t.command);
+  if (t.hold == Hold::None) return;
+  t.command = {};
+  sequencer_.interrupt();
+  if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
+}
+
+}  // namespace algo

@@ -1,0 +1,61 @@
+// algo/pipeline.hpp: one tick, sense to command: plain data, no clock, file, socket or chance.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "algo/filter.hpp"
+#include "algo/reactive.hpp"
+#include "algo/sequencing.hpp"
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+struct PipelineConfig {
+  std::string controller = "modified";
+  FilterKind filter = FilterKind::Pseudomedian;
+  Parameters parameters{};
+};
+
+/// Everything that turns observations and requests into commands for one robot. Fed the same
+/// observations and requests again, a fresh one gives the same commands bit for bit.
+class Pipeline {
+ public:
+  /// Throws std::invalid_argument on an unknown controller.
+  Pipeline(const PipelineConfig& config, const RobotSpec& spec);
+
+  /// Starts over with the robot at rest at `start_W`.
+  void reset(const Pose2& start_W);
+
+  /// Why `request` cannot be applied now, as a sentence. Obstacle edits are the robot's business.
+  std::optional<std::string> refusal(const Request& request) const;
+
+  /// Fills the rest of `t`, whose observation and requests are given. Allocates nothing once its
+  /// buffers have grown.
+  void tick(Telemetry& t);
+
+  const Parameters& parameters() const { return parameters_; }
+
+ private:
+  void apply(const Request& request);
+  void sense(Telemetry& t);
+  void control(Telemetry& t);
+  void hold(Telemetry& t);
+  bool manual() const;
+
+  RobotSpec spec_{};
+  FilterKind filter_kind_{};
+  Parameters initial_parameters_{};
+  Parameters parameters_{};
+  ScanFilter filter_{};
+  BehaviourCoordinator coordinator_{};
+  Sequencer sequencer_{};
+  Scene scene_{};
+  std::optional<double> scan_stamp_{};
+  Joystick joystick_{};
+  std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
+  bool stopped_ = false;
+  std::uint64_t tick_ = 0;
+};
+
+}  // namespace algo

@@ -1,0 +1,40 @@
+// server/api/catalog_routes.cpp: health, version, the API's own description, and what there is.
+#include "server/api/api.hpp"
+#include "server/api/reply.hpp"
+#include "server/embedded_openapi.hpp"
+#include "server/session_json.hpp"
+#include "server/version.hpp"
+
+namespace server {
+
+using nlohmann::json;
+
+void add_api(net::Router& router, ApiContext& context) {
+  add_catalog_routes(router, context);
+  add_scenario_routes(router, context);
+  add_session_routes(router, context);
+  add_run_routes(router, context);
+}
+
+void add_catalog_routes(net::Router& router, ApiContext& context) {
+  router.add("GET", "/api/v1/healthz", immediate([&context](const net::Request&) {
+               const auto failure = context.recorder.failed();
+               json body = {{"status", failure ? "degraded" : "ok"}};
+               if (failure) body["problem"] = *failure;
+               return json_response(200, body);
+             }));
+  router.add("GET", "/api/v1/version", immediate([](const net::Request&) {
+               return json_response(200, {{"name", "tautline"}, {"version", kVersion}, {"api", 1}});
+             }));
+  router.add("GET", "/api/v1/openapi.json", immediate([](const net::Request&) {
+               net::Response response;
+               response.content_type = "application/json";
+               response.body = std::make_shared<const std::string>(embedded_openapi());
+               return response;
+             }));
+  router.add("GET", "/api/v1/catalog", immediate([](const net::Request&) {
+               return json_response(200, catalog_json());
+             }));
+}
+
+}  // namespace server

@@ -1,0 +1,62 @@
+// server/api/scenario_routes.cpp: scenarios by name; only one's own can be changed.
+#include "server/api/api.hpp"
+#include "server/api/reply.hpp"
+#include "server/json_reader.hpp"
+#include "server/scenario_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+json to_json(const ScenarioEntry& entry) {
+  return {{"name", entry.name},
+          {"title", entry.title},
+          {"description", entry.description},
+          {"builtin", entry.builtin},
+          {"kind", entry.is_log ? "log" : "world"}};
+}
+
+/// Builds the world once: what could not be run must not be kept.
+void check_world(const sim::Scenario& scenario) {
+  RunSpec spec = make_spec(scenario, {});
+  make_robot(spec);
+}
+
+}  // namespace
+
+void add_scenario_routes(net::Router& router, ApiContext& context) {
+  router.add("GET", "/api/v1/scenarios", immediate([&context](const net::Request&) {
+               json items = json::array();
+               for (const ScenarioEntry& entry : context.library.list()) {
+                 items.push_back(to_json(entry));
+               }
+               return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
+             }));
+  router.add("GET", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
+               return json_response(
+                   200, server::to_json(context.library.load(request.params.at("name"))));
+             }));
+  router.add("PUT", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
+               json body = body_json(request);
+               const std::string name = request.params.at("name");
+               if (body.is_object() && !body.contains("name")) body["name"] = name;
+               const sim::Scenario scenario = scenario_from_json(body);
+               if (scenario.name != name) {
+                 throw DocumentError("name", "differs from the name in the path");
+               }
+               check_world(scenario);
+               context.library.save(scenario);
+               return json_response(200, server::to_json(scenario));
+             }));
+  router.add("DELETE",
+             "/api/v1/scenarios/{name}",
+             immediate([&context](const net::Request& request) {
+               context.library.remove(request.params.at("name"));
+               net::Response response;
+               response.status = 204;
+               return response;
+             }));
+}
+
+}  // namespace server

@@ -1,0 +1,202 @@
+// server/api/session_routes.cpp: the live session: goal, obstacles, parameters, control.
+#include <fmt/format.h>
+
+#include "server/api/api.hpp"
+#include "server/api/reply.hpp"
+#include "server/json_reader.hpp"
+#include "server/scenario_json.hpp"
+#include "server/session_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+/// Submits and answers once the control thread has: 200 with `body`, or 409 with the reason.
+void submit_and_reply(ApiContext& context,
+                      algo::Request request,
+                      const net::Responder& respond,
+                      int status = 200) {
+  const auto id = std::make_shared<std::uint32_t>(0);
+  const auto given = context.session.submit(
+      std::move(request), [respond, id, status](const std::optional<std::string>& refusal) {
+        if (refusal) {
+          respond(net::problem(409, "Refused", *refusal));
+          return;
+        }
+        json body = {{"ok", true}};
+        if (*id != 0) body["id"] = *id;
+        respond(json_response(status, body));
+      });
+  if (!given) {
+    net::Response busy =
+        net::problem(503, "Busy", "The control loop has more requests than it can take. Try again.");
+    busy.headers.emplace_back("Retry-After", "1");
+    respond(std::move(busy));
+    return;
+  }
+  *id = *given;
+}
+
+std::uint32_t obstacle_id(const net::Request& request) {
+  const std::string& text = request.params.at("id");
+  if (text.empty() || text.size() > 9 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    throw DocumentError("id", fmt::format("'{}' is not an obstacle's number", text));
+  }
+  return static_cast<std::uint32_t>(std::stoul(text));
+}
+
+json obstacle_list(const Session& session) {
+  json items = json::array();
+  for (const algo::Obstacle& o : session.state().obstacles) items.push_back(to_json(o));
+  return {{"items", std::move(items)}, {"next", nullptr}};
+}
+
+/// All values are checked together before the first is submitted.
+void patch_parameters(ApiContext& context, const json& body, const net::Responder& respond) {
+  const algo::Parameters wanted =
+      parameters_from_json(body, "", context.session.state().parameters);
+  const auto left = std::make_shared<std::size_t>(body.size());
+  const auto refused = std::make_shared<std::string>();
+  if (body.empty()) {
+    respond(json_response(200, to_json(context.session.state().parameters)));
+    return;
+  }
+  for (const auto& [name, unused] : body.items()) {
+    const algo::Parameter parameter = *algo::find_parameter(name);
+    const auto given = context.session.submit(
+        algo::SetParameter{parameter, wanted[parameter]},
+        [&context, respond, left, refused](const std::optional<std::string>& refusal) {
+          if (refusal) *refused = *refusal;
+          if (--*left > 0) return;
+          respond(refused->empty()
+                      ? json_response(200, to_json(context.session.state().parameters))
+                      : net::problem(409, "Refused", *refused));
+        });
+    if (!given) {
+      respond(net::problem(503, "Busy", "The control loop is busy. Try again."));
+      return;
+    }
+  }
+}
+
+json control(ApiContext& context, const json& body) {
+  const JsonReader in(body, "");
+  const std::string action = in.text("action", 32);
+  Session& session = context.session;
+  if (action == "play") {
+    session.pause(false);
+  } else if (action == "pause") {
+    session.pause(true);
+  } else if (action == "step") {
+    session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
+  } else if (action == "speed") {
+    session.set_speed(in.number("speed", {0, 1000}));
+  } else if (action == "reset") {
+    session.reset();
+  } else if (action == "load") {
+    json load = body;
+    load.erase("action");
+    load_from_json(context, load);
+  } else {
+    in.fail("action",
+            fmt::format("'{}' is unknown; known are play, pause, step, speed, reset, stop, "
+                        "release, load",
+                        action));
+  }
+  return state_json(session);
+}
+
+}  // namespace
+
+void load_from_json(ApiContext& context, const json& body) {
+  const JsonReader in(body, "");
+  in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
+  const RunOverrides overrides = overrides_from_json(body);
+  sim::Scenario scenario = in.has("scenario") ? context.library.load(in.text("scenario", 64))
+                                              : context.session.state().spec.scenario;
+  context.session.load(make_spec(std::move(scenario), overrides));
+}
+
+void add_session_routes(net::Router& router, ApiContext& context) {
+  router.add("GET", "/api/v1/session", immediate([&context](const net::Request&) {
+               return json_response(200, session_json(context.session));
+             }));
+  router.add("POST",
+             "/api/v1/session/requests",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               submit_and_reply(context, request_from_json(body_json(request)), respond);
+             }));
+  router.add("PUT",
+             "/api/v1/session/goal",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               json body = body_json(request);
+               JsonReader(body, "").only({"x", "y", "heading"});
+               body["type"] = "set_goal";
+               submit_and_reply(context, request_from_json(body), respond);
+             }));
+  router.add("DELETE",
+             "/api/v1/session/goal",
+             guarded([&context](const net::Request&, const net::Responder& respond) {
+               submit_and_reply(context, algo::ClearGoal{}, respond);
+             }));
+  router.add("GET", "/api/v1/session/obstacles", immediate([&context](const net::Request&) {
+               return json_response(200, obstacle_list(context.session));
+             }));
+  router.add("POST",
+             "/api/v1/session/obstacles",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
+               submit_and_reply(context, std::move(add), respond, 201);
+             }));
+  router.add("PUT",
+             "/api/v1/session/obstacles/{id}",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               json body = body_json(request);
+               JsonReader(body, "").only({"x", "y", "heading"});
+               body["type"] = "move_obstacle";
+               body["id"] = obstacle_id(request);
+               submit_and_reply(context, request_from_json(body), respond);
+             }));
+  router.add("DELETE",
+             "/api/v1/session/obstacles/{id}",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               submit_and_reply(context, algo::RemoveObstacle{obstacle_id(request)}, respond);
+             }));
+  router.add("GET", "/api/v1/session/parameters", immediate([&context](const net::Request&) {
+               return json_response(200, to_json(context.session.state().parameters));
+             }));
+  router.add("PATCH",
+             "/api/v1/session/parameters",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               patch_parameters(context, body_json(request), respond);
+             }));
+  router.add("POST",
+             "/api/v1/session/control",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               const json body = body_json(request);
+               const std::string action = JsonReader(body, "").text("action", 32);
+               if (action == "stop" || action == "release") {
+                 submit_and_reply(context, algo::Stop{action == "stop"}, respond);
+               } else {
+                 respond(json_response(200, control(context, body)));
+               }
+             }));
+  router.add("POST",
+             "/api/v1/session/scenario",
+             immediate([&context](const net::Request& request) {
+               const json body = body_json(request);
+               const JsonReader in(body, "");
+               in.only({"name", "title"});
+               const std::string name = in.text("name", 64);
+               const sim::Scenario scenario =
+                   context.session.as_scenario(name, in.text_or("title", name));
+               context.library.save(scenario);
+               net::Response response = json_response(201, to_json(scenario));
+               response.headers.emplace_back("Location", "/api/v1/scenarios/" + name);
+               return response;
+             }));
+}
+
+}  // namespace server

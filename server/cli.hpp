@@ -1,0 +1,49 @@
+// server/cli.hpp: the subcommands of the program. Each adds itself to the application and, when
+// chosen, leaves its exit status in `status`.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "server/run_spec.hpp"
+
+namespace server {
+
+/// Exit statuses of `run`, also in its --help.
+enum ExitStatus : int { kReached = 0, kBadInput = 1, kNotReached = 2, kCollided = 3 };
+
+void add_serve_command(CLI::App& app, int& status);
+void add_run_command(CLI::App& app, int& status);
+void add_replay_command(CLI::App& app, int& status);
+void add_export_command(CLI::App& app, int& status);
+void add_verify_command(CLI::App& app, int& status);
+
+/// Options that several commands share.
+struct RunFlags {
+  RunOverrides overrides{};
+  std::vector<std::string> settings{};  // k=v
+  void add_to(CLI::App& command);
+  /// Throws DocumentError on a malformed --set.
+  RunOverrides resolved() const;
+};
+
+/// `name` as a path when there is such a file or it looks like one, else a name of the library.
+sim::Scenario find_scenario(const std::string& name);
+
+/// Progress on standard error, only when somebody looks at it.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  void show(const std::string& text);
+
+ private:
+  bool interactive_ = false;
+  bool shown_ = false;
+};
+
+}  // namespace server

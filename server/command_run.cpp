@@ -1,0 +1,163 @@
+// server/command_run.cpp: `tautline run` and `tautline replay`: headless, with figures at the end.
+#include <fmt/format.h>
+
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <stop_token>
+#include <thread>
+
+#include "server/cli.hpp"
+#include "server/headless.hpp"
+#include "server/record_sink.hpp"
+#include "server/run_json.hpp"
+#include "server/scenario_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+volatile std::sig_atomic_t g_interrupted = 0;  // NOLINT: the one thing a signal handler may touch
+
+/// Turns Ctrl-C into a stop request, so that the record is closed in order.
+class InterruptWatch {
+ public:
+  explicit InterruptWatch(std::stop_source& source)
+      : thread_([&source](const std::stop_token& done) {
+          while (!done.stop_requested() && g_interrupted == 0) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          }
+          if (g_interrupted != 0) source.request_stop();
+        }) {
+    std::signal(SIGINT, [](int) { g_interrupted = 1; });
+    std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+  }
+
+ private:
+  std::jthread thread_;
+};
+
+struct Options {
+  std::string scenario{};
+  std::string out{};
+  double pace = 0;
+  bool as_json = false;
+  RunFlags flags{};
+};
+
+int exit_status(algo::Outcome outcome) {
+  switch (outcome) {
+    case algo::Outcome::Reached:
+    case algo::Outcome::EndOfLog: return kReached;
+    case algo::Outcome::Collided: return kCollided;
+    case algo::Outcome::Failed: return kBadInput;
+    default: return kNotReached;
+  }
+}
+
+void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t run_id) {
+  const algo::Metrics& m = result.run.metrics;
+  const bool log = !spec.scenario.log.empty();
+  fmt::print("{} · {} · {}", spec.scenario.name, spec.scenario.controller, spec.scenario.filter);
+  if (!log) {
+    const bool bullet = spec.scenario.vehicle == sim::Vehicle::Bullet;
+    fmt::print(" · {} · seed {}", bullet ? "bullet" : "kinematic", spec.seed);
+  }
+  fmt::print("\n");
+  fmt::print("  outcome          {}\n", algo::name(result.run.outcome));
+  if (!result.run.reason.empty()) fmt::print("                   {}\n", result.run.reason);
+  fmt::print("  time             {:.2f} s, {} ticks\n", m.time, m.ticks);
+  fmt::print("  path length      {:.3f} m\n", m.path_length);
+  fmt::print("  least clearance  {:.3f} m\n", m.min_clearance);
+  fmt::print("  intrusion        {:.3f} m for {:.1f} s\n", m.intrusion, m.infringed_time);
+  fmt::print("  turning          {:.2f} rad\n", m.turning);
+  fmt::print("  via points       {}\n", m.via_points);
+  if (run_id > 0) fmt::print("  stored as run    {}\n", run_id);
+  fmt::print("  telemetry_hash   {:016x}\n", result.telemetry_hash);
+}
+
+int execute(const Options& options) {
+  const RunSpec spec = make_spec(find_scenario(options.scenario), options.flags.resolved());
+  const std::unique_ptr<algo::Robot> robot = make_robot(spec);
+  std::unique_ptr<Recorder> recorder;
+  HeadlessOptions headless;
+  headless.pace = options.pace;
+  headless.hash_frames = true;
+  if (!options.out.empty()) {
+    recorder = std::make_unique<Recorder>(options.out);
+    headless.record = recorder->open(new_run(spec, robot->spec()));
+  }
+  ProgressLine progress;
+  const double limit = time_limit(spec);
+  headless.progress = [&](double stamp, std::uint64_t ticks) {
+    progress.show(fmt::format("{:.0f} s of at most {:.0f} s, {} ticks", stamp, limit, ticks));
+  };
+
+  std::stop_source stop;
+  HeadlessResult result;
+  {
+    const InterruptWatch watch(stop);
+    result = run_headless(spec, *robot, headless, stop.get_token());
+  }
+  std::int64_t run_id = 0;
+  if (recorder) {
+    recorder->flush();
+    run_id = headless.record->id();
+    if (const auto failure = headless.record->failed()) throw std::runtime_error(*failure);
+  }
+  if (options.as_json) {
+    json out = {{"scenario", spec.scenario.name},
+                {"controller", spec.scenario.controller},
+                {"filter", spec.scenario.filter},
+                {"seed", spec.seed},
+                {"outcome", algo::name(result.run.outcome)},
+                {"reason", result.run.reason},
+                {"metrics", to_json(result.run.metrics)},
+                {"telemetry_hash", fmt::format("{:016x}", result.telemetry_hash)}};
+    out["vehicle"] = spec.scenario.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic";
+    if (run_id > 0) out["run"] = run_id;
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    print_table(spec, result, run_id);
+  }
+  return exit_status(result.run.outcome);
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("run", "Run a scenario headless and print its figures");
+  command->add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
+      ->required();
+  options->flags.add_to(*command);
+  command->add_option("--out", options->out, "Also keep the run in this database")
+      ->type_name("DB");
+  command->add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_flag("--json", options->as_json, "Print JSON");
+  command->footer("Exit status: 0 reached, 1 bad input or error, 2 stuck or out of time, 3 collision.");
+  command->callback([options, &status] { status = execute(*options); });
+}
+
+void add_replay_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("replay", "Replay a CARMEN laser log through the whole pipeline");
+  command->add_option("LOG", options->scenario, "A CARMEN log file")->required()->check(
+      CLI::ExistingFile);
+  command->add_option("--filter", options->flags.overrides.filter,
+                      "pseudomedian (default), median, lulu or none");
+  command->add_option("--set", options->flags.settings, "A parameter, such as filter_half_width=2")
+      ->type_name("NAME=VALUE");
+  command->add_option("--out", options->out, "Keep the run in this database")->type_name("DB");
+  command->add_option("--pace", options->pace,
+                      "1: the log's own pace; N: times that; 0 (default): as fast as it goes")
+      ->check(CLI::Range(0.0, 1000.0));
+  command->add_flag("--json", options->as_json, "Print JSON");
+  command->footer("To watch a log in the browser: tautline serve --scenario LOG");
+  command->callback([options, &status] { status = execute(*options); });
+}
+
+}  // namespace server

@@ -1,0 +1,17 @@
+// server/embedded_worlds.hpp: the scenarios of sim/worlds, compiled in.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace server {
+
+struct EmbeddedWorld {
+  std::string_view name{};
+  std::string_view json{};
+};
+
+/// In order of name, the demo first. Defined in a file made by embed_worlds.cmake.
+std::span<const EmbeddedWorld> embedded_worlds();
+
+}  // namespace server

@@ -1,0 +1,52 @@
+// server/headless.cpp: the run loop without rings.
+#include "server/headless.hpp"
+
+#include <chrono>
+#include <span>
+
+#include "server/record_sink.hpp"
+
+namespace server {
+namespace {
+
+std::uint64_t fnv1a(std::span<const std::byte> bytes, std::uint64_t hash) {
+  for (const std::byte b : bytes) {
+    hash ^= static_cast<std::uint64_t>(b);
+    hash *= 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+}  // namespace
+
+HeadlessResult run_headless(const RunSpec& spec,
+                            algo::Robot& robot,
+                            const HeadlessOptions& options,
+                            const std::stop_token& stop) {
+  HeadlessResult result;
+  result.telemetry_hash = 0xcbf29ce484222325ULL;
+  const auto pool = std::make_shared<FramePool>(kPoolFrames);
+  RecordSink sink(options.record, pool);
+  algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
+  robot.set_pace({.paused = false, .speed = options.pace});
+
+  auto next_progress = std::chrono::steady_clock::now();
+  RunLinks links;
+  links.pool = pool.get();
+  links.record = options.record ? &sink : nullptr;
+  links.observer = [&](const Frame& frame) {
+    if (options.hash_frames) {
+      result.telemetry_hash = fnv1a(frame.bytes(), result.telemetry_hash);
+    }
+    if (!options.progress || std::chrono::steady_clock::now() < next_progress) return;
+    next_progress = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+    options.progress(frame.telemetry.observation.stamp, frame.telemetry.tick + 1);
+  };
+  const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
+  result.run = run(robot, pipeline, first_requests(spec), policy, links, stop);
+  if (result.run.outcome == algo::Outcome::Running) result.run.outcome = algo::Outcome::Stopped;
+  if (options.record) sink.close(result.run);
+  return result;
+}
+
+}  // namespace server

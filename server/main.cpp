@@ -1,0 +1,33 @@
+// server/main.cpp: the program: one subcommand each for serving, running, replaying, looking back.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "server/cli.hpp"
+#include "server/version.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{"Tautline: simulation and teleoperation of mobile robots, in the browser."};
+  app.name("tautline");
+  app.set_version_flag("--version", fmt::format("tautline {}", server::kVersion));
+  app.require_subcommand(1);
+  app.footer("Each command has its own --help. First time: tautline serve");
+  int status = 0;
+  try {
+    server::add_serve_command(app, status);
+    server::add_run_command(app, status);
+    server::add_replay_command(app, status);
+    server::add_export_command(app, status);
+    server::add_verify_command(app, status);
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".
+    return app.exit(e) == 0 ? 0 : server::kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "tautline: {}\n", e.what());
+    return server::kBadInput;
+  }
+  return status;
+}

@@ -1,0 +1,34 @@
+// server/run_json.hpp: runs as rows for the database and as documents for people.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "algo/metrics.hpp"
+#include "db/records.hpp"
+#include "db/run_reader.hpp"
+#include "server/run_spec.hpp"
+#include "server/runner.hpp"
+
+namespace server {
+
+/// A clearance without any obstacle is null: JSON knows no infinity.
+nlohmann::json to_json(const algo::Metrics& metrics);
+
+/// The row that begins a run: enough to run it again.
+db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
+/// The row's end. A run ended by a person is finished all the same; its outcome says `stopped`.
+db::RunEnd run_end(const RunResult& result);
+db::TickRow tick_row(const algo::Telemetry& t);
+
+/// A run as GET /api/v1/runs lists it; with its document when the row holds one.
+nlohmann::json to_json(const db::RunRow& row);
+nlohmann::json to_json(const db::TickRow& row);
+
+/// Words for the hold and behaviour columns of an export.
+const db::CsvNames& csv_names();
+
+/// [UTC] now as ISO 8601 with milliseconds.
+std::string wall_time();
+
+}  // namespace server

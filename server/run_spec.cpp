@@ -1,0 +1,141 @@
+// server/run_spec.cpp: the one place that knows every robot and controller by name.
+#include "server/run_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "algo/controller.hpp"
+#include "algo/filter.hpp"
+#include "server/json_reader.hpp"
+#include "server/scenario_json.hpp"
+#include "sim/replay.hpp"
+#include "sim/world.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // what JSON numbers hold exactly
+
+void check_choices(const sim::Scenario& scenario) {
+  const auto controllers = algo::controller_table();
+  if (std::none_of(controllers.begin(), controllers.end(), [&](const auto& c) {
+        return c.name == scenario.controller;
+      })) {
+    std::string known;
+    for (const auto& c : controllers) known += fmt::format(" {}", c.name);
+    throw DocumentError("controller",
+                        fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
+  }
+  if (!algo::find_filter(scenario.filter)) {
+    throw DocumentError(
+        "filter",
+        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none", scenario.filter));
+  }
+}
+
+}  // namespace
+
+RunOverrides overrides_from_json(const json& body) {
+  const JsonReader in(body, "");
+  RunOverrides out;
+  if (in.has("controller")) out.controller = in.text("controller", 64);
+  if (in.has("filter")) out.filter = in.text("filter", 64);
+  if (in.has("vehicle")) out.vehicle = in.text("vehicle", 64);
+  if (in.has("seed")) out.seed = in.whole("seed", kMaxSeed);
+  if (in.has("parameters")) out.parameters = in.object("parameters").raw();
+  return out;
+}
+
+RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
+  if (overrides.controller) scenario.controller = *overrides.controller;
+  if (overrides.filter) scenario.filter = *overrides.filter;
+  if (overrides.vehicle) {
+    if (*overrides.vehicle != "bullet" && *overrides.vehicle != "kinematic") {
+      throw DocumentError(
+          "vehicle",
+          fmt::format("'{}' is unknown; known are bullet, kinematic", *overrides.vehicle));
+    }
+    const bool bullet = *overrides.vehicle == "bullet";
+    scenario.vehicle = bullet ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
+  }
+  check_choices(scenario);
+  RunSpec spec;
+  spec.parameters =
+      parameters_from_json(overrides.parameters, "parameters", parameters_of(scenario));
+  spec.seed = overrides.seed.value_or(1);
+  // The document of the run must tell the whole story: parameters included.
+  scenario.parameters.clear();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    if (spec.parameters[p.id] != p.initial) {
+      scenario.parameters.emplace_back(p.id, spec.parameters[p.id]);
+    }
+  }
+  spec.scenario = std::move(scenario);
+  return spec;
+}
+
+std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
+  if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
+  return std::make_unique<sim::World>(spec.scenario, spec.seed);
+}
+
+algo::PipelineConfig pipeline_config(const RunSpec& spec) {
+  return {.controller = spec.scenario.controller,
+          .filter = *algo::find_filter(spec.scenario.filter),
+          .parameters = spec.parameters};
+}
+
+std::vector<algo::Request> first_requests(const RunSpec& spec) {
+  if (!spec.scenario.goal || !spec.scenario.log.empty()) return {};
+  return {*spec.scenario.goal};
+}
+
+double time_limit(const RunSpec& spec) {
+  if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
+  if (!spec.scenario.goal) return 60.0;
+  const double straight =
+      (spec.scenario.goal->position_W - spec.scenario.start.position()).norm();
+  return std::max(1.0, 5.0 * straight / spec.parameters[algo::Parameter::MaxSpeed]);
+}
+
+json to_json(const algo::RobotSpec& robot) {
+  return {{"name", robot.name},
+          {"radius", robot.radius},
+          {"half_track", robot.half_track},
+          {"period", robot.period},
+          {"max_v", robot.max_v},
+          {"max_omega", robot.max_omega},
+          {"max_acceleration", robot.max_acceleration},
+          {"max_angular_acceleration", robot.max_angular_acceleration},
+          {"editable", robot.editable},
+          {"paceable", robot.paceable},
+          {"drives", robot.drives}};
+}
+
+algo::RobotSpec robot_spec_from_json(const json& value) {
+  const JsonReader in(value, "robot");
+  algo::RobotSpec robot;
+  robot.name = in.text("name");
+  robot.radius = in.number("radius", {0, 10});
+  robot.half_track = in.number("half_track", {0, 10});
+  robot.period = in.number("period", {1e-4, 10});
+  robot.max_v = in.number("max_v", {0, 100});
+  robot.max_omega = in.number("max_omega", {0, 100});
+  robot.max_acceleration = in.number("max_acceleration", {0, 1000});
+  robot.max_angular_acceleration = in.number("max_angular_acceleration", {0, 1000});
+  robot.editable = in.flag_or("editable", false);
+  robot.paceable = in.flag_or("paceable", false);
+  robot.drives = in.flag_or("drives", false);
+  return robot;
+}
+
+json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
+  return {{"scenario", to_json(spec.scenario)},
+          {"source", spec.scenario.log.empty() ? "simulation" : "replay"},
+          {"robot", to_json(robot)}};
+}
+
+}  // namespace server

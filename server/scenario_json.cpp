@@ -1,0 +1,412 @@
+// server/scenario_json.cpp: one reader and one writer per document part.
+#include "server/scenario_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <type_traits>
+#include <variant>
+
+#include "algo/controller.hpp"
+#include "algo/filter.hpp"
+#include "algo/units.hpp"
+#include "server/json_reader.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr double kMaxCoordinate = 1e5;  // [m]
+constexpr NumberRange kCoordinate{-kMaxCoordinate, kMaxCoordinate};
+constexpr std::size_t kMaxPolygonPoints = 256;
+
+algo::Vec2 point_from_json(const json& value, const std::string& path) {
+  if (!value.is_array() || value.size() != 2) {
+    throw DocumentError(path, "must be a point [x, y] in metres");
+  }
+  return {finite_number(value[0], path + "/0", kCoordinate),
+          finite_number(value[1], path + "/1", kCoordinate)};
+}
+
+double angle_or(const JsonReader& in, std::string_view key, double fallback) {
+  return algo::wrap_angle(in.number_or(key, fallback, {-1e6, 1e6}));
+}
+
+algo::Pose2 pose_from_json(const JsonReader& in, double heading) {
+  return {in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
+}
+
+algo::SetGoal goal_from_json(const JsonReader& in) {
+  algo::SetGoal goal;
+  goal.position_W = {in.number("x", kCoordinate), in.number("y", kCoordinate)};
+  if (in.has("heading")) goal.heading = angle_or(in, "heading", 0);
+  return goal;
+}
+
+json to_json(const algo::Pose2& pose) {
+  return {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
+}
+
+/// As in the paper: without a start heading the robot faces its goal.
+algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {
+  algo::Pose2 start;
+  bool heading_given = false;
+  if (in.has("start")) {
+    const JsonReader given = in.object("start");
+    given.only({"x", "y", "heading"});
+    start = pose_from_json(given, 0);
+    heading_given = given.has("heading");
+  }
+  if (goal && !heading_given) {
+    const algo::Vec2 to_goal = goal->position_W - start.position();
+    start.heading = std::atan2(to_goal.y(), to_goal.x());
+  }
+  return start;
+}
+
+void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
+  in.only({"id", "type", "from", "to", "x", "y", "heading", "length", "thickness", "height",
+           "reflectivity", "specular"});
+  algo::Wall wall{in.number_or("length", 0), in.number_or("thickness", 0.1)};
+  if (in.has("from") || in.has("to")) {
+    const algo::Vec2 from = point_from_json(in.array("from", 2), in.at("from"));
+    const algo::Vec2 to = point_from_json(in.array("to", 2), in.at("to"));
+    const algo::Vec2 along = to - from;
+    const algo::Vec2 middle = (from + to) / 2;
+    wall.length = along.norm();
+    obstacle.pose_W = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
+  } else {
+    obstacle.pose_W = pose_from_json(in, 0);
+  }
+  obstacle.shape = wall;
+}
+
+/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its middle.
+void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
+  in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
+  algo::Polygon polygon;
+  const json& points = in.array("points", kMaxPolygonPoints);
+  algo::Vec2 sum{0, 0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    polygon.points.push_back(point_from_json(points[i], fmt::format("{}/{}", in.at("points"), i)));
+    sum += polygon.points.back();
+  }
+  if (in.has("x") || in.has("y") || in.has("heading")) {
+    obstacle.pose_W = pose_from_json(in, 0);  // the points are in the obstacle's own frame
+  } else if (!points.empty()) {
+    const algo::Vec2 middle = sum / static_cast<double>(points.size());
+    for (algo::Vec2& p : polygon.points) p -= middle;
+    obstacle.pose_W = {middle.x(), middle.y(), 0};
+  }
+  // A clockwise outline means the same shape: turn it round rather than turn it down.
+  double twice_area = 0;
+  for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+    const algo::Vec2& a = polygon.points[i];
+    const algo::Vec2& b = polygon.points[(i + 1) % polygon.points.size()];
+    twice_area += a.x() * b.y() - a.y() * b.x();
+  }
+  if (twice_area < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  obstacle.shape = std::move(polygon);
+}
+
+sim::LaserConfig laser_from_json(const JsonReader& in) {
+  in.only({"resolution_deg", "ideal", "mount", "height", "rolling", "unit", "range_max", "bias",
+           "noise", "noise_shape", "mixed_pixels", "reflectivity", "dropout", "salt", "pepper"});
+  const double resolution = in.number_or("resolution_deg", 0.5);
+  sim::LaserConfig laser;
+  try {
+    laser = in.flag_or("ideal", false) ? sim::LaserConfig::ideal(resolution)
+                                       : sim::LaserConfig::with_resolution(resolution);
+  } catch (const std::invalid_argument& e) {
+    in.fail("resolution_deg", e.what());
+  }
+  if (in.has("mount")) laser.mount_R = pose_from_json(in.object("mount"), 0);
+  laser.height = in.number_or("height", laser.height, {0.0, 5.0});
+  laser.rolling = in.flag_or("rolling", laser.rolling);
+  const std::string unit = in.text_or("unit", "mm");
+  if (unit != "mm" && unit != "cm") in.fail("unit", "must be \"mm\" or \"cm\"");
+  if (unit == "cm") {
+    laser.unit = sim::LaserUnit::Centimetre;
+    laser.range_max = 81.91;
+  }
+  laser.range_max = in.number_or("range_max", laser.range_max, {0.1, 81.91});
+  laser.bias = in.number_or("bias", laser.bias, {0.0, 1.0});
+  laser.noise = in.number_or("noise", laser.noise, {0.0, 1.0});
+  const std::string shape = in.text_or("noise_shape", "gaussian");
+  if (shape != "gaussian" && shape != "uniform") {
+    in.fail("noise_shape", "must be \"gaussian\" or \"uniform\"");
+  }
+  laser.noise_shape = shape == "uniform" ? sim::NoiseShape::Uniform : sim::NoiseShape::Gaussian;
+  laser.mixed_pixels = in.flag_or("mixed_pixels", laser.mixed_pixels);
+  laser.reflectivity = in.flag_or("reflectivity", laser.reflectivity);
+  laser.dropout = in.number_or("dropout", laser.dropout, {0.0, 1.0});
+  laser.salt = in.number_or("salt", laser.salt, {0.0, 1.0});
+  laser.pepper = in.number_or("pepper", laser.pepper, {0.0, 1.0});
+  return laser;
+}
+
+json to_json(const sim::LaserConfig& laser) {
+  const double degrees = laser.angle_increment / algo::units::kRadiansPerDegree;
+  return {{"resolution_deg", std::round(degrees * 100) / 100},
+          {"mount", to_json(laser.mount_R)},
+          {"height", laser.height},
+          {"rolling", laser.rolling},
+          {"unit", laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm"},
+          {"range_max", laser.range_max},
+          {"bias", laser.bias},
+          {"noise", laser.noise},
+          {"noise_shape", laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian"},
+          {"mixed_pixels", laser.mixed_pixels},
+          {"reflectivity", laser.reflectivity},
+          {"dropout", laser.dropout},
+          {"salt", laser.salt},
+          {"pepper", laser.pepper}};
+}
+
+void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
+  const json& list = in.array("obstacles", kMaxObstacles);
+  std::set<std::uint32_t> ids;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string path = fmt::format("obstacles/{}", i);
+    algo::Obstacle obstacle = obstacle_from_json(list[i], path);
+    if (obstacle.id != 0 && !ids.insert(obstacle.id).second) {
+      throw DocumentError(path + "/id", fmt::format("{} is used twice", obstacle.id));
+    }
+    scenario.obstacles.push_back(std::move(obstacle));
+  }
+  std::uint32_t next = 1;
+  for (algo::Obstacle& obstacle : scenario.obstacles) {
+    if (obstacle.id != 0) continue;
+    while (ids.count(next) > 0) ++next;
+    ids.insert(next);
+    obstacle.id = next;
+  }
+}
+
+void read_choices(const JsonReader& in, sim::Scenario& scenario) {
+  const std::string vehicle = in.text_or("vehicle", "bullet");
+  if (vehicle != "bullet" && vehicle != "kinematic") {
+    in.fail("vehicle", "must be \"bullet\" or \"kinematic\"");
+  }
+  scenario.vehicle = vehicle == "bullet" ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
+  scenario.controller = in.text_or("controller", scenario.controller);
+  const auto controllers = algo::controller_table();
+  if (std::none_of(controllers.begin(), controllers.end(), [&](const auto& c) {
+        return c.name == scenario.controller;
+      })) {
+    in.fail("controller", fmt::format("'{}' is unknown", scenario.controller));
+  }
+  scenario.filter = in.text_or("filter", scenario.filter);
+  if (!algo::find_filter(scenario.filter)) {
+    in.fail("filter", fmt::format("'{}' is unknown", scenario.filter));
+  }
+  if (in.has("parameters")) {
+    const JsonReader given = in.object("parameters");
+    const algo::Parameters all = parameters_from_json(given.raw(), in.at("parameters"), {});
+    for (const algo::ParameterInfo& parameter : algo::parameter_table()) {
+      if (given.has(parameter.name)) {
+        scenario.parameters.emplace_back(parameter.id, all[parameter.id]);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+bool valid_scenario_name(std::string_view name) {
+  return !name.empty() && name.size() <= 64 &&
+         name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string_view::npos;
+}
+
+algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
+  const JsonReader in(value, path);
+  algo::Obstacle obstacle;
+  obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, 0xFFFFFFFF));
+  const std::string type = in.text("type");
+  if (type == "cylinder") {
+    in.only({"id", "type", "x", "y", "heading", "radius", "height", "reflectivity", "specular"});
+    obstacle.pose_W = pose_from_json(in, 0);
+    obstacle.shape = algo::Cylinder{in.number("radius")};
+  } else if (type == "box") {
+    in.only({"id", "type", "x", "y", "heading", "length", "width", "height", "reflectivity",
+             "specular"});
+    obstacle.pose_W = pose_from_json(in, 0);
+    obstacle.shape = algo::Box{in.number("length"), in.number("width")};
+  } else if (type == "polygon") {
+    read_polygon(in, obstacle);
+  } else if (type == "wall") {
+    read_wall(in, obstacle);
+  } else {
+    in.fail("type",
+            fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
+  }
+  obstacle.height = in.number_or("height", obstacle.height);
+  obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
+  obstacle.specular = in.flag_or("specular", false);
+  if (const auto complaint = algo::defect(obstacle)) throw DocumentError(path, *complaint);
+  return obstacle;
+}
+
+json to_json(const algo::Obstacle& o) {
+  json out = {{"id", o.id},
+              {"x", o.pose_W.x},
+              {"y", o.pose_W.y},
+              {"heading", o.pose_W.heading},
+              {"height", o.height},
+              {"reflectivity", o.reflectivity},
+              {"specular", o.specular}};
+  std::visit(
+      [&](const auto& shape) {
+        using S = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<S, algo::Cylinder>) {
+          out["type"] = "cylinder";
+          out["radius"] = shape.radius;
+        } else if constexpr (std::is_same_v<S, algo::Box>) {
+          out["type"] = "box";
+          out["length"] = shape.length;
+          out["width"] = shape.width;
+        } else if constexpr (std::is_same_v<S, algo::Polygon>) {
+          out["type"] = "polygon";
+          out["points"] = json::array();
+          for (const algo::Vec2& p : shape.points) out["points"].push_back({p.x(), p.y()});
+        } else {
+          out["type"] = "wall";
+          out["length"] = shape.length;
+          out["thickness"] = shape.thickness;
+        }
+      },
+      o.shape);
+  return out;
+}
+
+algo::Request request_from_json(const json& value) {
+  const JsonReader in(value, "");
+  const std::string type = in.text("type");
+  if (type == "set_goal") {
+    in.only({"type", "x", "y", "heading"});
+    return goal_from_json(in);
+  }
+  if (type == "clear_goal") return algo::ClearGoal{};
+  if (type == "add_obstacle") {
+    in.only({"type", "obstacle"});
+    return algo::AddObstacle{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
+  }
+  if (type == "move_obstacle") {
+    in.only({"type", "id", "x", "y", "heading"});
+    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", 0xFFFFFFFF)),
+                              pose_from_json(in, 0)};
+  }
+  if (type == "remove_obstacle") {
+    in.only({"type", "id"});
+    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", 0xFFFFFFFF))};
+  }
+  if (type == "joystick") {
+    in.only({"type", "forward", "turn"});
+    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1})};
+  }
+  if (type == "stop") {
+    in.only({"type", "engaged"});
+    return algo::Stop{in.flag_or("engaged", true)};
+  }
+  if (type == "set_parameter") {
+    in.only({"type", "name", "value"});
+    const std::string name = in.text("name");
+    const auto parameter = algo::find_parameter(name);
+    if (!parameter) in.fail("name", fmt::format("there is no parameter '{}'", name));
+    return algo::SetParameter{*parameter, in.number("value")};
+  }
+  in.fail("type",
+          fmt::format("'{}' is unknown; known are set_goal, clear_goal, add_obstacle, "
+                      "move_obstacle, remove_obstacle, joystick, stop, set_parameter",
+                      type));
+}
+
+json to_json(const algo::SetGoal& goal) {
+  json out = {{"x", goal.position_W.x()}, {"y", goal.position_W.y()}};
+  out["heading"] = goal.heading ? json(*goal.heading) : json(nullptr);
+  return out;
+}
+
+json to_json(const algo::Parameters& parameters) {
+  json out = json::object();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    out[std::string(p.name)] = parameters[p.id];
+  }
+  return out;
+}
+
+algo::Parameters parameters_from_json(const json& value,
+                                      const std::string& path,
+                                      const algo::Parameters& base) {
+  const JsonReader in(value, path);
+  algo::Parameters out = base;
+  for (const auto& [name, unused] : value.items()) {
+    const auto parameter = algo::find_parameter(name);
+    if (!parameter) in.fail(name, "there is no such parameter");
+    out.set(*parameter, in.number(name));
+  }
+  if (const auto complaint = algo::refusal(out)) throw DocumentError(path, *complaint);
+  return out;
+}
+
+algo::Parameters parameters_of(const sim::Scenario& scenario) {
+  algo::Parameters out;
+  for (const auto& [parameter, value] : scenario.parameters) out.set(parameter, value);
+  return out;
+}
+
+sim::Scenario scenario_from_json(const json& document) {
+  const JsonReader in(document, "");
+  in.only({"name", "title", "description", "robot", "vehicle", "period", "start", "goal",
+           "obstacles", "lasers", "controller", "filter", "parameters", "time_limit"});
+  sim::Scenario s;
+  s.name = in.text("name", 64);
+  if (!valid_scenario_name(s.name)) {
+    in.fail("name", "must be 1 to 64 of the characters a-z, 0-9, _ and -");
+  }
+  s.title = in.text_or("title", s.name);
+  s.description = in.text_or("description", "");
+  s.robot = in.text_or("robot", s.robot);
+  s.period = in.number_or("period", s.period, {0.002, 1.0});
+  if (in.has("goal")) s.goal = goal_from_json(in.object("goal"));
+  s.start = start_from_json(in, s.goal);
+  if (in.has("obstacles")) read_obstacles(in, s);
+  if (in.has("lasers")) {
+    s.lasers.clear();
+    const json& list = in.array("lasers", 4);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      s.lasers.push_back(laser_from_json({list[i], fmt::format("lasers/{}", i)}));
+    }
+  }
+  read_choices(in, s);
+  s.time_limit = in.number_or("time_limit", 0, {0.0, 1e6});
+  return s;
+}
+
+json to_json(const sim::Scenario& s) {
+  json out = {{"name", s.name},
+              {"title", s.title},
+              {"description", s.description},
+              {"robot", s.robot},
+              {"vehicle", s.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic"},
+              {"period", s.period},
+              {"start", to_json(s.start)},
+              {"controller", s.controller},
+              {"filter", s.filter},
+              {"parameters", json::object()},
+              {"time_limit", s.time_limit},
+              {"lasers", json::array()},
+              {"obstacles", json::array()}};
+  if (s.goal) out["goal"] = to_json(*s.goal);
+  for (const auto& [parameter, value] : s.parameters) {
+    out["parameters"][std::string(algo::info(parameter).name)] = value;
+  }
+  for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
+  for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));
+  return out;
+}
+
+}  // namespace server

@@ -1,0 +1,294 @@
+// server/session.cpp: the io thread's side of a run.
+#include "server/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "algo/explain.hpp"
+#include "server/scenario_json.hpp"
+#include "server/version.hpp"
+
+namespace server {
+namespace {
+
+// More frames than the rings can hold between them, so that the pool runs dry only when the
+// record is full too.
+constexpr std::size_t kFrames = kRecordRing + 64 + 128;
+constexpr double kPathSpacing = 0.02;        // [m]
+constexpr std::size_t kPathPoints = 20'000;  // then every second one goes
+
+/// A record channel as the place a run's frames go.
+class ChannelSink final : public FrameSink {
+ public:
+  explicit ChannelSink(RunChannel& channel) : channel_(channel) {}
+  bool push(const FrameRef& frame) override { return push_frame(channel_, frame); }
+  std::optional<std::string> failure() const override { return channel_.failed(); }
+
+ private:
+  RunChannel& channel_;
+};
+
+}  // namespace
+
+LiveRun::LiveRun(RunSpec spec,
+                 std::unique_ptr<algo::Robot> robot,
+                 std::vector<algo::Request> first,
+                 std::shared_ptr<RunChannel> channel)
+    : spec_(std::move(spec)),
+      robot_(std::move(robot)),
+      pipeline_(pipeline_config(spec_), robot_->spec()),
+      first_(std::move(first)),
+      channel_(std::move(channel)),
+      pool_(kFrames),
+      thread_([this](const std::stop_token& stop) { control(stop); }) {}
+
+LiveRun::~LiveRun() {
+  thread_.request_stop();
+  robot_->set_pace({.paused = false, .speed = 0});  // wakes a robot that waits for its time
+  if (thread_.joinable()) thread_.join();
+  rings.stream.consume_all([](const FrameRef&) {});
+}
+
+void LiveRun::control(const std::stop_token& stop) {
+  std::unique_ptr<ChannelSink> sink;
+  if (channel_) sink = std::make_unique<ChannelSink>(*channel_);
+  RunLinks links;
+  links.pool = &pool_;
+  links.rings = &rings;
+  links.record = sink.get();
+  links.on_outcome = [this](algo::Outcome outcome) {
+    outcome_.store(outcome, std::memory_order_relaxed);
+    if (channel_) channel_->set_outcome(std::string(algo::name(outcome)));
+  };
+  result_ = run(*robot_, pipeline_, first_, {}, links, stop);
+  if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
+  outcome_.store(result_.outcome, std::memory_order_relaxed);
+  if (channel_) channel_->close(run_end(result_));
+  finished_.store(true, std::memory_order_release);
+}
+
+Session::Session(Recorder* recorder) : recorder_(recorder) {}
+
+void Session::load(RunSpec spec) {
+  std::unique_ptr<algo::Robot> robot = make_robot(spec);  // may throw: nothing has changed yet
+  end();
+
+  state_.robot = robot->spec();
+  state_.goal.reset();
+  state_.obstacles = spec.scenario.obstacles;
+  state_.parameters = spec.parameters;
+  state_.outcome = algo::Outcome::Running;
+  state_.lost_ticks = 0;
+  state_.problem.reset();
+  state_.running = true;
+  path_.clear();
+  newest_.reset();
+  told_mission_ = algo::Mission::Idle;
+  told_hold_ = algo::Hold::None;
+  next_obstacle_ = 1;
+  for (const algo::Obstacle& o : state_.obstacles) {
+    next_obstacle_ = std::max(next_obstacle_, o.id + 1);
+  }
+
+  std::vector<algo::Request> first = first_requests(spec);
+  if (state_.stop) first.push_back(algo::Stop{true});
+  for (const algo::Request& request : first) adopt(request);
+  std::shared_ptr<RunChannel> channel;
+  if (recorder_ != nullptr) channel = recorder_->open(new_run(spec, state_.robot));
+  state_.spec = spec;
+  robot->set_pace(state_.pace);
+  live_ = std::make_unique<LiveRun>(
+      std::move(spec), std::move(robot), std::move(first), std::move(channel));
+  changed();
+}
+
+void Session::end() {
+  if (!live_) return;
+  newest_.reset();
+  live_.reset();
+  state_.running = false;
+  // What the run did not get round to is answered here, so that nobody waits for ever.
+  for (auto& [ticket, pending] : pending_) {
+    if (pending.answer) pending.answer("The run ended before this could be done.");
+  }
+  pending_.clear();
+}
+
+std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answer) {
+  std::uint32_t id = 0;
+  if (auto* add = std::get_if<algo::AddObstacle>(&request)) {
+    if (add->obstacle.id == 0) add->obstacle.id = next_obstacle_++;
+    next_obstacle_ = std::max(next_obstacle_, add->obstacle.id + 1);
+    id = add->obstacle.id;
+  }
+  if (!live_ || live_->finished()) {
+    if (answer) answer("The run is over. Reset or load a scenario first.");
+    return id;
+  }
+  const std::uint64_t ticket = next_ticket_++;
+  if (!live_->rings.requests.push({ticket, request})) return std::nullopt;
+  pending_.emplace(ticket, Pending{std::move(request), std::move(answer)});
+  return id;
+}
+
+void Session::apply_pace() {
+  if (live_) live_->robot().set_pace(state_.pace);
+  state_.pace.single_steps = 0;
+  changed();
+}
+
+void Session::pause(bool paused) {
+  state_.pace.paused = paused;
+  apply_pace();
+}
+
+void Session::set_speed(double times_real_time) {
+  state_.pace.speed = times_real_time;
+  apply_pace();
+}
+
+void Session::single_step(std::uint32_t ticks) {
+  state_.pace.paused = true;
+  state_.pace.single_steps = ticks;
+  apply_pace();
+}
+
+void Session::poll() {
+  if (!live_) return;
+  drain_replies();
+  drain_frames();
+  watch_run();
+}
+
+void Session::drain_replies() {
+  bool different = false;
+  live_->rings.replies.consume_all([&](const Reply& reply) {
+    const auto it = pending_.find(reply.ticket);
+    if (it == pending_.end()) return;
+    const Pending pending = std::move(it->second);
+    pending_.erase(it);
+    if (reply.refusal) {
+      log(LogLevel::Warning, "Refused: " + *reply.refusal);
+    } else {
+      adopt(pending.request);
+      different = different || !std::holds_alternative<algo::Joystick>(pending.request);
+    }
+    if (pending.answer) pending.answer(reply.refusal);
+  });
+  if (different) changed();
+}
+
+/// Brings the mirror up to date with a request the control thread has accepted.
+void Session::adopt(const algo::Request& request) {
+  const auto find = [&](std::uint32_t id) {
+    return std::find_if(state_.obstacles.begin(), state_.obstacles.end(), [id](const auto& o) {
+      return o.id == id;
+    });
+  };
+  std::visit(
+      [&](const auto& r) {
+        using R = std::decay_t<decltype(r)>;
+        if constexpr (std::is_same_v<R, algo::SetGoal>) {
+          state_.goal = r;
+        } else if constexpr (std::is_same_v<R, algo::ClearGoal>) {
+          state_.goal.reset();
+        } else if constexpr (std::is_same_v<R, algo::AddObstacle>) {
+          state_.obstacles.push_back(r.obstacle);
+        } else if constexpr (std::is_same_v<R, algo::MoveObstacle>) {
+          if (const auto it = find(r.id); it != state_.obstacles.end()) it->pose_W = r.pose_W;
+        } else if constexpr (std::is_same_v<R, algo::RemoveObstacle>) {
+          if (const auto it = find(r.id); it != state_.obstacles.end()) state_.obstacles.erase(it);
+        } else if constexpr (std::is_same_v<R, algo::Stop>) {
+          state_.stop = r.engaged;
+        } else if constexpr (std::is_same_v<R, algo::SetParameter>) {
+          state_.parameters.set(r.parameter, r.value);
+        } else {
+          static_assert(std::is_same_v<R, algo::Joystick>);
+          if (r != algo::Joystick{} && state_.goal) {  // taking the stick cancels the goal
+            state_.goal.reset();
+            changed();
+          }
+        }
+      },
+      request);
+}
+
+void Session::drain_frames() {
+  FrameRef latest;
+  live_->rings.stream.consume_all([&](const FrameRef& frame) {
+    const algo::Telemetry& t = frame->telemetry;
+    const algo::Pose2& pose =
+        t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+    if (path_.empty() || (pose.position() - path_.back().position()).norm() > kPathSpacing) {
+      path_.push_back(pose);
+    }
+    narrate(t);
+    latest = frame;
+  });
+  if (path_.size() > kPathPoints) {
+    for (std::size_t i = 0; 2 * i < path_.size(); ++i) path_[i] = path_[2 * i];
+    path_.resize(path_.size() / 2);
+  }
+  if (!latest) return;
+  newest_ = latest;
+  if (on_frame) on_frame(latest);
+}
+
+/// Says in the log what changed for the robot, once per change.
+void Session::narrate(const algo::Telemetry& t) {
+  if (t.hold == told_hold_ && t.mission == told_mission_) return;
+  const bool held = t.hold != algo::Hold::None && t.hold != told_hold_;
+  const bool notable = t.mission != told_mission_ && (t.mission == algo::Mission::Arrived ||
+                                                      t.mission == algo::Mission::Stuck);
+  told_hold_ = t.hold;
+  told_mission_ = t.mission;
+  if (!held && !notable) return;
+  const algo::Explanation words = algo::explain(t);
+  log(held || t.mission == algo::Mission::Stuck ? LogLevel::Warning : LogLevel::Info,
+      words.what + ". " + words.why);
+}
+
+void Session::watch_run() {
+  const algo::Outcome outcome = live_->outcome();
+  const bool ended = state_.running && live_->finished();
+  if (ended) {
+    state_.running = false;
+    state_.lost_ticks = live_->result().lost_ticks;
+    if (outcome == algo::Outcome::Failed) {
+      state_.problem = live_->result().reason;
+      log(LogLevel::Error, "The run broke off: " + live_->result().reason);
+    }
+  }
+  if (ended || outcome != state_.outcome) {
+    state_.outcome = outcome;
+    changed();
+  }
+}
+
+sim::Scenario Session::as_scenario(const std::string& name, const std::string& title) const {
+  sim::Scenario out = state_.spec.scenario;
+  out.name = name;
+  out.title = title;
+  out.goal = state_.goal;
+  out.obstacles = state_.obstacles;
+  out.parameters.clear();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    if (state_.parameters[p.id] != p.initial) {
+      out.parameters.emplace_back(p.id, state_.parameters[p.id]);
+    }
+  }
+  return out;
+}
+
+void Session::changed() const {
+  if (on_change) on_change();
+}
+
+void Session::log(LogLevel level, const std::string& text) const {
+  if (on_log) on_log(level, text);
+}
+
+}  // namespace server

@@ -1,0 +1,17 @@
+// server/session_json.hpp: what a session is doing, as /state and GET /api/v1/session say it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "server/session.hpp"
+
+namespace server {
+
+/// The `/state` document (docs/interfaces.md).
+nlohmann::json state_json(const Session& session);
+/// The same with the newest tick: pose, clearance, mission, hold and the two sentences.
+nlohmann::json session_json(const Session& session);
+/// Controllers, filters, vehicles and parameters by name, with labels and help.
+nlohmann::json catalog_json();
+
+}  // namespace server

@@ -1,0 +1,426 @@
+// server/wire/frame_codec.cpp: one function per part of the frame, in the order of telemetry.fbs.
+#include "server/wire/frame_codec.hpp"
+
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "algo/explain.hpp"
+#include "telemetry_generated.h"
+
+namespace server {
+namespace {
+
+namespace fb = tautline::wire;
+using Builder = flatbuffers::FlatBufferBuilder;
+template <typename T>
+using Offset = flatbuffers::Offset<T>;
+
+fb::Vec2 to_wire(const algo::Vec2& v) { return {v.x(), v.y()}; }
+fb::Vec2f to_float(const algo::Vec2& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y())};
+}
+fb::Pose2 to_wire(const algo::Pose2& p) { return {p.x, p.y, p.heading}; }
+fb::Twist2 to_wire(const algo::Twist2& t) { return {t.v, t.omega}; }
+fb::Odometry to_wire(const algo::Odometry& o) {
+  return {o.stamp, to_wire(o.pose), to_wire(o.twist)};
+}
+fb::RangeReading to_wire(const algo::RangeReading& r) {
+  return {to_wire(r.mount_R),
+          r.stamp,
+          r.range,
+          r.range_max,
+          static_cast<fb::BeamStatus>(r.status)};
+}
+fb::Bumper to_wire(const algo::BumperReading& b) {
+  return {to_wire(b.mount_R), b.stamp, b.pressed};
+}
+fb::Nearest to_wire(const algo::Nearest& n) {
+  return {to_float(n.point_W), static_cast<float>(n.distance), n.beam};
+}
+fb::Node to_wire(const algo::Node& n) {
+  return {to_float(n.position_W), to_float(n.internal_W), to_float(n.external_W)};
+}
+
+algo::Vec2 from_wire(const fb::Vec2& v) { return {v.x(), v.y()}; }
+algo::Vec2 from_wire(const fb::Vec2f& v) { return {v.x(), v.y()}; }
+algo::Pose2 from_wire(const fb::Pose2& p) { return {p.x(), p.y(), p.heading()}; }
+algo::Twist2 from_wire(const fb::Twist2& t) { return {t.v(), t.omega()}; }
+
+Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
+  fb::ShapeKind kind{};
+  fb::Vec2 size{};
+  std::vector<fb::Vec2> points;
+  std::visit(
+      [&](const auto& shape) {
+        using S = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<S, algo::Cylinder>) {
+          kind = fb::ShapeKind_Cylinder;
+          size = {shape.radius, 0};
+        } else if constexpr (std::is_same_v<S, algo::Box>) {
+          kind = fb::ShapeKind_Box;
+          size = {shape.length, shape.width};
+        } else if constexpr (std::is_same_v<S, algo::Polygon>) {
+          kind = fb::ShapeKind_Polygon;
+          for (const algo::Vec2& p : shape.points) points.push_back(to_wire(p));
+        } else {
+          kind = fb::ShapeKind_Wall;
+          size = {shape.length, shape.thickness};
+        }
+      },
+      o.shape);
+  const auto point_vector =
+      points.empty() ? 0 : b.CreateVectorOfStructs(points.data(), points.size());
+  const fb::Pose2 pose = to_wire(o.pose_W);
+  return fb::CreateObstacle(
+      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular);
+}
+
+algo::Obstacle read_obstacle(const fb::Obstacle* o) {
+  if (o == nullptr || o->pose() == nullptr || o->size() == nullptr) {
+    throw WireError("An obstacle in the frame lacks its pose or size.");
+  }
+  algo::Obstacle out;
+  out.id = o->id();
+  out.pose_W = from_wire(*o->pose());
+  out.height = o->height();
+  out.reflectivity = o->reflectivity();
+  out.specular = o->specular();
+  const double a = o->size()->x();
+  const double c = o->size()->y();
+  switch (o->kind()) {
+    case fb::ShapeKind_Cylinder: out.shape = algo::Cylinder{a}; break;
+    case fb::ShapeKind_Box: out.shape = algo::Box{a, c}; break;
+    case fb::ShapeKind_Wall: out.shape = algo::Wall{a, c}; break;
+    case fb::ShapeKind_Polygon: {
+      algo::Polygon polygon;
+      if (o->points() != nullptr) {
+        for (const fb::Vec2* p : *o->points()) polygon.points.push_back(from_wire(*p));
+      }
+      out.shape = std::move(polygon);
+      break;
+    }
+    default: throw WireError("An obstacle in the frame has an unknown shape.");
+  }
+  return out;
+}
+
+Offset<fb::SetGoal> write_goal(Builder& b, const algo::SetGoal& goal) {
+  const fb::Vec2 position = to_wire(goal.position_W);
+  return fb::CreateSetGoal(b, &position, goal.heading.value_or(0), goal.heading.has_value());
+}
+
+algo::SetGoal read_goal(const fb::SetGoal& goal) {
+  if (goal.position() == nullptr) throw WireError("A goal in the frame lacks its position.");
+  algo::SetGoal out;
+  out.position_W = from_wire(*goal.position());
+  if (goal.has_heading()) out.heading = goal.heading();
+  return out;
+}
+
+struct RequestWriter {
+  Builder& b;
+  using Written = std::pair<fb::Request, Offset<void>>;
+
+  Written operator()(const algo::SetGoal& r) const {
+    return {fb::Request_SetGoal, write_goal(b, r).Union()};
+  }
+  Written operator()(const algo::ClearGoal&) const {
+    return {fb::Request_ClearGoal, fb::CreateClearGoal(b).Union()};
+  }
+  Written operator()(const algo::AddObstacle& r) const {
+    return {fb::Request_AddObstacle,
+            fb::CreateAddObstacle(b, write_obstacle(b, r.obstacle)).Union()};
+  }
+  Written operator()(const algo::MoveObstacle& r) const {
+    const fb::Pose2 pose = to_wire(r.pose_W);
+    return {fb::Request_MoveObstacle, fb::CreateMoveObstacle(b, r.id, &pose).Union()};
+  }
+  Written operator()(const algo::RemoveObstacle& r) const {
+    return {fb::Request_RemoveObstacle, fb::CreateRemoveObstacle(b, r.id).Union()};
+  }
+  Written operator()(const algo::Joystick& r) const {
+    return {fb::Request_Joystick, fb::CreateJoystick(b, r.forward, r.turn).Union()};
+  }
+  Written operator()(const algo::Stop& r) const {
+    return {fb::Request_Stop, fb::CreateStop(b, r.engaged).Union()};
+  }
+  Written operator()(const algo::SetParameter& r) const {
+    const std::string_view name = algo::info(r.parameter).name;
+    const auto text = b.CreateString(name.data(), name.size());
+    return {fb::Request_SetParameter, fb::CreateSetParameter(b, text, r.value).Union()};
+  }
+};
+
+algo::SetParameter read_parameter(const fb::SetParameter& r) {
+  const std::string name = r.name() == nullptr ? "" : r.name()->str();
+  const auto parameter = algo::find_parameter(name);
+  if (!parameter) throw WireError("The frame sets an unknown parameter '" + name + "'.");
+  return {*parameter, r.value()};
+}
+
+algo::Request read_request(const fb::RequestBox& box) {
+  if (box.request() == nullptr) throw WireError("The frame has an empty request.");
+  switch (box.request_type()) {
+    case fb::Request_SetGoal: return read_goal(*box.request_as_SetGoal());
+    case fb::Request_ClearGoal: return algo::ClearGoal{};
+    case fb::Request_AddObstacle:
+      return algo::AddObstacle{read_obstacle(box.request_as_AddObstacle()->obstacle())};
+    case fb::Request_MoveObstacle: {
+      const auto* move = box.request_as_MoveObstacle();
+      if (move->pose() == nullptr) throw WireError("A move in the frame lacks its pose.");
+      return algo::MoveObstacle{move->id(), from_wire(*move->pose())};
+    }
+    case fb::Request_RemoveObstacle:
+      return algo::RemoveObstacle{box.request_as_RemoveObstacle()->id()};
+    case fb::Request_Joystick: {
+      const auto* stick = box.request_as_Joystick();
+      return algo::Joystick{stick->forward(), stick->turn()};
+    }
+    case fb::Request_Stop: return algo::Stop{box.request_as_Stop()->engaged()};
+    case fb::Request_SetParameter: return read_parameter(*box.request_as_SetParameter());
+    default: throw WireError("The frame has a request of an unknown kind.");
+  }
+}
+
+Offset<fb::LaserScan> write_scan(Builder& b,
+                                 const algo::LaserScan& scan,
+                                 std::vector<std::uint16_t>& samples) {
+  samples.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) samples[i] = algo::beam_to_wire(scan, i);
+  const auto ranges = b.CreateVector(samples);
+  const fb::Pose2 mount = to_wire(scan.mount_R);
+  return fb::CreateLaserScan(b,
+                             &mount,
+                             scan.stamp,
+                             scan.angle_min,
+                             scan.angle_increment,
+                             scan.range_max,
+                             scan.turn_period,
+                             scan.turns,
+                             ranges);
+}
+
+void read_scan(const fb::LaserScan& in, algo::LaserScan& scan) {
+  if (in.mount() == nullptr || in.ranges() == nullptr || in.turns() == 0) {
+    throw WireError("A scan in the frame lacks its mount, turns or ranges.");
+  }
+  scan.mount_R = from_wire(*in.mount());
+  scan.stamp = in.stamp();
+  scan.angle_min = in.angle_min();
+  scan.angle_increment = in.angle_increment();
+  scan.range_max = in.range_max();
+  scan.turn_period = in.turn_period();
+  scan.turns = in.turns();
+  scan.resize(in.ranges()->size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    algo::beam_from_wire(scan, i, in.ranges()->Get(static_cast<flatbuffers::uoffset_t>(i)));
+  }
+}
+
+template <typename Wire, typename List>
+Offset<flatbuffers::Vector<const Wire*>> write_structs(Builder& b, const List& list) {
+  if (list.empty()) return 0;
+  Wire* out = nullptr;
+  const auto vector = b.CreateUninitializedVectorOfStructs(list.size(), &out);
+  for (const auto& item : list) *out++ = to_wire(item);
+  return vector;
+}
+
+Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
+    Builder& b, const algo::Recycled<algo::Request>& requests) {
+  if (requests.empty()) return 0;
+  std::vector<Offset<fb::RequestBox>> boxes;
+  for (const algo::Request& request : requests) {
+    const auto [type, offset] = std::visit(RequestWriter{b}, request);
+    boxes.push_back(fb::CreateRequestBox(b, type, offset));
+  }
+  return b.CreateVector(boxes);
+}
+
+template <typename T>
+void check_enum(T value, T max, const char* what) {
+  if (value > max) throw WireError(std::string("The frame has an unknown ") + what + ".");
+}
+
+void read_observation(const fb::Frame& f, algo::Observation& o) {
+  o.clear_sensors();
+  o.stamp = f.stamp();
+  const fb::Odometry& odometry = *f.odometry();
+  o.odometry = {odometry.stamp(), from_wire(odometry.pose()), from_wire(odometry.twist())};
+  if (f.scans() != nullptr) {
+    for (const fb::LaserScan* scan : *f.scans()) read_scan(*scan, o.scans.append());
+  }
+  const auto read_ring = [](const auto* wire, algo::Recycled<algo::RangeReading>& ring) {
+    if (wire == nullptr) return;
+    for (const fb::RangeReading* r : *wire) {
+      check_enum(r->status(), fb::BeamStatus_MAX, "beam status");
+      ring.push_back({from_wire(r->mount()),
+                      r->stamp(),
+                      r->range(),
+                      r->range_max(),
+                      static_cast<algo::Beam>(r->status())});
+    }
+  };
+  read_ring(f.sonar(), o.sonar);
+  read_ring(f.infrared(), o.infrared);
+  if (f.bumpers() != nullptr) {
+    for (const fb::Bumper* r : *f.bumpers()) {
+      o.bumpers.push_back({from_wire(r->mount()), r->stamp(), r->pressed()});
+    }
+  }
+  if (const auto* g = f.gyro()) o.gyro = {g->stamp(), g->rate()};
+  if (const auto* i = f.inclinometer()) o.inclinometer = {i->stamp(), i->roll(), i->pitch()};
+  if (const auto* e = f.encoders()) o.encoders = {e->stamp(), e->left(), e->right()};
+}
+
+std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
+  if (n == nullptr) return std::nullopt;
+  return algo::Nearest{n->beam(), from_wire(n->point()), n->distance()};
+}
+
+void read_output(const fb::Frame& f, algo::Telemetry& t) {
+  t.output = {};
+  if (f.strip() != nullptr) {
+    for (const fb::Node* n : *f.strip()) {
+      t.output.strip.push_back(
+          {from_wire(n->position()), from_wire(n->internal()), from_wire(n->external())});
+    }
+  }
+  const auto vec = [](const fb::Vec2f* v) { return v ? from_wire(*v) : algo::Vec2{0, 0}; };
+  t.output.pass_W = vec(f.pass());
+  t.output.external_left_W = vec(f.external_left());
+  t.output.external_right_W = vec(f.external_right());
+  t.output.elastic_W = vec(f.elastic());
+  t.output.side = static_cast<algo::Side>(f.side() > 0 ? 1 : (f.side() < 0 ? -1 : 0));
+  t.scene.fresh = !t.observation.scans.empty();
+  t.scene.left = read_nearest(f.left());
+  t.scene.right = read_nearest(f.right());
+}
+
+}  // namespace
+
+std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
+  Builder& b = builder_;
+  b.Clear();
+  const algo::Observation& o = t.observation;
+
+  std::vector<Offset<fb::LaserScan>> scans;
+  for (const algo::LaserScan& scan : o.scans) scans.push_back(write_scan(b, scan, samples_));
+  const auto scan_vector = scans.empty() ? 0 : b.CreateVector(scans);
+  const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
+  const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
+  const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
+  const auto requests = write_requests(b, t.requests);
+  const auto strip = write_structs<fb::Node>(b, t.output.strip);
+  const auto goal = t.goal ? write_goal(b, *t.goal) : 0;
+  const algo::Explanation explanation = algo::explain(t);
+  const auto what = b.CreateString(explanation.what);
+  const auto why = b.CreateString(explanation.why);
+
+  const fb::Odometry odometry = to_wire(o.odometry);
+  const fb::Twist2 command = to_wire(t.command.base);
+  fb::FrameBuilder frame(b);
+  frame.add_tick(t.tick);
+  frame.add_stamp(o.stamp);
+  frame.add_odometry(&odometry);
+  if (!scans.empty()) frame.add_scans(scan_vector);
+  if (!o.sonar.empty()) frame.add_sonar(sonar);
+  if (!o.infrared.empty()) frame.add_infrared(infrared);
+  if (!o.bumpers.empty()) frame.add_bumpers(bumpers);
+  if (!t.requests.empty()) frame.add_requests(requests);
+  frame.add_command(&command);
+  if (t.goal) frame.add_goal(goal);
+  if (!t.output.strip.empty()) frame.add_strip(strip);
+  frame.add_what(what);
+  frame.add_why(why);
+
+  // Structs live inside the table: the locals only have to outlive their add_ call.
+  if (o.gyro) {
+    const fb::YawGyro gyro(o.gyro->stamp, o.gyro->rate);
+    frame.add_gyro(&gyro);
+  }
+  if (o.inclinometer) {
+    const fb::Inclinometer i(o.inclinometer->stamp, o.inclinometer->roll, o.inclinometer->pitch);
+    frame.add_inclinometer(&i);
+  }
+  if (o.encoders) {
+    const fb::Encoders encoders(o.encoders->stamp, o.encoders->left, o.encoders->right);
+    frame.add_encoders(&encoders);
+  }
+  if (t.ground_truth) {
+    const algo::GroundTruth& g = *t.ground_truth;
+    const fb::GroundTruth truth(to_wire(g.pose), g.obstacle_distance, g.collided);
+    frame.add_truth(&truth);
+  }
+  frame.add_hold(static_cast<fb::Hold>(t.hold));
+  frame.add_mission(static_cast<fb::Mission>(t.mission));
+  frame.add_behaviour(static_cast<fb::Behaviour>(t.behaviour));
+  frame.add_clearance(static_cast<float>(t.clearance));
+  frame.add_side(static_cast<std::int8_t>(t.output.side));
+  if (!t.output.strip.empty()) {
+    const fb::Vec2f pass = to_float(t.output.pass_W);
+    const fb::Vec2f left = to_float(t.output.external_left_W);
+    const fb::Vec2f right = to_float(t.output.external_right_W);
+    const fb::Vec2f elastic = to_float(t.output.elastic_W);
+    frame.add_pass(&pass);
+    frame.add_external_left(&left);
+    frame.add_external_right(&right);
+    frame.add_elastic(&elastic);
+  }
+  if (t.scene.left) {
+    const fb::Nearest left = to_wire(*t.scene.left);
+    frame.add_left(&left);
+  }
+  if (t.scene.right) {
+    const fb::Nearest right = to_wire(*t.scene.right);
+    frame.add_right(&right);
+  }
+  b.Finish(frame.Finish());
+
+  const std::uint8_t* bytes = b.GetBufferPointer();
+  windows_.clear();
+  if (const auto* written = fb::GetFrame(bytes)->scans()) {
+    for (const fb::LaserScan* scan : *written) {
+      windows_.push_back({static_cast<std::uint32_t>(scan->ranges()->Data() - bytes),
+                          scan->ranges()->size()});
+    }
+  }
+  return std::as_bytes(std::span(bytes, b.GetSize()));
+}
+
+void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  flatbuffers::Verifier verifier(data, bytes.size());
+  if (!fb::VerifyFrameBuffer(verifier)) throw WireError("The bytes are not a telemetry frame.");
+  const fb::Frame& f = *fb::GetFrame(data);
+  if (f.odometry() == nullptr || f.command() == nullptr) {
+    throw WireError("The frame lacks its odometry or command.");
+  }
+  check_enum(f.hold(), fb::Hold_MAX, "hold");
+  check_enum(f.mission(), fb::Mission_MAX, "mission");
+  check_enum(f.behaviour(), fb::Behaviour_MAX, "behaviour");
+
+  t.tick = f.tick();
+  t.requests.clear();
+  if (f.requests() != nullptr) {
+    for (const fb::RequestBox* box : *f.requests()) t.requests.push_back(read_request(*box));
+  }
+  read_observation(f, t.observation);
+  t.ground_truth.reset();
+  if (const auto* g = f.truth()) {
+    t.ground_truth = {from_wire(g->pose()), g->obstacle_distance(), g->collided()};
+  }
+  t.goal.reset();
+  if (f.goal() != nullptr) t.goal = read_goal(*f.goal());
+  read_output(f, t);
+  t.command = {from_wire(*f.command())};
+  t.hold = static_cast<algo::Hold>(f.hold());
+  t.mission = static_cast<algo::Mission>(f.mission());
+  t.behaviour = static_cast<algo::BehaviourId>(f.behaviour());
+  t.clearance = f.clearance();
+}
+
+}  // namespace server

@@ -1,0 +1,69 @@
+// tests/algo/gate_test.cpp: nothing dangerous passes the gate, and it says why.
+#include "algo/gate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace algo {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct GateTest : ::testing::Test {
+  GateTest() {
+    observation.stamp = 10.0;
+    input.scan_timeout = 0.2;
+    input.scan_stamp = 9.9;  // 0.1 s old
+  }
+  Observation observation{};
+  GateInput input{};
+  Command command{{0.3, 0.1}};
+};
+
+TEST_F(GateTest, PassesACommandWithAFreshScan) {
+  EXPECT_EQ(gate(input, observation, command), Hold::None);
+}
+
+TEST_F(GateTest, HoldsWhenTheScanIsStaleOrNeverCame) {
+  input.scan_stamp = 9.79;  // 0.21 s old
+  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  input.scan_stamp.reset();
+  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  input.scan_stamp = kNaN;
+  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+}
+
+TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
+  for (double* field : {&observation.odometry.pose.x,
+                        &observation.odometry.pose.y,
+                        &observation.odometry.pose.heading,
+                        &observation.odometry.twist.v,
+                        &observation.odometry.twist.omega,
+                        &command.base.v,
+                        &command.base.omega}) {
+    const double before = *field;
+    for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+      *field = bad;
+      EXPECT_EQ(gate(input, observation, command), Hold::NotFinite);
+    }
+    *field = before;
+  }
+}
+
+TEST_F(GateTest, ABumperHoldsUnlessTheDriverBacksAway) {
+  observation.bumpers.push_back({.mount_R = {0.35, 0, 0}, .stamp = 10, .pressed = true});
+  EXPECT_EQ(gate(input, observation, command), Hold::Bumper);
+  input.reversing_by_hand = true;
+  EXPECT_EQ(gate(input, observation, command), Hold::None);
+}
+
+TEST_F(GateTest, StopComesFirst) {
+  input.stopped = true;
+  input.scan_stamp.reset();
+  observation.odometry.pose.x = kNaN;
+  EXPECT_EQ(gate(input, observation, command), Hold::Stopped);
+}
+
+}  // namespace
+}  // namespace algo

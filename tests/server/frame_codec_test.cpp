@@ -1,0 +1,153 @@
+// tests/server/frame_codec_test.cpp: what a pipeline needs comes back bit for bit; garbage does not.
+#include "server/wire/frame_codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace server {
+namespace {
+
+algo::Telemetry full_telemetry() {
+  algo::Telemetry t;
+  t.tick = 4711;
+  algo::Observation& o = t.observation;
+  o.stamp = 12.345678901234567;
+  o.odometry = {12.34, {1.0 / 3.0, -2.0 / 7.0, 0.1}, {0.3, -0.2}};
+  algo::LaserScan& scan = o.scans.append();
+  scan.mount_R = {0.1, -0.05, 0.01};
+  scan.stamp = 12.3;
+  scan.angle_min = -1.5707963267948966;
+  scan.angle_increment = 0.008726646259971648;
+  scan.range_max = 8.191;
+  scan.turn_period = 1.0 / 75;
+  scan.turns = 2;
+  scan.resize(361);
+  for (std::size_t i = 0; i < 361; ++i) scan.set_ok(i, 0.5 + 0.01 * static_cast<double>(i));
+  scan.set_free(7);
+  scan.set_invalid(8, algo::BeamCode::Dazzled);
+  algo::quantise(scan);
+  o.sonar.push_back({{0.3, 0, 0}, 12.2, 1.25, 3.0, algo::Beam::Ok});
+  o.infrared.push_back({{0.3, 0.1, 0.2}, 12.2, 0.8, 0.8, algo::Beam::Free});
+  o.bumpers.push_back({{0.35, 0, 0}, 12.3, true});
+  o.gyro = algo::YawGyro{12.3, 0.123};
+  o.inclinometer = algo::Inclinometer{12.3, 0.01, -0.02};
+  o.encoders = algo::Encoders{12.3, 4294967290U, 17};
+  t.requests.push_back(algo::SetGoal{{3.5, 5.0}, 0.25});
+  t.requests.push_back(algo::SetGoal{{0, 0}, std::nullopt});
+  t.requests.push_back(algo::ClearGoal{});
+  for (const algo::Shape& shape : {algo::Shape{algo::Cylinder{0.3}},
+                                   algo::Shape{algo::Box{0.5, 0.25}},
+                                   algo::Shape{algo::Polygon{{{0, 0}, {1, 0}, {0, 1}}}},
+                                   algo::Shape{algo::Wall{4, 0.1}}}) {
+    t.requests.push_back(algo::AddObstacle{{7, {1, 2, 3}, shape, 0.9, 0.4, true}});
+  }
+  t.requests.push_back(algo::MoveObstacle{7, {1.5, 2.5, 0.5}});
+  t.requests.push_back(algo::RemoveObstacle{7});
+  t.requests.push_back(algo::Joystick{0.5, -0.25});
+  t.requests.push_back(algo::Stop{false});
+  t.requests.push_back(algo::SetParameter{algo::Parameter::RepulsionGain, 0.45});
+  t.ground_truth = algo::GroundTruth{{1, 2, 3}, 0.77, false};
+  t.goal = algo::SetGoal{{3.5, 5.0}, std::nullopt};
+  t.command = {{0.1234567890123456, -0.9876543210987654}};
+  t.hold = algo::Hold::Bumper;
+  t.mission = algo::Mission::Held;
+  t.behaviour = algo::BehaviourId::Avoid;
+  t.clearance = 0.75;
+  for (int i = 0; i < 3; ++i) t.output.strip.push_back({{i * 0.5, 1}, {0, 0}, {0.25, 0}});
+  t.output.side = algo::Side::Right;
+  t.scene.left = algo::Nearest{200, {1, 0.5}, 1.125};
+  return t;
+}
+
+TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
+  const algo::Telemetry t = full_telemetry();
+  FrameEncoder encoder;
+  algo::Telemetry back;
+  decode_frame(encoder.encode(t), back);
+
+  EXPECT_EQ(back.tick, t.tick);
+  EXPECT_EQ(back.observation.stamp, t.observation.stamp);
+  EXPECT_EQ(back.observation.odometry, t.observation.odometry);
+  ASSERT_EQ(back.observation.scans.size(), 1u);
+  const algo::LaserScan& a = t.observation.scans[0];
+  const algo::LaserScan& b = back.observation.scans[0];
+  EXPECT_EQ(a.ranges, b.ranges);
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.codes, b.codes);
+  EXPECT_EQ(a.mount_R, b.mount_R);
+  EXPECT_EQ(a.turn_period, b.turn_period);
+  EXPECT_EQ(a.turns, b.turns);
+  EXPECT_EQ(back.observation.sonar[0], t.observation.sonar[0]);
+  EXPECT_EQ(back.observation.infrared[0], t.observation.infrared[0]);
+  EXPECT_EQ(back.observation.bumpers[0], t.observation.bumpers[0]);
+  EXPECT_EQ(back.observation.gyro, t.observation.gyro);
+  EXPECT_EQ(back.observation.inclinometer, t.observation.inclinometer);
+  EXPECT_EQ(back.observation.encoders, t.observation.encoders);
+  ASSERT_EQ(back.requests.size(), t.requests.size());
+  for (std::size_t i = 0; i < t.requests.size(); ++i) EXPECT_EQ(back.requests[i], t.requests[i]);
+  EXPECT_EQ(back.command, t.command);
+  EXPECT_EQ(back.ground_truth, t.ground_truth);
+  EXPECT_EQ(back.goal, t.goal);
+  EXPECT_EQ(back.hold, t.hold);
+  EXPECT_EQ(back.mission, t.mission);
+  EXPECT_EQ(back.behaviour, t.behaviour);
+  EXPECT_EQ(back.output.side, t.output.side);
+}
+
+TEST(FrameCodec, EncodingIsDeterministicAndReusesItsBuffers) {
+  const algo::Telemetry t = full_telemetry();
+  FrameEncoder first;
+  FrameEncoder second;
+  second.encode({});
+  const auto a = first.encode(t);
+  const auto b = second.encode(t);
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size()), 0);
+}
+
+TEST(FrameCodec, WindowsPointAtTheRanges) {
+  const algo::Telemetry t = full_telemetry();
+  FrameEncoder encoder;
+  const auto bytes = encoder.encode(t);
+  ASSERT_EQ(encoder.windows().size(), 1u);
+  const SampleWindow window = encoder.windows()[0];
+  ASSERT_EQ(window.count, 361u);
+  std::uint16_t sample = 0;
+  std::memcpy(&sample, bytes.data() + window.offset + 2 * 100, 2);
+  EXPECT_EQ(sample, algo::beam_to_wire(t.observation.scans[0], 100));
+}
+
+TEST(FrameCodec, ATickOfDrivingStaysSmall) {
+  algo::Telemetry t = full_telemetry();
+  t.requests.clear();
+  t.observation.sonar.clear();
+  t.observation.infrared.clear();
+  FrameEncoder encoder;
+  EXPECT_LE(encoder.encode(t).size(), 1400u);
+}
+
+TEST(FrameCodec, GarbageIsRefusedWithASentence) {
+  algo::Telemetry back;
+  EXPECT_THROW(decode_frame({}, back), WireError);
+  std::mt19937 random(1);
+  FrameEncoder encoder;
+  const auto good = encoder.encode(full_telemetry());
+  for (int round = 0; round < 3000; ++round) {
+    std::vector<std::byte> bytes(good.begin(), good.end());
+    const std::size_t flips = 1 + random() % 8;
+    for (std::size_t i = 0; i < flips; ++i) bytes[random() % bytes.size()] = std::byte(random());
+    if (round % 3 == 0) bytes.resize(random() % bytes.size());
+    try {
+      decode_frame(bytes, back);  // a flipped coordinate is still a frame
+    } catch (const WireError& e) {
+      EXPECT_GT(std::string(e.what()).size(), 10u);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace server

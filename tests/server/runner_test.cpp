@@ -1,0 +1,195 @@
+// tests/server/runner_test.cpp: the loop with a robot of paper: what ends a run, what is refused,
+// and that the robot is stopped on every way out.
+#include "server/runner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+namespace server {
+namespace {
+
+/// Drives where it is told on an endless plain; can lose its link, pause, or run out of data.
+class PaperRobot final : public algo::Robot {
+ public:
+  PaperRobot() {
+    spec_.name = "paper";
+    spec_.radius = 0.35;
+    spec_.period = 0.05;
+    spec_.max_v = 0.5;
+    spec_.max_omega = 1.0;
+    spec_.max_acceleration = 0.5;
+    spec_.paceable = true;
+    spec_.drives = true;
+    spec_.editable = true;
+  }
+  const algo::RobotSpec& spec() const override { return spec_; }
+  void reset(algo::Observation& o) override { observe(o); }
+  bool step(const algo::Command& command, algo::Observation& o) override {
+    if (paused_steps > 0) {
+      --paused_steps;
+      return false;
+    }
+    ++steps;
+    if (steps == link_lost_at) throw algo::RobotError("The cable is out.");
+    if (steps == log_ends_at) throw algo::EndOfLog("The log has ended.");
+    pose_.heading = algo::wrap_angle(pose_.heading + command.base.omega * spec_.period);
+    pose_.x += command.base.v * spec_.period * std::cos(pose_.heading);
+    pose_.y += command.base.v * spec_.period * std::sin(pose_.heading);
+    stamp_ += spec_.period;
+    observe(o);
+    return true;
+  }
+  void stop() noexcept override { stopped = true; }
+  std::optional<std::string> edit(const algo::Request& request) override {
+    if (std::holds_alternative<algo::RemoveObstacle>(request)) return "There is no obstacle 9.";
+    return std::nullopt;
+  }
+
+  algo::RobotSpec spec_{};
+  int steps = 0;
+  int link_lost_at = -1;
+  int log_ends_at = -1;
+  int paused_steps = 0;
+  bool stopped = false;
+
+ private:
+  void observe(algo::Observation& o) {
+    o.clear_sensors();
+    o.stamp = stamp_;
+    o.odometry = {stamp_, pose_, {}};
+    algo::LaserScan& scan = o.scans.append();
+    scan.stamp = stamp_;
+    scan.angle_min = -1.5707963267948966;
+    scan.angle_increment = 0.008726646259971648;
+    scan.range_max = 8.191;
+    scan.resize(361);
+    for (std::size_t i = 0; i < 361; ++i) scan.set_free(i);
+  }
+  algo::Pose2 pose_{};
+  double stamp_ = 0;
+};
+
+struct RunnerTest : ::testing::Test {
+  RunnerTest() { links.pool = &pool; }
+  RunResult go(const std::vector<algo::Request>& first, const RunPolicy& policy) {
+    algo::Pipeline pipeline({}, robot.spec());
+    return run(robot, pipeline, first, policy, links, stop.get_token());
+  }
+  PaperRobot robot{};
+  FramePool pool{256};
+  Rings rings{};
+  RunLinks links{};
+  std::stop_source stop{};
+};
+
+const algo::Request kGoal = algo::SetGoal{{1.0, 0.0}, std::nullopt};
+
+TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
+  std::uint64_t frames = 0;
+  links.observer = [&](const Frame& frame) { EXPECT_EQ(frame.telemetry.tick, frames++); };
+  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
+  EXPECT_EQ(result.outcome, algo::Outcome::Reached);
+  EXPECT_EQ(result.metrics.ticks, frames);
+  EXPECT_NEAR(result.metrics.path_length, 0.9, 0.03);
+  EXPECT_TRUE(robot.stopped);
+}
+
+TEST_F(RunnerTest, RunsOutOfTime) {
+  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 0.5});
+  EXPECT_EQ(result.outcome, algo::Outcome::OutOfTime);
+  EXPECT_NEAR(result.metrics.time, 0.5, 1e-9);
+}
+
+TEST_F(RunnerTest, ALostLinkFailsTheRunWithTheReason) {
+  robot.link_lost_at = 5;
+  const RunResult result = go({kGoal}, {});
+  EXPECT_EQ(result.outcome, algo::Outcome::Failed);
+  EXPECT_EQ(result.reason, "The cable is out.");
+  EXPECT_TRUE(robot.stopped);
+}
+
+TEST_F(RunnerTest, TheEndOfALogIsNotAFault) {
+  robot.log_ends_at = 5;
+  EXPECT_EQ(go({}, {}).outcome, algo::Outcome::EndOfLog);
+}
+
+TEST_F(RunnerTest, AnswersRequestsAndRecordsOnlyWhatWasAccepted) {
+  links.rings = &rings;
+  robot.paused_steps = 3;
+  rings.requests.push({1, algo::Stop{true}});
+  rings.requests.push({2, algo::RemoveObstacle{9}});
+  rings.requests.push({3, algo::SetParameter{algo::Parameter::RepulsionGain, 99.0}});
+  std::vector<std::size_t> recorded;
+  links.observer = [&](const Frame& frame) {
+    recorded.push_back(frame.telemetry.requests.size());
+    if (recorded.size() == 2) stop.request_stop();
+  };
+  go({}, {});
+  ASSERT_GE(recorded.size(), 1u);
+  EXPECT_EQ(recorded[0], 1u);
+
+  std::vector<Reply> replies;
+  rings.replies.consume_all([&](const Reply& reply) { replies.push_back(reply); });
+  ASSERT_EQ(replies.size(), 3u);
+  EXPECT_FALSE(replies[0].refusal);
+  EXPECT_EQ(replies[1].refusal, "There is no obstacle 9.");
+  EXPECT_TRUE(replies[2].refusal);
+}
+
+TEST_F(RunnerTest, AFullStreamCostsOnlyTheViewersAFrame) {
+  links.rings = &rings;  // nobody drains it
+  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
+  EXPECT_EQ(result.outcome, algo::Outcome::Reached);
+  EXPECT_EQ(result.lost_ticks, 0u);
+}
+
+class BrokenSink final : public FrameSink {
+ public:
+  bool push(const FrameRef& /*frame*/) override { return ++pushed < 10; }
+  std::optional<std::string> failure() const override {
+    if (pushed < 10) return std::nullopt;
+    return "The disk is full.";
+  }
+  int pushed = 0;
+};
+
+TEST_F(RunnerTest, ABrokenRecordStopsTheRobotFirst) {
+  BrokenSink sink;
+  links.record = &sink;
+  const RunResult result = go({kGoal}, {});
+  EXPECT_EQ(result.outcome, algo::Outcome::Failed);
+  EXPECT_EQ(result.reason, "The disk is full.");
+  EXPECT_TRUE(robot.stopped);
+}
+
+TEST(FramePool, HandsOutEachFrameOnceAndTakesItBack) {
+  FramePool pool(2);
+  FrameRef a = pool.take();
+  FrameRef b = pool.take();
+  ASSERT_TRUE(a && b);
+  EXPECT_NE(a.get(), b.get());
+  EXPECT_FALSE(pool.take());
+  b.reset();
+  EXPECT_TRUE(pool.take());
+}
+
+TEST(FramePool, TwoThreadsGetTheSameBytes) {
+  FramePool pool(1);
+  for (int round = 0; round < 200; ++round) {
+    const FrameRef frame = pool.take();
+    frame->telemetry.tick = static_cast<std::uint64_t>(round);
+    std::span<const std::byte> other;
+    std::jthread thread([&] { other = frame->bytes(); });
+    const auto mine = frame->bytes();
+    thread.join();
+    EXPECT_EQ(mine.data(), other.data());
+    algo::Telemetry back;
+    decode_frame(mine, back);
+    EXPECT_EQ(back.tick, static_cast<std::uint64_t>(round));
+  }
+}
+
+}  // namespace
+}  // namespace server
