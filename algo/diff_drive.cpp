@@ -1,0 +1,89 @@
+// algo/diff_drive.cpp: differential drive, equations.md I.
+#include "algo/diff_drive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace algo {
+namespace {
+
+constexpr double kStraight = 1e-9;  // [rad] a smaller turn is driven as a straight line
+
+void require_positive(const char* what, double value) {
+  if (std::isfinite(value) && value > 0) return;
+  throw std::invalid_argument(std::string(what) + " must be above 0, not " + std::to_string(value));
+}
+
+void require_sound(const DriveGeometry& geometry) {
+  require_positive("wheel_radius", geometry.wheel_radius);
+  require_positive("half_track", geometry.half_track);
+}
+
+}  // namespace
+
+Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& speeds) {
+  require_sound(geometry);
+  const double v_l = geometry.wheel_radius * speeds.left;
+  const double v_r = geometry.wheel_radius * speeds.right;
+  return {(v_r + v_l) / 2, (v_r - v_l) / (2 * geometry.half_track)};
+}
+
+WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twist) {
+  require_sound(geometry);
+  const double turn = twist.omega * geometry.half_track;
+  return {(twist.v - turn) / geometry.wheel_radius, (twist.v + turn) / geometry.wheel_radius};
+}
+
+Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt) {
+  if (!(std::isfinite(dt) && dt >= 0)) {
+    throw std::invalid_argument("dt must be 0 or above, not " + std::to_string(dt));
+  }
+  const double turn = twist.omega * dt;
+  Pose2 moved = pose;
+  if (std::abs(turn) < kStraight) {
+    moved.x += twist.v * dt * std::cos(pose.heading);
+    moved.y += twist.v * dt * std::sin(pose.heading);
+  } else {
+    // v/w (sin(th + a) - sin th) written by the half angle: the difference of two nearly equal
+    // sines would lose half of the digits at small turns.
+    const double chord = 2 * twist.v / twist.omega * std::sin(turn / 2);
+    moved.x += chord * std::cos(pose.heading + turn / 2);
+    moved.y += chord * std::sin(pose.heading + turn / 2);
+  }
+  moved.heading = wrap_angle(pose.heading + turn);
+  return moved;
+}
+
+Pose2 integrate_counts(const DriveGeometry& geometry,
+                       double counts_per_turn,
+                       const Pose2& pose,
+                       const WheelCounts& counts) {
+  require_sound(geometry);
+  require_positive("counts_per_turn", counts_per_turn);
+  const double per_count = 2 * std::numbers::pi * geometry.wheel_radius / counts_per_turn;
+  const double s_l = per_count * static_cast<double>(counts.left);
+  const double s_r = per_count * static_cast<double>(counts.right);
+  return integrate_arc(pose, {(s_r + s_l) / 2, (s_r - s_l) / (2 * geometry.half_track)}, 1.0);
+}
+
+std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits) {
+  if (bits < 2 || bits > 32) {
+    throw std::invalid_argument("a counter has 2 to 32 bits, not " + std::to_string(bits));
+  }
+  const std::int64_t span = std::int64_t{1} << bits;
+  const std::int64_t raw = (std::int64_t{now} - std::int64_t{before}) & (span - 1);
+  return raw >= span / 2 ? raw - span : raw;
+}
+
+WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed) {
+  require_positive("max_speed", max_speed);
+  const double fastest = std::max(std::abs(speeds.left), std::abs(speeds.right));
+  if (!(fastest > max_speed)) return speeds;
+  const double factor = max_speed / fastest;
+  return {speeds.left * factor, speeds.right * factor};
+}
+
+}  // namespace algo

@@ -1,0 +1,56 @@
+// algo/diff_drive.hpp: two driven wheels: speeds, dead reckoning, saturation.
+//
+// Source: Nong 2008 (thesis), section 4.1, whose equations are given as a figure only. Its list
+// calls r "the angular velocity at the centre"; it is the wheel radius.
+#pragma once
+
+#include <cstdint>
+
+#include "algo/types.hpp"
+
+namespace algo {
+
+struct DriveGeometry {
+  double wheel_radius = 0;  // [m] r, > 0
+  double half_track = 0;    // [m] l, centre to wheel, > 0: the track is 2 l
+};
+
+struct WheelSpeeds {
+  double left = 0;   // [rad/s]
+  double right = 0;  // [rad/s]
+  bool operator==(const WheelSpeeds&) const = default;
+};
+
+struct WheelCounts {
+  std::int64_t left = 0;
+  std::int64_t right = 0;
+};
+
+/// v = r (q_r + q_l) / 2, w = r (q_r - q_l) / (2 l).
+/// Throws std::invalid_argument when r or l is not above 0.
+Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& speeds);
+
+/// q_l = (v - w l) / r, q_r = (v + w l) / r. Throws std::invalid_argument as above.
+WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twist);
+
+/// The pose after `dt` [s] at constant `twist`: exact along the arc.
+/// Throws std::invalid_argument when dt is below 0 or not finite.
+Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt);
+
+/// The pose after the wheels have moved by `counts` of `counts_per_turn`: each wheel rolled
+/// s = 2 pi r n / counts_per_turn, taken as one arc.
+/// Throws std::invalid_argument when r, l or counts_per_turn is not above 0.
+Pose2 integrate_counts(const DriveGeometry& geometry,
+                       double counts_per_turn,
+                       const Pose2& pose,
+                       const WheelCounts& counts);
+
+/// now - before of a counter of `bits` bits that wraps around, as the smaller signed difference.
+/// Throws std::invalid_argument when bits is not 2..32.
+std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits = 32);
+
+/// Both wheels scaled by one factor so that neither exceeds `max_speed` [rad/s]: the curvature of
+/// the path is kept. Throws std::invalid_argument when max_speed is not above 0.
+WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed);
+
+}  // namespace algo

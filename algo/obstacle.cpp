@@ -1,0 +1,209 @@
+// algo/obstacle.cpp: outline, distance and soundness of the planar shapes.
+#include "algo/obstacle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/Geometry>
+
+namespace algo {
+namespace {
+
+constexpr double kMaxSize = 1000.0;             // [m] of any length of a shape
+constexpr std::size_t kMaxPolygonPoints = 256;  // keeps every check cheap, whatever is sent
+constexpr double kMinReflectivity = 0.02;
+constexpr double kMaxReflectivity = 1.0;
+constexpr double kFlat = 1e-9;  // [rad] below it two edges count as one straight line
+
+double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+std::vector<Vec2> rectangle(double length, double width) {
+  const double x = length / 2;
+  const double y = width / 2;
+  return {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+}
+
+struct OutlineInOwnFrame {
+  std::vector<Vec2> operator()(const Cylinder&) const { return {}; }
+  std::vector<Vec2> operator()(const Box& box) const { return rectangle(box.length, box.width); }
+  std::vector<Vec2> operator()(const Polygon& polygon) const { return polygon.points; }
+  std::vector<Vec2> operator()(const Wall& wall) const {
+    return rectangle(wall.length, wall.thickness);
+  }
+};
+
+Vec2 to_child(const Pose2& pose, const Vec2& p) {
+  const Vec2 offset = p - pose.position();
+  const double c = std::cos(pose.heading);
+  const double s = std::sin(pose.heading);
+  return {c * offset.x() + s * offset.y(), -s * offset.x() + c * offset.y()};
+}
+
+double segment_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 edge = b - a;
+  const double length2 = edge.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((p - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * edge).norm();
+}
+
+struct DistanceInOwnFrame {
+  Vec2 p;
+  double operator()(const Cylinder& cylinder) const { return p.norm() - cylinder.radius; }
+  double operator()(const Box& box) const { return to_rectangle(box.length, box.width); }
+  double operator()(const Wall& wall) const { return to_rectangle(wall.length, wall.thickness); }
+  double operator()(const Polygon& polygon) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    bool inside = true;
+    const std::size_t n = polygon.points.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec2& a = polygon.points[i];
+      const Vec2& b = polygon.points[(i + 1) % n];
+      nearest = std::min(nearest, segment_distance(p, a, b));
+      inside = inside && cross(b - a, p - a) > 0;
+    }
+    return inside ? -nearest : nearest;
+  }
+
+ private:
+  double to_rectangle(double length, double width) const {
+    const double dx = std::abs(p.x()) - length / 2;
+    const double dy = std::abs(p.y()) - width / 2;
+    if (dx <= 0 && dy <= 0) return std::max(dx, dy);
+    return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
+  }
+};
+
+std::optional<std::string> size_defect(const char* what, double value) {
+  const std::string name(what);
+  if (!std::isfinite(value)) return name + " must be a finite number";
+  if (!(value > 0)) return name + " must be above 0";
+  if (value > kMaxSize) return name + " must be at most 1000 m";
+  return std::nullopt;
+}
+
+std::optional<std::string> size_defect(const char* a, double va, const char* b, double vb) {
+  if (auto wrong = size_defect(a, va)) return wrong;
+  return size_defect(b, vb);
+}
+
+bool cross_each_other(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
+  const double c_side = cross(b - a, c - a);
+  const double d_side = cross(b - a, d - a);
+  const double a_side = cross(d - c, a - c);
+  const double b_side = cross(d - c, b - c);
+  return c_side * d_side < 0 && a_side * b_side < 0;
+}
+
+bool crosses_itself(const std::vector<Vec2>& points) {
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n; ++j) {
+      if (cross_each_other(points[i], points[i + 1], points[j], points[(j + 1) % n])) return true;
+    }
+  }
+  return false;
+}
+
+std::string point_name(std::size_t i) {
+  return "point " + std::to_string(i + 1);
+}
+
+/// Each point by itself: count, finite, within size, no neighbour in the same place.
+std::optional<std::string> points_defect(const std::vector<Vec2>& points) {
+  const std::size_t n = points.size();
+  if (n < 3) return "a polygon needs at least 3 points, this one has " + std::to_string(n);
+  if (n > kMaxPolygonPoints) {
+    return "a polygon has at most " + std::to_string(kMaxPolygonPoints) + " points, this one has " +
+           std::to_string(n);
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!points[i].allFinite()) return point_name(i) + " of the polygon must be finite numbers";
+    if (points[i].cwiseAbs().maxCoeff() > kMaxSize) {
+      return point_name(i) + " of the polygon is more than 1000 m from its origin";
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (points[i] == points[(i + 1) % n]) {
+      return point_name(i) + " and " + point_name((i + 1) % n) +
+             " of the polygon are in the same place";
+    }
+  }
+  return std::nullopt;
+}
+
+/// The sum of the turns at the corners tells a convex outline (one whole turn, every corner to
+/// the left) from all others.
+std::optional<std::string> polygon_defect(const std::vector<Vec2>& points) {
+  if (auto wrong = points_defect(points)) return wrong;
+  const std::size_t n = points.size();
+  double turned = 0;
+  std::size_t left = 0;
+  std::size_t right = 0;
+  std::size_t first_left = 0;
+  std::size_t first_right = 0;
+  bool folds_back = false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 in = points[i] - points[(i + n - 1) % n];
+    const Vec2 out = points[(i + 1) % n] - points[i];
+    const double turn = std::atan2(cross(in, out), in.dot(out));
+    turned += turn;
+    if (turn > kFlat && left++ == 0) first_left = i;
+    if (turn < -kFlat && right++ == 0) first_right = i;
+    folds_back = folds_back || std::abs(turn) > std::numbers::pi - kFlat;
+  }
+  if (left + right < 3 && (folds_back || left + right == 0)) {
+    return "the points of the polygon lie on one line";
+  }
+  const bool one_turn = std::abs(std::abs(turned) - 2 * std::numbers::pi) < 1e-6;
+  if (!one_turn || folds_back || crosses_itself(points)) return "the polygon crosses itself";
+  if (turned > 0 && right > 0) return "the polygon is not convex at " + point_name(first_right);
+  if (turned < 0 && left > 0) return "the polygon is not convex at " + point_name(first_left);
+  if (turned < 0) return "the points of the polygon run clockwise; give them counter-clockwise";
+  return std::nullopt;
+}
+
+struct ShapeDefect {
+  using Answer = std::optional<std::string>;
+  Answer operator()(const Cylinder& cylinder) const {
+    return size_defect("radius", cylinder.radius);
+  }
+  Answer operator()(const Box& box) const {
+    return size_defect("length", box.length, "width", box.width);
+  }
+  Answer operator()(const Polygon& polygon) const { return polygon_defect(polygon.points); }
+  Answer operator()(const Wall& wall) const {
+    return size_defect("length", wall.length, "thickness", wall.thickness);
+  }
+};
+
+}  // namespace
+
+std::vector<Vec2> outline_W(const Obstacle& obstacle) {
+  std::vector<Vec2> points = std::visit(OutlineInOwnFrame{}, obstacle.shape);
+  for (Vec2& point : points) point = to_parent(obstacle.pose_W, point);
+  return points;
+}
+
+double signed_distance(const Obstacle& obstacle, const Vec2& p_W) {
+  return std::visit(DistanceInOwnFrame{to_child(obstacle.pose_W, p_W)}, obstacle.shape);
+}
+
+std::optional<std::string> defect(const Obstacle& obstacle) {
+  const Pose2& pose = obstacle.pose_W;
+  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.heading)) {
+    return "x, y and heading must be finite numbers";
+  }
+  if (auto wrong = size_defect("height", obstacle.height)) return wrong;
+  const double reflectivity = obstacle.reflectivity;
+  if (!(reflectivity >= kMinReflectivity && reflectivity <= kMaxReflectivity)) {
+    return "reflectivity must be from 0.02 to 1";
+  }
+  return std::visit(ShapeDefect{}, obstacle.shape);
+}
+
+}  // namespace algo
