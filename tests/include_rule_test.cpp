@@ -118,8 +118,9 @@ std::vector<std::string> violations(const std::string& folder,
   std::vector<std::string> found;
   for (const Include& include : includes_of(text)) {
     if (const std::string why = objection(folder, include); !why.empty()) {
-      found.push_back(file + ":" + std::to_string(include.line) + ": " + include.header + ": " +
-                      why);
+      std::ostringstream sentence;
+      sentence << file << ':' << include.line << ": " << include.header << ": " << why;
+      found.push_back(sentence.str());
     }
   }
   return found;
