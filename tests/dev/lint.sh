@@ -10,7 +10,13 @@ cpp_files() {
   find "${folders[@]}" \( -name '*.cpp' -o -name '*.hpp' \) -print0
 }
 
-format_check() { cpp_files | xargs -0 clang-format-14 --dry-run -Werror; }
+# format_check: FILE:LINE of every place that is not in our format.
+format_check() {
+  local words
+  words=$(cpp_files | xargs -0 clang-format-14 --dry-run -Werror 2>&1) && return
+  sed -nE 's/^([^ :]+:[0-9]+):[0-9]+: error: (.*) \[.*/\1: \2/p' <<<"$words" | sort -u
+  return 1
+}
 
 # tidy_keys: "KEY<tab>FILE" for each of our sources in the release build. KEY is a hash over the file,
 # all of ours that it includes (as the compiler saw it) and what clang-tidy is told.
@@ -21,9 +27,9 @@ tidy_keys() {
     /^[^ ]/ { source = ""; next }
     NF {
       path = substr($0, 5)
-      if (path !~ /^\//) path = root "build/release/" path
-      if (index(path, root) != 1) next
-      path = substr(path, length(root) + 1)
+      if (index(path, root) == 1) path = substr(path, length(root) + 1)
+      else if (!sub(/^\.\.\/\.\.\//, "", path) && path !~ /^\//) path = "build/release/" path
+      if (path ~ /^\//) next
       if (source == "") source = path
       if (source !~ /^build\//) print source "\t" path
     }' | sort -u)
