@@ -10,11 +10,12 @@ cpp_files() {
   find "${folders[@]}" \( -name '*.cpp' -o -name '*.hpp' \) -print0
 }
 
-# format_check: FILE:LINE of every place that is not in our format.
+# format_check: every file that is not in our format, and in how many places.
 format_check() {
   local words
   words=$(cpp_files | xargs -0 clang-format-14 --dry-run -Werror 2>&1) && return
-  sed -nE 's/^([^ :]+:[0-9]+):[0-9]+: error: (.*) \[.*/\1: \2/p' <<<"$words" | sort -u
+  printf '%s\n' "$words" | sed -nE 's/^([^:]+):[0-9]+:[0-9]+: error: .*/\1/p' | uniq -c |
+    sed -E 's/^ *([0-9]+) (.*)/\2: \1 places not in our format/'
   return 1
 }
 
