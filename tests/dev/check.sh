@@ -1,6 +1,8 @@
-# tests/dev/lint.sh: the part of ./dev that looks at how the code is written; ./dev sources it.
+# tests/dev/check.sh: lint, sanitizers and fuzzing, the part of ./dev that looks deeper; ./dev sources it.
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # root, work and the package lists are those of ./dev
+
+# ---- lint -----------------------------------------------------------------------------------------
 
 cpp_files() {
   local folder folders=()
@@ -23,7 +25,7 @@ format_check() {
 # all of ours that it includes (as the compiler saw it) and what clang-tidy is told.
 tidy_keys() {
   local pairs rules source
-  rules=$(sha256sum .clang-tidy CMakeLists.txt dev; clang-tidy-16 --version)
+  rules=$(sha256sum .clang-tidy CMakeLists.txt tests/dev/check.sh; clang-tidy-16 --version)
   pairs=$(ninja -C build/release -t deps | awk -v root="$root/" '
     /^[^ ]/ { source = ""; next }
     NF {
@@ -94,4 +96,60 @@ verb_lint() {
 verb_fmt() {
   need clang-format-14
   cpp_files | xargs -0 clang-format-14 -i
+}
+
+# ---- sanitizers and fuzzing -----------------------------------------------------------------------
+
+# ThreadSanitizer sees what has threads; the rest would only cost time.
+verb_sanitize() {
+  local targets=() only=()
+  case "${1:-}" in
+    asan) ;;
+    tsan) targets=(test_server test_sim test_db) only=(-E '_NOT_BUILT$') ;;
+    *) fail "sanitize asan or sanitize tsan" ;;
+  esac
+  build_all "$1" "${targets[@]}"
+  export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1}
+  export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+  export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1:second_deadlock_stack=1}
+  run_ctest "$1" "${only[@]}"
+  closing_line
+}
+
+# Every target: first its kept seeds, then a short search from them. New finds stay in build/fuzz.
+verb_fuzz() {
+  local target name seconds=${1:-5} status=0
+  if [[ ! -f tests/fuzz/CMakeLists.txt ]]; then
+    say "No fuzz targets here."
+    return
+  fi
+  lock
+  need "${run_packages[@]}" clang-16 libclang-rt-16-dev
+  install_modules
+  configure fuzz OFF
+  build fuzz fuzz
+  unlock
+  for target in build/fuzz/tests/fuzz/fuzz_*; do
+    [[ -x $target && -f $target ]] || continue
+    name=${target##*/fuzz_}
+    mkdir -p "build/fuzz/found/$name"
+    quietly "fuzz-$name.log" "Fuzzing $name" "$target" -max_total_time="$seconds" -timeout=10 \
+      -artifact_prefix="$work/" "build/fuzz/found/$name" "tests/fuzz/seeds/$name" || status=1
+  done
+  return "$status"
+}
+
+verb_check() {
+  local stage broken=() times=() start
+  need "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
+  for stage in lint "sanitize asan" "sanitize tsan" fuzz; do
+    printf '== %s\n' "$stage"
+    start=$SECONDS
+    # A process each, so that `set -e` stays in force inside.
+    # shellcheck disable=SC2086
+    bash "$root/dev" $stage || broken+=("$stage")
+    times+=("$stage $((SECONDS - start)) s")
+  done
+  printf 'check: %s\n' "$(printf '%s, ' "${times[@]}" | sed 's/, $//')"
+  ((${#broken[@]} == 0)) || fail "check failed in: $(printf '%s, ' "${broken[@]}" | sed 's/, $//')"
 }
