@@ -1,0 +1,201 @@
+// db/block_codec.cpp: packing frames into a block.
+#include "db/block_codec.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "db/block_format.hpp"
+#include "db/residuals.hpp"
+
+namespace db {
+
+using namespace detail;
+
+namespace {
+
+constexpr std::size_t kReferenceReach = 48;  // frames looked back for one laid out alike
+
+std::size_t width_of(const Window& window) {
+  return window.kind == Window::Kind::Samples ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+}
+
+std::span<const std::byte> part(std::span<const std::byte> frame, const Window& window) {
+  return frame.subspan(window.offset, window.count * width_of(window));
+}
+
+/// Bits left by predicting `window` so: the size it will have, near enough to choose by.
+std::size_t cost(std::span<const std::byte> window,
+                 std::span<const std::byte> reference,
+                 const Window& shape,
+                 Choice choice) {
+  std::size_t bits = 0;
+  if (shape.kind == Window::Kind::Samples) {
+    for (std::size_t i = 0; i < shape.count; ++i) {
+      const int difference =
+          load<std::uint16_t>(window, i) - expected_sample(window, reference, i, choice);
+      bits +=
+          static_cast<std::size_t>(std::bit_width(fold16(static_cast<std::uint16_t>(difference))));
+    }
+    return bits;
+  }
+  for (std::size_t i = 0; i < shape.count; ++i) {
+    const std::uint32_t difference =
+        load<std::uint32_t>(window, i) - expected_float(window, reference, i, shape.stride, choice);
+    bits += static_cast<std::size_t>(std::bit_width(fold32(difference)));
+  }
+  return bits;
+}
+
+void write_window(std::span<const std::byte> window,
+                  std::span<const std::byte> reference,
+                  const Window& shape,
+                  Choice choice,
+                  Streams& streams) {
+  if (shape.kind == Window::Kind::Samples) {
+    for (std::size_t i = 0; i < shape.count; ++i) {
+      const int difference =
+          load<std::uint16_t>(window, i) - expected_sample(window, reference, i, choice);
+      const std::uint16_t folded = fold16(static_cast<std::uint16_t>(difference));
+      streams[kLow].push_back(static_cast<std::uint8_t>(folded & 0xFFU));
+      streams[kHigh].push_back(static_cast<std::uint8_t>(folded >> 8U));
+    }
+    return;
+  }
+  // Field by field, so that the zeros of an unused field lie together.
+  for (std::size_t field = 0; field < shape.stride; ++field) {
+    for (std::size_t i = field; i < shape.count; i += shape.stride) {
+      const std::uint32_t folded =
+          fold32(load<std::uint32_t>(window, i) -
+                 expected_float(window, reference, i, shape.stride, choice));
+      for (std::size_t byte = 0; byte < 4; ++byte) {
+        streams[kFloat0 + byte].push_back(static_cast<std::uint8_t>(folded >> (8U * byte)));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+BlockEncoder::BlockEncoder() : compressor_(new Compressor) {}
+
+void BlockEncoder::clear() {
+  table_.clear();
+}
+
+bool BlockEncoder::fits(std::size_t bytes) const {
+  return frames() < kMaxBlockFrames && bytes <= kMaxBlockBytes - table_.bytes.size();
+}
+
+void BlockEncoder::add(std::span<const std::byte> frame, std::span<const Window> windows) {
+  if (!fits(frame.size())) {
+    throw CodecError("a frame of " + std::to_string(frame.size()) +
+                     " bytes does not fit into the block of " + std::to_string(frames()) +
+                     " frames, " + std::to_string(bytes()) + " bytes");
+  }
+  if (const char* wrong = window_defect(windows, frame.size())) {
+    throw CodecError("frame " + std::to_string(frames()) + " of the block: " + wrong);
+  }
+  table_.append(frame.size(), windows);
+  std::ranges::copy(frame, table_.frame(frames() - 1).begin());
+}
+
+std::size_t BlockEncoder::reference_of(std::size_t i) const {
+  const auto windows = table_.windows_of(i);
+  const auto same_kinds = [](const Window& a, const Window& b) {
+    return a.kind == b.kind && a.count == b.count && a.stride == b.stride;
+  };
+  std::size_t best = 0;
+  int best_score = 0;
+  for (std::size_t distance = 1; distance <= std::min(i, kReferenceReach); ++distance) {
+    const auto earlier = table_.windows_of(i - distance);
+    int score = 0;
+    if (std::ranges::equal(windows, earlier)) {
+      score = table_.entries[i].size == table_.entries[i - distance].size ? 3 : 2;
+    } else if (std::ranges::equal(windows, earlier, same_kinds)) {
+      score = 1;
+    }
+    if (score > best_score) {
+      best = distance;
+      best_score = score;
+    }
+    if (score == 3) break;
+  }
+  return best;
+}
+
+void BlockEncoder::encode_frame(std::size_t i) {
+  const std::size_t distance = reference_of(i);
+  references_.push_back(distance);
+  const auto frame = table_.frame(i);
+  const auto windows = table_.windows_of(i);
+  const auto reference = table_.frame(i - distance);
+  const auto reference_windows = table_.windows_of(i - distance);
+
+  auto& layout = streams_[kLayout];
+  put_varint(layout, frame.size());
+  put_varint(layout, distance);
+  const bool as_reference = distance > 0 && std::ranges::equal(windows, reference_windows);
+  put_varint(layout, as_reference ? 0 : windows.size() + 1);
+  if (!as_reference) {
+    for (const Window& window : windows) put_window(layout, window);
+  }
+
+  rest_starts_.push_back(rest_.size());
+  std::size_t done = 0;
+  for (std::size_t k = 0; k < windows.size(); ++k) {
+    const Window& window = windows[k];
+    append_bytes(rest_, frame.subspan(done, window.offset - done));
+    const auto here = part(frame, window);
+    done = window.offset + here.size();
+    const auto there = distance == 0 ? here : part(reference, reference_windows[k]);
+    const Choice choice = distance > 0 && cost(here, there, window, Choice::Reference) <
+                                              cost(here, there, window, Choice::Within)
+                              ? Choice::Reference
+                              : Choice::Within;
+    layout.push_back(static_cast<std::uint8_t>(choice));
+    write_window(here, there, window, choice, streams_);
+  }
+  append_bytes(rest_, frame.subspan(done));
+}
+
+void BlockEncoder::write_rest() {
+  const auto start = [&](std::size_t i) { return rest_starts_[i]; };
+  const auto size = [&](std::size_t i) { return rest_starts_[i + 1] - rest_starts_[i]; };
+  std::size_t longest = 0;
+  // Last frame first: a reference is earlier, so it still holds its bytes when it is taken away.
+  for (std::size_t i = frames(); i-- > 0;) {
+    longest = std::max(longest, size(i));
+    if (references_[i] == 0) continue;
+    const std::size_t from = i - references_[i];
+    const std::size_t common = std::min(size(i), size(from));
+    for (std::size_t k = 0; k < common; ++k) {
+      rest_[start(i) + k] = static_cast<std::uint8_t>(rest_[start(i) + k] - rest_[start(from) + k]);
+    }
+  }
+  auto& out = streams_[kRest];
+  out.reserve(rest_.size());
+  for (std::size_t k = 0; k < longest; ++k) {
+    for (std::size_t i = 0; i < frames(); ++i) {
+      if (k < size(i)) out.push_back(rest_[start(i) + k]);
+    }
+  }
+}
+
+std::span<const std::byte> BlockEncoder::encode() {
+  if (frames() == 0) throw CodecError("a block without frames cannot be packed");
+  for (auto& stream : streams_) stream.clear();
+  references_.clear();
+  rest_.clear();
+  rest_starts_.clear();
+  for (std::size_t i = 0; i < frames(); ++i) encode_frame(i);
+  rest_starts_.push_back(rest_.size());
+  write_rest();
+
+  packed_.clear();
+  put_header(packed_, {frames(), bytes(), check_of(table_)});
+  for (const auto& stream : streams_) compressor_->append(packed_, stream);
+  return packed_;
+}
+
+}  // namespace db

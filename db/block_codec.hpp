@@ -1,0 +1,154 @@
+// db/block_codec.hpp: lossless packing of a block of recorded frames.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace db {
+
+/// A frame cannot be packed or a block cannot be read; what() is a sentence.
+class CodecError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A stretch of a frame whose meaning helps to pack it. A window never changes what is stored: a
+/// frame packed without windows, or with the wrong ones, only takes more room.
+struct Window {
+  enum class Kind : std::uint8_t {
+    Samples,  // little-endian uint16, neighbours alike: the ranges of a scan
+    Floats,   // little-endian float32, records of `stride` floats that follow a smooth line
+  };
+  std::uint32_t offset = 0;  // [bytes] from the start of the frame
+  std::uint32_t count = 0;   // values, not bytes
+  Kind kind = Kind::Samples;
+  std::uint32_t stride = 1;  // floats in a record; `count` is a multiple of it. 1 for samples
+  bool operator==(const Window&) const = default;
+};
+
+constexpr std::size_t kMaxBlockFrames = 1024;
+constexpr std::size_t kMaxFrameWindows = 64;
+constexpr std::size_t kMaxBlockBytes = std::size_t{16} << 20;  // [bytes] of all frames, unpacked
+
+namespace detail {
+
+/// Frames laid end to end with their windows; its buffers survive clear().
+struct FrameTable {
+  struct Entry {
+    std::size_t offset = 0;  // into bytes
+    std::size_t size = 0;
+    std::size_t first_window = 0;  // into windows
+    std::size_t window_count = 0;
+  };
+  std::vector<std::byte> bytes{};
+  std::vector<Window> windows{};
+  std::vector<Entry> entries{};
+
+  void clear();
+  /// A further frame of `size` bytes, which are to be filled in.
+  void append(std::size_t size, std::span<const Window> frame_windows);
+  std::span<const std::byte> frame(std::size_t i) const;
+  std::span<std::byte> frame(std::size_t i);
+  std::span<const Window> windows_of(std::size_t i) const;
+};
+
+/// The block's values sorted by kind, so that each compressor call sees one sort of number.
+enum Stream : std::size_t {
+  kLayout,  // sizes, references, windows, choices
+  kLow,     // low bytes of the sample residuals
+  kHigh,    // their high bytes
+  kFloat0,  // bytes 0..3 of the float residuals
+  kFloat1,
+  kFloat2,
+  kFloat3,
+  kRest,  // everything outside the windows, by position and then by frame
+  kStreams,
+};
+using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
+
+class Cursor;
+struct Compressor;    // a zstd context and its output buffer
+struct Decompressor;  // the same for unpacking
+struct ZstdDeleter {
+  void operator()(Compressor* compressor) const noexcept;
+  void operator()(Decompressor* decompressor) const noexcept;
+};
+
+}  // namespace detail
+
+/// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
+///
+/// Every frame is predicted from an earlier frame of the block laid out alike (its reference):
+/// samples from the same sample of the reference or from their left neighbour, whichever leaves
+/// less in that window; floats by the line through the two records before, or from the reference;
+/// all other bytes from the byte at their place. What is left goes through zstd stream by stream,
+/// and is stored as it is where zstd does not pay.
+class BlockEncoder {
+ public:
+  BlockEncoder();
+
+  /// Appends a copy of the frame. Windows are in order of offset and do not overlap.
+  /// Throws CodecError when a window leaves the frame or the block is full (see fits()).
+  void add(std::span<const std::byte> frame, std::span<const Window> windows);
+  /// True when a frame of `bytes` still fits into this block.
+  bool fits(std::size_t bytes) const;
+
+  std::size_t frames() const { return table_.entries.size(); }
+  std::size_t bytes() const { return table_.bytes.size(); }  // unpacked
+  void clear();
+
+  /// The packed block, valid until the next call. The frames stay: more may be added and the
+  /// longer block packed anew. Throws CodecError when there is none.
+  std::span<const std::byte> encode();
+
+ private:
+  void encode_frame(std::size_t i);
+  std::size_t reference_of(std::size_t i) const;
+  void write_rest();
+
+  detail::FrameTable table_{};
+  detail::Streams streams_{};
+  std::vector<std::size_t> references_{};  // distance back to each frame's reference; 0 = none
+  std::vector<std::uint8_t> rest_{};       // the frames without their windows, end to end
+  std::vector<std::size_t> rest_starts_{};
+  std::vector<std::byte> packed_{};
+  std::unique_ptr<detail::Compressor, detail::ZstdDeleter> compressor_;
+};
+
+/// Unpacks blocks. Not thread-safe.
+class BlockDecoder {
+ public:
+  BlockDecoder();
+
+  /// Unpacks `block`; its frames stay readable until the next call. Throws CodecError when the
+  /// bytes are not a block this program can read, whatever they are, and never gives out frames
+  /// that differ from those packed (a 64-bit check value guards them). Takes at most a small
+  /// multiple of kMaxBlockBytes of memory.
+  void decode(std::span<const std::byte> block);
+
+  std::size_t frames() const { return table_.entries.size(); }
+  std::span<const std::byte> frame(std::size_t i) const { return table_.frame(i); }
+  std::span<const Window> windows(std::size_t i) const { return table_.windows_of(i); }
+
+ private:
+  void read_layout(std::size_t frames, std::size_t bytes);
+  void read_frame_layout(detail::Cursor& layout, std::size_t bytes_left);
+  void check_sizes() const;
+  void read_rest();
+  void fill_frames();
+
+  detail::FrameTable table_{};
+  detail::Streams streams_{};
+  std::vector<std::size_t> references_{};
+  std::vector<std::uint8_t> choices_{};  // one per window of the table
+  std::vector<std::uint8_t> rest_{};
+  std::vector<std::size_t> rest_starts_{};
+  std::unique_ptr<detail::Decompressor, detail::ZstdDeleter> decompressor_;
+};
+
+}  // namespace db

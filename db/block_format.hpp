@@ -1,0 +1,84 @@
+// db/block_format.hpp: the outer form of a packed block, shared by its two directions.
+//
+// Little-endian: "TB", version, 0; u32 frames; u32 bytes of all frames; u64 check; then the
+// streams in the order of detail::Stream, each u32 raw size, u32 stored size, bytes. Stored as it
+// is when both sizes are equal, else one zstd frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <zstd.h>
+
+#include "db/block_codec.hpp"
+
+namespace db::detail {
+
+constexpr std::uint8_t kFormatVersion = 1;
+constexpr std::size_t kHeaderBytes = 20;
+
+struct Header {
+  std::size_t frames = 0;
+  std::size_t bytes = 0;
+  std::uint64_t check = 0;
+};
+
+/// Owns the compressor's state, so that packing block after block allocates nothing.
+struct Compressor {
+  Compressor();
+  ~Compressor() { ZSTD_freeCCtx(context); }
+  Compressor(const Compressor&) = delete;
+  Compressor& operator=(const Compressor&) = delete;
+
+  /// Appends `stream` with its sizes, compressed where that makes it smaller.
+  void append(std::vector<std::byte>& out, std::span<const std::uint8_t> stream);
+
+  ZSTD_CCtx* context = nullptr;
+  std::vector<std::byte> buffer{};
+};
+
+struct Decompressor {
+  Decompressor();
+  ~Decompressor() { ZSTD_freeDCtx(context); }
+  Decompressor(const Decompressor&) = delete;
+  Decompressor& operator=(const Decompressor&) = delete;
+
+  ZSTD_DCtx* context = nullptr;
+};
+
+/// What is wrong with `windows` in a frame of `frame_bytes`, or nullptr.
+const char* window_defect(std::span<const Window> windows, std::size_t frame_bytes);
+
+/// 64-bit check value over the frames and where they begin.
+std::uint64_t check_of(const FrameTable& table);
+
+void put_header(std::vector<std::byte>& out, const Header& header);
+void put_varint(std::vector<std::uint8_t>& out, std::size_t value);
+void put_window(std::vector<std::uint8_t>& out, const Window& window);
+void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes);
+
+/// Reads what put_* wrote and throws CodecError instead of leaving its bytes.
+class Cursor {
+ public:
+  explicit Cursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  std::span<const std::byte> take(std::size_t count);
+  std::uint8_t byte();
+  std::uint32_t u32();
+  std::uint64_t u64();
+  std::size_t varint();  // at most 2^32 - 1
+  Window window();
+  bool at_end() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+/// Throws CodecError when `cursor` is not at a block of this format or it is too large.
+Header read_header(Cursor& cursor);
+
+/// Reads the next stream into `out`, which never grows beyond kMaxBlockBytes.
+void read_stream(Cursor& cursor, const Decompressor& zstd, std::vector<std::uint8_t>& out);
+
+}  // namespace db::detail

@@ -1,0 +1,96 @@
+// db/records.hpp: what the run store takes and gives: numbers, bytes and text.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace db {
+
+/// Row number of a run. Never given out twice in one database, not even after a deletion.
+using RunId = std::int64_t;
+
+enum class RunStatus : std::uint8_t {
+  Queued,
+  Recording,
+  Finished,
+  Interrupted,  // the program ended before the run did
+  Cancelled,
+  Failed,
+};
+
+/// "queued", "recording", ...: as in the database and in REST.
+std::string_view to_string(RunStatus status);
+std::optional<RunStatus> find_status(std::string_view name);
+
+/// The columns kept in plain sight for queries; the frame beside them holds everything.
+struct TickRow {
+  std::uint64_t tick = 0;
+  double t = 0;          // [s] run clock
+  double x = 0;          // [m] of R in W, as odometry has it
+  double y = 0;          // [m]
+  double heading = 0;    // [rad]
+  double v = 0;          // [m/s] commanded
+  double omega = 0;      // [rad/s] commanded
+  double clearance = 0;  // [m] hull to nearest filtered return
+  std::uint8_t hold = 0;
+  std::uint8_t behaviour = 0;
+  bool operator==(const TickRow&) const = default;
+};
+
+/// All that is known of a run before its first tick; enough to run it again.
+struct NewRun {
+  std::string scenario{};  // its name
+  std::string document{};  // the scenario as JSON text
+  std::string controller{};
+  std::string filter{};
+  std::string vehicle{};
+  std::uint64_t seed = 0;
+  std::string parameters = "{}";  // JSON text
+  std::string version{};          // of the program
+  std::string started{};          // wall time, ISO 8601
+};
+
+struct RunEnd {
+  RunStatus status = RunStatus::Finished;
+  std::string outcome{};
+  std::string reason{};   // a sentence
+  std::string metrics{};  // JSON text; empty when there are none
+  std::uint64_t lost_ticks = 0;
+};
+
+struct RunRow {
+  RunId id = 0;
+  RunStatus status = RunStatus::Queued;
+  std::string outcome = "running";
+  std::string reason{};
+  NewRun what{};  // `document` is filled by RunReader::get only
+  std::uint64_t ticks = 0;
+  double time = 0;  // [s] run clock of the newest tick
+  std::uint64_t lost_ticks = 0;
+  std::uint64_t bytes = 0;  // of its packed frames
+  std::string metrics{};    // JSON text; empty when there are none
+};
+
+/// Unset fields match everything.
+struct RunFilter {
+  std::optional<std::string> scenario{};
+  std::optional<std::string> controller{};
+  std::optional<std::string> outcome{};
+  std::optional<RunStatus> status{};
+};
+
+/// A part of a list, and where to go on: the next page's cursor, absent on the last page.
+struct RunPage {
+  std::vector<RunRow> runs{};
+  std::optional<RunId> next{};
+};
+struct TickPage {
+  std::vector<TickRow> ticks{};
+  std::optional<std::uint64_t> next{};  // first tick of the next page
+};
+
+}  // namespace db

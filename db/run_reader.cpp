@@ -1,0 +1,273 @@
+// db/run_reader.cpp: reading runs while others record.
+#include "db/run_reader.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include <unistd.h>
+
+#include "db/schema.hpp"
+
+namespace db {
+
+using detail::Connection;
+using detail::ResetLater;
+using detail::Statement;
+
+namespace {
+
+constexpr std::string_view kRunColumns =
+    "id, status, outcome, reason, scenario, controller, filter, vehicle, seed, parameters,"
+    " version, started, ticks, time, lost_ticks, bytes, metrics";
+
+RunRow row_of(const Statement& found) {
+  RunRow row{};
+  row.id = found.integer(0);
+  row.status = find_status(found.text(1)).value_or(RunStatus::Failed);
+  row.outcome = found.text(2);
+  row.reason = found.text(3);
+  row.what.scenario = found.text(4);
+  row.what.controller = found.text(5);
+  row.what.filter = found.text(6);
+  row.what.vehicle = found.text(7);
+  row.what.seed = static_cast<std::uint64_t>(found.integer(8));
+  row.what.parameters = found.text(9);
+  row.what.version = found.text(10);
+  row.what.started = found.text(11);
+  row.ticks = static_cast<std::uint64_t>(found.integer(12));
+  row.time = found.number(13);
+  row.lost_ticks = static_cast<std::uint64_t>(found.integer(14));
+  row.bytes = static_cast<std::uint64_t>(found.integer(15));
+  row.metrics = found.text(16);
+  return row;
+}
+
+TickRow tick_of(const Statement& found) {
+  TickRow row{};
+  row.tick = static_cast<std::uint64_t>(found.integer(0));
+  row.t = found.number(1);
+  row.x = found.number(2);
+  row.y = found.number(3);
+  row.heading = found.number(4);
+  row.v = found.number(5);
+  row.omega = found.number(6);
+  row.clearance = found.number(7);
+  row.hold = static_cast<std::uint8_t>(found.integer(8));
+  row.behaviour = static_cast<std::uint8_t>(found.integer(9));
+  return row;
+}
+
+// Tick numbers are kept in SQLite's signed integers; no run reaches the upper half.
+std::int64_t signed_tick(std::uint64_t tick) {
+  constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  return static_cast<std::int64_t>(std::min(tick, kLargest));
+}
+
+std::int64_t signed_limit(std::size_t limit) {
+  return signed_tick(limit);
+}
+
+Connection open_for_reading(const std::string& path) {
+  Connection connection(path, Connection::Mode::Read);
+  try {
+    detail::require_current(connection);
+    return connection;
+  } catch (const DatabaseError&) {
+    // In a folder that may not be written, SQLite cannot set up the memory it shares with a
+    // writer. When no log lies beside the file there is no writer and the file is all there is.
+    if (::access((path + "-wal").c_str(), F_OK) == 0 || ::access(path.c_str(), R_OK) != 0) throw;
+    Connection immutable(path, Connection::Mode::ReadImmutable);
+    detail::require_current(immutable);
+    return immutable;
+  }
+}
+
+void put_number(std::string& out, double value) {
+  if (std::isnan(value)) return;  // an empty cell
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+  out.append(digits.data(), end);
+}
+
+void put_name(std::string& out, std::uint8_t value, const std::vector<std::string>& names) {
+  if (value < names.size()) {
+    out += names[value];
+  } else {
+    out += std::to_string(value);
+  }
+}
+
+void put_line(std::string& out, const TickRow& row, const CsvNames& names) {
+  out += std::to_string(row.tick);
+  for (const double value : {row.t, row.x, row.y, row.heading, row.v, row.omega, row.clearance}) {
+    out += ',';
+    put_number(out, value);
+  }
+  out += ',';
+  put_name(out, row.hold, names.holds);
+  out += ',';
+  put_name(out, row.behaviour, names.behaviours);
+  out += '\n';
+}
+
+}  // namespace
+
+RunReader::RunReader(const std::string& path) : connection_(open_for_reading(path)) {
+  get_ = connection_.prepare("SELECT " + std::string(kRunColumns) +
+                             ", (SELECT text FROM document WHERE run = run.id)"
+                             " FROM run WHERE id = ? AND status <> 'deleted'");
+  // A deleted run is gone at once, though its ticks may take a while to be swept away.
+  ticks_ = connection_.prepare(
+      "SELECT tick, t, x, y, heading, v, omega, clearance, hold, behaviour FROM tick"
+      " WHERE run = ?1 AND tick >= ?2"
+      " AND EXISTS (SELECT 1 FROM run WHERE id = ?1 AND status <> 'deleted')"
+      " ORDER BY tick LIMIT ?3");
+  exists_ = connection_.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
+  block_ = connection_.prepare(
+      "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
+      " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
+      " ORDER BY first_tick LIMIT 1");
+}
+
+Statement& RunReader::listing(const RunFilter& filter, bool counting) {
+  const unsigned key = (filter.scenario ? 1U : 0U) | (filter.controller ? 2U : 0U) |
+                       (filter.outcome ? 4U : 0U) | (filter.status ? 8U : 0U) |
+                       (counting ? 16U : 0U);
+  if (!listings_.contains(key)) {
+    std::string sql = "SELECT " + std::string(counting ? "count(*)" : kRunColumns) +
+                      " FROM run WHERE id < ? AND status <> 'deleted'";
+    if (filter.scenario) sql += " AND scenario = ?";
+    if (filter.controller) sql += " AND controller = ?";
+    if (filter.outcome) sql += " AND outcome = ?";
+    if (filter.status) sql += " AND status = ?";
+    if (!counting) sql += " ORDER BY id DESC LIMIT ?";
+    listings_.emplace(key, connection_.prepare(sql));
+  }
+  return listings_.at(key).reset();
+}
+
+namespace {
+void bind_filter(Statement& statement, const RunFilter& filter) {
+  if (filter.scenario) statement << std::string_view(*filter.scenario);
+  if (filter.controller) statement << std::string_view(*filter.controller);
+  if (filter.outcome) statement << std::string_view(*filter.outcome);
+  if (filter.status) statement << to_string(*filter.status);
+}
+}  // namespace
+
+RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor) {
+  Statement& found = listing(filter, false);
+  const ResetLater reset(found);
+  found << cursor.value_or(std::numeric_limits<RunId>::max());
+  bind_filter(found, filter);
+  found << signed_limit(limit == SIZE_MAX ? limit
+                                          : limit + 1);  // one more tells whether there is more
+  RunPage page{};
+  while (found.step()) {
+    if (page.runs.size() == limit) {
+      page.next = page.runs.empty() ? cursor : page.runs.back().id;
+      break;
+    }
+    page.runs.push_back(row_of(found));
+  }
+  return page;
+}
+
+std::uint64_t RunReader::count(const RunFilter& filter) {
+  Statement& found = listing(filter, true);
+  const ResetLater reset(found);
+  found << std::numeric_limits<RunId>::max();
+  bind_filter(found, filter);
+  return found.step() ? static_cast<std::uint64_t>(found.integer(0)) : 0;
+}
+
+std::optional<RunRow> RunReader::get(RunId run) {
+  get_.reset() << run;
+  const ResetLater reset(get_);
+  if (!get_.step()) return std::nullopt;
+  RunRow row = row_of(get_);
+  row.what.document = get_.text(17);
+  return row;
+}
+
+template <typename Each>
+std::optional<std::uint64_t> RunReader::each_tick(RunId run,
+                                                  std::uint64_t from,
+                                                  std::size_t limit,
+                                                  const Each& each) {
+  ticks_.reset() << run << signed_tick(from) << signed_limit(limit == SIZE_MAX ? limit : limit + 1);
+  const ResetLater reset(ticks_);
+  for (std::size_t done = 0; ticks_.step(); ++done) {
+    const TickRow row = tick_of(ticks_);
+    if (done == limit) return row.tick;
+    each(row);
+  }
+  return std::nullopt;
+}
+
+TickPage RunReader::ticks(RunId run, std::uint64_t from, std::size_t limit) {
+  TickPage page{};
+  page.next = each_tick(run, from, limit, [&](const TickRow& row) { page.ticks.push_back(row); });
+  return page;
+}
+
+std::string_view RunReader::csv_header() {
+  return "tick,t,x,y,heading,v,omega,clearance,hold,behaviour\n";
+}
+
+std::optional<std::uint64_t> RunReader::csv(
+    RunId run, std::uint64_t from, std::size_t limit, std::string& out, const CsvNames& names) {
+  return each_tick(run, from, limit, [&](const TickRow& row) { put_line(out, row, names); });
+}
+
+bool RunReader::exists(RunId run) {
+  exists_.reset() << run;
+  const ResetLater reset(exists_);
+  return exists_.step();
+}
+
+/// Unpacks the block that holds `tick`, or the first one after it, and returns the tick to begin
+/// with; nothing when there is none. Without `unpack` it only looks.
+std::optional<std::uint64_t> RunReader::seek(RunId run, std::uint64_t tick, bool unpack) {
+  block_.reset() << run << signed_tick(tick);
+  const ResetLater reset(block_);
+  if (!block_.step()) return std::nullopt;
+  const auto first = static_cast<std::uint64_t>(block_.integer(0));
+  if (!unpack) return std::max(first, tick);
+  block_run_ = 0;
+  try {
+    decoder_.decode(block_.blob(1));
+  } catch (const CodecError& error) {
+    throw StoreError("Run " + std::to_string(run) + " is damaged at tick " + std::to_string(first) +
+                     ": " + error.what() + ".");
+  }
+  block_first_ = first;
+  block_run_ = run;
+  return std::max(first, tick);
+}
+
+std::optional<std::uint64_t> RunReader::frames(RunId run,
+                                               std::uint64_t from,
+                                               std::size_t limit,
+                                               const FrameSink& sink) {
+  std::uint64_t next = from;
+  if (!exists(run)) return std::nullopt;
+  for (std::size_t done = 0;;) {
+    // The block in hand serves the next page too; what it has grown by since is read anew.
+    const bool in_hand =
+        block_run_ == run && next >= block_first_ && next < block_first_ + decoder_.frames();
+    if (!in_hand) {
+      const auto found = seek(run, next, done < limit);
+      if (!found || done == limit) return found;
+      next = *found;
+    }
+    for (; next < block_first_ + decoder_.frames(); ++next, ++done) {
+      if (done == limit) return next;
+      sink(next, decoder_.frame(next - block_first_));
+    }
+  }
+}
+
+}  // namespace db

@@ -1,0 +1,83 @@
+// db/run_reader.hpp: reading runs while others record.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "db/block_codec.hpp"
+#include "db/records.hpp"
+#include "db/sqlite.hpp"
+
+namespace db {
+
+/// Words for the numbers of the hold and behaviour columns, by index; without one, the number.
+struct CsvNames {
+  std::vector<std::string> holds{};
+  std::vector<std::string> behaviours{};
+};
+
+/// Reads a run store over its own read-only connection. One thread at a time owns it, any thread
+/// and any program; it never waits for the writer and the writer never for it. A call sees what
+/// was committed when it began. All of them throw StoreError when the database fails.
+class RunReader {
+ public:
+  /// Throws StoreError when there is no run store at `path`.
+  explicit RunReader(const std::string& path);
+
+  /// Newest first: up to `limit` runs older than `cursor`. Their documents are left out.
+  RunPage list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor = {});
+  std::uint64_t count(const RunFilter& filter);
+  /// With its document; nothing when there is no such run.
+  std::optional<RunRow> get(RunId run);
+
+  /// Up to `limit` ticks of a run from tick `from` on. Empty for a run that does not exist.
+  TickPage ticks(RunId run, std::uint64_t from, std::size_t limit);
+
+  using FrameSink = std::function<void(std::uint64_t tick, std::span<const std::byte> frame)>;
+  /// Hands up to `limit` frames from tick `from` on to `sink`, in order, each valid during the
+  /// call. Returns the tick to go on with, or nothing after the last. Throws StoreError when a
+  /// block is damaged, after the frames before it.
+  std::optional<std::uint64_t> frames(RunId run,
+                                      std::uint64_t from,
+                                      std::size_t limit,
+                                      const FrameSink& sink);
+
+  /// The first line of the CSV form, with its end of line.
+  static std::string_view csv_header();
+  /// Appends up to `limit` lines from tick `from` on to `out`; every number in its shortest exact
+  /// form. Returns the tick to go on with, or nothing after the last.
+  std::optional<std::uint64_t> csv(RunId run,
+                                   std::uint64_t from,
+                                   std::size_t limit,
+                                   std::string& out,
+                                   const CsvNames& names = {});
+
+ private:
+  detail::Statement& listing(const RunFilter& filter, bool counting);
+  bool exists(RunId run);
+  std::optional<std::uint64_t> seek(RunId run, std::uint64_t tick, bool unpack);
+  template <typename Each>
+  std::optional<std::uint64_t> each_tick(RunId run,
+                                         std::uint64_t from,
+                                         std::size_t limit,
+                                         const Each& each);
+
+  detail::Connection connection_;
+  std::map<unsigned, detail::Statement> listings_{};  // by which filters are set
+  detail::Statement get_{};
+  detail::Statement ticks_{};
+  detail::Statement block_{};
+  detail::Statement exists_{};
+  BlockDecoder decoder_{};
+  RunId block_run_ = 0;  // whose block the decoder holds; 0: none
+  std::uint64_t block_first_ = 0;
+};
+
+}  // namespace db

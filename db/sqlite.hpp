@@ -1,0 +1,102 @@
+// db/sqlite.hpp: SQLite with owners and sentences: a connection, prepared statements, errors.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace db {
+
+/// The store cannot do what was asked; what() is a sentence a person can act on.
+class StoreError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The database itself failed: disk full, not readable, locked by another program.
+class DatabaseError : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
+namespace detail {
+
+/// One prepared statement. Bound text and bytes must live until the next reset().
+class Statement {
+ public:
+  Statement() = default;
+  Statement(sqlite3* connection, std::string path, std::string_view sql);
+
+  Statement& reset();
+  /// Binds the next parameter, from the first after a reset().
+  Statement& operator<<(std::int64_t value);
+  Statement& operator<<(double value);  // NaN, which SQLite does not keep, becomes NULL
+  Statement& operator<<(std::string_view value);
+  Statement& operator<<(std::span<const std::byte> value);
+
+  bool step();  // true: a row is there
+  void run();   // step() to the end and reset
+
+  std::int64_t integer(int column) const;
+  double number(int column) const;  // NULL is NaN
+  std::string text(int column) const;
+  std::span<const std::byte> blob(int column) const;  // until the next step or reset
+
+ private:
+  struct Finalizer {
+    void operator()(sqlite3_stmt* statement) const noexcept;
+  };
+  void check(int code) const;
+
+  std::unique_ptr<sqlite3_stmt, Finalizer> statement_{};
+  sqlite3* connection_ = nullptr;
+  std::string path_{};
+  int bound_ = 0;
+};
+
+/// Resets a statement at the end of a scope: a reader must not hold its snapshot longer.
+class ResetLater {
+ public:
+  explicit ResetLater(Statement& statement) : statement_(statement) {}
+  ~ResetLater() { statement_.reset(); }
+  ResetLater(const ResetLater&) = delete;
+  ResetLater& operator=(const ResetLater&) = delete;
+
+ private:
+  Statement& statement_;
+};
+
+/// One connection, used by one thread at a time.
+class Connection {
+ public:
+  enum class Mode : std::uint8_t { Write, Read, ReadImmutable };
+  /// Throws DatabaseError when the file cannot be opened; Write makes it where it is missing.
+  Connection(const std::string& path, Mode mode);
+
+  const std::string& path() const { return path_; }
+  Statement prepare(std::string_view sql) const { return {connection_.get(), path_, sql}; }
+  void execute(const std::string& sql) const;
+  std::int64_t query_integer(std::string_view sql) const;
+  std::string query_text(std::string_view sql) const;
+  std::int64_t last_insert_id() const;
+  bool in_transaction() const;
+  void roll_back() const noexcept;  // nothing when none is open
+
+ private:
+  struct Closer {
+    void operator()(sqlite3* connection) const noexcept;
+  };
+  std::unique_ptr<sqlite3, Closer> connection_{};
+  std::string path_{};
+};
+
+}  // namespace detail
+}  // namespace db

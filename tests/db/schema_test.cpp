@@ -1,0 +1,115 @@
+// tests/db/schema_test.cpp: databases of older and newer versions.
+#include "db/schema.hpp"
+
+#include "tests/db/store_files.hpp"
+#include <gmock/gmock.h>
+
+namespace {
+
+using db::RunReader;
+using db::RunStore;
+using db::detail::Connection;
+using test::refusal;
+using testing::HasSubstr;
+
+class SchemaTest : public test::StoreFiles {
+ protected:
+  std::int64_t ask(const std::string& sql) {
+    return Connection(path_, Connection::Mode::Write).query_integer(sql);
+  }
+};
+
+// As version 1 wrote it: no listing indexes.
+constexpr const char* kVersion1 = R"(
+  PRAGMA application_id = 1415673164;
+  PRAGMA user_version = 1;
+  CREATE TABLE run (id INTEGER PRIMARY KEY AUTOINCREMENT, status TEXT NOT NULL,
+    outcome TEXT NOT NULL DEFAULT 'running', reason TEXT NOT NULL DEFAULT '', scenario TEXT NOT NULL,
+    controller TEXT NOT NULL, filter TEXT NOT NULL, vehicle TEXT NOT NULL, seed INTEGER NOT NULL,
+    parameters TEXT NOT NULL, version TEXT NOT NULL, started TEXT NOT NULL,
+    ticks INTEGER NOT NULL DEFAULT 0, time REAL NOT NULL DEFAULT 0,
+    lost_ticks INTEGER NOT NULL DEFAULT 0, bytes INTEGER NOT NULL DEFAULT 0,
+    metrics TEXT NOT NULL DEFAULT '');
+  CREATE TABLE document (run INTEGER PRIMARY KEY, text TEXT NOT NULL);
+  CREATE TABLE tick (run INTEGER NOT NULL, tick INTEGER NOT NULL, t REAL, x REAL, y REAL,
+    heading REAL, v REAL, omega REAL, clearance REAL, hold INTEGER NOT NULL,
+    behaviour INTEGER NOT NULL, PRIMARY KEY (run, tick)) WITHOUT ROWID;
+  CREATE TABLE block (run INTEGER NOT NULL, first_tick INTEGER NOT NULL, last_tick INTEGER NOT NULL,
+    frames BLOB NOT NULL, PRIMARY KEY (run, first_tick));
+  INSERT INTO run (id, status, outcome, scenario, controller, filter, vehicle, seed, parameters,
+    version, started, ticks, time) VALUES (7, 'finished', 'reached', 'case3', 'original', 'median',
+    'bullet', 5, '{}', '0.0.9', '2026-01-01T00:00:00Z', 1, 0.026);
+  INSERT INTO document VALUES (7, '{"name":"case3"}');
+  INSERT INTO tick VALUES (7, 0, 0.026, 1, 2, 3, 4, 5, 6, 1, 2);
+)";
+
+TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
+  Connection(path_, Connection::Mode::Write).execute(kVersion1);
+  EXPECT_THAT(refusal([&] { const RunReader reader(path_); }), HasSubstr("older version"));
+  RunStore store(path_);
+  EXPECT_EQ(ask("PRAGMA user_version"), db::detail::schema_version());
+  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
+  RunReader reader(path_);
+  const auto run = reader.get(7);
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->what.controller, "original");
+  EXPECT_EQ(run->what.document, R"({"name":"case3"})");
+  const db::TickRow expected{.tick = 0,
+                             .t = 0.026,
+                             .x = 1,
+                             .y = 2,
+                             .heading = 3,
+                             .v = 4,
+                             .omega = 5,
+                             .clearance = 6,
+                             .hold = 1,
+                             .behaviour = 2};
+  ASSERT_EQ(reader.ticks(7, 0, 9).ticks.size(), 1U);
+  EXPECT_EQ(reader.ticks(7, 0, 9).ticks[0], expected);
+  EXPECT_EQ(record(store, 3), 8);
+}
+
+TEST_F(SchemaTest, TheOlderTablesPlusTheStepsAreTodaysTables) {
+  const auto tables = [](const std::string& path) {
+    const Connection c(path, Connection::Mode::Write);
+    auto list = c.prepare(
+        "SELECT m.name || '.' || c.name || ' ' || c.type || ' ' || c.pk FROM"
+        " sqlite_master m, pragma_table_info(m.name) c ORDER BY m.name, c.cid");
+    std::vector<std::string> found;
+    while (list.step()) found.push_back(list.text(0));
+    return found;
+  };
+  const std::string fresh = (folder_ / "fresh.db").string();
+  { const RunStore store(fresh); }
+  Connection(path_, Connection::Mode::Write).execute(kVersion1);
+  { const RunStore store(path_); }
+  EXPECT_EQ(tables(path_), tables(fresh));
+  EXPECT_GT(tables(fresh).size(), 30U);
+}
+
+TEST_F(SchemaTest, ANewerDatabaseIsRefusedUntouched) {
+  {
+    RunStore store(path_);
+    record(store, 1);
+  }
+  Connection(path_, Connection::Mode::Write).execute("PRAGMA user_version = 99");
+  EXPECT_THAT(refusal([&] { const RunStore store(path_); }), HasSubstr("newer program"));
+  EXPECT_THAT(refusal([&] { const RunReader reader(path_); }), HasSubstr("newer program"));
+  EXPECT_EQ(ask("PRAGMA user_version"), 99);
+  EXPECT_EQ(ask("SELECT count(*) FROM run"), 1);
+}
+
+TEST_F(SchemaTest, AnotherProgramsDatabaseIsRefusedUntouched) {
+  Connection(path_, Connection::Mode::Write).execute("CREATE TABLE bookmark (url TEXT)");
+  EXPECT_THAT(refusal([&] { const RunStore store(path_); }), HasSubstr("another program"));
+  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master"), 1);
+}
+
+TEST_F(SchemaTest, WritesDurably) {
+  const RunStore store(path_);
+  const Connection other(path_, Connection::Mode::Read);
+  EXPECT_EQ(other.query_text("PRAGMA journal_mode"), "wal");
+  EXPECT_EQ(other.query_integer("PRAGMA page_size"), 16384);
+}
+
+}  // namespace

@@ -1,0 +1,106 @@
+// tests/db/store_files.hpp: a folder of its own for every test, and short ways to fill a store.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "tests/db/frames.hpp"
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include "db/run_reader.hpp"
+#include "db/run_store.hpp"
+
+namespace test {
+
+class StoreFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = testing::TempDir() + "tautline_db_XXXXXX";
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+    path_ = (folder_ / "runs.db").string();
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  static db::NewRun what(const std::string& scenario = "case1") {
+    return {.scenario = scenario,
+            .document = R"({"name":")" + scenario + R"("})",
+            .controller = "modified",
+            .filter = "pseudomedian",
+            .vehicle = "kinematic",
+            .seed = 0xFFFFFFFFFFFFFFF1ULL,
+            .parameters = R"({"k_r":0.6})",
+            .version = "0.1.0",
+            .started = "2026-11-21T10:40:47Z"};
+  }
+  static db::TickRow row(std::uint64_t tick) {
+    const auto k = static_cast<double>(tick);
+    return {.tick = tick,
+            .t = 0.026 * k,
+            .x = 0.1 * k,
+            .y = -0.2 * k,
+            .heading = 0.001 * k,
+            .v = 0.5,
+            .omega = 1.0 / 3.0,
+            .clearance = 0.65,
+            .hold = static_cast<std::uint8_t>(tick % 3),
+            .behaviour = 1};
+  }
+  /// Frames 0 .. count-1 of a run, the same for the same seed.
+  static std::vector<Frame> frames(std::size_t count, std::uint64_t seed = 1) {
+    FrameMaker maker(seed, 3);
+    std::vector<Frame> made;
+    for (std::size_t i = 0; i < count; ++i) made.push_back(maker.next());
+    return made;
+  }
+  static void append(db::RunStore& store, db::RunId run, std::uint64_t tick, const Frame& frame) {
+    store.append_tick(run, row(tick), frame.bytes, frame.windows);
+  }
+  /// A whole run of `count` ticks, committed.
+  static db::RunId record(db::RunStore& store,
+                          std::size_t count,
+                          const std::string& scenario = "case1",
+                          const std::string& outcome = "reached") {
+    const db::RunId run = store.begin_run(what(scenario));
+    const auto made = frames(count);
+    for (std::size_t i = 0; i < count; ++i) append(store, run, i, made[i]);
+    store.end_run(run, {.outcome = outcome, .metrics = R"({"ticks":1})"});
+    store.commit();
+    return run;
+  }
+  /// All frames from tick `from` on, in pages of `limit`.
+  static std::vector<std::vector<std::byte>> read_frames(db::RunReader& reader,
+                                                         db::RunId run,
+                                                         std::uint64_t from = 0,
+                                                         std::size_t limit = 10) {
+    std::vector<std::vector<std::byte>> found;
+    std::optional<std::uint64_t> next = from;
+    while (next) {
+      next = reader.frames(run, *next, limit, [&](std::uint64_t, std::span<const std::byte> bytes) {
+        found.emplace_back(bytes.begin(), bytes.end());
+      });
+    }
+    return found;
+  }
+  static std::string integrity(const std::string& path) {
+    return db::detail::Connection(path, db::detail::Connection::Mode::Write)
+        .query_text("PRAGMA integrity_check");
+  }
+
+  std::filesystem::path folder_{};
+  std::string path_{};
+};
+
+/// The sentence of the StoreError that `action` throws, or "".
+template <typename Action>
+std::string refusal(const Action& action) {
+  try {
+    action();
+  } catch (const db::StoreError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace test
