@@ -1,0 +1,45 @@
+// sim/beam_span.hpp: the inner loop of a cast, shared by the flat and the rolling form.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sim {
+
+/// Takes `value(i)` [1/m] into the depth buffer wherever it is nearer than what is there, and notes
+/// `obstacle` in `hits`. Written without a branch, so that it is vectorised; a NaN is never taken.
+template <bool kWithHits, typename Value>
+inline void nearer(double* inverse,
+                   std::uint32_t* hits,
+                   std::uint32_t obstacle,
+                   std::size_t begin,
+                   std::size_t end,
+                   Value&& value) {
+  for (std::size_t i = begin; i < end; ++i) {
+    const double candidate = value(i);
+    const bool closer = candidate > inverse[i];
+    inverse[i] = closer ? candidate : inverse[i];
+    if constexpr (kWithHits) hits[i] = closer ? obstacle : hits[i];
+  }
+}
+
+/// Calls `take(begin, end)` for the beams within [from, to], counted in beams of which a full turn
+/// has `full_turn` and the pattern `beams`; twice when the interval runs across the seam.
+template <typename Take>
+inline void beam_spans(double from, double to, double full_turn, std::size_t beams, Take&& take) {
+  const auto count = static_cast<double>(beams);
+  const auto clip = [count](double value) {
+    return static_cast<std::uint32_t>(value < 0 ? 0 : value > count ? count : value);
+  };
+  const auto piece = [&](double low, double high) {
+    const std::uint32_t begin = clip(low);  // truncated: a beam early costs nothing
+    const std::uint32_t end = clip(high + 1);
+    if (begin < end) take(begin, end);
+  };
+  if (to - from >= full_turn) return take(0U, static_cast<std::uint32_t>(beams));
+  piece(from, to);
+  if (from < 0) piece(from + full_turn, to + full_turn);
+  if (to >= full_turn) piece(from - full_turn, to - full_turn);
+}
+
+}  // namespace sim

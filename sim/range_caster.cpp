@@ -1,0 +1,379 @@
+// sim/range_caster.cpp: keeps the slice and casts scans from one pose.
+#include "sim/range_caster.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/beam_span.hpp"
+#include "sim/bearing.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double cross(double ax, double ay, double bx, double by) {
+  return ax * by - ay * bx;
+}
+
+/// The least whole number not below `value`, 0 for a negative one; a call of ceil() costs more.
+std::uint32_t round_up(double value) {
+  const auto whole = static_cast<std::uint32_t>(value < 0 ? 0 : value);
+  return whole + (value > static_cast<double>(whole) ? 1 : 0);
+}
+
+}  // namespace
+
+void RangeCaster::add(const algo::Obstacle& obstacle) {
+  if (obstacle.height < plane_height_) return;
+  const std::size_t index = obstacles_.size();
+  obstacles_.push_back(obstacle);
+  const std::size_t vertices = algo::outline_W(obstacle).size();
+  centre_x_.push_back(0);
+  centre_y_.push_back(0);
+  bound_.push_back(0);
+  first_vertex_.push_back(static_cast<std::uint32_t>(vertex_x_.size()));
+  vertex_count_.push_back(static_cast<std::uint32_t>(vertices));
+  vertex_x_.resize(vertex_x_.size() + vertices);
+  vertex_y_.resize(vertex_y_.size() + vertices);
+  near_.resize(obstacles_.size());
+  if (outline_.size() < vertices) outline_.resize(vertices);
+  place(index);
+}
+
+void RangeCaster::move(std::uint32_t id, const algo::Pose2& pose_W) {
+  const std::size_t index = find(id);
+  if (index == obstacles_.size()) return;
+  obstacles_[index].pose_W = pose_W;
+  place(index);
+}
+
+void RangeCaster::remove(std::uint32_t id) {
+  const std::size_t index = find(id);
+  if (index == obstacles_.size()) return;
+  std::vector<algo::Obstacle> kept = std::move(obstacles_);
+  kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(index));
+  clear();
+  for (const algo::Obstacle& obstacle : kept) add(obstacle);
+}
+
+void RangeCaster::clear() {
+  obstacles_.clear();
+  centre_x_.clear();
+  centre_y_.clear();
+  bound_.clear();
+  first_vertex_.clear();
+  vertex_count_.clear();
+  vertex_x_.clear();
+  vertex_y_.clear();
+  primitives_.clear();
+}
+
+std::size_t RangeCaster::find(std::uint32_t id) const {
+  std::size_t index = 0;
+  while (index < obstacles_.size() && obstacles_[index].id != id) ++index;
+  return index;
+}
+
+/// Writes the slice of obstacle `index` at its present pose.
+void RangeCaster::place(std::size_t index) {
+  const algo::Obstacle& obstacle = obstacles_[index];
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+    centre_x_[index] = obstacle.pose_W.x;
+    centre_y_[index] = obstacle.pose_W.y;
+    bound_[index] = cylinder->radius;
+    return;
+  }
+  const std::vector<algo::Vec2> outline = algo::outline_W(obstacle);
+  algo::Vec2 low = outline.front();
+  algo::Vec2 high = outline.front();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    vertex_x_[first_vertex_[index] + i] = outline[i].x();
+    vertex_y_[first_vertex_[index] + i] = outline[i].y();
+    low = low.cwiseMin(outline[i]);
+    high = high.cwiseMax(outline[i]);
+  }
+  const algo::Vec2 centre = 0.5 * (low + high);
+  double bound = 0;
+  for (const algo::Vec2& p : outline) bound = std::max(bound, (p - centre).norm());
+  centre_x_[index] = centre.x();
+  centre_y_[index] = centre.y();
+  bound_[index] = bound;
+}
+
+algo::Vec2 RangeCaster::normal_W(std::uint32_t index, const algo::Vec2& p_W) const {
+  const std::size_t count = vertex_count_[index];
+  if (count == 0) {
+    return (p_W - algo::Vec2(centre_x_[index], centre_y_[index])).normalized();
+  }
+  algo::Vec2 normal{1, 0};
+  double nearest = kInfinity;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t a = first_vertex_[index] + i;
+    const std::size_t b = first_vertex_[index] + (i + 1 == count ? 0 : i + 1);
+    const algo::Vec2 start{vertex_x_[a], vertex_y_[a]};
+    const algo::Vec2 edge = algo::Vec2{vertex_x_[b], vertex_y_[b]} - start;
+    const double along = std::clamp(edge.dot(p_W - start) / edge.squaredNorm(), 0.0, 1.0);
+    const double distance = (p_W - start - along * edge).norm();
+    if (distance < nearest) {
+      nearest = distance;
+      normal = algo::Vec2{edge.y(), -edge.x()}.normalized();  // the outline runs counter-clockwise
+    }
+  }
+  return normal;
+}
+
+bool RangeCaster::lies_inside(std::uint32_t index, const algo::Vec2& p_W) const {
+  const std::size_t count = vertex_count_[index];
+  if (count == 0) {
+    const double dx = p_W.x() - centre_x_[index];
+    const double dy = p_W.y() - centre_y_[index];
+    return dx * dx + dy * dy <= bound_[index] * bound_[index];
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t a = first_vertex_[index] + i;
+    const std::size_t b = first_vertex_[index] + (i + 1 == count ? 0 : i + 1);
+    const double side = cross(vertex_x_[a] - p_W.x(),
+                              vertex_y_[a] - p_W.y(),
+                              vertex_x_[b] - p_W.x(),
+                              vertex_y_[b] - p_W.y());
+    if (side < 0) return false;
+  }
+  return true;
+}
+
+void RangeCaster::use_pattern(const BeamPattern& pattern) {
+  if (pattern == pattern_) return;
+  const double turn = 2 * std::numbers::pi;
+  const double field = pattern.angle_increment * (static_cast<double>(pattern.beams) - 1);
+  if (pattern.beams == 0 || !(pattern.angle_increment > 0) || field > turn + 1e-9) {
+    throw std::invalid_argument("A beam pattern needs beams, an increment above 0 and one turn.");
+  }
+  pattern_ = pattern;
+  ux_.resize(pattern.beams);
+  uy_.resize(pattern.beams);
+  for (std::size_t i = 0; i < pattern.beams; ++i) {
+    const double angle = pattern.angle_min + static_cast<double>(i) * pattern.angle_increment;
+    ux_[i] = std::cos(angle);
+    uy_[i] = std::sin(angle);
+  }
+  per_radian_ = 1 / pattern.angle_increment;
+  full_turn_ = turn * per_radian_;
+  slack_ = kQuickBearingError * per_radian_;
+  narrow_ = field <= std::numbers::pi + 1e-9;
+}
+
+/// Fills `near_` with the obstacles whose circle reaches into range and field of view.
+void RangeCaster::gather(const algo::Pose2& sensor_W, double range_max, const RaySpread& spread) {
+  sensor_W_ = sensor_W;
+  cosine_ = std::cos(sensor_W.heading);
+  sine_ = std::sin(sensor_W.heading);
+  // Outer beams in W; a half turn or less of view is what lies left of the first and right of the
+  // last. Without that, both tests always hold.
+  const double fx = narrow_ ? cosine_ * ux_.front() - sine_ * uy_.front() : 0;
+  const double fy = narrow_ ? sine_ * ux_.front() + cosine_ * uy_.front() : 0;
+  const double lx = narrow_ ? cosine_ * ux_.back() - sine_ * uy_.back() : 0;
+  const double ly = narrow_ ? sine_ * ux_.back() + cosine_ * uy_.back() : 0;
+  const double margin = spread.shift + spread.turn * range_max + 1e-6;
+  std::size_t count = 0;
+  near_.resize(obstacles_.size());
+  for (std::size_t k = 0; k < obstacles_.size(); ++k) {
+    const double dx = centre_x_[k] - sensor_W.x;
+    const double dy = centre_y_[k] - sensor_W.y;
+    const double bound = bound_[k] + margin;
+    const double reach = bound + range_max;
+    const bool seen = (dx * dx + dy * dy < reach * reach) & (cross(fx, fy, dx, dy) > -bound) &
+                      (cross(dx, dy, lx, ly) > -bound);
+    near_[count] = static_cast<std::uint32_t>(k);
+    count += seen ? 1 : 0;
+  }
+  near_.resize(count);
+}
+
+algo::Vec2 RangeCaster::centre_in_frame(std::uint32_t index) const {
+  const double dx = centre_x_[index] - sensor_W_.x;
+  const double dy = centre_y_[index] - sensor_W_.y;
+  return {cosine_ * dx + sine_ * dy, cosine_ * dy - sine_ * dx};
+}
+
+/// Fills `outline_` with the vertices of obstacle `index` in the sensor's frame.
+void RangeCaster::enter_frame(std::uint32_t index) {
+  const std::size_t first = first_vertex_[index];
+  for (std::size_t i = 0; i < vertex_count_[index]; ++i) {
+    const double dx = vertex_x_[first + i] - sensor_W_.x;
+    const double dy = vertex_y_[first + i] - sensor_W_.y;
+    outline_[i] = {cosine_ * dx + sine_ * dy, cosine_ * dy - sine_ * dx, 0, false};
+  }
+}
+
+/// Bearing in beams from the first one, in [-2 slack, full turn - 2 slack).
+double RangeCaster::bearing(double x, double y) const {
+  double beam = (quick_bearing(x, y) - pattern_.angle_min) * per_radian_;
+  if (beam < -2 * slack_) beam += full_turn_;
+  if (beam < -2 * slack_) beam += full_turn_;
+  if (beam >= full_turn_ - 2 * slack_) beam -= full_turn_;
+  return beam;
+}
+
+double RangeCaster::bearing(Corner& corner) const {
+  if (!corner.known) {
+    corner.beam = bearing(corner.x, corner.y);
+    corner.known = true;
+  }
+  return corner.beam;
+}
+
+/// The first beam at or counter-clockwise of `corner`, decided exactly where it is close.
+std::uint32_t RangeCaster::first_beam(const Corner& corner) const {
+  auto i = round_up(corner.beam - slack_);
+  const auto last = round_up(corner.beam + slack_);
+  const auto beams = static_cast<std::uint32_t>(pattern_.beams);
+  while (i < last && i < beams && cross(corner.x, corner.y, ux_[i], uy_[i]) < 0) ++i;
+  return std::min(i, beams);
+}
+
+void RangeCaster::start(std::size_t rays, double range_max, std::span<std::uint32_t> hits) {
+  inverse_.assign(rays, 1 / range_max);
+  std::fill(hits.begin(), hits.end(), kNothing);
+}
+
+void RangeCaster::finish(double range_max, std::span<double> ranges) const {
+  const double nothing = 1 / range_max;
+  const double* inverse = inverse_.data();
+  double* out = ranges.data();
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const double range = 1 / inverse[i];
+    out[i] = inverse[i] > nothing ? range : range_max;
+  }
+}
+
+/// The sensor is inside obstacle `index`: every ray reads 0.
+void RangeCaster::fill_inside(std::uint32_t index, std::uint32_t* hits) {
+  std::fill(inverse_.begin(), inverse_.end(), kInfinity);
+  if (hits != nullptr) std::fill_n(hits, inverse_.size(), index);
+}
+
+void RangeCaster::cast(const algo::Pose2& sensor_W,
+                       const BeamPattern& pattern,
+                       double range_max,
+                       std::span<double> ranges,
+                       std::span<std::uint32_t> hits) {
+  use_pattern(pattern);
+  gather(sensor_W, range_max, {});
+  start(pattern.beams, range_max, hits);
+  if (hits.empty()) {
+    cast_flat<false>(nullptr);
+  } else {
+    cast_flat<true>(hits.data());
+  }
+  finish(range_max, ranges);
+}
+
+template <bool kWithHits>
+void RangeCaster::cast_flat(std::uint32_t* hits) {
+  for (const std::uint32_t index : near_) {
+    if (vertex_count_[index] == 0) {
+      flat_circle<kWithHits>(index, hits);
+    } else {
+      flat_outline<kWithHits>(index, hits);
+    }
+  }
+}
+
+/// Of the two roots r of r^2 - 2 m r + k = 0 with m = c.u and k = |c|^2 - R^2 the nearer has
+/// 1 / r = (m + sqrt(m^2 - k)) / k, because their product is k. A beam that misses gives a NaN,
+/// which no comparison takes.
+template <bool kWithHits>
+void RangeCaster::flat_circle(std::uint32_t index, std::uint32_t* hits) {
+  const algo::Vec2 c = centre_in_frame(index);
+  const double radius = bound_[index];
+  const double k = c.squaredNorm() - radius * radius;
+  if (k <= 0) return fill_inside(index, hits);
+  const double half = quick_bearing(std::sqrt(k), radius) * per_radian_ + 2 * slack_;
+  const double middle = bearing(c.x(), c.y());
+  const double inverse_k = 1 / k;
+  beam_spans(middle - half,
+             middle + half,
+             full_turn_,
+             pattern_.beams,
+             [&](std::uint32_t begin, std::uint32_t end) {
+               nearer<kWithHits>(
+                   inverse_.data(), hits, index, begin, end, [&, this](std::size_t i) {
+                     const double m = c.x() * ux_[i] + c.y() * uy_[i];
+                     return (m + std::sqrt(m * m - k)) * inverse_k;
+                   });
+             });
+}
+
+/// Along the segment p to q, seen counter-clockwise, 1 / r = cross(p - q, u) / cross(p, q).
+template <bool kWithHits>
+void RangeCaster::flat_outline(std::uint32_t index, std::uint32_t* hits) {
+  enter_frame(index);
+  const std::size_t count = vertex_count_[index];
+  bool outside = false;
+  for (std::size_t j = 0; j < count; ++j) {
+    Corner& q = outline_[j];
+    Corner& p = outline_[j + 1 == count ? 0 : j + 1];
+    const double area = cross(p.x, p.y, q.x, q.y);
+    if (!(area > 0)) continue;  // turned away
+    outside = true;
+    const double from = bearing(p);
+    const double to = bearing(q);
+    // The face spans less than half a turn. Nearly edge-on, rounding may swap its ends.
+    if (from > to && from - to < full_turn_ / 2) continue;
+    const double a = (q.y - p.y) / area;
+    const double b = (p.x - q.x) / area;
+    const auto splat = [&](std::uint32_t begin, std::uint32_t end) {
+      nearer<kWithHits>(inverse_.data(), hits, index, begin, end, [&, this](std::size_t i) {
+        return a * ux_[i] + b * uy_[i];
+      });
+    };
+    const std::uint32_t begin = first_beam(p);
+    const std::uint32_t end = first_beam(q);
+    if (from <= to) {
+      splat(begin, end);
+    } else {  // across the seam behind the pattern's first beam
+      splat(begin, static_cast<std::uint32_t>(pattern_.beams));
+      splat(0, end);
+    }
+  }
+  if (!outside) fill_inside(index, hits);
+}
+
+RangeCaster::Hit RangeCaster::cast_ray(const algo::Vec2& origin_W,
+                                       double angle,
+                                       double range_max) const {
+  const algo::Vec2 u = algo::direction(angle);
+  double inverse = 1 / range_max;
+  std::uint32_t hit = kNothing;
+  const auto take = [&](double candidate, std::size_t index) {
+    if (!(candidate > inverse)) return;
+    inverse = candidate;
+    hit = static_cast<std::uint32_t>(index);
+  };
+  for (std::uint32_t index = 0; index < obstacles_.size(); ++index) {
+    if (lies_inside(index, origin_W)) return {0, index};
+    const std::size_t count = vertex_count_[index];
+    if (count == 0) {
+      const algo::Vec2 c = algo::Vec2(centre_x_[index], centre_y_[index]) - origin_W;
+      const double m = c.dot(u);
+      const double k = c.squaredNorm() - bound_[index] * bound_[index];
+      take((m + std::sqrt(m * m - k)) / k, index);
+    }
+    for (std::size_t j = 0; j < count; ++j) {
+      const std::size_t a = first_vertex_[index] + j;
+      const std::size_t b = first_vertex_[index] + (j + 1 == count ? 0 : j + 1);
+      const algo::Vec2 q = algo::Vec2(vertex_x_[a], vertex_y_[a]) - origin_W;
+      const algo::Vec2 p = algo::Vec2(vertex_x_[b], vertex_y_[b]) - origin_W;
+      const double area = cross(p.x(), p.y(), q.x(), q.y());
+      const double left_of_p = cross(p.x(), p.y(), u.x(), u.y());
+      const double left_of_q = cross(q.x(), q.y(), u.x(), u.y());
+      if (area > 0 && left_of_p >= 0 && left_of_q < 0) take((left_of_p - left_of_q) / area, index);
+    }
+  }
+  return {hit == kNothing ? range_max : 1 / inverse, hit};
+}
+
+}  // namespace sim

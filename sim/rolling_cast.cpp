@@ -1,0 +1,200 @@
+// sim/rolling_cast.cpp: the caster's form for beams fired one by one from a moving sensor.
+//
+// Seen from the reference pose, the interval of beams a primitive can meet is widened by what the
+// rays stray from the pattern; each ray in it is then tested exactly with its own origin.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/beam_span.hpp"
+#include "sim/bearing.hpp"
+#include "sim/range_caster.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double cross(double ax, double ay, double bx, double by) {
+  return ax * by - ay * bx;
+}
+
+/// [rad] How far the bearing of a point `distance` away turns when the eye moves by `shift`; above
+/// asin(shift / distance), for which the quotient must stay under 1/4.
+double parallax(double shift, double distance) {
+  return 1.1 * shift / distance;
+}
+constexpr double kParallaxLimit = 4;
+
+}  // namespace
+
+void RangeCaster::cast_rolling(const algo::Pose2& reference_W,
+                               const BeamPattern& pattern,
+                               const Rays& rays,
+                               const RaySpread& spread,
+                               double range_max,
+                               std::span<double> ranges,
+                               std::span<std::uint32_t> hits) {
+  use_pattern(pattern);
+  gather(reference_W, range_max, spread);
+  primitives_.clear();
+  enclosing_.clear();
+  for (const std::uint32_t index : near_) {
+    if (vertex_count_[index] == 0) {
+      rolling_circle(index, spread);
+    } else {
+      rolling_outline(index, spread);
+    }
+  }
+  start(rays.size(), range_max, hits);
+  trace(rays, {}, hits.empty() ? nullptr : hits.data());
+  finish(range_max, ranges);
+}
+
+void RangeCaster::cast_more(const Rays& rays,
+                            std::span<const std::uint32_t> first,
+                            double range_max,
+                            std::span<double> ranges,
+                            std::span<std::uint32_t> hits) {
+  start(rays.size(), range_max, hits);
+  trace(rays, first, hits.empty() ? nullptr : hits.data());
+  finish(range_max, ranges);
+}
+
+void RangeCaster::add_primitive(const Primitive& primitive, double from, double to) {
+  beam_spans(from, to, full_turn_, pattern_.beams, [&](std::uint32_t begin, std::uint32_t end) {
+    primitives_.push_back(primitive);
+    primitives_.back().begin = begin;
+    primitives_.back().end = end;
+  });
+}
+
+void RangeCaster::rolling_circle(std::uint32_t index, const RaySpread& spread) {
+  const algo::Vec2 c = centre_in_frame(index);
+  const double radius = bound_[index];
+  const double distance = c.norm();
+  const double closest = distance - spread.shift;
+  const Primitive circle{.px = c.x(), .py = c.y(), .radius = radius, .obstacle = index};
+  if (closest <= radius || distance < kParallaxLimit * spread.shift) {
+    return add_primitive(circle, 0, full_turn_);
+  }
+  const double half = quick_bearing(std::sqrt(closest * closest - radius * radius), radius) +
+                      spread.turn + parallax(spread.shift, distance);
+  const double middle = bearing(c.x(), c.y());
+  const double reach = half * per_radian_ + 2 * slack_;
+  add_primitive(circle, middle - reach, middle + reach);
+}
+
+void RangeCaster::rolling_outline(std::uint32_t index, const RaySpread& spread) {
+  enter_frame(index);
+  const std::size_t count = vertex_count_[index];
+  bool outside = false;
+  for (std::size_t j = 0; j < count; ++j) {
+    Corner& q = outline_[j];
+    Corner& p = outline_[j + 1 == count ? 0 : j + 1];
+    const double area = cross(p.x, p.y, q.x, q.y);
+    // Moving the eye by `shift` changes the area by at most this.
+    const double doubt = spread.shift * (std::abs(q.x - p.x) + std::abs(q.y - p.y));
+    outside = outside || area > doubt;
+    if (area + doubt <= 0) continue;  // turned away from every ray
+    const Primitive face{.px = p.x, .py = p.y, .qx = q.x, .qy = q.y, .obstacle = index};
+    const double p_distance = std::sqrt(p.x * p.x + p.y * p.y);
+    const double q_distance = std::sqrt(q.x * q.x + q.y * q.y);
+    const bool at_the_face = area <= doubt && p.x * q.x + p.y * q.y < 0;
+    if (at_the_face || std::min(p_distance, q_distance) < kParallaxLimit * spread.shift) {
+      add_primitive(face, 0, full_turn_);
+      continue;
+    }
+    double from = bearing(p);
+    double width = bearing(q) - from;
+    if (width > full_turn_ / 2) width -= full_turn_;
+    if (width < -full_turn_ / 2) width += full_turn_;
+    if (width < 0) {  // edge-on: some rays see it, from the reference it is turned away
+      from += width;
+      width = -width;
+    }
+    const double nearest = std::min(p_distance, q_distance);
+    const double widening =
+        (spread.turn + parallax(spread.shift, nearest)) * per_radian_ + 2 * slack_;
+    add_primitive(face, from - widening, from + width + widening);
+  }
+  if (!outside) enclosing_.push_back(index);
+}
+
+/// Takes all primitives into the depth buffer of `rays`; `first` as in cast_more(), empty when
+/// there is one ray a beam.
+void RangeCaster::trace(const Rays& rays,
+                        std::span<const std::uint32_t> first,
+                        std::uint32_t* hits) {
+  for (const Primitive& primitive : primitives_) {
+    const std::size_t begin = first.empty() ? primitive.begin : first[primitive.begin];
+    const std::size_t end = first.empty() ? primitive.end : first[primitive.end];
+    if (hits == nullptr) {
+      trace_primitive<false>(primitive, rays, begin, end, hits);
+    } else {
+      trace_primitive<true>(primitive, rays, begin, end, hits);
+    }
+  }
+  trace_enclosing(rays, hits);
+}
+
+template <bool kWithHits>
+void RangeCaster::trace_primitive(const Primitive& primitive,
+                                  const Rays& rays,
+                                  std::size_t begin,
+                                  std::size_t end,
+                                  std::uint32_t* hits) {
+  const double* x = rays.x.data();
+  const double* y = rays.y.data();
+  const double* ux = rays.ux.data();
+  const double* uy = rays.uy.data();
+  const double px = primitive.px;
+  const double py = primitive.py;
+  if (primitive.radius > 0) {
+    const double square = primitive.radius * primitive.radius;
+    const auto circle = [=](std::size_t i) {
+      const double cx = px - x[i];
+      const double cy = py - y[i];
+      const double m = cx * ux[i] + cy * uy[i];
+      const double k = cx * cx + cy * cy - square;
+      const double inverse = (m + std::sqrt(m * m - k)) / k;
+      return k > 0 ? inverse : kInfinity;
+    };
+    return nearer<kWithHits>(inverse_.data(), hits, primitive.obstacle, begin, end, circle);
+  }
+  const double qx = primitive.qx;
+  const double qy = primitive.qy;
+  const auto segment = [=](std::size_t i) {
+    const double pxi = px - x[i];
+    const double pyi = py - y[i];
+    const double qxi = qx - x[i];
+    const double qyi = qy - y[i];
+    const double left_of_p = cross(pxi, pyi, ux[i], uy[i]);
+    const double left_of_q = cross(qxi, qyi, ux[i], uy[i]);
+    const double area = cross(pxi, pyi, qxi, qyi);
+    const double inverse = (left_of_p - left_of_q) / area;
+    return (left_of_p >= 0) & (left_of_q < 0) & (area > 0) ? inverse : 0;
+  };
+  nearer<kWithHits>(inverse_.data(), hits, primitive.obstacle, begin, end, segment);
+}
+
+/// Rays that start inside an outline read 0. Only a sensor at or in a wall comes here.
+void RangeCaster::trace_enclosing(const Rays& rays, std::uint32_t* hits) {
+  for (const std::uint32_t index : enclosing_) {
+    enter_frame(index);
+    const std::size_t count = vertex_count_[index];
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      bool inside = true;
+      for (std::size_t j = 0; j < count; ++j) {
+        const Corner& a = outline_[j];
+        const Corner& b = outline_[j + 1 == count ? 0 : j + 1];
+        inside = inside &&
+                 cross(a.x - rays.x[i], a.y - rays.y[i], b.x - rays.x[i], b.y - rays.y[i]) >= 0;
+      }
+      if (!inside) continue;
+      inverse_[i] = kInfinity;
+      if (hits != nullptr) hits[i] = index;
+    }
+  }
+}
+
+}  // namespace sim
