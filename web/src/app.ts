@@ -1,7 +1,7 @@
 // web/src/app.ts: what the page knows and can do: one link, one scene, one set of controls' state.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Catalog, RequestJson, ScenarioItem, SessionState } from "./contract";
+import { Catalog, Page, RequestJson, ScenarioItem, SessionState } from "./contract";
 import { Selection } from "./draw/scene";
 import { View } from "./draw/view";
 import { Pose } from "./geometry";
@@ -10,8 +10,8 @@ import { Tool } from "./edit/gestures";
 import { move_edit, move_request } from "./edit/edits";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
-import { Page } from "./contract";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
+import { TickRow } from "./state/columns";
 import { Store } from "./state/store";
 import { sentence_of } from "./words";
 
@@ -43,6 +43,7 @@ export interface UiState {
 
 const kPathRows = 40_000;
 const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
+const kLate = 40;   // [ticks] a page that comes this late asks for what it missed
 const kMoveMs = 90; // between two requests of one drag
 
 export class App {
@@ -67,6 +68,7 @@ export class App {
     this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
       frame: (frame) => {
         fold_frame(this.scene, frame);
+        if (this.scene.columns.length === 1 && frame.tick > kLate) void this.fetch_past(frame.tick);
         this.redraw();
       },
       state: (session) => this.take_session(session),
@@ -102,6 +104,26 @@ export class App {
     } catch (error) {
       if (this.link.is_open) this.toast("bad", sentence_of(error));
     }
+  }
+
+  /** The path and the figures of the run before this page came, from the record. */
+  private async fetch_past(before: number): Promise<void> {
+    const run = this.scene.run;
+    const stride = Math.max(1, Math.ceil(before / kPathRows) * 2 - 1);
+    const rows: TickRow[] = [];
+    try {
+      for (let from: number | null = 0; from !== null && from < before;) {
+        const page: Page<TickRow> = await rest.get(`/runs/${run}/ticks?from=${from}&limit=5000`);
+        rows.push(...page.items.filter((r) => r.tick < before && r.tick % stride === 0));
+        from = page.next === null ? null : Number(page.next);
+      }
+    } catch {
+      return; // the path then begins where this page came in
+    }
+    if (run !== this.scene.run || rows.length === 0) return;
+    this.scene.columns.prepend(rows);
+    this.scene.rows = this.scene.columns.length;
+    this.redraw();
   }
 
   /** Calls a service; a refusal becomes a toast with the server's sentence. */
@@ -169,12 +191,16 @@ export class App {
     const s = this.ui.value.session;
     if (!s || this.ui.value.loading) return;
     const other = change.scenario !== undefined && change.scenario !== s.scenario.name;
+    const scenario = change.scenario ?? s.scenario.name;
+    const log = this.ui.value.scenarios.find((x) => x.name === scenario)?.kind === "log";
+    const vehicle = change.vehicle ?? s.vehicle;
+    const known = this.ui.value.catalog?.vehicles.some((v) => v.name === vehicle) ?? false;
     const body = {
-      scenario: change.scenario ?? s.scenario.name,
-      controller: change.controller ?? s.controller,
+      scenario,
       filter: change.filter ?? s.filter,
-      // A log has no vehicle, and a scenario brings its own gains.
-      ...(s.vehicle || change.vehicle ? { vehicle: change.vehicle ?? s.vehicle } : {}),
+      // A log has no controller and no vehicle; a scenario brings its own gains.
+      ...(log ? {} : { controller: change.controller ?? s.controller }),
+      ...(log || !known ? {} : { vehicle }),
       ...(other ? {} : { seed: s.seed, parameters: s.parameters }),
     };
     this.ui.set({ loading: body.scenario, selection: null });

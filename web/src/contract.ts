@@ -116,4 +116,4 @@ export interface RunItem {
   document?: ScenarioDocument;
 }
 
-export interface Page<T> { items: T[]; next: string | number | null }
+export interface Page<T> { items: T[]; next: string | number | null; total?: number }

@@ -59,11 +59,10 @@ function pseudomedian(window: Float64Array, ok: Uint8Array, n: number): number {
   return 0.5 * (max_min + min_max);
 }
 
-/** The middle of the readings in the window; of an even number the mean of the middle two. */
+/** The middle of the readings in the window; of an even number the upper of the middle two. */
 function median(window: Float64Array, ok: Uint8Array): number {
   const sorted = [...window].filter((_, i) => ok[i]).sort((a, b) => a - b);
-  const m = sorted.length >> 1;
-  return sorted.length % 2 === 1 ? sorted[m] : 0.5 * (sorted[m - 1] + sorted[m]);
+  return sorted[sorted.length >> 1];
 }
 
 /** 1/2 (U_N L_N + L_N U_N) on the readings, padded by 3N copies of the border samples. */

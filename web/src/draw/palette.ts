@@ -1,6 +1,6 @@
 // web/src/draw/palette.ts: the colours of the current theme, read from the style sheet's tokens.
 
-const kNames = ["bg", "panel", "text", "muted", "grid", "grid2", "accent", "ok", "warn", "bad",
+const kNames = ["bg", "panel", "text", "muted", "grid", "grid2", "line", "accent", "ok", "warn", "bad",
   "scan", "filtered", "internal", "external", "elastic", "path", "robot", "obst", "obstline",
   "safe"] as const;
 export type Palette = Record<(typeof kNames)[number], string> & { font: string };

@@ -6,6 +6,12 @@ export const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "cleara
   "right", "elastic", "internal"] as const;
 export type Column = (typeof kColumns)[number];
 
+/** A row of GET /runs/{id}/ticks. */
+export interface TickRow {
+  tick: number; t: number; x: number; y: number; heading: number; v: number; omega: number;
+  clearance: number;
+}
+
 export class Columns {
   length = 0;
   private data_ = new Map<Column, Float64Array>();
@@ -55,6 +61,19 @@ export class Columns {
     put("elastic", Math.hypot(f.elastic.x, f.elastic.y));
     const via = f.strip[1];
     put("internal", via ? Math.hypot(via.internal.x, via.internal.y) : 0);
+  }
+
+  /** Puts rows of the record before those that are here. What they do not say is NaN. */
+  prepend(rows: TickRow[]): void {
+    const count = rows.length;
+    while (this.capacity_ < this.length + count) this.grow();
+    for (const [name, column] of this.data_) {
+      column.copyWithin(count, 0, this.length);
+      for (let i = 0; i < count; ++i) {
+        column[i] = (rows[i] as unknown as Record<string, number | undefined>)[name] ?? NaN;
+      }
+    }
+    this.length += count;
   }
 
   /** The last row with t <= `t`; 0 when there is none. */

@@ -23,8 +23,8 @@ export class World3 {
   private readonly statics_ = new THREE.Group();  // grid, obstacles, goal
   private readonly moving_ = new THREE.Group();   // path, strip, forces
   private readonly robot_ = new THREE.Group();
-  private readonly raw_ = points(0.022);
-  private readonly filtered_ = points(0.035);
+  private readonly raw_ = points(2.5);
+  private readonly filtered_ = points(3.5);
   private pending_ = 0;
   private built_: unknown[] = [];
   private placed_ = false;
@@ -102,7 +102,7 @@ export class World3 {
     const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
     const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y);
     this.controls_.target.copy(middle);
-    this.camera_.position.set(middle.x - 0.35 * span, middle.y - 1.05 * span, 0.85 * span);
+    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
     this.placed_ = true;
   }
 
@@ -202,8 +202,10 @@ function clear(group: THREE.Group): void {
   }
 }
 
+/** Points `size` pixels across, however far away. */
 function points(size: number): THREE.Points {
-  const p = new THREE.Points(new THREE.BufferGeometry(), new THREE.PointsMaterial({ size }));
+  const p = new THREE.Points(new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ size: size * Math.min(2, devicePixelRatio || 1), sizeAttenuation: false }));
   p.frustumCulled = false;
   return p;
 }
@@ -218,17 +220,35 @@ function flat(colour: string): THREE.MeshBasicMaterial {
   return new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide });
 }
 
-function grid(p: Palette): THREE.GridHelper {
-  const helper = new THREE.GridHelper(60, 60, p.grid2, p.grid2);
-  helper.rotation.x = Math.PI / 2;
-  return helper;
+/** A line a metre, stronger every fifth, in pieces of a metre: some drivers drop a line that
+ * passes behind the camera. */
+function grid(p: Palette): THREE.Group {
+  const group = new THREE.Group();
+  const half = 25;
+  for (const strong of [false, true]) {
+    const xyz: number[] = [];
+    for (let k = -half; k <= half; ++k) {
+      if ((k % 5 === 0) !== strong) continue;
+      for (let i = -half; i < half; ++i) xyz.push(i, k, 0, i + 1, k, 0, k, i, 0, k, i + 1, 0);
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+    group.add(new THREE.LineSegments(geometry,
+      new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 })));
+  }
+  return group;
 }
 
-function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Mesh {
-  const material = new THREE.MeshStandardMaterial({
-    color: o.kind === "wall" ? p.obstline : p.obst, roughness: 0.85,
-    emissive: chosen ? p.accent : "#000000", emissiveIntensity: chosen ? 0.35 : 0,
-  });
+function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D {
+  const material = new THREE.MeshStandardMaterial({ color: p.obstline, roughness: 0.85 });
+  const mesh = shape_of(o, material);
+  const edges = new THREE.LineSegments(new THREE.EdgesGeometry(mesh.geometry, 30),
+    new THREE.LineBasicMaterial({ color: chosen ? p.accent : p.muted }));
+  mesh.add(edges);
+  return mesh;
+}
+
+function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
   if (o.kind === "cylinder") {
     const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
     const mesh = new THREE.Mesh(geometry, material);
@@ -302,16 +322,16 @@ function body(scene: SceneState, p: Palette): THREE.Object3D[] {
     return mesh;
   };
   const hull = upright(new THREE.CylinderGeometry(r, r, 0.18, 48), p.robot, 0.15);
-  const scanner = upright(new THREE.CylinderGeometry(0.07, 0.08, 0.14, 24), p.filtered, 0.31);
+  const scanner = upright(new THREE.CylinderGeometry(0.06, 0.07, 0.1, 24), p.filtered, 0.29);
   const wheels = [-1, 1].map((side) => {
     const wheel = new THREE.Mesh(new THREE.CylinderGeometry(0.09, 0.09, 0.05, 24), paint(p.obstline));
     wheel.position.set(0, side * Math.min(scene.half_track, r - 0.03), 0.09);
     return wheel;
   });
-  const nose = new THREE.Mesh(new THREE.ConeGeometry(0.1, 0.22, 3), paint(p.accent));
-  nose.rotation.z = -Math.PI / 2;
-  nose.position.set(r - 0.13, 0, 0.25);
-  nose.scale.z = 0.15;
+  const head = new THREE.Shape([[0.86, 0], [0.36, 0.34], [0.36, -0.34]].map(([x, y]) =>
+    new THREE.Vector2(x * r, y * r)));
+  const nose = new THREE.Mesh(new THREE.ShapeGeometry(head), flat(p.bg));
+  nose.position.z = 0.245;
   return [hull, scanner, ...wheels, nose];
 }
 

@@ -88,19 +88,18 @@ export function Slider(props: {
   return (
     <div class="gain" title={info.help}>
       <label for={id}><Label text={info.label} /></label>
-      <button class="mini" aria-label={`Reset ${info.label} to ${fixed(props.usual, digits)}`}
+      <button class="mini" data-testid={`reset-${info.name}`} aria-label={`Reset ${info.label} to ${fixed(props.usual, digits)}`}
         title={`Back to ${fixed(props.usual, digits)} ${info.unit}`} hidden={!changed}
         disabled={props.disabled} onClick={() => change(props.usual)}>{icons.reset}</button>
       <output for={id} class="num">{fixed(value, digits)}{info.unit && ` ${info.unit}`}</output>
+      <span class="bound num" aria-hidden="true">{fixed(info.min, digits)}</span>
       <input id={id} data-testid={id} type="range" min={info.min} max={info.max} step={info.step}
         value={value} disabled={props.disabled} ref={(e) => {
           e?.style.setProperty("--share", `${share}%`);
         }}
         aria-valuetext={`${fixed(value, digits)} ${info.unit}`}
         onInput={(e) => change(Number(e.currentTarget.value))} />
-      <span class="range num" aria-hidden="true">
-        <span>{fixed(info.min, digits)}</span><span>{fixed(info.max, digits)}</span>
-      </span>
+      <span class="bound r num" aria-hidden="true">{fixed(info.max, digits)}</span>
     </div>
   );
 }

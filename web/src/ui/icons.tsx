@@ -44,6 +44,7 @@ export const icons = {
   back_step: solid(<path d="M15 4l-8 6 8 6zM4 4h2v12H4z" />),
   trash: line(<path d="M4 6h12M8 6V4h4v2M6 6l1 11h6l1-11M9 9v5M11 9v5" />),
   down: line(<path d="m5 8 5 5 5-5" />),
+  compare: line(<><circle cx="7.5" cy="10" r="4.5" /><circle cx="12.5" cy="10" r="4.5" /></>),
   download: line(<path d="M10 3v9M6 9l4 4 4-4M4 17h12" />),
 };
 

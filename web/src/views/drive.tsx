@@ -152,9 +152,15 @@ function Tools(): JSX.Element {
   const redo = use_store(app.ui, (u) => u.redo);
   const drives = session?.robot.drives ?? false;
   const editable = session?.robot.editable ?? false;
+  const threed = (
+    <button class={`text-tool ${three ? "on" : ""}`} aria-pressed={three} data-testid="three"
+      aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
+  );
+  // In 3D one looks; editing is done from above, where a place is one place.
+  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{threed}</div>;
   const button = (name: Tool, label: string, key: string, can: boolean) => (
-    <button class={tool === name && can && !three ? "on" : ""} aria-pressed={tool === name}
-      disabled={!can || three} aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
+    <button class={tool === name && can ? "on" : ""} aria-pressed={tool === name && can}
+      disabled={!can} aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
       onClick={() => app.ui.set({ tool: name, selection: null })}>
       {icons[name as "goal"]}
     </button>
@@ -170,13 +176,12 @@ function Tools(): JSX.Element {
       <button class="wide-only" aria-label={redo ? `Do again: ${redo}` : "Do again"} disabled={!redo}
         title={redo ? `Do again: ${redo} (Ctrl+Shift+Z)` : "Nothing to do again"}
         onClick={() => void app.redo()}>{icons.redo}</button>
-      <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit" disabled={three}
+      <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit"
         onClick={() => {
           app.view.fitted = true;
           app.redraw();
         }}>{icons.fit}</button>
-      <button class={`text-tool ${three ? "on" : ""}`} aria-pressed={three} data-testid="three"
-        aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
+      {threed}
     </div>
   );
 }

@@ -79,14 +79,12 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
               on_pick={(name) => void app.load({ controller: name })} />}
         {controller?.help && <p class="help">{controller.help}</p>}
       </>}
-      <h2>Filter</h2>
+      {!session.robot.drives && <h2>Filter</h2>}
       <Segments label="Filter" name="filter" choices={short(catalog.filters)} value={session.filter}
         disabled={loading} on_pick={(name) => void app.load({ filter: name })} />
-      {session.robot.drives && session.source === "simulation" && <>
-        <h2>Vehicle</h2>
+      {session.robot.drives && session.source === "simulation" &&
         <Segments label="Vehicle" name="vehicle" choices={catalog.vehicles} value={session.vehicle}
-          disabled={loading} on_pick={(name) => void app.load({ vehicle: name })} />
-      </>}
+          disabled={loading} on_pick={(name) => void app.load({ vehicle: name })} />}
     </section>
   );
 }
@@ -190,7 +188,7 @@ function Signal(props: { spec: SignalSpec }): JSX.Element {
   const value = useRef<HTMLElement>(null);
   const plot = useRef<Plot | null>(null);
   useEffect(() => {
-    plot.current = new Plot(box.current!, props.spec.lines, 76, props.spec.least);
+    plot.current = new Plot(box.current!, props.spec.lines, 66, props.spec.least);
     let seen = -1;
     let seen_at = NaN;
     const update = () => {

@@ -5,7 +5,7 @@ import { useEffect, useMemo, useReducer, useRef, useState } from "preact/hooks";
 import { use_app } from "../app";
 import { Metrics, RunItem } from "../contract";
 import { Ghost } from "../draw/scene";
-import { View } from "../draw/view";
+import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
 import { Bounds, include } from "../geometry";
 import { Player } from "../link/player";
@@ -76,6 +76,7 @@ function Opened(props: {
   const theme = use_store(app.ui, (u) => u.theme);
   const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
   const redraw = useRef<() => void>(() => undefined);
+  const frame = useRef<HTMLElement>(null);
   const view = useMemo(() => new View(), [run]);
   const player = useMemo(() => new Player(run, () => {
     redraw_controls();
@@ -141,17 +142,17 @@ function Opened(props: {
   };
   return (
     <>
-      <section class="view" aria-label={`Run ${run.item.id}`} data-testid="run-view">
+      <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
+      <section class="view" ref={frame} aria-label={`Run ${run.item.id}`} data-testid="run-view">
         <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
           label={`Run ${run.item.id} from above`} bounds={bounds}
-          insets={() => ({ left: 24, top: 24, right: 24, bottom: 40 })}
+          insets={() => ({ left: 20, top: 20, right: 20, bottom: card_height(frame.current) + 24 })}
           on_ready={(request) => (redraw.current = request)}
           overlay={() => ({
             selection: null, hovered: null, draft: {}, force_scale: app.ui.value.force_scale,
-            ghost: ghost(), future: true, insets: { left: 0, top: 0, right: 0, bottom: 22 },
+            ghost: ghost(), future: true, insets: scale_insets(frame.current),
             path_colour: other ? getComputedStyle(document.documentElement).getPropertyValue("--accent").trim() : undefined,
           })} />
-        <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
         <Instant run={run} />
       </section>
       <section class="lanes" aria-label="Time and signals">
@@ -195,9 +196,23 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
   );
 }
 
+/** [px] that the sentence takes up at the bottom of the view. */
+function card_height(view: HTMLElement | null): number {
+  return view?.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
+}
+
+/** The scale bar stands at the lower right, above the sentence where that reaches there. */
+function scale_insets(view: HTMLElement | null): Insets {
+  const insets = { left: 0, top: 0, right: 0, bottom: 22 };
+  const box = view?.getBoundingClientRect();
+  const card = view?.querySelector(".explain")?.getBoundingClientRect();
+  if (box && card && card.right > box.right - 180) insets.bottom = box.bottom - card.top + 14;
+  return insets;
+}
+
 const kRows: { label: string; unit: string; digits: number; of: (m: Metrics) => number | null }[] = [
-  { label: "Least clearance", unit: "m", digits: 2, of: (m) => m.min_clearance },
-  { label: "Safety intrusion", unit: "m", digits: 2, of: (m) => m.intrusion },
+  { label: "Clearance", unit: "m", digits: 2, of: (m) => m.min_clearance },
+  { label: "Intrusion", unit: "m", digits: 2, of: (m) => m.intrusion },
   { label: "Path", unit: "m", digits: 2, of: (m) => m.path_length },
   { label: "Turning", unit: "rad", digits: 2, of: (m) => m.turning },
   { label: "Via points", unit: "", digits: 0, of: (m) => m.via_points },
@@ -226,36 +241,37 @@ function Facts(props: {
     set_asking(false);
   };
   return (
-    <div class="card facts" data-testid="facts">
-      <div class="facts-head">
-        <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
-        <b>Run {item.id}</b>
-        <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
-      </div>
-      <p class="quiet">{titled(item.scenario)} · {titled(item.controller)} · {item.filter} · seed {item.seed}</p>
+    <section class="facts" aria-label="What came of it" data-testid="facts">
+      <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
+      <b>Run {item.id}</b>
+      <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
+      <span class="quiet">{titled(item.scenario)} · {titled(item.controller)} · {item.filter} · seed {item.seed}</span>
+      <span class="space" />
+      <span class="facts-acts">
+        {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
+        <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
+          data-testid="csv">{icons.download}CSV</a>
+        {finished && <button class="icon" aria-label={`Delete run ${item.id}`} title="Delete"
+          onClick={() => set_asking(true)} data-testid="delete-run">{icons.trash}</button>}
+      </span>
       {item.reason && <p class="reason">{item.reason}</p>}
-      {has_metrics && <table>
-        {props.other && <thead><tr><td />
-          <th scope="col" class="tone-accent">{item.id} {titled(item.controller)}</th>
-          <th scope="col" class="tone-elastic">{props.other.item.id} {titled(props.other.item.controller)}</th>
-        </tr></thead>}
+      {has_metrics && <table class="measures">
+        <thead><tr>
+          {props.other && <td />}
+          {kRows.map((row) => <th key={row.label} scope="col">{row.label}{row.unit && <u> {row.unit}</u>}</th>)}
+        </tr></thead>
         <tbody>
-          {kRows.map((row) => (
-            <tr key={row.label}>
-              <th scope="row">{row.label}</th>
-              {runs.map((r) => (
-                <td key={r.id} class="num r">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"} {row.unit}</td>
+          {runs.map((r, i) => (
+            <tr key={r.id}>
+              {props.other &&
+                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {titled(r.controller)}</th>}
+              {kRows.map((row) => (
+                <td key={row.label} class="num">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"}</td>
               ))}
             </tr>
           ))}
         </tbody>
       </table>}
-      <div class="facts-acts">
-        <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
-          data-testid="csv">{icons.download}CSV</a>
-        {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
-        {finished && <button class="ghost" onClick={() => set_asking(true)} data-testid="delete-run">{icons.trash}Delete</button>}
-      </div>
       {asking && <Dialog title={`Delete run ${item.id}?`} name="delete-dialog" on_close={() => set_asking(false)}>
         <p>Its record goes for good. Other runs stay.</p>
         <div class="facts-acts">
@@ -263,7 +279,7 @@ function Facts(props: {
           <button class="ghost" onClick={() => set_asking(false)}>Keep it</button>
         </div>
       </Dialog>}
-    </div>
+    </section>
   );
 }
 

@@ -5,6 +5,7 @@ import { use_app } from "../app";
 import { Page, RunItem } from "../contract";
 import * as rest from "../link/rest";
 import { use_store } from "../state/store";
+import { icons } from "../ui/icons";
 import { fixed, run_word, sentence_of, titled } from "../words";
 import { RunDetail } from "./run_detail";
 import { StartRun } from "./start_run";
@@ -41,7 +42,7 @@ export function Runs(): JSX.Element {
           {kOutcomes.map((o) => (
             <button key={o} class={`chip ${list.outcome === o ? "on" : ""}`} aria-pressed={list.outcome === o}
               data-testid={`chip-${o || "all"}`} onClick={() => list.set_outcome(o)}>
-              {o === "" ? "All" : run_word("finished", o).word}
+              {o === "" ? `All${list.total === null || list.outcome !== "" ? "" : ` ${list.total}`}` : run_word("finished", o).word}
             </button>
           ))}
         </div>
@@ -69,7 +70,7 @@ export function Runs(): JSX.Element {
 
 interface RunList {
   items: RunItem[]; next: string | number | null; loading: boolean; error: string | null;
-  outcome: string; set_outcome: (o: string) => void; more: () => void; refresh: () => void;
+  total: number | null; outcome: string; set_outcome: (o: string) => void; more: () => void; refresh: () => void;
 }
 
 /** The list in pages, newest first; the first page is looked at again while the view is open. */
@@ -77,6 +78,7 @@ function use_runs(connected: boolean): RunList {
   const [items, set_items] = useState<RunItem[]>([]);
   const [next, set_next] = useState<string | number | null>(null);
   const [loading, set_loading] = useState(true);
+  const [total, set_total] = useState<number | null>(null);
   const [error, set_error] = useState<string | null>(null);
   const [outcome, set_outcome] = useState("");
   const asked = useRef(0);
@@ -90,6 +92,7 @@ function use_runs(connected: boolean): RunList {
       const page = await rest.get<Page<RunItem>>(`/runs?${query}`);
       if (mine !== asked.current) return;
       set_error(null);
+      if (page.total !== undefined) set_total(page.total);
       if (append) {
         set_items((old) => [...old, ...page.items]);
         set_next(page.next);
@@ -117,7 +120,7 @@ function use_runs(connected: boolean): RunList {
     return () => clearInterval(timer);
   }, [refresh, connected]);
   return {
-    items, next, loading, error, outcome, set_outcome, refresh,
+    items, next, loading, error, total, outcome, set_outcome, refresh,
     more: () => void fetch_page(next, true),
   };
 }
@@ -171,10 +174,12 @@ function RunTable(props: {
               <td class="r num wide">{fixed(m?.intrusion, 2)}</td>
               <td class="wide compare-cell">
                 {props.open !== null && !on &&
-                  <button class="mini-text" aria-pressed={second} data-testid={`compare-${r.id}`} onClick={(e) => {
-                    e.stopPropagation();
-                    props.on_compare(second ? null : r.id);
-                  }}>{second ? "Compared" : "Compare"}</button>}
+                  <button class="icon" aria-pressed={second} data-testid={`compare-${r.id}`}
+                    aria-label={`Compare run ${r.id} with the open one`} title="Lay over the open run"
+                    onClick={(e) => {
+                      e.stopPropagation();
+                      props.on_compare(second ? null : r.id);
+                    }}>{icons.compare}</button>}
               </td>
             </tr>
           );

@@ -27,7 +27,7 @@ export function ValueBox(props: { hand: Hand }): JSX.Element | null {
     return <ObstacleValues key={o.id} obstacle={shown} editable={session.robot.editable} />;
   }
   if ((selection?.kind === "goal" || tool === "goal") && session.robot.drives) {
-    return <GoalValues goal={props.hand.draft.goal ?? app.scene.goal} />;
+    return <GoalValues goal={props.hand.draft.goal ?? app.scene.goal} selected={selection !== null} />;
   }
   if ((tool === "cylinder" || tool === "box") && session.robot.editable) {
     return <NewValues key={tool} kind={tool} />;
@@ -42,11 +42,15 @@ function use_typed<T>(value: T): [T, (change: Partial<T>) => void, () => void, b
     () => set_typed(null), typed !== null];
 }
 
-function GoalValues(props: { goal: Goal | null }): JSX.Element {
+function whole_tenths(v: number): number {
+  return Math.round(10 * v) / 10;
+}
+
+function GoalValues(props: { goal: Goal | null; selected: boolean }): JSX.Element {
   const app = use_app();
   const g = props.goal;
   const [v, type, forget, changed] = use_typed({
-    x: g?.x ?? null, y: g?.y ?? null, turn: g?.heading == null ? null : degrees(g.heading),
+    x: g?.x ?? null, y: g?.y ?? null, turn: g?.heading == null ? null : whole_tenths(degrees(g.heading)),
   });
   useEffect(forget, [g?.x, g?.y, g?.heading]);
   const apply = (e: Event) => {
@@ -59,7 +63,7 @@ function GoalValues(props: { goal: Goal | null }): JSX.Element {
     void app.edit(set_goal_edit(app.scene.goal, { x: v.x, y: v.y, heading })).then(forget);
   };
   return (
-    <form class="card values" onSubmit={apply} aria-label="Goal" data-testid="goal-values">
+    <form class={`card values ${props.selected ? "" : "unasked"}`} onSubmit={apply} aria-label="Goal" data-testid="goal-values">
       <b class="tone-ok">Goal</b>
       <NumberField label="x" unit="m" name="goal-x" value={v.x} on_change={(x) => type({ x })} />
       <NumberField label="y" unit="m" name="goal-y" value={v.y} on_change={(y) => type({ y })} />
@@ -76,7 +80,7 @@ function ObstacleValues(props: { obstacle: Obstacle; editable: boolean }): JSX.E
   const app = use_app();
   const o = props.obstacle;
   const [v, type, forget, changed] = use_typed({
-    x: o.pose.x, y: o.pose.y, turn: degrees(o.pose.heading),
+    x: o.pose.x, y: o.pose.y, turn: whole_tenths(degrees(o.pose.heading)),
   });
   useEffect(forget, [o.pose.x, o.pose.y, o.pose.heading]);
   const apply = (e: Event) => {
@@ -132,7 +136,7 @@ function NewValues(props: { kind: "cylinder" | "box" }): JSX.Element {
       on_change={(value) => type({ [name]: value ?? 0 })} />
   );
   return (
-    <form class="card values" onSubmit={apply} aria-label={`New ${props.kind}`} data-testid="new-values">
+    <form class="card values unasked" onSubmit={apply} aria-label={`New ${props.kind}`} data-testid="new-values">
       <b>New {props.kind}</b>
       {field("x", "x")}
       {field("y", "y")}
