@@ -66,7 +66,7 @@ bool ScanFilter::believe(const LaserScan& in) {
   const double range_max = in.range_max;
   const unsigned sound = std::isfinite(range_max) ? 1 : 0;
   unsigned all = 1;
-  for (std::size_t i = 0; i < n; ++i) {  // no branch, no call: this runs for every beam there is
+  for (std::size_t i = 0; i < n; ++i) {
     const double value = in.status[i] == Beam::Ok ? in.ranges[i] : range_max;
     // A comparison that a NaN fails as well; an infinite range is no reading either.
     const bool finite = std::abs(value) <= std::numeric_limits<double>::max();
