@@ -102,14 +102,13 @@ void ElasticStripController::follow_goal(const SetGoal& goal) {
 
 /// Half a step to the via and half a step on, so that |end - start| = min(S, D).
 ElasticStripController::Strip ElasticStripController::lay_strip(
-    const ControlInput& in, const Parameters& parameters) const {
+    const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const {
   const double half_step = parameters[Parameter::StripStep] / 2;
-  const Vec2& goal_W = in.goal->position_W;
   Strip strip;
-  strip.start_W = in.odometry.pose.position();
-  strip.via_W = get_posi(strip.start_W, goal_W, half_step, 1.0).position();
+  strip.start_W = start_W;
+  strip.via_W = get_posi(start_W, goal_W, half_step, 1.0).position();
   strip.end_W = get_posi(strip.via_W, goal_W, half_step, 1.0).position();
-  if (reading_.keep_via && kept_via_W_) strip.via_W = *kept_via_W_;
+  if (reading_.keep_via) strip.via_W = kept_via_W_.value_or(strip.via_W);
   return strip;
 }
 
@@ -135,9 +134,12 @@ bool ElasticStripController::push(const ControlInput& in,
   return true;
 }
 
-void ElasticStripController::choose(const ControlInput& in, double reach, ControlOutput& out) {
+void ElasticStripController::choose(const ControlInput& in,
+                                    const Vec2& goal_W,
+                                    double reach,
+                                    ControlOutput& out) {
   const SideInput input{
-      in.stamp, in.odometry.pose, in.goal->position_W, reach, in.robot_radius, &in.scene->scan};
+      in.stamp, in.odometry.pose, goal_W, reach, in.robot_radius, &in.scene->scan};
   const SidePush push = side_.update(input, out.external_left_W + out.external_right_W);
   out.elastic_W += push.force_W;
   out.side = side_.state().side;
@@ -155,18 +157,19 @@ void ElasticStripController::update(const ControlInput& in,
     reset(in.odometry.pose);
     return;
   }
-  follow_goal(*in.goal);
+  const SetGoal& goal = *in.goal;
+  follow_goal(goal);
   const Pose2& pose = in.odometry.pose;
   const double reach = parameters[Parameter::SafetyDistance] + in.robot_radius;
   const ForceSettings settings{
       reading_.law, reach, parameters[Parameter::RepulsionGain], parameters[Parameter::StripStep]};
 
-  const Strip strip = lay_strip(in, parameters);
+  const Strip strip = lay_strip(pose.position(), goal.position_W, parameters);
   const double k_c = parameters[Parameter::ContractionGain];
   out.internal_W = internal_force(strip.start_W, strip.via_W, strip.end_W, k_c);
   const bool free_to_move = push(in, settings, out);
   out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
-  if (reading_.choose_side) choose(in, reach, out);
+  if (reading_.choose_side) choose(in, goal.position_W, reach, out);
   out.pass_W = update_strip(pose, strip.end_W, out.elastic_W).updated.position();
   kept_via_W_ = out.pass_W;
 
@@ -174,9 +177,9 @@ void ElasticStripController::update(const ControlInput& in,
   out.strip.push_back({out.pass_W, out.internal_W, out.elastic_W - out.internal_W});
   out.strip.push_back({strip.end_W, {0, 0}, {0, 0}});
 
-  const double to_goal = (in.goal->position_W - pose.position()).norm();
+  const double to_goal = (goal.position_W - pose.position()).norm();
   if (!free_to_move) return;
-  out.twist = to_goal < parameters[Parameter::GoalReach] ? turn_to(pose, *in.goal, parameters)
+  out.twist = to_goal < parameters[Parameter::GoalReach] ? turn_to(pose, goal, parameters)
                                                          : drive_to(pose, out.pass_W, parameters);
 }
 

@@ -36,9 +36,9 @@ class ElasticStripController final : public Controller {
   struct Strip;  // start, via and end of one tick
 
   void follow_goal(const SetGoal& goal);
-  Strip lay_strip(const ControlInput& in, const Parameters& parameters) const;
+  Strip lay_strip(const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const;
   bool push(const ControlInput& in, const ForceSettings& settings, ControlOutput& out) const;
-  void choose(const ControlInput& in, double reach, ControlOutput& out);
+  void choose(const ControlInput& in, const Vec2& goal_W, double reach, ControlOutput& out);
 
   StripReading reading_{};
   SideChoice side_{};

@@ -63,16 +63,18 @@ bool ScanFilter::believe(const LaserScan& in) {
   const std::size_t n = in.size();
   values_.resize(n);
   believed_.resize(n);
-  const bool sound = std::isfinite(in.range_max);
+  const double range_max = in.range_max;
+  const unsigned sound = std::isfinite(range_max) ? 1 : 0;
   unsigned all = 1;
   for (std::size_t i = 0; i < n; ++i) {
-    const double value = in.status[i] == Beam::Ok ? in.ranges[i] : in.range_max;
+    const double value = in.status[i] == Beam::Ok ? in.ranges[i] : range_max;
     // A comparison that a NaN fails as well; an infinite range is no reading either.
     const bool finite = std::abs(value) <= std::numeric_limits<double>::max();
-    const bool believed = sound && finite && in.status[i] != Beam::Invalid;
+    const unsigned believed = sound & static_cast<unsigned>(finite) &
+                              static_cast<unsigned>(in.status[i] != Beam::Invalid);
     values_[i] = finite ? value : 0.0;
-    believed_[i] = believed ? 1 : 0;
-    all &= believed_[i];
+    believed_[i] = static_cast<std::uint8_t>(believed);
+    all &= believed;
   }
   return all != 0;
 }
@@ -94,12 +96,13 @@ void ScanFilter::filter_all(FilterKind kind, int half_width, LaserScan& out) {
       lulu(values_, half_width, Border::Replicate, scratch_, ranges);
       break;
   }
+  // As set_ok() and set_free() do, without a branch.
+  const double range_max = out.range_max;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (ranges[i] < out.range_max) {
-      out.set_ok(i, ranges[i]);
-    } else {
-      out.set_free(i);
-    }
+    const bool ok = ranges[i] < range_max;
+    ranges[i] = ok ? ranges[i] : range_max;
+    out.status[i] = ok ? Beam::Ok : Beam::Free;
+    out.codes[i] = ok ? BeamCode::None : BeamCode::BeyondRange;
   }
 }
 

@@ -91,7 +91,28 @@ TAUTLINE_WIDE void pseudomedian_5(const double* __restrict p,
   }
 }
 
-constexpr std::size_t kDoublingLimit = 32;  // widest window the doubling passes are used for
+TAUTLINE_WIDE void median_3(const double* __restrict p, double* __restrict out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double low = smaller(p[i], p[i + 1]);
+    const double high = larger(p[i], p[i + 1]);
+    out[i] = larger(low, smaller(high, p[i + 2]));
+  }
+}
+
+// Neither the smallest of two minima nor the largest of two maxima can be the middle one of five.
+TAUTLINE_WIDE void median_5(const double* __restrict p, double* __restrict out, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = larger(smaller(p[i], p[i + 1]), smaller(p[i + 3], p[i + 4]));
+    const double b = smaller(larger(p[i], p[i + 1]), larger(p[i + 3], p[i + 4]));
+    const double low = smaller(a, b);
+    const double high = larger(a, b);
+    out[i] = larger(low, smaller(high, p[i + 2]));
+  }
+}
+
+// Widest window the doubling passes are used for: up to there they are faster than any method whose
+// work does not grow with the width, since those do not vectorise.
+constexpr std::size_t kDoublingLimit = 512;
 
 /// van Herk, Gil and Werman: three extremes per sample for any width. `a` has n samples, the
 /// result n - width + 1, in place; `suffix` holds each block's running extremes from the right.
@@ -115,7 +136,7 @@ void slide_blocks(std::vector<double>& a,
 }
 
 /// Doubling: extremes of 2, 4, 8 .. samples, then two overlapping ones make the width. At most
-/// five straight passes up to kDoublingLimit. The result is in `a`.
+/// nine straight passes up to kDoublingLimit. The result is in `a`.
 template <typename Fold>
 void slide_doubling(std::vector<double>& a,
                     std::vector<double>& spare,
@@ -216,11 +237,24 @@ bool trivial(std::span<const double> in, int half_width, std::span<double> out) 
   return true;
 }
 
-void median_of_3(const double* p, std::span<double> out) {
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const double low = smaller(p[i], p[i + 1]);
-    const double high = larger(p[i], p[i + 1]);
-    out[i] = larger(low, smaller(high, p[i + 2]));
+/// Window by window of `padded`, sorted once and then kept sorted: the sample that leaves gives its
+/// place to the one that comes.
+void slide_median(const std::vector<double>& padded,
+                  std::size_t N,
+                  std::vector<double>& sorted,
+                  std::span<double> out) {
+  const std::size_t width = 2 * N + 1;
+  sorted.assign(padded.begin(), padded.begin() + static_cast<std::ptrdiff_t>(width));
+  std::sort(sorted.begin(), sorted.end());
+  out[0] = sorted[N];
+  for (std::size_t i = 1; i < out.size(); ++i) {
+    const double leaves = padded[i - 1];
+    const double comes = padded[i + width - 1];
+    auto place = std::lower_bound(sorted.begin(), sorted.end(), leaves);
+    for (; place + 1 != sorted.end() && place[1] < comes; ++place) place[0] = place[1];
+    for (; place != sorted.begin() && comes < place[-1]; --place) place[0] = place[-1];
+    *place = comes;
+    out[i] = sorted[N];
   }
 }
 
@@ -306,15 +340,10 @@ void median(std::span<const double> in,
   if (trivial(in, half_width, out)) return;
   const auto N = static_cast<std::size_t>(half_width);
   pad(in, N, border, scratch.padded);
-  if (N == 1) return median_of_3(scratch.padded.data(), out);
-  scratch.low.resize(2 * N + 1);
-  const auto first = scratch.padded.begin();
-  const auto centre = scratch.low.begin() + half_width;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    std::copy_n(first + static_cast<std::ptrdiff_t>(i), 2 * N + 1, scratch.low.begin());
-    std::nth_element(scratch.low.begin(), centre, scratch.low.end());
-    out[i] = *centre;
-  }
+  const double* const padded = scratch.padded.data();
+  if (N == 1) return median_3(padded, out.data(), out.size());
+  if (N == 2) return median_5(padded, out.data(), out.size());
+  slide_median(scratch.padded, N, scratch.low, out);
 }
 
 void lulu(std::span<const double> in,

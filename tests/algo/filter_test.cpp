@@ -95,7 +95,7 @@ void for_random_cases(unsigned invalid_in_ten, Check check) {
     Case each;
     each.in = random_samples(random, 1 + random() % 70);
     each.N = static_cast<int>(random() % 8);
-    if (round % 40 == 0) each.N = 30 + static_cast<int>(random() % 20);  // wider than doubling
+    if (round % 40 == 0) each.N = 30 + static_cast<int>(random() % 20);
     for (std::size_t i = 0; i < each.in.size(); ++i) {
       each.valid.push_back(random() % 10 < invalid_in_ten ? 0 : 1);
     }
@@ -132,6 +132,22 @@ TEST(Pseudomedian, IsBitExactToTheDefinitionWithInvalidSamples) {
           << "n " << out.size() << ", N " << each.N << ", sample " << i;
     }
   });
+}
+
+/// Beyond 512 samples another method takes over.
+TEST(Pseudomedian, IsBitExactForVeryWideWindows) {
+  algo::FilterScratch scratch;
+  std::mt19937_64 random(5);
+  const Samples in = random_samples(random, 700);
+  const Marks valid(in.size(), 1);
+  Samples out(in.size());
+  for (const int N : {511, 512, 600}) {
+    algo::pseudomedian(in, N, Border::Replicate, scratch, out);
+    for (const std::size_t i : {0U, 350U, 699U}) {
+      const auto w = window(in, valid, N, static_cast<std::ptrdiff_t>(i), Border::Replicate);
+      ASSERT_EQ(out[i], pseudomedian_of(w, N)) << "N " << N << ", sample " << i;
+    }
+  }
 }
 
 TEST(Median, IsTheMiddleOfTheWindow) {
