@@ -1,27 +1,10 @@
-// sim/beam_span.hpp: the inner loop of a cast, shared by the flat and the rolling form.
+// sim/beam_span.hpp: from an interval of bearings to whole beams.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 namespace sim {
-
-/// Takes `value(i)` [1/m] into the depth buffer wherever it is nearer than what is there, and notes
-/// `obstacle` in `hits`. Written without a branch, so that it is vectorised; a NaN is never taken.
-template <bool kWithHits, typename Value>
-inline void nearer(double* inverse,
-                   std::uint32_t* hits,
-                   std::uint32_t obstacle,
-                   std::size_t begin,
-                   std::size_t end,
-                   Value&& value) {
-  for (std::size_t i = begin; i < end; ++i) {
-    const double candidate = value(i);
-    const bool closer = candidate > inverse[i];
-    inverse[i] = closer ? candidate : inverse[i];
-    if constexpr (kWithHits) hits[i] = closer ? obstacle : hits[i];
-  }
-}
 
 /// Calls `take(begin, end)` for the beams within [from, to], counted in beams of which a full turn
 /// has `full_turn` and the pattern `beams`; twice when the interval runs across the seam.

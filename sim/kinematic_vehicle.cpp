@@ -1,6 +1,8 @@
 // sim/kinematic_vehicle.cpp: exact arcs, one distance query a tick.
 #include "sim/kinematic_vehicle.hpp"
 
+#include "algo/diff_drive.hpp"
+
 namespace sim {
 
 KinematicVehicle::KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps)
@@ -19,7 +21,7 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   target_ = with_ramps_ ? ramped(target_, wanted, vehicle_, period_) : wanted;
   const algo::Pose2 from = state_.pose_W;
   algo::Twist2 twist = target_;
-  algo::Pose2 to = drive_arc(from, twist, period_);
+  algo::Pose2 to = algo::integrate_arc(from, twist, period_);
   state_.contact = false;
   const double distance = obstacles.distance(to.position());
   // A robot that is too near already may still leave.
@@ -27,10 +29,10 @@ void KinematicVehicle::drive(const algo::Twist2& command,
     state_.contact = true;
     twist.v = 0;
     target_.v = 0;
-    to = drive_arc(from, twist, period_);
+    to = algo::integrate_arc(from, twist, period_);
   }
   for (std::size_t k = 1; k < substeps_.count; ++k) {
-    trail.push(drive_arc(from, twist, static_cast<double>(k) * substeps_.length));
+    trail.push(algo::integrate_arc(from, twist, static_cast<double>(k) * substeps_.length));
   }
   trail.push(to);
   state_.pose_W = to;

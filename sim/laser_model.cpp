@@ -25,13 +25,6 @@ const LaserConfig& checked(const LaserConfig& config, std::uint32_t index) {
   return config;
 }
 
-/// `value` to the nearest multiple of 1 / per_metre, halves to even. Adding this number leaves no
-/// room for a fraction; unlike nearbyint() it is vectorised on every x86-64.
-double rounded(double value, double per_metre) {
-  constexpr double kNoFraction = 0x1.8p52;
-  return ((value * per_metre + kNoFraction) - kNoFraction) / per_metre;
-}
-
 }  // namespace
 
 LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index)
@@ -44,7 +37,11 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
   const double steps = std::nearbyint(config_.field_of_view / config_.angle_increment);
   pattern_ = {
       -config_.field_of_view / 2, config_.angle_increment, static_cast<std::size_t>(steps) + 1};
-  bias_ = stream(seed, index, Purpose::Bias).uniform(-config_.bias, config_.bias);
+  reading_ = {.bias = stream(seed, index, Purpose::Bias).uniform(-config_.bias, config_.bias),
+              .noise = config_.noise,
+              .per_metre = config_.unit == LaserUnit::Centimetre ? 100.0 : 1000.0,
+              .range_max = config_.range_max,
+              .most = algo::kWireMaxRange / 1000.0};
   // Several scanners are not synchronised: each further one has a phase of its own.
   if (index > 0) phase_ = stream(seed, index, Purpose::Phase).uniform(0, config_.mirror_period);
 
@@ -63,6 +60,7 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
   ranges_.resize(beams);
   hits_.resize(beams);
   draws_.resize(beams);
+  turns_.resize(beams);
   first_.resize(beams + 1);
   edges_.reserve(beams);
 }
@@ -124,7 +122,6 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   if (config_.mixed_pixels) mix_pixels();
   report(scan);
   spoil(scan);
-  algo::quantise(scan);
   return true;
 }
 
@@ -159,23 +156,19 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
 
   const double per_step = 1 / step;
   const double offset = (begin - trail.newest()) * per_step + static_cast<double>(oldest);
+  const algo::Pose2* motion = motion_.data();
   for (std::size_t i = 0; i < pattern_.beams; ++i) {
     const double at = offset + fired_[i] * per_step;
-    const auto k = static_cast<std::size_t>(at);
-    const double part = at - static_cast<double>(k);
-    const algo::Pose2& a = motion_[k];
-    const algo::Pose2& b = motion_[k + 1];
+    const auto k = static_cast<std::int32_t>(at);
+    const double part = at - k;
+    const algo::Pose2& a = motion[k];
+    const algo::Pose2& b = motion[k + 1];
     rays_.x[i] = a.x + part * (b.x - a.x);
     rays_.y[i] = a.y + part * (b.y - a.y);
-    // The small turn t since the reference by its series; the first terms left out are t^9 / 9!
-    // and t^8 / 8!, under 1e-9 at 0.3 rad, which no robot turns within half a sweep.
-    const double t = a.heading + part * (b.heading - a.heading);
-    const double t2 = t * t;
-    const double sine = t * (1 - t2 / 6 * (1 - t2 / 20 * (1 - t2 / 42)));
-    const double cosine = 1 - t2 / 2 * (1 - t2 / 12 * (1 - t2 / 30));
-    rays_.ux[i] = cosine * ux_[i] - sine * uy_[i];
-    rays_.uy[i] = sine * ux_[i] + cosine * uy_[i];
+    turns_[i] = a.heading + part * (b.heading - a.heading);
   }
+  turn_directions(
+      ux_.data(), uy_.data(), turns_.data(), turns_.size(), rays_.ux.data(), rays_.uy.data());
 }
 
 /// The rays of a scan without motion.
@@ -188,39 +181,35 @@ void LaserModel::aim_still() {
   allow_for_spot();
 }
 
-/// Bias, noise and rounding to the device's unit.
+/// Bias, noise and rounding to the device's unit. What comes out is what the wire can hold
+/// (algo::quantise() would change nothing).
 void LaserModel::report(algo::LaserScan& scan) {
-  const std::size_t beams = pattern_.beams;
-  const double range_max = config_.range_max;
   if (config_.noise > 0 && config_.noise_shape == NoiseShape::Gaussian) {
     noise_.fill_normal(draws_);
   } else if (config_.noise > 0) {
     noise_.fill_uniform(draws_);
   }
-  const double per_metre = config_.unit == LaserUnit::Centimetre ? 100 : 1000;
-  const double* range = ranges_.data();
-  double* measured = draws_.data();
-  for (std::size_t i = 0; i < beams; ++i) {
-    const double noisy = range[i] + bias_ + config_.noise * measured[i];
-    const double value = rounded(noisy > 0 ? noisy : 0, per_metre);
-    measured[i] = range[i] < range_max ? value : range_max;
-  }
+  read_ranges(ranges_.data(), draws_.data(), draws_.size(), reading_);
+  const double range_max = config_.range_max;
   const bool echoes = config_.reflectivity && !plain_;
-  for (std::size_t i = 0; i < beams; ++i) {
-    if (measured[i] < range_max) {
-      scan.set_ok(i, measured[i]);
-    } else if (echoes && hits_[i] == kNoEcho) {
-      scan.set_invalid(i, algo::BeamCode::NoEcho);
-    } else {
-      scan.set_free(i);
-    }
+  const auto invalid = [&](std::size_t i) { return echoes && hits_[i] == kNoEcho; };
+  for (std::size_t i = 0; i < pattern_.beams; ++i) {
+    const bool ok = draws_[i] < range_max;
+    scan.ranges[i] = ok ? draws_[i] : range_max;
+    scan.status[i] = ok ? algo::Beam::Ok : algo::Beam::Free;
+    scan.codes[i] = ok ? algo::BeamCode::None : algo::BeamCode::BeyondRange;
+    if (!ok && invalid(i)) scan.set_invalid(i, algo::BeamCode::NoEcho);
   }
 }
 
 /// Beams lost or false, independent of what they met.
 void LaserModel::spoil(algo::LaserScan& scan) {
-  pepper_.draw(scan.size(),
-               [&](std::size_t i) { scan.set_ok(i, pepper_.random().uniform(0, ranges_[i])); });
+  pepper_.draw(scan.size(), [&](std::size_t i) {
+    double near = pepper_.random().uniform(0, ranges_[i]);
+    double truth = 0;  // stands in for the range: only the rounding is wanted
+    read_ranges(&truth, &near, 1, {0, 1, reading_.per_metre, config_.range_max, reading_.most});
+    scan.set_ok(i, near);
+  });
   salt_.draw(scan.size(), [&](std::size_t i) { scan.set_free(i); });
   dropout_.draw(scan.size(), [&](std::size_t i) { scan.set_invalid(i, algo::BeamCode::NoEcho); });
 }

@@ -72,7 +72,7 @@ class LaserModel {
   RareEvents dropout_;
   RareEvents salt_;
   RareEvents pepper_;
-  double bias_ = 0;              // [m] of this run
+  Reading reading_{};            // with the bias of this run
   double phase_ = 0;             // [s] run-clock time at which the first turn begins
   std::uint64_t delivered_ = 0;  // sweeps
 
@@ -86,6 +86,7 @@ class LaserModel {
   std::vector<double> ranges_{};
   std::vector<std::uint32_t> hits_{};
   std::vector<double> draws_{};
+  std::vector<double> turns_{};         // [rad] of the scanner off the reference when a beam leaves
   std::vector<std::uint32_t> edges_{};  // beams whose spot may lie on an edge
   Rays more_{};                         // kSubRays - 1 rays for each of them
   std::vector<std::uint32_t> first_{};

@@ -234,25 +234,23 @@ std::uint32_t RangeCaster::first_beam(const Corner& corner) const {
   return std::min(i, beams);
 }
 
-void RangeCaster::start(std::size_t rays, double range_max, std::span<std::uint32_t> hits) {
+void RangeCaster::start(std::size_t rays, double range_max, bool with_hits) {
   inverse_.assign(rays, 1 / range_max);
-  std::fill(hits.begin(), hits.end(), kNothing);
+  if (with_hits) tags_.assign(rays, -1.0);
+  depth_ = {inverse_.data(), with_hits ? tags_.data() : nullptr};
 }
 
-void RangeCaster::finish(double range_max, std::span<double> ranges) const {
-  const double nothing = 1 / range_max;
-  const double* inverse = inverse_.data();
-  double* out = ranges.data();
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    const double range = 1 / inverse[i];
-    out[i] = inverse[i] > nothing ? range : range_max;
-  }
+void RangeCaster::finish(double range_max,
+                         std::span<double> ranges,
+                         std::span<std::uint32_t> hits) const {
+  write_ranges(inverse_.data(), range_max, ranges);
+  if (!hits.empty()) write_hits(tags_.data(), hits);
 }
 
 /// The sensor is inside obstacle `index`: every ray reads 0.
-void RangeCaster::fill_inside(std::uint32_t index, std::uint32_t* hits) {
+void RangeCaster::fill_inside(std::uint32_t index) {
   std::fill(inverse_.begin(), inverse_.end(), kInfinity);
-  if (hits != nullptr) std::fill_n(hits, inverse_.size(), index);
+  if (depth_.tag != nullptr) std::fill(tags_.begin(), tags_.end(), static_cast<double>(index));
 }
 
 void RangeCaster::cast(const algo::Pose2& sensor_W,
@@ -262,54 +260,35 @@ void RangeCaster::cast(const algo::Pose2& sensor_W,
                        std::span<std::uint32_t> hits) {
   use_pattern(pattern);
   gather(sensor_W, range_max, {});
-  start(pattern.beams, range_max, hits);
-  if (hits.empty()) {
-    cast_flat<false>(nullptr);
-  } else {
-    cast_flat<true>(hits.data());
-  }
-  finish(range_max, ranges);
-}
-
-template <bool kWithHits>
-void RangeCaster::cast_flat(std::uint32_t* hits) {
+  start(pattern.beams, range_max, !hits.empty());
   for (const std::uint32_t index : near_) {
     if (vertex_count_[index] == 0) {
-      flat_circle<kWithHits>(index, hits);
+      flat_circle(index);
     } else {
-      flat_outline<kWithHits>(index, hits);
+      flat_outline(index);
     }
   }
+  finish(range_max, ranges, hits);
 }
 
-/// Of the two roots r of r^2 - 2 m r + k = 0 with m = c.u and k = |c|^2 - R^2 the nearer has
-/// 1 / r = (m + sqrt(m^2 - k)) / k, because their product is k. A beam that misses gives a NaN,
-/// which no comparison takes.
-template <bool kWithHits>
-void RangeCaster::flat_circle(std::uint32_t index, std::uint32_t* hits) {
+void RangeCaster::flat_circle(std::uint32_t index) {
   const algo::Vec2 c = centre_in_frame(index);
   const double radius = bound_[index];
   const double k = c.squaredNorm() - radius * radius;
-  if (k <= 0) return fill_inside(index, hits);
+  if (k <= 0) return fill_inside(index);
   const double half = quick_bearing(std::sqrt(k), radius) * per_radian_ + 2 * slack_;
   const double middle = bearing(c.x(), c.y());
-  const double inverse_k = 1 / k;
   beam_spans(middle - half,
              middle + half,
              full_turn_,
              pattern_.beams,
              [&](std::uint32_t begin, std::uint32_t end) {
-               nearer<kWithHits>(
-                   inverse_.data(), hits, index, begin, end, [&, this](std::size_t i) {
-                     const double m = c.x() * ux_[i] + c.y() * uy_[i];
-                     return (m + std::sqrt(m * m - k)) * inverse_k;
-                   });
+               splat_circle(ux_.data(), uy_.data(), c.x(), c.y(), k, {begin, end}, index, depth_);
              });
 }
 
 /// Along the segment p to q, seen counter-clockwise, 1 / r = cross(p - q, u) / cross(p, q).
-template <bool kWithHits>
-void RangeCaster::flat_outline(std::uint32_t index, std::uint32_t* hits) {
+void RangeCaster::flat_outline(std::uint32_t index) {
   enter_frame(index);
   const std::size_t count = vertex_count_[index];
   bool outside = false;
@@ -325,10 +304,8 @@ void RangeCaster::flat_outline(std::uint32_t index, std::uint32_t* hits) {
     if (from > to && from - to < full_turn_ / 2) continue;
     const double a = (q.y - p.y) / area;
     const double b = (p.x - q.x) / area;
-    const auto splat = [&](std::uint32_t begin, std::uint32_t end) {
-      nearer<kWithHits>(inverse_.data(), hits, index, begin, end, [&, this](std::size_t i) {
-        return a * ux_[i] + b * uy_[i];
-      });
+    const auto splat = [&, this](std::uint32_t begin, std::uint32_t end) {
+      splat_line(ux_.data(), uy_.data(), a, b, {begin, end}, index, depth_);
     };
     const std::uint32_t begin = first_beam(p);
     const std::uint32_t end = first_beam(q);
@@ -339,7 +316,7 @@ void RangeCaster::flat_outline(std::uint32_t index, std::uint32_t* hits) {
       splat(0, end);
     }
   }
-  if (!outside) fill_inside(index, hits);
+  if (!outside) fill_inside(index);
 }
 
 RangeCaster::Hit RangeCaster::cast_ray(const algo::Vec2& origin_W,

@@ -9,6 +9,7 @@
 
 #include "algo/obstacle.hpp"
 #include "algo/types.hpp"
+#include "sim/beam_kernels.hpp"
 
 namespace sim {
 
@@ -128,28 +129,18 @@ class RangeCaster {
   double bearing(Corner& corner) const;
   std::uint32_t first_beam(const Corner& corner) const;
 
-  template <bool kWithHits>
-  void cast_flat(std::uint32_t* hits);
-  template <bool kWithHits>
-  void flat_circle(std::uint32_t index, std::uint32_t* hits);
-  template <bool kWithHits>
-  void flat_outline(std::uint32_t index, std::uint32_t* hits);
+  void flat_circle(std::uint32_t index);
+  void flat_outline(std::uint32_t index);
 
   void add_primitive(const Primitive& primitive, double from, double to);
   void rolling_circle(std::uint32_t index, const RaySpread& spread);
   void rolling_outline(std::uint32_t index, const RaySpread& spread);
-  void trace(const Rays& rays, std::span<const std::uint32_t> first, std::uint32_t* hits);
-  template <bool kWithHits>
-  void trace_primitive(const Primitive& primitive,
-                       const Rays& rays,
-                       std::size_t begin,
-                       std::size_t end,
-                       std::uint32_t* hits);
-  void trace_enclosing(const Rays& rays, std::uint32_t* hits);
+  void trace(const Rays& rays, std::span<const std::uint32_t> first);
+  void trace_enclosing(const Rays& rays);
 
-  void start(std::size_t rays, double range_max, std::span<std::uint32_t> hits);
-  void finish(double range_max, std::span<double> ranges) const;
-  void fill_inside(std::uint32_t index, std::uint32_t* hits);
+  void start(std::size_t rays, double range_max, bool with_hits);
+  void finish(double range_max, std::span<double> ranges, std::span<std::uint32_t> hits) const;
+  void fill_inside(std::uint32_t index);
 
   double plane_height_ = 0;  // [m]
 
@@ -172,7 +163,9 @@ class RangeCaster {
   double cosine_ = 1, sine_ = 0;
   std::vector<std::uint32_t> near_{};       // obstacles that may be met
   std::vector<Corner> outline_{};           // of the obstacle at hand
-  std::vector<double> inverse_{};           // [1/m] depth buffer
+  std::vector<double> inverse_{};           // [1/m] of each ray
+  std::vector<double> tags_{};              // what it met; see DepthBuffer
+  DepthBuffer depth_{};                     // the two above
   std::vector<Primitive> primitives_{};     // of the last cast_rolling()
   std::vector<std::uint32_t> enclosing_{};  // outlines a ray of it may start inside
 };

@@ -45,9 +45,9 @@ void RangeCaster::cast_rolling(const algo::Pose2& reference_W,
       rolling_outline(index, spread);
     }
   }
-  start(rays.size(), range_max, hits);
-  trace(rays, {}, hits.empty() ? nullptr : hits.data());
-  finish(range_max, ranges);
+  start(rays.size(), range_max, !hits.empty());
+  trace(rays, {});
+  finish(range_max, ranges, hits);
 }
 
 void RangeCaster::cast_more(const Rays& rays,
@@ -55,9 +55,9 @@ void RangeCaster::cast_more(const Rays& rays,
                             double range_max,
                             std::span<double> ranges,
                             std::span<std::uint32_t> hits) {
-  start(rays.size(), range_max, hits);
-  trace(rays, first, hits.empty() ? nullptr : hits.data());
-  finish(range_max, ranges);
+  start(rays.size(), range_max, !hits.empty());
+  trace(rays, first);
+  finish(range_max, ranges, hits);
 }
 
 void RangeCaster::add_primitive(const Primitive& primitive, double from, double to) {
@@ -122,63 +122,23 @@ void RangeCaster::rolling_outline(std::uint32_t index, const RaySpread& spread) 
 
 /// Takes all primitives into the depth buffer of `rays`; `first` as in cast_more(), empty when
 /// there is one ray a beam.
-void RangeCaster::trace(const Rays& rays,
-                        std::span<const std::uint32_t> first,
-                        std::uint32_t* hits) {
-  for (const Primitive& primitive : primitives_) {
-    const std::size_t begin = first.empty() ? primitive.begin : first[primitive.begin];
-    const std::size_t end = first.empty() ? primitive.end : first[primitive.end];
-    if (hits == nullptr) {
-      trace_primitive<false>(primitive, rays, begin, end, hits);
+void RangeCaster::trace(const Rays& rays, std::span<const std::uint32_t> first) {
+  const RayArrays arrays{rays.x.data(), rays.y.data(), rays.ux.data(), rays.uy.data()};
+  for (const Primitive& p : primitives_) {
+    const BeamRange which =
+        first.empty() ? BeamRange{p.begin, p.end} : BeamRange{first[p.begin], first[p.end]};
+    if (which.begin >= which.end) continue;
+    if (p.radius > 0) {
+      trace_circle(arrays, p.px, p.py, p.radius, which, p.obstacle, depth_);
     } else {
-      trace_primitive<true>(primitive, rays, begin, end, hits);
+      trace_segment(arrays, p.px, p.py, p.qx, p.qy, which, p.obstacle, depth_);
     }
   }
-  trace_enclosing(rays, hits);
-}
-
-template <bool kWithHits>
-void RangeCaster::trace_primitive(const Primitive& primitive,
-                                  const Rays& rays,
-                                  std::size_t begin,
-                                  std::size_t end,
-                                  std::uint32_t* hits) {
-  const double* x = rays.x.data();
-  const double* y = rays.y.data();
-  const double* ux = rays.ux.data();
-  const double* uy = rays.uy.data();
-  const double px = primitive.px;
-  const double py = primitive.py;
-  if (primitive.radius > 0) {
-    const double square = primitive.radius * primitive.radius;
-    const auto circle = [=](std::size_t i) {
-      const double cx = px - x[i];
-      const double cy = py - y[i];
-      const double m = cx * ux[i] + cy * uy[i];
-      const double k = cx * cx + cy * cy - square;
-      const double inverse = (m + std::sqrt(m * m - k)) / k;
-      return k > 0 ? inverse : kInfinity;
-    };
-    return nearer<kWithHits>(inverse_.data(), hits, primitive.obstacle, begin, end, circle);
-  }
-  const double qx = primitive.qx;
-  const double qy = primitive.qy;
-  const auto segment = [=](std::size_t i) {
-    const double pxi = px - x[i];
-    const double pyi = py - y[i];
-    const double qxi = qx - x[i];
-    const double qyi = qy - y[i];
-    const double left_of_p = cross(pxi, pyi, ux[i], uy[i]);
-    const double left_of_q = cross(qxi, qyi, ux[i], uy[i]);
-    const double area = cross(pxi, pyi, qxi, qyi);
-    const double inverse = (left_of_p - left_of_q) / area;
-    return (left_of_p >= 0) & (left_of_q < 0) & (area > 0) ? inverse : 0;
-  };
-  nearer<kWithHits>(inverse_.data(), hits, primitive.obstacle, begin, end, segment);
+  trace_enclosing(rays);
 }
 
 /// Rays that start inside an outline read 0. Only a sensor at or in a wall comes here.
-void RangeCaster::trace_enclosing(const Rays& rays, std::uint32_t* hits) {
+void RangeCaster::trace_enclosing(const Rays& rays) {
   for (const std::uint32_t index : enclosing_) {
     enter_frame(index);
     const std::size_t count = vertex_count_[index];
@@ -192,7 +152,7 @@ void RangeCaster::trace_enclosing(const Rays& rays, std::uint32_t* hits) {
       }
       if (!inside) continue;
       inverse_[i] = kInfinity;
-      if (hits != nullptr) hits[i] = index;
+      if (depth_.tag != nullptr) tags_[i] = index;
     }
   }
 }

@@ -110,21 +110,6 @@ Substeps::Substeps(double period) {
   length = period / static_cast<double>(count);
 }
 
-algo::Pose2 drive_arc(const algo::Pose2& pose, const algo::Twist2& twist, double dt) {
-  const double turn = twist.omega * dt;
-  const double end = pose.heading + turn;
-  if (std::abs(turn) < 1e-9) {
-    const double way = twist.v * dt;
-    return {pose.x + way * std::cos(pose.heading),
-            pose.y + way * std::sin(pose.heading),
-            algo::wrap_angle(end)};
-  }
-  const double radius = twist.v / twist.omega;
-  return {pose.x + radius * (std::sin(end) - std::sin(pose.heading)),
-          pose.y - radius * (std::cos(end) - std::cos(pose.heading)),
-          algo::wrap_angle(end)};
-}
-
 algo::Twist2 within_limits(const algo::Twist2& command, const VehicleParameters& vehicle) {
   const algo::Twist2 wanted{finite(command.v), finite(command.omega)};
   double scale = 1;

@@ -66,9 +66,6 @@ struct Substeps {
   double length = 0;  // [s]
 };
 
-/// The exact arc driven in `dt` [s] at constant `twist` (equations.md I).
-algo::Pose2 drive_arc(const algo::Pose2& pose, const algo::Twist2& twist, double dt);
-
 /// `command` within the vehicle's limits: both parts scaled alike, so that the curvature is kept
 /// (equations.md I). What is not a number counts as 0.
 algo::Twist2 within_limits(const algo::Twist2& command, const VehicleParameters& vehicle);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "algo/diff_drive.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
 
@@ -44,12 +45,6 @@ const VehicleParameters& vehicle_of(const Scenario& scenario) {
 std::uint32_t counts(double angle, double per_turn) {
   const double whole = std::floor(angle * per_turn / (2 * std::numbers::pi));
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
-}
-
-/// [m] Way of a wheel between two counts; a difference is taken modulo 2^32 as signed.
-double way(std::uint32_t now, std::uint32_t before, const VehicleParameters& vehicle) {
-  const auto difference = static_cast<std::int32_t>(now - before);
-  return 2 * std::numbers::pi * vehicle.wheel_radius * difference / vehicle.counts_per_turn;
 }
 
 }  // namespace
@@ -149,12 +144,15 @@ void World::sense_motion(algo::Observation& observation) {
     odometry_.pose = state.pose_W;
     odometry_.twist = state.twist;
   } else {
-    const double left_way = way(left, encoders_.left, parameters_);
-    const double right_way = way(right, encoders_.right, parameters_);
-    const algo::Twist2 moved{(right_way + left_way) / 2,
-                             (right_way - left_way) / (2 * parameters_.half_track)};
-    odometry_.pose = drive_arc(odometry_.pose, moved, 1);
-    odometry_.twist = {moved.v / scenario_.period, moved.omega / scenario_.period};
+    const algo::DriveGeometry geometry{parameters_.wheel_radius, parameters_.half_track};
+    const algo::WheelCounts moved{algo::count_difference(left, encoders_.left),
+                                  algo::count_difference(right, encoders_.right)};
+    odometry_.pose =
+        algo::integrate_counts(geometry, parameters_.counts_per_turn, odometry_.pose, moved);
+    const double radians = 2 * std::numbers::pi / parameters_.counts_per_turn / scenario_.period;
+    odometry_.twist = algo::forward_kinematics(
+        geometry,
+        {static_cast<double>(moved.left) * radians, static_cast<double>(moved.right) * radians});
     observation.gyro = algo::YawGyro{now, state.twist.omega};
     observation.inclinometer = algo::Inclinometer{now, state.roll, state.pitch};
   }
@@ -196,7 +194,6 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
   if (const auto problem = algo::defect(obstacle)) {
     return name_of(obstacle) + ": " + *problem + ".";
   }
-  if (!finite(obstacle.pose_W)) return name_of(obstacle) + ": its pose must be finite numbers.";
   const double distance =
       algo::signed_distance(obstacle, vehicle_->state().pose_W.position()) - parameters_.radius;
   if (distance < 0) {

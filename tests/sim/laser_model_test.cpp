@@ -8,6 +8,7 @@
 #include "tests/sim/reference_world.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/diff_drive.hpp"
 #include "algo/units.hpp"
 #include "sim/vehicle.hpp"
 
@@ -149,7 +150,9 @@ TEST_P(RollingSkew, EveryBeamIsFiredFromThePoseAtItsOwnTime) {
   const std::vector<algo::Obstacle> world = reference::room(20);
   for (const algo::Obstacle& obstacle : world) model.add(obstacle);
   const algo::Twist2 twist{0.5, 1.0};
-  const auto pose_at = [&](double time) { return drive_arc({-0.3, 0.1, 0.4}, twist, time); };
+  const auto pose_at = [&](double time) {
+    return algo::integrate_arc({-0.3, 0.1, 0.4}, twist, time);
+  };
   const Substeps steps(kTick);
   PoseTrail trail(steps.length, 0.3);
   trail.reset(pose_at(0), 0);

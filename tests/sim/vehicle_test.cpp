@@ -2,13 +2,11 @@
 #include "sim/vehicle.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
@@ -26,14 +24,6 @@ TEST(Substeps, AreEqualAndNeverSlowerThan240Hertz) {
   EXPECT_NEAR(Substeps(0.026).length, 0.003714, 1e-6);
   EXPECT_EQ(Substeps(0.025).count, 6u);
   EXPECT_EQ(Substeps(0.001).count, 1u);
-}
-
-TEST(DriveArc, HandComputedQuarterCircle) {
-  // Radius 0.5 / 1 = 0.5 m: from (1, 2) heading +x, a quarter turn left ends at (1.5, 2.5).
-  const Pose2 end = drive_arc({1, 2, 0}, {0.5, 1}, std::numbers::pi / 2);
-  EXPECT_NEAR(end.x, 1.5, 1e-12);
-  EXPECT_NEAR(end.y, 2.5, 1e-12);
-  EXPECT_NEAR(end.heading, std::numbers::pi / 2, 1e-12);
 }
 
 TEST(WithinLimits, KeepsTheCurvatureAndDropsWhatIsNoNumber) {
@@ -295,23 +285,6 @@ TEST(KinematicVehicle, RefusesToMoveIntoAnObstacleButTurnsAndLeaves) {
   vehicle.drive({-0.5, 0}, obstacles, trail);
   EXPECT_FALSE(vehicle.state().contact);
   EXPECT_LT(vehicle.state().pose_W.x, held.x);
-}
-
-TEST(VehicleGolden, OdometryOfSectionI) {
-  const char* folder = std::getenv("TAUTLINE_GOLDEN_DIR");
-  std::ifstream file((folder ? std::string(folder) : std::string(TAUTLINE_TESTS) + "/golden") +
-                     "/I_diffdrive.json");
-  ASSERT_TRUE(file.good());
-  const auto golden = nlohmann::json::parse(file);
-  const double tolerance = golden.at("tolerance");
-  ASSERT_FALSE(golden.at("odometry").empty());
-  for (const auto& row : golden.at("odometry")) {
-    const auto& in = row.at("pose");
-    const Pose2 out = drive_arc({in[0], in[1], in[2]}, {row.at("v"), row.at("w")}, row.at("dt"));
-    EXPECT_NEAR(out.x, row.at("out")[0], tolerance);
-    EXPECT_NEAR(out.y, row.at("out")[1], tolerance);
-    EXPECT_NEAR(out.heading, row.at("out")[2], tolerance);
-  }
 }
 
 }  // namespace
