@@ -279,7 +279,7 @@ void RunStore::end_run(RunId run, const RunEnd& end) {
     sql_->status.reset() << run;
     const ResetLater reset(sql_->status);
     const std::string status = sql_->status.step() ? sql_->status.text(0) : "missing";
-    if (status != "queued" && !recording(run)) {
+    if (status != "queued" && status != "recording") {
       throw StoreError(name_of(run) + " cannot be ended: it is " + status);
     }
   });

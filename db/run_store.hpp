@@ -62,7 +62,8 @@ class RunStore {
                   std::string_view outcome,
                   std::string_view reason,
                   std::string_view metrics);
-  /// Ends a queued or recording run; its last frames are written.
+  /// Ends a queued or recording run; its last frames are written. A run that was dropped because
+  /// the database failed ends with what its last commit stored.
   void end_run(RunId run, const RunEnd& end);
 
   /// Makes everything so far durable.
