@@ -7,15 +7,18 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <future>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <boost/lockfree/spsc_queue.hpp>
@@ -89,6 +92,44 @@ class Doorbell {
   std::atomic<bool> asleep_ = false;
   bool rung_ = false;  // guarded by mutex_
 };
+
+/// What a job returned or threw, on its way to another thread. A failure travels as its sentence:
+/// an exception object shared by two threads is more than this needs.
+template <typename Result>
+struct Answer {
+  using Value = std::conditional_t<std::is_void_v<Result>, std::monostate, Result>;
+  std::optional<Value> value{};
+  std::string problem{};
+  bool of_database = false;
+
+  Result take() {
+    if (!value && of_database) throw db::DatabaseError(problem);
+    if (!value) throw db::StoreError(problem);
+    if constexpr (!std::is_void_v<Result>) return std::move(*value);
+  }
+};
+
+template <typename Result, typename F>
+Answer<Result> answer_of(F& job, db::RunStore& store) {
+  Answer<Result> answer{};
+  try {
+    if constexpr (std::is_void_v<Result>) {
+      job(store);
+      store.commit();
+      answer.value.emplace();
+    } else {
+      Result result = job(store);
+      store.commit();
+      answer.value.emplace(std::move(result));
+    }
+  } catch (const db::DatabaseError& error) {
+    answer.problem = error.what();
+    answer.of_database = true;
+  } catch (const std::exception& error) {
+    answer.problem = error.what();
+  }
+  return answer;
+}
 
 }  // namespace detail
 
@@ -171,29 +212,18 @@ class Recorder {
   /// Runs `job` on the database thread and commits. What it throws goes to `report`.
   void post(Job job);
 
-  /// The same, and gives back what `job` returns or throws, after the commit.
+  /// The same, and gives back what `job` returns, after the commit. What it throws comes back as a
+  /// db::StoreError (db::DatabaseError stays one) with the same sentence.
   template <typename F>
   auto ask(F job) -> std::invoke_result_t<F&, db::RunStore&> {
     using Result = std::invoke_result_t<F&, db::RunStore&>;
     // The caller waits, so `job` stays; the promise must outlive the call that answers it.
-    const auto promise = std::make_shared<std::promise<Result>>();
-    std::future<Result> answer = promise->get_future();
+    const auto promise = std::make_shared<std::promise<detail::Answer<Result>>>();
+    auto answer = promise->get_future();
     post([promise, &job](db::RunStore& store) {
-      try {
-        if constexpr (std::is_void_v<Result>) {
-          job(store);
-          store.commit();
-          promise->set_value();
-        } else {
-          Result result = job(store);
-          store.commit();
-          promise->set_value(std::move(result));
-        }
-      } catch (...) {
-        promise->set_exception(std::current_exception());
-      }
+      promise->set_value(detail::answer_of<Result>(job, store));
     });
-    return answer.get();
+    return answer.get().take();
   }
 
   /// Returns when all that was pushed, closed and posted before is committed.

@@ -44,7 +44,7 @@ class CountedFrame final : public server::RecordedFrame {
 class RecorderTest : public test::StoreFiles {
  protected:
   FrameHandle handle(std::uint64_t tick) {
-    return FrameHandle(new CountedFrame(made_[tick % made_.size()], row(tick), alive_));
+    return FrameHandle(new CountedFrame(made[tick % made.size()], row(tick), alive));
   }
   /// As a simulated run does it: waits when the ring is full.
   void push(server::RunChannel& channel, std::uint64_t tick) {
@@ -52,18 +52,18 @@ class RecorderTest : public test::StoreFiles {
     while (!channel.push(frame)) std::this_thread::yield();
   }
   void expect_frames(db::RunId run, std::size_t count) {
-    RunReader reader(path_);
+    RunReader reader(path);
     const auto found = read_frames(reader, run, 0, 1000);
     ASSERT_EQ(found.size(), count);
-    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found[i], made_[i % made_.size()].bytes) << i;
+    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found[i], made[i % made.size()].bytes) << i;
   }
 
-  std::vector<test::Frame> made_ = frames(53);
-  std::atomic<int> alive_ = 0;
+  std::vector<test::Frame> made = frames(53);
+  std::atomic<int> alive = 0;
 };
 
 TEST_F(RecorderTest, TwoRunsAtOnceLoseNothing) {
-  Recorder recorder(path_);
+  Recorder recorder(path);
   constexpr std::size_t kTicks = 4000;  // several times the ring
   std::array<db::RunId, 2> runs{};
   std::array<std::thread, 2> producers;
@@ -77,33 +77,33 @@ TEST_F(RecorderTest, TwoRunsAtOnceLoseNothing) {
   }
   for (auto& producer : producers) producer.join();
   recorder.flush();
-  EXPECT_EQ(alive_, 0);
-  RunReader reader(path_);
+  EXPECT_EQ(alive, 0);
+  RunReader reader(path);
   for (std::size_t k = 0; k < 2; ++k) {
     expect_frames(runs[k], kTicks);
-    const auto run = reader.get(runs[k]);
-    EXPECT_EQ(run->status, RunStatus::Finished);
-    EXPECT_EQ(run->what.scenario, "case" + std::to_string(k + 1));
-    EXPECT_EQ(run->ticks, kTicks);
-    EXPECT_EQ(run->lost_ticks, k);
+    const db::RunRow run = get(reader, runs[k]);
+    EXPECT_EQ(run.status, RunStatus::Finished);
+    EXPECT_EQ(run.what.scenario, "case" + std::to_string(k + 1));
+    EXPECT_EQ(run.ticks, kTicks);
+    EXPECT_EQ(run.lost_ticks, k);
   }
 }
 
 TEST_F(RecorderTest, CommitsAboutOnceASecondWithoutBeingAsked) {
-  Recorder recorder(path_, {.commit_interval = std::chrono::milliseconds(100)});
+  Recorder recorder(path, {.commit_interval = std::chrono::milliseconds(100)});
   const auto channel = recorder.open(what());
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(channel->run())->status, RunStatus::Recording);
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, channel->run()).status, RunStatus::Recording);
   push(*channel, 0);
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (reader.get(channel->run())->ticks == 0 && std::chrono::steady_clock::now() < deadline) {
+  while (get(reader, channel->run()).ticks == 0 && std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  EXPECT_EQ(reader.get(channel->run())->ticks, 1U);
+  EXPECT_EQ(get(reader, channel->run()).ticks, 1U);
 }
 
 TEST_F(RecorderTest, AFullRingIsTheProducersBusiness) {
-  Recorder recorder(path_, {.ring_frames = 8});
+  Recorder recorder(path, {.ring_frames = 8});
   const auto channel = recorder.open(what());
   // The database thread is kept busy, so nobody empties the ring.
   std::promise<void> go;
@@ -118,34 +118,34 @@ TEST_F(RecorderTest, AFullRingIsTheProducersBusiness) {
   while (!channel->push(frame)) std::this_thread::yield();
   recorder.flush();
   expect_frames(channel->run(), tick + 1);
-  EXPECT_EQ(alive_, 0);
+  EXPECT_EQ(alive, 0);
 }
 
 TEST_F(RecorderTest, QueuedRunsAreRecordedWhenTheirTurnComes) {
-  Recorder recorder(path_);
+  Recorder recorder(path);
   const db::RunId run = recorder.ask([&](db::RunStore& store) { return store.queue_run(what()); });
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(run)->status, RunStatus::Queued);
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, run).status, RunStatus::Queued);
   const auto channel = recorder.open(run, "2026-11-21T12:00:00Z");
   EXPECT_EQ(channel->run(), run);
-  EXPECT_EQ(reader.get(run)->status, RunStatus::Recording);
+  EXPECT_EQ(get(reader, run).status, RunStatus::Recording);
   push(*channel, 0);
   channel->close({.outcome = "stuck"});
   recorder.flush();
-  EXPECT_EQ(reader.get(run)->outcome, "stuck");
+  EXPECT_EQ(get(reader, run).outcome, "stuck");
   EXPECT_THAT(refusal([&] { recorder.open(run, ""); }), HasSubstr("not waiting"));
 }
 
 TEST_F(RecorderTest, ARunWhoseThreadDiedIsMarkedFailed) {
-  Recorder recorder(path_);
+  Recorder recorder(path);
   auto channel = recorder.open(what());
   const db::RunId run = channel->run();
   push(*channel, 0);
   channel.reset();
   recorder.flush();
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(run)->status, RunStatus::Failed);
-  EXPECT_THAT(reader.get(run)->reason, HasSubstr("broke off"));
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, run).status, RunStatus::Failed);
+  EXPECT_THAT(get(reader, run).reason, HasSubstr("broke off"));
   expect_frames(run, 1);
 }
 
@@ -153,7 +153,7 @@ TEST_F(RecorderTest, StoppingEndsOpenRunsAsInterrupted) {
   std::shared_ptr<server::RunChannel> open;
   db::RunId closed = 0;
   {
-    Recorder recorder(path_);
+    Recorder recorder(path);
     open = recorder.open(what());
     const auto other = recorder.open(what());
     closed = other->run();
@@ -166,13 +166,13 @@ TEST_F(RecorderTest, StoppingEndsOpenRunsAsInterrupted) {
   EXPECT_TRUE(open->failed());
   EXPECT_THAT(open->problem(), HasSubstr("server was stopped"));
   push(*open, 100);  // dropped, not leaked
-  EXPECT_EQ(alive_, 0);
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(open->run())->status, RunStatus::Interrupted);
-  EXPECT_EQ(reader.get(closed)->status, RunStatus::Finished);
+  EXPECT_EQ(alive, 0);
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, open->run()).status, RunStatus::Interrupted);
+  EXPECT_EQ(get(reader, closed).status, RunStatus::Finished);
   expect_frames(open->run(), 100);
   expect_frames(closed, 100);
-  const db::RunStore store(path_);
+  const db::RunStore store(path);
   EXPECT_TRUE(store.interrupted().empty());
 }
 
@@ -181,7 +181,7 @@ TEST_F(RecorderTest, AFullDiskStopsTheRunAndNotTheRecorder) {
   db::RunId old = 0;
   db::RunId cut = 0;
   {
-    Recorder recorder(path_,
+    Recorder recorder(path,
                       {.store = {.max_pages = 60},
                        .retention_bytes = 0,
                        .commit_interval = std::chrono::milliseconds(20),
@@ -218,19 +218,19 @@ TEST_F(RecorderTest, AFullDiskStopsTheRunAndNotTheRecorder) {
     recorder.flush();
     expect_frames(again->run(), 1);
   }
-  EXPECT_EQ(alive_, 0);
+  EXPECT_EQ(alive, 0);
   EXPECT_THAT(reports, testing::Contains(HasSubstr("The disk is full")));
-  EXPECT_EQ(integrity(path_), "ok");
-  RunReader reader(path_);
-  const auto run = reader.get(cut);
-  EXPECT_EQ(run->status, RunStatus::Failed);
-  EXPECT_THAT(run->reason, HasSubstr("The disk is full"));
-  EXPECT_GT(run->ticks, 0U);
-  expect_frames(cut, run->ticks);
+  EXPECT_EQ(integrity(path), "ok");
+  RunReader reader(path);
+  const db::RunRow run = get(reader, cut);
+  EXPECT_EQ(run.status, RunStatus::Failed);
+  EXPECT_THAT(run.reason, HasSubstr("The disk is full"));
+  EXPECT_GT(run.ticks, 0U);
+  expect_frames(cut, run.ticks);
 }
 
 TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
-  Recorder recorder(path_);
+  Recorder recorder(path);
   const auto bad = recorder.open(what());
   const auto good = recorder.open(what());
   push(*bad, 5);
@@ -243,9 +243,9 @@ TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
   good->close({.outcome = "reached"});
   bad->close({.outcome = "reached"});
   recorder.flush();
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(good->run())->status, RunStatus::Finished);
-  EXPECT_NE(reader.get(bad->run())->status, RunStatus::Finished);
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, good->run()).status, RunStatus::Finished);
+  EXPECT_NE(get(reader, bad->run()).status, RunStatus::Finished);
 }
 
 TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
@@ -253,7 +253,7 @@ TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
   constexpr std::uint64_t kLimit = 1'500'000;
   std::vector<db::RunId> runs;
   {
-    Recorder recorder(path_,
+    Recorder recorder(path,
                       {.retention_bytes = kLimit,
                        .commit_interval = std::chrono::milliseconds(10),
                        .report = [&](const std::string& line) { reports.push_back(line); }});
@@ -270,7 +270,7 @@ TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
     }
     EXPECT_LE(recorder.ask([](db::RunStore& store) { return store.used_bytes(); }), kLimit);
   }
-  RunReader reader(path_);
+  RunReader reader(path);
   EXPECT_FALSE(reader.get(runs.front()));
   EXPECT_TRUE(reader.get(runs.back()));
   expect_frames(runs.back(), 1000);
@@ -291,7 +291,7 @@ TEST_F(RecorderTest, AKillLosesAtMostElevenTenthsOfASecond) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      Recorder recorder(path_);
+      Recorder recorder(path);
       const auto channel = recorder.open(what());
       auto due = std::chrono::steady_clock::now();
       for (std::uint64_t tick = 0;; ++tick) {
@@ -306,14 +306,14 @@ TEST_F(RecorderTest, AKillLosesAtMostElevenTenthsOfASecond) {
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const std::uint64_t pushed = shared->load();
-    const db::RunStore store(path_);
+    const db::RunStore store(path);
     ASSERT_EQ(store.interrupted().size(), 1U);
-    RunReader reader(path_);
-    const auto run = reader.get(store.interrupted()[0]);
-    EXPECT_EQ(run->status, RunStatus::Interrupted);
-    EXPECT_LE(static_cast<double>(pushed - std::min(pushed, run->ticks)) * kPeriod, 1.1);
-    expect_frames(run->id, run->ticks);
-    EXPECT_EQ(integrity(path_), "ok");
+    RunReader reader(path);
+    const db::RunRow run = get(reader, store.interrupted()[0]);
+    EXPECT_EQ(run.status, RunStatus::Interrupted);
+    EXPECT_LE(static_cast<double>(pushed - std::min(pushed, run.ticks)) * kPeriod, 1.1);
+    expect_frames(run.id, run.ticks);
+    EXPECT_EQ(integrity(path), "ok");
   }
   munmap(shared, 4096);
 }
