@@ -18,7 +18,7 @@
 namespace db {
 
 struct StoreOptions {
-  std::uint32_t max_pages = 0;  // the file may not grow beyond so many 16 KiB pages; 0: no limit
+  std::uint32_t max_pages = 0;  // the file may not grow beyond so many 4 KiB pages; 0: no limit
 };
 
 /// Writes runs into one SQLite file (WAL, synchronous FULL).

@@ -20,6 +20,7 @@ class RunReaderTest : public test::StoreFiles {
  protected:
   static std::vector<db::RunId> ids(const db::RunPage& page) {
     std::vector<db::RunId> found;
+    found.reserve(page.runs.size());
     for (const auto& run : page.runs) found.push_back(run.id);
     return found;
   }
@@ -28,6 +29,7 @@ class RunReaderTest : public test::StoreFiles {
 TEST_F(RunReaderTest, ListsNewestFirstByPage) {
   RunStore store(path);
   std::vector<db::RunId> runs;
+  runs.reserve(5);
   for (int i = 0; i < 5; ++i) runs.push_back(record(store, 1));
   RunReader reader(path);
   auto page = reader.list({}, 2);

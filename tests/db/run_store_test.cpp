@@ -254,6 +254,7 @@ TEST_F(RunStoreTest, RetentionDeletesTheOldestEndedRuns) {
   const db::RunId live = store.begin_run(what());  // the oldest of all, but recording
   append(store, live, 0, frames(1)[0]);
   std::vector<db::RunId> runs;
+  runs.reserve(5);
   for (int i = 0; i < 5; ++i) runs.push_back(record(store, 500));
   const std::uint64_t full = store.used_bytes();
   EXPECT_FALSE(store.retire_oldest(full));
@@ -288,7 +289,7 @@ TEST_F(RunStoreTest, AFullDiskLosesOnlyTheOpenTransaction) {
   db::RunId kept = 0;
   db::RunId cut = 0;
   {
-    RunStore store(path, {.max_pages = 40});  // 640 KiB
+    RunStore store(path, {.max_pages = 160});  // 640 KiB
     kept = record(store, 100);
     cut = store.begin_run(what());
     const auto made = frames(400);

@@ -108,7 +108,7 @@ TEST_F(SchemaTest, WritesDurably) {
   const RunStore store(path);
   const Connection other(path, Connection::Mode::Read);
   EXPECT_EQ(other.query_text("PRAGMA journal_mode"), "wal");
-  EXPECT_EQ(other.query_integer("PRAGMA page_size"), 16384);
+  EXPECT_EQ(other.query_integer("PRAGMA page_size"), 4096);
 }
 
 }  // namespace

@@ -75,13 +75,14 @@ class StoreFiles : public testing::Test {
                                                          std::uint64_t from = 0,
                                                          std::size_t limit = 10) {
     std::vector<std::vector<std::byte>> found;
-    for (std::optional<std::uint64_t> next = from; next.has_value();) {
-      next = reader.frames(
-          run, next.value(), limit, [&](std::uint64_t, std::span<const std::byte> bytes) {
+    for (std::uint64_t at = from;;) {
+      const auto next =
+          reader.frames(run, at, limit, [&](std::uint64_t, std::span<const std::byte> bytes) {
             found.emplace_back(bytes.begin(), bytes.end());
           });
+      if (!next) return found;
+      at = *next;
     }
-    return found;
   }
   /// The row of a run that must exist.
   static db::RunRow get(db::RunReader& reader, db::RunId run) {

@@ -182,7 +182,7 @@ TEST_F(RecorderTest, AFullDiskStopsTheRunAndNotTheRecorder) {
   db::RunId cut = 0;
   {
     Recorder recorder(path,
-                      {.store = {.max_pages = 60},
+                      {.store = {.max_pages = 240},
                        .retention_bytes = 0,
                        .commit_interval = std::chrono::milliseconds(20),
                        .report = [&](const std::string& line) { reports.push_back(line); }});
@@ -250,7 +250,7 @@ TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
 
 TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
   std::vector<std::string> reports;
-  constexpr std::uint64_t kLimit = 1'500'000;
+  constexpr std::uint64_t kLimit = 700'000;
   std::vector<db::RunId> runs;
   {
     Recorder recorder(path,
