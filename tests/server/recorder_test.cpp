@@ -279,43 +279,62 @@ TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
               HasSubstr("Deleted run 1 (case1, 2026-11-21T10:40:47Z, 1000 ticks)"));
 }
 
+/// What the child tells its parent; it outlives the kill.
+struct Shared {
+  std::atomic<std::uint64_t> pushed = 0;
+  std::atomic<double> latest = 0;  // [s] by which the machine woke a sleeping thread too late
+};
+
+[[noreturn]] void sleep_and_measure(Shared& shared) {
+  for (;;) {
+    const auto due = std::chrono::steady_clock::now() + std::chrono::milliseconds(20);
+    std::this_thread::sleep_until(due);
+    const std::chrono::duration<double> late = std::chrono::steady_clock::now() - due;
+    shared.latest = std::max(shared.latest.load(), late.count());
+  }
+}
+
 // The child records at the pace of a real run and says in shared memory how far it is; then it is
-// killed. 1.1 s is what a run may lose.
+// killed. A run may lose 1.1 s, and what an overloaded machine keeps any thread from running.
 TEST_F(RecorderTest, AKillLosesAtMostElevenTenthsOfASecond) {
   constexpr double kPeriod = 0.026;
-  auto* shared = static_cast<std::atomic<std::uint64_t>*>(
-      mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
-  ASSERT_NE(shared, MAP_FAILED);
+  void* memory =
+      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(memory, MAP_FAILED);
   for (const int wait_ms : {350, 1230, 1900}) {
-    shared->store(0);
+    auto& shared = *new (memory) Shared;
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
       Recorder recorder(path);
       const auto channel = recorder.open(what());
+      std::thread([&] { sleep_and_measure(shared); }).detach();
       auto due = std::chrono::steady_clock::now();
       for (std::uint64_t tick = 0;; ++tick) {
         push(*channel, tick);
-        shared->store(tick + 1);
+        shared.pushed = tick + 1;
         due += std::chrono::microseconds(26'000);
         std::this_thread::sleep_until(due);
       }
     }
-    while (shared->load() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (shared.pushed == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    const std::uint64_t pushed = shared->load();
     const db::RunStore store(path);
     ASSERT_EQ(store.interrupted().size(), 1U);
     RunReader reader(path);
     const db::RunRow run = get(reader, store.interrupted()[0]);
     EXPECT_EQ(run.status, RunStatus::Interrupted);
-    EXPECT_LE(static_cast<double>(pushed - std::min(pushed, run.ticks)) * kPeriod, 1.1);
+    ASSERT_LE(run.ticks, shared.pushed + 1);  // it may die between the push and the count
+    const double pushed = static_cast<double>(shared.pushed);
+    const double lost = (pushed - static_cast<double>(run.ticks)) * kPeriod;
+    EXPECT_LE(lost, 1.1 + shared.latest);
+    EXPECT_LT(lost, 3.0) << "nothing was committed in time";
     expect_frames(run.id, run.ticks);
     EXPECT_EQ(integrity(path), "ok");
   }
-  munmap(shared, 4096);
+  munmap(memory, sizeof(Shared));
 }
 
 }  // namespace
