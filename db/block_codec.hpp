@@ -58,17 +58,12 @@ struct FrameTable {
 };
 
 /// The block's values sorted by kind, so that each compressor call sees one sort of number.
-enum Stream : std::size_t {
-  kLayout,  // sizes, references, windows, choices
-  kLow,     // low bytes of the sample residuals
-  kHigh,    // their high bytes
-  kFloat0,  // bytes 0..3 of the float residuals
-  kFloat1,
-  kFloat2,
-  kFloat3,
-  kRest,  // everything outside the windows, by position and then by frame
-  kStreams,
-};
+constexpr std::size_t kLayout = 0;  // sizes, references, windows, choices
+constexpr std::size_t kLow = 1;     // low bytes of the sample residuals
+constexpr std::size_t kHigh = 2;    // their high bytes
+constexpr std::size_t kFloat0 = 3;  // bytes 0..3 of the float residuals in four streams
+constexpr std::size_t kRest = 7;    // all outside the windows, by position and then by frame
+constexpr std::size_t kStreams = 8;
 using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
 
 class Cursor;

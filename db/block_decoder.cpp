@@ -132,7 +132,7 @@ void BlockDecoder::check_sizes() const {
     (window.kind == Window::Kind::Samples ? samples : numbers) += window.count;
   }
   const bool floats_fit = std::all_of(streams_.begin() + kFloat0,
-                                      streams_.begin() + kFloat3 + 1,
+                                      streams_.begin() + kFloat0 + 4,
                                       [&](const auto& s) { return s.size() == numbers; });
   if (streams_[kLow].size() != samples || streams_[kHigh].size() != samples || !floats_fit ||
       streams_[kRest].size() != rest_starts_.back()) {

@@ -1,8 +1,8 @@
 // db/block_format.hpp: the outer form of a packed block, shared by its two directions.
 //
 // Little-endian: "TB", version, 0; u32 frames; u32 bytes of all frames; u64 check; then the
-// streams in the order of detail::Stream, each u32 raw size, u32 stored size, bytes. Stored as it
-// is when both sizes are equal, else one zstd frame.
+// streams in the order of detail::kLayout .., each u32 raw size, u32 stored size, bytes. Stored as
+// it is when both sizes are equal, else one zstd frame.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,9 @@ using detail::Statement;
 
 namespace {
 
-constexpr int kPageBytes = 16384;
+// A block row ends in a page of its own, half empty on average: of an hour's 57 MB of blocks 16 KiB
+// pages wasted 6.3 MB, 4 KiB pages 2.3 MB, at the same speed.
+constexpr int kPageBytes = 4096;
 // A block with so many frames is not rewritten with more at the next commit. Longer blocks pack
 // little better (402 bytes a frame at 128 against 414 at 64) and cost a seek more to unpack.
 constexpr std::size_t kSealFrames = 64;
@@ -279,7 +281,7 @@ void RunStore::end_run(RunId run, const RunEnd& end) {
     sql_->status.reset() << run;
     const ResetLater reset(sql_->status);
     const std::string status = sql_->status.step() ? sql_->status.text(0) : "missing";
-    if (status != "queued" && !recording(run)) {
+    if (status != "queued" && status != "recording") {
       throw StoreError(name_of(run) + " cannot be ended: it is " + status);
     }
   });

@@ -18,7 +18,7 @@
 namespace db {
 
 struct StoreOptions {
-  std::uint32_t max_pages = 0;  // the file may not grow beyond so many 16 KiB pages; 0: no limit
+  std::uint32_t max_pages = 0;  // the file may not grow beyond so many 4 KiB pages; 0: no limit
 };
 
 /// Writes runs into one SQLite file (WAL, synchronous FULL).
@@ -62,7 +62,8 @@ class RunStore {
                   std::string_view outcome,
                   std::string_view reason,
                   std::string_view metrics);
-  /// Ends a queued or recording run; its last frames are written.
+  /// Ends a queued or recording run; its last frames are written. A run that was dropped because
+  /// the database failed ends with what its last commit stored.
   void end_run(RunId run, const RunEnd& end);
 
   /// Makes everything so far durable.

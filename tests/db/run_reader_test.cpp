@@ -20,16 +20,18 @@ class RunReaderTest : public test::StoreFiles {
  protected:
   static std::vector<db::RunId> ids(const db::RunPage& page) {
     std::vector<db::RunId> found;
+    found.reserve(page.runs.size());
     for (const auto& run : page.runs) found.push_back(run.id);
     return found;
   }
 };
 
 TEST_F(RunReaderTest, ListsNewestFirstByPage) {
-  RunStore store(path_);
+  RunStore store(path);
   std::vector<db::RunId> runs;
+  runs.reserve(5);
   for (int i = 0; i < 5; ++i) runs.push_back(record(store, 1));
-  RunReader reader(path_);
+  RunReader reader(path);
   auto page = reader.list({}, 2);
   EXPECT_THAT(ids(page), ElementsAre(runs[4], runs[3]));
   ASSERT_TRUE(page.next);
@@ -46,13 +48,13 @@ TEST_F(RunReaderTest, ListsNewestFirstByPage) {
 }
 
 TEST_F(RunReaderTest, FiltersByEachColumnAndAll) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto a = record(store, 1, "case1", "reached");
   const auto b = record(store, 1, "case2", "stuck");
   const auto c = record(store, 1, "case1", "stuck");
   const auto d = store.queue_run(what("case1' OR 1=1 --"));
   store.commit();
-  RunReader reader(path_);
+  RunReader reader(path);
   EXPECT_THAT(ids(reader.list({.scenario = "case1"}, 9)), ElementsAre(c, a));
   EXPECT_THAT(ids(reader.list({.outcome = "stuck"}, 9)), ElementsAre(c, b));
   EXPECT_THAT(ids(reader.list({.status = RunStatus::Queued}, 9)), ElementsAre(d));
@@ -71,9 +73,9 @@ TEST_F(RunReaderTest, FiltersByEachColumnAndAll) {
 }
 
 TEST_F(RunReaderTest, TicksComeByPage) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto run = record(store, 25);
-  RunReader reader(path_);
+  RunReader reader(path);
   auto page = reader.ticks(run, 3, 10);
   EXPECT_EQ(page.ticks.front().tick, 3U);
   EXPECT_EQ(page.ticks.size(), 10U);
@@ -88,10 +90,10 @@ TEST_F(RunReaderTest, TicksComeByPage) {
 }
 
 TEST_F(RunReaderTest, FramesStartAnywhere) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto made = frames(200);
   const auto run = record(store, 200);
-  RunReader reader(path_);
+  RunReader reader(path);
   for (const std::uint64_t from : {199U, 0U, 127U, 128U, 64U, 65U}) {
     const auto found = read_frames(reader, run, from, 50);
     ASSERT_EQ(found.size(), 200 - from);
@@ -102,7 +104,7 @@ TEST_F(RunReaderTest, FramesStartAnywhere) {
 }
 
 TEST_F(RunReaderTest, CsvIsExactAndInPieces) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId run = store.begin_run(what());
   db::TickRow odd = row(1);
   odd.t = 0.1;
@@ -115,7 +117,7 @@ TEST_F(RunReaderTest, CsvIsExactAndInPieces) {
   store.append_tick(run, odd, made[0].bytes, made[0].windows);
   append(store, run, 2, made[0]);
   store.commit();
-  RunReader reader(path_);
+  RunReader reader(path);
   std::string out(RunReader::csv_header());
   const db::CsvNames names{.holds = {"none", "stopped"}};
   EXPECT_EQ(reader.csv(run, 0, 1, out, names), 2U);
@@ -128,13 +130,13 @@ TEST_F(RunReaderTest, CsvIsExactAndInPieces) {
 }
 
 TEST_F(RunReaderTest, ADamagedBlockIsNamed) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto run = record(store, 200);
   {
-    db::detail::Connection other(path_, db::detail::Connection::Mode::Write);
+    db::detail::Connection other(path, db::detail::Connection::Mode::Write);
     other.execute("UPDATE block SET frames = zeroblob(100) WHERE first_tick = 128");
   }
-  RunReader reader(path_);
+  RunReader reader(path);
   std::size_t seen = 0;
   const std::string why = refusal([&] {
     reader.frames(run, 0, 500, [&](std::uint64_t, std::span<const std::byte>) { ++seen; });
@@ -149,10 +151,10 @@ TEST_F(RunReaderTest, ADamagedBlockIsNamed) {
 
 TEST_F(RunReaderTest, AnEmptyFileIsNoStore) {
   {
-    const db::detail::Connection made(path_, db::detail::Connection::Mode::Write);
+    const db::detail::Connection made(path, db::detail::Connection::Mode::Write);
     made.execute("CREATE TABLE a (b)");
   }
-  EXPECT_THAT(refusal([&] { const RunReader reader(path_); }), HasSubstr("another program"));
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("another program"));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ using testing::IsEmpty;
 class RunStoreTest : public test::StoreFiles {};
 
 TEST_F(RunStoreTest, ARunComesBackAsItWasRecorded) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto made = frames(150);
   const db::RunId run = store.begin_run(what());
   for (std::size_t i = 0; i < made.size(); ++i) {
@@ -36,20 +36,19 @@ TEST_F(RunStoreTest, ARunComesBackAsItWasRecorded) {
                  .lost_ticks = 2});
   store.commit();
 
-  RunReader reader(path_);
-  const auto row_read = reader.get(run);
-  ASSERT_TRUE(row_read);
-  EXPECT_EQ(row_read->status, RunStatus::Finished);
-  EXPECT_EQ(row_read->outcome, "reached");
-  EXPECT_EQ(row_read->reason, "Within 0.1 m of the goal.");
-  EXPECT_EQ(row_read->metrics, R"({"time":3.9})");
-  EXPECT_EQ(row_read->ticks, 150U);
-  EXPECT_EQ(row_read->time, 0.026 * 149);
-  EXPECT_EQ(row_read->lost_ticks, 2U);
-  EXPECT_EQ(row_read->what.seed, 0xFFFFFFFFFFFFFFF1ULL);
-  EXPECT_EQ(row_read->what.document, R"({"name":"case1"})");
-  EXPECT_EQ(row_read->what.parameters, R"({"k_r":0.6})");
-  EXPECT_EQ(row_read->what.started, "2026-11-21T10:40:47Z");
+  RunReader reader(path);
+  const db::RunRow row_read = get(reader, run);
+  EXPECT_EQ(row_read.status, RunStatus::Finished);
+  EXPECT_EQ(row_read.outcome, "reached");
+  EXPECT_EQ(row_read.reason, "Within 0.1 m of the goal.");
+  EXPECT_EQ(row_read.metrics, R"({"time":3.9})");
+  EXPECT_EQ(row_read.ticks, 150U);
+  EXPECT_EQ(row_read.time, 0.026 * 149);
+  EXPECT_EQ(row_read.lost_ticks, 2U);
+  EXPECT_EQ(row_read.what.seed, 0xFFFFFFFFFFFFFFF1ULL);
+  EXPECT_EQ(row_read.what.document, R"({"name":"case1"})");
+  EXPECT_EQ(row_read.what.parameters, R"({"k_r":0.6})");
+  EXPECT_EQ(row_read.what.started, "2026-11-21T10:40:47Z");
 
   const auto frames_read = read_frames(reader, run);
   ASSERT_EQ(frames_read.size(), made.size());
@@ -58,8 +57,8 @@ TEST_F(RunStoreTest, ARunComesBackAsItWasRecorded) {
     EXPECT_EQ(frames_read[i], made[i].bytes) << i;
     raw += made[i].bytes.size();
   }
-  EXPECT_LT(row_read->bytes, raw / 2);
-  EXPECT_GT(row_read->bytes, 150U * 223U);  // below the noise of the scans nothing can go
+  EXPECT_LT(row_read.bytes, raw / 2);
+  EXPECT_GT(row_read.bytes, 150U * 223U);  // below the noise of the scans nothing can go
 
   const auto page = reader.ticks(run, 0, 1000);
   ASSERT_EQ(page.ticks.size(), 150U);
@@ -68,10 +67,10 @@ TEST_F(RunStoreTest, ARunComesBackAsItWasRecorded) {
 }
 
 TEST_F(RunStoreTest, ShortBlocksGrowFromCommitToCommit) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto made = frames(300);
   const db::RunId run = store.begin_run(what());
-  RunReader reader(path_);
+  RunReader reader(path);
   for (std::size_t i = 0; i < made.size(); ++i) {
     append(store, run, i, made[i]);
     if (i % 10 != 9) continue;
@@ -82,19 +81,19 @@ TEST_F(RunStoreTest, ShortBlocksGrowFromCommitToCommit) {
   store.end_run(run, {});
   store.commit();
   // 300 frames in blocks of 70 (the first commit at or beyond 64): 70, 140, 210, 280, 300.
-  db::detail::Connection connection(path_, db::detail::Connection::Mode::Read);
+  db::detail::Connection connection(path, db::detail::Connection::Mode::Read);
   EXPECT_EQ(connection.query_integer("SELECT count(*) FROM block"), 5);
   EXPECT_EQ(connection.query_integer("SELECT sum(length(frames)) FROM block"),
-            static_cast<std::int64_t>(reader.get(run)->bytes));
+            static_cast<std::int64_t>(get(reader, run).bytes));
 }
 
 TEST_F(RunStoreTest, LostTicksLeaveAGapAndNothingElse) {
-  RunStore store(path_);
+  RunStore store(path);
   const auto made = frames(6);
   const db::RunId run = store.begin_run(what());
   for (const std::uint64_t tick : {3U, 4U, 7U, 8U, 20U}) append(store, run, tick, made[tick % 6]);
   store.commit();
-  RunReader reader(path_);
+  RunReader reader(path);
   std::vector<std::uint64_t> seen;
   const auto note = [&](std::uint64_t tick, std::span<const std::byte> bytes) {
     seen.push_back(tick);
@@ -109,11 +108,11 @@ TEST_F(RunStoreTest, LostTicksLeaveAGapAndNothingElse) {
   EXPECT_EQ(reader.frames(run, 21, 9, note), std::nullopt);
   EXPECT_EQ(reader.frames(run + 1, 0, 9, note), std::nullopt);
   EXPECT_THAT(seen, ElementsAre(20));
-  EXPECT_EQ(reader.get(run)->ticks, 5U);
+  EXPECT_EQ(get(reader, run).ticks, 5U);
 }
 
 TEST_F(RunStoreTest, RefusesWhatMakesNoSense) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId run = store.begin_run(what());
   const auto made = frames(1);
   append(store, run, 5, made[0]);
@@ -137,26 +136,26 @@ TEST_F(RunStoreTest, RefusesWhatMakesNoSense) {
   store.end_run(run, {});
   EXPECT_THAT(refusal([&] { store.end_run(run, {}); }), HasSubstr("finished"));
   store.commit();
-  RunReader reader(path_);
+  RunReader reader(path);
   EXPECT_EQ(read_frames(reader, run).size(), 2U);
 }
 
 TEST_F(RunStoreTest, QueuedRunsStartLaterOrAreCancelled) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId first = store.queue_run(what());
   const db::RunId second = store.queue_run(what());
   store.commit();
-  RunReader reader(path_);
-  EXPECT_EQ(reader.get(first)->status, RunStatus::Queued);
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, first).status, RunStatus::Queued);
   store.start_run(first, "2026-11-21T11:00:00Z");
   append(store, first, 0, frames(1)[0]);
   store.set_result(first, "running", "", R"({"path_length":0.1})");
   store.end_run(second, {.status = RunStatus::Cancelled, .outcome = "stopped"});
   store.commit();
-  EXPECT_EQ(reader.get(first)->status, RunStatus::Recording);
-  EXPECT_EQ(reader.get(first)->what.started, "2026-11-21T11:00:00Z");
-  EXPECT_EQ(reader.get(first)->metrics, R"({"path_length":0.1})");
-  EXPECT_EQ(reader.get(second)->status, RunStatus::Cancelled);
+  EXPECT_EQ(get(reader, first).status, RunStatus::Recording);
+  EXPECT_EQ(get(reader, first).what.started, "2026-11-21T11:00:00Z");
+  EXPECT_EQ(get(reader, first).metrics, R"({"path_length":0.1})");
+  EXPECT_EQ(get(reader, second).status, RunStatus::Cancelled);
 }
 
 TEST_F(RunStoreTest, UnfinishedRunsAreInterruptedAtTheNextStart) {
@@ -164,7 +163,7 @@ TEST_F(RunStoreTest, UnfinishedRunsAreInterruptedAtTheNextStart) {
   db::RunId recording = 0;
   db::RunId finished = 0;
   {
-    RunStore store(path_);
+    RunStore store(path);
     finished = record(store, 3);
     queued = store.queue_run(what());
     recording = store.begin_run(what());
@@ -173,42 +172,42 @@ TEST_F(RunStoreTest, UnfinishedRunsAreInterruptedAtTheNextStart) {
     store.commit();
     for (std::size_t i = 70; i < 80; ++i) append(store, recording, i, made[i]);  // never committed
   }
-  RunStore store(path_);
+  RunStore store(path);
   EXPECT_THAT(store.interrupted(), ElementsAre(queued, recording));
-  RunReader reader(path_);
-  const auto row_read = reader.get(recording);
-  EXPECT_EQ(row_read->status, RunStatus::Interrupted);
-  EXPECT_EQ(row_read->outcome, "stopped");
-  EXPECT_THAT(row_read->reason, HasSubstr("in the middle"));
-  EXPECT_EQ(row_read->ticks, 70U);
-  EXPECT_EQ(row_read->time, 0.026 * 69);
-  EXPECT_GT(row_read->bytes, 70U * 223U);
+  RunReader reader(path);
+  const db::RunRow row_read = get(reader, recording);
+  EXPECT_EQ(row_read.status, RunStatus::Interrupted);
+  EXPECT_EQ(row_read.outcome, "stopped");
+  EXPECT_THAT(row_read.reason, HasSubstr("in the middle"));
+  EXPECT_EQ(row_read.ticks, 70U);
+  EXPECT_EQ(row_read.time, 0.026 * 69);
+  EXPECT_GT(row_read.bytes, 70U * 223U);
   EXPECT_EQ(read_frames(reader, recording).size(), 70U);
-  EXPECT_EQ(reader.get(queued)->status, RunStatus::Interrupted);
-  EXPECT_THAT(reader.get(queued)->reason, HasSubstr("before this run began"));
-  EXPECT_EQ(reader.get(finished)->status, RunStatus::Finished);
+  EXPECT_EQ(get(reader, queued).status, RunStatus::Interrupted);
+  EXPECT_THAT(get(reader, queued).reason, HasSubstr("before this run began"));
+  EXPECT_EQ(get(reader, finished).status, RunStatus::Finished);
   EXPECT_FALSE(store.recording(recording));
 }
 
 TEST_F(RunStoreTest, OneWriterOnly) {
-  const RunStore store(path_);
-  EXPECT_THAT(refusal([&] { const RunStore second(path_); }),
+  const RunStore store(path);
+  EXPECT_THAT(refusal([&] { const RunStore second(path); }),
               HasSubstr("written by another server"));
 }
 
 TEST_F(RunStoreTest, SaysWhyAFileCannotBeOpened) {
-  const std::string missing = (folder_ / "no" / "runs.db").string();
+  const std::string missing = (folder / "no" / "runs.db").string();
   EXPECT_THAT(refusal([&] { const RunStore store(missing); }), HasSubstr("folder is missing"));
   EXPECT_THAT(refusal([&] { const RunReader reader(missing); }), HasSubstr("Cannot open"));
 
-  const std::string text = (folder_ / "text.db").string();
+  const std::string text = (folder / "text.db").string();
   std::ofstream(text) << std::string(20'000, 'x');
   EXPECT_THAT(refusal([&] { const RunStore store(text); }), HasSubstr("not a database"));
   EXPECT_THAT(refusal([&] { const RunReader reader(text); }), HasSubstr("not a database"));
 }
 
 TEST_F(RunStoreTest, OddFileNamesWork) {
-  const std::string odd = (folder_ / "a b?mode=ro#%41.db").string();
+  const std::string odd = (folder / "a b?mode=ro#%41.db").string();
   db::RunId run = 0;
   {
     RunStore store(odd);
@@ -220,7 +219,7 @@ TEST_F(RunStoreTest, OddFileNamesWork) {
 }
 
 TEST_F(RunStoreTest, DeletedRunsAreGoneAtOnceAndTheirIdsForEver) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId first = record(store, 100);
   const db::RunId second = record(store, 100);
   const db::RunId third = store.begin_run(what());
@@ -233,7 +232,7 @@ TEST_F(RunStoreTest, DeletedRunsAreGoneAtOnceAndTheirIdsForEver) {
   EXPECT_EQ(store.delete_run(third), RunStore::Deletion::NotFound);
   store.commit();
 
-  RunReader reader(path_);
+  RunReader reader(path);
   EXPECT_FALSE(reader.get(second));
   EXPECT_EQ(reader.count({}), 1U);
   EXPECT_THAT(reader.ticks(second, 0, 10).ticks, IsEmpty());
@@ -247,14 +246,15 @@ TEST_F(RunStoreTest, DeletedRunsAreGoneAtOnceAndTheirIdsForEver) {
   EXPECT_LT(store.used_bytes(), before);
   EXPECT_FALSE(store.sweep());
   EXPECT_EQ(record(store, 1), third + 1);
-  EXPECT_EQ(integrity(path_), "ok");
+  EXPECT_EQ(integrity(path), "ok");
 }
 
 TEST_F(RunStoreTest, RetentionDeletesTheOldestEndedRuns) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId live = store.begin_run(what());  // the oldest of all, but recording
   append(store, live, 0, frames(1)[0]);
   std::vector<db::RunId> runs;
+  runs.reserve(5);
   for (int i = 0; i < 5; ++i) runs.push_back(record(store, 500));
   const std::uint64_t full = store.used_bytes();
   EXPECT_FALSE(store.retire_oldest(full));
@@ -280,16 +280,16 @@ TEST_F(RunStoreTest, RetentionDeletesTheOldestEndedRuns) {
     while (store.sweep()) {
     }
   }
-  RunReader reader(path_);
+  RunReader reader(path);
   EXPECT_EQ(reader.count({}), 1U);
-  EXPECT_EQ(reader.get(live)->status, RunStatus::Recording);
+  EXPECT_EQ(get(reader, live).status, RunStatus::Recording);
 }
 
 TEST_F(RunStoreTest, AFullDiskLosesOnlyTheOpenTransaction) {
   db::RunId kept = 0;
   db::RunId cut = 0;
   {
-    RunStore store(path_, {.max_pages = 40});  // 640 KiB
+    RunStore store(path, {.max_pages = 160});  // 640 KiB
     kept = record(store, 100);
     cut = store.begin_run(what());
     const auto made = frames(400);
@@ -314,31 +314,31 @@ TEST_F(RunStoreTest, AFullDiskLosesOnlyTheOpenTransaction) {
     }
     EXPECT_EQ(record(store, 20), cut + 1);
   }
-  EXPECT_EQ(integrity(path_), "ok");
-  const RunStore store(path_);
+  EXPECT_EQ(integrity(path), "ok");
+  const RunStore store(path);
   EXPECT_THAT(store.interrupted(), ElementsAre(cut));
-  RunReader reader(path_);
-  const auto row_read = reader.get(cut);
-  EXPECT_EQ(row_read->ticks % 200, row_read->ticks == 100 ? 100U : 0U);  // what a commit had stored
-  EXPECT_EQ(read_frames(reader, cut).size(), row_read->ticks);
+  RunReader reader(path);
+  const db::RunRow row_read = get(reader, cut);
+  EXPECT_EQ(row_read.ticks % 200, row_read.ticks == 100 ? 100U : 0U);  // what a commit had stored
+  EXPECT_EQ(read_frames(reader, cut).size(), row_read.ticks);
   EXPECT_FALSE(reader.get(kept));
 }
 
 TEST_F(RunStoreTest, AReaderFollowsWhileTheWriterWrites) {
-  RunStore store(path_);
+  RunStore store(path);
   const db::RunId run = store.begin_run(what());
   store.commit();
   const auto made = frames(97);
   std::atomic<bool> done = false;
   std::thread reading([&] {
-    RunReader reader(path_);
+    RunReader reader(path);
     std::uint64_t next = 0;
     while (!done || next < 3000) {
       reader.frames(run, next, 500, [&](std::uint64_t tick, std::span<const std::byte> bytes) {
         ASSERT_EQ(tick, next++);
         ASSERT_TRUE(std::ranges::equal(bytes, made[tick % 97].bytes));
       });
-      ASSERT_LE(reader.get(run)->ticks, 3000U);
+      ASSERT_LE(get(reader, run).ticks, 3000U);
     }
     EXPECT_EQ(next, 3000U);
   });

@@ -15,7 +15,7 @@ using testing::HasSubstr;
 class SchemaTest : public test::StoreFiles {
  protected:
   std::int64_t ask(const std::string& sql) {
-    return Connection(path_, Connection::Mode::Write).query_integer(sql);
+    return Connection(path, Connection::Mode::Write).query_integer(sql);
   }
 };
 
@@ -44,16 +44,15 @@ constexpr const char* kVersion1 = R"(
 )";
 
 TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
-  Connection(path_, Connection::Mode::Write).execute(kVersion1);
-  EXPECT_THAT(refusal([&] { const RunReader reader(path_); }), HasSubstr("older version"));
-  RunStore store(path_);
+  Connection(path, Connection::Mode::Write).execute(kVersion1);
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("older version"));
+  RunStore store(path);
   EXPECT_EQ(ask("PRAGMA user_version"), db::detail::schema_version());
   EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
-  RunReader reader(path_);
-  const auto run = reader.get(7);
-  ASSERT_TRUE(run);
-  EXPECT_EQ(run->what.controller, "original");
-  EXPECT_EQ(run->what.document, R"({"name":"case3"})");
+  RunReader reader(path);
+  const db::RunRow run = get(reader, 7);
+  EXPECT_EQ(run.what.controller, "original");
+  EXPECT_EQ(run.what.document, R"({"name":"case3"})");
   const db::TickRow expected{.tick = 0,
                              .t = 0.026,
                              .x = 1,
@@ -70,8 +69,8 @@ TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
 }
 
 TEST_F(SchemaTest, TheOlderTablesPlusTheStepsAreTodaysTables) {
-  const auto tables = [](const std::string& path) {
-    const Connection c(path, Connection::Mode::Write);
+  const auto tables = [](const std::string& file) {
+    const Connection c(file, Connection::Mode::Write);
     auto list = c.prepare(
         "SELECT m.name || '.' || c.name || ' ' || c.type || ' ' || c.pk FROM"
         " sqlite_master m, pragma_table_info(m.name) c ORDER BY m.name, c.cid");
@@ -79,37 +78,37 @@ TEST_F(SchemaTest, TheOlderTablesPlusTheStepsAreTodaysTables) {
     while (list.step()) found.push_back(list.text(0));
     return found;
   };
-  const std::string fresh = (folder_ / "fresh.db").string();
+  const std::string fresh = (folder / "fresh.db").string();
   { const RunStore store(fresh); }
-  Connection(path_, Connection::Mode::Write).execute(kVersion1);
-  { const RunStore store(path_); }
-  EXPECT_EQ(tables(path_), tables(fresh));
+  Connection(path, Connection::Mode::Write).execute(kVersion1);
+  { const RunStore store(path); }
+  EXPECT_EQ(tables(path), tables(fresh));
   EXPECT_GT(tables(fresh).size(), 30U);
 }
 
 TEST_F(SchemaTest, ANewerDatabaseIsRefusedUntouched) {
   {
-    RunStore store(path_);
+    RunStore store(path);
     record(store, 1);
   }
-  Connection(path_, Connection::Mode::Write).execute("PRAGMA user_version = 99");
-  EXPECT_THAT(refusal([&] { const RunStore store(path_); }), HasSubstr("newer program"));
-  EXPECT_THAT(refusal([&] { const RunReader reader(path_); }), HasSubstr("newer program"));
+  Connection(path, Connection::Mode::Write).execute("PRAGMA user_version = 99");
+  EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("newer program"));
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("newer program"));
   EXPECT_EQ(ask("PRAGMA user_version"), 99);
   EXPECT_EQ(ask("SELECT count(*) FROM run"), 1);
 }
 
 TEST_F(SchemaTest, AnotherProgramsDatabaseIsRefusedUntouched) {
-  Connection(path_, Connection::Mode::Write).execute("CREATE TABLE bookmark (url TEXT)");
-  EXPECT_THAT(refusal([&] { const RunStore store(path_); }), HasSubstr("another program"));
+  Connection(path, Connection::Mode::Write).execute("CREATE TABLE bookmark (url TEXT)");
+  EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("another program"));
   EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master"), 1);
 }
 
 TEST_F(SchemaTest, WritesDurably) {
-  const RunStore store(path_);
-  const Connection other(path_, Connection::Mode::Read);
+  const RunStore store(path);
+  const Connection other(path, Connection::Mode::Read);
   EXPECT_EQ(other.query_text("PRAGMA journal_mode"), "wal");
-  EXPECT_EQ(other.query_integer("PRAGMA page_size"), 16384);
+  EXPECT_EQ(other.query_integer("PRAGMA page_size"), 4096);
 }
 
 }  // namespace

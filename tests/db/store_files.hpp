@@ -18,10 +18,10 @@ class StoreFiles : public testing::Test {
   void SetUp() override {
     std::string pattern = testing::TempDir() + "tautline_db_XXXXXX";
     ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-    path_ = (folder_ / "runs.db").string();
+    folder = pattern;
+    path = (folder / "runs.db").string();
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
 
   static db::NewRun what(const std::string& scenario = "case1") {
     return {.scenario = scenario,
@@ -75,21 +75,28 @@ class StoreFiles : public testing::Test {
                                                          std::uint64_t from = 0,
                                                          std::size_t limit = 10) {
     std::vector<std::vector<std::byte>> found;
-    std::optional<std::uint64_t> next = from;
-    while (next) {
-      next = reader.frames(run, *next, limit, [&](std::uint64_t, std::span<const std::byte> bytes) {
-        found.emplace_back(bytes.begin(), bytes.end());
-      });
+    for (std::uint64_t at = from;;) {
+      const auto next =
+          reader.frames(run, at, limit, [&](std::uint64_t, std::span<const std::byte> bytes) {
+            found.emplace_back(bytes.begin(), bytes.end());
+          });
+      if (!next) return found;
+      at = *next;
     }
-    return found;
   }
-  static std::string integrity(const std::string& path) {
-    return db::detail::Connection(path, db::detail::Connection::Mode::Write)
+  /// The row of a run that must exist.
+  static db::RunRow get(db::RunReader& reader, db::RunId run) {
+    std::optional<db::RunRow> found = reader.get(run);
+    EXPECT_TRUE(found.has_value()) << "run " << run;
+    return std::move(found).value_or(db::RunRow{});
+  }
+  static std::string integrity(const std::string& file) {
+    return db::detail::Connection(file, db::detail::Connection::Mode::Write)
         .query_text("PRAGMA integrity_check");
   }
 
-  std::filesystem::path folder_{};
-  std::string path_{};
+  std::filesystem::path folder{};
+  std::string path{};
 };
 
 /// The sentence of the StoreError that `action` throws, or "".
