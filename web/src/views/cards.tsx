@@ -63,7 +63,7 @@ export function Banner(): JSX.Element | null {
   }
   const outcome = session?.run?.outcome;
   if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
-    const words = { collided: "The robot touched an obstacle. This run has ended.",
+    const words = { collided: "The robot touched an obstacle.",
       end_of_log: "The log has come to its end.",
       failed: session?.problem ?? "This run broke off." }[outcome];
     return (

@@ -143,7 +143,7 @@ function Opened(props: {
   return (
     <>
       <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
-      <section class="view" ref={frame} aria-label={`Run ${run.item.id}`} data-testid="run-view">
+      <section class="view" ref={frame} aria-busy={!run.done && !run.error} aria-label={`Run ${run.item.id}`} data-testid="run-view">
         <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
           label={`Run ${run.item.id} from above`} bounds={bounds}
           insets={() => ({ left: 20, top: 20, right: 20, bottom: card_height(frame.current) + 24 })}
