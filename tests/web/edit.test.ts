@@ -170,6 +170,15 @@ test("undo and redo reach an obstacle that came back under another number", asyn
   assert.equal(history.can_redo, null);
 });
 
+test("undo and redo pressed faster than the server answers come in turn", async () => {
+  const { standing, history } = world();
+  const presses = [history.perform(add_edit(new_cylinder(1, 0, 0.3))), history.undo(), history.redo(), history.undo(),
+    history.redo()];
+  await Promise.all(presses);
+  assert.equal(standing.size, 1);
+  assert.equal(history.can_redo, null);
+});
+
 test("an edit that is refused is not kept; a refused undo stays to be tried again", async () => {
   const { history, set_refuse } = world();
   set_refuse(true);
