@@ -71,7 +71,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
       await get("scenario-menu").click();
       await page.getByRole("combobox", { name: "Find a scenario" }).fill(name);
       await get(`scenario-${name}`).click();
-      await page.waitForSelector(`[data-testid="scenario-menu"][aria-label="Scenario: ${name}"]`);
+      await page.waitForSelector(`[data-testid="scenario-menu"][data-scenario="${name}"]`);
       await page.waitForFunction(() => !/^Loading/.test(document.querySelector(".menu-name").textContent));
     },
     async pick_radio(group, value) {
