@@ -70,7 +70,7 @@ async function run_tests() {
   });
   writeFileSync(join(out, "package.json"), '{"type":"module"}\n');
   const built = readdirSync(out).filter((name) => name.endsWith(".mjs"));
-  const result = spawnSync(process.execPath, ["--enable-source-maps", "--test",
+  const result = spawnSync(process.execPath, ["--enable-source-maps", "--test", "--test-reporter=spec",
     ...built.map((name) => join(out, name))], { stdio: "inherit" });
   process.exitCode = result.status ?? 1;
 }

@@ -22,6 +22,7 @@ const fb = await import(wire_path);
 const cyl = (id, x, y, radius) => ({ id, type: "cylinder", x, y, radius });
 const box = (id, x, y, length, width, heading = 0) => ({ id, type: "box", x, y, heading, length, width });
 const scenarios = {
+  demo: { title: "A short drive", goal: { x: 3, y: 1 }, obstacles: [cyl(1, 1.5, 0.2, 0.2)] },
   case1: { title: "One obstacle on the line", goal: { x: 3.5, y: 5 }, obstacles: [cyl(1, 1.75, 2.5, 0.3)] },
   case3: { title: "Three obstacles", goal: { x: 5, y: 4, heading: 0.7 },
     obstacles: [cyl(1, 1.7, 2, 0.4), cyl(2, 3.4, 2.05, 0.3), box(3, 3.4, 3.8, 0.6, 0.6)] },
@@ -361,7 +362,7 @@ function api(method, url, body) {
   const row = ({ frames, document, ...r }) => r;
   if (path === "/catalog") return catalog;
   if (path === "/version") return { name: "tautline", version: "0.1.0", protocol: 1, database: { path: "state/tautline.db", bytes: 1234567, runs: runs.length } };
-  if (path === "/session") return state();
+  if (path === "/session") return { ...state(), tick: s.tick, pose: s.pose };
   if (path === "/scenarios") return { items: Object.values(scenarios).map((x) => ({ name: x.name, title: x.title, description: x.description, builtin: true, kind: x.log ? "log" : "world" })), next: null };
   if (path === "/runs" && method === "POST") return { runs: [run_id] };
   if (path === "/runs") {
@@ -406,4 +407,4 @@ for (const [name, k] of [["case1", 0.6], ["case3", 0.6], ["wall", 0.4], ["case3"
   finish("stuck");
 }
 load("case3");
-server.listen(port, "127.0.0.1", () => console.log(`http://127.0.0.1:${port}/`));
+server.listen(port, "127.0.0.1", () => console.log(`http://127.0.0.1:${server.address().port}/`));

@@ -13,7 +13,7 @@ import * as rest from "./link/rest";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { TickRow } from "./state/columns";
 import { Store } from "./state/store";
-import { sentence_of } from "./words";
+import { sentence_of, titled } from "./words";
 
 export type ViewName = "drive" | "runs" | "system";
 export interface Toast { id: number; tone: "info" | "warn" | "bad"; text: string }
@@ -242,6 +242,11 @@ export class App {
     }
     this.ui.set({ theme });
     this.apply_theme();
+  }
+
+  /** A controller's name for people. */
+  controller_label(name: string): string {
+    return this.ui.value.catalog?.controllers.find((c) => c.name === name)?.label ?? titled(name);
   }
 
   toast(tone: Toast["tone"], text: string): void {

@@ -90,7 +90,7 @@ export function speed_word(speed: number): string {
 
 /** "modified_c1" as a label when the catalog has none. */
 export function titled(name: string): string {
-  const spaced = name.replace(/[_-]+/g, " ").replace(/([a-z])(\d)/g, "$1 $2");
+  const spaced = name.replace(/[_-]+/g, " ").replace(/([a-z]{2})(\d)/g, "$1 $2");
   return spaced.charAt(0).toUpperCase() + spaced.slice(1);
 }
 

@@ -28,8 +28,8 @@ export function draw_fan(g: Context, view: View, palette: Palette, placed: Place
 
 export function draw_returns(g: Context, view: View, palette: Palette, placed: PlacedSweep): void {
   const { raw, filtered } = sweep_points(placed);
-  dots(g, view, raw, palette.scan, 1.8);
-  dots(g, view, filtered, palette.filtered, 1.5);
+  dots(g, view, raw, palette.scan, 2.2);
+  dots(g, view, filtered, palette.filtered, 1.4);
 }
 
 function dots(g: Context, view: View, xy: Float32Array, colour: string, radius: number): void {

@@ -15,6 +15,7 @@ export class EditHistory {
   private done_: Edit[] = [];
   private undone_: Edit[] = [];
   private readonly most_ = 200;
+  private last_: Promise<unknown> = Promise.resolve();
 
   constructor(private readonly send_: Send, private readonly changed_: () => void = () => undefined) {}
 
@@ -32,10 +33,12 @@ export class EditHistory {
   }
 
   /** Sends the edit and keeps it for undo when the server accepts it; rejects when refused. */
-  async perform(edit: Edit): Promise<{ id?: number }> {
-    const answer = await this.send_(edit.forward);
-    this.record(complete(edit, answer.id));
-    return answer;
+  perform(edit: Edit): Promise<{ id?: number }> {
+    return this.in_turn(async () => {
+      const answer = await this.send_(edit.forward);
+      this.record(complete(edit, answer.id));
+      return answer;
+    });
   }
 
   /** Keeps an edit that has already been sent, such as the end of a drag. */
@@ -46,16 +49,25 @@ export class EditHistory {
     this.changed_();
   }
 
-  async undo(): Promise<string | null> {
-    const edit = this.done_.pop();
-    if (!edit?.backward) return null;
-    return this.move(edit, edit.backward, this.done_, this.undone_);
+  undo(): Promise<string | null> {
+    return this.in_turn(async () => {
+      const edit = this.done_.pop();
+      return edit?.backward ? this.move(edit, edit.backward, this.done_, this.undone_) : null;
+    });
   }
 
-  async redo(): Promise<string | null> {
-    const edit = this.undone_.pop();
-    if (!edit) return null;
-    return this.move(edit, edit.forward, this.undone_, this.done_);
+  redo(): Promise<string | null> {
+    return this.in_turn(async () => {
+      const edit = this.undone_.pop();
+      return edit ? this.move(edit, edit.forward, this.undone_, this.done_) : null;
+    });
+  }
+
+  /** One after the other: what is pressed fast waits for the answer before it. */
+  private in_turn<T>(act: () => Promise<T>): Promise<T> {
+    const next = this.last_.then(act, act);
+    this.last_ = next.catch(() => undefined);
+    return next;
   }
 
   private async move(edit: Edit, request: RequestJson, from: Edit[], to: Edit[]): Promise<string> {

@@ -67,6 +67,7 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
       }
       last = now;
       draw_scene(g, view, palette.current, scene, latest.current.overlay());
+      tell_view(canvas, view, moving);
       if (moving) request();
     };
     const request = () => {
@@ -135,4 +136,11 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
       aria-label={props.label} aria-describedby="scene-words" data-testid="scene"
       data-cursor={props.cursor} />
   );
+}
+
+/** Says on the element itself what it shows (centre x, y [m], scale [px/m]), so that a script can
+ * point at a place of the world. Nothing while the view is on its way. */
+function tell_view(canvas: HTMLCanvasElement, view: View, moving: boolean): void {
+  const now = moving ? "" : [view.x, view.y, view.scale].map((v) => v.toFixed(4)).join(" ");
+  if (canvas.dataset.view !== now) canvas.dataset.view = now;
 }

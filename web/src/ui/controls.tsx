@@ -5,17 +5,33 @@ import { Choice, ParameterInfo } from "../contract";
 import { fixed } from "../words";
 import { icons } from "./icons";
 
+/** What was picked, shown until the server's answer is in: then what holds is shown. */
+function use_picked(value: string, busy: boolean): [string, (picked: string) => void] {
+  const [picked, set_picked] = useState<string | null>(null);
+  const was_busy = useRef(false);
+  useEffect(() => {
+    if (was_busy.current && !busy) set_picked(null);
+    was_busy.current = busy;
+  }, [busy]);
+  useEffect(() => set_picked(null), [value]);
+  return [picked ?? value, set_picked];
+}
+
 /** A row of choices of which one holds, as radio buttons. */
 export function Segments(props: {
   label: string; name: string; choices: Choice[]; value: string; disabled?: boolean;
   on_pick: (name: string) => void;
 }): JSX.Element {
+  const [value, set_picked] = use_picked(props.value, props.disabled ?? false);
   return (
     <div class="segments" role="radiogroup" aria-label={props.label} data-testid={props.name}>
       {props.choices.map((c) => (
-        <label key={c.name} class={c.name === props.value ? "on" : ""} title={c.help}>
-          <input type="radio" name={props.name} value={c.name} checked={c.name === props.value}
-            disabled={props.disabled} onChange={() => props.on_pick(c.name)} />
+        <label key={c.name} class={c.name === value ? "on" : ""} title={c.help}>
+          <input type="radio" name={props.name} value={c.name} checked={c.name === value}
+            disabled={props.disabled} onChange={() => {
+              set_picked(c.name);
+              props.on_pick(c.name);
+            }} />
           <span>{c.label}</span>
         </label>
       ))}
@@ -27,10 +43,14 @@ export function Pick(props: {
   label: string; name: string; choices: { value: string; label: string }[]; value: string;
   disabled?: boolean; on_pick: (value: string) => void; class?: string;
 }): JSX.Element {
+  const [value, set_picked] = use_picked(props.value, props.disabled ?? false);
   return (
     <span class={`pick ${props.class ?? ""}`}>
-      <select aria-label={props.label} data-testid={props.name} value={props.value}
-        disabled={props.disabled} onChange={(e) => props.on_pick(e.currentTarget.value)}>
+      <select aria-label={props.label} data-testid={props.name} value={value}
+        disabled={props.disabled} onChange={(e) => {
+          set_picked(e.currentTarget.value);
+          props.on_pick(e.currentTarget.value);
+        }}>
         {props.choices.map((c) => <option key={c.value} value={c.value}>{c.label}</option>)}
       </select>
       {icons.down}

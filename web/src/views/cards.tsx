@@ -63,7 +63,7 @@ export function Banner(): JSX.Element | null {
   }
   const outcome = session?.run?.outcome;
   if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
-    const words = { collided: "The robot touched an obstacle. This run has ended.",
+    const words = { collided: "The robot touched an obstacle.",
       end_of_log: "The log has come to its end.",
       failed: session?.problem ?? "This run broke off." }[outcome];
     return (
@@ -88,12 +88,17 @@ const kKey: { colour: string; label: string; shape: string }[] = [
   { colour: "safe", label: "Safety circle", shape: "dashed" },
 ];
 
+/** What a log can show: it has a scan and a path, but no strip of its own. */
+const kSeen = ["Raw scan", "Filtered scan", "Travelled path"];
+
 /** What the colours mean, and how much the forces are enlarged. */
 export function Legend(): JSX.Element {
   const app = use_app();
   const [open, set_open] = useState<boolean | null>(null);
   const times = use_store(app.ui, (u) => u.force_scale);
   const next = { 1: 2, 2: 5, 5: 1 }[times] ?? 1;
+  const drives = use_store(app.ui, (u) => u.session?.robot.drives ?? true);
+  const shown = drives ? kKey : kKey.filter((k) => kSeen.includes(k.label));
   return (
     <div class={`card legend ${open === null ? "auto" : open ? "open" : "closed"}`}>
       <button class="text legend-button" aria-expanded={open ?? undefined}
@@ -102,13 +107,13 @@ export function Legend(): JSX.Element {
           set_open(getComputedStyle(list).display === "none");
         }}>Legend</button>
       <ul>
-        {kKey.map((k) => (
+        {shown.map((k) => (
           <li key={k.label}><i class={`swatch c-${k.colour} ${k.shape}`} />{k.label}</li>
         ))}
       </ul>
-      <button class="text scale-button" data-testid="force-scale"
+      {drives && <button class="text scale-button" data-testid="force-scale"
         title="A force is a displacement in metres; this enlarges its arrow"
-        onClick={() => app.ui.set({ force_scale: next })}>Forces drawn ×{times}</button>
+        onClick={() => app.ui.set({ force_scale: next })}>Forces drawn ×{times}</button>}
     </div>
   );
 }

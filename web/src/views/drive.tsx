@@ -158,9 +158,9 @@ function Tools(): JSX.Element {
   );
   // In 3D one looks; editing is done from above, where a place is one place.
   if (three) return <div class="tools" role="toolbar" aria-label="Tools">{threed}</div>;
-  const button = (name: Tool, label: string, key: string, can: boolean) => (
-    <button class={tool === name && can ? "on" : ""} aria-pressed={tool === name && can}
-      disabled={!can} aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
+  const button = (name: Tool, label: string, key: string, can: boolean) => can && (
+    <button class={tool === name ? "on" : ""} aria-pressed={tool === name}
+       aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
       onClick={() => app.ui.set({ tool: name, selection: null })}>
       {icons[name as "goal"]}
     </button>
@@ -171,11 +171,11 @@ function Tools(): JSX.Element {
       {button("cylinder", "Cylinder: press, drag for its size", "C", editable)}
       {button("box", "Box: press, drag for its size", "B", editable)}
       {button("measure", "Measure a distance", "M", true)}
-      <button aria-label={undo ? `Undo: ${undo}` : "Undo"} title={undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo"}
-        disabled={!undo} data-testid="undo" onClick={() => void app.undo()}>{icons.undo}</button>
-      <button class="wide-only" aria-label={redo ? `Do again: ${redo}` : "Do again"} disabled={!redo}
+      {(drives || editable) && <button aria-label={undo ? `Undo: ${undo}` : "Undo"} title={undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo"}
+        disabled={!undo} data-testid="undo" onClick={() => void app.undo()}>{icons.undo}</button>}
+      {(drives || editable) && <button class="wide-only" aria-label={redo ? `Do again: ${redo}` : "Do again"} disabled={!redo}
         title={redo ? `Do again: ${redo} (Ctrl+Shift+Z)` : "Nothing to do again"}
-        onClick={() => void app.redo()}>{icons.redo}</button>
+        onClick={() => void app.redo()}>{icons.redo}</button>}
       <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit"
         onClick={() => {
           app.view.fitted = true;

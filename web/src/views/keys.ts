@@ -180,8 +180,14 @@ function place(app: App, at: { x: number; y: number }): void {
   if (tool === "goal" && session?.robot.drives) {
     void app.edit(set_goal_edit(app.scene.goal, { ...at, heading: null }));
   } else if (tool === "cylinder" && session?.robot.editable) {
-    void app.edit(add_edit(new_cylinder(at.x, at.y, 0.3)));
+    add(app, new_cylinder(at.x, at.y, 0.3));
   } else if (tool === "box" && session?.robot.editable) {
-    void app.edit(add_edit(new_box(at.x, at.y, 0.6, 0.6)));
+    add(app, new_box(at.x, at.y, 0.6, 0.6));
   }
+}
+
+function add(app: App, obstacle: Obstacle): void {
+  void app.edit(add_edit(obstacle)).then((answer) => {
+    if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
+  });
 }

@@ -143,7 +143,7 @@ function Opened(props: {
   return (
     <>
       <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
-      <section class="view" ref={frame} aria-label={`Run ${run.item.id}`} data-testid="run-view">
+      <section class="view" ref={frame} aria-busy={!run.done && !run.error} aria-label={`Run ${run.item.id}`} data-testid="run-view">
         <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
           label={`Run ${run.item.id} from above`} bounds={bounds}
           insets={() => ({ left: 20, top: 20, right: 20, bottom: card_height(frame.current) + 24 })}
@@ -245,8 +245,7 @@ function Facts(props: {
       <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
       <b>Run {item.id}</b>
       <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
-      <span class="quiet">{titled(item.scenario)} · {titled(item.controller)} · {item.filter} · seed {item.seed}</span>
-      <span class="space" />
+      <span class="quiet">{titled(item.scenario)} · {app.controller_label(item.controller)} · {item.filter} · seed {item.seed}</span>
       <span class="facts-acts">
         {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
         <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
@@ -264,7 +263,7 @@ function Facts(props: {
           {runs.map((r, i) => (
             <tr key={r.id}>
               {props.other &&
-                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {titled(r.controller)}</th>}
+                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {app.controller_label(r.controller)}</th>}
               {kRows.map((row) => (
                 <td key={row.label} class="num">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"}</td>
               ))}

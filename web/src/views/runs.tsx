@@ -166,7 +166,7 @@ function RunTable(props: {
               <td class="num"><a class="run-link" href={`#/runs/${r.id}`} aria-current={on ? "true" : undefined}
                 onKeyDown={(e) => move(e, i)} onClick={(e) => e.stopPropagation()}>{r.id}</a></td>
               <td>{titled(r.scenario)}</td>
-              <td>{titled(r.controller)}</td>
+              <td>{app.controller_label(r.controller)}</td>
               <td><span class={`tag tone-${word.tone}`}><i />{word.word}</span></td>
               <td class="r num">{fixed(m?.time ?? r.time, 1)}</td>
               <td class="r num wide">{fixed(m?.path_length, 2)}</td>

@@ -40,7 +40,7 @@ export function StartRun(props: { on_close: () => void; on_started: () => void }
   };
   return (
     <Dialog title="Start a run" name="start-dialog" on_close={props.on_close}>
-      <form class="form" onSubmit={(e) => void submit(e)}>
+      <form class="form" noValidate onSubmit={(e) => void submit(e)}>
         <div class="line"><span>Scenario</span>
           <Pick label="Scenario" name="start-scenario" value={scenario} on_pick={set_scenario}
             choices={scenarios.map((s) => ({ value: s.name, label: titled(s.name) }))} /></div>

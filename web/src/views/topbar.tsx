@@ -83,8 +83,9 @@ function ScenarioMenu(): JSX.Element {
   return (
     <div class="menu" ref={box}>
       <button ref={button} class="menu-button" aria-haspopup="listbox" aria-expanded={open}
-        data-testid="scenario-menu" disabled={!session} aria-label={`Scenario: ${name || "none"}`}
+        data-testid="scenario-menu" disabled={!session} data-scenario={name}
         onClick={() => set_open(!open)}>
+        <span class="hidden-words">Scenario:</span>
         <span class="menu-name">{loading ? `Loading ${titled(loading)}` : titled(name) || "No scenario"}</span>
         {!loading && title !== titled(name) && <small class="wide">{title}</small>}
         {icons.down}

@@ -63,7 +63,7 @@ function GoalValues(props: { goal: Goal | null; selected: boolean }): JSX.Elemen
     void app.edit(set_goal_edit(app.scene.goal, { x: v.x, y: v.y, heading })).then(forget);
   };
   return (
-    <form class={`card values ${props.selected ? "" : "unasked"}`} onSubmit={apply} aria-label="Goal" data-testid="goal-values">
+    <form class={`card values ${props.selected ? "" : "unasked"}`} noValidate onSubmit={apply} aria-label="Goal" data-testid="goal-values">
       <b class="tone-ok">Goal</b>
       <NumberField label="x" unit="m" name="goal-x" value={v.x} on_change={(x) => type({ x })} />
       <NumberField label="y" unit="m" name="goal-y" value={v.y} on_change={(y) => type({ y })} />
@@ -92,7 +92,7 @@ function ObstacleValues(props: { obstacle: Obstacle; editable: boolean }): JSX.E
     : o.kind === "polygon" ? `${o.points.length} corners`
       : `${o.length.toFixed(2)} × ${o.width.toFixed(2)} m`;
   return (
-    <form class="card values" onSubmit={apply} aria-label={obstacle_name(o)} data-testid="obstacle-values">
+    <form class="card values" noValidate onSubmit={apply} aria-label={obstacle_name(o)} data-testid="obstacle-values">
       <b>{obstacle_name(o)} {o.id}</b>
       <span class="quiet num">{size}</span>
       <NumberField label="x" unit="m" name="obstacle-x" value={v.x} on_change={(x) => type({ x: x ?? 0 })} />
@@ -136,7 +136,7 @@ function NewValues(props: { kind: "cylinder" | "box" }): JSX.Element {
       on_change={(value) => type({ [name]: value ?? 0 })} />
   );
   return (
-    <form class="card values unasked" onSubmit={apply} aria-label={`New ${props.kind}`} data-testid="new-values">
+    <form class="card values unasked" noValidate onSubmit={apply} aria-label={`New ${props.kind}`} data-testid="new-values">
       <b>New {props.kind}</b>
       {field("x", "x")}
       {field("y", "y")}

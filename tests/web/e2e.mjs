@@ -1,0 +1,285 @@
+// tests/web/e2e.mjs: the page in a real browser against the real program. Run with
+// TAUTLINE_BIN=build/release/server/tautline node --test tests/web/e2e.mjs
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { desktop, launch, open, phone } from "./page.mjs";
+import { json, scratch, serve, until } from "./program.mjs";
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser?.close());
+
+/** A server and a page on it, both gone afterwards. */
+async function with_page(options, act) {
+  const place = scratch();
+  const server = await serve({ database: place.database, scenario: options.scenario });
+  try {
+    const p = await open(browser, server.base, options);
+    await act(p, server, place);
+    await p.close();
+  } finally {
+    await server.stop();
+    place.remove();
+  }
+}
+
+const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
+
+for (const vehicle of ["bullet", "kinematic"]) {
+  test(`the main job with the ${vehicle} vehicle`, { timeout: 240_000 }, () =>
+    with_page({ scenario: "demo" }, async (p, { base }) => {
+      // Load case1, choose the vehicle and the controller.
+      await p.load("case1");
+      await p.pick_radio("vehicle", vehicle);
+      await until("the vehicle is chosen", 10, () => json(base, "/session"), (s) => s.vehicle === vehicle);
+      for (const controller of ["original", "modified"]) {
+        await p.get("controller").selectOption(controller);
+        await until(`${controller} is chosen`, 10, () => json(base, "/session"), (s) => s.controller === controller);
+      }
+      await until("the page follows", 10, () => p.get("controller").inputValue(), (v) => v === "modified");
+
+      // Drag a goal: pressed at (3.2, 5.0), drawn to the upper right.
+      await p.get("tool-goal").click();
+      const goal = await p.pixels(3.2, 5.0);
+      await p.drag(goal, { x: goal.x + 60, y: goal.y - 60 });
+      const aimed = await until("the goal is set", 10, () => json(base, "/session"),
+        (s) => s.goal && near(s.goal.x, 3.2, 0.05) && near(s.goal.y, 5.0, 0.05));
+      assert.ok(near(aimed.goal.heading, Math.PI / 4, 0.05), `heading ${aimed.goal.heading}`);
+
+      // Drop an obstacle in the way.
+      await p.get("tool-cylinder").click();
+      const way = await p.pixels(0.85, 1.35);
+      await p.page.mouse.click(way.x, way.y);
+      const world = await until("the obstacle stands", 10, () => json(base, "/session"), (s) => s.obstacles.length === 2);
+      const dropped = world.obstacles.find((o) => o.id !== 1);
+      assert.ok(near(dropped.x, 0.85, 0.05) && near(dropped.y, 1.35, 0.05), JSON.stringify(dropped));
+      await p.page.keyboard.press("Escape");
+
+      // Watch it reach, at 8 times real time.
+      await p.get("speed").selectOption("8");
+      await until("the page shows it driving", 20, () => p.get("state").textContent(), (w) => w === "Driving");
+      await p.shot(`drive-${vehicle}-under-way`);
+      await until("the page shows it arrived", 150, () => p.get("state").textContent(), (w) => w === "Arrived");
+      assert.ok(Number.parseFloat(await p.get("figure-to-goal").textContent()) < 0.2);
+      assert.match(await p.get("explain").textContent(), /\w/);
+      const session = await json(base, "/session");
+      assert.equal(session.run.outcome, "reached");
+      await p.shot(`drive-${vehicle}-arrived`);
+
+      // Open that run and scrub it.
+      const run = session.run.id;
+      await p.get("nav-runs").click();
+      await p.get(`run-${run}`).click();
+      await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 30_000 });
+      const slider = p.get("timeline");
+      const end = await until("the run's frames are there", 30, async () => Number(await slider.getAttribute("max")), (t) => t > 5);
+      await slider.fill(String((end / 2).toFixed(2)));
+      const middle = await p.get("run-time").textContent();
+      const words = await p.get("run-explain").textContent();
+      await slider.fill("0");
+      assert.notEqual(await p.get("run-time").textContent(), middle);
+      assert.match(await p.get("run-time").textContent(), /^00:00\.0/);
+      assert.notEqual(await p.get("run-explain").textContent(), "");
+      await slider.fill(String((end / 2).toFixed(2)));
+      assert.equal(await p.get("run-time").textContent(), middle);
+      assert.equal(await p.get("run-explain").textContent(), words, "the same instant has the same sentence");
+      await p.get("run-play").click();
+      await until("it plays", 10, () => p.get("run-time").textContent(), (t) => t !== middle);
+      await p.shot(`runs-${vehicle}`);
+      const csv = await fetch(`${base}/api/v1/runs/${run}/csv`);
+      assert.equal(csv.status, 200);
+      assert.equal(await p.get("csv").getAttribute("href"), `/api/v1/runs/${run}/csv`);
+    }));
+}
+
+test("by keyboard alone: goal, obstacle, undo, gain, stop and release", { timeout: 120_000 }, () =>
+  with_page({ scenario: "case1" }, async (p, { base }) => {
+    const key = (k) => p.page.keyboard.press(k);
+    const session = () => json(base, "/session");
+    await key("p");
+    await until("paused", 10, session, (s) => s.pace.paused);
+    const tick = (await session()).tick;
+    await key(".");
+    await until("one tick on", 10, session, (s) => s.tick === tick + 1);
+
+    // A goal typed into its box, reached by Tab from the tools.
+    await key("g");
+    await p.get("goal-x").focus();
+    await p.page.keyboard.type("2.5");
+    await key("Tab");
+    await p.page.keyboard.press("Control+A");
+    await p.page.keyboard.type("4");
+    await key("Enter");
+    await key("Escape");
+    await p.page.evaluate(() => document.activeElement.blur());
+    const typed = (s) => s.goal && near(s.goal.y, 4, 1e-9);
+    await until("the typed goal", 10, session, typed);
+
+    // An obstacle placed at the crosshair, then moved by 0.1 m, undone, done again, removed.
+    const before_add = (await session()).obstacles.length;
+    await key("c");
+    await p.get("scene").focus();
+    for (let i = 0; i < 12; ++i) await key("ArrowLeft");
+    await key("Enter");
+    const added = await until("the obstacle", 10, session, (s) => s.obstacles.length === before_add + 1);
+    const made = added.obstacles.at(-1);
+    await until("it is selected", 5, () => p.page.locator('[data-testid="obstacle-values"]').count(), (n) => n === 1);
+    await key("ArrowLeft");
+    await until("it moved", 10, session, (s) => near(s.obstacles.find((o) => o.id === made.id).x, made.x - 0.1, 1e-6));
+    await key("Control+z");
+    await until("moved back", 10, session, (s) => near(s.obstacles.find((o) => o.id === made.id).x, made.x, 1e-6));
+    await key("Control+Shift+Z");
+    await until("moved again", 10, session, (s) => near(s.obstacles.find((o) => o.id === made.id).x, made.x - 0.1, 1e-6));
+    await key("Delete");
+    await until("removed", 10, session, (s) => s.obstacles.length === before_add);
+    await key("Control+z");
+    await until("it is back", 10, session, (s) => s.obstacles.length === before_add + 1);
+
+    // A gain by its slider's arrows; the server holds it.
+    const gain = (await session()).parameters.safety_distance;
+    await p.get("gain-safety_distance").focus();
+    await key("ArrowRight");
+    await until("the gain", 10, session, (s) => s.parameters.safety_distance > gain);
+
+    // Space stops, from a button as well, and never releases.
+    await p.get("play").focus();
+    await key("Space");
+    await until("stopped", 10, session, (s) => s.stop);
+    await key("Space");
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    assert.equal((await session()).stop, true);
+    assert.equal((await session()).pace.paused, true, "Space did not press the button in focus");
+    await p.get("release").focus();
+    await key("Enter");
+    await until("released", 10, session, (s) => !s.stop);
+
+    await key("?");
+    await p.page.waitForSelector('[data-testid="shortcuts"]');
+    await key("Escape");
+    await p.page.waitForSelector('[data-testid="shortcuts"]', { state: "detached" });
+  }));
+
+test("what the server refuses is said, and the value goes back", { timeout: 60_000 }, () =>
+  with_page({ scenario: "case1" }, async (p, { base }) => {
+    await p.page.keyboard.press("p");
+    const { pose } = await until("a pose", 10, () => json(base, "/session"), (s) => s.pose && s.pace.paused);
+    // An obstacle on the robot itself.
+    await p.get("tool-cylinder").click();
+    const robot = await p.pixels(pose.x, pose.y);
+    await p.page.mouse.click(robot.x, robot.y);
+    const words = await until("a sentence", 10, () => p.get("toasts").textContent());
+    assert.match(words, /robot/i);
+    assert.equal((await json(base, "/session")).obstacles.length, 1);
+    // A gain with which the strip could be pushed into an obstacle: S >= K_r d_safe.
+    const slider = p.get("gain-k_r");
+    const held = await slider.inputValue();
+    await slider.fill(await slider.getAttribute("min"));
+    await until("it went back", 10, () => slider.inputValue(), (v) => v === held);
+    assert.ok((await p.get("toasts").textContent()).length > words.length, "the server's sentence is shown");
+  }));
+
+test("two pages at once: the last writer wins and both see it", { timeout: 60_000 }, () =>
+  with_page({ scenario: "case1" }, async (p, { base }) => {
+    const q = await open(browser, base, { theme: "light" });
+    const value = async (page, id) => Number(await page.get(id).inputValue());
+    for (const [writer, x] of [[p, 2], [q, 2.5]]) {
+      await writer.get("goal-x").fill(String(x));
+      await writer.get("goal-set").click();
+      for (const page of [p, q]) await until(`goal at ${x}`, 10, () => value(page, "goal-x"), (v) => v === x);
+    }
+    await q.page.keyboard.press("Escape");
+    await q.get("stop").click();
+    await until("stopped on the other page", 10, () => p.get("stop").getAttribute("aria-pressed"), (v) => v === "true");
+    await p.get("release").click();
+    await until("released on the other page", 10, () => q.get("stop").getAttribute("aria-pressed"), (v) => v === "false");
+    await q.close();
+  }));
+
+test("the page comes back by itself after the server was away", { timeout: 90_000 }, async () => {
+  const place = scratch();
+  let server = await serve({ database: place.database });
+  const p = await open(browser, server.base);
+  await until("frames", 10, () => p.get("link").textContent(), (w) => /[1-9]\d* frames/.test(w));
+  await server.stop("SIGKILL");
+  const words = await until("it is said", 15, () => p.page.locator('[data-testid="banner"]').textContent().catch(() => ""));
+  assert.match(words, /Connection lost\. Trying/);
+  await p.shot("drive-disconnected");
+  server = await serve({ database: place.database, port: server.port });
+  await p.page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
+  await until("frames again", 15, () => p.get("link").textContent(), (w) => /[1-9]\d* frames/.test(w));
+  // The run that was cut is marked so.
+  const runs = await json(server.base, "/runs");
+  assert.ok(runs.items.some((r) => r.status === "interrupted"), JSON.stringify(runs.items.map((r) => r.status)));
+  p.forgive(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
+  await p.close();
+  await server.stop();
+  place.remove();
+});
+
+test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeout: 90_000 }, () =>
+  with_page({ scenario: "case1", size: phone, touch: true }, async (p, { base }) => {
+    const at = await p.pixels(1.0, 4.0);
+    await p.page.touchscreen.tap(at.x, at.y);
+    await until("the goal", 10, () => json(base, "/session"), (s) => s.goal && near(s.goal.x, 1, 0.06) && near(s.goal.y, 4, 0.06));
+    const wide = await p.page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= phone.width, `the page is ${wide} px wide`);
+    await p.get("tune").click();
+    await p.page.waitForSelector('[data-testid="sheet"] [data-testid="gain-k_r"]');
+    await p.shot("phone-sheet");
+    await p.get("tune").click();
+    await p.get("nav-runs").click();
+    const { run } = await json(base, "/session");
+    await p.get(`run-${run.id}`).click();
+    await p.page.waitForSelector('[data-testid="run-view"]');
+    await p.page.getByRole("link", { name: "Back to the list" }).click();
+    await p.page.waitForSelector('[data-testid="run-table"]');
+  }));
+
+test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
+  with_page({ scenario: "case1" }, async (p, { base }) => {
+    await p.get("three").click();
+    await p.page.waitForSelector('[data-testid="scene-3d"] canvas');
+    await p.page.waitForTimeout(1500);
+    await p.shot("drive-3d");
+    await p.get("three").click();
+    await p.page.waitForSelector('[data-testid="scene"]');
+    const plain = await launch(["--disable-3d-apis"]);
+    const q = await open(plain, base);
+    await q.get("three").click();
+    assert.match(await q.get("no-webgl").textContent(), /WebGL/);
+    await q.page.getByRole("button", { name: "Show it from above" }).click();
+    await q.page.waitForSelector('[data-testid="scene"]');
+    q.forgive(/WebGL|3d/i);
+    await q.close();
+    await plain.close();
+  }));
+
+test("every view is accessible, in both themes; screenshots are kept", { timeout: 150_000 }, () =>
+  with_page({ scenario: "case3" }, async (first, { base }) => {
+    await json(base, "/runs", { method: "POST", body: JSON.stringify({ scenario: "case1", seed: 1 }) })
+      .then(({ runs }) => until("a finished run", 60, () => json(base, `/runs/${runs[0]}`), (r) => r.status === "finished"));
+    const faults = [];
+    for (const theme of ["dark", "light"]) {
+      for (const [name, size] of [["desktop", desktop], ["phone", phone], ["tablet", { width: 1024, height: 768 }]]) {
+        const p = await open(browser, base, { theme, size });
+        await p.page.waitForTimeout(1200);
+        for (const view of ["drive", "runs", "system"]) {
+          await p.get(`nav-${view}`).click();
+          if (view === "runs") {
+            await p.page.locator("a.run-link").nth(size === phone ? 0 : 1).waitFor();
+            if (size !== phone) await p.page.locator("tbody tr").nth(0).click();
+            await p.page.waitForTimeout(900);
+          }
+          await p.shot(`${view}-${name}-${theme}`);
+          if (name !== "tablet") {
+            for (const fault of await p.accessibility()) faults.push(`${view} ${name} ${theme}: ${fault}`);
+          }
+        }
+        await p.close();
+      }
+    }
+    assert.deepEqual(faults, []);
+    assert.ok(first);
+  }));

@@ -1,0 +1,215 @@
+// tests/web/foxglove.test.ts: the protocol's bytes, and the live link over a socket that is not one.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { kBackoff, LinkStatus, LiveLink, SocketLike } from "../../web/src/link/live";
+import { parse_binary, parse_text, service_request } from "../../web/src/link/foxglove";
+import { Frame } from "../../web/src/link/frame";
+import { frame_bytes } from "./wire";
+
+const hex = (text: string) => Uint8Array.from(text.match(/../g)!.map((b) => parseInt(b, 16))).buffer as ArrayBuffer;
+
+test("message data: the protocol's own vector", () => {
+  const m = parse_binary(hex("01070000001581e97df4102211"));
+  assert.ok(m && m.op === "message");
+  assert.equal(m.subscription, 7);
+  assert.equal(m.time_ns, 1234567890123456789n);
+  assert.equal(m.payload.length, 0);
+});
+
+test("frames cut at every byte are refused or read, never thrown over", () => {
+  const whole = new Uint8Array(hex("03010000000200000004000000" + "6a736f6e" + "7b7d"));
+  for (let n = 0; n < whole.length; ++n) {
+    const m = parse_binary(whole.slice(0, n).buffer);
+    if (n < 17) assert.equal(m, null, `${n} bytes`);
+  }
+  const m = parse_binary(whole.buffer);
+  assert.ok(m && m.op === "service_response");
+  assert.equal(m.encoding, "json");
+  assert.equal(new TextDecoder().decode(m.payload), "{}");
+});
+
+test("a declared length beyond the frame is refused", () => {
+  assert.equal(parse_binary(hex("030100000002000000ffffffff6a736f6e")), null);
+});
+
+test("text that is no message is nothing", () => {
+  for (const text of ["", "{", "[]", "3", "null", '{"a":1}']) assert.equal(parse_text(text), null);
+  assert.equal(parse_text('{"op":"status","level":1,"message":"x"}')?.op, "status");
+});
+
+test("a service request is laid out as the protocol says", () => {
+  // opcode 2, service 1, call 258, length 4, "json", {}
+  assert.equal(Buffer.from(service_request(1, 258, {})).toString("hex"),
+    "02" + "01000000" + "02010000" + "04000000" + "6a736f6e" + "7b7d");
+});
+
+/** Timers that go by when told to; put back by `restore`. */
+function hand_wound() {
+  const kept = { setTimeout, clearTimeout, setInterval, clearInterval };
+  const waiting = new Map<number, { at: number; act: () => void }>();
+  let now = 0;
+  let next = 1;
+  Object.assign(globalThis, {
+    setTimeout: (act: () => void, ms = 0) => (waiting.set(next, { at: now + ms, act }), next++),
+    clearTimeout: (id: number) => waiting.delete(id),
+    setInterval: () => 0, // the heartbeat is not wanted here
+    clearInterval: () => undefined,
+  });
+  return {
+    tick(ms: number) {
+      now += ms;
+      for (const [id, timer] of [...waiting]) {
+        if (timer.at <= now && waiting.delete(id)) timer.act();
+      }
+    },
+    restore: () => Object.assign(globalThis, kept),
+  };
+}
+
+class FakeSocket implements SocketLike {
+  binaryType = "";
+  readyState = 0;
+  sent: (string | Uint8Array)[] = [];
+  onopen: (() => void) | null = null;
+  onclose: (() => void) | null = null;
+  onmessage: ((event: { data: unknown }) => void) | null = null;
+  onerror: (() => void) | null = null;
+  send(data: string | Uint8Array) {
+    this.sent.push(data);
+  }
+  close() {
+    this.readyState = 3;
+  }
+  open() {
+    this.readyState = 1;
+    this.onopen?.();
+  }
+  text(message: unknown) {
+    this.onmessage?.({ data: JSON.stringify(message) });
+  }
+  ops(): { op: string; [key: string]: unknown }[] {
+    return this.sent.filter((s): s is string => typeof s === "string").map((s) => JSON.parse(s));
+  }
+}
+
+function linked() {
+  const sockets: FakeSocket[] = [];
+  const seen = { frames: [] as Frame[], states: [] as unknown[], notices: [] as string[],
+    status: [] as LinkStatus[], sessions: 0 };
+  const link = new LiveLink("ws://x/ws", {
+    frame: (f) => seen.frames.push(f), state: (s) => seen.states.push(s),
+    status: (s) => seen.status.push(s), notice: (_, m) => seen.notices.push(m), log: () => undefined,
+    new_session: () => ++seen.sessions,
+  }, () => {
+    const socket = new FakeSocket();
+    sockets.push(socket);
+    return socket;
+  });
+  link.start();
+  const ready = (socket: FakeSocket, session = "a") => {
+    socket.open();
+    socket.text({ op: "serverInfo", name: "t", capabilities: [], sessionId: session });
+    socket.text({ op: "advertise", channels: [{ id: 5, topic: "/telemetry", encoding: "flatbuffer", schemaName: "" },
+      { id: 6, topic: "/scan", encoding: "json", schemaName: "" }] });
+    socket.text({ op: "advertiseServices", services: [{ id: 9, name: "/reset" }] });
+  };
+  return { link, sockets, seen, ready };
+}
+
+test("the link subscribes to what the page reads, and no more", () => {
+  const { link, sockets, ready } = linked();
+  ready(sockets[0]);
+  const subscribed = sockets[0].ops().filter((o) => o.op === "subscribe");
+  assert.deepEqual(subscribed.map((o) => (o.subscriptions as { channelId: number }[])[0].channelId), [5]);
+  link.close();
+});
+
+test("a frame comes through, at an odd address in the message as well", () => {
+  const { link, sockets, seen, ready } = linked();
+  ready(sockets[0]);
+  const id = (sockets[0].ops().find((o) => o.op === "subscribe")!.subscriptions as { id: number }[])[0].id;
+  const payload = frame_bytes({ tick: 3, ranges: [1000, 2000, 65535] });
+  const message = new Uint8Array(13 + payload.length); // the payload starts at byte 13
+  message[0] = 1;
+  new DataView(message.buffer).setUint32(1, id, true);
+  message.set(payload, 13);
+  sockets[0].onmessage?.({ data: message.buffer });
+  assert.equal(seen.frames.length, 1);
+  assert.deepEqual([...seen.frames[0].sweeps[0].ranges], [1000, 2000, 65535]);
+  link.close();
+});
+
+test("a service answers with its value, or with the server's sentence", async () => {
+  const { link, sockets, ready } = linked();
+  ready(sockets[0]);
+  const good = link.call<{ ok: boolean }>("/reset");
+  const request = sockets[0].sent.at(-1) as Uint8Array;
+  const call = new DataView(request.buffer).getUint32(5, true);
+  const answer = Buffer.concat([Buffer.from("0309000000", "hex"), Buffer.alloc(4), Buffer.from("04000000", "hex"),
+    Buffer.from('json{"ok":true}')]);
+  answer.writeUInt32LE(call, 5);
+  sockets[0].onmessage?.({ data: answer.buffer.slice(answer.byteOffset, answer.byteOffset + answer.length) });
+  assert.deepEqual(await good, { ok: true });
+
+  const bad = link.call("/reset");
+  sockets[0].text({ op: "serviceCallFailure", serviceId: 9, callId: call + 1, message: "Not while hung up." });
+  await assert.rejects(bad, /Not while hung up/);
+  await assert.rejects(link.call("/nothing"), /does not offer \/nothing/);
+  link.close();
+});
+
+test("a refused parameter resolves with the value the server kept", async () => {
+  const { link, sockets, seen, ready } = linked();
+  ready(sockets[0]);
+  const set = link.set_parameter("k_r", 9);
+  const asked = sockets[0].ops().find((o) => o.op === "setParameters")!;
+  sockets[0].text({ op: "status", level: 1, message: "k_r must be at most 2." });
+  sockets[0].text({ op: "parameterValues", id: asked.id, parameters: [{ name: "k_r", value: 0.6 }] });
+  assert.equal(await set, 0.6);
+  assert.deepEqual(seen.notices, ["k_r must be at most 2."]);
+  link.close();
+});
+
+test("a lost connection is said, waits longer each time, and fails what was under way", async () => {
+  const timers = hand_wound();
+  const { link, sockets, seen, ready } = linked();
+  ready(sockets[0]);
+  const under_way = link.call("/reset");
+  sockets[0].onclose?.();
+  await assert.rejects(under_way, /connection was lost/);
+  assert.equal(seen.status.at(-1)?.phase, "lost");
+  for (let i = 0; i < kBackoff.length + 1; ++i) {
+    const pause = kBackoff[Math.min(i, kBackoff.length - 1)];
+    timers.tick(pause - 1);
+    assert.equal(sockets.length, i + 1, "too early");
+    timers.tick(1);
+    assert.equal(sockets.length, i + 2);
+    sockets.at(-1)!.onclose?.();
+  }
+  link.close();
+  timers.restore();
+});
+
+test("another server process means that what was known no longer holds", () => {
+  const timers = hand_wound();
+  const { link, sockets, seen, ready } = linked();
+  ready(sockets[0], "a");
+  sockets[0].onclose?.();
+  timers.tick(500);
+  ready(sockets[1], "a");
+  assert.equal(seen.sessions, 0);
+  sockets[1].onclose?.();
+  timers.tick(500);
+  ready(sockets[2], "b");
+  assert.equal(seen.sessions, 1);
+  assert.ok(sockets[2].ops().some((o) => o.op === "subscribe"));
+  link.close();
+  timers.restore();
+});
+
+test("calls without a connection say so at once", async () => {
+  const { link } = linked();
+  await assert.rejects(link.call("/reset"), /no connection/);
+  await assert.rejects(link.set_parameter("k_r", 1), /no connection/);
+  link.close();
+});

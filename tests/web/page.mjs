@@ -1,0 +1,89 @@
+// tests/web/page.mjs: a browser page for the end-to-end tests: collects what went wrong, points at
+// places of the world, keeps screenshots.
+import assert from "node:assert/strict";
+import { mkdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { repository, require } from "./program.mjs";
+
+const { chromium } = require("playwright-core");
+const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
+const kShots = process.env.TAUTLINE_SCREENSHOTS ?? join(repository, "build/screenshots");
+
+export const desktop = { width: 1440, height: 900 };
+export const phone = { width: 390, height: 844 };
+
+export function launch(more = []) {
+  return chromium.launch({
+    executablePath: process.env.TAUTLINE_CHROMIUM ?? "/usr/bin/chromium",
+    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", ...more],
+  });
+}
+
+/** A page in a browser context of its own. `faults` gathers console errors, exceptions and CSP. */
+export async function open(browser, base, { size = desktop, theme = "dark", hash = "", touch = false } = {}) {
+  const context = await browser.newContext({ viewport: size, colorScheme: theme, hasTouch: touch, reducedMotion: "reduce" });
+  const page = await context.newPage();
+  const faults = [];
+  page.on("console", (m) => {
+    // The software renderer's own remark about reading pixels says nothing about the page.
+    if (["error", "warning"].includes(m.type()) && !/ReadPixels/.test(m.text())) faults.push(`${m.type()}: ${m.text()}`);
+  });
+  page.on("pageerror", (e) => faults.push(`exception: ${e.message}`));
+  await page.addInitScript(() => {
+    window.violations = [];
+    document.addEventListener("securitypolicyviolation", (e) => window.violations.push(`${e.violatedDirective} ${e.blockedURI}`));
+  });
+  await page.goto(`${base}/${hash}`);
+  await page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
+  const get = (id) => page.getByTestId(id);
+  return {
+    page, context, faults, get,
+    async close() {
+      assert.deepEqual(await page.evaluate(() => window.violations), [], "content security policy");
+      assert.deepEqual(faults, [], "console");
+      await context.close();
+    },
+    /** Forgets faults that a test brought about on purpose, such as a server that goes away. */
+    forgive(pattern) {
+      for (let i = faults.length - 1; i >= 0; --i) if (pattern.test(faults[i])) faults.splice(i, 1);
+    },
+    async shot(name) {
+      mkdirSync(kShots, { recursive: true });
+      await page.screenshot({ path: join(kShots, `${name}.png`) });
+    },
+    /** Pixels of a place of the world [m], once the view rests. */
+    async pixels(x, y) {
+      const scene = get("scene");
+      const view = await page.waitForFunction((e) => e.dataset.view || null, await scene.elementHandle());
+      const [cx, cy, scale] = (await view.jsonValue()).split(" ").map(Number);
+      const box = await scene.boundingBox();
+      return { x: box.x + box.width / 2 + (x - cx) * scale, y: box.y + box.height / 2 - (y - cy) * scale };
+    },
+    async drag(from, to) {
+      await page.mouse.move(from.x, from.y);
+      await page.mouse.down();
+      await page.mouse.move((from.x + to.x) / 2, (from.y + to.y) / 2);
+      await page.mouse.move(to.x, to.y);
+      await page.mouse.up();
+    },
+    /** The scenario by its menu, as a person does it. */
+    async load(name) {
+      await get("scenario-menu").click();
+      await page.getByRole("combobox", { name: "Find a scenario" }).fill(name);
+      await get(`scenario-${name}`).click();
+      await page.waitForSelector(`[data-testid="scenario-menu"][data-scenario="${name}"]`);
+      await page.waitForFunction(() => !/^Loading/.test(document.querySelector(".menu-name").textContent));
+    },
+    async pick_radio(group, value) {
+      await get(group).locator(`label:has(input[value="${value}"])`).click();
+    },
+    /** Serious faults of accessibility, as sentences. */
+    async accessibility() {
+      await page.evaluate(axe);
+      const { violations } = await page.evaluate(() => window.axe.run(document, {
+        runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"],
+      }));
+      return violations.map((v) => `${v.id}: ${v.help}: ${v.nodes.slice(0, 3).map((n) => n.target.join(" ")).join(", ")}`);
+    },
+  };
+}

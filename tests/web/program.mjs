@@ -1,0 +1,73 @@
+// tests/web/program.mjs: starts and stops the program under test; finds packages of web/.
+import { spawn } from "node:child_process";
+import { mkdtempSync, rmSync } from "node:fs";
+import { createRequire } from "node:module";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+export const repository = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
+export const require = createRequire(join(repository, "web/package.json"));
+const binary = process.env.TAUTLINE_BIN ?? join(repository, "build/release/server/tautline");
+
+/** A folder for one test's database, gone with `remove`. */
+export function scratch() {
+  const folder = mkdtempSync(join(tmpdir(), "tautline-web-"));
+  return { folder, database: join(folder, "runs.db"), remove: () => rmSync(folder, { recursive: true, force: true }) };
+}
+
+/** `tautline serve` on a free port (or `port`), once it has said its address. */
+export async function serve({ database, scenario = "case1", port = 0, more = [] }) {
+  const args = ["serve", "--port", String(port), "--db", database, "--scenario", scenario, ...more];
+  const child = spawn(binary, args, { stdio: ["ignore", "pipe", "pipe"] });
+  let said = "";
+  const address = await new Promise((resolve, reject) => {
+    const late = setTimeout(() => reject(new Error(`no address within 20 s; it said:\n${said}`)), 20_000);
+    const hear = (bytes) => {
+      said += bytes;
+      const found = said.match(/http:\/\/[\w.:[\]-]+/);
+      if (found) {
+        clearTimeout(late);
+        resolve(found[0]);
+      }
+    };
+    child.stdout.on("data", hear);
+    child.stderr.on("data", hear);
+    child.on("error", reject);
+    child.on("exit", (code) => reject(new Error(`${binary} ended with ${code}:\n${said}`)));
+  });
+  const url = new URL(address);
+  return {
+    base: `http://${url.host}`,
+    port: Number(url.port),
+    said: () => said,
+    stop: (signal = "SIGTERM") => new Promise((resolve) => {
+      if (child.exitCode !== null || child.signalCode !== null) return resolve();
+      child.once("exit", () => resolve());
+      child.kill(signal);
+      setTimeout(() => child.kill("SIGKILL"), 10_000).unref();
+    }),
+  };
+}
+
+export async function json(base, path, options = {}) {
+  const response = await fetch(`${base}/api/v1${path}`, {
+    ...options,
+    headers: options.body ? { "Content-Type": "application/json" } : {},
+  });
+  const text = await response.text();
+  if (!response.ok) throw new Error(`${options.method ?? "GET"} ${path}: ${response.status} ${text}`);
+  return text === "" ? null : JSON.parse(text);
+}
+
+/** Asks until `good` says yes to the answer; throws `what` with the last answer after `seconds`. */
+export async function until(what, seconds, ask, good = Boolean) {
+  const end = Date.now() + seconds * 1000;
+  let last;
+  while (Date.now() < end) {
+    last = await ask();
+    if (good(last)) return last;
+    await new Promise((resolve) => setTimeout(resolve, 150));
+  }
+  throw new Error(`${what}: not within ${seconds} s; last: ${JSON.stringify(last)?.slice(0, 400)}`);
+}
