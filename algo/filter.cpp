@@ -63,12 +63,13 @@ bool ScanFilter::believe(const LaserScan& in) {
   const std::size_t n = in.size();
   values_.resize(n);
   believed_.resize(n);
+  const bool sound = std::isfinite(in.range_max);
   unsigned all = 1;
   for (std::size_t i = 0; i < n; ++i) {
     const double value = in.status[i] == Beam::Ok ? in.ranges[i] : in.range_max;
     // A comparison that a NaN fails as well; an infinite range is no reading either.
     const bool finite = std::abs(value) <= std::numeric_limits<double>::max();
-    const bool believed = finite && in.status[i] != Beam::Invalid;
+    const bool believed = sound && finite && in.status[i] != Beam::Invalid;
     values_[i] = finite ? value : 0.0;
     believed_[i] = believed ? 1 : 0;
     all &= believed_[i];

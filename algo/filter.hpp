@@ -35,6 +35,7 @@ class ScanFilter {
   /// believed and at or beyond it; an Invalid beam keeps its flag, code and value, and a beam with
   /// too few believed neighbours becomes Invalid with code Unknown (equations.md A). No border
   /// sample is invented: the edge beam is repeated, since a scan of 180 degrees is not periodic.
+  /// Without a finite range_max no beam can be believed.
   ///
   /// Any number of beams is legal. Throws std::invalid_argument when half_width is below 0, and
   /// when ranges, status and codes of `in` differ in number.

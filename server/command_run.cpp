@@ -9,7 +9,6 @@
 
 #include "server/cli.hpp"
 #include "server/headless.hpp"
-#include "server/record_sink.hpp"
 #include "server/run_json.hpp"
 #include "server/scenario_json.hpp"
 
@@ -85,7 +84,7 @@ int execute(const Options& options) {
   headless.pace = options.pace;
   headless.hash_frames = true;
   if (!options.out.empty()) {
-    recorder = std::make_unique<Recorder>(options.out);
+    recorder = std::make_unique<Recorder>(options.out, recorder_options());
     headless.record = recorder->open(new_run(spec, robot->spec()));
   }
   ProgressLine progress;
@@ -103,8 +102,8 @@ int execute(const Options& options) {
   std::int64_t run_id = 0;
   if (recorder) {
     recorder->flush();
-    run_id = headless.record->id();
-    if (const auto failure = headless.record->failed()) throw std::runtime_error(*failure);
+    run_id = headless.record->run();
+    if (headless.record->failed()) throw std::runtime_error(headless.record->problem());
   }
   if (options.as_json) {
     json out = {{"scenario", spec.scenario.name},

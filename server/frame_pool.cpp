@@ -1,6 +1,10 @@
 // server/frame_pool.cpp: reference counts and encode-once.
 #include "server/frame_pool.hpp"
 
+#include <utility>
+
+#include "server/run_json.hpp"
+
 namespace server {
 
 void intrusive_ptr_add_ref(Frame* frame) {
@@ -10,7 +14,8 @@ void intrusive_ptr_add_ref(Frame* frame) {
 void intrusive_ptr_release(Frame* frame) {
   // The last reader's reads must happen before the pool hands the frame out for writing.
   if (frame->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) {
-    frame->pool_->free_.bounded_push(frame);
+    const std::shared_ptr<FramePool> pool = std::move(frame->pool_);
+    pool->free_.bounded_push(frame);
   }
 }
 
@@ -30,21 +35,25 @@ std::span<const std::byte> Frame::bytes() const {
   return bytes_;
 }
 
-std::span<const SampleWindow> Frame::windows() const {
+std::span<const db::Window> Frame::windows() const {
   encode_once();
   return encoder_.windows();
 }
 
+db::TickRow Frame::row() const { return tick_row(telemetry); }
+
+std::shared_ptr<FramePool> FramePool::make(std::size_t frames) {
+  return std::shared_ptr<FramePool>(new FramePool(frames));
+}
+
 FramePool::FramePool(std::size_t frames) : frames_(new Frame[frames]), free_(frames) {
-  for (std::size_t i = 0; i < frames; ++i) {
-    frames_[i].pool_ = this;
-    free_.bounded_push(&frames_[i]);
-  }
+  for (std::size_t i = 0; i < frames; ++i) free_.bounded_push(&frames_[i]);
 }
 
 FrameRef FramePool::take() {
   Frame* frame = nullptr;
   if (!free_.pop(frame)) return {};
+  frame->pool_ = shared_from_this();
   frame->encoding_.store(Frame::None, std::memory_order_relaxed);
   return FrameRef(frame);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algo/telemetry.hpp"
+#include "server/recorder.hpp"
 #include "server/wire/frame_codec.hpp"
 
 namespace server {
@@ -18,14 +19,16 @@ class FramePool;
 
 /// One tick and, once somebody asked, its encoded bytes. Filled by the control thread, immutable
 /// and shared after that; the last reference gives it back to the pool.
-class Frame {
+class Frame final : public RecordedFrame {
  public:
   algo::Telemetry telemetry{};
 
   /// The wire form. The first caller encodes, on its own thread; others wait the few microseconds
   /// and share the result. Never called by the control thread of a live robot.
-  std::span<const std::byte> bytes() const;
-  std::span<const SampleWindow> windows() const;
+  std::span<const std::byte> bytes() const override;
+  std::span<const db::Window> windows() const override;
+  db::TickRow row() const override;
+  void release() noexcept override { intrusive_ptr_release(this); }
 
  private:
   friend class FramePool;
@@ -39,14 +42,13 @@ class Frame {
   mutable FrameEncoder encoder_{};
   mutable std::span<const std::byte> bytes_{};
   std::atomic<int> references_{0};
-  FramePool* pool_ = nullptr;
+  std::shared_ptr<FramePool> pool_{};  // while in somebody's hands: the record outlives the run
 };
 using FrameRef = boost::intrusive_ptr<Frame>;
 
-class FramePool {
+class FramePool : public std::enable_shared_from_this<FramePool> {
  public:
-  explicit FramePool(std::size_t frames);
-  /// All references must be gone.
+  static std::shared_ptr<FramePool> make(std::size_t frames);
   ~FramePool() = default;
   FramePool(const FramePool&) = delete;
   FramePool& operator=(const FramePool&) = delete;
@@ -56,6 +58,7 @@ class FramePool {
 
  private:
   friend void intrusive_ptr_release(Frame* frame);
+  explicit FramePool(std::size_t frames);
 
   std::unique_ptr<Frame[]> frames_;
   boost::lockfree::stack<Frame*> free_;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "server/record_sink.hpp"
+#include "server/run_json.hpp"
 
 namespace server {
 namespace {
@@ -25,15 +26,16 @@ HeadlessResult run_headless(const RunSpec& spec,
                             const std::stop_token& stop) {
   HeadlessResult result;
   result.telemetry_hash = 0xcbf29ce484222325ULL;
-  const auto pool = std::make_shared<FramePool>(kPoolFrames);
-  RecordSink sink(options.record, pool);
+  const std::shared_ptr<FramePool> pool = FramePool::make(kPoolFrames);
+  std::unique_ptr<RecordSink> sink;
+  if (options.record) sink = std::make_unique<RecordSink>(options.record);
   algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
   robot.set_pace({.paused = false, .speed = options.pace});
 
   auto next_progress = std::chrono::steady_clock::now();
   RunLinks links;
   links.pool = pool.get();
-  links.record = options.record ? &sink : nullptr;
+  links.record = sink.get();
   links.observer = [&](const Frame& frame) {
     if (options.hash_frames) {
       result.telemetry_hash = fnv1a(frame.bytes(), result.telemetry_hash);
@@ -45,7 +47,11 @@ HeadlessResult run_headless(const RunSpec& spec,
   const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
   result.run = run(robot, pipeline, first_requests(spec), policy, links, stop);
   if (result.run.outcome == algo::Outcome::Running) result.run.outcome = algo::Outcome::Stopped;
-  if (options.record) sink.close(result.run);
+  if (options.record) {
+    db::RunEnd end = run_end(result.run);
+    if (options.cancelled && options.cancelled()) end.status = db::RunStatus::Cancelled;
+    options.record->close(std::move(end));
+  }
   return result;
 }
 

@@ -3,10 +3,12 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <chrono>
 #include <cmath>
 
+#include "server/record_sink.hpp"
 #include "server/scenario_json.hpp"
 #include "server/version.hpp"
 
@@ -76,6 +78,13 @@ db::TickRow tick_row(const algo::Telemetry& t) {
           .clearance = t.clearance,
           .hold = static_cast<std::uint8_t>(t.hold),
           .behaviour = static_cast<std::uint8_t>(t.behaviour)};
+}
+
+RecorderOptions recorder_options() {
+  RecorderOptions options;
+  options.ring_frames = kRecordRing;
+  options.report = [](const std::string& sentence) { spdlog::warn(sentence); };
+  return options;
 }
 
 json to_json(const db::RunRow& row) {

@@ -7,6 +7,7 @@
 #include "algo/metrics.hpp"
 #include "db/records.hpp"
 #include "db/run_reader.hpp"
+#include "server/recorder.hpp"
 #include "server/run_spec.hpp"
 #include "server/runner.hpp"
 
@@ -20,6 +21,9 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
 /// The row's end. A run ended by a person is finished all the same; its outcome says `stopped`.
 db::RunEnd run_end(const RunResult& result);
 db::TickRow tick_row(const algo::Telemetry& t);
+
+/// Options every recorder of this program shares; what it reports goes to the log.
+RecorderOptions recorder_options();
 
 /// A run as GET /api/v1/runs lists it; with its document when the row holds one.
 nlohmann::json to_json(const db::RunRow& row);

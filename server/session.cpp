@@ -8,28 +8,14 @@
 #include <variant>
 
 #include "algo/explain.hpp"
-#include "server/scenario_json.hpp"
-#include "server/version.hpp"
+#include "server/record_sink.hpp"
+#include "server/run_json.hpp"
 
 namespace server {
 namespace {
 
-// More frames than the rings can hold between them, so that the pool runs dry only when the
-// record is full too.
-constexpr std::size_t kFrames = kRecordRing + 64 + 128;
 constexpr double kPathSpacing = 0.02;        // [m]
 constexpr std::size_t kPathPoints = 20'000;  // then every second one goes
-
-/// A record channel as the place a run's frames go.
-class ChannelSink final : public FrameSink {
- public:
-  explicit ChannelSink(RunChannel& channel) : channel_(channel) {}
-  bool push(const FrameRef& frame) override { return push_frame(channel_, frame); }
-  std::optional<std::string> failure() const override { return channel_.failed(); }
-
- private:
-  RunChannel& channel_;
-};
 
 }  // namespace
 
@@ -42,7 +28,7 @@ LiveRun::LiveRun(RunSpec spec,
       pipeline_(pipeline_config(spec_), robot_->spec()),
       first_(std::move(first)),
       channel_(std::move(channel)),
-      pool_(kFrames),
+      pool_(FramePool::make(kPoolFrames)),
       thread_([this](const std::stop_token& stop) { control(stop); }) {}
 
 LiveRun::~LiveRun() {
@@ -53,15 +39,14 @@ LiveRun::~LiveRun() {
 }
 
 void LiveRun::control(const std::stop_token& stop) {
-  std::unique_ptr<ChannelSink> sink;
-  if (channel_) sink = std::make_unique<ChannelSink>(*channel_);
+  std::unique_ptr<RecordSink> sink;
+  if (channel_) sink = std::make_unique<RecordSink>(channel_);
   RunLinks links;
-  links.pool = &pool_;
+  links.pool = pool_.get();
   links.rings = &rings;
   links.record = sink.get();
   links.on_outcome = [this](algo::Outcome outcome) {
     outcome_.store(outcome, std::memory_order_relaxed);
-    if (channel_) channel_->set_outcome(std::string(algo::name(outcome)));
   };
   result_ = run(*robot_, pipeline_, first_, {}, links, stop);
   if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
@@ -264,6 +249,12 @@ void Session::watch_run() {
   }
   if (ended || outcome != state_.outcome) {
     state_.outcome = outcome;
+    // The row says at once how a run that goes on has come out so far.
+    if (!ended && recorder_ != nullptr && live_->id() != 0) {
+      recorder_->post([run = live_->id(), outcome](db::RunStore& store) {
+        if (store.recording(run)) store.set_result(run, algo::name(outcome), "", "");
+      });
+    }
     changed();
   }
 }

@@ -50,7 +50,7 @@ class LiveRun {
   bool finished() const { return finished_.load(std::memory_order_acquire); }
   /// Only once finished() is true.
   const RunResult& result() const { return result_; }
-  std::int64_t id() const { return channel_ ? channel_->id() : 0; }
+  db::RunId id() const { return channel_ ? channel_->run() : 0; }
 
  private:
   void control(const std::stop_token& stop);
@@ -60,7 +60,7 @@ class LiveRun {
   algo::Pipeline pipeline_;
   std::vector<algo::Request> first_;
   std::shared_ptr<RunChannel> channel_;
-  FramePool pool_;
+  std::shared_ptr<FramePool> pool_;
   RunResult result_{};
   std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
   std::atomic<bool> finished_{false};
@@ -96,7 +96,7 @@ class Session {
   void poll();
 
   const SessionState& state() const { return state_; }
-  std::int64_t run_id() const { return live_ ? live_->id() : 0; }
+  db::RunId run_id() const { return live_ ? live_->id() : 0; }
   /// The newest frame, null before the first.
   const FrameRef& newest() const { return newest_; }
   const std::vector<algo::Pose2>& path() const { return path_; }

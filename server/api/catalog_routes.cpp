@@ -1,7 +1,7 @@
 // server/api/catalog_routes.cpp: health, version, the API's own description, and what there is.
 #include "server/api/api.hpp"
 #include "server/api/reply.hpp"
-#include "server/embedded_openapi.hpp"
+#include "server/foxglove/embedded_schemas.hpp"
 #include "server/session_json.hpp"
 #include "server/version.hpp"
 
@@ -18,9 +18,10 @@ void add_api(net::Router& router, ApiContext& context) {
 
 void add_catalog_routes(net::Router& router, ApiContext& context) {
   router.add("GET", "/api/v1/healthz", immediate([&context](const net::Request&) {
-               const auto failure = context.recorder.failed();
-               json body = {{"status", failure ? "degraded" : "ok"}};
-               if (failure) body["problem"] = *failure;
+               json body = {{"status", "ok"}};
+               if (const auto& problem = context.session.state().problem) {
+                 body = {{"status", "degraded"}, {"problem", *problem}};
+               }
                return json_response(200, body);
              }));
   router.add("GET", "/api/v1/version", immediate([](const net::Request&) {

@@ -1,6 +1,7 @@
 // server/wire/frame_codec.cpp: one function per part of the frame, in the order of telemetry.fbs.
 #include "server/wire/frame_codec.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -380,15 +381,32 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   }
   b.Finish(frame.Finish());
 
-  const std::uint8_t* bytes = b.GetBufferPointer();
+  find_windows();
+  return std::as_bytes(std::span(b.GetBufferPointer(), b.GetSize()));
+}
+
+void FrameEncoder::find_windows() {
+  const std::uint8_t* bytes = builder_.GetBufferPointer();
+  const fb::Frame* frame = fb::GetFrame(bytes);
   windows_.clear();
-  if (const auto* written = fb::GetFrame(bytes)->scans()) {
-    for (const fb::LaserScan* scan : *written) {
-      windows_.push_back({static_cast<std::uint32_t>(scan->ranges()->Data() - bytes),
-                          scan->ranges()->size()});
+  const auto add = [&](const std::uint8_t* data,
+                       std::uint32_t count,
+                       db::Window::Kind kind,
+                       std::uint32_t stride) {
+    windows_.push_back({static_cast<std::uint32_t>(data - bytes), count, kind, stride});
+  };
+  if (const auto* scans = frame->scans()) {
+    for (const fb::LaserScan* scan : *scans) {
+      add(scan->ranges()->Data(), scan->ranges()->size(), db::Window::Kind::Samples, 1);
     }
   }
-  return std::as_bytes(std::span(bytes, b.GetSize()));
+  if (const auto* strip = frame->strip()) {
+    constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Node) / sizeof(float));
+    add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats);
+  }
+  std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
+    return a.offset < c.offset;
+  });
 }
 
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {

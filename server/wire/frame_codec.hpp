@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algo/telemetry.hpp"
+#include "db/block_codec.hpp"
 
 namespace server {
 
@@ -19,24 +20,21 @@ class WireError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Where uint16 laser samples lie in a frame's bytes: the record codes them as differences.
-struct SampleWindow {
-  std::uint32_t offset = 0;  // [bytes] from the frame's start
-  std::uint32_t count = 0;   // samples
-};
-
 /// Keeps its buffers, so that encoding the next frame allocates nothing once they have grown.
 class FrameEncoder {
  public:
   /// The frame's bytes, valid until the next call.
   std::span<const std::byte> encode(const algo::Telemetry& t);
-  /// Of the last encoded frame, ascending.
-  std::span<const SampleWindow> windows() const { return windows_; }
+  /// Where the last encoded frame holds ranges and strip nodes, ascending: the record codes them as
+  /// differences.
+  std::span<const db::Window> windows() const { return windows_; }
 
  private:
+  void find_windows();
+
   flatbuffers::FlatBufferBuilder builder_{2048};
   std::vector<std::uint16_t> samples_{};
-  std::vector<SampleWindow> windows_{};
+  std::vector<db::Window> windows_{};
 };
 
 /// Reads back what a pipeline needs to repeat a tick (observation, requests) and what it commanded

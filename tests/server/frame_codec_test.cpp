@@ -113,8 +113,11 @@ TEST(FrameCodec, WindowsPointAtTheRanges) {
   const algo::Telemetry t = full_telemetry();
   FrameEncoder encoder;
   const auto bytes = encoder.encode(t);
-  ASSERT_EQ(encoder.windows().size(), 1u);
-  const SampleWindow window = encoder.windows()[0];
+  ASSERT_EQ(encoder.windows().size(), 2u);  // the ranges and the strip
+  const auto windows = encoder.windows();
+  const db::Window window =
+      windows[0].kind == db::Window::Kind::Samples ? windows[0] : windows[1];
+  ASSERT_EQ(window.kind, db::Window::Kind::Samples);
   ASSERT_EQ(window.count, 361u);
   std::uint16_t sample = 0;
   std::memcpy(&sample, bytes.data() + window.offset + 2 * 100, 2);

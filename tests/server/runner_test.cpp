@@ -72,13 +72,13 @@ class PaperRobot final : public algo::Robot {
 };
 
 struct RunnerTest : ::testing::Test {
-  RunnerTest() { links.pool = &pool; }
+  RunnerTest() { links.pool = pool.get(); }
   RunResult go(const std::vector<algo::Request>& first, const RunPolicy& policy) {
     algo::Pipeline pipeline({}, robot.spec());
     return run(robot, pipeline, first, policy, links, stop.get_token());
   }
   PaperRobot robot{};
-  FramePool pool{256};
+  std::shared_ptr<FramePool> pool = FramePool::make(256);
   Rings rings{};
   RunLinks links{};
   std::stop_source stop{};
@@ -165,20 +165,20 @@ TEST_F(RunnerTest, ABrokenRecordStopsTheRobotFirst) {
 }
 
 TEST(FramePool, HandsOutEachFrameOnceAndTakesItBack) {
-  FramePool pool(2);
-  FrameRef a = pool.take();
-  FrameRef b = pool.take();
+  const auto pool = FramePool::make(2);
+  FrameRef a = pool->take();
+  FrameRef b = pool->take();
   ASSERT_TRUE(a && b);
   EXPECT_NE(a.get(), b.get());
-  EXPECT_FALSE(pool.take());
+  EXPECT_FALSE(pool->take());
   b.reset();
-  EXPECT_TRUE(pool.take());
+  EXPECT_TRUE(pool->take());
 }
 
 TEST(FramePool, TwoThreadsGetTheSameBytes) {
-  FramePool pool(1);
+  const auto pool = FramePool::make(1);
   for (int round = 0; round < 200; ++round) {
-    const FrameRef frame = pool.take();
+    const FrameRef frame = pool->take();
     frame->telemetry.tick = static_cast<std::uint64_t>(round);
     std::span<const std::byte> other;
     std::jthread thread([&] { other = frame->bytes(); });

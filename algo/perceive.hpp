@@ -1,0 +1,14 @@
+// algo/perceive.hpp: the block "local localization" of the thesis (Fig. 22): from the filtered scan
+// to the nearest obstacle point on either side.
+#pragma once
+
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// Fills scene.left and scene.right from scene.scan, taken with the robot at `pose_W`; a side
+/// without a return below range_max is empty (equations.md C).
+void perceive(const Pose2& pose_W, Scene& scene);
+
+}  // namespace algo

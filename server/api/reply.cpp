@@ -1,0 +1,105 @@
+// server/api/reply.cpp: JSON in, JSON out.
+#include "server/api/reply.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "db/records.hpp"
+#include "db/sqlite.hpp"
+#include "server/json_limits.hpp"
+#include "server/json_reader.hpp"
+#include "server/scenario_library.hpp"
+
+namespace server {
+namespace {
+
+net::Response problem_of(const LibraryError& e) {
+  switch (e.kind()) {
+    case LibraryError::Kind::NotFound: return net::problem(404, "Not found", e.what());
+    case LibraryError::Kind::Builtin: return net::problem(409, "Built in", e.what());
+    case LibraryError::Kind::BadName: return net::problem(422, "Bad name", e.what());
+    case LibraryError::Kind::Unreadable: break;
+  }
+  return net::problem(422, "Scenario not usable", e.what());
+}
+
+}  // namespace
+
+net::Response json_response(int status, const nlohmann::json& body) {
+  net::Response response;
+  response.status = status;
+  response.content_type = "application/json";
+  response.body = std::make_shared<const std::string>(dump_json(body));
+  return response;
+}
+
+net::Response problem_of_current_exception() {
+  try {
+    throw;
+  } catch (const JsonError& e) {
+    return net::problem(400, "Not JSON", e.what());
+  } catch (const DocumentError& e) {
+    return net::problem(422, "Document not usable", e.what());
+  } catch (const LibraryError& e) {
+    return problem_of(e);
+  } catch (const db::StoreError& e) {
+    return net::problem(503, "The record is not available", e.what());
+  } catch (const std::invalid_argument& e) {  // a world that cannot be built
+    return net::problem(422, "Scenario not usable", e.what());
+  } catch (const std::exception& e) {
+    return net::problem(500, "Internal error", e.what());
+  }
+}
+
+nlohmann::json body_json(const net::Request& request) {
+  if (request.body.empty()) return nlohmann::json::object();
+  return parse_json(request.body);
+}
+
+net::Handler guarded(std::function<void(const net::Request&, const net::Responder&)> handler) {
+  return [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
+    try {
+      handler(request, respond);
+    } catch (...) {
+      respond(problem_of_current_exception());
+    }
+  };
+}
+
+net::Handler immediate(std::function<net::Response(const net::Request&)> handler) {
+  return [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
+    net::Response response;
+    try {
+      response = handler(request);
+    } catch (...) {
+      response = problem_of_current_exception();
+    }
+    respond(std::move(response));
+  };
+}
+
+std::uint64_t number_of(const net::Request& request,
+                        const std::string& key,
+                        std::uint64_t fallback) {
+  const auto it = request.query.find(key);
+  if (it == request.query.end()) return fallback;
+  const std::string& text = it->second;
+  if (text.empty() || text.size() > 18 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    throw DocumentError("?" + key, fmt::format("'{}' is not a whole number", text));
+  }
+  return std::stoull(text);
+}
+
+std::size_t limit_of(const net::Request& request, std::size_t fallback, std::size_t max) {
+  const std::uint64_t limit = number_of(request, "limit", fallback);
+  if (limit < 1 || limit > max) {
+    throw DocumentError("?limit", fmt::format("is {}, must lie in 1 to {}", limit, max));
+  }
+  return limit;
+}
+
+}  // namespace server

@@ -1,0 +1,76 @@
+// server/app.cpp: wires the parts together; the io thread runs here.
+#include "server/app.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include "server/api/api.hpp"
+#include "server/bridge.hpp"
+#include "server/record_sink.hpp"
+#include "server/run_json.hpp"
+
+namespace server {
+namespace {
+
+// Frames are looked for this often: a good part of a tick sooner than any display shows them.
+constexpr std::chrono::milliseconds kPollPeriod{4};
+
+std::string prepared(const std::filesystem::path& database) {
+  std::error_code error;
+  if (database.has_parent_path()) {
+    std::filesystem::create_directories(database.parent_path(), error);
+  }
+  return database.string();
+}
+
+RecorderOptions recorder_options_for(const AppOptions& options) {
+  RecorderOptions out = recorder_options();
+  out.retention_bytes = options.keep_bytes;
+  return out;
+}
+
+}  // namespace
+
+// Members go in the opposite order: the doors close first, the record last.
+struct App::Impl {
+  explicit Impl(AppOptions options)
+      : recorder(prepared(options.database), recorder_options_for(options)),
+        reader(options.database.string()),
+        library(options.scenarios, options.logs),
+        experiments(recorder),
+        session(&recorder),
+        context{.session = session,
+                .library = library,
+                .experiments = experiments,
+                .recorder = recorder,
+                .reader = reader},
+        bridge(session, [this](const nlohmann::json& body) { load_from_json(context, body); }) {
+    add_api(router, context);
+    server = std::make_unique<net::Server>(options.net, router, bridge.hub().handlers());
+    context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
+    session.load(std::move(options.first));
+    server->every(kPollPeriod, [this] { session.poll(); });
+    server->on_termination([this] { server->stop(); });
+  }
+  ~Impl() { session.end(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  Recorder recorder;
+  db::RunReader reader;
+  ScenarioLibrary library;
+  std::unique_ptr<net::Server> server{};  // outlives experiments, which post to it
+  Experiments experiments;
+  Session session;
+  ApiContext context;
+  Bridge bridge;
+  net::Router router{};
+};
+
+App::App(AppOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+App::~App() = default;
+
+std::string App::url() const { return impl_->server->url(); }
+void App::run() { impl_->server->run(); }
+
+}  // namespace server

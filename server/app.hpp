@@ -1,0 +1,39 @@
+// server/app.hpp: the serving program: one session, its record, and the doors to both.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "server/net/server.hpp"
+#include "server/run_spec.hpp"
+
+namespace server {
+
+struct AppOptions {
+  net::ServerOptions net{};
+  std::filesystem::path database{};
+  std::filesystem::path scenarios{};  // the user's own
+  std::filesystem::path logs{};       // CARMEN logs offered as scenarios
+  std::uint64_t keep_bytes = std::uint64_t{2} << 30;
+  RunSpec first{};  // loaded at the start
+};
+
+class App {
+ public:
+  /// Opens the database, binds the port and loads the first scenario. Throws std::exception with a
+  /// sentence.
+  explicit App(AppOptions options);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  std::string url() const;
+  void run();  // until SIGINT or SIGTERM
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace server

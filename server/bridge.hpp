@@ -1,0 +1,56 @@
+// server/bridge.hpp: a session on the Foxglove protocol: channels out; goals, edits, gains in.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "server/foxglove/hub.hpp"
+#include "server/session.hpp"
+
+namespace server {
+
+class Bridge {
+ public:
+  /// `load` carries out a `/load` document; it throws with a sentence.
+  Bridge(Session& session, std::function<void(const nlohmann::json&)> load);
+
+  foxglove::Hub& hub() { return hub_; }
+
+ private:
+  /// The session's tunables as protocol parameters.
+  class Gains final : public foxglove::ParameterSource {
+   public:
+    explicit Gains(Session& session) : session_(session) {}
+    nlohmann::json list() const override;
+    void set(const std::string& name,
+             const nlohmann::json& value,
+             std::function<void(const std::optional<std::string>&)> done) override;
+
+   private:
+    Session& session_;
+  };
+
+  foxglove::Hub::ChannelId add_json(const char* topic, const char* schema_name, bool latched);
+  void add_channels();
+  void add_services();
+  void add_topics();
+  void publish_frame(const FrameRef& frame);
+  void publish_state();
+  void submit(algo::Request request, const foxglove::Hub::Reply& reply);
+  std::uint64_t now_ns() const;
+
+  Session& session_;
+  std::function<void(const nlohmann::json&)> load_;
+  Gains gains_;
+  foxglove::Hub hub_;
+  algo::Parameters told_parameters_{};
+  double time_published_ = -1;  // [s] run clock
+  std::size_t path_published_ = 0;
+
+  foxglove::Hub::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
+                           forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
+};
+
+}  // namespace server

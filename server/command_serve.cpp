@@ -1,0 +1,86 @@
+// server/command_serve.cpp: `tautline serve`.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+
+#include "server/app.hpp"
+#include "server/cli.hpp"
+#include "server/paths.hpp"
+#include "server/scenario_library.hpp"
+
+namespace server {
+namespace {
+
+struct Options {
+  AppOptions app{};
+  std::string scenario = "demo";
+  RunFlags flags{};
+  double keep_gigabytes = 2;
+};
+
+void serve(Options& options) {
+  AppOptions& app = options.app;
+  if (const char* token = std::getenv("TAUTLINE_TOKEN"); app.net.token.empty() && token) {
+    app.net.token = token;
+  }
+  app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
+  const ScenarioLibrary library(app.scenarios, app.logs);
+  const bool file = options.scenario.find_first_of("/.") != std::string::npos;
+  app.first = make_spec(file ? ScenarioLibrary::from_file(options.scenario)
+                             : library.load(options.scenario),
+                        options.flags.resolved());
+  App program(app);
+  fmt::print("Tautline is at {}\n", program.url());
+  fmt::print("Runs are kept in {}\n", app.database.string());
+  std::fflush(stdout);
+  program.run();
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  net::ServerOptions& net = options->app.net;
+  net.web_root = web_folder();
+  options->app.database = state_folder() / "runs.db";
+  options->app.scenarios = state_folder() / "scenarios";
+  options->app.logs = state_folder() / "logs";
+
+  CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
+  command->add_option("--port", net.port, "Port; 0: any free one")->capture_default_str();
+  command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
+  command->add_option("--token", net.token,
+                      "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
+  command->add_flag("--insecure", net.insecure, "Listen beyond this machine without a token");
+  command->add_option("--allow-host", net.allow_hosts,
+                      "A further name this server goes by, such as one of a port mapping");
+  command->add_option("--allow-origin", net.allow_origins,
+                      "A page hosted elsewhere that may connect, such as https://viewer.example");
+  command->add_option("--db", options->app.database, "Database of the runs")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->add_option("--keep", options->keep_gigabytes,
+                      "Delete the oldest runs beyond this size; 0: keep everything")
+      ->type_name("GB")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--web", net.web_root, "Folder of the built page")->type_name("DIR");
+  command->add_option("--scenario", options->scenario,
+                      "What to load first: a name, a .json file, or a .log to replay")
+      ->capture_default_str();
+  options->flags.add_to(*command);
+  command->callback([options, &status] {
+    serve(*options);
+    status = 0;
+  });
+}
+
+}  // namespace server

@@ -1,0 +1,308 @@
+// sim/bullet_vehicle.cpp: chassis, contacts, parking.
+#include "sim/bullet_vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/obstacle_body.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kGravity = 9.81;     // [m/s2]
+constexpr int kIterations = 10;       // enough on a flat floor
+constexpr double kMargin = 0.001;     // [m] the default of 0.04 rounds small edges away
+constexpr double kLoadLag = 0.010;    // [s] low-pass of the wheel loads
+constexpr double kStillSpeed = 0.05;  // [m/s] under which parking begins
+constexpr double kStillTurn = 0.10;   // [rad/s]
+constexpr double kStillTime = 0.5;    // [s]
+constexpr double kSettleTime = 0.5;   // [s] for the wheels to find the floor
+constexpr double kNear = 1.0;         // [m] beyond the hull: obstacles the dynamics know
+constexpr double kRegather = 0.5;     // [m] driven before they are chosen anew
+constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
+constexpr int kHullPart = 0;
+
+/// Which wheel side a part of the chassis belongs to, by its sign.
+int side_of(const btCompoundShape& chassis, int part, std::size_t supports) {
+  if (part <= kHullPart || part > static_cast<int>(2 * supports)) return 0;
+  return chassis.getChildTransform(part).getOrigin().y() > 0 ? 1 : -1;
+}
+
+}  // namespace
+
+BulletVehicle::BulletVehicle(const VehicleParameters& vehicle, double period)
+    : vehicle_(vehicle), substeps_(period) {}
+
+BulletVehicle::~BulletVehicle() {
+  if (world_ == nullptr) return;
+  for (Body& body : bodies_) withdraw(body);
+  world_->removeConstraint(drive_.get());
+  world_->removeRigidBody(chassis_.get());
+  world_->removeRigidBody(floor_.get());
+}
+
+void BulletVehicle::build_world() {
+  configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
+  dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
+  broadphase_ = std::make_unique<btDbvtBroadphase>();
+  solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
+  world_ = std::make_unique<btDiscreteDynamicsWorld>(
+      dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
+  world_->setGravity(btVector3(0, 0, -kGravity));
+  world_->setForceUpdateAllAabbs(false);
+  world_->getSolverInfo().m_numIterations = kIterations;
+  world_->getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+
+  floor_shape_ = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+  btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, floor_shape_.get());
+  info.m_friction = 0;
+  floor_ = std::make_unique<btRigidBody>(info);
+  world_->addRigidBody(floor_.get());
+}
+
+void BulletVehicle::build_chassis() {
+  const VehicleParameters& p = vehicle_;
+  parts_.clear();
+  chassis_shape_ = std::make_unique<btCompoundShape>();
+  const auto add = [this](std::unique_ptr<btCollisionShape> part, double x, double y, double z) {
+    btTransform at = btTransform::getIdentity();
+    at.setOrigin(btVector3(x, y, z - vehicle_.mass_height));  // the body's origin is its mass
+    chassis_shape_->addChildShape(at, part.get());
+    parts_.push_back(std::move(part));
+  };
+  const double hull_half = (p.hull_high - p.hull_low) / 2;
+  std::unique_ptr<btCollisionShape> hull;
+  if (p.round) {
+    hull = std::make_unique<btCylinderShapeZ>(btVector3(p.radius, p.radius, hull_half));
+  } else {
+    hull = std::make_unique<btBoxShape>(btVector3(p.hull_length / 2, p.hull_width / 2, hull_half));
+  }
+  hull->setMargin(kMargin);
+  add(std::move(hull), 0, 0, p.hull_low + hull_half);
+  for (std::size_t k = 0; k < p.supports; ++k) {
+    for (const double y : {p.half_track, -p.half_track}) {
+      add(std::make_unique<btSphereShape>(p.wheel_radius), p.support_x[k], y, p.wheel_radius);
+    }
+  }
+  for (std::size_t k = 0; k < p.caster_count; ++k) {
+    const Caster& c = p.casters[k];
+    add(std::make_unique<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
+  }
+
+  // A solid box of the hull's size; the compound's own inertia means nothing.
+  const double xx = p.hull_length * p.hull_length;
+  const double yy = p.hull_width * p.hull_width;
+  const double zz = 4 * hull_half * hull_half;
+  const btVector3 inertia = btVector3(yy + zz, xx + zz, xx + yy) * (p.mass / 12);
+  btRigidBody::btRigidBodyConstructionInfo info(p.mass, nullptr, chassis_shape_.get(), inertia);
+  info.m_friction = 0;
+  info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
+  chassis_ = std::make_unique<btRigidBody>(info);
+  chassis_->setActivationState(DISABLE_DEACTIVATION);  // parking is ours
+  world_->addRigidBody(chassis_.get());
+
+  double axle_x = 0;
+  for (std::size_t k = 0; k < p.supports; ++k) {
+    axle_x += p.support_x[k] / static_cast<double>(p.supports);
+  }
+  drive_ = std::make_unique<DriveConstraint>(
+      *chassis_, *floor_, DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
+  world_->addConstraint(drive_.get());
+}
+
+void BulletVehicle::reset(const algo::Pose2& start) {
+  if (world_ != nullptr) {
+    for (Body& body : bodies_) withdraw(body);
+    world_->removeConstraint(drive_.get());
+    world_->removeRigidBody(chassis_.get());
+    world_->removeRigidBody(floor_.get());
+    drive_.reset();
+    chassis_.reset();
+    floor_.reset();
+    world_.reset();
+    solver_.reset();
+    broadphase_.reset();
+    dispatcher_.reset();
+  }
+  build_world();
+  build_chassis();
+  wanted_ = {};
+  target_ = {};
+  left_load_ = 0;
+  right_load_ = 0;
+  normal_ = btVector3(0, 0, 1);
+  settle();
+
+  // Settled at the origin with nothing around; now set down at the start as it stands.
+  const btTransform settled = chassis_->getWorldTransform();
+  const btMatrix3x3 turn(btQuaternion(btVector3(0, 0, 1), start.heading));
+  btTransform at(turn * settled.getBasis());
+  const btVector3 under = at.getBasis() * btVector3(0, 0, -vehicle_.mass_height);
+  at.setOrigin(btVector3(start.x - under.x(), start.y - under.y(), settled.getOrigin().z()));
+  chassis_->setWorldTransform(at);
+  chassis_->setInterpolationWorldTransform(at);
+  broadphase_->getOverlappingPairCache()->cleanProxyFromPairs(chassis_->getBroadphaseHandle(),
+                                                              dispatcher_.get());
+  world_->updateSingleAabb(chassis_.get());
+  gathered_ = false;
+  state_ = {};
+  read_state();
+  state_.pose_W = start;  // exactly
+  state_.twist = {};
+  parked_ = true;
+  still_for_ = 0;
+}
+
+void BulletVehicle::settle() {
+  const auto steps = static_cast<std::size_t>(std::ceil(kSettleTime / substeps_.length));
+  for (std::size_t k = 0; k < steps; ++k) substep();
+  chassis_->setLinearVelocity(btVector3(0, 0, 0));
+  chassis_->setAngularVelocity(btVector3(0, 0, 0));
+}
+
+void BulletVehicle::drive(const algo::Twist2& command,
+                          const ObstacleSet& obstacles,
+                          PoseTrail& trail) {
+  wanted_ = within_limits(command, vehicle_);
+  if (wanted_ != algo::Twist2{}) {
+    parked_ = false;
+    still_for_ = 0;
+  }
+  if (!parked_) state_.contact = false;
+  for (std::size_t k = 0; k < substeps_.count; ++k) {
+    if (!parked_) {
+      gather_near(obstacles);
+      target_ = ramped(target_, wanted_, vehicle_, substeps_.length);
+      substep();
+      const double turn = target_.omega * vehicle_.half_track;
+      const double per_step = substeps_.length / vehicle_.wheel_radius;
+      state_.left_angle += (target_.v - turn) * per_step;
+      state_.right_angle += (target_.v + turn) * per_step;
+      read_state();
+      update_parking();
+    }
+    trail.push(state_.pose_W);
+  }
+}
+
+/// One step of the physics under `target_`.
+void BulletVehicle::substep() {
+  const double turn = target_.omega * vehicle_.half_track;
+  drive_->set({target_.v - turn, target_.v + turn, left_load_, right_load_, normal_});
+  world_->stepSimulation(substeps_.length, 0);
+  read_contacts();
+}
+
+/// Reads loads and touches from the impulses just solved. While the next step is being set up they
+/// would still be 0 at every new contact point, and a moving robot has new ones all the time.
+void BulletVehicle::read_contacts() {
+  double left = 0;
+  double right = 0;
+  btVector3 normal(0, 0, 0);
+  for (int m = 0; m < dispatcher_->getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *dispatcher_->getManifoldByIndexInternal(m);
+    const bool first = manifold.getBody0() == chassis_.get();
+    for (int c = 0; c < manifold.getNumContacts(); ++c) {
+      const btManifoldPoint& point = manifold.getContactPoint(c);
+      const int part = first ? point.m_index0 : point.m_index1;
+      const btVector3 up = first ? point.m_normalWorldOnB : -point.m_normalWorldOnB;
+      const double impulse = point.getAppliedImpulse();
+      if (part == kHullPart) {
+        const bool touching = impulse > 0 || point.getDistance() < kTouching;
+        if (touching && std::abs(up.z()) < 0.5) state_.contact = true;
+        continue;
+      }
+      const int side = side_of(*chassis_shape_, part, vehicle_.supports);
+      if (side > 0) left += impulse;
+      if (side < 0) right += impulse;
+      if (side != 0) normal += up * impulse;
+    }
+  }
+  const double share = substeps_.length / (kLoadLag + substeps_.length);
+  left_load_ += share * (left / substeps_.length - left_load_);
+  right_load_ += share * (right / substeps_.length - right_load_);
+  if (normal.length2() > 0) normal_ = normal.normalized();
+}
+
+algo::Pose2 BulletVehicle::pose() const {
+  const btTransform& at = chassis_->getWorldTransform();
+  const btVector3 ground = at * btVector3(0, 0, -vehicle_.mass_height);
+  const btVector3 ahead = at.getBasis().getColumn(0);
+  return {ground.x(), ground.y(), std::atan2(ahead.y(), ahead.x())};
+}
+
+void BulletVehicle::read_state() {
+  const btMatrix3x3& basis = chassis_->getWorldTransform().getBasis();
+  state_.pose_W = pose();
+  const btVector3 velocity =
+      chassis_->getVelocityInLocalPoint(basis * btVector3(0, 0, -vehicle_.mass_height));
+  const algo::Vec2 ahead = algo::direction(state_.pose_W.heading);
+  state_.twist = {velocity.x() * ahead.x() + velocity.y() * ahead.y(),
+                  chassis_->getAngularVelocity().z()};
+  state_.roll = std::atan2(basis[2][1], basis[2][2]);
+  state_.pitch = std::asin(std::clamp<double>(-basis[2][0], -1, 1));
+}
+
+/// Counts the time at rest and parks when there was enough of it.
+void BulletVehicle::update_parking() {
+  const bool still = wanted_ == algo::Twist2{} && target_ == algo::Twist2{} &&
+                     std::abs(state_.twist.v) < kStillSpeed &&
+                     std::abs(state_.twist.omega) < kStillTurn;
+  still_for_ = still ? still_for_ + substeps_.length : 0;
+  if (still_for_ < kStillTime) return;
+  parked_ = true;
+  chassis_->setLinearVelocity(btVector3(0, 0, 0));
+  chassis_->setAngularVelocity(btVector3(0, 0, 0));
+  state_.twist = {};
+}
+
+/// Brings the obstacles around the robot into the dynamics world and takes the others out.
+void BulletVehicle::gather_near(const ObstacleSet& obstacles) {
+  const algo::Vec2 here = state_.pose_W.position();
+  if (gathered_ && (here - gathered_at_).squaredNorm() < kRegather * kRegather) return;
+  gathered_ = true;
+  gathered_at_ = here;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    Body& body = bodies_[k];
+    const bool near = obstacles.may_reach(k, here, vehicle_.radius + kNear);
+    if (near && !body.present) {
+      world_->addCollisionObject(body.object.get(),
+                                 btBroadphaseProxy::StaticFilter,
+                                 btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
+      body.present = true;
+    } else if (!near) {
+      withdraw(body);
+    }
+  }
+}
+
+void BulletVehicle::withdraw(Body& body) {
+  if (body.present) world_->removeCollisionObject(body.object.get());
+  body.present = false;
+}
+
+void BulletVehicle::added(const algo::Obstacle& obstacle) {
+  Body body;
+  body.shape = obstacle_shape(obstacle, kMargin);
+  body.object = std::make_unique<btCollisionObject>();
+  body.object->setCollisionShape(body.shape.get());
+  body.object->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
+  body.object->setFriction(0);
+  body.object->setWorldTransform(obstacle_transform(obstacle));
+  bodies_.push_back(std::move(body));
+  gathered_ = false;
+}
+
+void BulletVehicle::moved(std::size_t index, const algo::Obstacle& obstacle) {
+  withdraw(bodies_[index]);
+  bodies_[index].object->setWorldTransform(obstacle_transform(obstacle));
+  gathered_ = false;
+}
+
+void BulletVehicle::removed(std::size_t index) {
+  withdraw(bodies_[index]);
+  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(index));
+  gathered_ = false;
+}
+
+}  // namespace sim

@@ -1,0 +1,82 @@
+// sim/bullet_vehicle.hpp: a vehicle with mass, friction and contacts, in a Bullet world of its own.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <btBulletDynamicsCommon.h>
+
+#include "sim/drive_constraint.hpp"
+#include "sim/vehicle.hpp"
+
+namespace sim {
+
+/// A rigid chassis on frictionless support balls; all traction comes from a DriveConstraint
+/// (physics.md 3). Commands pass through the acceleration limits. Standing still, it is parked: no
+/// step is computed and nothing moves, not by a bit.
+///
+/// Only obstacles near the robot are in the dynamics world, so that a step costs the same among
+/// twenty and among a thousand. Rays never go through Bullet.
+class BulletVehicle final : public VehicleModel {
+ public:
+  BulletVehicle(const VehicleParameters& vehicle, double period);
+  ~BulletVehicle() override;
+
+  void reset(const algo::Pose2& start) override;
+  void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
+  void halt() noexcept override { target_ = {}; }
+
+  void added(const algo::Obstacle& obstacle) override;
+  void moved(std::size_t index, const algo::Obstacle& obstacle) override;
+  void removed(std::size_t index) override;
+
+ private:
+  /// An obstacle as Bullet sees it, whether or not it is in the dynamics world now.
+  struct Body {
+    std::unique_ptr<btCollisionShape> shape{};
+    std::unique_ptr<btCollisionObject> object{};
+    bool present = false;
+  };
+
+  void build_world();
+  void build_chassis();
+  void settle();
+  void substep();
+  void read_contacts();
+  void read_state();
+  void update_parking();
+  void gather_near(const ObstacleSet& obstacles);
+  void withdraw(Body& body);
+  algo::Pose2 pose() const;
+
+  VehicleParameters vehicle_{};
+  Substeps substeps_;
+
+  // Bullet, in the order of construction; torn down in reverse.
+  std::unique_ptr<btDefaultCollisionConfiguration> configuration_{};
+  std::unique_ptr<btCollisionDispatcher> dispatcher_{};
+  std::unique_ptr<btDbvtBroadphase> broadphase_{};
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver_{};
+  std::unique_ptr<btDiscreteDynamicsWorld> world_{};
+  std::unique_ptr<btStaticPlaneShape> floor_shape_{};
+  std::unique_ptr<btRigidBody> floor_{};
+  std::vector<std::unique_ptr<btCollisionShape>>
+      parts_{};  // of the chassis: hull, supports, casters
+  std::unique_ptr<btCompoundShape> chassis_shape_{};
+  std::unique_ptr<btRigidBody> chassis_{};
+  std::unique_ptr<DriveConstraint> drive_{};
+  std::vector<Body> bodies_{};  // in the order of the ObstacleSet
+
+  algo::Vec2 gathered_at_{0, 0};  // where the near obstacles were last chosen
+  bool gathered_ = false;
+
+  algo::Twist2 wanted_{};
+  algo::Twist2 target_{};  // wanted_ behind the acceleration limits
+  double left_load_ = 0;   // [N] low-passed
+  double right_load_ = 0;
+  btVector3 normal_{0, 0, 1};
+  double still_for_ = 0;  // [s]
+  bool parked_ = false;
+};
+
+}  // namespace sim

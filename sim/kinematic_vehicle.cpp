@@ -1,0 +1,43 @@
+// sim/kinematic_vehicle.cpp: exact arcs, one distance query a tick.
+#include "sim/kinematic_vehicle.hpp"
+
+namespace sim {
+
+KinematicVehicle::KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps)
+    : vehicle_(vehicle), period_(period), substeps_(period), with_ramps_(with_ramps) {}
+
+void KinematicVehicle::reset(const algo::Pose2& start) {
+  state_ = {};
+  state_.pose_W = start;
+  target_ = {};
+}
+
+void KinematicVehicle::drive(const algo::Twist2& command,
+                             const ObstacleSet& obstacles,
+                             PoseTrail& trail) {
+  const algo::Twist2 wanted = within_limits(command, vehicle_);
+  target_ = with_ramps_ ? ramped(target_, wanted, vehicle_, period_) : wanted;
+  const algo::Pose2 from = state_.pose_W;
+  algo::Twist2 twist = target_;
+  algo::Pose2 to = drive_arc(from, twist, period_);
+  state_.contact = false;
+  const double distance = obstacles.distance(to.position());
+  // A robot that is too near already may still leave.
+  if (distance < vehicle_.radius && distance < obstacles.distance(from.position())) {
+    state_.contact = true;
+    twist.v = 0;
+    target_.v = 0;
+    to = drive_arc(from, twist, period_);
+  }
+  for (std::size_t k = 1; k < substeps_.count; ++k) {
+    trail.push(drive_arc(from, twist, static_cast<double>(k) * substeps_.length));
+  }
+  trail.push(to);
+  state_.pose_W = to;
+  state_.twist = twist;
+  const double turn = twist.omega * vehicle_.half_track;
+  state_.left_angle += (twist.v - turn) / vehicle_.wheel_radius * period_;
+  state_.right_angle += (twist.v + turn) / vehicle_.wheel_radius * period_;
+}
+
+}  // namespace sim

@@ -1,0 +1,27 @@
+// sim/kinematic_vehicle.hpp: a vehicle without dynamics, for the papers' conditions and speed.
+#pragma once
+
+#include "sim/vehicle.hpp"
+
+namespace sim {
+
+/// Drives the exact arc of its command. A move into an obstacle is refused: the robot turns where
+/// it stands.
+class KinematicVehicle final : public VehicleModel {
+ public:
+  /// `with_ramps`: the acceleration limits act. The papers know none.
+  KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps = false);
+
+  void reset(const algo::Pose2& start) override;
+  void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
+  void halt() noexcept override { target_ = {}; }
+
+ private:
+  VehicleParameters vehicle_{};
+  double period_ = 0;  // [s]
+  Substeps substeps_;
+  bool with_ramps_ = false;
+  algo::Twist2 target_{};
+};
+
+}  // namespace sim

@@ -1,0 +1,96 @@
+// sim/laser_model.hpp: what an LMS200 reports of a world: when its beams are fired and what goes
+// wrong with them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/obstacle.hpp"
+#include "sim/pose_trail.hpp"
+#include "sim/random.hpp"
+#include "sim/range_caster.hpp"
+#include "sim/scenario.hpp"
+
+namespace sim {
+
+/// What is wrong with the configuration as a sentence part, or nothing.
+std::optional<std::string> defect(const LaserConfig& config);
+
+/// One simulated scanner and its own slice of the world.
+///
+/// The mirror turns without pause from the start of the run. A beam leaves at its own time and from
+/// where the robot is then; a scan is delivered when its last turn is over, so that a tick without
+/// a new one is normal. With `rolling` off, every call brings a scan of that instant.
+///
+/// Order of effects: ray, surface (reflectivity), spot (mixed pixels), bias and noise, rounding;
+/// then dropout, salt and pepper, each from a generator of its own.
+class LaserModel {
+ public:
+  /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
+  LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index);
+
+  const LaserConfig& config() const { return config_; }
+  std::size_t beams() const { return pattern_.beams; }
+  /// [s] How far back in time a scan reaches at most: the newest sweep may have ended almost one
+  /// sweep ago.
+  double memory() const;
+
+  void add(const algo::Obstacle& obstacle);
+  void move(std::uint32_t id, const algo::Pose2& pose_W);
+  void remove(std::uint32_t id);
+
+  /// Fills `scan` with the newest sweep completed by `now` [s, run clock]. False when that one was
+  /// delivered before; `scan` is then meaningless.
+  bool sense(double now, const PoseTrail& trail, algo::LaserScan& scan);
+
+ private:
+  /// Marks in `hits` a surface that sent too little light back.
+  static constexpr std::uint32_t kNoEcho = RangeCaster::kNothing - 1;
+
+  void note_surfaces();
+  void aim(double end, const PoseTrail& trail);
+  void aim_still();
+  void allow_for_spot();
+  void apply_surfaces(const Rays& rays,
+                      std::span<double> ranges,
+                      std::span<std::uint32_t> hits) const;
+  void mix_pixels();
+  void mark_edges();
+  void mix(std::size_t beam, std::size_t first_more);
+  void report(algo::LaserScan& scan);
+  void spoil(algo::LaserScan& scan);
+
+  LaserConfig config_{};
+  BeamPattern pattern_{};
+  RangeCaster caster_;
+  bool plain_ = true;  // no surface in the world is too dark within range, none is specular
+
+  Random noise_;
+  RareEvents dropout_;
+  RareEvents salt_;
+  RareEvents pepper_;
+  double bias_ = 0;              // [m] of this run
+  double phase_ = 0;             // [s] run-clock time at which the first turn begins
+  std::uint64_t delivered_ = 0;  // sweeps
+
+  // Tables and workspace, one entry a beam unless said otherwise.
+  std::vector<double> fired_{};        // [s] after the sweep's start
+  std::vector<double> ux_{}, uy_{};    // directions in the scanner's frame
+  std::vector<algo::Pose2> motion_{};  // the scanner at the physics steps of the sweep
+  algo::Pose2 reference_W_{};
+  RaySpread spread_{};
+  Rays rays_{};
+  std::vector<double> ranges_{};
+  std::vector<std::uint32_t> hits_{};
+  std::vector<double> draws_{};
+  std::vector<std::uint32_t> edges_{};  // beams whose spot may lie on an edge
+  Rays more_{};                         // kSubRays - 1 rays for each of them
+  std::vector<std::uint32_t> first_{};
+  std::vector<double> more_ranges_{};
+  std::vector<std::uint32_t> more_hits_{};
+};
+
+}  // namespace sim

@@ -1,0 +1,34 @@
+// sim/obstacle_body.cpp: Bullet shapes of obstacles.
+#include "sim/obstacle_body.hpp"
+
+namespace sim {
+
+std::unique_ptr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin) {
+  const double half = obstacle.height / 2;
+  std::unique_ptr<btCollisionShape> shape;
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+    shape = std::make_unique<btCylinderShapeZ>(btVector3(cylinder->radius, cylinder->radius, half));
+  } else if (const auto* box = std::get_if<algo::Box>(&obstacle.shape)) {
+    shape = std::make_unique<btBoxShape>(btVector3(box->length / 2, box->width / 2, half));
+  } else if (const auto* wall = std::get_if<algo::Wall>(&obstacle.shape)) {
+    shape = std::make_unique<btBoxShape>(btVector3(wall->length / 2, wall->thickness / 2, half));
+  } else {
+    auto hull = std::make_unique<btConvexHullShape>();
+    for (const algo::Vec2& p : std::get<algo::Polygon>(obstacle.shape).points) {
+      hull->addPoint(btVector3(p.x(), p.y(), -half), false);
+      hull->addPoint(btVector3(p.x(), p.y(), half), false);
+    }
+    hull->recalcLocalAabb();
+    shape = std::move(hull);
+  }
+  shape->setMargin(margin);
+  return shape;
+}
+
+btTransform obstacle_transform(const algo::Obstacle& obstacle) {
+  const algo::Pose2& pose = obstacle.pose_W;
+  return btTransform(btQuaternion(btVector3(0, 0, 1), pose.heading),
+                     btVector3(pose.x, pose.y, obstacle.height / 2));
+}
+
+}  // namespace sim

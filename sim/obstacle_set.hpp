@@ -1,0 +1,48 @@
+// sim/obstacle_set.hpp: the obstacles of a world and the distance to the nearest of them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algo/obstacle.hpp"
+#include "algo/types.hpp"
+
+namespace sim {
+
+/// Obstacles in the order they were added, each with its outline and a circle about it, so that a
+/// distance costs little with a thousand of them and allocates nothing.
+class ObstacleSet {
+ public:
+  std::size_t size() const { return items_.size(); }
+  const algo::Obstacle& operator[](std::size_t index) const { return items_[index].obstacle; }
+  /// Index of obstacle `id`.
+  std::optional<std::size_t> find(std::uint32_t id) const;
+
+  void add(const algo::Obstacle& obstacle);
+  void move(std::size_t index, const algo::Pose2& pose_W);
+  void remove(std::size_t index);
+  void clear() { items_.clear(); }
+
+  /// [m] From `p_W` to the nearest surface, negative inside, infinite without obstacles. Equal to
+  /// the least algo::signed_distance().
+  double distance(const algo::Vec2& p_W) const;
+  /// The same to the one obstacle `index`.
+  double distance(std::size_t index, const algo::Vec2& p_W) const;
+  /// True when the circle about obstacle `index` comes within `reach` [m] of `p_W`.
+  bool may_reach(std::size_t index, const algo::Vec2& p_W, double reach) const;
+
+ private:
+  struct Item {
+    algo::Obstacle obstacle{};
+    algo::Vec2 centre_W{0, 0};
+    double bound = 0;                     // [m] radius of the circle about it
+    std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
+  };
+  static Item make(const algo::Obstacle& obstacle);
+
+  std::vector<Item> items_{};
+};
+
+}  // namespace sim

@@ -1,0 +1,61 @@
+// sim/pose_trail.hpp: where the robot was at the last physics steps.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "algo/types.hpp"
+
+namespace sim {
+
+/// True poses at equal steps of time, the newest few; between them the pose is interpolated, before
+/// them it stood still. A scanner reads its beams' poses here.
+class PoseTrail {
+ public:
+  /// Keeps at least `span` [s] of poses `step` [s] apart.
+  PoseTrail(double step, double span)
+      : step_(step), poses_(static_cast<std::size_t>(std::ceil(span / step)) + 2) {}
+
+  /// At rest at `pose` up to `time`.
+  void reset(const algo::Pose2& pose, double time) {
+    std::fill(poses_.begin(), poses_.end(), pose);
+    start_ = time;
+    pushed_ = 0;
+  }
+  /// The pose one step after the newest.
+  void push(const algo::Pose2& pose) {
+    ++pushed_;
+    poses_[pushed_ % poses_.size()] = pose;
+  }
+
+  double step() const { return step_; }
+  /// [s] Run-clock time of the newest pose. Counted, not summed, so that it does not drift.
+  double newest() const { return start_ + static_cast<double>(pushed_) * step_; }
+  /// The pose `age` steps before the newest; the oldest one kept when that is too far back.
+  const algo::Pose2& back(std::size_t age) const {
+    const std::size_t kept = std::min(age, poses_.size() - 1);
+    return poses_[(pushed_ + poses_.size() - kept) % poses_.size()];
+  }
+  /// The pose at `time`, interpolated.
+  algo::Pose2 at(double time) const {
+    const double steps = std::max(0.0, (newest() - time) / step_);
+    if (steps < 1e-9) return back(0);  // the newest itself, not almost
+    const auto age = static_cast<std::size_t>(steps);
+    const double part = steps - static_cast<double>(age);
+    const algo::Pose2& young = back(age);
+    const algo::Pose2& old = back(age + 1);
+    return {young.x + part * (old.x - young.x),
+            young.y + part * (old.y - young.y),
+            algo::wrap_angle(young.heading + part * algo::wrap_angle(old.heading - young.heading))};
+  }
+
+ private:
+  double step_ = 0;   // [s]
+  double start_ = 0;  // [s]
+  std::size_t pushed_ = 0;
+  std::vector<algo::Pose2> poses_{};
+};
+
+}  // namespace sim

@@ -1,0 +1,199 @@
+// sim/replay.cpp: loads a log and hands out its scans.
+#include "sim/replay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/vehicle.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kLongestPause = 3600;  // [s] a longer one is a clock that was set
+constexpr double kFarthestMount = 1.0;  // [m] a laser farther off its robot is two separate poses
+
+std::ifstream open(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file)) {
+    throw std::runtime_error("The log " + file.string() + " cannot be opened.");
+  }
+  return stream;
+}
+
+/// The scanner on its robot, from both poses of a line. In files with a corrected path the two may
+/// be poses of different maps; then the scanner is taken to sit in the middle.
+algo::Pose2 mount_of(const CarmenScan& scan) {
+  const double c = std::cos(scan.robot_W.heading);
+  const double s = std::sin(scan.robot_W.heading);
+  const algo::Vec2 d = scan.laser_W.position() - scan.robot_W.position();
+  algo::Pose2 mount{c * d.x() + s * d.y(),
+                    c * d.y() - s * d.x(),
+                    algo::wrap_angle(scan.laser_W.heading - scan.robot_W.heading)};
+  if (d.norm() > kFarthestMount) mount = {};
+  const bool looks_back = std::abs(mount.heading) > std::numbers::pi / 2;
+  if (looks_back != (scan.laser == CarmenLaser::Rear)) {
+    mount.heading = algo::wrap_angle(mount.heading + std::numbers::pi);
+  }
+  return mount;
+}
+
+}  // namespace
+
+Replay::Replay(const std::filesystem::path& file) : name_(file.string()) {
+  std::ifstream stream = open(file);
+  read(stream);
+}
+
+Replay::Replay(std::istream& log, const std::string& name) : name_(name) {
+  read(log);
+}
+
+void Replay::read(std::istream& log) {
+  std::vector<std::uint32_t> readings_mm;
+  std::size_t odometries = 0;
+  std::string line;
+  while (std::getline(log, line)) {
+    ++lines_;
+    const CarmenLine parsed = parse_carmen_line(line);
+    if (const auto* scan = std::get_if<CarmenScan>(&parsed)) {
+      keep(*scan, readings_mm);
+    } else if (const auto* error = std::get_if<CarmenError>(&parsed)) {
+      if (skipped_.count++ == 0) {
+        skipped_.first_line = lines_;
+        skipped_.first_reason = error->reason;
+      }
+    } else if (std::holds_alternative<CarmenOdometry>(parsed)) {
+      ++odometries;
+    }
+  }
+  if (scans_.empty()) {
+    if (lines_ == 0) throw std::runtime_error("The log " + name_ + " is empty.");
+    std::string found =
+        std::to_string(lines_) + " lines, " + std::to_string(odometries) + " of them odometry";
+    if (skipped_.count > 0) {
+      found += ", " + std::to_string(skipped_.count) + " unreadable (line " +
+               std::to_string(skipped_.first_line) + ": " + skipped_.first_reason + ")";
+    }
+    throw std::runtime_error("The log " + name_ +
+                             " holds no scan (FLASER, RLASER or ROBOTLASER1): " + found + ".");
+  }
+  CarmenUnitGuess guess;
+  for (const std::uint32_t reading : readings_mm) guess.see(reading);
+  unit_ = guess.unit();
+  wire_.reserve(readings_mm.size());
+  for (const std::uint32_t reading : readings_mm) wire_.push_back(carmen_to_wire(reading, unit_));
+  time_scans();
+  describe();
+}
+
+void Replay::keep(const CarmenScan& scan, std::vector<std::uint32_t>& readings_mm) {
+  std::optional<algo::Pose2>& mount = scan.laser == CarmenLaser::Rear ? rear_R_ : front_R_;
+  if (!mount) mount = mount_of(scan);
+  scans_.push_back({.laser = scan.laser,
+                    .stamp = scan.stamp,
+                    .pose_W = scan.robot_W,
+                    .angle_min = scan.angle_min,
+                    .angle_increment = scan.angle_increment,
+                    .first = readings_mm.size(),
+                    .beams = scan.readings.size()});
+  for (const double reading : scan.readings) {
+    readings_mm.push_back(static_cast<std::uint32_t>(std::nearbyint(reading * 1000)));
+  }
+}
+
+/// Recorded stamps to run-clock times.
+void Replay::time_scans() {
+  double recorded = scans_.front().stamp;
+  double now = 0;
+  for (Scan& scan : scans_) {
+    const double passed = scan.stamp - recorded;
+    recorded = scan.stamp;
+    if (&scan != &scans_.front()) {
+      now += passed > 0 && passed < kLongestPause ? passed : kFallbackPeriod;
+    }
+    scan.stamp = now;
+  }
+}
+
+/// The recording robot is unknown: it is taken for the first one of the table.
+void Replay::describe() {
+  const VehicleParameters& stand_in = vehicle_table().front();
+  std::vector<double> periods;
+  for (std::size_t i = 1; i < scans_.size(); ++i) {
+    periods.push_back(scans_[i].stamp - scans_[i - 1].stamp);
+  }
+  double period = kFallbackPeriod;
+  if (!periods.empty()) {
+    const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
+    std::nth_element(periods.begin(), middle, periods.end());
+    period = *middle;
+  }
+  spec_ = {.name = "log",
+           .radius = stand_in.radius,
+           .half_track = stand_in.half_track,
+           .period = period,
+           .max_v = stand_in.max_v,
+           .max_omega = stand_in.max_omega,
+           .max_acceleration = stand_in.max_acceleration,
+           .max_angular_acceleration = stand_in.max_angular_acceleration,
+           .editable = false,
+           .paceable = true,
+           .drives = false};
+}
+
+void Replay::reset(algo::Observation& observation) {
+  current_ = 0;
+  pacer_.restart();
+  deliver(observation);
+}
+
+bool Replay::step(const algo::Command& /*command*/, algo::Observation& observation) {
+  if (current_ + 1 == scans_.size()) {
+    throw algo::EndOfLog("The log " + name_ + " ended after " + std::to_string(scans_.size()) +
+                         (scans_.size() == 1 ? " scan." : " scans."));
+  }
+  if (!pacer_.wait(scans_[current_ + 1].stamp - scans_[current_].stamp)) return false;
+  ++current_;
+  deliver(observation);
+  return true;
+}
+
+std::optional<std::string> Replay::edit(const algo::Request& request) {
+  const bool edits = std::holds_alternative<algo::AddObstacle>(request) ||
+                     std::holds_alternative<algo::MoveObstacle>(request) ||
+                     std::holds_alternative<algo::RemoveObstacle>(request);
+  if (!edits) return std::nullopt;
+  return "A recorded log has no obstacles to add, move or remove.";
+}
+
+void Replay::deliver(algo::Observation& observation) const {
+  const Scan& source = scans_[current_];
+  observation.clear_sensors();
+  observation.stamp = source.stamp;
+  observation.odometry = {.stamp = source.stamp, .pose = source.pose_W};
+  if (current_ > 0) {
+    const Scan& before = scans_[current_ - 1];
+    const double dt = source.stamp - before.stamp;
+    const double turned = algo::wrap_angle(source.pose_W.heading - before.pose_W.heading);
+    const algo::Vec2 ahead = algo::direction(before.pose_W.heading + turned / 2);
+    const algo::Vec2 moved = source.pose_W.position() - before.pose_W.position();
+    observation.odometry.twist = {moved.dot(ahead) / dt, turned / dt};
+  }
+  algo::LaserScan& scan = observation.scans.append();
+  scan.mount_R = *(source.laser == CarmenLaser::Rear ? rear_R_ : front_R_);
+  scan.stamp = source.stamp;
+  scan.angle_min = source.angle_min;
+  scan.angle_increment = source.angle_increment;
+  scan.range_max = carmen_range_max(unit_);
+  scan.turn_period = 0;  // the log gives one pose for all beams
+  scan.turns = 1;
+  scan.resize(source.beams);
+  for (std::size_t i = 0; i < source.beams; ++i) {
+    algo::beam_from_wire(scan, i, wire_[source.first + i]);
+  }
+}
+
+}  // namespace sim

@@ -1,0 +1,79 @@
+// sim/replay.hpp: a recorded CARMEN log behind the robot port.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <istream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/robot.hpp"
+#include "sim/carmen_log.hpp"
+#include "sim/pacer.hpp"
+
+namespace sim {
+
+/// Lines that were skipped because they could not be read.
+struct SkippedLines {
+  std::size_t count = 0;
+  std::size_t first_line = 0;  // counted from 1
+  std::string first_reason{};
+};
+
+/// Replays a log one scan a tick, at the pace of its time stamps; where those are missing, repeated
+/// or run backwards, 0.2 s a scan. The run clock starts at 0 with the first scan.
+///
+/// The whole log is read when it is opened and kept as wire values. Commands are ignored.
+/// set_pace() may come from any thread; everything else belongs to one.
+class Replay final : public algo::Robot {
+ public:
+  /// [s] A tick where the log does not say.
+  static constexpr double kFallbackPeriod = 0.2;
+
+  /// Throws std::runtime_error with a sentence when there is no such file or no scan in it.
+  explicit Replay(const std::filesystem::path& file);
+  /// The same from a stream; `name` stands for the file in messages.
+  Replay(std::istream& log, const std::string& name);
+
+  const algo::RobotSpec& spec() const override { return spec_; }
+  void reset(algo::Observation& observation) override;
+  /// Throws algo::EndOfLog after the last scan.
+  bool step(const algo::Command& command, algo::Observation& observation) override;
+  void stop() noexcept override {}
+  std::optional<std::string> edit(const algo::Request& request) override;
+  void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
+
+  std::size_t size() const { return scans_.size(); }
+  CarmenUnit unit() const { return unit_; }
+  const SkippedLines& skipped() const { return skipped_; }
+
+ private:
+  struct Scan {
+    CarmenLaser laser = CarmenLaser::Front;
+    double stamp = 0;  // [s] run clock
+    algo::Pose2 pose_W{};
+    double angle_min = 0, angle_increment = 0;  // [rad]
+    std::size_t first = 0, beams = 0;           // in wire_
+  };
+
+  void read(std::istream& log);
+  void keep(const CarmenScan& scan, std::vector<std::uint32_t>& readings_mm);
+  void time_scans();
+  void describe();
+  void deliver(algo::Observation& observation) const;
+
+  std::string name_{};
+  algo::RobotSpec spec_{};
+  Pacer pacer_{};
+  std::vector<Scan> scans_{};
+  std::vector<std::uint16_t> wire_{};
+  CarmenUnit unit_ = CarmenUnit::Centimetre;
+  std::optional<algo::Pose2> front_R_{}, rear_R_{};  // mounts, from the first scan of each
+  SkippedLines skipped_{};
+  std::size_t lines_ = 0;
+  std::size_t current_ = 0;
+};
+
+}  // namespace sim

@@ -1,0 +1,239 @@
+// sim/world.cpp: one tick of the simulated robot, and the edits of its world.
+#include "sim/world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+#include "sim/bullet_vehicle.hpp"
+#include "sim/kinematic_vehicle.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kLongestPeriod = 1.0;    // [s]
+constexpr double kShortestPeriod = 1e-3;  // [s]
+
+bool finite(const algo::Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
+}
+
+std::string metres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+std::string name_of(const algo::Obstacle& obstacle) {
+  return "Obstacle " + std::to_string(obstacle.id);
+}
+
+const VehicleParameters& vehicle_of(const Scenario& scenario) {
+  if (const VehicleParameters* found = find_vehicle(scenario.robot)) return *found;
+  std::string known;
+  for (const VehicleParameters& vehicle : vehicle_table()) {
+    known += (known.empty() ? "" : ", ") + std::string(vehicle.name);
+  }
+  throw std::invalid_argument("There is no robot named \"" + scenario.robot + "\"; there are " +
+                              known + ".");
+}
+
+/// Counts of an encoder after `angle` [rad] of its wheel, modulo 2^32.
+std::uint32_t counts(double angle, double per_turn) {
+  const double whole = std::floor(angle * per_turn / (2 * std::numbers::pi));
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
+}
+
+/// [m] Way of a wheel between two counts; a difference is taken modulo 2^32 as signed.
+double way(std::uint32_t now, std::uint32_t before, const VehicleParameters& vehicle) {
+  const auto difference = static_cast<std::int32_t>(now - before);
+  return 2 * std::numbers::pi * vehicle.wheel_radius * difference / vehicle.counts_per_turn;
+}
+
+}  // namespace
+
+World::World(const Scenario& scenario, std::uint64_t seed)
+    : scenario_(scenario), seed_(seed), parameters_(vehicle_of(scenario)) {
+  check();
+  spec_ = {.name = std::string(parameters_.name),
+           .radius = parameters_.radius,
+           .half_track = parameters_.half_track,
+           .period = scenario_.period,
+           .max_v = parameters_.max_v,
+           .max_omega = parameters_.max_omega,
+           .max_acceleration = parameters_.max_acceleration,
+           .max_angular_acceleration = parameters_.max_angular_acceleration,
+           .editable = true,
+           .paceable = true,
+           .drives = true};
+  start();
+}
+
+/// Refuses what no world can be made of; obstacles are looked at as they are added.
+void World::check() const {
+  const double period = scenario_.period;
+  if (!(period >= kShortestPeriod && period <= kLongestPeriod)) {
+    throw std::invalid_argument("The scenario's period must be 0.001 to 1 s.");
+  }
+  if (!finite(scenario_.start)) {
+    throw std::invalid_argument("The scenario's start must be finite numbers.");
+  }
+}
+
+/// Everything as the scenario says, at time 0.
+void World::start() {
+  obstacles_.clear();
+  lasers_.clear();
+  if (scenario_.vehicle == Vehicle::Bullet) {
+    vehicle_ = std::make_unique<BulletVehicle>(parameters_, scenario_.period);
+  } else {
+    vehicle_ = std::make_unique<KinematicVehicle>(parameters_, scenario_.period);
+  }
+  algo::Pose2 pose = scenario_.start;
+  pose.heading = algo::wrap_angle(pose.heading);
+  vehicle_->reset(pose);
+
+  double memory = 0;
+  for (const LaserConfig& config : scenario_.lasers) {
+    lasers_.emplace_back(config, seed_, static_cast<std::uint32_t>(lasers_.size()));
+    memory = std::max(memory, lasers_.back().memory());
+  }
+  const Substeps substeps(scenario_.period);
+  trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
+  trail_->reset(pose, 0);
+
+  for (const algo::Obstacle& obstacle : scenario_.obstacles) {
+    if (const auto problem = add(obstacle)) throw std::invalid_argument(*problem);
+  }
+  tick_ = 0;
+  odometry_ = {.pose = pose};
+  encoders_ = {};
+  touched_ = false;
+}
+
+void World::reset(algo::Observation& observation) {
+  if (touched_) start();
+  pacer_.restart();
+  sense(observation);
+}
+
+bool World::step(const algo::Command& command, algo::Observation& observation) {
+  if (!pacer_.wait(scenario_.period)) return false;
+  vehicle_->drive(command.base, obstacles_, *trail_);
+  ++tick_;
+  sense(observation);
+  return true;
+}
+
+void World::sense(algo::Observation& observation) {
+  touched_ = true;  // the scanners have drawn their noise
+  const double now = static_cast<double>(tick_) * scenario_.period;
+  observation.clear_sensors();
+  observation.stamp = now;
+  sense_motion(observation);
+  for (LaserModel& laser : lasers_) {
+    if (!laser.sense(now, *trail_, observation.scans.append())) observation.scans.pop_back();
+  }
+}
+
+/// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
+/// dynamics, as the papers have it, the true pose.
+void World::sense_motion(algo::Observation& observation) {
+  const double now = observation.stamp;
+  const VehicleState& state = vehicle_->state();
+  const std::uint32_t left = counts(state.left_angle, parameters_.counts_per_turn);
+  const std::uint32_t right = counts(state.right_angle, parameters_.counts_per_turn);
+  if (scenario_.vehicle == Vehicle::Kinematic) {
+    odometry_.pose = state.pose_W;
+    odometry_.twist = state.twist;
+  } else {
+    const double left_way = way(left, encoders_.left, parameters_);
+    const double right_way = way(right, encoders_.right, parameters_);
+    const algo::Twist2 moved{(right_way + left_way) / 2,
+                             (right_way - left_way) / (2 * parameters_.half_track)};
+    odometry_.pose = drive_arc(odometry_.pose, moved, 1);
+    odometry_.twist = {moved.v / scenario_.period, moved.omega / scenario_.period};
+    observation.gyro = algo::YawGyro{now, state.twist.omega};
+    observation.inclinometer = algo::Inclinometer{now, state.roll, state.pitch};
+  }
+  odometry_.stamp = now;
+  encoders_ = {now, left, right};
+  observation.odometry = odometry_;
+  observation.encoders = encoders_;
+  observation.bumpers.append() = {
+      .mount_R = {parameters_.radius, 0, 0}, .stamp = now, .pressed = state.contact};
+}
+
+std::optional<algo::GroundTruth> World::ground_truth() const {
+  const VehicleState& state = vehicle_->state();
+  const double distance = obstacles_.distance(state.pose_W.position());
+  return algo::GroundTruth{.pose = state.pose_W,
+                           .obstacle_distance = distance,
+                           .collided = state.contact || distance < parameters_.radius};
+}
+
+std::optional<std::string> World::edit(const algo::Request& request) {
+  touched_ = true;
+  if (const auto* add_request = std::get_if<algo::AddObstacle>(&request)) {
+    touched_ = true;
+    return add(add_request->obstacle);
+  }
+  if (const auto* move_request = std::get_if<algo::MoveObstacle>(&request)) {
+    touched_ = true;
+    return move(move_request->id, move_request->pose_W);
+  }
+  if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
+    touched_ = true;
+    return remove(remove_request->id);
+  }
+  return std::nullopt;
+}
+
+/// Why `obstacle` cannot stand where it is.
+std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const {
+  if (const auto problem = algo::defect(obstacle)) {
+    return name_of(obstacle) + ": " + *problem + ".";
+  }
+  if (!finite(obstacle.pose_W)) return name_of(obstacle) + ": its pose must be finite numbers.";
+  const double distance =
+      algo::signed_distance(obstacle, vehicle_->state().pose_W.position()) - parameters_.radius;
+  if (distance < 0) {
+    return name_of(obstacle) + " would overlap the robot: " + metres(-distance) + " too close.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> World::add(const algo::Obstacle& obstacle) {
+  if (obstacles_.find(obstacle.id))
+    return "There is an obstacle " + std::to_string(obstacle.id) + " already.";
+  if (auto problem = refusal(obstacle)) return problem;
+  obstacles_.add(obstacle);
+  vehicle_->added(obstacle);
+  for (LaserModel& laser : lasers_) laser.add(obstacle);
+  return std::nullopt;
+}
+
+std::optional<std::string> World::move(std::uint32_t id, const algo::Pose2& pose_W) {
+  const auto index = obstacles_.find(id);
+  if (!index) return "There is no obstacle " + std::to_string(id) + ".";
+  algo::Obstacle obstacle = obstacles_[*index];
+  obstacle.pose_W = pose_W;
+  if (auto problem = refusal(obstacle)) return problem;
+  obstacles_.move(*index, pose_W);
+  vehicle_->moved(*index, obstacle);
+  for (LaserModel& laser : lasers_) laser.move(id, pose_W);
+  return std::nullopt;
+}
+
+std::optional<std::string> World::remove(std::uint32_t id) {
+  const auto index = obstacles_.find(id);
+  if (!index) return "There is no obstacle " + std::to_string(id) + ".";
+  obstacles_.remove(*index);
+  vehicle_->removed(*index);
+  for (LaserModel& laser : lasers_) laser.remove(id);
+  return std::nullopt;
+}
+
+}  // namespace sim

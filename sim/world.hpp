@@ -1,0 +1,65 @@
+// sim/world.hpp: the simulated robot: a scenario and a seed in, observations out.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/robot.hpp"
+#include "sim/laser_model.hpp"
+#include "sim/obstacle_set.hpp"
+#include "sim/pacer.hpp"
+#include "sim/pose_trail.hpp"
+#include "sim/scenario.hpp"
+#include "sim/vehicle.hpp"
+
+namespace sim {
+
+/// A robot in a world of obstacles, with dynamics or without (Scenario::vehicle).
+///
+/// The same scenario, seed, commands and edits give the same observations bit for bit. reset()
+/// starts the scenario anew: obstacles, noise and time as at first.
+///
+/// set_pace() may come from any thread; everything else belongs to one.
+class World final : public algo::Robot {
+ public:
+  /// Throws std::invalid_argument with a sentence when the scenario cannot be run.
+  World(const Scenario& scenario, std::uint64_t seed);
+
+  const algo::RobotSpec& spec() const override { return spec_; }
+  void reset(algo::Observation& observation) override;
+  bool step(const algo::Command& command, algo::Observation& observation) override;
+  void stop() noexcept override { vehicle_->halt(); }
+  std::optional<std::string> edit(const algo::Request& request) override;
+  std::optional<algo::GroundTruth> ground_truth() const override;
+  void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
+
+ private:
+  void check() const;
+  void start();
+  std::optional<std::string> add(const algo::Obstacle& obstacle);
+  std::optional<std::string> move(std::uint32_t id, const algo::Pose2& pose_W);
+  std::optional<std::string> remove(std::uint32_t id);
+  std::optional<std::string> refusal(const algo::Obstacle& obstacle) const;
+  void sense(algo::Observation& observation);
+  void sense_motion(algo::Observation& observation);
+
+  Scenario scenario_{};
+  std::uint64_t seed_ = 0;
+  VehicleParameters parameters_{};
+  algo::RobotSpec spec_{};
+  Pacer pacer_{};
+
+  ObstacleSet obstacles_{};
+  std::unique_ptr<VehicleModel> vehicle_{};
+  std::vector<LaserModel> lasers_{};
+  std::unique_ptr<PoseTrail> trail_{};
+  algo::Odometry odometry_{};
+  algo::Encoders encoders_{};
+  std::uint64_t tick_ = 0;
+  bool touched_ = false;  // something happened since start()
+};
+
+}  // namespace sim

@@ -1,0 +1,313 @@
+// web/src/app.ts: what the page knows and can do: one link, one scene, one set of controls' state.
+import { createContext } from "preact";
+import { useContext } from "preact/hooks";
+import { Catalog, Page, RequestJson, ScenarioItem, SessionState } from "./contract";
+import { Selection } from "./draw/scene";
+import { View } from "./draw/view";
+import { Pose } from "./geometry";
+import { Edit, EditHistory } from "./edit/history";
+import { Tool } from "./edit/gestures";
+import { move_edit, move_request } from "./edit/edits";
+import { LinkStatus, LiveLink } from "./link/live";
+import * as rest from "./link/rest";
+import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
+import { TickRow } from "./state/columns";
+import { Store } from "./state/store";
+import { sentence_of } from "./words";
+
+export type ViewName = "drive" | "runs" | "system";
+export interface Toast { id: number; tone: "info" | "warn" | "bad"; text: string }
+
+export interface UiState {
+  link: LinkStatus;
+  session: SessionState | null;
+  catalog: Catalog | null;
+  scenarios: ScenarioItem[];
+  toasts: Toast[];
+  /** The sentence a screen reader hears next. */
+  spoken: string;
+  view: ViewName;
+  run: number | null; // opened in the Runs view
+  theme: "dark" | "light";
+  tool: Tool;
+  selection: Selection;
+  three: boolean;
+  follow: boolean;
+  force_scale: number;
+  shortcuts: boolean;
+  sheet: boolean;
+  loading: string | null;
+  undo: string | null;
+  redo: string | null;
+}
+
+const kPathRows = 40_000;
+const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
+const kLate = 40;   // [ticks] a page that comes this late asks for what it missed
+const kMoveMs = 90; // between two requests of one drag
+
+export class App {
+  readonly scene: SceneState = new_scene(kPathRows);
+  readonly view = new View();
+  readonly ui: Store<UiState>;
+  readonly link: LiveLink;
+  readonly history: EditHistory;
+  /** Asks the canvas to draw once more. */
+  redraw: () => void = () => undefined;
+  private next_toast_ = 1;
+  private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
+
+  constructor() {
+    this.ui = new Store<UiState>({
+      link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
+      session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
+      theme: initial_theme(), tool: "goal", selection: null, three: false, follow: false,
+      force_scale: 1, shortcuts: false, sheet: false, loading: null, undo: null, redo: null,
+    });
+    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+    this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
+      frame: (frame) => {
+        fold_frame(this.scene, frame);
+        if (this.scene.columns.length === 1 && frame.tick > kLate) void this.fetch_past(frame.tick);
+        this.redraw();
+      },
+      state: (session) => this.take_session(session),
+      status: (status) => this.take_status(status),
+      notice: (level, message) => {
+        if (level > 0) this.toast(level > 1 ? "bad" : "warn", message);
+      },
+      log: (message) => this.say(message),
+      new_session: () => {
+        begin_run(this.scene);
+        this.history.clear();
+        void this.fetch_lists();
+      },
+    });
+    this.history = new EditHistory((r) => this.link.call("/request", r), () => {
+      this.ui.set({ undo: this.history.can_undo, redo: this.history.can_redo });
+    });
+  }
+
+  start(): void {
+    this.apply_theme();
+    this.read_route();
+    addEventListener("hashchange", () => this.read_route());
+    this.link.start();
+  }
+
+  /** The catalog and the scenarios; asked again after each connection. */
+  async fetch_lists(): Promise<void> {
+    try {
+      const [catalog, page] = await Promise.all([
+        rest.get<Catalog>("/catalog"), rest.get<Page<ScenarioItem>>("/scenarios?limit=200")]);
+      this.ui.set({ catalog, scenarios: page.items });
+    } catch (error) {
+      if (this.link.is_open) this.toast("bad", sentence_of(error));
+    }
+  }
+
+  /** The path and the figures of the run before this page came, from the record. */
+  private async fetch_past(before: number): Promise<void> {
+    const run = this.scene.run;
+    const stride = Math.max(1, Math.ceil(before / kPathRows) * 2 - 1);
+    const rows: TickRow[] = [];
+    try {
+      for (let from: number | null = 0; from !== null && from < before;) {
+        const page: Page<TickRow> = await rest.get(`/runs/${run}/ticks?from=${from}&limit=5000`);
+        rows.push(...page.items.filter((r) => r.tick < before && r.tick % stride === 0));
+        from = page.next === null ? null : Number(page.next);
+      }
+    } catch {
+      return; // the path then begins where this page came in
+    }
+    if (run !== this.scene.run || rows.length === 0) return;
+    this.scene.columns.prepend(rows);
+    this.scene.rows = this.scene.columns.length;
+    this.redraw();
+  }
+
+  /** Calls a service; a refusal becomes a toast with the server's sentence. */
+  async ask<T>(name: string, body: unknown = {}): Promise<T | null> {
+    try {
+      return await this.link.call<T>(name, body);
+    } catch (error) {
+      this.toast("warn", sentence_of(error));
+      return null;
+    }
+  }
+
+  request(request: RequestJson): Promise<unknown> {
+    return this.ask("/request", request);
+  }
+
+  async edit(edit: Edit): Promise<{ id?: number } | null> {
+    try {
+      return await this.history.perform(edit);
+    } catch (error) {
+      this.toast("warn", sentence_of(error));
+      return null;
+    }
+  }
+
+  async undo(): Promise<void> {
+    try {
+      const label = await this.history.undo();
+      if (label) this.say(`Undone: ${label}`);
+    } catch (error) {
+      this.toast("warn", sentence_of(error));
+    }
+  }
+  async redo(): Promise<void> {
+    try {
+      const label = await this.history.redo();
+      if (label) this.say(`Done again: ${label}`);
+    } catch (error) {
+      this.toast("warn", sentence_of(error));
+    }
+  }
+
+  /** A drag: the newest place is sent at a steady pace, the last one always; one step of undo. */
+  drag(id: number, pose: Pose, from: Pose, done: boolean): void {
+    const drag = (this.drag_ ??= { busy: false, sent: 0, failed: false });
+    if (done) {
+      this.drag_ = null;
+      void this.link.call("/request", move_request(id, pose)).then(
+        () => this.history.record(move_edit(id, from, pose)),
+        (error) => this.toast("warn", sentence_of(error)));
+      return;
+    }
+    const now = performance.now();
+    if (drag.busy || now - drag.sent < kMoveMs) return;
+    drag.busy = true;
+    drag.sent = now;
+    // A place on the way that is refused is no matter: only where the drag ends is said.
+    this.link.call("/request", move_request(id, pose)).catch(() => undefined)
+      .finally(() => (drag.busy = false));
+  }
+
+  /** Loads a scenario, or the same one with another controller, filter or vehicle. */
+  async load(change: { scenario?: string; controller?: string; filter?: string; vehicle?: string }):
+    Promise<void> {
+    const s = this.ui.value.session;
+    if (!s || this.ui.value.loading) return;
+    const other = change.scenario !== undefined && change.scenario !== s.scenario.name;
+    const scenario = change.scenario ?? s.scenario.name;
+    const log = this.ui.value.scenarios.find((x) => x.name === scenario)?.kind === "log";
+    const vehicle = change.vehicle ?? s.vehicle;
+    const known = this.ui.value.catalog?.vehicles.some((v) => v.name === vehicle) ?? false;
+    const body = {
+      scenario,
+      filter: change.filter ?? s.filter,
+      // A log has no controller and no vehicle; a scenario brings its own gains.
+      ...(log ? {} : { controller: change.controller ?? s.controller }),
+      ...(log || !known ? {} : { vehicle }),
+      ...(other ? {} : { seed: s.seed, parameters: s.parameters }),
+    };
+    this.ui.set({ loading: body.scenario, selection: null });
+    await this.ask("/load", body);
+    this.history.clear();
+    this.view.fitted = true;
+    this.ui.set({ loading: null });
+    this.redraw();
+  }
+
+  async stop(engaged: boolean): Promise<void> {
+    await this.request({ type: "stop", engaged });
+  }
+  async toggle_play(): Promise<void> {
+    const s = this.ui.value.session;
+    if (s?.robot.paceable) await this.ask(s.pace.paused ? "/play" : "/pause");
+  }
+  async step(): Promise<void> {
+    const s = this.ui.value.session;
+    if (!s?.robot.paceable) return;
+    if (!s.pace.paused) await this.ask("/pause");
+    await this.ask("/step", { ticks: 1 });
+  }
+  async reset(): Promise<void> {
+    await this.ask("/reset");
+    this.history.clear();
+    this.ui.set({ selection: null });
+  }
+
+  go(view: ViewName, run: number | null = null): void {
+    location.hash = run === null ? `#/${view}` : `#/${view}/${run}`;
+  }
+
+  set_theme(theme: "dark" | "light"): void {
+    try {
+      localStorage.setItem("tautline.theme", theme);
+    } catch {
+      // private windows may refuse; the theme then lasts as long as the page
+    }
+    this.ui.set({ theme });
+    this.apply_theme();
+  }
+
+  toast(tone: Toast["tone"], text: string): void {
+    const same = this.ui.value.toasts.find((t) => t.text === text);
+    const rest_of = this.ui.value.toasts.filter((t) => t !== same).slice(-3);
+    const toast = { id: this.next_toast_++, tone, text };
+    this.ui.set({ toasts: [...rest_of, toast] });
+    setTimeout(() => this.dismiss(toast.id), kToastTime[tone]);
+  }
+  dismiss(id: number): void {
+    this.ui.set({ toasts: this.ui.value.toasts.filter((t) => t.id !== id) });
+  }
+  say(spoken: string): void {
+    if (spoken !== "") this.ui.set({ spoken });
+  }
+
+  private take_session(session: SessionState): void {
+    const before = this.ui.value.session;
+    fold_session(this.scene, session);
+    if (before?.scenario.name !== session.scenario.name) this.view.fitted = true;
+    if (before && before.run?.id !== session.run?.id) this.history.clear();
+    if (session.problem && session.problem !== before?.problem) this.toast("bad", session.problem);
+    const selection = this.ui.value.selection;
+    const gone = selection?.kind === "obstacle" &&
+      !this.scene.obstacles.some((o) => o.id === selection.id);
+    this.ui.set({ session, selection: gone ? null : selection });
+    this.redraw();
+  }
+
+  private take_status(status: LinkStatus): void {
+    const before = this.ui.value.link.phase;
+    this.ui.set({ link: status });
+    if (before === status.phase) return;
+    if (status.phase === "open") {
+      this.say("Connected");
+      void this.fetch_lists();
+    } else if (status.phase === "lost" && before === "open") {
+      this.say("Connection lost");
+    }
+  }
+
+  private read_route(): void {
+    const [, name, id] = location.hash.split("/");
+    const view: ViewName = name === "runs" || name === "system" ? name : "drive";
+    const run = view === "runs" && id ? Number(id) : NaN;
+    this.ui.set({ view, run: Number.isInteger(run) ? run : null, sheet: false });
+    document.title = { drive: "Tautline", runs: "Tautline: runs", system: "Tautline: system" }[view];
+  }
+
+  private apply_theme(): void {
+    document.documentElement.dataset.theme = this.ui.value.theme;
+    this.redraw();
+  }
+}
+
+function initial_theme(): "dark" | "light" {
+  try {
+    const stored = localStorage.getItem("tautline.theme");
+    if (stored === "dark" || stored === "light") return stored;
+  } catch {
+    // fall through to what the system prefers
+  }
+  return matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+}
+
+export const AppContext = createContext<App | null>(null);
+export function use_app(): App {
+  return useContext(AppContext)!;
+}

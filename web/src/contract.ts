@@ -1,0 +1,119 @@
+// web/src/contract.ts: the JSON documents of docs/interfaces.md as types.
+import { Pose } from "./geometry";
+import { ObstacleJson } from "./obstacle";
+
+export interface GoalJson { x: number; y: number; heading?: number | null }
+
+export interface ScenarioDocument {
+  name: string;
+  title?: string;
+  description?: string;
+  start?: Pose;
+  goal?: GoalJson | null;
+  obstacles?: ObstacleJson[];
+  log?: string;
+  [key: string]: unknown;
+}
+
+export interface RobotInfo {
+  name: string;
+  radius: number;
+  half_track: number;
+  period: number;
+  max_v: number;
+  max_omega: number;
+  editable: boolean;
+  paceable: boolean;
+  drives: boolean;
+}
+
+export type Source = "simulation" | "replay" | "hardware";
+
+/** The /state document. */
+export interface SessionState {
+  run: { id: number; status: string; outcome: string } | null;
+  source: Source;
+  scenario: ScenarioDocument;
+  controller: string;
+  filter: string;
+  vehicle: string;
+  seed: number;
+  robot: RobotInfo;
+  pace: { paused: boolean; speed: number };
+  stop: boolean;
+  goal: GoalJson | null;
+  obstacles: ObstacleJson[];
+  parameters: Record<string, number>;
+  lost_ticks: number;
+  problem: string | null;
+}
+
+export type RequestJson =
+  | { type: "set_goal"; x: number; y: number; heading?: number }
+  | { type: "clear_goal" }
+  | { type: "add_obstacle"; obstacle: ObstacleJson }
+  | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }
+  | { type: "remove_obstacle"; id: number }
+  | { type: "stop"; engaged: boolean };
+
+export interface Choice { name: string; label: string; help?: string }
+export interface ParameterInfo {
+  name: string;
+  label: string;
+  unit: string;
+  min: number;
+  max: number;
+  step: number;
+  initial: number;
+  help?: string;
+}
+export interface Catalog {
+  controllers: Choice[];
+  filters: Choice[];
+  vehicles: Choice[];
+  parameters: ParameterInfo[];
+}
+
+export interface ScenarioItem {
+  name: string;
+  title: string;
+  description: string;
+  builtin: boolean;
+  kind: "world" | "log";
+}
+
+export interface Metrics {
+  outcome: string;
+  time: number;
+  path_length: number;
+  min_clearance: number | null;
+  intrusion: number | null;
+  infringed_time: number;
+  turning: number;
+  via_points: number;
+  ticks: number;
+  collided: boolean;
+}
+
+export interface RunItem {
+  id: number;
+  status: string;
+  outcome: string;
+  reason?: string | null;
+  scenario: string;
+  controller: string;
+  filter: string;
+  vehicle: string;
+  seed: number;
+  parameters: Record<string, number>;
+  version: string;
+  started: string;
+  ticks: number;
+  time: number;
+  lost_ticks: number;
+  bytes: number;
+  metrics: Metrics | null;
+  document?: ScenarioDocument;
+}
+
+export interface Page<T> { items: T[]; next: string | number | null; total?: number }

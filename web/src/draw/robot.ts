@@ -1,0 +1,88 @@
+// web/src/draw/robot.ts: the robot, its safety circle, and its goal.
+import { Pose } from "../geometry";
+import { Goal } from "../link/frame";
+import { Palette } from "./palette";
+import { arrow } from "./strip";
+import { View } from "./view";
+
+type Context = CanvasRenderingContext2D;
+
+export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose,
+  radius: number): void {
+  g.strokeStyle = palette.safe;
+  g.setLineDash([5, 6]);
+  g.globalAlpha = 0.75;
+  g.lineWidth = 1.4;
+  g.beginPath();
+  g.arc(view.sx(pose.x), view.sy(pose.y), radius * view.scale, 0, 2 * Math.PI);
+  g.stroke();
+  g.setLineDash([]);
+  g.globalAlpha = 1;
+}
+
+/** Hull, two wheels and an arrowhead ahead. */
+export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose, radius: number,
+  half_track: number, colour = palette.robot, alpha = 1): void {
+  const s = view.scale;
+  const r = Math.max(radius * s, 6);
+  const k = r / radius; // small robots are drawn no smaller than 12 px across
+  g.save();
+  g.globalAlpha = alpha;
+  g.translate(view.sx(pose.x), view.sy(pose.y));
+  g.rotate(-pose.heading);
+  g.fillStyle = palette.panel;
+  g.strokeStyle = colour;
+  g.lineWidth = Math.max(1.5, Math.min(2.4, r / 8));
+  g.beginPath();
+  g.arc(0, 0, r, 0, 2 * Math.PI);
+  g.fill();
+  g.stroke();
+  g.fillStyle = colour;
+  const wheel = Math.min(half_track, radius * 0.86);
+  g.fillRect(-0.29 * r, (-wheel - 0.035) * k, 0.58 * r, 0.07 * k);
+  g.fillRect(-0.29 * r, (wheel - 0.035) * k, 0.58 * r, 0.07 * k);
+  g.beginPath();
+  g.moveTo(0.77 * r, 0);
+  g.lineTo(0.14 * r, -0.32 * r);
+  g.lineTo(0.14 * r, 0.32 * r);
+  g.fill();
+  g.restore();
+}
+
+/** Where the robot truly is, when its own idea of it has drifted visibly. */
+export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose,
+  radius: number): void {
+  g.strokeStyle = palette.muted;
+  g.lineWidth = 1.2;
+  g.setLineDash([2, 3]);
+  g.beginPath();
+  g.arc(view.sx(pose.x), view.sy(pose.y), radius * view.scale, 0, 2 * Math.PI);
+  g.stroke();
+  g.setLineDash([]);
+}
+
+export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, selected: boolean,
+  draft = false): void {
+  const x = view.sx(goal.x);
+  const y = view.sy(goal.y);
+  const r = Math.max(9, 0.2 * view.scale);
+  g.strokeStyle = palette.ok;
+  g.fillStyle = palette.ok;
+  g.lineWidth = selected ? 4 : 2.5;
+  if (draft) g.setLineDash([4, 4]);
+  g.beginPath();
+  g.arc(x, y, r, 0, 2 * Math.PI);
+  g.stroke();
+  g.setLineDash([]);
+  g.globalAlpha = 0.16;
+  g.fill();
+  g.globalAlpha = 1;
+  g.beginPath();
+  g.arc(x, y, 2.5, 0, 2 * Math.PI);
+  g.fill();
+  if (goal.heading !== null) {
+    const length = Math.max(0.46, 26 / view.scale);
+    arrow(g, view, goal, { x: length * Math.cos(goal.heading), y: length * Math.sin(goal.heading) },
+      1, palette.ok, 2.6);
+  }
+}

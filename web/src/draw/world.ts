@@ -1,0 +1,82 @@
+// web/src/draw/world.ts: the ground: grid, obstacles, scale bar.
+import { Obstacle, outline } from "../obstacle";
+import { Palette } from "./palette";
+import { Insets, View } from "./view";
+
+type Context = CanvasRenderingContext2D;
+
+/** A line a metre, stronger every fifth; wider steps when zoomed out. */
+export function draw_grid(g: Context, view: View, palette: Palette): void {
+  const step = view.scale >= 24 ? 1 : view.scale >= 9 ? 5 : 10;
+  const a = view.to_world(0, view.height);
+  const b = view.to_world(view.width, 0);
+  g.lineWidth = 1;
+  for (const strong of [false, true]) {
+    g.strokeStyle = strong ? palette.grid2 : palette.grid;
+    g.beginPath();
+    for (let i = Math.floor(a.x / step); i <= Math.ceil(b.x / step); ++i) {
+      if ((i % 5 === 0) !== strong) continue;
+      const x = Math.round(view.sx(i * step)) + 0.5;
+      g.moveTo(x, 0);
+      g.lineTo(x, view.height);
+    }
+    for (let i = Math.floor(a.y / step); i <= Math.ceil(b.y / step); ++i) {
+      if ((i % 5 === 0) !== strong) continue;
+      const y = Math.round(view.sy(i * step)) + 0.5;
+      g.moveTo(0, y);
+      g.lineTo(view.width, y);
+    }
+    g.stroke();
+  }
+}
+
+export function trace_obstacle(g: Context, view: View, o: Obstacle): void {
+  g.beginPath();
+  if (o.kind === "cylinder") {
+    g.arc(view.sx(o.pose.x), view.sy(o.pose.y), Math.max(1, o.radius * view.scale), 0, 2 * Math.PI);
+    return;
+  }
+  outline(o).forEach((p, i) => {
+    if (i === 0) g.moveTo(view.sx(p.x), view.sy(p.y));
+    else g.lineTo(view.sx(p.x), view.sy(p.y));
+  });
+  g.closePath();
+}
+
+export function draw_obstacles(g: Context, view: View, palette: Palette, obstacles: Obstacle[],
+  selected: number | null, hovered: number | null): void {
+  for (const o of obstacles) {
+    trace_obstacle(g, view, o);
+    g.fillStyle = palette.obst;
+    g.fill();
+    g.lineWidth = 1.5;
+    g.strokeStyle = o.id === hovered ? palette.text : palette.obstline;
+    g.stroke();
+    if (o.id !== selected) continue;
+    g.lineWidth = 2.5;
+    g.strokeStyle = palette.accent;
+    g.stroke();
+  }
+}
+
+/** A bar of 0.1, 0.2, 0.5, 1, 2, 5 ... metres, as long as fits 60 to 150 pixels. */
+export function draw_scale(g: Context, view: View, palette: Palette, insets: Insets): void {
+  let metres = 0.1;
+  for (const next of [0.2, 0.5, 1, 2, 5, 10, 20]) if (metres * view.scale < 56) metres = next;
+  const length = metres * view.scale;
+  const x = view.width - insets.right - 20;
+  const y = view.height - insets.bottom;
+  g.strokeStyle = palette.muted;
+  g.fillStyle = palette.muted;
+  g.lineWidth = 1.5;
+  g.beginPath();
+  g.moveTo(x - length, y - 5);
+  g.lineTo(x - length, y);
+  g.lineTo(x, y);
+  g.lineTo(x, y - 5);
+  g.stroke();
+  g.font = `12px ${palette.font}`;
+  g.textAlign = "right";
+  g.textBaseline = "alphabetic";
+  g.fillText(`${metres} m`, x, y - 9);
+}

@@ -1,0 +1,58 @@
+// web/src/edit/edits.ts: the edits people make, each as one value with its way back.
+import { RequestJson } from "../contract";
+import { Pose } from "../geometry";
+import { Goal } from "../link/frame";
+import { Obstacle, obstacle_to_json } from "../obstacle";
+import { Edit } from "./history";
+
+function goal_request(goal: Goal | null): RequestJson {
+  if (!goal) return { type: "clear_goal" };
+  return goal.heading === null ? { type: "set_goal", x: goal.x, y: goal.y }
+    : { type: "set_goal", x: goal.x, y: goal.y, heading: goal.heading };
+}
+
+export function set_goal_edit(from: Goal | null, to: Goal | null): Edit {
+  return {
+    label: to ? "Set goal" : "Clear goal",
+    forward: goal_request(to),
+    backward: goal_request(from),
+  };
+}
+
+export function add_edit(obstacle: Obstacle): Edit {
+  return {
+    label: "Add obstacle",
+    forward: { type: "add_obstacle", obstacle: obstacle_to_json(obstacle) },
+    backward: null, // known once the server has given it an id
+  };
+}
+
+export function move_request(id: number, pose: Pose): RequestJson {
+  return { type: "move_obstacle", id, x: pose.x, y: pose.y, heading: pose.heading };
+}
+
+export function move_edit(id: number, from: Pose, to: Pose): Edit {
+  return { label: "Move obstacle", forward: move_request(id, to), backward: move_request(id, from) };
+}
+
+export function remove_edit(obstacle: Obstacle): Edit {
+  return {
+    label: "Remove obstacle",
+    forward: { type: "remove_obstacle", id: obstacle.id },
+    backward: { type: "add_obstacle", obstacle: obstacle_to_json(obstacle) },
+  };
+}
+
+export function new_cylinder(x: number, y: number, radius: number): Obstacle {
+  return {
+    id: 0, kind: "cylinder", pose: { x, y, heading: 0 }, radius, length: 0, width: 0, points: [],
+    height: 1, extra: {},
+  };
+}
+
+export function new_box(x: number, y: number, length: number, width: number, heading = 0): Obstacle {
+  return {
+    id: 0, kind: "box", pose: { x, y, heading }, radius: 0, length, width, points: [], height: 1,
+    extra: {},
+  };
+}

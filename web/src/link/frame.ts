@@ -1,0 +1,221 @@
+// web/src/link/frame.ts: one FlatBuffers frame (telemetry.fbs) as a plain object.
+import * as flatbuffers from "flatbuffers";
+import { Point, Pose } from "../geometry";
+import { Obstacle, ObstacleKind } from "../obstacle";
+import * as wire from "../wire/telemetry_generated";
+
+/** Wire value of a beam that met nothing within range. */
+export const kFree = 65535;
+/** Greatest wire value that is a distance [mm]; above it and below kFree are device codes. */
+export const kMaxRange = 65519;
+
+export interface Sweep {
+  mount: Pose;              // of the scanner in R
+  stamp: number;            // [s]
+  angle_min: number;        // [rad]
+  angle_increment: number;  // [rad]
+  range_max: number;        // [m]
+  ranges: Uint16Array;      // [mm] or a code, B beams
+}
+
+export interface Nearest { point: Point; distance: number; beam: number }
+export interface StripNode { position: Point; internal: Point; external: Point }
+export interface Goal { x: number; y: number; heading: number | null }
+export interface RangeReading { mount: Pose; range: number; status: number }
+
+export type FrameRequest =
+  | { type: "set_goal"; goal: Goal }
+  | { type: "clear_goal" }
+  | { type: "add_obstacle"; obstacle: Obstacle }
+  | { type: "move_obstacle"; id: number; pose: Pose }
+  | { type: "remove_obstacle"; id: number }
+  | { type: "joystick"; forward: number; turn: number }
+  | { type: "stop"; engaged: boolean }
+  | { type: "set_parameter"; name: string; value: number };
+
+export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost";
+export type Mission = "idle" | "driving" | "arrived" | "stuck" | "held";
+export type Behaviour = "rest" | "avoid" | "manual";
+
+const kHolds: Hold[] = ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost"];
+const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
+const kBehaviours: Behaviour[] = ["rest", "avoid", "manual"];
+const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
+
+/** One tick of a run; positions in W, metres, radians, seconds. */
+export interface Frame {
+  tick: number;
+  stamp: number;
+  pose: Pose;               // odometry
+  twist: { v: number; omega: number };
+  sweeps: Sweep[];          // only those new in this tick
+  sonar: RangeReading[];
+  infrared: RangeReading[];
+  bumper: boolean;
+  requests: FrameRequest[]; // applied before this tick
+  command: { v: number; omega: number };
+  truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
+  goal: Goal | null;
+  hold: Hold;
+  mission: Mission;
+  behaviour: Behaviour;
+  clearance: number;        // [m] hull to nearest filtered return
+  strip: StripNode[];
+  pass: Point | null;
+  left: Nearest | null;
+  right: Nearest | null;
+  external_left: Point;     // displacements [m]
+  external_right: Point;
+  elastic: Point;
+  side: number;
+  what: string;
+  why: string;
+}
+
+interface XY { x(): number; y(): number }
+interface XYH extends XY { heading(): number }
+const zero: Point = { x: 0, y: 0 };
+const point = (p: XY | null): Point => (p ? { x: p.x(), y: p.y() } : zero);
+const pose = (p: XYH | null): Pose =>
+  p ? { x: p.x(), y: p.y(), heading: p.heading() } : { x: 0, y: 0, heading: 0 };
+
+/** Decodes `bytes`; throws when they are too short to be a frame. The ranges are copied. */
+export function decode_frame(bytes: Uint8Array): Frame {
+  if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
+  // The ranges are read as a Uint16Array over the buffer, which must start at an even address.
+  const aligned = bytes.byteOffset % 2 === 0 ? bytes : bytes.slice();
+  const f = wire.Frame.getRootAsFrame(new flatbuffers.ByteBuffer(aligned));
+  const odometry = f.odometry();
+  const truth = f.truth();
+  const command = f.command();
+  const goal = f.goal();
+  const pass = f.pass();
+  return {
+    tick: Number(f.tick()),
+    stamp: f.stamp(),
+    pose: pose(odometry?.pose() ?? null),
+    twist: { v: odometry?.twist()?.v() ?? 0, omega: odometry?.twist()?.omega() ?? 0 },
+    sweeps: list(f.scansLength(), (i) => sweep(f.scans(i)!)),
+    sonar: list(f.sonarLength(), (i) => reading(f.sonar(i)!)),
+    infrared: list(f.infraredLength(), (i) => reading(f.infrared(i)!)),
+    bumper: list(f.bumpersLength(), (i) => f.bumpers(i)!.pressed()).includes(true),
+    requests: requests(f),
+    command: { v: command?.v() ?? 0, omega: command?.omega() ?? 0 },
+    truth: truth && {
+      pose: pose(truth.pose()),
+      obstacle_distance: truth.obstacleDistance(),
+      collided: truth.collided(),
+    },
+    goal: goal && set_goal(goal),
+    hold: kHolds[f.hold()] ?? "none",
+    mission: kMissions[f.mission()] ?? "idle",
+    behaviour: kBehaviours[f.behaviour()] ?? "rest",
+    clearance: f.clearance(),
+    strip: list(f.stripLength(), (i) => {
+      const n = f.strip(i)!;
+      return {
+        position: point(n.position()),
+        internal: point(n.internal()),
+        external: point(n.external()),
+      };
+    }),
+    pass: pass && point(pass),
+    left: nearest(f.left()),
+    right: nearest(f.right()),
+    external_left: point(f.externalLeft()),
+    external_right: point(f.externalRight()),
+    elastic: point(f.elastic()),
+    side: f.side(),
+    what: f.what() ?? "",
+    why: f.why() ?? "",
+  };
+}
+
+function list<T>(length: number, item: (i: number) => T): T[] {
+  const out: T[] = [];
+  for (let i = 0; i < length; ++i) out.push(item(i));
+  return out;
+}
+
+function sweep(s: wire.LaserScan): Sweep {
+  return {
+    mount: pose(s.mount()),
+    stamp: s.stamp(),
+    angle_min: s.angleMin(),
+    angle_increment: s.angleIncrement(),
+    range_max: s.rangeMax(),
+    ranges: s.rangesArray()?.slice() ?? new Uint16Array(0),
+  };
+}
+
+function reading(r: wire.RangeReading): RangeReading {
+  return { mount: pose(r.mount()), range: r.range(), status: r.status() };
+}
+
+function nearest(n: wire.Nearest | null): Nearest | null {
+  return n && { point: point(n.point()), distance: n.distance(), beam: n.beam() };
+}
+
+function set_goal(g: wire.SetGoal): Goal {
+  const p = point(g.position());
+  return { x: p.x, y: p.y, heading: g.hasHeading() ? g.heading() : null };
+}
+
+function obstacle(o: wire.Obstacle): Obstacle {
+  const kind = kKinds[o.kind()] ?? "cylinder";
+  const size = point(o.size());
+  return {
+    id: o.id(),
+    kind,
+    pose: pose(o.pose()),
+    radius: kind === "cylinder" ? size.x : 0,
+    length: size.x,
+    width: size.y,
+    points: list(o.pointsLength(), (i) => point(o.points(i))),
+    height: o.height() || 1,
+    extra: {},
+  };
+}
+
+function requests(f: wire.Frame): FrameRequest[] {
+  const out: FrameRequest[] = [];
+  for (let i = 0; i < f.requestsLength(); ++i) {
+    const request = one_request(f.requests(i)!);
+    if (request) out.push(request);
+  }
+  return out;
+}
+
+function one_request(box: wire.RequestBox): FrameRequest | null {
+  switch (box.requestType()) {
+    case wire.Request.SetGoal:
+      return { type: "set_goal", goal: set_goal(box.request(new wire.SetGoal())) };
+    case wire.Request.ClearGoal:
+      return { type: "clear_goal" };
+    case wire.Request.AddObstacle: {
+      const o = (box.request(new wire.AddObstacle()) as wire.AddObstacle).obstacle();
+      return o && { type: "add_obstacle", obstacle: obstacle(o) };
+    }
+    case wire.Request.MoveObstacle: {
+      const m = box.request(new wire.MoveObstacle()) as wire.MoveObstacle;
+      return { type: "move_obstacle", id: m.id(), pose: pose(m.pose()) };
+    }
+    case wire.Request.RemoveObstacle:
+      return {
+        type: "remove_obstacle",
+        id: (box.request(new wire.RemoveObstacle()) as wire.RemoveObstacle).id(),
+      };
+    case wire.Request.Joystick: {
+      const j = box.request(new wire.Joystick()) as wire.Joystick;
+      return { type: "joystick", forward: j.forward(), turn: j.turn() };
+    }
+    case wire.Request.Stop:
+      return { type: "stop", engaged: (box.request(new wire.Stop()) as wire.Stop).engaged() };
+    case wire.Request.SetParameter: {
+      const s = box.request(new wire.SetParameter()) as wire.SetParameter;
+      return { type: "set_parameter", name: s.name() ?? "", value: s.value() };
+    }
+    default:
+      return null;
+  }
+}

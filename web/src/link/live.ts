@@ -1,0 +1,320 @@
+// web/src/link/live.ts: the live session over /ws: subscribes, calls services, sets parameters,
+// measures rate and round trip, and comes back by itself when the connection is lost.
+import { SessionState } from "../contract";
+import { Frame, decode_frame } from "./frame";
+import {
+  ParameterValue, ServerBinary, ServerText, kSubprotocols, parse_binary, parse_text, payload_json,
+  service_request,
+} from "./foxglove";
+
+export interface LinkStatus {
+  phase: "connecting" | "open" | "lost";
+  /** Wall clock [ms] of the next try while lost. */
+  retry_at: number;
+  /** [frames/s] received over the last second. */
+  rate: number;
+  /** [ms] round trip, or null before the first answer. */
+  latency: number | null;
+}
+
+export interface LinkEvents {
+  frame(frame: Frame): void;
+  state(state: SessionState): void;
+  status(status: LinkStatus): void;
+  /** A sentence from the server; level 0 info, 1 warning, 2 error. */
+  notice(level: number, message: string): void;
+  log(message: string, level: number): void;
+  /** The server's process changed: what was known of its session no longer holds. */
+  new_session(): void;
+}
+
+/** What the socket must offer; the browser's WebSocket, or a test's. */
+export interface SocketLike {
+  binaryType: string;
+  readyState: number;
+  send(data: string | Uint8Array<ArrayBuffer>): void;
+  close(): void;
+  onopen: (() => void) | null;
+  onclose: (() => void) | null;
+  onmessage: ((event: { data: unknown }) => void) | null;
+  onerror: (() => void) | null;
+}
+export type OpenSocket = (url: string, protocols: string[]) => SocketLike;
+
+interface PendingCall { resolve(value: unknown): void; reject(error: Error): void; timer: number }
+
+const kTopics = ["/telemetry", "/state", "/log"];
+const kCallTimeout = 10_000;   // [ms]
+const kConnectTimeout = 8_000; // [ms]
+const kSilenceLimit = 6_000;   // [ms] without any answer the connection counts as lost
+const kPingPeriod = 1_000;     // [ms]
+export const kBackoff = [500, 1000, 2000, 4000, 5000]; // [ms]
+
+export class LiveLink {
+  private socket_: SocketLike | null = null;
+  private attempt_ = 0;
+  private services_ = new Map<string, number>();
+  private subscriptions_ = new Map<number, string>();
+  private calls_ = new Map<number, PendingCall>();
+  private parameter_answers_ = new Map<string, (values: ParameterValue[]) => void>();
+  private next_id_ = 1;
+  private session_id_: string | null = null;
+  private status_: LinkStatus = { phase: "connecting", retry_at: 0, rate: 0, latency: null };
+  private arrivals_: number[] = [];
+  private ping_sent_ = new Map<string, number>();
+  private last_heard_ = 0;
+  private connect_started_ = 0;
+  private timer_ = 0;
+  private retry_timer_ = 0;
+  private closed_ = false;
+
+  constructor(
+    private readonly url_: string,
+    private readonly events_: LinkEvents,
+    private readonly open_: OpenSocket = (url, protocols) =>
+      new WebSocket(url, protocols) as unknown as SocketLike,
+  ) {}
+
+  start(): void {
+    this.timer_ = setInterval(() => this.heartbeat(), kPingPeriod) as unknown as number;
+    this.connect();
+  }
+
+  close(): void {
+    this.closed_ = true;
+    clearInterval(this.timer_);
+    clearTimeout(this.retry_timer_);
+    this.socket_?.close();
+  }
+
+  get is_open(): boolean {
+    return this.status_.phase === "open";
+  }
+
+  /** Tries now rather than when the pause is over. */
+  retry_now(): void {
+    if (this.status_.phase !== "lost") return;
+    clearTimeout(this.retry_timer_);
+    this.connect();
+  }
+
+  /** Calls a service. Rejects with the server's sentence, or ours when there is no connection. */
+  call<T = unknown>(name: string, body: unknown = {}): Promise<T> {
+    const service = this.services_.get(name);
+    if (!this.is_open || service === undefined) {
+      return Promise.reject(new Error(this.is_open
+        ? `This server does not offer ${name}.`
+        : "There is no connection to the server. Nothing was sent."));
+    }
+    const call = this.next_id_++;
+    return new Promise<T>((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this.calls_.delete(call);
+        reject(new Error("The server did not answer within 10 s."));
+      }, kCallTimeout) as unknown as number;
+      this.calls_.set(call, { resolve: resolve as (value: unknown) => void, reject, timer });
+      this.send(service_request(service, call, body));
+    });
+  }
+
+  /** Sets a parameter; resolves with the value the server now holds, which may be the old one. */
+  set_parameter(name: string, value: number): Promise<number> {
+    if (!this.is_open) {
+      return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
+    }
+    const id = `set-${this.next_id_++}`;
+    return new Promise<number>((resolve, reject) => {
+      const timer = setTimeout(() => {
+        this.parameter_answers_.delete(id);
+        reject(new Error("The server did not answer within 10 s."));
+      }, kCallTimeout);
+      this.parameter_answers_.set(id, (values) => {
+        clearTimeout(timer);
+        const held = values.find((v) => v.name === name)?.value;
+        resolve(typeof held === "number" ? held : value);
+      });
+      this.send_json({ op: "setParameters", id, parameters: [{ name, value, type: "float64" }] });
+    });
+  }
+
+  private connect(): void {
+    if (this.closed_) return;
+    this.update({ phase: "connecting", latency: null, rate: 0 });
+    this.connect_started_ = now();
+    this.last_heard_ = now();
+    let socket: SocketLike;
+    try {
+      socket = this.open_(this.url_, kSubprotocols);
+    } catch {
+      this.lose();
+      return;
+    }
+    this.socket_ = socket;
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => {
+      this.last_heard_ = now();
+      this.attempt_ = 0;
+      this.update({ phase: "open" });
+      this.send_json({ op: "subscribeParameterUpdates", parameterNames: [] });
+    };
+    socket.onmessage = (event) => {
+      if (socket === this.socket_) this.receive(event.data);
+    };
+    socket.onclose = () => {
+      if (socket === this.socket_) this.lose();
+    };
+    socket.onerror = () => undefined; // a close always follows
+  }
+
+  private lose(): void {
+    const socket = this.socket_;
+    this.socket_ = null;
+    if (socket) socket.onclose = null;
+    socket?.close();
+    this.services_.clear();
+    this.subscriptions_.clear();
+    this.ping_sent_.clear();
+    this.parameter_answers_.clear();
+    for (const call of this.calls_.values()) {
+      clearTimeout(call.timer);
+      call.reject(new Error("The connection was lost before the server answered."));
+    }
+    this.calls_.clear();
+    if (this.closed_) return;
+    const pause = kBackoff[Math.min(this.attempt_++, kBackoff.length - 1)];
+    this.update({ phase: "lost", retry_at: now() + pause, rate: 0, latency: null });
+    this.retry_timer_ = setTimeout(() => this.connect(), pause) as unknown as number;
+  }
+
+  private receive(data: unknown): void {
+    this.last_heard_ = now();
+    if (typeof data === "string") {
+      const message = parse_text(data);
+      if (message) this.text(message);
+    } else if (data instanceof ArrayBuffer) {
+      const message = parse_binary(data);
+      if (message) this.binary(message);
+    }
+  }
+
+  private text(message: ServerText): void {
+    switch (message.op) {
+      case "serverInfo":
+        if (this.session_id_ !== null && message.sessionId !== this.session_id_) {
+          this.events_.new_session();
+        }
+        this.session_id_ = message.sessionId ?? null;
+        break;
+      case "advertise":
+        for (const channel of message.channels) {
+          if (!kTopics.includes(channel.topic)) continue;
+          const id = this.next_id_++;
+          this.subscriptions_.set(id, channel.topic);
+          this.send_json({ op: "subscribe", subscriptions: [{ id, channelId: channel.id }] });
+        }
+        break;
+      case "advertiseServices":
+        for (const service of message.services) this.services_.set(service.name, service.id);
+        break;
+      case "unadvertiseServices":
+        for (const [name, id] of this.services_) {
+          if (message.serviceIds.includes(id)) this.services_.delete(name);
+        }
+        break;
+      case "status":
+        this.events_.notice(message.level, message.message);
+        break;
+      case "parameterValues":
+        this.parameters(message.parameters, message.id);
+        break;
+      case "serviceCallFailure":
+        this.settle(message.callId, (call) => call.reject(new Error(message.message)));
+        break;
+    }
+  }
+
+  private parameters(values: ParameterValue[], id: string | undefined): void {
+    if (id === undefined) return;
+    const sent = this.ping_sent_.get(id);
+    if (sent !== undefined) {
+      this.ping_sent_.delete(id);
+      const round_trip = now() - sent;
+      const old = this.status_.latency;
+      this.update({ latency: old === null ? round_trip : 0.7 * old + 0.3 * round_trip });
+      return;
+    }
+    this.parameter_answers_.get(id)?.(values);
+    this.parameter_answers_.delete(id);
+  }
+
+  private binary(message: ServerBinary): void {
+    if (message.op === "service_response") {
+      this.settle(message.call, (call) => {
+        try {
+          call.resolve(payload_json(message.payload));
+        } catch {
+          call.reject(new Error("The server's answer could not be read."));
+        }
+      });
+    } else if (message.op === "message") {
+      this.publish(this.subscriptions_.get(message.subscription), message.payload);
+    }
+  }
+
+  private publish(topic: string | undefined, payload: Uint8Array): void {
+    try {
+      if (topic === "/telemetry") {
+        this.arrivals_.push(now());
+        this.events_.frame(decode_frame(payload));
+      } else if (topic === "/state") {
+        this.events_.state(payload_json(payload) as SessionState);
+      } else if (topic === "/log") {
+        const entry = payload_json(payload) as { message?: string; level?: number };
+        this.events_.log(entry.message ?? "", entry.level ?? 0);
+      }
+    } catch (error) {
+      console.warn(`Tautline: a message on ${topic} could not be read`, error);
+    }
+  }
+
+  private settle(id: number, act: (call: PendingCall) => void): void {
+    const call = this.calls_.get(id);
+    if (!call) return;
+    this.calls_.delete(id);
+    clearTimeout(call.timer);
+    act(call);
+  }
+
+  private heartbeat(): void {
+    const t = now();
+    if (this.status_.phase === "connecting" && t - this.connect_started_ > kConnectTimeout) {
+      this.lose();
+    } else if (this.status_.phase === "open") {
+      if (t - this.last_heard_ > kSilenceLimit) {
+        this.lose();
+        return;
+      }
+      while (this.arrivals_.length > 0 && this.arrivals_[0] < t - 1000) this.arrivals_.shift();
+      this.update({ rate: this.arrivals_.length });
+      const id = `ping-${this.next_id_++}`;
+      this.ping_sent_.set(id, t);
+      this.send_json({ op: "getParameters", parameterNames: ["k_r"], id });
+    }
+  }
+
+  private send(data: string | Uint8Array): void {
+    if (this.socket_?.readyState === 1) this.socket_.send(data as string | Uint8Array<ArrayBuffer>);
+  }
+  private send_json(message: unknown): void {
+    this.send(JSON.stringify(message));
+  }
+
+  private update(change: Partial<LinkStatus>): void {
+    this.status_ = { ...this.status_, ...change };
+    this.events_.status(this.status_);
+  }
+}
+
+function now(): number {
+  return performance.now();
+}

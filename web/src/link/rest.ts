@@ -1,0 +1,56 @@
+// web/src/link/rest.ts: GET, POST, DELETE on /api/v1, with the server's own sentence on failure.
+
+/** An answer that was not a success; message is a sentence for a person. */
+export class RestError extends Error {
+  constructor(message: string, readonly status: number) {
+    super(message);
+  }
+}
+
+async function ask(method: string, path: string, body?: unknown, signal?: AbortSignal):
+  Promise<Response> {
+  let response: Response;
+  try {
+    response = await fetch(`/api/v1${path}`, {
+      method,
+      headers: body === undefined ? {} : { "Content-Type": "application/json" },
+      body: body === undefined ? undefined : JSON.stringify(body),
+      signal,
+    });
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new RestError("The server cannot be reached. Nothing was changed.", 0);
+  }
+  if (response.ok) return response;
+  let sentence = `The server answered ${response.status}.`;
+  try {
+    const problem = (await response.json()) as { detail?: string; title?: string };
+    sentence = problem.detail ?? problem.title ?? sentence;
+  } catch {
+    // not a problem document: the status has to do
+  }
+  throw new RestError(sentence, response.status);
+}
+
+export async function get<T>(path: string, signal?: AbortSignal): Promise<T> {
+  return (await (await ask("GET", path, undefined, signal)).json()) as T;
+}
+
+export async function get_bytes(path: string, signal?: AbortSignal):
+  Promise<{ bytes: Uint8Array; next: number | null }> {
+  const response = await ask("GET", path, undefined, signal);
+  const next = response.headers.get("X-Next-Tick");
+  return {
+    bytes: new Uint8Array(await response.arrayBuffer()),
+    next: next === null || next === "" ? null : Number(next),
+  };
+}
+
+export async function post<T>(path: string, body: unknown): Promise<T> {
+  const text = await (await ask("POST", path, body)).text();
+  return (text === "" ? {} : JSON.parse(text)) as T;
+}
+
+export async function remove(path: string): Promise<void> {
+  await ask("DELETE", path);
+}

@@ -1,0 +1,59 @@
+// web/src/main.tsx: puts the page together and starts the link.
+import "uplot/dist/uPlot.min.css";
+import "./style/tokens.css";
+import "./style/layout.css";
+import "./style/controls.css";
+import "./style/scene.css";
+import "./style/runs.css";
+import "./style/narrow.css";
+import { JSX, render } from "preact";
+import { useEffect } from "preact/hooks";
+import { App, AppContext, use_app } from "./app";
+import { use_store } from "./state/store";
+import { Drive } from "./views/drive";
+import { stop_key, typing } from "./views/keys";
+import { Rail } from "./views/rail";
+import { Runs } from "./views/runs";
+import { Shortcuts } from "./views/shortcuts";
+import { System } from "./views/system";
+import { Spoken, Toasts } from "./views/toasts";
+import { TopBar } from "./views/topbar";
+
+function Shell(): JSX.Element {
+  const app = use_app();
+  const view = use_store(app.ui, (u) => u.view);
+  const shortcuts = use_store(app.ui, (u) => u.shortcuts);
+  useEffect(() => {
+    const stop = stop_key(app);
+    const help = (e: KeyboardEvent) => {
+      if (e.key !== "?" || typing(e.target)) return;
+      e.preventDefault();
+      app.ui.set({ shortcuts: !app.ui.value.shortcuts });
+    };
+    addEventListener("keydown", stop, true);
+    addEventListener("keyup", stop, true);
+    addEventListener("keydown", help);
+    return () => {
+      removeEventListener("keydown", stop, true);
+      removeEventListener("keyup", stop, true);
+      removeEventListener("keydown", help);
+    };
+  }, [app]);
+  return (
+    <div class={`shell view-${view}`}>
+      <TopBar />
+      <Rail />
+      {view === "drive" && <Drive />}
+      {view === "runs" && <Runs />}
+      {view === "system" && <System />}
+      <Toasts />
+      <Spoken />
+      {shortcuts && <Shortcuts />}
+    </div>
+  );
+}
+
+const app = new App();
+app.start();
+render(<AppContext.Provider value={app}><Shell /></AppContext.Provider>,
+  document.getElementById("app")!);

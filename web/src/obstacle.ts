@@ -1,0 +1,142 @@
+// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. The JSON of
+// REST and /ws writes polygons and walls in world coordinates; here every kind has a pose.
+import { Bounds, Point, Pose, include, to_child, to_parent } from "./geometry";
+
+export type ObstacleKind = "cylinder" | "box" | "polygon" | "wall";
+
+export interface Obstacle {
+  id: number;
+  kind: ObstacleKind;
+  pose: Pose;        // in W
+  radius: number;    // [m] cylinder
+  length: number;    // [m] box, wall: along its x axis
+  width: number;     // [m] box; a wall's thickness
+  points: Point[];   // polygon, in its own frame
+  height: number;    // [m]
+  /** What the JSON said beyond the shape (reflectivity, specular), handed back on undo. */
+  extra: Record<string, unknown>;
+}
+
+/** The JSON form, as in scenario files. */
+export interface ObstacleJson {
+  id?: number;
+  type: ObstacleKind;
+  x?: number;
+  y?: number;
+  heading?: number;
+  radius?: number;
+  length?: number;
+  width?: number;
+  thickness?: number;
+  points?: [number, number][];
+  from?: [number, number];
+  to?: [number, number];
+  height?: number;
+  reflectivity?: number;
+  specular?: boolean;
+}
+
+export function obstacle_from_json(json: ObstacleJson): Obstacle {
+  const extra: Record<string, unknown> = {};
+  if (json.reflectivity !== undefined) extra.reflectivity = json.reflectivity;
+  if (json.specular !== undefined) extra.specular = json.specular;
+  if (json.height !== undefined) extra.height = json.height;
+  const out: Obstacle = {
+    id: json.id ?? 0,
+    kind: json.type,
+    pose: { x: json.x ?? 0, y: json.y ?? 0, heading: json.heading ?? 0 },
+    radius: json.radius ?? 0,
+    length: json.length ?? 0,
+    width: json.width ?? json.thickness ?? 0,
+    points: [],
+    height: json.height ?? 1,
+    extra,
+  };
+  if (json.type === "wall" && json.from && json.to) {
+    const [ax, ay] = json.from;
+    const [bx, by] = json.to;
+    out.pose = { x: (ax + bx) / 2, y: (ay + by) / 2, heading: Math.atan2(by - ay, bx - ax) };
+    out.length = Math.hypot(bx - ax, by - ay);
+  }
+  if (json.type === "polygon") {
+    const world = (json.points ?? []).map(([x, y]) => ({ x, y }));
+    if (json.x === undefined) out.pose = { ...centroid(world), heading: 0 };
+    out.points = json.x === undefined ? world.map((p) => to_child(out.pose, p)) : world;
+  }
+  return out;
+}
+
+/** The JSON that adds this obstacle again, without its id. */
+export function obstacle_to_json(o: Obstacle): ObstacleJson {
+  const { x, y, heading } = o.pose;
+  switch (o.kind) {
+    case "cylinder":
+      return { type: "cylinder", x, y, radius: o.radius, ...o.extra };
+    case "box":
+      return { type: "box", x, y, heading, length: o.length, width: o.width, ...o.extra };
+    case "wall": {
+      const a = to_parent(o.pose, -o.length / 2, 0);
+      const b = to_parent(o.pose, o.length / 2, 0);
+      return { type: "wall", from: [a.x, a.y], to: [b.x, b.y], thickness: o.width, ...o.extra };
+    }
+    case "polygon":
+      return { type: "polygon", points: outline(o).map((p) => [p.x, p.y]), ...o.extra };
+  }
+}
+
+/** The mean of the corners: the point a polygon is held by. */
+function centroid(points: Point[]): Point {
+  if (points.length === 0) return { x: 0, y: 0 };
+  let x = 0;
+  let y = 0;
+  for (const p of points) {
+    x += p.x;
+    y += p.y;
+  }
+  return { x: x / points.length, y: y / points.length };
+}
+
+/** Corners in W, counter-clockwise; empty for a cylinder. */
+export function outline(o: Obstacle): Point[] {
+  if (o.kind === "cylinder") return [];
+  if (o.kind === "polygon") return o.points.map((p) => to_parent(o.pose, p.x, p.y));
+  const a = o.length / 2;
+  const b = o.width / 2;
+  return [to_parent(o.pose, -a, -b), to_parent(o.pose, a, -b), to_parent(o.pose, a, b),
+    to_parent(o.pose, -a, b)];
+}
+
+/** Whether `p` (W) lies on the obstacle or within `slack` [m] of it. */
+export function covers(o: Obstacle, p: Point, slack: number): boolean {
+  if (o.kind === "cylinder") {
+    return Math.hypot(p.x - o.pose.x, p.y - o.pose.y) <= o.radius + slack;
+  }
+  const corners = outline(o);
+  let inside = true;
+  for (let i = 0; i < corners.length; ++i) {
+    const a = corners[i];
+    const b = corners[(i + 1) % corners.length];
+    const edge = Math.hypot(b.x - a.x, b.y - a.y);
+    if (edge === 0) continue;
+    const left = ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) / edge;
+    if (left < -slack) inside = false;
+  }
+  return inside && corners.length > 2;
+}
+
+/** [m] From the obstacle's reference point to its farthest corner. */
+export function reach(o: Obstacle): number {
+  if (o.kind === "cylinder") return o.radius;
+  let far = 0;
+  for (const p of outline(o)) far = Math.max(far, Math.hypot(p.x - o.pose.x, p.y - o.pose.y));
+  return far;
+}
+
+export function include_obstacle(bounds: Bounds, o: Obstacle): void {
+  if (o.kind === "cylinder") include(bounds, o.pose.x, o.pose.y, o.radius);
+  for (const p of outline(o)) include(bounds, p.x, p.y);
+}
+
+export function obstacle_name(o: Obstacle): string {
+  return { cylinder: "Cylinder", box: "Box", polygon: "Polygon", wall: "Wall" }[o.kind];
+}

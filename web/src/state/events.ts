@@ -1,0 +1,66 @@
+// web/src/state/events.ts: what is worth a mark on the timeline: changes of mission and hold, and
+// what people asked for.
+import { Frame } from "../link/frame";
+
+export type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
+export interface RunEvent { t: number; kind: EventKind; label: string }
+
+const kMost = 400;
+const kMerge = 1.5; // [s] a drag is one mark, not fifty
+
+const kHoldWords: Record<string, string> = {
+  stopped: "Stop",
+  bumper: "Bumper pressed",
+  stale_scan: "Scan too old",
+  not_finite: "A number was not finite",
+  link_lost: "Link to the robot lost",
+};
+
+export class EventLog {
+  readonly list: RunEvent[] = [];
+  private mission_ = "";
+  private hold_ = "none";
+
+  clear(): void {
+    this.list.length = 0;
+    this.mission_ = "";
+    this.hold_ = "none";
+  }
+
+  push(f: Frame): void {
+    for (const r of f.requests) {
+      switch (r.type) {
+        case "set_goal": this.add(f.stamp, "goal", "Goal set"); break;
+        case "clear_goal": this.add(f.stamp, "goal", "Goal cleared"); break;
+        case "add_obstacle": this.add(f.stamp, "edit", "Obstacle added"); break;
+        case "move_obstacle": this.add(f.stamp, "edit", "Obstacle moved"); break;
+        case "remove_obstacle": this.add(f.stamp, "edit", "Obstacle removed"); break;
+        case "stop": this.add(f.stamp, "hold", r.engaged ? "Stop" : "Released"); break;
+        case "set_parameter": this.add(f.stamp, "gain", `${r.name} set`); break;
+        case "joystick": break; // a stick moves all the time
+      }
+    }
+    if (this.mission_ !== "" && f.mission !== this.mission_) {
+      if (f.mission === "arrived") this.add(f.stamp, "good", "Arrived");
+      if (f.mission === "stuck") this.add(f.stamp, "bad", "Stuck");
+    }
+    if (f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
+      this.add(f.stamp, "hold", kHoldWords[f.hold] ?? f.hold);
+    }
+    if (f.truth?.collided && this.list.at(-1)?.label !== "Collision") {
+      this.add(f.stamp, "bad", "Collision");
+    }
+    this.mission_ = f.mission;
+    this.hold_ = f.hold;
+  }
+
+  private add(t: number, kind: EventKind, label: string): void {
+    const last = this.list.at(-1);
+    if (last && last.label === label && t - last.t < kMerge) {
+      last.t = t;
+      return;
+    }
+    this.list.push({ t, kind, label });
+    if (this.list.length > kMost) this.list.shift();
+  }
+}

@@ -1,0 +1,337 @@
+// web/src/three/world.ts: the scene in 3D from the same state as the view from above: z up, metres.
+import * as THREE from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { Palette } from "../draw/palette";
+import { Selection } from "../draw/scene";
+import { Point } from "../geometry";
+import { Obstacle, outline } from "../obstacle";
+import { SceneState, robot_pose, scene_bounds, sweep_points } from "../state/scene";
+
+export interface Options { selection: Selection; force_scale: number; follow: boolean }
+
+const kScanHeight = 0.3;  // [m] of the scan plane
+const kMostPath = 1500;
+
+export class World3 {
+  scene: SceneState | null = null;
+  options: () => Options = () => ({ selection: null, force_scale: 1, follow: false });
+  private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
+  private readonly world_ = new THREE.Scene();
+  private readonly camera_ = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
+  private readonly controls_: OrbitControls;
+  private readonly observer_: ResizeObserver;
+  private readonly statics_ = new THREE.Group();  // grid, obstacles, goal
+  private readonly moving_ = new THREE.Group();   // path, strip, forces
+  private readonly robot_ = new THREE.Group();
+  private readonly raw_ = points(2.5);
+  private readonly filtered_ = points(3.5);
+  private pending_ = 0;
+  private built_: unknown[] = [];
+  private placed_ = false;
+  private last_robot_: Point | null = null;
+
+  constructor(private readonly box_: HTMLElement, private palette_: Palette) {
+    this.renderer_.setPixelRatio(Math.min(2, devicePixelRatio || 1));
+    this.renderer_.domElement.setAttribute("aria-label",
+      "The world in 3D. Drag to look round it, wheel to come nearer.");
+    this.renderer_.domElement.setAttribute("role", "img");
+    box_.prepend(this.renderer_.domElement);
+    this.camera_.up.set(0, 0, 1);
+    this.controls_ = new OrbitControls(this.camera_, this.renderer_.domElement);
+    this.controls_.maxPolarAngle = Math.PI / 2 - 0.03;
+    this.controls_.minDistance = 0.8;
+    this.controls_.maxDistance = 60;
+    this.controls_.addEventListener("change", () => this.request());
+    this.world_.add(new THREE.HemisphereLight(0xffffff, 0x667788, 2.2), sun(), this.statics_,
+      this.moving_, this.robot_, this.raw_, this.filtered_);
+    this.observer_ = new ResizeObserver(() => this.resize());
+    this.observer_.observe(box_);
+    this.set_palette(palette_);
+    this.resize();
+  }
+
+  request(): void {
+    this.pending_ ||= requestAnimationFrame(() => this.draw());
+  }
+
+  set_palette(palette: Palette): void {
+    this.palette_ = palette;
+    this.world_.background = new THREE.Color(palette.bg);
+    (this.raw_.material as THREE.PointsMaterial).color.set(palette.scan);
+    (this.filtered_.material as THREE.PointsMaterial).color.set(palette.filtered);
+    this.built_ = []; // everything is built again in the new colours
+    clear(this.robot_);
+    this.request();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.pending_);
+    this.observer_.disconnect();
+    this.controls_.dispose();
+    for (const group of [this.statics_, this.moving_, this.robot_]) clear(group);
+    for (const p of [this.raw_, this.filtered_]) p.geometry.dispose();
+    this.renderer_.dispose();
+    this.renderer_.domElement.remove();
+  }
+
+  private resize(): void {
+    const w = Math.max(2, this.box_.clientWidth);
+    const h = Math.max(2, this.box_.clientHeight);
+    this.renderer_.setSize(w, h, false);
+    this.camera_.aspect = w / h;
+    this.camera_.updateProjectionMatrix();
+    this.request();
+  }
+
+  private draw(): void {
+    this.pending_ = 0;
+    const scene = this.scene;
+    if (!scene) return;
+    const options = this.options();
+    if (!this.placed_) this.place_camera(scene);
+    this.build_statics(scene, options.selection);
+    this.build_moving(scene, options.force_scale);
+    this.place_robot(scene, options.follow);
+    this.place_points(scene);
+    this.controls_.update();
+    this.renderer_.render(this.world_, this.camera_);
+  }
+
+  private place_camera(scene: SceneState): void {
+    const b = scene_bounds(scene);
+    const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
+    const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y);
+    this.controls_.target.copy(middle);
+    this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
+    this.placed_ = true;
+  }
+
+  /** Grid, obstacles and goal are built again only when they are other values. */
+  private build_statics(scene: SceneState, selection: Selection): void {
+    const key = [scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
+      selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
+    if (key.length === this.built_.length && key.every((v, i) => v === this.built_[i])) return;
+    this.built_ = key;
+    clear(this.statics_);
+    const p = this.palette_;
+    this.statics_.add(grid(p));
+    for (const o of scene.obstacles) {
+      const chosen = selection?.kind === "obstacle" && selection.id === o.id;
+      this.statics_.add(solid(o, p, chosen));
+    }
+    if (scene.goal) this.statics_.add(goal(scene.goal, p));
+  }
+
+  private build_moving(scene: SceneState, times: number): void {
+    clear(this.moving_);
+    const p = this.palette_;
+    const { columns } = scene;
+    const rows = Math.min(scene.rows, columns.length);
+    if (rows > 1) {
+      const step = Math.max(1, Math.floor(rows / kMostPath));
+      const xs = columns.get("x");
+      const ys = columns.get("y");
+      const line: Point[] = [];
+      for (let i = 0; i < rows; i += step) line.push({ x: xs[i], y: ys[i] });
+      line.push({ x: xs[rows - 1], y: ys[rows - 1] });
+      this.moving_.add(ribbon(line, 0.045, 0.012, p.path));
+    }
+    const pose = robot_pose(scene);
+    if (pose && scene.world) {
+      this.moving_.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
+    }
+    const f = scene.frame;
+    if (!f) return;
+    if (f.strip.length > 1) {
+      this.moving_.add(ribbon(f.strip.map((n) => n.position), 0.06, 0.06, p.accent));
+    }
+    for (const n of f.strip.slice(1, -1)) {
+      this.moving_.add(dot(n.position, 0.05, 0.065, p.accent));
+      push_arrow(this.moving_, n.position, n.external, times, p.external);
+      push_arrow(this.moving_, n.position, n.internal, times, p.internal);
+    }
+    if (f.pass) push_arrow(this.moving_, f.pass, f.elastic, times, p.elastic);
+    for (const nearest of [f.left, f.right]) {
+      if (!nearest) continue;
+      this.moving_.add(dot(nearest.point, 0.05, kScanHeight, p.external));
+    }
+  }
+
+  private place_robot(scene: SceneState, follow: boolean): void {
+    const pose = robot_pose(scene);
+    if (!pose) return;
+    if (this.robot_.children.length === 0) this.robot_.add(...body(scene, this.palette_));
+    this.robot_.position.set(pose.x, pose.y, 0);
+    this.robot_.rotation.z = pose.heading;
+    const last = this.last_robot_;
+    if (follow && last) {
+      const step = new THREE.Vector3(pose.x - last.x, pose.y - last.y, 0);
+      this.camera_.position.add(step);
+      this.controls_.target.add(step);
+    } else if (follow) {
+      this.controls_.target.set(pose.x, pose.y, 0);
+    }
+    this.last_robot_ = follow ? { x: pose.x, y: pose.y } : null;
+  }
+
+  private place_points(scene: SceneState): void {
+    const raw: number[] = [];
+    const filtered: number[] = [];
+    for (const sweep of scene.sweeps) {
+      const found = sweep_points(sweep);
+      for (const [xy, out] of [[found.raw, raw], [found.filtered, filtered]] as const) {
+        for (let i = 0; i < xy.length; i += 2) out.push(xy[i], xy[i + 1], kScanHeight);
+      }
+    }
+    for (const [p, xyz] of [[this.raw_, raw], [this.filtered_, filtered]] as const) {
+      p.geometry.dispose();
+      p.geometry = new THREE.BufferGeometry();
+      p.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+    }
+  }
+}
+
+function clear(group: THREE.Group): void {
+  for (const child of [...group.children]) {
+    group.remove(child);
+    child.traverse((o) => {
+      const mesh = o as THREE.Mesh;
+      mesh.geometry?.dispose();
+      for (const m of [mesh.material].flat()) m?.dispose();
+    });
+  }
+}
+
+/** Points `size` pixels across, however far away. */
+function points(size: number): THREE.Points {
+  const p = new THREE.Points(new THREE.BufferGeometry(),
+    new THREE.PointsMaterial({ size: size * Math.min(2, devicePixelRatio || 1), sizeAttenuation: false }));
+  p.frustumCulled = false;
+  return p;
+}
+
+function sun(): THREE.DirectionalLight {
+  const light = new THREE.DirectionalLight(0xffffff, 1.6);
+  light.position.set(-4, -6, 10);
+  return light;
+}
+
+function flat(colour: string): THREE.MeshBasicMaterial {
+  return new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide });
+}
+
+/** A line a metre, stronger every fifth, in pieces of a metre: some drivers drop a line that
+ * passes behind the camera. */
+function grid(p: Palette): THREE.Group {
+  const group = new THREE.Group();
+  const half = 25;
+  for (const strong of [false, true]) {
+    const xyz: number[] = [];
+    for (let k = -half; k <= half; ++k) {
+      if ((k % 5 === 0) !== strong) continue;
+      for (let i = -half; i < half; ++i) xyz.push(i, k, 0, i + 1, k, 0, k, i, 0, k, i + 1, 0);
+    }
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+    group.add(new THREE.LineSegments(geometry,
+      new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 })));
+  }
+  return group;
+}
+
+function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D {
+  const material = new THREE.MeshStandardMaterial({ color: p.obstline, roughness: 0.85 });
+  const mesh = shape_of(o, material);
+  const edges = new THREE.LineSegments(new THREE.EdgesGeometry(mesh.geometry, 30),
+    new THREE.LineBasicMaterial({ color: chosen ? p.accent : p.muted }));
+  mesh.add(edges);
+  return mesh;
+}
+
+function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
+  if (o.kind === "cylinder") {
+    const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.rotation.x = Math.PI / 2;
+    mesh.position.set(o.pose.x, o.pose.y, o.height / 2);
+    return mesh;
+  }
+  const shape = new THREE.Shape(outline(o).map((c) => new THREE.Vector2(c.x, c.y)));
+  return new THREE.Mesh(new THREE.ExtrudeGeometry(shape, { depth: o.height, bevelEnabled: false }),
+    material);
+}
+
+function goal(at: { x: number; y: number; heading: number | null }, p: Palette): THREE.Group {
+  const group = new THREE.Group();
+  group.add(ring(at, 0.18, 0.22, 0.02, p.ok));
+  if (at.heading !== null) {
+    push_arrow(group, at, { x: 0.5 * Math.cos(at.heading), y: 0.5 * Math.sin(at.heading) }, 1, p.ok);
+  }
+  return group;
+}
+
+function ring(at: Point, inner: number, outer: number, z: number, colour: string): THREE.Mesh {
+  const mesh = new THREE.Mesh(new THREE.RingGeometry(inner, outer, 72), flat(colour));
+  mesh.position.set(at.x, at.y, z);
+  return mesh;
+}
+
+function dot(at: Point, radius: number, z: number, colour: string): THREE.Mesh {
+  const mesh = new THREE.Mesh(new THREE.SphereGeometry(radius, 14, 10), flat(colour));
+  mesh.position.set(at.x, at.y, z);
+  return mesh;
+}
+
+/** A flat band `width` wide along `line`, at height `z`. */
+function ribbon(line: Point[], width: number, z: number, colour: string): THREE.Mesh {
+  const xyz: number[] = [];
+  const faces: number[] = [];
+  for (let i = 0; i < line.length; ++i) {
+    const a = line[Math.max(0, i - 1)];
+    const b = line[Math.min(line.length - 1, i + 1)];
+    const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
+    const nx = (-(b.y - a.y) / length) * (width / 2);
+    const ny = ((b.x - a.x) / length) * (width / 2);
+    xyz.push(line[i].x + nx, line[i].y + ny, z, line[i].x - nx, line[i].y - ny, z);
+    if (i > 0) faces.push(2 * i - 2, 2 * i - 1, 2 * i, 2 * i, 2 * i - 1, 2 * i + 1);
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+  geometry.setIndex(faces);
+  return new THREE.Mesh(geometry, flat(colour));
+}
+
+/** A lying arrow of `v` metres, `times` enlarged; too short ones are left out. */
+function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string): void {
+  const length = Math.min(2, Math.hypot(v.x, v.y) * times);
+  if (length < 0.03) return;
+  const head = Math.min(0.12, length * 0.5);
+  const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, 0).normalize(),
+    new THREE.Vector3(at.x, at.y, 0.08), length, colour, head, head * 0.7);
+  group.add(arrow);
+}
+
+/** A disc with wheels, a scanner and a pointer ahead, in R. */
+function body(scene: SceneState, p: Palette): THREE.Object3D[] {
+  const r = scene.radius;
+  const paint = (colour: string) => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 });
+  const upright = (geometry: THREE.BufferGeometry, colour: string, z: number) => {
+    const mesh = new THREE.Mesh(geometry, paint(colour));
+    mesh.rotation.x = Math.PI / 2;
+    mesh.position.z = z;
+    return mesh;
+  };
+  const hull = upright(new THREE.CylinderGeometry(r, r, 0.18, 48), p.robot, 0.15);
+  const scanner = upright(new THREE.CylinderGeometry(0.06, 0.07, 0.1, 24), p.filtered, 0.29);
+  const wheels = [-1, 1].map((side) => {
+    const wheel = new THREE.Mesh(new THREE.CylinderGeometry(0.09, 0.09, 0.05, 24), paint(p.obstline));
+    wheel.position.set(0, side * Math.min(scene.half_track, r - 0.03), 0.09);
+    return wheel;
+  });
+  const head = new THREE.Shape([[0.86, 0], [0.36, 0.34], [0.36, -0.34]].map(([x, y]) =>
+    new THREE.Vector2(x * r, y * r)));
+  const nose = new THREE.Mesh(new THREE.ShapeGeometry(head), flat(p.bg));
+  nose.position.z = 0.245;
+  return [hull, scanner, ...wheels, nose];
+}
+

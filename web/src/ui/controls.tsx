@@ -1,0 +1,161 @@
+// web/src/ui/controls.tsx: the small controls the views share.
+import { ComponentChildren, JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { Choice, ParameterInfo } from "../contract";
+import { fixed } from "../words";
+import { icons } from "./icons";
+
+/** A row of choices of which one holds, as radio buttons. */
+export function Segments(props: {
+  label: string; name: string; choices: Choice[]; value: string; disabled?: boolean;
+  on_pick: (name: string) => void;
+}): JSX.Element {
+  return (
+    <div class="segments" role="radiogroup" aria-label={props.label} data-testid={props.name}>
+      {props.choices.map((c) => (
+        <label key={c.name} class={c.name === props.value ? "on" : ""} title={c.help}>
+          <input type="radio" name={props.name} value={c.name} checked={c.name === props.value}
+            disabled={props.disabled} onChange={() => props.on_pick(c.name)} />
+          <span>{c.label}</span>
+        </label>
+      ))}
+    </div>
+  );
+}
+
+export function Pick(props: {
+  label: string; name: string; choices: { value: string; label: string }[]; value: string;
+  disabled?: boolean; on_pick: (value: string) => void; class?: string;
+}): JSX.Element {
+  return (
+    <span class={`pick ${props.class ?? ""}`}>
+      <select aria-label={props.label} data-testid={props.name} value={props.value}
+        disabled={props.disabled} onChange={(e) => props.on_pick(e.currentTarget.value)}>
+        {props.choices.map((c) => <option key={c.value} value={c.value}>{c.label}</option>)}
+      </select>
+      {icons.down}
+    </span>
+  );
+}
+
+/** "Repulsion K_r" with the part after the underscore set low. */
+export function Label(props: { text: string }): JSX.Element {
+  const parts = props.text.split(/_(\w+)/);
+  return <>{parts.map((p, i) => (i % 2 === 1 ? <sub key={i}>{p}</sub> : p))}</>;
+}
+
+/** Digits after the point that a step of this size needs. */
+export function digits_of(step: number): number {
+  return step >= 1 ? 0 : Math.min(4, Math.max(1, Math.ceil(-Math.log10(step) - 1e-9)));
+}
+
+const kSendMs = 120;
+
+/** A gain: moves under the hand, is sent along the way, and falls back to what the server holds. */
+export function Slider(props: {
+  info: ParameterInfo; value: number; usual: number; disabled?: boolean;
+  on_set: (value: number) => Promise<number>;
+}): JSX.Element {
+  const { info } = props;
+  const [held, set_held] = useState<number | null>(null);
+  const sending = useRef({ at: 0, timer: 0, count: 0 });
+  useEffect(() => () => clearTimeout(sending.current.timer), []);
+
+  const send = (value: number) => {
+    const s = sending.current;
+    clearTimeout(s.timer);
+    const go = () => {
+      s.at = performance.now();
+      const mine = ++s.count;
+      const settle = () => {
+        if (mine === s.count) set_held(null); // what the server holds is shown from now on
+      };
+      props.on_set(value).then(settle, settle);
+    };
+    const wait = kSendMs - (performance.now() - s.at);
+    if (wait <= 0) go();
+    else s.timer = setTimeout(go, wait) as unknown as number;
+  };
+  const change = (value: number) => {
+    set_held(value);
+    send(value);
+  };
+  const value = held ?? props.value;
+  const share = ((value - info.min) / (info.max - info.min)) * 100;
+  const digits = digits_of(info.step);
+  const id = `gain-${info.name}`;
+  const changed = Math.abs(value - props.usual) > 1e-9;
+  return (
+    <div class="gain" title={info.help}>
+      <label for={id}><Label text={info.label} /></label>
+      <button class="mini" data-testid={`reset-${info.name}`} aria-label={`Reset ${info.label} to ${fixed(props.usual, digits)}`}
+        title={`Back to ${fixed(props.usual, digits)} ${info.unit}`} hidden={!changed}
+        disabled={props.disabled} onClick={() => change(props.usual)}>{icons.reset}</button>
+      <output for={id} class="num">{fixed(value, digits)}{info.unit && ` ${info.unit}`}</output>
+      <span class="bound num" aria-hidden="true">{fixed(info.min, digits)}</span>
+      <input id={id} data-testid={id} type="range" min={info.min} max={info.max} step={info.step}
+        value={value} disabled={props.disabled} ref={(e) => {
+          e?.style.setProperty("--share", `${share}%`);
+        }}
+        aria-valuetext={`${fixed(value, digits)} ${info.unit}`}
+        onInput={(e) => change(Number(e.currentTarget.value))} />
+      <span class="bound r num" aria-hidden="true">{fixed(info.max, digits)}</span>
+    </div>
+  );
+}
+
+/** A number to type. Sent on Enter or when left, kept while it is being typed. */
+export function NumberField(props: {
+  label: string; unit?: string; value: number | null; name: string; empty?: string; step?: number;
+  min?: number; on_change: (value: number | null) => void;
+}): JSX.Element {
+  const [typed, set_typed] = useState<string | null>(null);
+  const shown = typed ?? (props.value === null ? "" : String(Number(props.value.toFixed(2))));
+  return (
+    <label class="field">
+      <span>{props.label}</span>
+      <input class="num" type="number" step={props.step ?? 0.1} min={props.min} value={shown}
+        placeholder={props.empty} data-testid={props.name} inputMode="decimal"
+        onInput={(e) => {
+          const text = e.currentTarget.value;
+          set_typed(text);
+          const value = text === "" ? null : Number(text);
+          if (value === null ? props.empty !== undefined : Number.isFinite(value)) {
+            props.on_change(value);
+          }
+        }}
+        onBlur={() => set_typed(null)} />
+      {props.unit && <em>{props.unit}</em>}
+    </label>
+  );
+}
+
+/** A dialog that keeps the keyboard inside and gives it back. */
+export function Dialog(props: {
+  title: string; on_close: () => void; children: ComponentChildren; class?: string; name: string;
+}): JSX.Element {
+  const box = useRef<HTMLDialogElement>(null);
+  useEffect(() => {
+    const dialog = box.current;
+    if (dialog && !dialog.open) dialog.showModal();
+    return () => dialog?.close();
+  }, []);
+  return (
+    <dialog ref={box} class={`dialog ${props.class ?? ""}`} aria-label={props.title}
+      data-testid={props.name} onCancel={(e) => {
+        e.preventDefault();
+        props.on_close();
+      }}
+      onClick={(e) => {
+        if (e.target === box.current) props.on_close();
+      }}>
+      <div class="dialog-body">
+        <header>
+          <h2>{props.title}</h2>
+          <button class="icon" aria-label="Close" onClick={props.on_close}>{icons.close}</button>
+        </header>
+        {props.children}
+      </div>
+    </dialog>
+  );
+}

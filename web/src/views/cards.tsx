@@ -1,0 +1,114 @@
+// web/src/views/cards.tsx: what lies on the scene: the sentence that explains, the legend, and the
+// banner for states that need a person.
+import { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { use_app } from "../app";
+import { Frame } from "../link/frame";
+import { use_pulse, use_store } from "../state/store";
+import { link_words } from "../words";
+
+/** What the robot is doing, and why, with the numbers; from the frame itself. */
+export function Explain(): JSX.Element | null {
+  const app = use_app();
+  use_pulse(150);
+  const session = use_store(app.ui, (u) => u.session);
+  const words = explain_words(app.scene.frame, session?.robot.drives ?? true,
+    session?.pace.paused ?? false, session !== null);
+  return (
+    <div class={`card explain tone-${words.tone}`} id="scene-words" data-testid="explain">
+      <b>{words.what}</b>
+      {words.why && <span>{words.why}</span>}
+    </div>
+  );
+}
+
+function explain_words(f: Frame | null, drives: boolean, paused: boolean, known: boolean):
+  { what: string; why: string; tone: string } {
+  if (!known) {
+    return { what: "Waiting for the server", why: "The world appears as soon as it answers.", tone: "muted" };
+  }
+  if (!f) {
+    return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
+      why: paused ? "Press play to begin." : "", tone: "muted" };
+  }
+  if (f.what === "" && f.mission === "idle" && drives) {
+    return { what: "Waiting for a goal", why: "Press where the robot should go; drag to say which way it should face.", tone: "muted" };
+  }
+  const tone = f.hold !== "none" || f.mission === "held" ? "bad"
+    : f.mission === "stuck" ? "warn" : f.mission === "arrived" ? "ok" : "accent";
+  return { what: f.what || "Replaying the log", why: f.why, tone };
+}
+
+/** A strip across the top of the scene for what must not be missed. */
+export function Banner(): JSX.Element | null {
+  const app = use_app();
+  const link = use_store(app.ui, (u) => u.link);
+  const session = use_store(app.ui, (u) => u.session);
+  use_pulse(250);
+  if (link.phase === "lost") {
+    return (
+      <div class="banner bad" role="alert" data-testid="banner">
+        <span>{link_words(link, performance.now())} {session && "What is drawn is the last that was heard."}</span>
+        <button class="text" onClick={() => app.link.retry_now()}>Try now</button>
+      </div>
+    );
+  }
+  if (session?.stop) {
+    return (
+      <div class="banner bad" role="alert" data-testid="banner">
+        <span>Stopped. The robot stays at rest until it is released.</span>
+        <button class="text" onClick={() => void app.stop(false)}>Release</button>
+      </div>
+    );
+  }
+  const outcome = session?.run?.outcome;
+  if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
+    const words = { collided: "The robot touched an obstacle. This run has ended.",
+      end_of_log: "The log has come to its end.",
+      failed: session?.problem ?? "This run broke off." }[outcome];
+    return (
+      <div class={`banner ${outcome === "end_of_log" ? "info" : "bad"}`} role="alert" data-testid="banner">
+        <span>{words}</span>
+        <button class="text" onClick={() => void app.reset()}>Start again</button>
+        {session?.run && <button class="text" onClick={() => app.go("runs", session.run!.id)}>Open the run</button>}
+      </div>
+    );
+  }
+  return null;
+}
+
+const kKey: { colour: string; label: string; shape: string }[] = [
+  { colour: "scan", label: "Raw scan", shape: "dots" },
+  { colour: "filtered", label: "Filtered scan", shape: "dots" },
+  { colour: "internal", label: "Internal force", shape: "arrow" },
+  { colour: "external", label: "External force", shape: "arrow" },
+  { colour: "elastic", label: "Elastic force", shape: "arrow" },
+  { colour: "accent", label: "Strip", shape: "line" },
+  { colour: "path", label: "Travelled path", shape: "line" },
+  { colour: "safe", label: "Safety circle", shape: "dashed" },
+];
+
+/** What the colours mean, and how much the forces are enlarged. */
+export function Legend(): JSX.Element {
+  const app = use_app();
+  const [open, set_open] = useState<boolean | null>(null);
+  const times = use_store(app.ui, (u) => u.force_scale);
+  const next = { 1: 2, 2: 5, 5: 1 }[times] ?? 1;
+  return (
+    <div class={`card legend ${open === null ? "auto" : open ? "open" : "closed"}`}>
+      <button class="text legend-button" aria-expanded={open ?? undefined}
+        onClick={(e) => {
+          const list = e.currentTarget.parentElement!.querySelector("ul")!;
+          set_open(getComputedStyle(list).display === "none");
+        }}>Legend</button>
+      <ul>
+        {kKey.map((k) => (
+          <li key={k.label}><i class={`swatch c-${k.colour} ${k.shape}`} />{k.label}</li>
+        ))}
+      </ul>
+      <button class="text scale-button" data-testid="force-scale"
+        title="A force is a displacement in metres; this enlarges its arrow"
+        onClick={() => app.ui.set({ force_scale: next })}>Forces drawn ×{times}</button>
+    </div>
+  );
+}

@@ -1,0 +1,187 @@
+// web/src/views/drive.tsx: the Drive view: the scene and what lies on it, panel and transport.
+import { JSX } from "preact";
+import { useEffect, useMemo, useRef } from "preact/hooks";
+import { App, use_app } from "../app";
+import { Draft } from "../draw/scene";
+import { Insets } from "../draw/view";
+import { add_edit, set_goal_edit } from "../edit/edits";
+import { Gestures, Tool } from "../edit/gestures";
+import { scene_bounds } from "../state/scene";
+import { use_store } from "../state/store";
+import { SceneCanvas } from "../ui/canvas";
+import { icons } from "../ui/icons";
+import { SceneThree } from "../three/view";
+import { Banner, Explain, Legend } from "./cards";
+import { scene_keys } from "./keys";
+import { Figures, Tuning } from "./panel";
+import { Transport } from "./transport";
+import { ValueBox } from "./value_box";
+
+/** What the Drive view's gestures and keys share: the draft that is drawn, the hover. */
+export interface Hand {
+  draft: Draft;
+  hovered: number | null;
+  gestures: Gestures;
+}
+
+export function Drive(): JSX.Element {
+  const app = use_app();
+  const theme = use_store(app.ui, (u) => u.theme);
+  const three = use_store(app.ui, (u) => u.three);
+  const sheet = use_store(app.ui, (u) => u.sheet);
+  const tool = use_store(app.ui, (u) => u.tool);
+  const selection = use_store(app.ui, (u) => u.selection);
+  const force_scale = use_store(app.ui, (u) => u.force_scale);
+  const hand = useMemo(() => make_hand(app), [app]);
+  const main = useRef<HTMLElement>(null);
+
+  useEffect(() => app.redraw(), [selection, force_scale, tool]);
+  useEffect(() => {
+    const keys = scene_keys(app, hand);
+    addEventListener("keydown", keys.window);
+    return () => removeEventListener("keydown", keys.window);
+  }, [app, hand]);
+  const canvas_key = useMemo(() => scene_keys(app, hand).canvas, [app, hand]);
+
+  return (
+    <>
+      <main class="scene" ref={main} aria-label="Scene">
+        {three
+          ? <SceneThree />
+          : <SceneCanvas scene={app.scene} view={app.view} gestures={hand.gestures} theme={theme}
+              label="The world from above. Arrow keys move the crosshair or what is selected, Enter places."
+              cursor={tool} bounds={() => scene_bounds(app.scene)}
+              insets={() => free_insets(main.current)}
+              on_ready={(redraw) => (app.redraw = redraw)} on_key={canvas_key}
+              overlay={() => ({
+                selection: app.ui.value.selection, hovered: hand.hovered, draft: hand.draft,
+                force_scale: app.ui.value.force_scale, ghost: null, future: false,
+                insets: scale_insets(main.current),
+              })} />}
+        <Tools />
+        {!three && <ValueBox hand={hand} />}
+        <Banner />
+        <div class="cards"><Legend /><Explain /></div>
+      </main>
+      <Transport />
+      <aside class="panel" aria-label="Figures and gains">
+        <Figures />
+        <div class="tuning wide-only"><Tuning /></div>
+      </aside>
+      {sheet && <div class="sheet" role="region" aria-label="Controller, gains and signals" data-testid="sheet">
+        <button class="sheet-close" onClick={() => app.ui.set({ sheet: false })}>
+          Controller, gains and signals{icons.down}
+        </button>
+        <div class="tuning"><Tuning /></div>
+      </div>}
+    </>
+  );
+}
+
+function make_hand(app: App): Hand {
+  const can_edit = () => app.ui.value.session?.robot.editable ?? false;
+  const can_drive = () => app.ui.value.session?.robot.drives ?? false;
+  const hand: Hand = { draft: {}, hovered: null, gestures: null as unknown as Gestures };
+  hand.gestures = new Gestures({
+    scene: app.scene,
+    view: app.view,
+    // A recorded log takes no goals and no obstacles: dragging then moves the view.
+    tool: () => usable_tool(app),
+    can_edit,
+    can_drive,
+    set_goal: (goal) => void app.edit(set_goal_edit(app.scene.goal, goal)),
+    add: (obstacle) => void app.edit(add_edit(obstacle)).then((answer) => {
+      if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
+    }),
+    move: (id, pose, from, done) => app.drag(id, pose, from, done),
+    select: (selection) => app.ui.set({ selection }),
+    draft: (draft) => {
+      hand.draft = draft;
+      app.redraw();
+    },
+    hover: (id) => {
+      if (id === hand.hovered) return;
+      hand.hovered = id;
+      app.redraw();
+    },
+    refuse: (what) => app.toast("warn", what === "goal"
+      ? "This robot takes no goals: it only shows what was recorded."
+      : "Obstacles can be placed in a simulated world only."),
+    changed: () => app.redraw(),
+  });
+  return hand;
+}
+
+function usable_tool(app: App): Tool {
+  const { tool, session } = app.ui.value;
+  if (!session || tool === "measure") return tool === "measure" ? tool : "pan";
+  if (tool === "goal") return session.robot.drives ? tool : "pan";
+  return session.robot.editable ? tool : "pan";
+}
+
+/** What the cards leave free, so that nothing fitted lies under one. */
+function free_insets(main: HTMLElement | null): Insets {
+  const insets = { left: 24, top: 24, right: 24, bottom: 48 };
+  if (!main) return insets;
+  const box = main.getBoundingClientRect();
+  const tools = main.querySelector(".tools")?.getBoundingClientRect();
+  if (tools) insets.left = tools.right - box.left + 16;
+  const values = main.querySelector(".values")?.getBoundingClientRect();
+  if (values) insets.top = values.bottom - box.top + 12;
+  const cards = main.querySelector(".cards")?.getBoundingClientRect();
+  if (cards && cards.height > 0) insets.bottom = box.bottom - cards.top + 12;
+  return insets;
+}
+
+/** The scale bar stands at the lower right, above a card that reaches there. */
+function scale_insets(main: HTMLElement | null): Insets {
+  const none = { left: 0, top: 0, right: 0, bottom: 22 };
+  if (!main) return none;
+  const box = main.getBoundingClientRect();
+  const card = main.querySelector(".explain")?.getBoundingClientRect();
+  if (card && card.right > box.right - 190) none.bottom = box.bottom - card.top + 14;
+  return none;
+}
+
+function Tools(): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const tool = use_store(app.ui, (u) => u.tool);
+  const three = use_store(app.ui, (u) => u.three);
+  const undo = use_store(app.ui, (u) => u.undo);
+  const redo = use_store(app.ui, (u) => u.redo);
+  const drives = session?.robot.drives ?? false;
+  const editable = session?.robot.editable ?? false;
+  const threed = (
+    <button class={`text-tool ${three ? "on" : ""}`} aria-pressed={three} data-testid="three"
+      aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
+  );
+  // In 3D one looks; editing is done from above, where a place is one place.
+  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{threed}</div>;
+  const button = (name: Tool, label: string, key: string, can: boolean) => (
+    <button class={tool === name && can ? "on" : ""} aria-pressed={tool === name && can}
+      disabled={!can} aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
+      onClick={() => app.ui.set({ tool: name, selection: null })}>
+      {icons[name as "goal"]}
+    </button>
+  );
+  return (
+    <div class="tools" role="toolbar" aria-label="Tools" aria-orientation="vertical">
+      {button("goal", "Goal: press where, drag for the heading", "G", drives)}
+      {button("cylinder", "Cylinder: press, drag for its size", "C", editable)}
+      {button("box", "Box: press, drag for its size", "B", editable)}
+      {button("measure", "Measure a distance", "M", true)}
+      <button aria-label={undo ? `Undo: ${undo}` : "Undo"} title={undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo"}
+        disabled={!undo} data-testid="undo" onClick={() => void app.undo()}>{icons.undo}</button>
+      <button class="wide-only" aria-label={redo ? `Do again: ${redo}` : "Do again"} disabled={!redo}
+        title={redo ? `Do again: ${redo} (Ctrl+Shift+Z)` : "Nothing to do again"}
+        onClick={() => void app.redo()}>{icons.redo}</button>
+      <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit"
+        onClick={() => {
+          app.view.fitted = true;
+          app.redraw();
+        }}>{icons.fit}</button>
+      {threed}
+    </div>
+  );
+}

@@ -1,0 +1,230 @@
+// web/src/views/panel.tsx: the right panel of Drive: four figures, controller, filter, vehicle,
+// gains and live signals.
+import { JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { use_app } from "../app";
+import { Catalog, Choice, ParameterInfo, SessionState } from "../contract";
+import { Line, Plot } from "../plots/plot";
+import { Column } from "../state/columns";
+import { goal_distance } from "../state/scene";
+import { use_pulse, use_store } from "../state/store";
+import { Pick, Segments, Slider } from "../ui/controls";
+import { icons } from "../ui/icons";
+import { fixed, state_word, titled } from "../words";
+
+export function Figures(): JSX.Element {
+  const app = use_app();
+  use_pulse(100);
+  const session = use_store(app.ui, (u) => u.session);
+  const open = use_store(app.ui, (u) => u.link.phase === "open");
+  const f = app.scene.frame;
+  const state = state_word(f, session, open);
+  const drives = session?.robot.drives ?? true;
+  return (
+    <div class="stats" role="group" aria-label="Figures">
+      <Figure label="Clearance" value={fixed(f?.clearance, 2)} unit="m" name="clearance" />
+      <Figure label="Speed" value={fixed(f?.twist.v, 2)} unit="m/s" name="speed" />
+      {drives
+        ? <Figure label="To goal" value={fixed(goal_distance(app.scene), 2)} unit="m" name="to-goal" />
+        : <Figure label="Scans" value={f ? String(f.tick + 1) : "–"} unit="" name="scans" />}
+      <div class="stat">
+        <small>State</small>
+        <b class={`word tone-${state.tone}`} data-testid="state">{state.word}</b>
+      </div>
+    </div>
+  );
+}
+
+function Figure(props: { label: string; value: string; unit: string; name: string }): JSX.Element {
+  return (
+    <div class="stat">
+      <small>{props.label}</small>
+      <b data-testid={`figure-${props.name}`}>{props.value}{props.unit && <u>{props.unit}</u>}</b>
+    </div>
+  );
+}
+
+/** Everything of the panel below the figures; on a phone it lies in a sheet. */
+export function Tuning(): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const catalog = use_store(app.ui, (u) => u.catalog);
+  if (!session || !catalog) {
+    return <p class="quiet">Controllers and gains appear here once the server has been reached.</p>;
+  }
+  return (
+    <>
+      <Choices session={session} catalog={catalog} />
+      {session.robot.drives && <Gains session={session} catalog={catalog} />}
+      <Signals drives={session.robot.drives} />
+    </>
+  );
+}
+
+function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Element {
+  const app = use_app();
+  const { session, catalog } = props;
+  const loading = use_store(app.ui, (u) => u.loading) !== null;
+  const controller = catalog.controllers.find((c) => c.name === session.controller);
+  return (
+    <section>
+      {session.robot.drives && <>
+        <h2>Controller</h2>
+        {catalog.controllers.length <= 3
+          ? <Segments label="Controller" name="controller" choices={catalog.controllers}
+              value={session.controller} disabled={loading}
+              on_pick={(name) => void app.load({ controller: name })} />
+          : <Pick label="Controller" name="controller" choices={options(catalog.controllers)}
+              value={session.controller} disabled={loading} class="wide-pick"
+              on_pick={(name) => void app.load({ controller: name })} />}
+        {controller?.help && <p class="help">{controller.help}</p>}
+      </>}
+      {!session.robot.drives && <h2>Filter</h2>}
+      <Segments label="Filter" name="filter" choices={short(catalog.filters)} value={session.filter}
+        disabled={loading} on_pick={(name) => void app.load({ filter: name })} />
+      {session.robot.drives && session.source === "simulation" &&
+        <Segments label="Vehicle" name="vehicle" choices={catalog.vehicles} value={session.vehicle}
+          disabled={loading} on_pick={(name) => void app.load({ vehicle: name })} />}
+    </section>
+  );
+}
+
+function options(choices: Choice[]): { value: string; label: string }[] {
+  return choices.map((c) => ({ value: c.name, label: c.label || titled(c.name) }));
+}
+/** "none" reads better as what it does. */
+function short(filters: Choice[]): Choice[] {
+  return filters.map((f) => (f.name === "none" ? { ...f, label: "None" } : f));
+}
+
+const kFirst = ["k_r", "k_c", "safety_distance", "strip_step"];
+
+function Gains(props: { session: SessionState; catalog: Catalog }): JSX.Element {
+  const { session, catalog } = props;
+  const first = kFirst.map((name) => catalog.parameters.find((p) => p.name === name))
+    .filter((p): p is ParameterInfo => p !== undefined);
+  const rest = catalog.parameters.filter((p) => !kFirst.includes(p.name));
+  const [more, set_more] = useState(false);
+  return (
+    <section>
+      <h2>Gains</h2>
+      {first.map((p) => <Gain key={p.name} info={p} session={session} />)}
+      {rest.length > 0 &&
+        <button class="text more" aria-expanded={more} data-testid="more-gains"
+          onClick={() => set_more(!more)}>{more ? "Fewer" : `${rest.length} more`}{icons.down}</button>}
+      {more && rest.map((p) => <Gain key={p.name} info={p} session={session} />)}
+    </section>
+  );
+}
+
+function Gain(props: { info: ParameterInfo; session: SessionState }): JSX.Element {
+  const app = use_app();
+  const { info, session } = props;
+  const own = session.scenario.parameters as Record<string, number> | undefined;
+  return (
+    <Slider info={info} value={session.parameters[info.name] ?? info.initial}
+      usual={own?.[info.name] ?? info.initial}
+      on_set={async (value) => {
+        const held = await app.link.set_parameter(info.name, value).catch((error) => {
+          app.toast("warn", String(error.message));
+          throw error;
+        });
+        const now = app.ui.value.session;
+        if (now) {
+          app.ui.set({ session: { ...now, parameters: { ...now.parameters, [info.name]: held } } });
+        }
+        return held;
+      }} />
+  );
+}
+
+const kWindow = 20; // [s] of run clock
+const kMostPoints = 900;
+
+interface SignalSpec {
+  name: string; lines: (Line & { column: Column })[]; least: [number, number];
+  value: (row: (c: Column) => number) => string;
+}
+const kSignals: SignalSpec[] = [
+  { name: "Clearance", least: [0, 1], lines: [{ label: "Clearance", colour: "filtered", column: "clearance" }],
+    value: (at) => `${fixed(at("clearance"), 2)} m` },
+  { name: "Speed, turn rate", least: [-0.1, 0.2],
+    lines: [{ label: "Speed", colour: "ok", column: "v" },
+      { label: "Turn rate", colour: "path", column: "omega", dash: [5, 3] }],
+    value: (at) => `${fixed(at("v"), 2)} m/s · ${fixed(at("omega"), 2)} rad/s` },
+  { name: "External force L / R, elastic", least: [0, 0.2],
+    lines: [{ label: "Left", colour: "external", column: "left" },
+      { label: "Right", colour: "external", column: "right", dash: [5, 3] },
+      { label: "Elastic", colour: "elastic", column: "elastic" }],
+    value: (at) => `${fixed(at("left"), 2)} / ${fixed(at("right"), 2)} m` },
+];
+
+/** The lines of a signal as words, each with a stroke of its colour and dash. */
+function Key(props: { lines: Line[] }): JSX.Element | null {
+  if (props.lines.length < 2) return null;
+  return (
+    <span class="key">
+      {props.lines.map((l) => (
+        <span key={l.label}><i class={`swatch c-${l.colour} ${l.dash ? "dashed" : ""}`} />{l.label}</span>
+      ))}
+    </span>
+  );
+}
+
+function Signals(props: { drives: boolean }): JSX.Element {
+  const shown = props.drives ? kSignals : kSignals.slice(0, 2);
+  return (
+    <section class="signals">
+      <h2>Signals <small>last {kWindow} s</small></h2>
+      {shown.map((s) => <Signal key={s.name} spec={s} />)}
+    </section>
+  );
+}
+
+function Signal(props: { spec: SignalSpec }): JSX.Element {
+  const app = use_app();
+  const theme = use_store(app.ui, (u) => u.theme);
+  const box = useRef<HTMLDivElement>(null);
+  const value = useRef<HTMLElement>(null);
+  const plot = useRef<Plot | null>(null);
+  useEffect(() => {
+    plot.current = new Plot(box.current!, props.spec.lines, 66, props.spec.least);
+    let seen = -1;
+    let seen_at = NaN;
+    const update = () => {
+      const { columns } = app.scene;
+      const end = columns.length;
+      const t = end > 0 ? columns.at("t", end - 1) : 0;
+      if (end === seen && t === seen_at) return;
+      seen = end;
+      seen_at = t;
+      const from = columns.row_at(t - kWindow);
+      const step = Math.max(1, Math.floor((end - from) / kMostPoints));
+      const cut = (name: Column) => every(columns.get(name).subarray(from, end), step);
+      plot.current!.update([cut("t"), ...props.spec.lines.map((l) => cut(l.column))],
+        Math.max(0, t - kWindow), Math.max(t, kWindow), null);
+      if (value.current) {
+        value.current.textContent = end > 0 ? props.spec.value((c) => columns.at(c, end - 1)) : "–";
+      }
+    };
+    const timer = setInterval(update, 100);
+    update();
+    return () => {
+      clearInterval(timer);
+      plot.current?.destroy();
+    };
+  }, []);
+  useEffect(() => plot.current?.theme(), [theme]);
+  return (
+    <figure class="signal" aria-label={`${props.spec.name} over the last ${kWindow} seconds`}>
+      <figcaption><span>{props.spec.name}</span><b class="num" ref={value} /></figcaption>
+      <div class="plot" ref={box} />
+      <Key lines={props.spec.lines} />
+    </figure>
+  );
+}
+
+function every(values: Float64Array, step: number): Float64Array {
+  if (step === 1) return values.slice();
+  return values.filter((_, i) => i % step === 0);
+}

@@ -1,0 +1,31 @@
+// web/src/views/rail.tsx: the ways to the views: a column at the left, tabs at the bottom of a
+// phone.
+import { JSX } from "preact";
+import { ViewName, use_app } from "../app";
+import { use_store } from "../state/store";
+import { icons } from "../ui/icons";
+
+const kViews: { name: ViewName; label: string; icon: JSX.Element }[] = [
+  { name: "drive", label: "Drive", icon: icons.drive },
+  { name: "runs", label: "Runs", icon: icons.runs },
+  { name: "system", label: "System", icon: icons.system },
+];
+
+export function Rail(): JSX.Element {
+  const app = use_app();
+  const view = use_store(app.ui, (u) => u.view);
+  const sheet = use_store(app.ui, (u) => u.sheet);
+  return (
+    <nav class="rail" aria-label="Views">
+      {kViews.map((v) => (
+        <a key={v.name} href={`#/${v.name}`} class={v.name === view ? "on" : ""}
+          aria-current={v.name === view ? "page" : undefined} data-testid={`nav-${v.name}`}>
+          {v.icon}<span>{v.label}</span>
+        </a>
+      ))}
+      {view === "drive" &&
+        <button class={`narrow ${sheet ? "on" : ""}`} aria-expanded={sheet} data-testid="tune"
+          onClick={() => app.ui.set({ sheet: !sheet })}>{icons.tune}<span>Tune</span></button>}
+    </nav>
+  );
+}

@@ -1,0 +1,308 @@
+// web/src/views/run_detail.tsx: one stored run: scene, time, lanes, metrics, and a second run
+// laid over it.
+import { JSX } from "preact";
+import { useEffect, useMemo, useReducer, useRef, useState } from "preact/hooks";
+import { use_app } from "../app";
+import { Metrics, RunItem } from "../contract";
+import { Ghost } from "../draw/scene";
+import { Insets, View } from "../draw/view";
+import { Gestures } from "../edit/gestures";
+import { Bounds, include } from "../geometry";
+import { Player } from "../link/player";
+import * as rest from "../link/rest";
+import { StoredRun } from "../link/stored";
+import { scene_bounds } from "../state/scene";
+import { use_store } from "../state/store";
+import { SceneCanvas } from "../ui/canvas";
+import { Dialog, Pick } from "../ui/controls";
+import { icons } from "../ui/icons";
+import { Timeline } from "../ui/timeline";
+import { clock, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
+import { Lanes } from "./lanes";
+import { typing } from "./keys";
+
+/** Fetches a run's row and then its frames; tells `changed` as they come. */
+function use_stored(id: number | null, changed: () => void): { run: StoredRun | null; problem: string | null } {
+  const app = use_app();
+  const [run, set_run] = useState<StoredRun | null>(null);
+  const [problem, set_problem] = useState<string | null>(null);
+  useEffect(() => {
+    set_run(null);
+    set_problem(null);
+    if (id === null) return;
+    const stop = new AbortController();
+    const begin = async () => {
+      const item = await rest.get<RunItem>(`/runs/${id}`, stop.signal);
+      const robot = app.ui.value.session?.robot;
+      const stored = new StoredRun(item, robot?.radius ?? 0.35, robot?.half_track ?? 0.25,
+        (from, limit, signal) => rest.get_bytes(`/runs/${id}/frames?from=${from}&limit=${limit}`, signal));
+      set_run(stored);
+      await stored.load(changed, stop.signal);
+    };
+    begin().catch((error) => {
+      if (!stop.signal.aborted) set_problem(sentence_of(error));
+    });
+    return () => stop.abort();
+  }, [id]);
+  return { run, problem };
+}
+
+export function RunDetail(props: {
+  id: number; compare: number | null; on_gone: () => void; on_uncompare: () => void;
+}): JSX.Element {
+  const app = use_app();
+  const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
+  const first = use_stored(props.id, redraw_controls);
+  const second = use_stored(props.compare, redraw_controls);
+  if (!first.run) {
+    return (
+      <section class="view none">
+        <p class="empty" role={first.problem ? "alert" : "status"}>
+          {first.problem ?? `Fetching run ${props.id}`}
+        </p>
+        {first.problem && <button class="ghost" onClick={() => app.go("runs")}>Back to the list</button>}
+      </section>
+    );
+  }
+  return <Opened run={first.run} other={second.run} on_gone={props.on_gone}
+    on_uncompare={props.on_uncompare} />;
+}
+
+function Opened(props: {
+  run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
+}): JSX.Element {
+  const app = use_app();
+  const { run, other } = props;
+  const theme = use_store(app.ui, (u) => u.theme);
+  const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
+  const redraw = useRef<() => void>(() => undefined);
+  const frame = useRef<HTMLElement>(null);
+  const view = useMemo(() => new View(), [run]);
+  const player = useMemo(() => new Player(run, () => {
+    redraw_controls();
+    redraw.current();
+  }), [run]);
+  const gestures = useMemo(() => looking(view, run, () => redraw.current()), [view, run]);
+
+  // The first frame is shown as soon as it is there.
+  if (run.rows > 0 && run.scene.frame === null) player.seek(0);
+  if (other && other.rows > 0) {
+    const row = other.columns.row_at(player.time);
+    if (other.scene.rows !== row + 1) other.seek(row);
+  }
+  useEffect(() => redraw.current());
+
+  useEffect(() => {
+    let frame = 0;
+    let last = performance.now();
+    let shown = 0;
+    const tick = (now: number) => {
+      const moved = player.advance(Math.min(0.25, (now - last) / 1000));
+      last = now;
+      if (moved) {
+        redraw.current();
+        if (now - shown > 66) { // figures and lanes need no more than 15 a second
+          shown = now;
+          redraw_controls();
+        }
+      }
+      frame = requestAnimationFrame(tick);
+    };
+    frame = requestAnimationFrame(tick);
+    return () => cancelAnimationFrame(frame);
+  }, [player]);
+
+  useEffect(() => {
+    const key = (e: KeyboardEvent) => {
+      if (typing(e.target) || e.ctrlKey || e.metaKey || document.querySelector("dialog[open]")) return;
+      const acts: Record<string, () => void> = {
+        p: () => player.toggle(), ".": () => player.step(1), ",": () => player.step(-1),
+        f: () => {
+          view.fitted = true;
+          redraw.current();
+        },
+      };
+      const act = acts[e.key.toLowerCase()];
+      if (!act) return;
+      e.preventDefault();
+      act();
+    };
+    addEventListener("keydown", key);
+    return () => removeEventListener("keydown", key);
+  }, [player, view]);
+
+  const ghost = (): Ghost | null => other && {
+    columns: other.columns, rows: other.columns.row_at(player.time) + 1,
+    pose: other.rows > 0 ? pose_at(other, player.time) : null, radius: other.scene.radius,
+  };
+  const bounds = (): Bounds => {
+    const b = scene_bounds(run.scene);
+    for (const r of other ? [run, other] : [run]) widen(b, r);
+    return b;
+  };
+  return (
+    <>
+      <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
+      <section class="view" ref={frame} aria-label={`Run ${run.item.id}`} data-testid="run-view">
+        <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
+          label={`Run ${run.item.id} from above`} bounds={bounds}
+          insets={() => ({ left: 20, top: 20, right: 20, bottom: card_height(frame.current) + 24 })}
+          on_ready={(request) => (redraw.current = request)}
+          overlay={() => ({
+            selection: null, hovered: null, draft: {}, force_scale: app.ui.value.force_scale,
+            ghost: ghost(), future: true, insets: scale_insets(frame.current),
+            path_colour: other ? getComputedStyle(document.documentElement).getPropertyValue("--accent").trim() : undefined,
+          })} />
+        <Instant run={run} />
+      </section>
+      <section class="lanes" aria-label="Time and signals">
+        <div class="controls">
+          <button class="btn" aria-label="One tick back" title="One tick back (,)"
+            onClick={() => player.step(-1)}>{icons.back_step}</button>
+          <button class="btn primary" aria-label={player.playing ? "Pause" : "Play"} data-testid="run-play"
+            title={player.playing ? "Pause (P)" : "Play (P)"} onClick={() => player.toggle()}>
+            {player.playing ? icons.pause : icons.play}
+          </button>
+          <button class="btn" aria-label="One tick on" title="One tick on (.)" data-testid="run-step"
+            onClick={() => player.step(1)}>{icons.step}</button>
+          <span class="num time" data-testid="run-time">{clock(player.time)}<span class="of"> / {clock(run.duration)}</span></span>
+          <Timeline time={player.time} end={run.duration} loaded={run.progress} events={run.events.list}
+            on_seek={(t) => player.seek(t)} />
+          <Pick label="Speed" name="run-speed" value={String(player.speed)}
+            choices={[0.25, 0.5, 1, 2, 4, 8, 16].map((s) => ({ value: String(s), label: speed_word(s) }))}
+            on_pick={(v) => {
+              player.speed = Number(v);
+              redraw_controls();
+            }} />
+        </div>
+        {run.error && <p class="problem" role="alert">The rest of this run could not be fetched: {run.error}</p>}
+        <Lanes run={run} other={other} time={player.time} theme={theme}
+          on_pick={(t) => player.seek(t)} />
+      </section>
+    </>
+  );
+}
+
+/** What the robot did and why at the shown instant, in the record's own words. */
+function Instant(props: { run: StoredRun }): JSX.Element | null {
+  const f = props.run.scene.frame;
+  if (!f) return null;
+  const state = frame_word(f);
+  return (
+    <div class={`card explain tone-${f.hold !== "none" ? "bad" : "accent"}`} data-testid="run-explain">
+      <b>{f.what || state.word}</b>
+      {f.why && <span>{f.why}</span>}
+    </div>
+  );
+}
+
+/** [px] that the sentence takes up at the bottom of the view. */
+function card_height(view: HTMLElement | null): number {
+  return view?.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
+}
+
+/** The scale bar stands at the lower right, above the sentence where that reaches there. */
+function scale_insets(view: HTMLElement | null): Insets {
+  const insets = { left: 0, top: 0, right: 0, bottom: 22 };
+  const box = view?.getBoundingClientRect();
+  const card = view?.querySelector(".explain")?.getBoundingClientRect();
+  if (box && card && card.right > box.right - 180) insets.bottom = box.bottom - card.top + 14;
+  return insets;
+}
+
+const kRows: { label: string; unit: string; digits: number; of: (m: Metrics) => number | null }[] = [
+  { label: "Clearance", unit: "m", digits: 2, of: (m) => m.min_clearance },
+  { label: "Intrusion", unit: "m", digits: 2, of: (m) => m.intrusion },
+  { label: "Path", unit: "m", digits: 2, of: (m) => m.path_length },
+  { label: "Turning", unit: "rad", digits: 2, of: (m) => m.turning },
+  { label: "Via points", unit: "", digits: 0, of: (m) => m.via_points },
+  { label: "Time", unit: "s", digits: 1, of: (m) => m.time },
+];
+
+function Facts(props: {
+  run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
+}): JSX.Element {
+  const app = use_app();
+  const [asking, set_asking] = useState(false);
+  const { item } = props.run;
+  const word = run_word(item.status, item.outcome);
+  const runs = props.other ? [item, props.other.item] : [item];
+  const has_metrics = runs.some((r) => r.metrics);
+  const finished = !["recording", "queued"].includes(item.status);
+  const erase = async () => {
+    try {
+      await rest.remove(`/runs/${item.id}`);
+      app.toast("info", `Run ${item.id} was deleted.`);
+      app.go("runs");
+      props.on_gone();
+    } catch (error) {
+      app.toast("warn", sentence_of(error));
+    }
+    set_asking(false);
+  };
+  return (
+    <section class="facts" aria-label="What came of it" data-testid="facts">
+      <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
+      <b>Run {item.id}</b>
+      <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
+      <span class="quiet">{titled(item.scenario)} · {titled(item.controller)} · {item.filter} · seed {item.seed}</span>
+      <span class="space" />
+      <span class="facts-acts">
+        {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
+        <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
+          data-testid="csv">{icons.download}CSV</a>
+        {finished && <button class="icon" aria-label={`Delete run ${item.id}`} title="Delete"
+          onClick={() => set_asking(true)} data-testid="delete-run">{icons.trash}</button>}
+      </span>
+      {item.reason && <p class="reason">{item.reason}</p>}
+      {has_metrics && <table class="measures">
+        <thead><tr>
+          {props.other && <td />}
+          {kRows.map((row) => <th key={row.label} scope="col">{row.label}{row.unit && <u> {row.unit}</u>}</th>)}
+        </tr></thead>
+        <tbody>
+          {runs.map((r, i) => (
+            <tr key={r.id}>
+              {props.other &&
+                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {titled(r.controller)}</th>}
+              {kRows.map((row) => (
+                <td key={row.label} class="num">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"}</td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>}
+      {asking && <Dialog title={`Delete run ${item.id}?`} name="delete-dialog" on_close={() => set_asking(false)}>
+        <p>Its record goes for good. Other runs stay.</p>
+        <div class="facts-acts">
+          <button class="small bad" data-testid="delete-yes" onClick={() => void erase()}>Delete it</button>
+          <button class="ghost" onClick={() => set_asking(false)}>Keep it</button>
+        </div>
+      </Dialog>}
+    </section>
+  );
+}
+
+/** Hands that may look round but change nothing: a stored run is as it was. */
+function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
+  const nothing = () => undefined;
+  return new Gestures({
+    scene: run.scene, view, tool: () => "pan", can_edit: () => false, can_drive: () => false,
+    set_goal: nothing, add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing,
+    refuse: nothing, changed: redraw,
+  });
+}
+
+function pose_at(run: StoredRun, t: number): { x: number; y: number; heading: number } {
+  const row = run.columns.row_at(t);
+  const at = (c: "x" | "y" | "heading") => run.columns.at(c, row);
+  return { x: at("x"), y: at("y"), heading: at("heading") };
+}
+
+/** The whole path is in view from the start, so that nothing jumps while it plays. */
+function widen(b: Bounds, run: StoredRun): void {
+  const xs = run.columns.get("x");
+  const ys = run.columns.get("y");
+  const step = Math.max(1, Math.floor(run.rows / 500));
+  for (let i = 0; i < run.rows; i += step) include(b, xs[i], ys[i], run.scene.radius + 0.1);
+}

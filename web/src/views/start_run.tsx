@@ -1,0 +1,63 @@
+// web/src/views/start_run.tsx: the small form that starts runs in the background.
+import { JSX } from "preact";
+import { useState } from "preact/hooks";
+import { use_app } from "../app";
+import * as rest from "../link/rest";
+import { use_store } from "../state/store";
+import { Dialog, NumberField, Pick } from "../ui/controls";
+import { sentence_of, titled } from "../words";
+
+const kMostRepeats = 100;
+
+export function StartRun(props: { on_close: () => void; on_started: () => void }): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const catalog = use_store(app.ui, (u) => u.catalog);
+  const scenarios = use_store(app.ui, (u) => u.scenarios);
+  const [scenario, set_scenario] = useState(session?.scenario.name ?? scenarios[0]?.name ?? "");
+  const [controller, set_controller] = useState(session?.controller ?? "modified");
+  const [seed, set_seed] = useState<number | null>(1);
+  const [repeats, set_repeats] = useState<number | null>(1);
+  const [problem, set_problem] = useState<string | null>(null);
+  const [busy, set_busy] = useState(false);
+  const submit = async (e: Event) => {
+    e.preventDefault();
+    set_busy(true);
+    set_problem(null);
+    try {
+      const answer = await rest.post<{ runs: number[] }>("/runs", {
+        scenario, controller, seed: Math.max(0, Math.round(seed ?? 1)),
+        repeats: Math.min(kMostRepeats, Math.max(1, Math.round(repeats ?? 1))),
+      });
+      app.toast("info", answer.runs.length === 1 ? `Run ${answer.runs[0]} is under way.`
+        : `Runs ${answer.runs[0]} to ${answer.runs.at(-1)} are under way.`);
+      props.on_started();
+      props.on_close();
+    } catch (error) {
+      set_problem(sentence_of(error));
+    }
+    set_busy(false);
+  };
+  return (
+    <Dialog title="Start a run" name="start-dialog" on_close={props.on_close}>
+      <form class="form" onSubmit={(e) => void submit(e)}>
+        <div class="line"><span>Scenario</span>
+          <Pick label="Scenario" name="start-scenario" value={scenario} on_pick={set_scenario}
+            choices={scenarios.map((s) => ({ value: s.name, label: titled(s.name) }))} /></div>
+        <div class="line"><span>Controller</span>
+          <Pick label="Controller" name="start-controller" value={controller} on_pick={set_controller}
+            choices={(catalog?.controllers ?? []).map((c) => ({ value: c.name, label: c.label }))} /></div>
+        <div class="pair">
+          <NumberField label="Seed" name="start-seed" value={seed} step={1} min={0} on_change={set_seed} />
+          <NumberField label="Repeats" name="start-repeats" value={repeats} step={1} min={1}
+            on_change={set_repeats} />
+        </div>
+        <p class="quiet">Runs in the background, as fast as it goes. Each repeat takes the next seed.</p>
+        {problem && <p class="problem" role="alert">{problem}</p>}
+        <button type="submit" class="small primary" disabled={busy} data-testid="start-go">
+          {busy ? "Starting" : "Start"}
+        </button>
+      </form>
+    </Dialog>
+  );
+}

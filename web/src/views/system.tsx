@@ -1,0 +1,99 @@
+// web/src/views/system.tsx: what runs here: versions, connection, the session, and the keys.
+import { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { use_app } from "../app";
+import * as rest from "../link/rest";
+import { use_pulse, use_store } from "../state/store";
+import { fixed, link_words, sentence_of, titled } from "../words";
+import { ShortcutTable } from "./shortcuts";
+
+export function System(): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const link = use_store(app.ui, (u) => u.link);
+  const theme = use_store(app.ui, (u) => u.theme);
+  const [version, set_version] = useState<Record<string, unknown> | null>(null);
+  const [problem, set_problem] = useState<string | null>(null);
+  use_pulse(500);
+  useEffect(() => {
+    if (link.phase !== "open") return;
+    rest.get<Record<string, unknown>>("/version").then((v) => {
+      set_version(v);
+      set_problem(null);
+    }, (error) => set_problem(sentence_of(error)));
+  }, [link.phase]);
+  return (
+    <main class="system" aria-label="System">
+      <section class="card block">
+        <h2>Server</h2>
+        {problem && <p class="problem" role="alert">{problem}</p>}
+        <Facts rows={flat_rows(version)} />
+      </section>
+      <section class="card block">
+        <h2>Connection</h2>
+        <Facts rows={[
+          ["State", link_words(link, performance.now())],
+          ["Address", location.host],
+          ["WebSocket", "/ws, Foxglove protocol v1"],
+          ["REST", "/api/v1"],
+        ]} />
+        <div class="facts-acts">
+          <button class="ghost" onClick={() => app.set_theme(theme === "dark" ? "light" : "dark")}>
+            Use the {theme === "dark" ? "light" : "dark"} theme
+          </button>
+          <a class="ghost" href="/api/v1/openapi.json" target="_blank" rel="noreferrer">OpenAPI document</a>
+        </div>
+      </section>
+      {session && <section class="card block">
+        <h2>Session</h2>
+        <Facts rows={[
+          ["Robot", titled(session.robot.name)],
+          ["Source", titled(session.source)],
+          ["Scenario", titled(session.scenario.name)],
+          ["Run", session.run ? `${session.run.id}, ${session.run.status}` : "none is recorded"],
+          ["Tick", `${fixed(session.robot.period * 1000, 0)} ms`],
+          ["Hull radius", `${fixed(session.robot.radius, 2)} m`],
+          ["Limits", `${fixed(session.robot.max_v, 2)} m/s, ${fixed(session.robot.max_omega, 2)} rad/s`],
+          ["Seed", String(session.seed)],
+          ["Lost ticks", String(session.lost_ticks)],
+        ]} />
+      </section>}
+      <section class="card block keys-block">
+        <h2>Keys</h2>
+        <ShortcutTable />
+        <p class="quiet">Stop brings the robot to rest by its own brakes. It does not replace an emergency stop.</p>
+      </section>
+    </main>
+  );
+}
+
+function Facts(props: { rows: [string, string][] }): JSX.Element {
+  return (
+    <dl class="facts-list">
+      {props.rows.map(([name, value]) => <div key={name}><dt>{name}</dt><dd class="num">{value}</dd></div>)}
+    </dl>
+  );
+}
+
+/** A document's plain values as rows; one level of nesting is spelled out. */
+function flat_rows(doc: Record<string, unknown> | null): [string, string][] {
+  if (!doc) return [["Version", "not known yet"]];
+  const rows: [string, string][] = [];
+  for (const [name, value] of Object.entries(doc)) {
+    if (value !== null && typeof value === "object") {
+      for (const [inner, v] of Object.entries(value)) {
+        if (v === null || typeof v !== "object") rows.push([`${titled(name)} ${inner.replace(/_/g, " ")}`, shown(inner, v)]);
+      }
+    } else {
+      rows.push([titled(name), shown(name, value)]);
+    }
+  }
+  return rows;
+}
+
+function shown(name: string, value: unknown): string {
+  if (typeof value === "number" && /bytes|size/.test(name)) {
+    return value < 1e6 ? `${(value / 1e3).toFixed(1)} kB` : `${(value / 1e6).toFixed(1)} MB`;
+  }
+  return String(value ?? "–");
+}

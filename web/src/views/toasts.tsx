@@ -1,0 +1,37 @@
+// web/src/views/toasts.tsx: short sentences that come and go, and what a screen reader hears.
+import { JSX } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { use_app } from "../app";
+import { use_pulse, use_store } from "../state/store";
+import { icons } from "../ui/icons";
+import { state_word } from "../words";
+
+export function Toasts(): JSX.Element {
+  const app = use_app();
+  const toasts = use_store(app.ui, (u) => u.toasts);
+  return (
+    <div class="toasts" role="status" aria-live="polite" data-testid="toasts">
+      {toasts.map((t) => (
+        <div key={t.id} class={`toast tone-${t.tone}`}>
+          <span>{t.text}</span>
+          <button class="icon" aria-label="Dismiss" onClick={() => app.dismiss(t.id)}>{icons.close}</button>
+        </div>
+      ))}
+    </div>
+  );
+}
+
+/** Says changes of state and what the app wants said, politely. */
+export function Spoken(): JSX.Element {
+  const app = use_app();
+  const spoken = use_store(app.ui, (u) => u.spoken);
+  use_pulse(500);
+  const { session, link } = app.ui.value;
+  const word = state_word(app.scene.frame, session, link.phase === "open").word;
+  const last = useRef(word);
+  useEffect(() => {
+    if (last.current !== word) app.say(`${word}. ${app.scene.frame?.what ?? ""}`);
+    last.current = word;
+  }, [word]);
+  return <div class="spoken" aria-live="polite">{spoken}</div>;
+}

@@ -1,0 +1,168 @@
+// web/src/views/topbar.tsx: brand, scenario, source, link in words, theme, Stop and Release.
+import { JSX } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+import { use_app } from "../app";
+import { ScenarioItem } from "../contract";
+import { use_pulse, use_store } from "../state/store";
+import { link_words, source_word, titled } from "../words";
+import { Brand, icons } from "../ui/icons";
+
+export function TopBar(): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const theme = use_store(app.ui, (u) => u.theme);
+  const source = source_word(session);
+  const next = theme === "dark" ? "light" : "dark";
+  return (
+    <header class="topbar">
+      <a class="brand" href="#/drive" aria-label="Tautline, to the Drive view">
+        <Brand /><span class="wide">Tautline</span>
+      </a>
+      <ScenarioMenu />
+      {source && <span class={`badge ${source.tone}`} data-testid="source">{source.word}</span>}
+      <span class="space" />
+      <LinkWords />
+      <button class="icon wide" aria-label={`Use the ${next} theme`} title={`${titled(next)} theme`}
+        data-testid="theme" onClick={() => app.set_theme(next)}>{icons.theme}</button>
+      <StopButtons />
+    </header>
+  );
+}
+
+function LinkWords(): JSX.Element {
+  const app = use_app();
+  const link = use_store(app.ui, (u) => u.link);
+  use_pulse(link.phase === "lost" ? 250 : 5000); // the seconds count down
+  return (
+    <span class={`link ${link.phase}`} data-testid="link">
+      <i class="dot" /><span class="wide num">{link_words(link, performance.now())}</span>
+      {link.phase === "lost" &&
+        <button class="text wide" onClick={() => app.link.retry_now()}>Try now</button>}
+    </span>
+  );
+}
+
+function StopButtons(): JSX.Element {
+  const app = use_app();
+  const stopped = use_store(app.ui, (u) => u.session?.stop ?? false);
+  return (
+    <>
+      {stopped &&
+        <button class="release" data-testid="release" onClick={() => void app.stop(false)}>Release</button>}
+      <button class={`stop ${stopped ? "latched" : ""}`} data-testid="stop" aria-pressed={stopped}
+        title="Brings the robot to rest and keeps it there (Space). It does not replace an emergency stop."
+        onClick={() => void app.stop(true)}>{stopped ? "Stopped" : "Stop"}</button>
+    </>
+  );
+}
+
+/** The scenario's name, and a searchable list of all there are. */
+function ScenarioMenu(): JSX.Element {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const loading = use_store(app.ui, (u) => u.loading);
+  const [open, set_open] = useState(false);
+  const box = useRef<HTMLDivElement>(null);
+  const button = useRef<HTMLButtonElement>(null);
+
+  useEffect(() => {
+    if (!open) return;
+    const away = (e: PointerEvent) => {
+      if (!box.current?.contains(e.target as Node)) set_open(false);
+    };
+    addEventListener("pointerdown", away);
+    return () => removeEventListener("pointerdown", away);
+  }, [open]);
+
+  const close = () => {
+    set_open(false);
+    button.current?.focus();
+  };
+  const name = session?.scenario.name ?? "";
+  const title = session?.scenario.title || titled(name);
+  return (
+    <div class="menu" ref={box}>
+      <button ref={button} class="menu-button" aria-haspopup="listbox" aria-expanded={open}
+        data-testid="scenario-menu" disabled={!session} aria-label={`Scenario: ${name || "none"}`}
+        onClick={() => set_open(!open)}>
+        <span class="menu-name">{loading ? `Loading ${titled(loading)}` : titled(name) || "No scenario"}</span>
+        {!loading && title !== titled(name) && <small class="wide">{title}</small>}
+        {icons.down}
+      </button>
+      {open && <ScenarioList current={name} on_close={close} on_pick={(s) => {
+        close();
+        void app.load({ scenario: s.name });
+      }} />}
+    </div>
+  );
+}
+
+function ScenarioList(props: {
+  current: string; on_pick: (item: ScenarioItem) => void; on_close: () => void;
+}): JSX.Element {
+  const app = use_app();
+  const all = use_store(app.ui, (u) => u.scenarios);
+  const [text, set_text] = useState("");
+  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+  const shown = all.filter((s) => {
+    const hay = `${s.name} ${s.title} ${s.description}`.toLowerCase();
+    return words.every((w) => hay.includes(w));
+  });
+  const [active, set_active] = useState(() =>
+    Math.max(0, all.findIndex((s) => s.name === props.current)));
+  const at = Math.min(active, shown.length - 1);
+  const list = useRef<HTMLUListElement>(null);
+  useEffect(() => {
+    list.current?.querySelector(".active")?.scrollIntoView({ block: "nearest" });
+  }, [at, text]);
+
+  const key = (e: KeyboardEvent) => {
+    const moves: Record<string, number> = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0,
+      End: shown.length - 1 };
+    if (e.key in moves) {
+      set_active(Math.max(0, Math.min(shown.length - 1, moves[e.key])));
+      e.preventDefault();
+    } else if (e.key === "Enter" && shown[at]) {
+      props.on_pick(shown[at]);
+      e.preventDefault();
+    } else if (e.key === "Escape" || e.key === "Tab") {
+      props.on_close();
+      e.preventDefault();
+    }
+    e.stopPropagation();
+  };
+  const worlds = shown.filter((s) => s.kind !== "log");
+  const logs = shown.filter((s) => s.kind === "log");
+  const option = (s: ScenarioItem) => {
+    const index = shown.indexOf(s);
+    return (
+      <li key={s.name} id={`scenario-${s.name}`} role="option" aria-selected={s.name === props.current}
+        class={index === at ? "active" : ""} data-testid={`scenario-${s.name}`}
+        onClick={() => props.on_pick(s)} onPointerMove={() => set_active(index)}>
+        <b>{titled(s.name)}</b><span>{s.title}</span>
+      </li>
+    );
+  };
+  return (
+    <div class="menu-list">
+      <input type="text" role="combobox" aria-expanded="true" aria-controls="scenario-list"
+        aria-label="Find a scenario" placeholder="Find a scenario" autoComplete="off"
+        aria-activedescendant={shown[at] ? `scenario-${shown[at].name}` : undefined}
+        ref={(e) => {
+          if (e && document.activeElement !== e) e.focus();
+        }} value={text} onKeyDown={key} onInput={(e) => {
+          set_text(e.currentTarget.value);
+          set_active(0);
+        }} />
+      <ul id="scenario-list" role="listbox" aria-label="Scenarios" ref={list}>
+        {worlds.length > 0 && <li class="group" role="presentation">Worlds</li>}
+        {worlds.map(option)}
+        {logs.length > 0 && <li class="group" role="presentation">Recorded logs</li>}
+        {logs.map(option)}
+        {shown.length === 0 && <li class="group" role="presentation">
+          {all.length === 0 ? "The list of scenarios has not come yet." : "No scenario has that in its name."}
+        </li>}
+      </ul>
+    </div>
+  );
+}

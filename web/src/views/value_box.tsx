@@ -1,0 +1,148 @@
+// web/src/views/value_box.tsx: the numbers of what is selected or about to be made, to be typed.
+import { JSX } from "preact";
+import { useEffect, useState } from "preact/hooks";
+import { use_app } from "../app";
+import { add_edit, move_edit, new_box, new_cylinder, remove_edit, set_goal_edit } from "../edit/edits";
+import { Goal } from "../link/frame";
+import { Obstacle, obstacle_name } from "../obstacle";
+import { robot_pose } from "../state/scene";
+import { use_pulse, use_store } from "../state/store";
+import { NumberField } from "../ui/controls";
+import { icons } from "../ui/icons";
+import { degrees } from "../words";
+import { Hand } from "./drive";
+
+export function ValueBox(props: { hand: Hand }): JSX.Element | null {
+  const app = use_app();
+  const selection = use_store(app.ui, (u) => u.selection);
+  const tool = use_store(app.ui, (u) => u.tool);
+  const session = use_store(app.ui, (u) => u.session);
+  use_pulse(150);
+  if (!session) return null;
+  if (selection?.kind === "obstacle") {
+    const o = app.scene.obstacles.find((x) => x.id === selection.id);
+    if (!o) return null;
+    const held = props.hand.draft.moved;
+    const shown = held?.id === o.id ? { ...o, pose: held.pose } : o;
+    return <ObstacleValues key={o.id} obstacle={shown} editable={session.robot.editable} />;
+  }
+  if ((selection?.kind === "goal" || tool === "goal") && session.robot.drives) {
+    return <GoalValues goal={props.hand.draft.goal ?? app.scene.goal} selected={selection !== null} />;
+  }
+  if ((tool === "cylinder" || tool === "box") && session.robot.editable) {
+    return <NewValues key={tool} kind={tool} />;
+  }
+  return null;
+}
+
+/** Fields over a value that may change from outside until a hand types into them. */
+function use_typed<T>(value: T): [T, (change: Partial<T>) => void, () => void, boolean] {
+  const [typed, set_typed] = useState<Partial<T> | null>(null);
+  return [{ ...value, ...typed }, (change) => set_typed({ ...typed, ...change }),
+    () => set_typed(null), typed !== null];
+}
+
+function whole_tenths(v: number): number {
+  return Math.round(10 * v) / 10;
+}
+
+function GoalValues(props: { goal: Goal | null; selected: boolean }): JSX.Element {
+  const app = use_app();
+  const g = props.goal;
+  const [v, type, forget, changed] = use_typed({
+    x: g?.x ?? null, y: g?.y ?? null, turn: g?.heading == null ? null : whole_tenths(degrees(g.heading)),
+  });
+  useEffect(forget, [g?.x, g?.y, g?.heading]);
+  const apply = (e: Event) => {
+    e.preventDefault();
+    if (v.x === null || v.y === null) {
+      app.toast("warn", "A goal needs both x and y.");
+      return;
+    }
+    const heading = v.turn === null ? null : (v.turn * Math.PI) / 180;
+    void app.edit(set_goal_edit(app.scene.goal, { x: v.x, y: v.y, heading })).then(forget);
+  };
+  return (
+    <form class={`card values ${props.selected ? "" : "unasked"}`} onSubmit={apply} aria-label="Goal" data-testid="goal-values">
+      <b class="tone-ok">Goal</b>
+      <NumberField label="x" unit="m" name="goal-x" value={v.x} on_change={(x) => type({ x })} />
+      <NumberField label="y" unit="m" name="goal-y" value={v.y} on_change={(y) => type({ y })} />
+      <NumberField label="heading" unit="°" name="goal-heading" value={v.turn} step={5} empty="any"
+        on_change={(turn) => type({ turn })} />
+      <button type="submit" class="small primary" disabled={!changed} data-testid="goal-set">Set</button>
+      {g && <button type="button" class="icon" aria-label="Clear the goal" title="Clear the goal (Delete)"
+        onClick={() => void app.edit(set_goal_edit(app.scene.goal, null))}>{icons.trash}</button>}
+    </form>
+  );
+}
+
+function ObstacleValues(props: { obstacle: Obstacle; editable: boolean }): JSX.Element {
+  const app = use_app();
+  const o = props.obstacle;
+  const [v, type, forget, changed] = use_typed({
+    x: o.pose.x, y: o.pose.y, turn: whole_tenths(degrees(o.pose.heading)),
+  });
+  useEffect(forget, [o.pose.x, o.pose.y, o.pose.heading]);
+  const apply = (e: Event) => {
+    e.preventDefault();
+    const pose = { x: v.x, y: v.y, heading: (v.turn * Math.PI) / 180 };
+    void app.edit(move_edit(o.id, o.pose, pose)).then(forget);
+  };
+  const size = o.kind === "cylinder" ? `radius ${o.radius.toFixed(2)} m`
+    : o.kind === "polygon" ? `${o.points.length} corners`
+      : `${o.length.toFixed(2)} × ${o.width.toFixed(2)} m`;
+  return (
+    <form class="card values" onSubmit={apply} aria-label={obstacle_name(o)} data-testid="obstacle-values">
+      <b>{obstacle_name(o)} {o.id}</b>
+      <span class="quiet num">{size}</span>
+      <NumberField label="x" unit="m" name="obstacle-x" value={v.x} on_change={(x) => type({ x: x ?? 0 })} />
+      <NumberField label="y" unit="m" name="obstacle-y" value={v.y} on_change={(y) => type({ y: y ?? 0 })} />
+      {o.kind !== "cylinder" &&
+        <NumberField label="turn" unit="°" name="obstacle-turn" value={v.turn} step={5}
+          on_change={(turn) => type({ turn: turn ?? 0 })} />}
+      {props.editable && <>
+        <button type="submit" class="small primary" disabled={!changed}>Move</button>
+        <button type="button" class="icon" aria-label="Remove" title="Remove (Delete)" data-testid="obstacle-remove"
+          onClick={() => void app.edit(remove_edit(o))}>{icons.trash}</button>
+      </>}
+    </form>
+  );
+}
+
+function NewValues(props: { kind: "cylinder" | "box" }): JSX.Element {
+  const app = use_app();
+  const pose = robot_pose(app.scene);
+  // Ahead of the robot by default: near enough to matter, far enough not to touch.
+  const ahead = 2;
+  const [v, type, forget] = use_typed({
+    x: pose ? Math.round(10 * (pose.x + ahead * Math.cos(pose.heading))) / 10 : 0,
+    y: pose ? Math.round(10 * (pose.y + ahead * Math.sin(pose.heading))) / 10 : 0,
+    radius: 0.3, length: 0.6, width: 0.6, turn: 0,
+  });
+  const apply = (e: Event) => {
+    e.preventDefault();
+    const heading = (v.turn * Math.PI) / 180;
+    const made = props.kind === "cylinder" ? new_cylinder(v.x, v.y, v.radius)
+      : new_box(v.x, v.y, v.length, v.width, heading);
+    void app.edit(add_edit(made)).then((answer) => {
+      if (!answer) return;
+      forget();
+      if (answer.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
+    });
+  };
+  const field = (label: string, name: "x" | "y" | "radius" | "length" | "width" | "turn", unit = "m",
+    step = 0.1) => (
+    <NumberField label={label} unit={unit} name={`new-${name}`} value={v[name]} step={step}
+      on_change={(value) => type({ [name]: value ?? 0 })} />
+  );
+  return (
+    <form class="card values unasked" onSubmit={apply} aria-label={`New ${props.kind}`} data-testid="new-values">
+      <b>New {props.kind}</b>
+      {field("x", "x")}
+      {field("y", "y")}
+      {props.kind === "cylinder" ? field("radius", "radius", "m", 0.05)
+        : <>{field("length", "length")}{field("width", "width")}{field("turn", "turn", "°", 5)}</>}
+      <button type="submit" class="small primary" data-testid="new-add">Add</button>
+    </form>
+  );
+}

@@ -1,0 +1,111 @@
+// web/src/words.ts: states, outcomes and numbers in words; plain, short, no blame.
+import { SessionState } from "./contract";
+import { LinkStatus } from "./link/live";
+import { Frame } from "./link/frame";
+
+export type Tone = "ok" | "warn" | "bad" | "info" | "muted";
+
+/** `digits` after the point, a dash when there is no number; the minus sign is a real one. */
+export function fixed(value: number | null | undefined, digits: number): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  const text = Math.abs(value).toFixed(digits);
+  return value < 0 && Number(text) !== 0 ? `−${text}` : text;
+}
+
+/** mm:ss.t, or h:mm:ss from an hour on. */
+export function clock(seconds: number): string {
+  const tenths = Math.max(0, Math.round(seconds * 10));
+  const s = Math.floor(tenths / 10);
+  const two = (n: number) => String(n).padStart(2, "0");
+  if (s >= 3600) return `${Math.floor(s / 3600)}:${two(Math.floor(s / 60) % 60)}:${two(s % 60)}`;
+  return `${two(Math.floor(s / 60))}:${two(s % 60)}.${tenths % 10}`;
+}
+
+export function link_words(status: LinkStatus, now: number): string {
+  if (status.phase === "connecting") return "Connecting";
+  if (status.phase === "lost") {
+    const wait = Math.max(0, Math.ceil((status.retry_at - now) / 1000));
+    return wait > 0 ? `Connection lost. Trying again in ${wait} s.` : "Connection lost. Trying now.";
+  }
+  const parts = ["Connected", `${status.rate} frames/s`];
+  if (status.latency !== null) parts.push(`${Math.max(1, Math.round(status.latency))} ms`);
+  return parts.join(" · ");
+}
+
+/** The robot's state as one word, with its tone. */
+export function state_word(frame: Frame | null, session: SessionState | null,
+  open: boolean): { word: string; tone: Tone } {
+  if (!open) return { word: "No link", tone: "bad" };
+  if (!session) return { word: "Waiting", tone: "muted" };
+  if (session.stop || frame?.hold === "stopped") return { word: "Stopped", tone: "bad" };
+  if (session.pace.paused) return { word: "Paused", tone: "info" };
+  if (frame && frame.hold !== "none") return { word: "Held", tone: "bad" };
+  if (session.source === "replay") return { word: "Replaying", tone: "info" };
+  return frame_word(frame);
+}
+
+/** The same for an instant of a stored run. */
+export function frame_word(frame: Frame | null): { word: string; tone: Tone } {
+  if (!frame) return { word: "Idle", tone: "muted" };
+  if (frame.hold === "stopped") return { word: "Stopped", tone: "bad" };
+  if (frame.hold !== "none") return { word: "Held", tone: "bad" };
+  switch (frame.mission) {
+    case "driving": return frame.behaviour === "manual"
+      ? { word: "Manual", tone: "info" } : { word: "Driving", tone: "ok" };
+    case "arrived": return { word: "Arrived", tone: "ok" };
+    case "stuck": return { word: "Stuck", tone: "warn" };
+    case "held": return { word: "Held", tone: "bad" };
+    default: return frame.behaviour === "manual"
+      ? { word: "Manual", tone: "info" } : { word: "Idle", tone: "muted" };
+  }
+}
+
+const kOutcomes: Record<string, { word: string; tone: Tone }> = {
+  running: { word: "Running", tone: "info" },
+  reached: { word: "Reached", tone: "ok" },
+  stuck: { word: "Stuck", tone: "warn" },
+  out_of_time: { word: "Out of time", tone: "warn" },
+  collided: { word: "Collided", tone: "bad" },
+  stopped: { word: "Stopped", tone: "muted" },
+  end_of_log: { word: "End of log", tone: "info" },
+  failed: { word: "Failed", tone: "bad" },
+};
+const kStatuses: Record<string, { word: string; tone: Tone }> = {
+  queued: { word: "Queued", tone: "muted" },
+  recording: { word: "Recording", tone: "info" },
+  interrupted: { word: "Interrupted", tone: "muted" },
+  cancelled: { word: "Cancelled", tone: "muted" },
+  failed: { word: "Failed", tone: "bad" },
+};
+
+/** What became of a run: its outcome when finished, else its status. */
+export function run_word(status: string, outcome: string): { word: string; tone: Tone } {
+  if (status !== "finished" && kStatuses[status]) return kStatuses[status];
+  return kOutcomes[outcome] ?? { word: outcome || "Unknown", tone: "muted" };
+}
+
+export function speed_word(speed: number): string {
+  return speed === 0 ? "Max" : `${speed}×`;
+}
+
+/** "modified_c1" as a label when the catalog has none. */
+export function titled(name: string): string {
+  const spaced = name.replace(/[_-]+/g, " ").replace(/([a-z])(\d)/g, "$1 $2");
+  return spaced.charAt(0).toUpperCase() + spaced.slice(1);
+}
+
+export function source_word(session: SessionState | null): { word: string; tone: string } | null {
+  if (!session) return null;
+  if (session.source === "hardware") return { word: "REAL HARDWARE", tone: "bad" };
+  if (session.source === "replay") return { word: "Replay", tone: "replay" };
+  return { word: "Simulation", tone: "info" };
+}
+
+export function sentence_of(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+/** [rad] as degrees in (-180, 180], for people. */
+export function degrees(radians: number): number {
+  return (radians * 180) / Math.PI;
+}
