@@ -69,14 +69,14 @@ const std::map<std::string, Rule>& rules() {
        {.folders = {"algo"},
         .others = "Eigen/.*",
         .forbidden_standard = "thread|mutex|shared_mutex|condition_variable|atomic|future|chrono|"
-                              "fstream|filesystem|iostream|cstdio|random|ctime"}},
+                              "fstream|filesystem|iostream|random|ctime"}},
       {"sim",
        {.folders = {"sim", "algo"},
         .others = R"(Eigen/.*|bt[A-Za-z]+\.h|(LinearMath|BulletCollision|BulletDynamics)/.*)"}},
       {"drivers",
        {.folders = {"drivers", "algo"},
         .others = R"(Eigen/.*|(fcntl|poll|pty|termios|unistd)\.h|sys/[a-z]+\.h|linux/serial\.h)"}},
-      {"db", {.folders = {"db"}, .others = R"(sqlite3\.h|zstd\.h)"}},
+      {"db", {.folders = {"db"}, .others = R"((sqlite3|zstd|fcntl|unistd)\.h|sys/(file|stat)\.h)"}},
       {"server", {.folders = {"server", "db", "drivers", "sim", "algo"}, .others = ".*"}},
   };
   return table;
