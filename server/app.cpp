@@ -1,6 +1,7 @@
 // server/app.cpp: wires the parts together; the io thread runs here.
 #include "server/app.hpp"
 
+#include <csignal>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace {
 
 // Frames are looked for this often: a good part of a tick sooner than any display shows them.
 constexpr std::chrono::milliseconds kPollPeriod{4};
+
+volatile std::sig_atomic_t g_terminated = 0;  // NOLINT: the one thing a signal may touch
 
 std::string prepared(const std::filesystem::path& database) {
   std::error_code error;
@@ -45,12 +48,17 @@ struct App::Impl {
                 .recorder = recorder,
                 .reader = reader},
         bridge(session, [this](const nlohmann::json& body) { load_from_json(context, body); }) {
-    add_api(router, context);
-    server = std::make_unique<net::Server>(options.net, router, bridge.hub().handlers());
+    server = std::make_unique<net::Server>(options.net);
+    add_api(server->router(), context);
+    server->add(bridge.hub().endpoint("/ws"));
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
     session.load(std::move(options.first));
-    server->every(kPollPeriod, [this] { session.poll(); });
-    server->on_termination([this] { server->stop(); });
+    server->every(kPollPeriod, [this] {
+      session.poll();
+      if (g_terminated != 0) server->stop();
+    });
+    std::signal(SIGINT, [](int) { g_terminated = 1; });
+    std::signal(SIGTERM, [](int) { g_terminated = 1; });
   }
   ~Impl() { session.end(); }
   Impl(const Impl&) = delete;
@@ -64,7 +72,6 @@ struct App::Impl {
   Session session;
   ApiContext context;
   Bridge bridge;
-  net::Router router{};
 };
 
 App::App(AppOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}

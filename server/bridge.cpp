@@ -1,11 +1,11 @@
 // server/bridge.cpp: what goes out on which channel, and what comes in on which topic.
 #include "server/bridge.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <random>
 #include <utility>
 
-#include "server/foxglove/embedded_schemas.hpp"
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
 #include "server/scenario_json.hpp"
@@ -15,17 +15,14 @@
 namespace server {
 namespace {
 
-using foxglove::Hub;
+using foxglove::ChannelId;
+using foxglove::ClientId;
+using foxglove::ServiceReply;
 using nlohmann::json;
-constexpr double kTimePeriod = 0.1;  // [s] of the run clock between time messages
+constexpr const char* kBusy = "The control loop has more requests than it can take. Try again.";
 
 std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
-}
-
-std::string random_session_id() {
-  std::random_device device;
-  return std::to_string(device()) + "-" + std::to_string(device());
 }
 
 double yaw_of(const JsonReader& q) {
@@ -62,49 +59,60 @@ algo::Joystick stick_from_twist(const json& message, const algo::RobotSpec& robo
 
 }  // namespace
 
-json Bridge::Gains::list() const {
-  json out = json::array();
+std::vector<foxglove::Parameter> Bridge::Gains::list() const {
+  std::vector<foxglove::Parameter> out;
   for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    out.push_back({{"name", p.name},
-                   {"value", session_.state().parameters[p.id]},
-                   {"type", "float64"}});
+    out.push_back({std::string(p.name), shown_[p.id], "float64"});
   }
-  const sim::Scenario& scenario = session_.state().spec.scenario;
-  out.push_back({{"name", "controller"}, {"value", scenario.controller}});
-  out.push_back({{"name", "filter"}, {"value", scenario.filter}});
-  out.push_back({{"name", "scenario"}, {"value", scenario.name}});
+  const sim::Scenario& scenario = bridge_.session_.state().spec.scenario;
+  out.push_back({"controller", scenario.controller, ""});
+  out.push_back({"filter", scenario.filter, ""});
+  out.push_back({"scenario", scenario.name, ""});
   return out;
 }
 
-void Bridge::Gains::set(const std::string& name,
-                        const json& value,
-                        std::function<void(const std::optional<std::string>&)> done) {
+std::string Bridge::Gains::set(const std::string& name, const json& value) {
   const auto parameter = algo::find_parameter(name);
   if (!parameter) {
     const bool read_only = name == "controller" || name == "filter" || name == "scenario";
-    done(read_only ? "'" + name + "' is read only here: call the service /load."
-                   : "There is no parameter '" + name + "'.");
-  } else if (!value.is_number()) {
-    done("'" + name + "' takes a number.");
-  } else if (!session_.submit(algo::SetParameter{*parameter, value.get<double>()}, done)) {
-    done("The control loop has more requests than it can take. Try again.");
+    return read_only ? "'" + name + "' is read only here: call the service /load."
+                     : "There is no parameter '" + name + "'.";
   }
+  if (!value.is_number()) return "'" + name + "' takes a number.";
+  const double wanted = value.get<double>();
+  if (const auto why = algo::refusal(shown_, *parameter, wanted)) return *why;
+  ++on_their_way_;
+  shown_.set(*parameter, wanted);
+  const auto given = bridge_.session_.submit(
+      algo::SetParameter{*parameter, wanted}, [this](const std::optional<std::string>& refusal) {
+        --on_their_way_;
+        follow();
+        if (refusal) {
+          bridge_.hub_.announce(foxglove::StatusLevel::Warning, *refusal);
+          bridge_.hub_.parameters_changed();
+        }
+      });
+  if (given) return {};
+  --on_their_way_;
+  follow();
+  return kBusy;
+}
+
+void Bridge::Gains::follow() {
+  if (on_their_way_ == 0) shown_ = bridge_.session_.state().parameters;
 }
 
 Bridge::Bridge(Session& session, std::function<void(const json&)> load)
-    : session_(session),
-      load_(std::move(load)),
-      gains_(session),
-      hub_(random_session_id(), gains_) {
+    : session_(session), load_(std::move(load)) {
+  hub_.set_parameters(gains_);
   add_channels();
   add_services();
   add_topics();
   session_.on_frame = [this](const FrameRef& frame) { publish_frame(frame); };
   session_.on_change = [this] { publish_state(); };
   session_.on_log = [this](LogLevel level, const std::string& text) {
-    const double stamp =
-        session_.newest() ? session_.newest()->telemetry.observation.stamp : 0.0;
-    hub_.publish_event(log_, now_ns(), log_json(stamp, level, text));
+    const double stamp = static_cast<double>(now_ns()) * 1e-9;
+    hub_.publish_event(log_, now_ns(), shared(log_json(stamp, level, text)));
   };
 }
 
@@ -114,114 +122,90 @@ std::uint64_t Bridge::now_ns() const {
   return static_cast<std::uint64_t>(std::max(0.0, stamp) * 1e9);
 }
 
-Hub::ChannelId Bridge::add_json(const char* topic, const char* schema_name, bool latched) {
-  return hub_.add_channel({.topic = topic,
-                           .encoding = "json",
-                           .schema_name = schema_name,
-                           .schema = std::string(foxglove_schema(schema_name)),
-                           .schema_encoding = "jsonschema"},
-                          latched);
-}
-
 void Bridge::add_channels() {
-  telemetry_ = hub_.add_channel({.topic = "/telemetry",
-                                 .encoding = "flatbuffer",
-                                 .schema_name = "tautline.wire.Frame",
-                                 .schema = std::string(telemetry_bfbs_base64()),
-                                 .schema_encoding = "flatbuffer"},
-                                true);
-  state_ = hub_.add_channel({.topic = "/state",
-                             .encoding = "json",
-                             .schema_name = "tautline.State",
-                             .schema = std::string(state_schema()),
-                             .schema_encoding = "jsonschema"},
-                            true);
-  scan_ = add_json("/scan", "foxglove.LaserScan", false);
-  tf_ = add_json("/tf", "foxglove.FrameTransforms", false);
-  odom_ = add_json("/odom", "foxglove.Odometry", false);
-  strip_ = add_json("/strip", "foxglove.SceneUpdate", false);
-  forces_ = add_json("/forces", "foxglove.SceneUpdate", false);
-  obstacles_ = add_json("/obstacles", "foxglove.SceneUpdate", true);
-  goal_ = add_json("/goal", "foxglove.PoseInFrame", true);
-  trajectory_ = add_json("/trajectory", "foxglove.PosesInFrame", true);
-  log_ = add_json("/log", "foxglove.Log", false);
+  telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", true});
+  state_ = hub_.add_channel({"/state", "tautline.State", true});
+  scan_ = hub_.add_channel({"/scan", "foxglove.LaserScan"});
+  tf_ = hub_.add_channel({"/tf", "foxglove.FrameTransforms"});
+  odom_ = hub_.add_channel({"/odom", "foxglove.Odometry"});
+  strip_ = hub_.add_channel({"/strip", "foxglove.SceneUpdate"});
+  forces_ = hub_.add_channel({"/forces", "foxglove.SceneUpdate"});
+  obstacles_ = hub_.add_channel({"/obstacles", "foxglove.SceneUpdate", true});
+  goal_ = hub_.add_channel({"/goal", "foxglove.PoseInFrame"});
+  trajectory_ = hub_.add_channel({"/trajectory", "foxglove.PosesInFrame"});
+  log_ = hub_.add_channel({"/log", "foxglove.Log"});
 }
 
-void Bridge::submit(algo::Request request, const Hub::Reply& reply) {
+void Bridge::submit(algo::Request request, const ServiceReply& reply) {
   const auto id = std::make_shared<std::uint32_t>(0);
   const auto given =
       session_.submit(std::move(request), [reply, id](const std::optional<std::string>& refusal) {
         if (refusal) {
-          reply.fail(*refusal);
+          reply.failure(*refusal);
           return;
         }
         json body = {{"ok", true}};
         if (*id != 0) body["id"] = *id;
-        reply.ok(body);
+        reply.success(body);
       });
-  if (!given) {
-    reply.fail("The control loop has more requests than it can take. Try again.");
-    return;
+  if (given) {
+    *id = *given;
+  } else {
+    reply.failure(kBusy);
   }
-  *id = *given;
 }
 
 void Bridge::add_services() {
-  const auto ok = [](const Hub::Reply& reply) { reply.ok({{"ok", true}}); };
-  hub_.add_service("/request", "tautline.Request", [this](const json& body, const Hub::Reply& reply) {
+  // Each throws what is wrong with its request; the hub makes that the call's failure.
+  const auto add = [this](const char* name, std::function<void(const json&)> action) {
+    hub_.add_service(name,
+                     [action = std::move(action)](
+                         ClientId, const json& body, const ServiceReply& reply) {
+                       action(body);
+                       reply.success({{"ok", true}});
+                     });
+  };
+  hub_.add_service("/request", [this](ClientId, const json& body, const ServiceReply& reply) {
     submit(request_from_json(body), reply);
   });
-  hub_.add_service("/load", "tautline.Load", [this, ok](const json& body, const Hub::Reply& reply) {
-    load_(body);
-    ok(reply);
-  });
-  hub_.add_service("/reset", "tautline.Empty", [this, ok](const json&, const Hub::Reply& reply) {
-    session_.reset();
-    ok(reply);
-  });
-  hub_.add_service("/pause", "tautline.Empty", [this, ok](const json&, const Hub::Reply& reply) {
-    session_.pause(true);
-    ok(reply);
-  });
-  hub_.add_service("/play", "tautline.Empty", [this, ok](const json&, const Hub::Reply& reply) {
-    session_.pause(false);
-    ok(reply);
-  });
-  hub_.add_service("/step", "tautline.Step", [this, ok](const json& body, const Hub::Reply& reply) {
+  add("/load", [this](const json& body) { load_(body); });
+  add("/reset", [this](const json&) { session_.reset(); });
+  add("/pause", [this](const json&) { session_.pause(true); });
+  add("/play", [this](const json&) { session_.pause(false); });
+  add("/step", [this](const json& body) {
     const JsonReader in(body, "");
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
-    ok(reply);
   });
-  hub_.add_service("/speed", "tautline.Speed", [this, ok](const json& body, const Hub::Reply& reply) {
+  add("/speed", [this](const json& body) {
     session_.set_speed(JsonReader(body, "").number("speed", {0, 1000}));
-    ok(reply);
   });
 }
 
+/// A refusal found out later goes to the status line of the client that asked.
+std::string Bridge::hand_over(ClientId client, algo::Request request) {
+  const auto given = session_.submit(
+      std::move(request), [this, client](const std::optional<std::string>& refusal) {
+        if (refusal) hub_.warn(client, *refusal);
+      });
+  return given ? std::string() : std::string(kBusy);
+}
+
 void Bridge::add_topics() {
-  using Complain = std::function<void(const std::string&)>;
-  const auto hand_over = [this](algo::Request request, const Complain& complain) {
-    const auto given = session_.submit(
-        std::move(request), [complain](const std::optional<std::string>& refusal) {
-          if (refusal) complain(*refusal);
-        });
-    if (!given) complain("The control loop has more requests than it can take.");
-  };
   for (const char* topic : {"/goal_pose", "/move_base_simple/goal"}) {
-    hub_.add_topic(topic, [hand_over](const json& message, const Complain& complain) {
-      hand_over(goal_from_pose(message), complain);
+    hub_.on_publish(topic, [this](ClientId client, const json& message) {
+      return hand_over(client, goal_from_pose(message));
     });
   }
-  hub_.add_topic("/clicked_point", [hand_over](const json& message, const Complain& complain) {
-    hand_over(goal_from_point(message), complain);
+  hub_.on_publish("/clicked_point", [this](ClientId client, const json& message) {
+    return hand_over(client, goal_from_point(message));
   });
-  hub_.add_topic("/cmd_vel", [this, hand_over](const json& message, const Complain& complain) {
-    hand_over(stick_from_twist(message, session_.state().robot), complain);
+  hub_.on_publish("/cmd_vel", [this](ClientId client, const json& message) {
+    return hand_over(client, stick_from_twist(message, session_.state().robot));
   });
-  hub_.add_topic("/edits", [hand_over](const json& message, const Complain& complain) {
-    hand_over(request_from_json(message), complain);
+  hub_.on_publish("/edits", [this](ClientId client, const json& message) {
+    return hand_over(client, request_from_json(message));
   });
-  hub_.on_publisher_gone([this](const std::string& topic) {
+  hub_.on_publisher_gone([this](ClientId, const std::string& topic) {
     // A driver who leaves lets go of the stick.
     if (topic == "/cmd_vel") session_.submit(algo::Joystick{}, {});
   });
@@ -236,7 +220,7 @@ void Bridge::publish_frame(const FrameRef& frame) {
                  time_ns,
                  shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   }
-  const auto publish = [&](Hub::ChannelId channel, auto encode) {
+  const auto publish = [&](ChannelId channel, auto encode) {
     if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));
   };
   if (t.scene.fresh) publish(scan_, [&] { return laser_scan_json(t); });
@@ -249,11 +233,7 @@ void Bridge::publish_frame(const FrameRef& frame) {
     path_published_ = session_.path().size();
     publish(trajectory_, [&] { return trajectory_json(t.observation.stamp, session_.path()); });
   }
-  const double stamp = t.observation.stamp;
-  if (stamp < time_published_ || stamp - time_published_ >= kTimePeriod) {
-    time_published_ = stamp;
-    hub_.publish_time(time_ns);
-  }
+  hub_.broadcast_time(time_ns, std::chrono::steady_clock::now());
 }
 
 void Bridge::publish_state() {
@@ -265,6 +245,7 @@ void Bridge::publish_state() {
                                      session_.state().obstacles)));
   if (told_parameters_ != session_.state().parameters) {
     told_parameters_ = session_.state().parameters;
+    gains_.follow();
     hub_.parameters_changed();
   }
 }

@@ -22,35 +22,36 @@ class Bridge {
   /// The session's tunables as protocol parameters.
   class Gains final : public foxglove::ParameterSource {
    public:
-    explicit Gains(Session& session) : session_(session) {}
-    nlohmann::json list() const override;
-    void set(const std::string& name,
-             const nlohmann::json& value,
-             std::function<void(const std::optional<std::string>&)> done) override;
+    explicit Gains(Bridge& bridge) : bridge_(bridge) {}
+    std::vector<foxglove::Parameter> list() const override;
+    std::string set(const std::string& name, const nlohmann::json& value) override;
+    /// Takes over what the session has now; values still on their way keep showing.
+    void follow();
 
    private:
-    Session& session_;
+    Bridge& bridge_;
+    algo::Parameters shown_{};
+    std::size_t on_their_way_ = 0;
   };
 
-  foxglove::Hub::ChannelId add_json(const char* topic, const char* schema_name, bool latched);
   void add_channels();
   void add_services();
   void add_topics();
   void publish_frame(const FrameRef& frame);
   void publish_state();
-  void submit(algo::Request request, const foxglove::Hub::Reply& reply);
+  void submit(algo::Request request, const foxglove::ServiceReply& reply);
+  std::string hand_over(foxglove::ClientId client, algo::Request request);
   std::uint64_t now_ns() const;
 
   Session& session_;
   std::function<void(const nlohmann::json&)> load_;
-  Gains gains_;
-  foxglove::Hub hub_;
+  foxglove::Hub hub_{};
+  Gains gains_{*this};
   algo::Parameters told_parameters_{};
-  double time_published_ = -1;  // [s] run clock
   std::size_t path_published_ = 0;
 
-  foxglove::Hub::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
-                           forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
+  foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
+                      forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
 };
 
 }  // namespace server

@@ -1,5 +1,6 @@
 // server/command_serve.cpp: `tautline serve`.
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -22,8 +23,9 @@ struct Options {
 
 void serve(Options& options) {
   AppOptions& app = options.app;
-  if (const char* token = std::getenv("TAUTLINE_TOKEN"); app.net.token.empty() && token) {
-    app.net.token = token;
+  if (const char* token = std::getenv("TAUTLINE_TOKEN");
+      app.net.access.token.empty() && token != nullptr) {
+    app.net.access.token = token;
   }
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
   const ScenarioLibrary library(app.scenarios, app.logs);
@@ -31,6 +33,7 @@ void serve(Options& options) {
   app.first = make_spec(file ? ScenarioLibrary::from_file(options.scenario)
                              : library.load(options.scenario),
                         options.flags.resolved());
+  app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   App program(app);
   fmt::print("Tautline is at {}\n", program.url());
   fmt::print("Runs are kept in {}\n", app.database.string());
@@ -51,12 +54,12 @@ void add_serve_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
   command->add_option("--port", net.port, "Port; 0: any free one")->capture_default_str();
   command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
-  command->add_option("--token", net.token,
+  command->add_option("--token", net.access.token,
                       "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
-  command->add_flag("--insecure", net.insecure, "Listen beyond this machine without a token");
-  command->add_option("--allow-host", net.allow_hosts,
+  command->add_flag("--insecure", net.access.insecure, "Listen beyond this machine without a token");
+  command->add_option("--allow-host", net.access.allow_hosts,
                       "A further name this server goes by, such as one of a port mapping");
-  command->add_option("--allow-origin", net.allow_origins,
+  command->add_option("--allow-origin", net.access.allow_origins,
                       "A page hosted elsewhere that may connect, such as https://viewer.example");
   command->add_option("--db", options->app.database, "Database of the runs")
       ->type_name("FILE")

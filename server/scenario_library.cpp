@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "server/embedded_worlds.hpp"
+#include "server/embedded_documents.hpp"
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
 #include "server/scenario_json.hpp"

@@ -41,21 +41,6 @@ json state_json(const Session& session) {
   return out;
 }
 
-std::string_view state_schema() {
-  return R"({"title":"tautline.State","type":"object",
-"required":["run","source","scenario","controller","filter","vehicle","seed","robot","pace","stop",
-"goal","obstacles","parameters","lost_ticks","problem"],
-"properties":{"run":{"type":"object","required":["id","status","outcome"]},
-"source":{"enum":["simulation","replay","hardware"]},"scenario":{"type":"object"},
-"controller":{"type":"string"},"filter":{"type":"string"},"vehicle":{"type":"string"},
-"seed":{"type":"integer"},"robot":{"type":"object"},
-"pace":{"type":"object","required":["paused","speed"]},"stop":{"type":"boolean"},
-"goal":{"type":["object","null"]},"obstacles":{"type":"array","items":{"type":"object",
-"required":["id","type","x","y","heading"]}},"parameters":{"type":"object",
-"additionalProperties":{"type":"number"}},"lost_ticks":{"type":"integer"},
-"problem":{"type":["string","null"]}}})";
-}
-
 json session_json(const Session& session) {
   json out = state_json(session);
   if (!session.newest()) return out;

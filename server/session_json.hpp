@@ -2,7 +2,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "server/session.hpp"
 
@@ -10,8 +9,6 @@ namespace server {
 
 /// The `/state` document (docs/interfaces.md).
 nlohmann::json state_json(const Session& session);
-/// JSON schema of state_json(), for the channel's advertisement.
-std::string_view state_schema();
 /// The same with the newest tick: pose, clearance, mission, hold and the two sentences.
 nlohmann::json session_json(const Session& session);
 /// Controllers, filters, vehicles and parameters by name, with labels and help.

@@ -1,7 +1,7 @@
 // server/api/catalog_routes.cpp: health, version, the API's own description, and what there is.
 #include "server/api/api.hpp"
 #include "server/api/reply.hpp"
-#include "server/foxglove/embedded_schemas.hpp"
+#include "server/embedded_documents.hpp"
 #include "server/session_json.hpp"
 #include "server/version.hpp"
 
@@ -28,10 +28,7 @@ void add_catalog_routes(net::Router& router, ApiContext& context) {
                return json_response(200, {{"name", "tautline"}, {"version", kVersion}, {"api", 1}});
              }));
   router.add("GET", "/api/v1/openapi.json", immediate([](const net::Request&) {
-               net::Response response;
-               response.content_type = "application/json";
-               response.body = std::make_shared<const std::string>(embedded_openapi());
-               return response;
+               return net::json_response(200, std::string(embedded_openapi()));
              }));
   router.add("GET", "/api/v1/catalog", immediate([](const net::Request&) {
                return json_response(200, catalog_json());

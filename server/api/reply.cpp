@@ -29,11 +29,7 @@ net::Response problem_of(const LibraryError& e) {
 }  // namespace
 
 net::Response json_response(int status, const nlohmann::json& body) {
-  net::Response response;
-  response.status = status;
-  response.content_type = "application/json";
-  response.body = std::make_shared<const std::string>(dump_json(body));
-  return response;
+  return net::json_response(status, dump_json(body));
 }
 
 net::Response problem_of_current_exception() {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/net/http.hpp"
+#include "server/net/router.hpp"
 
 namespace server {
 

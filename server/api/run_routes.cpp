@@ -90,7 +90,7 @@ void start_runs(ApiContext& context, const net::Request& request, const net::Res
             return;
           }
           net::Response response = json_response(202, {{"runs", runs}});
-          response.headers.emplace_back("Location", fmt::format("/api/v1/runs/{}", runs.front()));
+          response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
           respond(std::move(response));
         });
       });
@@ -146,7 +146,7 @@ net::Response list_frames(ApiContext& context, const net::Request& request) {
       });
   net::Response response;
   response.content_type = "application/octet-stream";
-  if (next) response.headers.emplace_back("X-Next-Tick", std::to_string(*next));
+  if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
   response.body = std::move(body);
   return response;
 }
@@ -159,8 +159,7 @@ net::Response export_csv(ApiContext& context, const net::Request& request) {
   while (from) from = context.reader.csv(run, *from, 10'000, *body, csv_names());
   net::Response response;
   response.content_type = "text/csv; charset=utf-8";
-  response.headers.emplace_back("Content-Disposition",
-                                fmt::format("attachment; filename=\"run-{}.csv\"", run));
+  response.headers.push_back({"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
   response.body = std::move(body);
   return response;
 }

@@ -31,7 +31,7 @@ void submit_and_reply(ApiContext& context,
   if (!given) {
     net::Response busy =
         net::problem(503, "Busy", "The control loop has more requests than it can take. Try again.");
-    busy.headers.emplace_back("Retry-After", "1");
+    busy.headers.push_back({"Retry-After", "1"});
     respond(std::move(busy));
     return;
   }
@@ -194,7 +194,7 @@ void add_session_routes(net::Router& router, ApiContext& context) {
                    context.session.as_scenario(name, in.text_or("title", name));
                context.library.save(scenario);
                net::Response response = json_response(201, to_json(scenario));
-               response.headers.emplace_back("Location", "/api/v1/scenarios/" + name);
+               response.headers.push_back({"Location", "/api/v1/scenarios/" + name});
                return response;
              }));
 }

@@ -1,4 +1,4 @@
-# Writes OUTPUT: the scenarios in WORLDS as string literals (run with cmake -P).
+# Writes OUTPUT: the scenarios in WORLDS and the OPENAPI document as string literals (cmake -P).
 file(GLOB paths ${WORLDS}/*.json)
 list(SORT paths)
 list(FILTER paths EXCLUDE REGEX "/demo\\.json$")
@@ -9,9 +9,10 @@ foreach(path ${paths})
   file(READ ${path} json)
   string(APPEND entries "    {\"${name}\", R\"world(${json})world\"},\n")
 endforeach()
+file(READ ${OPENAPI} openapi)
 file(WRITE ${OUTPUT}
-"// Made from sim/worlds by embed_worlds.cmake.
-#include \"server/embedded_worlds.hpp\"
+"// Made by server/embed_documents.cmake.
+#include \"server/embedded_documents.hpp\"
 
 #include <array>
 
@@ -22,6 +23,8 @@ std::span<const EmbeddedWorld> embedded_worlds() {
 ${entries}  });
   return kWorlds;
 }
+
+std::string_view embedded_openapi() { return R\"api(${openapi})api\"; }
 
 }  // namespace server
 ")
