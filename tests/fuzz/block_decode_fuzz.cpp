@@ -6,6 +6,7 @@
 
 #include "db/block_codec.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   db::BlockDecoder decoder;
   try {

@@ -9,6 +9,7 @@
 
 #include "db/block_codec.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::span<const std::uint8_t> left(data, size);
   const auto next = [&]() -> std::uint8_t {
