@@ -1,6 +1,7 @@
 // tests/algo/golden.hpp: reads the golden vectors and compares with them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>

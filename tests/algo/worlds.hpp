@@ -1,6 +1,7 @@
 // tests/algo/worlds.hpp: an exact scanner over circles and polygons, for tests without a simulator.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
