@@ -85,7 +85,10 @@ TAUTLINE_WIDE void trace_segment(const RayArrays& rays,
                                  BeamRange beams,
                                  double tag,
                                  const DepthBuffer& depth) {
-  const auto [x, y, ux, uy] = rays;
+  const double* x = rays.x;
+  const double* y = rays.y;
+  const double* ux = rays.ux;
+  const double* uy = rays.uy;
   take_nearer(
       depth, tag, beams, [=](std::size_t i) __attribute__((always_inline)) {
         const double pxi = px - x[i];
@@ -109,7 +112,10 @@ TAUTLINE_WIDE void trace_circle(const RayArrays& rays,
                                 BeamRange beams,
                                 double tag,
                                 const DepthBuffer& depth) {
-  const auto [ox, oy, ux, uy] = rays;
+  const double* ox = rays.x;
+  const double* oy = rays.y;
+  const double* ux = rays.ux;
+  const double* uy = rays.uy;
   const double square = radius * radius;
   take_nearer(
       depth, tag, beams, [=](std::size_t i) __attribute__((always_inline)) {

@@ -42,51 +42,51 @@ BulletVehicle::~BulletVehicle() {
 }
 
 void BulletVehicle::build_world() {
-  configuration_ = std::make_unique<btDefaultCollisionConfiguration>();
-  dispatcher_ = std::make_unique<btCollisionDispatcher>(configuration_.get());
-  broadphase_ = std::make_unique<btDbvtBroadphase>();
-  solver_ = std::make_unique<btSequentialImpulseConstraintSolver>();
-  world_ = std::make_unique<btDiscreteDynamicsWorld>(
+  configuration_ = make_bullet<btDefaultCollisionConfiguration>();
+  dispatcher_ = make_bullet<btCollisionDispatcher>(configuration_.get());
+  broadphase_ = make_bullet<btDbvtBroadphase>();
+  solver_ = make_bullet<btSequentialImpulseConstraintSolver>();
+  world_ = make_bullet<btDiscreteDynamicsWorld>(
       dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
   world_->setGravity(btVector3(0, 0, -kGravity));
   world_->setForceUpdateAllAabbs(false);
   world_->getSolverInfo().m_numIterations = kIterations;
   world_->getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
 
-  floor_shape_ = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+  floor_shape_ = make_bullet<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
   btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, floor_shape_.get());
   info.m_friction = 0;
-  floor_ = std::make_unique<btRigidBody>(info);
+  floor_ = make_bullet<btRigidBody>(info);
   world_->addRigidBody(floor_.get());
 }
 
 void BulletVehicle::build_chassis() {
   const VehicleParameters& p = vehicle_;
   parts_.clear();
-  chassis_shape_ = std::make_unique<btCompoundShape>();
-  const auto add = [this](std::unique_ptr<btCollisionShape> part, double x, double y, double z) {
+  chassis_shape_ = make_bullet<btCompoundShape>();
+  const auto add = [this](BulletPtr<btCollisionShape> part, double x, double y, double z) {
     btTransform at = btTransform::getIdentity();
     at.setOrigin(btVector3(x, y, z - vehicle_.mass_height));  // the body's origin is its mass
     chassis_shape_->addChildShape(at, part.get());
     parts_.push_back(std::move(part));
   };
   const double hull_half = (p.hull_high - p.hull_low) / 2;
-  std::unique_ptr<btCollisionShape> hull;
+  BulletPtr<btCollisionShape> hull;
   if (p.round) {
-    hull = std::make_unique<btCylinderShapeZ>(btVector3(p.radius, p.radius, hull_half));
+    hull = make_bullet<btCylinderShapeZ>(btVector3(p.radius, p.radius, hull_half));
   } else {
-    hull = std::make_unique<btBoxShape>(btVector3(p.hull_length / 2, p.hull_width / 2, hull_half));
+    hull = make_bullet<btBoxShape>(btVector3(p.hull_length / 2, p.hull_width / 2, hull_half));
   }
   hull->setMargin(kMargin);
   add(std::move(hull), 0, 0, p.hull_low + hull_half);
   for (std::size_t k = 0; k < p.supports; ++k) {
     for (const double y : {p.half_track, -p.half_track}) {
-      add(std::make_unique<btSphereShape>(p.wheel_radius), p.support_x[k], y, p.wheel_radius);
+      add(make_bullet<btSphereShape>(p.wheel_radius), p.support_x[k], y, p.wheel_radius);
     }
   }
   for (std::size_t k = 0; k < p.caster_count; ++k) {
     const Caster& c = p.casters[k];
-    add(std::make_unique<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
+    add(make_bullet<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
   }
 
   // A solid box of the hull's size; the compound's own inertia means nothing.
@@ -97,7 +97,7 @@ void BulletVehicle::build_chassis() {
   btRigidBody::btRigidBodyConstructionInfo info(p.mass, nullptr, chassis_shape_.get(), inertia);
   info.m_friction = 0;
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
-  chassis_ = std::make_unique<btRigidBody>(info);
+  chassis_ = make_bullet<btRigidBody>(info);
   chassis_->setActivationState(DISABLE_DEACTIVATION);  // parking is ours
   world_->addRigidBody(chassis_.get());
 
@@ -105,7 +105,7 @@ void BulletVehicle::build_chassis() {
   for (std::size_t k = 0; k < p.supports; ++k) {
     axle_x += p.support_x[k] / static_cast<double>(p.supports);
   }
-  drive_ = std::make_unique<DriveConstraint>(
+  drive_ = make_bullet<DriveConstraint>(
       *chassis_, *floor_, DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
   world_->addConstraint(drive_.get());
 }
@@ -284,7 +284,7 @@ void BulletVehicle::withdraw(Body& body) {
 void BulletVehicle::added(const algo::Obstacle& obstacle) {
   Body body;
   body.shape = obstacle_shape(obstacle, kMargin);
-  body.object = std::make_unique<btCollisionObject>();
+  body.object = make_bullet<btCollisionObject>();
   body.object->setCollisionShape(body.shape.get());
   body.object->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
   body.object->setFriction(0);

@@ -1,11 +1,11 @@
 // sim/bullet_vehicle.hpp: a vehicle with mass, friction and contacts, in a Bullet world of its own.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
 
+#include "sim/bullet_ptr.hpp"
 #include "sim/drive_constraint.hpp"
 #include "sim/vehicle.hpp"
 
@@ -25,6 +25,7 @@ class BulletVehicle final : public VehicleModel {
   void reset(const algo::Pose2& start) override;
   void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
   void halt() noexcept override { target_ = {}; }
+  const VehicleState& state() const override { return state_; }
 
   void added(const algo::Obstacle& obstacle) override;
   void moved(std::size_t index, const algo::Obstacle& obstacle) override;
@@ -33,8 +34,8 @@ class BulletVehicle final : public VehicleModel {
  private:
   /// An obstacle as Bullet sees it, whether or not it is in the dynamics world now.
   struct Body {
-    std::unique_ptr<btCollisionShape> shape{};
-    std::unique_ptr<btCollisionObject> object{};
+    BulletPtr<btCollisionShape> shape{};
+    BulletPtr<btCollisionObject> object{};
     bool present = false;
   };
 
@@ -51,20 +52,20 @@ class BulletVehicle final : public VehicleModel {
 
   VehicleParameters vehicle_{};
   Substeps substeps_;
+  VehicleState state_{};
 
   // Bullet, in the order of construction; torn down in reverse.
-  std::unique_ptr<btDefaultCollisionConfiguration> configuration_{};
-  std::unique_ptr<btCollisionDispatcher> dispatcher_{};
-  std::unique_ptr<btDbvtBroadphase> broadphase_{};
-  std::unique_ptr<btSequentialImpulseConstraintSolver> solver_{};
-  std::unique_ptr<btDiscreteDynamicsWorld> world_{};
-  std::unique_ptr<btStaticPlaneShape> floor_shape_{};
-  std::unique_ptr<btRigidBody> floor_{};
-  std::vector<std::unique_ptr<btCollisionShape>>
-      parts_{};  // of the chassis: hull, supports, casters
-  std::unique_ptr<btCompoundShape> chassis_shape_{};
-  std::unique_ptr<btRigidBody> chassis_{};
-  std::unique_ptr<DriveConstraint> drive_{};
+  BulletPtr<btDefaultCollisionConfiguration> configuration_{};
+  BulletPtr<btCollisionDispatcher> dispatcher_{};
+  BulletPtr<btDbvtBroadphase> broadphase_{};
+  BulletPtr<btSequentialImpulseConstraintSolver> solver_{};
+  BulletPtr<btDiscreteDynamicsWorld> world_{};
+  BulletPtr<btStaticPlaneShape> floor_shape_{};
+  BulletPtr<btRigidBody> floor_{};
+  std::vector<BulletPtr<btCollisionShape>> parts_{};  // of the chassis: hull, supports, casters
+  BulletPtr<btCompoundShape> chassis_shape_{};
+  BulletPtr<btRigidBody> chassis_{};
+  BulletPtr<DriveConstraint> drive_{};
   std::vector<Body> bodies_{};  // in the order of the ObstacleSet
 
   algo::Vec2 gathered_at_{0, 0};  // where the near obstacles were last chosen

@@ -15,6 +15,7 @@ class KinematicVehicle final : public VehicleModel {
   void reset(const algo::Pose2& start) override;
   void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
   void halt() noexcept override { target_ = {}; }
+  const VehicleState& state() const override { return state_; }
 
  private:
   VehicleParameters vehicle_{};
@@ -22,6 +23,7 @@ class KinematicVehicle final : public VehicleModel {
   Substeps substeps_;
   bool with_ramps_ = false;
   algo::Twist2 target_{};
+  VehicleState state_{};
 };
 
 }  // namespace sim

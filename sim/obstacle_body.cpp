@@ -3,17 +3,17 @@
 
 namespace sim {
 
-std::unique_ptr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin) {
+BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin) {
   const double half = obstacle.height / 2;
-  std::unique_ptr<btCollisionShape> shape;
+  BulletPtr<btCollisionShape> shape;
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
-    shape = std::make_unique<btCylinderShapeZ>(btVector3(cylinder->radius, cylinder->radius, half));
+    shape = make_bullet<btCylinderShapeZ>(btVector3(cylinder->radius, cylinder->radius, half));
   } else if (const auto* box = std::get_if<algo::Box>(&obstacle.shape)) {
-    shape = std::make_unique<btBoxShape>(btVector3(box->length / 2, box->width / 2, half));
+    shape = make_bullet<btBoxShape>(btVector3(box->length / 2, box->width / 2, half));
   } else if (const auto* wall = std::get_if<algo::Wall>(&obstacle.shape)) {
-    shape = std::make_unique<btBoxShape>(btVector3(wall->length / 2, wall->thickness / 2, half));
+    shape = make_bullet<btBoxShape>(btVector3(wall->length / 2, wall->thickness / 2, half));
   } else {
-    auto hull = std::make_unique<btConvexHullShape>();
+    auto hull = make_bullet<btConvexHullShape>();
     for (const algo::Vec2& p : std::get<algo::Polygon>(obstacle.shape).points) {
       hull->addPoint(btVector3(p.x(), p.y(), -half), false);
       hull->addPoint(btVector3(p.x(), p.y(), half), false);

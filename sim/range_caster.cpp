@@ -184,10 +184,12 @@ void RangeCaster::gather(const algo::Pose2& sensor_W, double range_max, const Ra
     const double dy = centre_y_[k] - sensor_W.y;
     const double bound = bound_[k] + margin;
     const double reach = bound + range_max;
-    const bool seen = (dx * dx + dy * dy < reach * reach) & (cross(fx, fy, dx, dy) > -bound) &
-                      (cross(dx, dy, lx, ly) > -bound);
+    // Counted instead of branched on: which obstacles pass is not predictable.
+    const int in_reach = dx * dx + dy * dy < reach * reach ? 1 : 0;
+    const int left_of_first = cross(fx, fy, dx, dy) > -bound ? 1 : 0;
+    const int right_of_last = cross(dx, dy, lx, ly) > -bound ? 1 : 0;
     near_[count] = static_cast<std::uint32_t>(k);
-    count += seen ? 1 : 0;
+    count += static_cast<std::size_t>(in_reach & left_of_first & right_of_last);
   }
   near_.resize(count);
 }

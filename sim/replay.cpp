@@ -90,11 +90,13 @@ void Replay::read(std::istream& log) {
 }
 
 void Replay::keep(const CarmenScan& scan, std::vector<std::uint32_t>& readings_mm) {
-  std::optional<algo::Pose2>& mount = scan.laser == CarmenLaser::Rear ? rear_R_ : front_R_;
-  if (!mount) mount = mount_of(scan);
+  const auto earlier = std::find_if(
+      scans_.begin(), scans_.end(), [&scan](const Scan& kept) { return kept.laser == scan.laser; });
+  const algo::Pose2 mount_R = earlier == scans_.end() ? mount_of(scan) : earlier->mount_R;
   scans_.push_back({.laser = scan.laser,
                     .stamp = scan.stamp,
                     .pose_W = scan.robot_W,
+                    .mount_R = mount_R,
                     .angle_min = scan.angle_min,
                     .angle_increment = scan.angle_increment,
                     .first = readings_mm.size(),
@@ -183,7 +185,7 @@ void Replay::deliver(algo::Observation& observation) const {
     observation.odometry.twist = {moved.dot(ahead) / dt, turned / dt};
   }
   algo::LaserScan& scan = observation.scans.append();
-  scan.mount_R = *(source.laser == CarmenLaser::Rear ? rear_R_ : front_R_);
+  scan.mount_R = source.mount_R;
   scan.stamp = source.stamp;
   scan.angle_min = source.angle_min;
   scan.angle_increment = source.angle_increment;

@@ -54,6 +54,7 @@ class Replay final : public algo::Robot {
     CarmenLaser laser = CarmenLaser::Front;
     double stamp = 0;  // [s] run clock
     algo::Pose2 pose_W{};
+    algo::Pose2 mount_R{};  // the same for all scans of a laser: that of its first
     double angle_min = 0, angle_increment = 0;  // [rad]
     std::size_t first = 0, beams = 0;           // in wire_
   };
@@ -70,7 +71,6 @@ class Replay final : public algo::Robot {
   std::vector<Scan> scans_{};
   std::vector<std::uint16_t> wire_{};
   CarmenUnit unit_ = CarmenUnit::Centimetre;
-  std::optional<algo::Pose2> front_R_{}, rear_R_{};  // mounts, from the first scan of each
   SkippedLines skipped_{};
   std::size_t lines_ = 0;
   std::size_t current_ = 0;

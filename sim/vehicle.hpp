@@ -96,12 +96,10 @@ class VehicleModel {
   virtual void moved(std::size_t /*index*/, const algo::Obstacle& /*obstacle*/) {}
   virtual void removed(std::size_t /*index*/) {}
 
-  const VehicleState& state() const { return state_; }
+  virtual const VehicleState& state() const = 0;
 
  protected:
   VehicleModel() = default;
-
-  VehicleState state_{};
 };
 
 }  // namespace sim

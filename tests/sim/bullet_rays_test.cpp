@@ -22,7 +22,7 @@ class BulletRoom {
   explicit BulletRoom(const std::vector<algo::Obstacle>& obstacles) {
     for (const algo::Obstacle& obstacle : obstacles) {
       shapes_.push_back(obstacle_shape(obstacle, 0.001));
-      objects_.push_back(std::make_unique<btCollisionObject>());
+      objects_.push_back(make_bullet<btCollisionObject>());
       objects_.back()->setCollisionShape(shapes_.back().get());
       objects_.back()->setWorldTransform(obstacle_transform(obstacle));
       world_.addCollisionObject(objects_.back().get());
@@ -45,8 +45,8 @@ class BulletRoom {
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broadphase_{};
   btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
-  std::vector<std::unique_ptr<btCollisionShape>> shapes_{};
-  std::vector<std::unique_ptr<btCollisionObject>> objects_{};
+  std::vector<BulletPtr<btCollisionShape>> shapes_{};
+  std::vector<BulletPtr<btCollisionObject>> objects_{};
 };
 
 TEST(BulletRays, AgreeWithTheCasterToATenthOfAMillimetre) {
