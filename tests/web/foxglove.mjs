@@ -13,6 +13,7 @@ function validators() {
   const ajv = new (Draft.default ?? Draft)({ strict: false, allErrors: true });
   ajv.addFormat("base64", /^[A-Za-z0-9+/]*={0,2}$/);
   ajv.addFormat("uri", { validate: (text) => URL.canParse?.(text) ?? /^\w+:/.test(text) });
+  ajv.removeKeyword("contentEncoding"); // the draft only notes it
   ajv.addKeyword({ keyword: "contentEncoding", schemaType: "string", validate: (encoding, data) =>
     encoding !== "base64" || typeof data !== "string" || /^[A-Za-z0-9+/]*={0,2}$/.test(data) });
   return ajv;

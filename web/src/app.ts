@@ -54,6 +54,7 @@ export class App {
   readonly history: EditHistory;
   /** Asks the canvas to draw once more. */
   redraw: () => void = () => undefined;
+  private past_of_: number | null = null; // run whose past was asked for
   private next_toast_ = 1;
   private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
 
@@ -68,7 +69,7 @@ export class App {
     this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
       frame: (frame) => {
         fold_frame(this.scene, frame);
-        if (this.scene.columns.length === 1 && frame.tick > kLate) void this.fetch_past(frame.tick);
+        this.look_back();
         this.redraw();
       },
       state: (session) => this.take_session(session),
@@ -79,6 +80,7 @@ export class App {
       log: (message) => this.say(message),
       new_session: () => {
         begin_run(this.scene);
+        this.past_of_ = null;
         this.history.clear();
         void this.fetch_lists();
       },
@@ -104,6 +106,15 @@ export class App {
     } catch (error) {
       if (this.link.is_open) this.toast("bad", sentence_of(error));
     }
+  }
+
+  /** Once a run: a page that came late asks for what it missed. */
+  private look_back(): void {
+    const { run, columns } = this.scene;
+    if (run === null || run <= 0 || run === this.past_of_ || columns.length === 0) return;
+    this.past_of_ = run;
+    const first = columns.at("tick", 0);
+    if (first > kLate) void this.fetch_past(first);
   }
 
   /** The path and the figures of the run before this page came, from the record. */
