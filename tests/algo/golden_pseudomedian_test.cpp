@@ -1,6 +1,6 @@
 // tests/algo/golden_pseudomedian_test.cpp: golden vectors of section A: the scan filters.
 #include <cstdint>
-#include <regex>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -87,17 +87,27 @@ TEST(PseudomedianGolden, InvalidAwareScan) {
   }
 }
 
-/// "3000 everywhere, 1500 at indices 150..210"
+/// "3000 everywhere, 1500 at indices 150..210"; empty when the words are others.
 std::vector<double> base_scan(const std::string& text) {
-  std::smatch everywhere;
-  const std::string number = R"((\d+(?:\.\d+)?))";
-  if (!std::regex_search(text, everywhere, std::regex(number + " everywhere"))) return {};
-  std::vector<double> scan(360, std::stod(everywhere[1]));
-  const std::regex part(number + R"( at (?:indices|index) (\d+)(?:\.\.(\d+))?)");
-  for (std::sregex_iterator it(text.begin(), text.end(), part), end; it != end; ++it) {
-    const std::size_t first = std::stoul((*it)[2]);
-    const std::size_t last = (*it)[3].matched ? std::stoul((*it)[3]) : first;
-    for (std::size_t i = first; i <= last; ++i) scan.at(i) = std::stod((*it)[1]);
+  std::vector<double> scan;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    std::istringstream words(part);
+    double value = 0;
+    std::string how;
+    words >> value >> how;
+    if (words && how == "everywhere") {
+      scan.assign(360, value);
+      continue;
+    }
+    std::string indices;
+    std::size_t first = 0;
+    words >> indices >> first;
+    if (!words || how != "at") return {};
+    std::size_t last = first;
+    words.ignore(2, '\0');  // ".."
+    words >> last;
+    for (std::size_t i = first; i <= (words ? last : first); ++i) scan.at(i) = value;
   }
   return scan;
 }
