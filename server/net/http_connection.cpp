@@ -56,7 +56,10 @@ class HttpConnection final : public Connection,
 
   void start();
   void check(Clock::time_point now) override;
-  void go_away() override { finish(); }
+  void go_away() override {
+    // An answer on its way may still arrive in the time the server takes to stop.
+    if (phase_ != Phase::Writing && phase_ != Phase::Handler) finish();
+  }
   void abort() noexcept override;
 
  private:
@@ -118,7 +121,7 @@ void HttpConnection::check(Clock::time_point now) {
   if (ended_ || phase_ == Phase::Handler || now < deadline_) return;
   if (phase_ == Phase::Header || phase_ == Phase::Body) {
     if (buffer_.size() > 0 || phase_ == Phase::Body) {
-      // Cancelling makes the pending read end first; only then is there a reader's turn to answer.
+      // One try without waiting: the pending read cannot be answered in the ordinary way.
       Response response = problem(408, "the request did not arrive in time");
       const std::string text =
           response_head(response, response.body->size(), false) + *response.body;

@@ -71,7 +71,7 @@ const Router::Entry* Router::find(Request& request, std::string& allow) const {
     const Entry& entry = entries_[i];
     if (!matches(entry.segments, segments)) continue;
     if (routes_[i].method != method) {
-      allow += (allow.empty() ? "" : ", ") + routes_[i].method;
+      allow.append(allow.empty() ? "" : ", ").append(routes_[i].method);
       if (routes_[i].method == "GET") allow += ", HEAD";
       continue;
     }

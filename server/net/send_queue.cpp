@@ -31,8 +31,8 @@ void SendQueue::pop(Slot& from, Outgoing& out) {
   Outgoing& message = from.ring[from.first];
   slot_bytes_ -= message.size();
   --slot_messages_;
-  out = std::move(message);
-  message.payload = nullptr;
+  std::swap(out, message);
+  message.payload = nullptr;  // what `out` held before
   from.first = (from.first + 1) % from.ring.size();
   --from.count;
 }

@@ -85,7 +85,7 @@ Response StaticFiles::get(const Request& request) const {
     response.headers.push_back({"Allow", "GET, HEAD"});
     return response;
   }
-  const Response missing = problem(404, "there is nothing at " + request.path);
+  Response missing = problem(404, "there is nothing at " + request.path);
   if (root_.empty()) {
     return problem(404, "there is nothing at " + request.path + "; the page has not been built");
   }
