@@ -1,9 +1,10 @@
 // tests/web/e2e.mjs: the page in a real browser against the real program. Run with
 // TAUTLINE_BIN=build/release/server/tautline node --test tests/web/e2e.mjs
 import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { desktop, launch, open, phone } from "./page.mjs";
-import { json, scratch, serve, until } from "./program.mjs";
+import { json, repository, scratch, serve, until } from "./program.mjs";
 
 let browser;
 before(async () => {
@@ -14,7 +15,7 @@ after(() => browser?.close());
 /** A server and a page on it, both gone afterwards. */
 async function with_page(options, act) {
   const place = scratch();
-  const server = await serve({ database: place.database, scenario: options.scenario });
+  const server = await serve({ database: place.database, scenario: options.scenario, more: options.more });
   try {
     const p = await open(browser, server.base, options);
     await act(p, server, place);
@@ -235,6 +236,27 @@ test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeou
     await p.page.waitForSelector('[data-testid="run-view"]');
     await p.page.getByRole("link", { name: "Back to the list" }).click();
     await p.page.waitForSelector('[data-testid="run-table"]');
+  }));
+
+const logs = `${process.env.TAUTLINE_SHARED_DATA ?? `${repository}/../shared/data`}/laser`;
+test("a recorded log plays through the page and is kept as a run", {
+  timeout: 90_000, skip: existsSync(logs) ? false : `no ${logs}`,
+}, () =>
+  with_page({ scenario: "demo", more: ["--logs", logs] }, async (p, { base }) => {
+    const { items } = await json(base, "/scenarios?limit=200");
+    const log = items.find((s) => s.kind === "log");
+    await p.load(log.name);
+    await until("the badge", 10, () => p.get("source").textContent(), (w) => w === "Replay");
+    await p.get("speed").selectOption("8");
+    await until("scans go by", 20, () => p.get("figure-scans").textContent(), (n) => Number(n) > 30);
+    assert.equal(await p.get("state").textContent(), "Replaying");
+    assert.equal(await p.get("tool-goal").count(), 0, "a log takes no goals");
+    await p.shot("drive-replay");
+    const { run } = await json(base, "/session");
+    await p.get("nav-runs").click();
+    await p.get(`run-${run.id}`).click();
+    await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 30_000 });
+    await p.shot("runs-replay");
   }));
 
 test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
