@@ -279,14 +279,19 @@ test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, (
   }));
 
 test("every view is accessible, in both themes; screenshots are kept", { timeout: 150_000 }, () =>
-  with_page({ scenario: "case3" }, async (first, { base }) => {
+  with_page({ scenario: "case3", hash: "#/system" }, async (first, { base }) => {
+    const control = (body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
     await json(base, "/runs", { method: "POST", body: JSON.stringify({ scenario: "case1", seed: 1 }) })
       .then(({ runs }) => until("a finished run", 60, () => json(base, `/runs/${runs[0]}`), (r) => r.status === "finished"));
+    // Part of the way is driven, then the world rests: what is looked at stays still.
+    await control({ action: "speed", speed: 8 });
+    await until("some way", 30, () => json(base, "/session"), (s) => s.stamp > 14);
+    await control({ action: "pause" });
     const faults = [];
     for (const theme of ["dark", "light"]) {
       for (const [name, size] of [["desktop", desktop], ["phone", phone], ["tablet", { width: 1024, height: 768 }]]) {
         const p = await open(browser, base, { theme, size });
-        await p.page.waitForTimeout(1200);
+        await p.page.waitForTimeout(800);
         for (const view of ["drive", "runs", "system"]) {
           await p.get(`nav-${view}`).click();
           if (view === "runs") {
