@@ -291,7 +291,9 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
     for (const theme of ["dark", "light"]) {
       for (const [name, size] of [["desktop", desktop], ["phone", phone], ["tablet", { width: 1024, height: 768 }]]) {
         const p = await open(browser, base, { theme, size });
-        await p.page.waitForTimeout(800);
+        // A page that comes while the world rests shows where it rests, not where it began.
+        await until("the newest instant", 10, () => p.get("time").textContent(), (t) => t > "00:13");
+        await p.page.waitForTimeout(500);
         for (const view of ["drive", "runs", "system"]) {
           await p.get(`nav-${view}`).click();
           if (view === "runs") {
