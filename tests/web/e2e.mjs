@@ -1,9 +1,10 @@
 // tests/web/e2e.mjs: the page in a real browser against the real program. Run with
 // TAUTLINE_BIN=build/release/server/tautline node --test tests/web/e2e.mjs
 import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { desktop, launch, open, phone } from "./page.mjs";
-import { json, scratch, serve, until } from "./program.mjs";
+import { json, repository, scratch, serve, until } from "./program.mjs";
 
 let browser;
 before(async () => {
@@ -14,7 +15,7 @@ after(() => browser?.close());
 /** A server and a page on it, both gone afterwards. */
 async function with_page(options, act) {
   const place = scratch();
-  const server = await serve({ database: place.database, scenario: options.scenario });
+  const server = await serve({ database: place.database, scenario: options.scenario, more: options.more });
   try {
     const p = await open(browser, server.base, options);
     await act(p, server, place);
@@ -237,6 +238,27 @@ test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeou
     await p.page.waitForSelector('[data-testid="run-table"]');
   }));
 
+const logs = `${process.env.TAUTLINE_SHARED_DATA ?? `${repository}/../shared/data`}/laser`;
+test("a recorded log plays through the page and is kept as a run", {
+  timeout: 90_000, skip: existsSync(logs) ? false : `no ${logs}`,
+}, () =>
+  with_page({ scenario: "demo", more: ["--logs", logs] }, async (p, { base }) => {
+    const { items } = await json(base, "/scenarios?limit=200");
+    const log = items.find((s) => s.kind === "log");
+    await p.load(log.name);
+    await until("the badge", 10, () => p.get("source").textContent(), (w) => w === "Replay");
+    await p.get("speed").selectOption("8");
+    await until("scans go by", 20, () => p.get("figure-scans").textContent(), (n) => Number(n) > 30);
+    assert.equal(await p.get("state").textContent(), "Replaying");
+    assert.equal(await p.get("tool-goal").count(), 0, "a log takes no goals");
+    await p.shot("drive-replay");
+    const { run } = await json(base, "/session");
+    await p.get("nav-runs").click();
+    await p.get(`run-${run.id}`).click();
+    await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 30_000 });
+    await p.shot("runs-replay");
+  }));
+
 test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1" }, async (p, { base }) => {
     await p.get("three").click();
@@ -257,14 +279,21 @@ test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, (
   }));
 
 test("every view is accessible, in both themes; screenshots are kept", { timeout: 150_000 }, () =>
-  with_page({ scenario: "case3" }, async (first, { base }) => {
+  with_page({ scenario: "case3", hash: "#/system" }, async (first, { base }) => {
+    const control = (body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
     await json(base, "/runs", { method: "POST", body: JSON.stringify({ scenario: "case1", seed: 1 }) })
       .then(({ runs }) => until("a finished run", 60, () => json(base, `/runs/${runs[0]}`), (r) => r.status === "finished"));
+    // Part of the way is driven, then the world rests: what is looked at stays still.
+    await control({ action: "speed", speed: 8 });
+    await until("some way", 30, () => json(base, "/session"), (s) => s.stamp > 14);
+    await control({ action: "pause" });
     const faults = [];
     for (const theme of ["dark", "light"]) {
       for (const [name, size] of [["desktop", desktop], ["phone", phone], ["tablet", { width: 1024, height: 768 }]]) {
         const p = await open(browser, base, { theme, size });
-        await p.page.waitForTimeout(1200);
+        // A page that comes while the world rests shows where it rests, not where it began.
+        await until("the newest instant", 10, () => p.get("time").textContent(), (t) => t > "00:13");
+        await p.page.waitForTimeout(500);
         for (const view of ["drive", "runs", "system"]) {
           await p.get(`nav-${view}`).click();
           if (view === "runs") {

@@ -1,7 +1,7 @@
 // tests/web/state.test.ts: frames folded into the scene, and a stored run played and scrubbed.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { RunItem } from "../../web/src/contract";
+import { RunDocument, RunItem } from "../../web/src/contract";
 import { decode_frame } from "../../web/src/link/frame";
 import { Player } from "../../web/src/link/player";
 import { StoredRun, kPageFrames, split_frames } from "../../web/src/link/stored";
@@ -76,6 +76,15 @@ test("events: changes of mission and hold, and a drag is one mark", () => {
   assert.deepEqual(scene.events.list.map((e) => e.label), ["Obstacle moved", "Bumper pressed", "Arrived"]);
 });
 
+test("that a run begins without a scan is no event; that it loses its scan later is", () => {
+  const scene = new_scene();
+  for (const tick of [0, 1]) fold_frame(scene, frame({ tick, hold: Hold.StaleScan }));
+  fold_frame(scene, frame({ tick: 2 }));
+  assert.equal(scene.events.list.length, 0);
+  fold_frame(scene, frame({ tick: 100, hold: Hold.StaleScan }));
+  assert.deepEqual(scene.events.list.map((e) => e.label), ["Scan too old"]);
+});
+
 test("a long run is thinned, and keeps its beginning and its end", () => {
   const columns = new Columns(64);
   for (let tick = 0; tick < 1000; ++tick) columns.push(frame({ tick, stamp: tick }));
@@ -121,7 +130,7 @@ const item: RunItem = {
   id: 3, status: "finished", outcome: "reached", scenario: "case1", controller: "modified", filter: "none",
   vehicle: "bullet", seed: 1, parameters: { filter_half_width: 1 }, version: "0", started: "", ticks: 1000, time: 26,
   lost_ticks: 0, bytes: 0, metrics: null,
-  document: { name: "case1", start: { x: 0, y: 0, heading: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 1, radius: 0.3 }] },
+  document: { robot: { radius: 0.3, half_track: 0.2 } as RunDocument["robot"], scenario: { name: "case1", start: { x: 0, y: 0, heading: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 1, radius: 0.3 }] } },
 };
 
 /** A server that holds `count` frames; obstacle 2 is added at tick 100, moved at 200, gone at 300. */
@@ -132,7 +141,7 @@ function stored(count: number) {
     requests: tick === 100 ? [add_cylinder(2, 5, 5, 0.2)] : tick === 200 ? [move(2, 6, 5)] : tick === 300 ? [remove(2)]
       : tick === 150 ? [set_parameter("filter_half_width", 3)] : [],
   });
-  const run = new StoredRun(item, 0.35, 0.25, async (from, limit) => {
+  const run = new StoredRun(item, async (from, limit) => {
     asked.push(from);
     const end = Math.min(count, from + limit);
     const frames = [];
@@ -163,6 +172,7 @@ test("obstacles and parameters are as they were at the shown instant, forward an
     run.seek(row);
     return run.scene.obstacles.map((o) => [o.id, o.pose.x]);
   };
+  assert.equal(run.scene.radius, 0.3, "the robot is the one of that run");
   assert.deepEqual(at(399), [[1, 1]]);
   assert.deepEqual(at(250), [[1, 1], [2, 6]]);
   assert.deepEqual(at(100), [[1, 1], [2, 5]]);
@@ -174,7 +184,7 @@ test("obstacles and parameters are as they were at the shown instant, forward an
 
 test("a run that cannot be fetched says why and keeps what came", async () => {
   let pages = 0;
-  const run = new StoredRun(item, 0.35, 0.25, async () => {
+  const run = new StoredRun(item, async () => {
     if (++pages > 1) throw new Error("The server cannot be reached.");
     return { bytes: framed([frame_bytes({ tick: 0 })]), next: 1 };
   });

@@ -15,6 +15,8 @@ export interface FrameSpec {
   strip?: [number, number, number, number, number, number][];
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
+  pass?: [number, number];
+  elastic?: [number, number];
   what?: string;
 }
 
@@ -108,6 +110,8 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   wire.Frame.addHold(b, spec.hold ?? wire.Hold.None);
   wire.Frame.addMission(b, spec.mission ?? wire.Mission.Idle);
   if (strip) wire.Frame.addStrip(b, strip);
+  if (spec.pass) wire.Frame.addPass(b, wire.Vec2f.createVec2f(b, ...spec.pass));
+  if (spec.elastic) wire.Frame.addElastic(b, wire.Vec2f.createVec2f(b, ...spec.elastic));
   if (what) wire.Frame.addWhat(b, what);
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();

@@ -65,7 +65,7 @@ function load(name, change = {}) {
   s.run = { id: ++run_id, status: "recording", outcome: "running", scenario: name, controller: s.controller,
     filter: s.filter, vehicle: s.vehicle, seed: s.seed, parameters: s.parameters, version: "0.1.0", reason: null,
     started: new Date().toISOString(), ticks: 0, time: 0, lost_ticks: 0, bytes: 0, metrics: null,
-    document: structuredClone(scenario), frames: [] };
+    document: { scenario: structuredClone(scenario) }, frames: [] };
   runs.unshift(s.run);
 }
 function finish(outcome) {

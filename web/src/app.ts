@@ -8,8 +8,10 @@ import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
 import { move_edit, move_request } from "./edit/edits";
+import { decode_frame } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
+import { split_frames } from "./link/stored";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { TickRow } from "./state/columns";
 import { Store } from "./state/store";
@@ -44,6 +46,8 @@ export interface UiState {
 const kPathRows = 40_000;
 const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
 const kLate = 40;   // [ticks] a page that comes this late asks for what it missed
+const kRecentTicks = 60;
+const kFrameWait = 600; // [ms] a run that goes on has sent a frame by then
 const kMoveMs = 90; // between two requests of one drag
 
 export class App {
@@ -115,6 +119,24 @@ export class App {
     this.past_of_ = run;
     const first = columns.at("tick", 0);
     if (first > kLate) void this.fetch_past(first);
+  }
+
+  /** A paused run sends no frames: a page that has none shows the last one of the record. */
+  private async fetch_newest(): Promise<void> {
+    const run = this.scene.run;
+    if (run === null || run <= 0 || this.scene.frame) return;
+    try {
+      const { tick } = await rest.get<{ tick?: number }>("/session");
+      if (tick === undefined) return;
+      const from = Math.max(0, tick - kRecentTicks);
+      const page = await rest.get_bytes(`/runs/${run}/frames?from=${from}&limit=${kRecentTicks + 1}`);
+      if (this.scene.frame || run !== this.scene.run) return; // a live one came meanwhile
+      for (const bytes of split_frames(page.bytes)) fold_frame(this.scene, decode_frame(bytes));
+      this.look_back();
+      this.redraw();
+    } catch {
+      // Nothing is kept of this run: it is shown from the next frame on.
+    }
   }
 
   /** The path and the figures of the run before this page came, from the record. */
@@ -278,7 +300,10 @@ export class App {
     const before = this.ui.value.session;
     fold_session(this.scene, session);
     if (before?.scenario.name !== session.scenario.name) this.view.fitted = true;
-    if (before && before.run?.id !== session.run?.id) this.history.clear();
+    if (before?.run?.id !== session.run?.id) {
+      if (before) this.history.clear();
+      setTimeout(() => void this.fetch_newest(), kFrameWait);
+    }
     if (session.problem && session.problem !== before?.problem) this.toast("bad", session.problem);
     const selection = this.ui.value.selection;
     const gone = selection?.kind === "obstacle" &&

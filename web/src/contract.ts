@@ -113,7 +113,10 @@ export interface RunItem {
   lost_ticks: number;
   bytes: number;
   metrics: Metrics | null;
-  document?: ScenarioDocument;
+  document?: RunDocument;
 }
+
+/** What a run was made of. */
+export interface RunDocument { scenario: ScenarioDocument; robot?: RobotInfo; [key: string]: unknown }
 
 export interface Page<T> { items: T[]; next: string | number | null; total?: number }

@@ -80,8 +80,14 @@ const kStatuses: Record<string, { word: string; tone: Tone }> = {
 
 /** What became of a run: its outcome when finished, else its status. */
 export function run_word(status: string, outcome: string): { word: string; tone: Tone } {
-  if (status !== "finished" && kStatuses[status]) return kStatuses[status];
+  const under_way = status === "recording" && outcome !== "running" && outcome !== "";
+  if (status !== "finished" && !under_way && kStatuses[status]) return kStatuses[status];
   return kOutcomes[outcome] ?? { word: outcome || "Unknown", tone: "muted" };
+}
+
+/** Who drove: the controller, or nobody when a log was replayed. */
+export function driver_word(run: { controller: string; vehicle: string }): string {
+  return run.vehicle === "log" ? "Replay" : titled(run.controller);
 }
 
 export function speed_word(speed: number): string {

@@ -62,14 +62,13 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   if (goal) {
     draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal", !!overlay.draft.goal);
   }
-  if (f) {
-    draw_strip(g, view, palette, f);
-    draw_nearest(g, view, palette, f);
-  }
+  if (f) draw_nearest(g, view, palette, f);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track);
   if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius);
   }
+  // A strip of one step ends inside the hull, so it lies on top of it.
+  if (f) draw_strip(g, view, palette, f);
   if (f) draw_forces(g, view, palette, f, overlay.force_scale);
   draw_draft(g, view, palette, overlay.draft);
   draw_scale(g, view, palette, overlay.insets);

@@ -28,21 +28,33 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   g.globalAlpha = 1;
 }
 
-/** The strip from the robot to the goal. It ends where its last node is; a thin dashed line goes
- * on to the goal, which the robot has in mind but has not planned to yet. */
+/**
+ * The strip: solid through its nodes. Where it ends short of the goal a dashed line goes on as a
+ * string would that leaves in the direction of the pass point: not computed, only drawn, so that
+ * one sees from afar how far the strip is bent off the line.
+ */
 export function draw_strip(g: Context, view: View, palette: Palette, f: Frame): void {
   const points = f.strip.map((n) => view.to_screen(n.position));
   if (points.length < 2) return;
   const last = points[points.length - 1];
+  const [start, pass] = points;
   if (f.goal) {
     const goal = view.to_screen(f.goal);
+    const from = points.length === 3 ? pass : last;
+    const ahead = Math.hypot(pass.x - start.x, pass.y - start.y) || 1;
+    const reach = 0.4 * Math.hypot(goal.x - from.x, goal.y - from.y);
     g.strokeStyle = palette.accent;
-    g.globalAlpha = 0.5;
-    g.lineWidth = 1.5;
-    g.setLineDash([2, 6]);
+    g.globalAlpha = 0.75;
+    g.lineWidth = 2.2;
+    g.setLineDash([7, 6]);
     g.beginPath();
-    g.moveTo(last.x, last.y);
-    g.lineTo(goal.x, goal.y);
+    g.moveTo(from.x, from.y);
+    if (points.length === 3) {
+      g.quadraticCurveTo(from.x + (reach * (pass.x - start.x)) / ahead,
+        from.y + (reach * (pass.y - start.y)) / ahead, goal.x, goal.y);
+    } else {
+      g.lineTo(goal.x, goal.y);
+    }
     g.stroke();
     g.setLineDash([]);
     g.globalAlpha = 1;
@@ -53,34 +65,56 @@ export function draw_strip(g: Context, view: View, palette: Palette, f: Frame): 
   g.lineCap = "round";
   g.beginPath();
   g.moveTo(points[0].x, points[0].y);
-  for (let i = 1; i < points.length - 1; ++i) {
+  if (points.length === 3) g.lineTo(pass.x, pass.y); // the end is where it was before the forces
+  for (let i = 1; i < points.length - 1 && points.length > 3; ++i) {
     // Smooth through the middles: a strip bends, it has no corners.
     const mx = (points[i].x + points[i + 1].x) / 2;
     const my = (points[i].y + points[i + 1].y) / 2;
     g.quadraticCurveTo(points[i].x, points[i].y, mx, my);
   }
-  g.lineTo(last.x, last.y);
+  if (points.length !== 3) g.lineTo(last.x, last.y);
   g.stroke();
   g.fillStyle = palette.accent;
+  g.strokeStyle = palette.bg;
+  g.lineWidth = 1.5;
   for (const p of points.slice(1, -1)) {
     g.beginPath();
-    g.arc(p.x, p.y, 4, 0, 2 * Math.PI);
+    g.arc(p.x, p.y, 4.5, 0, 2 * Math.PI);
     g.fill();
+    g.stroke();
   }
+}
+
+/** One arrow to be drawn: where it begins and the force it is. */
+export interface ForceArrow { at: Point; force: Point; colour: "external" | "internal" | "elastic" }
+
+/**
+ * The forces of a frame as arrows. The elastic force is what moved the pass point, so its arrow
+ * ends there. A strip of three nodes (start, pass, end) is pushed at its end: the forces of both
+ * sides begin there and the elastic force is their sum. In a longer one every node has its own.
+ */
+export function force_arrows(f: Frame): ForceArrow[] {
+  const arrows: ForceArrow[] = [];
+  const base = f.pass && { x: f.pass.x - f.elastic.x, y: f.pass.y - f.elastic.y };
+  const inner = f.strip.slice(1, -1);
+  if (inner.length === 1 && base) {
+    arrows.push({ at: base, force: f.external_left, colour: "external" },
+      { at: base, force: f.external_right, colour: "external" },
+      { at: base, force: inner[0].internal, colour: "internal" });
+  } else {
+    for (const n of inner) {
+      arrows.push({ at: n.position, force: n.external, colour: "external" },
+        { at: n.position, force: n.internal, colour: "internal" });
+    }
+  }
+  if (base) arrows.push({ at: base, force: f.elastic, colour: "elastic" });
+  return arrows;
 }
 
 /** Forces are displacements in metres, so they are drawn as lengths, `times` enlarged. */
 export function draw_forces(g: Context, view: View, palette: Palette, f: Frame,
   times: number): void {
-  const nodes = f.strip.slice(1, -1).length > 0 ? f.strip.slice(1, -1) : f.strip.slice(1);
-  const shown = nodes.length > 24 ? nodes.filter((_, i) => i % 2 === 0) : nodes;
-  for (const n of shown) {
-    arrow(g, view, n.position, n.external, times, palette.external);
-    arrow(g, view, n.position, n.internal, times, palette.internal);
-  }
-  if (!f.pass) return;
-  const magnitude = Math.hypot(f.elastic.x, f.elastic.y);
-  if (magnitude > 0) arrow(g, view, f.pass, f.elastic, times, palette.elastic);
+  for (const a of force_arrows(f)) arrow(g, view, a.at, a.force, times, palette[a.colour]);
 }
 
 /** An arrow of `v` metres from `at`; too short ones are left out, very long ones are cut at 2 m. */

@@ -51,20 +51,19 @@ export class StoredRun {
 
   constructor(
     readonly item: RunItem,
-    radius: number,
-    half_track: number,
     private readonly fetch_: FetchFrames,
   ) {
-    const doc = item.document;
+    const doc = item.document?.scenario;
+    const robot = item.document?.robot;
     this.scene = new_scene();
     this.scene.columns = this.columns;
     this.scene.events = this.events;
     this.scene.run = item.id;
-    this.scene.radius = radius;
-    this.scene.half_track = half_track;
+    this.scene.radius = robot?.radius ?? this.scene.radius;
+    this.scene.half_track = robot?.half_track ?? this.scene.half_track;
     this.scene.filter = item.filter;
     this.scene.start = doc?.start ?? null;
-    this.scene.world = !doc?.log;
+    this.scene.world = item.vehicle !== "log";
     this.scene.goal = doc?.goal
       ? { x: doc.goal.x, y: doc.goal.y, heading: doc.goal.heading ?? null } : null;
     this.scene.obstacles = (doc?.obstacles ?? []).map(numbered);

@@ -6,6 +6,7 @@ export type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
 export interface RunEvent { t: number; kind: EventKind; label: string }
 
 const kMost = 400;
+const kFirstScan = 0.5; // [s] every run begins by waiting for the laser
 const kMerge = 1.5; // [s] a drag is one mark, not fifty
 
 const kHoldWords: Record<string, string> = {
@@ -44,7 +45,8 @@ export class EventLog {
       if (f.mission === "arrived") this.add(f.stamp, "good", "Arrived");
       if (f.mission === "stuck") this.add(f.stamp, "bad", "Stuck");
     }
-    if (f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
+    const before_first_scan = f.hold === "stale_scan" && f.stamp < kFirstScan;
+    if (!before_first_scan && f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
       this.add(f.stamp, "hold", kHoldWords[f.hold] ?? f.hold);
     }
     if (f.truth?.collided && this.list.at(-1)?.label !== "Collision") {

@@ -3,6 +3,7 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Palette } from "../draw/palette";
 import { Selection } from "../draw/scene";
+import { force_arrows } from "../draw/strip";
 import { Point } from "../geometry";
 import { Obstacle, outline } from "../obstacle";
 import { SceneState, robot_pose, scene_bounds, sweep_points } from "../state/scene";
@@ -10,6 +11,7 @@ import { SceneState, robot_pose, scene_bounds, sweep_points } from "../state/sce
 export interface Options { selection: Selection; force_scale: number; follow: boolean }
 
 const kScanHeight = 0.3;  // [m] of the scan plane
+const kStripHeight = 0.36; // [m] above the hull, within which a strip of one step ends
 const kMostPath = 1500;
 
 export class World3 {
@@ -143,14 +145,17 @@ export class World3 {
     const f = scene.frame;
     if (!f) return;
     if (f.strip.length > 1) {
-      this.moving_.add(ribbon(f.strip.map((n) => n.position), 0.06, 0.06, p.accent));
+      const nodes = f.strip.map((n) => n.position);
+      const line = nodes.length === 3 ? nodes.slice(0, 2) : nodes; // the third is before the forces
+      this.moving_.add(ribbon(line, 0.06, kStripHeight, p.accent));
+      if (f.goal) this.moving_.add(ribbon([line[line.length - 1], f.goal], 0.012, kStripHeight, p.accent));
     }
     for (const n of f.strip.slice(1, -1)) {
-      this.moving_.add(dot(n.position, 0.05, 0.065, p.accent));
-      push_arrow(this.moving_, n.position, n.external, times, p.external);
-      push_arrow(this.moving_, n.position, n.internal, times, p.internal);
+      this.moving_.add(dot(n.position, 0.05, kStripHeight, p.accent));
     }
-    if (f.pass) push_arrow(this.moving_, f.pass, f.elastic, times, p.elastic);
+    for (const a of force_arrows(f)) {
+      push_arrow(this.moving_, a.at, a.force, times, p[a.colour], kStripHeight + 0.02);
+    }
     for (const nearest of [f.left, f.right]) {
       if (!nearest) continue;
       this.moving_.add(dot(nearest.point, 0.05, kScanHeight, p.external));
@@ -302,12 +307,13 @@ function ribbon(line: Point[], width: number, z: number, colour: string): THREE.
 }
 
 /** A lying arrow of `v` metres, `times` enlarged; too short ones are left out. */
-function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string): void {
+function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string,
+  z = 0.08): void {
   const length = Math.min(2, Math.hypot(v.x, v.y) * times);
   if (length < 0.03) return;
   const head = Math.min(0.12, length * 0.5);
   const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, 0).normalize(),
-    new THREE.Vector3(at.x, at.y, 0.08), length, colour, head, head * 0.7);
+    new THREE.Vector3(at.x, at.y, z), length, colour, head, head * 0.7);
   group.add(arrow);
 }
 

@@ -31,6 +31,7 @@ function explain_words(f: Frame | null, drives: boolean, paused: boolean, known:
     return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
       why: paused ? "Press play to begin." : "", tone: "muted" };
   }
+  if (!drives) return { what: "Replaying the log", why: f.why, tone: "accent" };
   if (f.what === "" && f.mission === "idle" && drives) {
     return { what: "Waiting for a goal", why: "Press where the robot should go; drag to say which way it should face.", tone: "muted" };
   }

@@ -17,13 +17,12 @@ import { SceneCanvas } from "../ui/canvas";
 import { Dialog, Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
-import { clock, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
+import { clock, driver_word, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
 import { Lanes } from "./lanes";
 import { typing } from "./keys";
 
 /** Fetches a run's row and then its frames; tells `changed` as they come. */
 function use_stored(id: number | null, changed: () => void): { run: StoredRun | null; problem: string | null } {
-  const app = use_app();
   const [run, set_run] = useState<StoredRun | null>(null);
   const [problem, set_problem] = useState<string | null>(null);
   useEffect(() => {
@@ -33,9 +32,7 @@ function use_stored(id: number | null, changed: () => void): { run: StoredRun | 
     const stop = new AbortController();
     const begin = async () => {
       const item = await rest.get<RunItem>(`/runs/${id}`, stop.signal);
-      const robot = app.ui.value.session?.robot;
-      const stored = new StoredRun(item, robot?.radius ?? 0.35, robot?.half_track ?? 0.25,
-        (from, limit, signal) => rest.get_bytes(`/runs/${id}/frames?from=${from}&limit=${limit}`, signal));
+      const stored = new StoredRun(item, (from, limit, signal) => rest.get_bytes(`/runs/${id}/frames?from=${from}&limit=${limit}`, signal));
       set_run(stored);
       await stored.load(changed, stop.signal);
     };
@@ -190,7 +187,7 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
   const state = frame_word(f);
   return (
     <div class={`card explain tone-${f.hold !== "none" ? "bad" : "accent"}`} data-testid="run-explain">
-      <b>{f.what || state.word}</b>
+      <b>{props.run.scene.world && f.what ? f.what : props.run.scene.world ? state.word : "Replaying the log"}</b>
       {f.why && <span>{f.why}</span>}
     </div>
   );
@@ -245,7 +242,7 @@ function Facts(props: {
       <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
       <b>Run {item.id}</b>
       <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
-      <span class="quiet">{titled(item.scenario)} · {app.controller_label(item.controller)} · {item.filter} · seed {item.seed}</span>
+      <span class="quiet">{titled(item.scenario)} · {driver_word(item)} · {item.filter} · seed {item.seed}</span>
       <span class="facts-acts">
         {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
         <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
@@ -263,7 +260,7 @@ function Facts(props: {
           {runs.map((r, i) => (
             <tr key={r.id}>
               {props.other &&
-                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {app.controller_label(r.controller)}</th>}
+                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {driver_word(r)}</th>}
               {kRows.map((row) => (
                 <td key={row.label} class="num">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"}</td>
               ))}

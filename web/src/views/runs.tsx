@@ -6,7 +6,7 @@ import { Page, RunItem } from "../contract";
 import * as rest from "../link/rest";
 import { use_store } from "../state/store";
 import { icons } from "../ui/icons";
-import { fixed, run_word, sentence_of, titled } from "../words";
+import { driver_word, fixed, run_word, sentence_of, titled } from "../words";
 import { RunDetail } from "./run_detail";
 import { StartRun } from "./start_run";
 
@@ -166,7 +166,7 @@ function RunTable(props: {
               <td class="num"><a class="run-link" href={`#/runs/${r.id}`} aria-current={on ? "true" : undefined}
                 onKeyDown={(e) => move(e, i)} onClick={(e) => e.stopPropagation()}>{r.id}</a></td>
               <td>{titled(r.scenario)}</td>
-              <td>{app.controller_label(r.controller)}</td>
+              <td title={app.controller_label(r.controller)}>{driver_word(r)}</td>
               <td><span class={`tag tone-${word.tone}`}><i />{word.word}</span></td>
               <td class="r num">{fixed(m?.time ?? r.time, 1)}</td>
               <td class="r num wide">{fixed(m?.path_length, 2)}</td>
