@@ -10,6 +10,7 @@ namespace server {
 namespace {
 
 using algo::Outcome;
+constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
 
 /// One run in progress. Lives on the control thread.
 class Run {
@@ -111,7 +112,7 @@ void Run::judge(const algo::Telemetry& t) {
     set_outcome(Outcome::Reached);
   } else if (t.mission == algo::Mission::Stuck) {
     set_outcome(Outcome::Stuck, "The robot made no way towards its goal.");
-  } else if (policy_.time_limit > 0 && t.observation.stamp >= policy_.time_limit) {
+  } else if (policy_.time_limit > 0 && t.observation.stamp >= policy_.time_limit - kRounding) {
     set_outcome(Outcome::OutOfTime, "The time limit was over before the goal was reached.");
   } else if (t.mission == algo::Mission::Driving) {
     set_outcome(Outcome::Running);
