@@ -183,11 +183,21 @@ void expect_accepted(const std::string& name, const std::string& controller, std
   }
 }
 
+// A sanitizer makes a drive thirty times slower and finds nothing in the third that the first
+// hides.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t kSeeds = 1;
+#else
+constexpr std::uint64_t kSeeds = 3;
+#endif
+
 class Layout : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Layout, EveryReadingIsAccepted) {
   for (const auto& [controller, accept] : layout(GetParam()).at("accept").items()) {
-    for (const std::uint64_t seed : {1U, 2U, 3U}) expect_accepted(GetParam(), controller, seed);
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      expect_accepted(GetParam(), controller, seed);
+    }
   }
 }
 
