@@ -117,6 +117,7 @@ TAUTLINE_WIDE void trace_circle(const RayArrays& rays,
   const double* ux = rays.ux;
   const double* uy = rays.uy;
   const double square = radius * radius;
+  const double inside = kInfinity;
   take_nearer(
       depth, tag, beams, [=](std::size_t i) __attribute__((always_inline)) {
         const double cx = x - ox[i];
@@ -124,7 +125,7 @@ TAUTLINE_WIDE void trace_circle(const RayArrays& rays,
         const double m = cx * ux[i] + cy * uy[i];
         const double k = cx * cx + cy * cy - square;
         const double inverse = (m + std::sqrt(m * m - k)) / k;
-        return k > 0 ? inverse : kInfinity;
+        return k > 0 ? inverse : inside;
       });
 }
 

@@ -12,15 +12,16 @@ namespace {
 std::atomic<std::size_t> allocations{0};  // a replaced operator new has nowhere else to count
 }
 
-void* operator new(std::size_t size) {
+// Not inlined, or the compiler sees malloc() and free() paired with new and delete and warns.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
   std::free(memory);
 }
-void operator delete(void* memory, std::size_t /*size*/) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
   std::free(memory);
 }
 
