@@ -65,7 +65,9 @@ void MetricsRecorder::follow_path(const Vec2& position_W) {
 }
 
 void MetricsRecorder::count_via(const Telemetry& t, double influence) {
-  if (t.output.strip.empty() || t.clearance + radius_ >= influence) return;
+  const double left = t.scene.left ? t.scene.left->distance : influence;
+  const double right = t.scene.right ? t.scene.right->distance : influence;
+  if (t.output.strip.empty() || std::min(left, right) >= influence) return;
   if (counted_pass_W_) {
     const Vec2 step = t.output.pass_W - *counted_pass_W_;
     if (step.cwiseAbs().maxCoeff() < kViaSpacing) return;

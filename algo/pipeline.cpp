@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "algo/gate.hpp"
+#include "algo/geometry.hpp"
 #include "algo/perceive.hpp"
 
 namespace algo {
@@ -35,6 +36,7 @@ void Pipeline::reset(const Pose2& start_W) {
   sequencer_.reset(spec_.period);
   scene_ = {};
   scan_stamp_.reset();
+  clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
   stopped_ = false;
@@ -101,10 +103,12 @@ void Pipeline::sense(Telemetry& t) {
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
 
-  double nearest = scan_stamp_ ? scene_.scan.range_max : spec_.radius;
-  if (scene_.left) nearest = std::min(nearest, scene_.left->distance);
-  if (scene_.right) nearest = std::min(nearest, scene_.right->distance);
-  t.clearance = nearest - spec_.radius;
+  if (scene_.fresh) {
+    // All beams: what stands abeam is close too, though it exerts no force.
+    const auto nearest = nearest_beam(scene_.scan, {0, scene_.scan.size()});
+    clearance_ = (nearest ? nearest->distance : scene_.scan.range_max) - spec_.radius;
+  }
+  t.clearance = clearance_;
 }
 
 bool Pipeline::manual() const { return joystick_ticks_ > 0; }

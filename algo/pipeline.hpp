@@ -52,6 +52,7 @@ class Pipeline {
   Sequencer sequencer_{};
   Scene scene_{};
   std::optional<double> scan_stamp_{};
+  double clearance_ = 0;  // [m] of the newest scan
   Joystick joystick_{};
   std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
   bool stopped_ = false;

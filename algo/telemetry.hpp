@@ -80,7 +80,7 @@ struct Telemetry {
   Hold hold = Hold::None;
   Mission mission = Mission::Idle;
   BehaviourId behaviour = BehaviourId::Rest;
-  double clearance = 0;  // [m] hull to nearest filtered return; range_max - radius when none
+  double clearance = 0;  // [m] hull to the nearest filtered return; range_max - radius when none
 };
 
 }  // namespace algo

@@ -19,6 +19,7 @@ struct MetricsTest : ::testing::Test {
     t.observation.stamp = 5.0 + 0.1 * tick++;  // a run need not start at zero
     t.ground_truth = GroundTruth{{x, y, 0}, distance, false};
     t.clearance = distance - spec.radius;
+    t.scene.left = Nearest{.beam = 200, .point_W = {x, y + distance}, .distance = distance};
     t.output.pass_W = {x + 0.2, y};
     t.output.strip.append();
     recorder.add(t, parameters);

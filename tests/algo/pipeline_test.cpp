@@ -1,0 +1,139 @@
+// tests/algo/pipeline_test.cpp: one tick after the other: what reaches the motors, and why.
+#include "algo/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/algo/allocations.hpp"
+
+namespace algo {
+namespace {
+
+RobotSpec disc() {
+  RobotSpec spec;
+  spec.name = "disc";
+  spec.radius = 0.35;
+  spec.period = 0.025;
+  spec.max_v = 0.5;
+  spec.max_omega = 1.0;
+  spec.max_acceleration = 0.5;
+  spec.drives = true;
+  return spec;
+}
+
+struct PipelineTest : ::testing::Test {
+  PipelineTest() { pipeline.reset({}); }
+  /// One tick with a scan of free beams, but for `obstacle` straight ahead [m] when it is given.
+  const Telemetry& tick(double obstacle = 0, bool with_scan = true) {
+    t.observation.clear_sensors();
+    t.observation.stamp = 0.025 * static_cast<double>(ticks++);
+    t.observation.odometry.stamp = t.observation.stamp;
+    if (with_scan) {
+      LaserScan& scan = t.observation.scans.append();
+      scan.stamp = t.observation.stamp;
+      scan.angle_min = -std::numbers::pi / 2;
+      scan.angle_increment = std::numbers::pi / 360;
+      scan.range_max = 8.191;
+      scan.resize(361);
+      for (std::size_t i = 0; i < 361; ++i) scan.set_free(i);
+      for (std::size_t i = 170; obstacle > 0 && i <= 190; ++i) scan.set_ok(i, obstacle);
+    }
+    pipeline.tick(t);
+    t.requests.clear();
+    return t;
+  }
+  void ask(const Request& request) { t.requests.push_back(request); }
+
+  Pipeline pipeline{{}, disc()};
+  Telemetry t{};
+  int ticks = 0;
+};
+
+TEST_F(PipelineTest, RestsWithoutAGoalAndDrivesWithOne) {
+  EXPECT_EQ(tick().command, Command{});
+  EXPECT_EQ(t.behaviour, BehaviourId::Rest);
+  ask(SetGoal{{3, 0}, std::nullopt});
+  EXPECT_GT(tick().command.base.v, 0);
+  EXPECT_EQ(t.behaviour, BehaviourId::Avoid);
+  EXPECT_EQ(t.mission, Mission::Driving);
+}
+
+TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(tick(0, false).hold, Hold::None) << i;  // 8 x 25 ms = 0.2 s
+  EXPECT_EQ(tick(0, false).hold, Hold::StaleScan);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_EQ(t.mission, Mission::Held);
+  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_GT(t.command.base.v, 0);
+}
+
+TEST_F(PipelineTest, StopIsLatchedAndSurvivesANewGoal) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  ask(Stop{true});
+  EXPECT_EQ(tick().command, Command{});
+  ask(SetGoal{{4, 0}, std::nullopt});
+  EXPECT_EQ(tick().hold, Hold::Stopped);
+  ask(Stop{false});
+  EXPECT_GT(tick().command.base.v, 0);
+}
+
+TEST_F(PipelineTest, ASilentDriverLeavesARobotThatStandsStill) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  ask(Joystick{0.5, 0});
+  EXPECT_EQ(tick().behaviour, BehaviourId::Manual);
+  EXPECT_DOUBLE_EQ(t.command.base.v, 0.25);
+  EXPECT_FALSE(t.goal);
+  int live = 1;
+  while (tick().behaviour == BehaviourId::Manual) ++live;
+  EXPECT_EQ(live, 20);  // 0.5 s of 25 ms
+  EXPECT_EQ(t.command, Command{});
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(tick().command, Command{});
+}
+
+TEST_F(PipelineTest, ACentredStickDoesNotCancelTheGoal) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  ask(Joystick{0, 0});
+  tick();
+  EXPECT_TRUE(t.goal);
+}
+
+TEST_F(PipelineTest, ClearanceCountsEveryBeam) {
+  EXPECT_NEAR(tick(2.0).clearance, 1.65, 1e-12);
+  EXPECT_NEAR(tick().clearance, 8.191 - 0.35, 1e-12);
+}
+
+TEST_F(PipelineTest, NotANumberNeverReachesTheMotors) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  t.observation.odometry.pose.x = std::numeric_limits<double>::quiet_NaN();
+  pipeline.tick(t);
+  EXPECT_EQ(t.hold, Hold::NotFinite);
+  EXPECT_EQ(t.command, Command{});
+}
+
+TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
+  EXPECT_FALSE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 0.5}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 50}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::StripStep, 0.6}));  // S >= K_r d_safe
+  EXPECT_TRUE(pipeline.refusal(Joystick{1.5, 0}));
+  EXPECT_TRUE(pipeline.refusal(SetGoal{{std::numeric_limits<double>::infinity(), 0}, {}}));
+  RobotSpec log = disc();
+  log.drives = false;
+  EXPECT_TRUE((Pipeline{{}, log}.refusal(SetGoal{{1, 0}, {}})));
+}
+
+TEST_F(PipelineTest, ASteadyTickAllocatesNothing) {
+  ask(SetGoal{{100, 0}, std::nullopt});
+  for (int i = 0; i < 50; ++i) tick(2.0);
+  const auto before = allocations::count();
+  for (int i = 0; i < 500; ++i) tick(i % 2 == 0 ? 2.0 : 1.2);
+  EXPECT_EQ(allocations::count(), before);
+}
+
+}  // namespace
+}  // namespace algo
