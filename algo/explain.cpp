@@ -45,8 +45,10 @@ Explanation explain_hold(const Telemetry& t) {
     }
     case Hold::NotFinite:
       return {"Holding still", "A sensor or the controller gave a value that is not a number."};
-    case Hold::LinkLost: return {"Holding still", "The link to the robot is lost."};
-    case Hold::None: break;
+    case Hold::LinkLost:
+      return {"Holding still", "The link to the robot is lost."};
+    case Hold::None:
+      break;
   }
   return {};
 }
@@ -63,10 +65,8 @@ Explanation explain_drive(const Telemetry& t, double to_goal) {
   if (force < kNoticeable || !nearest) {
     return {"Driving to the goal", format("%.2f m to go. ", to_goal) + surroundings(t)};
   }
-  std::string why = format("External force %.2f m from the nearest %s return at %.2f m",
-                           force,
-                           side,
-                           nearest->distance);
+  std::string why = format(
+      "External force %.2f m from the nearest %s return at %.2f m", force, side, nearest->distance);
   if (out.side == Side::None) {
     return {format("Keeping clear of the %s obstacle", side), why + "."};
   }
@@ -89,13 +89,15 @@ Explanation explain(const Telemetry& t) {
   const Vec2& goal = t.goal->position_W;
   switch (t.mission) {
     case Mission::Arrived:
-      return {"Arrived", format("%.2f m from the goal at (%.2f, %.2f).", to_goal, goal.x(), goal.y())};
+      return {"Arrived",
+              format("%.2f m from the goal at (%.2f, %.2f).", to_goal, goal.x(), goal.y())};
     case Mission::Stuck:
       return {"Stuck",
               format("The pull to the goal and the push of %.2f m from obstacles cancel; ",
                      t.output.elastic_W.norm()) +
                   format("%.2f m to go. Move an obstacle or the goal.", to_goal)};
-    default: return explain_drive(t, to_goal);
+    default:
+      return explain_drive(t, to_goal);
   }
 }
 

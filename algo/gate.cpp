@@ -12,15 +12,16 @@ bool finite(const Odometry& odometry) {
          std::isfinite(odometry.twist.omega);
 }
 
-bool finite(const Twist2& twist) { return std::isfinite(twist.v) && std::isfinite(twist.omega); }
+bool finite(const Twist2& twist) {
+  return std::isfinite(twist.v) && std::isfinite(twist.omega);
+}
 
 }  // namespace
 
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
   if (in.stopped) return Hold::Stopped;
   if (in.link_lost) return Hold::LinkLost;
-  if (!std::isfinite(observation.stamp) || !finite(observation.odometry) ||
-      !finite(command.base)) {
+  if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
     return Hold::NotFinite;
   }
   if (observation.bumper_pressed() && !in.reversing_by_hand) return Hold::Bumper;

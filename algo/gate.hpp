@@ -6,11 +6,11 @@
 namespace algo {
 
 struct GateInput {
-  bool stopped = false;             // Stop is latched
+  bool stopped = false;  // Stop is latched
   bool link_lost = false;
-  double scan_timeout = 0;          // [s]
+  double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
-  bool reversing_by_hand = false;   // the one motion allowed with a front bumper pressed
+  bool reversing_by_hand = false;      // the one motion allowed with a front bumper pressed
 };
 
 /// Why `command` must not be carried out, None when it may.

@@ -33,21 +33,19 @@ enum class BeamCode : std::uint8_t {
 /// Beam i points at angle_min + i * angle_increment in the mount frame, right to left.
 /// Beams are fired in `turns` interlaced mirror turns: beam i belongs to turn i % turns.
 struct LaserScan {
-  Pose2 mount_R{};           // of the scanner in R
-  double stamp = 0;          // [s] run clock, end of the sweep
-  double angle_min = 0;      // [rad]
-  double angle_increment = 0;  // [rad]
-  double range_max = 0;      // [m] a reading at or beyond it is Free
-  double turn_period = 0;    // [s] one mirror turn; 0 when all beams share one instant
-  std::uint32_t turns = 1;   // interlaced turns in a sweep
-  std::vector<double> ranges{};         // [m] B values; range_max where not Ok
-  std::vector<Beam> status{};           // B values
-  std::vector<BeamCode> codes{};        // B values, None where Ok
+  Pose2 mount_R{};                // of the scanner in R
+  double stamp = 0;               // [s] run clock, end of the sweep
+  double angle_min = 0;           // [rad]
+  double angle_increment = 0;     // [rad]
+  double range_max = 0;           // [m] a reading at or beyond it is Free
+  double turn_period = 0;         // [s] one mirror turn; 0 when all beams share one instant
+  std::uint32_t turns = 1;        // interlaced turns in a sweep
+  std::vector<double> ranges{};   // [m] B values; range_max where not Ok
+  std::vector<Beam> status{};     // B values
+  std::vector<BeamCode> codes{};  // B values, None where Ok
 
   std::size_t size() const { return ranges.size(); }
-  double angle(std::size_t i) const {
-    return angle_min + static_cast<double>(i) * angle_increment;
-  }
+  double angle(std::size_t i) const { return angle_min + static_cast<double>(i) * angle_increment; }
   /// [s] Duration of the whole sweep.
   double sweep_time() const { return turn_period * static_cast<double>(turns); }
   /// [s] Run-clock time at which beam `i` was fired: turn i % turns, (angle + 90 deg) / 360 of it.

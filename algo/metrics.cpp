@@ -14,14 +14,22 @@ constexpr double kViaSpacing = 0.500;  // [m] of the pass point, per axis
 
 std::string_view name(Outcome outcome) {
   switch (outcome) {
-    case Outcome::Running: return "running";
-    case Outcome::Reached: return "reached";
-    case Outcome::Stuck: return "stuck";
-    case Outcome::OutOfTime: return "out_of_time";
-    case Outcome::Collided: return "collided";
-    case Outcome::Stopped: return "stopped";
-    case Outcome::EndOfLog: return "end_of_log";
-    case Outcome::Failed: return "failed";
+    case Outcome::Running:
+      return "running";
+    case Outcome::Reached:
+      return "reached";
+    case Outcome::Stuck:
+      return "stuck";
+    case Outcome::OutOfTime:
+      return "out_of_time";
+    case Outcome::Collided:
+      return "collided";
+    case Outcome::Stopped:
+      return "stopped";
+    case Outcome::EndOfLog:
+      return "end_of_log";
+    case Outcome::Failed:
+      return "failed";
   }
   return "failed";
 }
@@ -38,7 +46,8 @@ void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
   metrics_.time = t.observation.stamp - *first_stamp_;
 
   const Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
-  const double distance = t.ground_truth ? t.ground_truth->obstacle_distance : t.clearance + radius_;
+  const double distance =
+      t.ground_truth ? t.ground_truth->obstacle_distance : t.clearance + radius_;
   const double d_safe = parameters[Parameter::SafetyDistance];
   metrics_.min_clearance = std::min(metrics_.min_clearance, distance - radius_);
   metrics_.intrusion = std::max(metrics_.intrusion, d_safe - distance);

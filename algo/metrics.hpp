@@ -17,9 +17,9 @@ enum class Outcome : std::uint8_t {
   Stuck,
   OutOfTime,
   Collided,
-  Stopped,   // ended by a person: reset, another scenario, shutdown
+  Stopped,  // ended by a person: reset, another scenario, shutdown
   EndOfLog,
-  Failed,    // the link was lost or something broke
+  Failed,  // the link was lost or something broke
 };
 /// "out_of_time": for REST, the database and the command line.
 std::string_view name(Outcome outcome);
@@ -53,8 +53,8 @@ class MetricsRecorder {
   double radius_ = 0;
   double period_ = 0;
   std::optional<double> first_stamp_{};
-  std::optional<Vec2> last_W_{};      // position one tick ago
-  std::optional<Vec2> kept_W_{};      // last position kept by the resampling
+  std::optional<Vec2> last_W_{};       // position one tick ago
+  std::optional<Vec2> kept_W_{};       // last position kept by the resampling
   std::optional<double> direction_{};  // [rad] of the last kept segment
   std::optional<Vec2> counted_pass_W_{};
 };

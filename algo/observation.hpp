@@ -60,7 +60,7 @@ struct Encoders {
 struct Observation {
   double stamp = 0;  // [s] run clock, the only clock algo sees
   Odometry odometry{};
-  Recycled<LaserScan> scans{};         // empty when no new one came this tick
+  Recycled<LaserScan> scans{};  // empty when no new one came this tick
   Recycled<RangeReading> sonar{};
   Recycled<RangeReading> infrared{};
   Recycled<BumperReading> bumpers{};

@@ -13,15 +13,15 @@
 namespace algo {
 
 enum class Parameter : std::uint8_t {
-  ContractionGain,   // K_c
-  RepulsionGain,     // K_r
-  SafetyDistance,    // d_safe
-  StripStep,         // S
-  MaxSpeed,          // v_max
-  MaxTurnRate,       // w_max
+  ContractionGain,  // K_c
+  RepulsionGain,    // K_r
+  SafetyDistance,   // d_safe
+  StripStep,        // S
+  MaxSpeed,         // v_max
+  MaxTurnRate,      // w_max
   HeadingGain,
   GoalReach,
-  FilterHalfWidth,   // N
+  FilterHalfWidth,  // N
   ScanTimeout,
   JoystickTimeout,
 };

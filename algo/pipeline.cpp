@@ -19,7 +19,9 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-bool within_unit(double axis) { return axis >= -1.0 && axis <= 1.0; }  // false for NaN
+bool within_unit(double axis) {
+  return axis >= -1.0 && axis <= 1.0;
+}  // false for NaN
 
 }  // namespace
 
@@ -72,21 +74,20 @@ void Pipeline::tick(Telemetry& t) {
 }
 
 void Pipeline::apply(const Request& request) {
-  std::visit(
-      Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
-                 [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
-                 [&](const Joystick& stick) {
-                   // Whoever takes the stick takes over: a silent driver must leave a robot that
-                   // stands still, not one that drives off to an old goal.
-                   if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
-                   joystick_ = stick;
-                   joystick_ticks_ = static_cast<std::uint64_t>(
-                       std::ceil(parameters_[Parameter::JoystickTimeout] / spec_.period));
-                 },
-                 [&](const Stop& stop) { stopped_ = stop.engaged; },
-                 [&](const SetParameter& set) { parameters_.set(set.parameter, set.value); },
-                 [](const auto&) {}},  // obstacle edits were carried out by the robot
-      request);
+  std::visit(Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
+                        [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
+                        [&](const Joystick& stick) {
+                          // Whoever takes the stick takes over: a silent driver must leave a robot
+                          // that stands still, not one that drives off to an old goal.
+                          if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
+                          joystick_ = stick;
+                          joystick_ticks_ = static_cast<std::uint64_t>(
+                              std::ceil(parameters_[Parameter::JoystickTimeout] / spec_.period));
+                        },
+                        [&](const Stop& stop) { stopped_ = stop.engaged; },
+                        [&](const SetParameter& set) { parameters_.set(set.parameter, set.value); },
+                        [](const auto&) {}},  // obstacle edits were carried out by the robot
+             request);
 }
 
 void Pipeline::sense(Telemetry& t) {
@@ -111,7 +112,9 @@ void Pipeline::sense(Telemetry& t) {
   t.clearance = clearance_;
 }
 
-bool Pipeline::manual() const { return joystick_ticks_ > 0; }
+bool Pipeline::manual() const {
+  return joystick_ticks_ > 0;
+}
 
 void Pipeline::control(Telemetry& t) {
   t.goal = sequencer_.goal();

@@ -11,9 +11,8 @@ namespace {
 constexpr double kManualMargin = 0.05;  // [m] a hand-driven robot keeps from the nearest return
 
 TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
-  return {std::max(a.v_min, b.v_min),
-          std::min(a.v_max, b.v_max),
-          std::min(a.omega_max, b.omega_max)};
+  return {
+      std::max(a.v_min, b.v_min), std::min(a.v_max, b.v_max), std::min(a.omega_max, b.omega_max)};
 }
 
 /// [m/s] from which the robot still stops kManualMargin short of the nearest return ahead.
@@ -31,7 +30,9 @@ double stopping_speed(const Resource& in) {
 AvoidBehaviour::AvoidBehaviour(std::unique_ptr<Controller> controller)
     : controller_(std::move(controller)) {}
 
-void AvoidBehaviour::reset(const Pose2& start_W) { controller_->reset(start_W); }
+void AvoidBehaviour::reset(const Pose2& start_W) {
+  controller_->reset(start_W);
+}
 
 Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   ControlInput input;

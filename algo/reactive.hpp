@@ -32,9 +32,9 @@ struct Resource {
 };
 
 struct TwistLimits {
-  double v_min = -std::numeric_limits<double>::infinity();      // [m/s]
-  double v_max = std::numeric_limits<double>::infinity();       // [m/s]
-  double omega_max = std::numeric_limits<double>::infinity();   // [rad/s] either way
+  double v_min = -std::numeric_limits<double>::infinity();     // [m/s]
+  double v_max = std::numeric_limits<double>::infinity();      // [m/s]
+  double omega_max = std::numeric_limits<double>::infinity();  // [rad/s] either way
 };
 
 struct Proposal {

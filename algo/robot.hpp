@@ -25,16 +25,16 @@ class EndOfLog : public RobotError {
 
 struct RobotSpec {
   std::string name{};
-  double radius = 0;       // [m] of the hull's circle about R
-  double half_track = 0;   // [m] centre to wheel
-  double period = 0;       // [s] of one tick
-  double max_v = 0;        // [m/s]
-  double max_omega = 0;    // [rad/s]
-  double max_acceleration = 0;   // [m/s2]
+  double radius = 0;                    // [m] of the hull's circle about R
+  double half_track = 0;                // [m] centre to wheel
+  double period = 0;                    // [s] of one tick
+  double max_v = 0;                     // [m/s]
+  double max_omega = 0;                 // [rad/s]
+  double max_acceleration = 0;          // [m/s2]
   double max_angular_acceleration = 0;  // [rad/s2]
-  bool editable = false;   // obstacles can be added, moved, removed
-  bool paceable = false;   // has pause, single step and speed
-  bool drives = false;     // commands move it; a recorded log does not
+  bool editable = false;                // obstacles can be added, moved, removed
+  bool paceable = false;                // has pause, single step and speed
+  bool drives = false;                  // commands move it; a recorded log does not
 };
 
 /// The simulator's truth, for display and metrics only; controllers never see it.
@@ -48,7 +48,7 @@ struct GroundTruth {
 /// How fast time runs; only a robot whose spec says `paceable` heeds it.
 struct Pace {
   bool paused = false;
-  double speed = 1;     // times real time; 0 = as fast as it goes
+  double speed = 1;                // times real time; 0 = as fast as it goes
   std::uint32_t single_steps = 0;  // periods to run while paused
 };
 

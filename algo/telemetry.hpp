@@ -46,11 +46,11 @@ struct ControlOutput {
   Vec2 internal_W{0, 0};   // [m] F_int at the via point
   Vec2 external_left_W{0, 0};
   Vec2 external_right_W{0, 0};
-  Vec2 elastic_W{0, 0};  // [m] their sum, with the side choice's push
-  Vec2 pass_W{0, 0};     // where the base is sent
-  Side side = Side::None;   // the side on which the obstacle is passed
-  double side_since = 0;    // [s] run clock at which it was chosen
-  double side_alpha = 0;    // share of the side push, 0..1
+  Vec2 elastic_W{0, 0};    // [m] their sum, with the side choice's push
+  Vec2 pass_W{0, 0};       // where the base is sent
+  Side side = Side::None;  // the side on which the obstacle is passed
+  double side_since = 0;   // [s] run clock at which it was chosen
+  double side_alpha = 0;   // share of the side push, 0..1
   std::int32_t blocked_beam = -1;
 };
 

@@ -4,9 +4,10 @@
 // frame a quantity is expressed in.
 #pragma once
 
-#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
+
+#include <Eigen/Core>
 
 namespace algo {
 
@@ -29,7 +30,9 @@ struct Pose2 {
 };
 
 /// Unit vector of bearing `angle` [rad].
-inline Vec2 direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+inline Vec2 direction(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
 
 /// Point `p` of the child frame expressed in the parent of `pose`.
 inline Vec2 to_parent(const Pose2& pose, const Vec2& p) {

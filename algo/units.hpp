@@ -8,8 +8,12 @@ namespace algo::units {
 constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
-constexpr double operator""_mm(long double v) { return static_cast<double>(v) / 1000.0; }
-constexpr double operator""_mm(unsigned long long v) { return static_cast<double>(v) / 1000.0; }
+constexpr double operator""_mm(long double v) {
+  return static_cast<double>(v) / 1000.0;
+}
+constexpr double operator""_mm(unsigned long long v) {
+  return static_cast<double>(v) / 1000.0;
+}
 constexpr double operator""_deg(long double v) {
   return static_cast<double>(v) * kRadiansPerDegree;
 }

@@ -77,7 +77,11 @@ struct App::Impl {
 App::App(AppOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
 App::~App() = default;
 
-std::string App::url() const { return impl_->server->url(); }
-void App::run() { impl_->server->run(); }
+std::string App::url() const {
+  return impl_->server->url();
+}
+void App::run() {
+  impl_->server->run();
+}
 
 }  // namespace server

@@ -158,12 +158,11 @@ void Bridge::submit(algo::Request request, const ServiceReply& reply) {
 void Bridge::add_services() {
   // Each throws what is wrong with its request; the hub makes that the call's failure.
   const auto add = [this](const char* name, std::function<void(const json&)> action) {
-    hub_.add_service(name,
-                     [action = std::move(action)](
-                         ClientId, const json& body, const ServiceReply& reply) {
-                       action(body);
-                       reply.success({{"ok", true}});
-                     });
+    hub_.add_service(
+        name, [action = std::move(action)](ClientId, const json& body, const ServiceReply& reply) {
+          action(body);
+          reply.success({{"ok", true}});
+        });
   };
   hub_.add_service("/request", [this](ClientId, const json& body, const ServiceReply& reply) {
     submit(request_from_json(body), reply);
@@ -183,10 +182,10 @@ void Bridge::add_services() {
 
 /// A refusal found out later goes to the status line of the client that asked.
 std::string Bridge::hand_over(ClientId client, algo::Request request) {
-  const auto given = session_.submit(
-      std::move(request), [this, client](const std::optional<std::string>& refusal) {
-        if (refusal) hub_.warn(client, *refusal);
-      });
+  const auto given = session_.submit(std::move(request),
+                                     [this, client](const std::optional<std::string>& refusal) {
+                                       if (refusal) hub_.warn(client, *refusal);
+                                     });
   return given ? std::string() : std::string(kBusy);
 }
 
@@ -216,9 +215,8 @@ void Bridge::publish_frame(const FrameRef& frame) {
   const std::uint64_t time_ns = now_ns();
   if (hub_.wanted(telemetry_)) {
     const auto bytes = frame->bytes();
-    hub_.publish(telemetry_,
-                 time_ns,
-                 shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+    hub_.publish(
+        telemetry_, time_ns, shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   }
   const auto publish = [&](ChannelId channel, auto encode) {
     if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));
@@ -239,10 +237,10 @@ void Bridge::publish_frame(const FrameRef& frame) {
 void Bridge::publish_state() {
   const std::uint64_t time_ns = now_ns();
   hub_.publish(state_, time_ns, shared(dump_json(state_json(session_))));
-  hub_.publish(obstacles_,
-               time_ns,
-               shared(obstacles_json(static_cast<double>(time_ns) * 1e-9,
-                                     session_.state().obstacles)));
+  hub_.publish(
+      obstacles_,
+      time_ns,
+      shared(obstacles_json(static_cast<double>(time_ns) * 1e-9, session_.state().obstacles)));
   if (told_parameters_ != session_.state().parameters) {
     told_parameters_ = session_.state().parameters;
     gains_.follow();

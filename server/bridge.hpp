@@ -3,8 +3,9 @@
 
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "server/foxglove/hub.hpp"
 #include "server/session.hpp"

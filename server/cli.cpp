@@ -1,11 +1,11 @@
 // server/cli.cpp: what the subcommands share.
 #include "server/cli.hpp"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <system_error>
+
+#include <fmt/format.h>
+#include <unistd.h>
 
 #include "server/json_reader.hpp"
 #include "server/paths.hpp"

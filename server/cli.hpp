@@ -2,10 +2,11 @@
 // chosen, leaves its exit status in `status`.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include <CLI/CLI.hpp>
 
 #include "server/run_spec.hpp"
 

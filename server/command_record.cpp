@@ -1,9 +1,9 @@
 // server/command_record.cpp: `tautline export` and `tautline verify`: looking back at stored runs.
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <fstream>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "db/run_reader.hpp"
 #include "server/cli.hpp"

@@ -1,11 +1,11 @@
 // server/command_run.cpp: `tautline run` and `tautline replay`: headless, with figures at the end.
-#include <fmt/format.h>
-
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <stop_token>
 #include <thread>
+
+#include <fmt/format.h>
 
 #include "server/cli.hpp"
 #include "server/headless.hpp"
@@ -48,10 +48,14 @@ struct Options {
 int exit_status(algo::Outcome outcome) {
   switch (outcome) {
     case algo::Outcome::Reached:
-    case algo::Outcome::EndOfLog: return kReached;
-    case algo::Outcome::Collided: return kCollided;
-    case algo::Outcome::Failed: return kBadInput;
-    default: return kNotReached;
+    case algo::Outcome::EndOfLog:
+      return kReached;
+    case algo::Outcome::Collided:
+      return kCollided;
+    case algo::Outcome::Failed:
+      return kBadInput;
+    default:
+      return kNotReached;
   }
 }
 
@@ -131,12 +135,12 @@ void add_run_command(CLI::App& app, int& status) {
   command->add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
       ->required();
   options->flags.add_to(*command);
-  command->add_option("--out", options->out, "Also keep the run in this database")
-      ->type_name("DB");
+  command->add_option("--out", options->out, "Also keep the run in this database")->type_name("DB");
   command->add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer("Exit status: 0 reached, 1 bad input or error, 2 stuck or out of time, 3 collision.");
+  command->footer(
+      "Exit status: 0 reached, 1 bad input or error, 2 stuck or out of time, 3 collision.");
   command->callback([options, &status] { status = execute(*options); });
 }
 
@@ -144,15 +148,18 @@ void add_replay_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* command =
       app.add_subcommand("replay", "Replay a CARMEN laser log through the whole pipeline");
-  command->add_option("LOG", options->scenario, "A CARMEN log file")->required()->check(
-      CLI::ExistingFile);
-  command->add_option("--filter", options->flags.overrides.filter,
-                      "pseudomedian (default), median, lulu or none");
+  command->add_option("LOG", options->scenario, "A CARMEN log file")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option(
+      "--filter", options->flags.overrides.filter, "pseudomedian (default), median, lulu or none");
   command->add_option("--set", options->flags.settings, "A parameter, such as filter_half_width=2")
       ->type_name("NAME=VALUE");
   command->add_option("--out", options->out, "Keep the run in this database")->type_name("DB");
-  command->add_option("--pace", options->pace,
-                      "1: the log's own pace; N: times that; 0 (default): as fast as it goes")
+  command
+      ->add_option("--pace",
+                   options->pace,
+                   "1: the log's own pace; N: times that; 0 (default): as fast as it goes")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_flag("--json", options->as_json, "Print JSON");
   command->footer("To watch a log in the browser: tautline serve --scenario LOG");

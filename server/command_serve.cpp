@@ -1,10 +1,10 @@
 // server/command_serve.cpp: `tautline serve`.
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "server/app.hpp"
 #include "server/cli.hpp"
@@ -30,9 +30,9 @@ void serve(Options& options) {
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
   const ScenarioLibrary library(app.scenarios, app.logs);
   const bool file = options.scenario.find_first_of("/.") != std::string::npos;
-  app.first = make_spec(file ? ScenarioLibrary::from_file(options.scenario)
-                             : library.load(options.scenario),
-                        options.flags.resolved());
+  app.first = make_spec(
+      file ? ScenarioLibrary::from_file(options.scenario) : library.load(options.scenario),
+      options.flags.resolved());
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   App program(app);
   fmt::print("Tautline is at {}\n", program.url());
@@ -54,18 +54,24 @@ void add_serve_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
   command->add_option("--port", net.port, "Port; 0: any free one")->capture_default_str();
   command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
-  command->add_option("--token", net.access.token,
+  command->add_option("--token",
+                      net.access.token,
                       "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
-  command->add_flag("--insecure", net.access.insecure, "Listen beyond this machine without a token");
-  command->add_option("--allow-host", net.access.allow_hosts,
+  command->add_flag(
+      "--insecure", net.access.insecure, "Listen beyond this machine without a token");
+  command->add_option("--allow-host",
+                      net.access.allow_hosts,
                       "A further name this server goes by, such as one of a port mapping");
-  command->add_option("--allow-origin", net.access.allow_origins,
+  command->add_option("--allow-origin",
+                      net.access.allow_origins,
                       "A page hosted elsewhere that may connect, such as https://viewer.example");
   command->add_option("--db", options->app.database, "Database of the runs")
       ->type_name("FILE")
       ->capture_default_str();
-  command->add_option("--keep", options->keep_gigabytes,
-                      "Delete the oldest runs beyond this size; 0: keep everything")
+  command
+      ->add_option("--keep",
+                   options->keep_gigabytes,
+                   "Delete the oldest runs beyond this size; 0: keep everything")
       ->type_name("GB")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
@@ -76,8 +82,10 @@ void add_serve_command(CLI::App& app, int& status) {
       ->type_name("DIR")
       ->capture_default_str();
   command->add_option("--web", net.web_root, "Folder of the built page")->type_name("DIR");
-  command->add_option("--scenario", options->scenario,
-                      "What to load first: a name, a .json file, or a .log to replay")
+  command
+      ->add_option("--scenario",
+                   options->scenario,
+                   "What to load first: a name, a .json file, or a .log to replay")
       ->capture_default_str();
   options->flags.add_to(*command);
   command->callback([options, &status] {

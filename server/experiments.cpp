@@ -25,10 +25,8 @@ Experiments::~Experiments() {
 void Experiments::start(Experiment experiment, Accepted accepted) {
   // A world that cannot be built is refused now, not in the background; its spec goes in the row.
   const algo::RobotSpec robot = make_robot(experiment.spec)->spec();
-  recorder_.post([this,
-                  experiment = std::move(experiment),
-                  robot,
-                  accepted = std::move(accepted)](db::RunStore& store) {
+  recorder_.post([this, experiment = std::move(experiment), robot, accepted = std::move(accepted)](
+                     db::RunStore& store) {
     std::vector<db::RunId> runs;
     std::deque<Job> jobs;
     try {
@@ -112,7 +110,8 @@ void Experiments::execute(const Job& job) {
     const auto robot = make_robot(job.spec);
     run_headless(job.spec, *robot, options, stop);
   } catch (const std::exception& e) {
-    options.record->close({.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()});
+    options.record->close(
+        {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()});
   }
 }
 

@@ -40,7 +40,9 @@ std::span<const db::Window> Frame::windows() const {
   return encoder_.windows();
 }
 
-db::TickRow Frame::row() const { return tick_row(telemetry); }
+db::TickRow Frame::row() const {
+  return tick_row(telemetry);
+}
 
 std::shared_ptr<FramePool> FramePool::make(std::size_t frames) {
   return std::shared_ptr<FramePool>(new FramePool(frames));

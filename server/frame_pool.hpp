@@ -2,12 +2,13 @@
 #pragma once
 
 #include <atomic>
-#include <boost/intrusive_ptr.hpp>
-#include <boost/lockfree/stack.hpp>
 #include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
+
+#include <boost/intrusive_ptr.hpp>
+#include <boost/lockfree/stack.hpp>
 
 #include "algo/telemetry.hpp"
 #include "server/recorder.hpp"

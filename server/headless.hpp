@@ -14,8 +14,8 @@
 namespace server {
 
 struct HeadlessOptions {
-  double pace = 0;          // times real time; 0 = as fast as it goes
-  bool hash_frames = false;  // needs every frame encoded: the record does that anyway
+  double pace = 0;                       // times real time; 0 = as fast as it goes
+  bool hash_frames = false;              // needs every frame encoded: the record does that anyway
   std::shared_ptr<RunChannel> record{};  // null: not kept
   std::function<bool()> cancelled{};     // asked once at the end: the run is then `cancelled`
   std::function<void(double stamp, std::uint64_t ticks)> progress{};  // about ten times a second

@@ -1,11 +1,11 @@
 // server/json_reader.cpp: field access with complaints a person can act on.
 #include "server/json_reader.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <fmt/format.h>
 
 namespace server {
 
@@ -71,8 +71,8 @@ double JsonReader::number_or(std::string_view key, double fallback, NumberRange 
 
 std::uint64_t JsonReader::whole(std::string_view key, std::uint64_t max) const {
   const json& value = field(key);
-  const bool whole = value.is_number_unsigned() ||
-                     (value.is_number_integer() && value.get<std::int64_t>() >= 0);
+  const bool whole =
+      value.is_number_unsigned() || (value.is_number_integer() && value.get<std::int64_t>() >= 0);
   if (!whole) fail(key, "must be a whole number of at least 0");
   const auto number = value.get<std::uint64_t>();
   if (number > max) fail(key, fmt::format("is {}, must be at most {}", number, max));
@@ -104,7 +104,9 @@ bool JsonReader::flag_or(std::string_view key, bool fallback) const {
   return value.get<bool>();
 }
 
-JsonReader JsonReader::object(std::string_view key) const { return {field(key), at(key)}; }
+JsonReader JsonReader::object(std::string_view key) const {
+  return {field(key), at(key)};
+}
 
 const json& JsonReader::array(std::string_view key, std::size_t max_size) const {
   const json& value = field(key);

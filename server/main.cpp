@@ -1,9 +1,9 @@
 // server/main.cpp: the program: one subcommand each for serving, running, replaying, looking back.
-#include <fmt/format.h>
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "server/cli.hpp"
 #include "server/version.hpp"

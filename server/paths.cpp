@@ -1,11 +1,11 @@
 // server/paths.cpp: the freedesktop.org rules for state, with a way out when HOME is unset.
 #include "server/paths.hpp"
 
-#include <pwd.h>
-#include <unistd.h>
-
 #include <cstdlib>
 #include <system_error>
+
+#include <pwd.h>
+#include <unistd.h>
 
 namespace server {
 namespace fs = std::filesystem;

@@ -1,12 +1,12 @@
 // server/run_json.cpp: runs as rows and documents.
 #include "server/run_json.hpp"
 
+#include <chrono>
+#include <cmath>
+
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-
-#include <chrono>
-#include <cmath>
 
 #include "server/record_sink.hpp"
 #include "server/scenario_json.hpp"
@@ -55,8 +55,8 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
 
 db::RunEnd run_end(const RunResult& result) {
   db::RunEnd end;
-  end.status = result.outcome == algo::Outcome::Failed ? db::RunStatus::Failed
-                                                       : db::RunStatus::Finished;
+  end.status =
+      result.outcome == algo::Outcome::Failed ? db::RunStatus::Failed : db::RunStatus::Finished;
   end.outcome = algo::name(result.outcome);
   end.reason = result.reason;
   json metrics = to_json(result.metrics);

@@ -1,8 +1,9 @@
 // server/run_json.hpp: runs as rows for the database and as documents for people.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "algo/metrics.hpp"
 #include "db/records.hpp"

@@ -1,10 +1,10 @@
 // server/run_spec.cpp: the one place that knows every robot and controller by name.
 #include "server/run_spec.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "algo/controller.hpp"
 #include "algo/filter.hpp"
@@ -30,9 +30,9 @@ void check_choices(const sim::Scenario& scenario) {
                         fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
   }
   if (!algo::find_filter(scenario.filter)) {
-    throw DocumentError(
-        "filter",
-        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none", scenario.filter));
+    throw DocumentError("filter",
+                        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none",
+                                    scenario.filter));
   }
 }
 
@@ -96,8 +96,7 @@ std::vector<algo::Request> first_requests(const RunSpec& spec) {
 double time_limit(const RunSpec& spec) {
   if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
   if (!spec.scenario.goal) return 60.0;
-  const double straight =
-      (spec.scenario.goal->position_W - spec.scenario.start.position()).norm();
+  const double straight = (spec.scenario.goal->position_W - spec.scenario.start.position()).norm();
   return std::max(1.0, 5.0 * straight / spec.parameters[algo::Parameter::MaxSpeed]);
 }
 

@@ -46,7 +46,9 @@ class Run {
   bool broken_ = false;
 };
 
-bool is_real_time(const algo::RobotSpec& spec) { return !spec.paceable; }
+bool is_real_time(const algo::RobotSpec& spec) {
+  return !spec.paceable;
+}
 
 void Run::serve_requests() {
   if (links_.rings == nullptr) return;

@@ -1,12 +1,13 @@
 // server/runner.hpp: the loop: one call is one run of one robot with one controller.
 #pragma once
 
-#include <boost/lockfree/spsc_queue.hpp>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
+
+#include <boost/lockfree/spsc_queue.hpp>
 
 #include "algo/metrics.hpp"
 #include "algo/pipeline.hpp"
@@ -56,9 +57,9 @@ struct RunResult {
 };
 
 struct RunLinks {
-  FramePool* pool = nullptr;            // never null
-  Rings* rings = nullptr;               // null: nobody watches or asks
-  FrameSink* record = nullptr;          // null: not recorded
+  FramePool* pool = nullptr;                     // never null
+  Rings* rings = nullptr;                        // null: nobody watches or asks
+  FrameSink* record = nullptr;                   // null: not recorded
   std::function<void(const Frame&)> observer{};  // control thread, after each tick; for tests, CLI
   std::function<void(algo::Outcome)> on_outcome{};  // control thread, each time it changes
 };

@@ -1,14 +1,14 @@
 // server/scenario_json.cpp: one reader and one writer per document part.
 #include "server/scenario_json.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <type_traits>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "algo/controller.hpp"
 #include "algo/filter.hpp"
@@ -36,7 +36,8 @@ double angle_or(const JsonReader& in, std::string_view key, double fallback) {
 }
 
 algo::Pose2 pose_from_json(const JsonReader& in, double heading) {
-  return {in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
+  return {
+      in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
 }
 
 algo::SetGoal goal_from_json(const JsonReader& in) {
@@ -68,8 +69,18 @@ algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetG
 }
 
 void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
-  in.only({"id", "type", "from", "to", "x", "y", "heading", "length", "thickness", "height",
-           "reflectivity", "specular"});
+  in.only({"id",
+           "type",
+           "from",
+           "to",
+           "x",
+           "y",
+           "heading",
+           "length",
+           "thickness",
+           "height",
+           "reflectivity",
+           "specular"});
   algo::Wall wall{in.number_or("length", 0), in.number_or("thickness", 0.1)};
   if (in.has("from") || in.has("to")) {
     const algo::Vec2 from = point_from_json(in.array("from", 2), in.at("from"));
@@ -84,7 +95,8 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
   obstacle.shape = wall;
 }
 
-/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its middle.
+/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its
+/// middle.
 void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
   in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
   algo::Polygon polygon;
@@ -113,8 +125,21 @@ void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
 }
 
 sim::LaserConfig laser_from_json(const JsonReader& in) {
-  in.only({"resolution_deg", "ideal", "mount", "height", "rolling", "unit", "range_max", "bias",
-           "noise", "noise_shape", "mixed_pixels", "reflectivity", "dropout", "salt", "pepper"});
+  in.only({"resolution_deg",
+           "ideal",
+           "mount",
+           "height",
+           "rolling",
+           "unit",
+           "range_max",
+           "bias",
+           "noise",
+           "noise_shape",
+           "mixed_pixels",
+           "reflectivity",
+           "dropout",
+           "salt",
+           "pepper"});
   const double resolution = in.number_or("resolution_deg", 0.5);
   sim::LaserConfig laser;
   try {
@@ -231,7 +256,15 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
     obstacle.pose_W = pose_from_json(in, 0);
     obstacle.shape = algo::Cylinder{in.number("radius")};
   } else if (type == "box") {
-    in.only({"id", "type", "x", "y", "heading", "length", "width", "height", "reflectivity",
+    in.only({"id",
+             "type",
+             "x",
+             "y",
+             "heading",
+             "length",
+             "width",
+             "height",
+             "reflectivity",
              "specular"});
     obstacle.pose_W = pose_from_json(in, 0);
     obstacle.shape = algo::Box{in.number("length"), in.number("width")};
@@ -240,8 +273,7 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
   } else if (type == "wall") {
     read_wall(in, obstacle);
   } else {
-    in.fail("type",
-            fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
+    in.fail("type", fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
   }
   obstacle.height = in.number_or("height", obstacle.height);
   obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
@@ -360,8 +392,20 @@ algo::Parameters parameters_of(const sim::Scenario& scenario) {
 
 sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
-  in.only({"name", "title", "description", "robot", "vehicle", "period", "start", "goal",
-           "obstacles", "lasers", "controller", "filter", "parameters", "time_limit"});
+  in.only({"name",
+           "title",
+           "description",
+           "robot",
+           "vehicle",
+           "period",
+           "start",
+           "goal",
+           "obstacles",
+           "lasers",
+           "controller",
+           "filter",
+           "parameters",
+           "time_limit"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_scenario_name(s.name)) {

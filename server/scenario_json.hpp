@@ -1,8 +1,10 @@
-// server/scenario_json.hpp: scenarios, obstacles and requests as JSON documents (docs/interfaces.md).
+// server/scenario_json.hpp: scenarios, obstacles and requests as JSON documents
+// (docs/interfaces.md).
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "algo/obstacle.hpp"
 #include "algo/parameters.hpp"

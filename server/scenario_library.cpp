@@ -1,13 +1,13 @@
 // server/scenario_library.cpp: built-in worlds come from sim/worlds, embedded at build time.
 #include "server/scenario_library.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "server/embedded_documents.hpp"
 #include "server/json_limits.hpp"
@@ -100,7 +100,8 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
   if (valid_scenario_name(name)) {
     std::error_code error;
     const fs::path own = own_ / (name + ".json");
-    if (!own_.empty() && fs::is_regular_file(own, error)) return parse(read_file(own), own.string());
+    if (!own_.empty() && fs::is_regular_file(own, error))
+      return parse(read_file(own), own.string());
     const fs::path log = logs_ / (name + ".log");
     if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
   }

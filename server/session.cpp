@@ -205,8 +205,7 @@ void Session::drain_frames() {
   FrameRef latest;
   live_->rings.stream.consume_all([&](const FrameRef& frame) {
     const algo::Telemetry& t = frame->telemetry;
-    const algo::Pose2& pose =
-        t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+    const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
     if (path_.empty() || (pose.position() - path_.back().position()).norm() > kPathSpacing) {
       path_.push_back(pose);
     }
@@ -226,8 +225,8 @@ void Session::drain_frames() {
 void Session::narrate(const algo::Telemetry& t) {
   if (t.hold == told_hold_ && t.mission == told_mission_) return;
   const bool held = t.hold != algo::Hold::None && t.hold != told_hold_;
-  const bool notable = t.mission != told_mission_ && (t.mission == algo::Mission::Arrived ||
-                                                      t.mission == algo::Mission::Stuck);
+  const bool notable = t.mission != told_mission_ &&
+                       (t.mission == algo::Mission::Arrived || t.mission == algo::Mission::Stuck);
   told_hold_ = t.hold;
   told_mission_ = t.mission;
   if (!held && !notable) return;

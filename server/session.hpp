@@ -103,8 +103,8 @@ class Session {
   /// The world as it stands, as a scenario of its own.
   sim::Scenario as_scenario(const std::string& name, const std::string& title) const;
 
-  std::function<void()> on_change{};                 // state() is different now
-  std::function<void(const FrameRef&)> on_frame{};   // the newest of those drained in one poll
+  std::function<void()> on_change{};                // state() is different now
+  std::function<void(const FrameRef&)> on_frame{};  // the newest of those drained in one poll
   std::function<void(LogLevel, const std::string&)> on_log{};
 
  private:

@@ -1,11 +1,11 @@
 // server/verify.cpp: replay of the record.
 #include "server/verify.hpp"
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "algo/pipeline.hpp"
 #include "server/json_limits.hpp"
@@ -23,7 +23,9 @@ struct Decided {
   bool operator==(const Decided&) const = default;
 };
 
-Decided decided(const algo::Telemetry& t) { return {t.command, t.hold, t.mission}; }
+Decided decided(const algo::Telemetry& t) {
+  return {t.command, t.hold, t.mission};
+}
 
 algo::Pipeline pipeline_of(const db::RunRow& row) {
   const nlohmann::json document = parse_json(row.what.document);

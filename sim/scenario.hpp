@@ -21,22 +21,22 @@ enum class NoiseShape : std::uint8_t { Gaussian, Uniform };
 /// The LMS200 model (physics.md 6). Every imperfection can be switched off, down to ideal().
 struct LaserConfig {
   algo::Pose2 mount_R{};
-  double height = 0.30;          // [m] of the scan plane
-  double field_of_view = 0;      // [rad] pi, or 100 deg at 0.25 deg; set by with_resolution()
-  double angle_increment = 0;    // [rad]
-  std::uint32_t turns = 1;       // interlaced mirror turns in a sweep
-  bool rolling = true;           // beams fired one by one; false: all from one pose at the tick
+  double height = 0.30;        // [m] of the scan plane
+  double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg; set by with_resolution()
+  double angle_increment = 0;  // [rad]
+  std::uint32_t turns = 1;     // interlaced mirror turns in a sweep
+  bool rolling = true;         // beams fired one by one; false: all from one pose at the tick
   double mirror_period = 1.0 / 75.0;  // [s] one turn
   LaserUnit unit = LaserUnit::Millimetre;
-  double range_max = 8.191;      // [m] 81.91 in centimetre mode
-  double bias = 0.015;           // [m] uniform in +-bias, drawn once a run
-  double noise = 0.005;          // [m] standard deviation, or half width when Uniform
+  double range_max = 8.191;  // [m] 81.91 in centimetre mode
+  double bias = 0.015;       // [m] uniform in +-bias, drawn once a run
+  double noise = 0.005;      // [m] standard deviation, or half width when Uniform
   NoiseShape noise_shape = NoiseShape::Gaussian;
   bool mixed_pixels = true;
-  bool reflectivity = true;      // range falls with the surface's reflectivity; specular surfaces
-  double dropout = 0.002;        // probability of a no-echo code per beam
-  double salt = 0;               // probability of maximum range per beam
-  double pepper = 0;             // probability of a false near reading per beam
+  bool reflectivity = true;  // range falls with the surface's reflectivity; specular surfaces
+  double dropout = 0.002;    // probability of a no-echo code per beam
+  double salt = 0;           // probability of maximum range per beam
+  double pepper = 0;         // probability of a false near reading per beam
 
   /// 1, 0.5 or 0.25 degree; throws std::invalid_argument on another.
   static LaserConfig with_resolution(double degrees);
@@ -45,12 +45,12 @@ struct LaserConfig {
 };
 
 struct Scenario {
-  std::string name{};         // [a-z0-9_-]+, at most 64
+  std::string name{};  // [a-z0-9_-]+, at most 64
   std::string title{};
   std::string description{};
   std::string robot = "silvermate";
   Vehicle vehicle = Vehicle::Bullet;
-  double period = 0.026;      // [s] one tick
+  double period = 0.026;  // [s] one tick
   algo::Pose2 start{};
   std::optional<algo::SetGoal> goal{};
   std::vector<algo::Obstacle> obstacles{};
@@ -58,8 +58,8 @@ struct Scenario {
   std::string controller = "modified";
   std::string filter = "pseudomedian";
   std::vector<std::pair<algo::Parameter, double>> parameters{};  // where not initial
-  double time_limit = 0;      // [s] run clock for headless runs; 0 = 5 x straight line / v_max
-  std::string log{};          // path of a CARMEN log to replay instead of a world
+  double time_limit = 0;  // [s] run clock for headless runs; 0 = 5 x straight line / v_max
+  std::string log{};      // path of a CARMEN log to replay instead of a world
 };
 
 }  // namespace sim

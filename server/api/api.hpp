@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+
 #include <nlohmann/json.hpp>
 
 #include "db/run_reader.hpp"

@@ -1,11 +1,11 @@
 // server/api/reply.cpp: JSON in, JSON out.
 #include "server/api/reply.hpp"
 
-#include <fmt/format.h>
-
 #include <exception>
 #include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "db/records.hpp"
 #include "db/sqlite.hpp"
@@ -18,10 +18,14 @@ namespace {
 
 net::Response problem_of(const LibraryError& e) {
   switch (e.kind()) {
-    case LibraryError::Kind::NotFound: return net::problem(404, "Not found", e.what());
-    case LibraryError::Kind::Builtin: return net::problem(409, "Built in", e.what());
-    case LibraryError::Kind::BadName: return net::problem(422, "Bad name", e.what());
-    case LibraryError::Kind::Unreadable: break;
+    case LibraryError::Kind::NotFound:
+      return net::problem(404, "Not found", e.what());
+    case LibraryError::Kind::Builtin:
+      return net::problem(409, "Built in", e.what());
+    case LibraryError::Kind::BadName:
+      return net::problem(422, "Bad name", e.what());
+    case LibraryError::Kind::Unreadable:
+      break;
   }
   return net::problem(422, "Scenario not usable", e.what());
 }
@@ -56,25 +60,27 @@ nlohmann::json body_json(const net::Request& request) {
 }
 
 net::Handler guarded(std::function<void(const net::Request&, const net::Responder&)> handler) {
-  return [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
-    try {
-      handler(request, respond);
-    } catch (...) {
-      respond(problem_of_current_exception());
-    }
-  };
+  return
+      [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
+        try {
+          handler(request, respond);
+        } catch (...) {
+          respond(problem_of_current_exception());
+        }
+      };
 }
 
 net::Handler immediate(std::function<net::Response(const net::Request&)> handler) {
-  return [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
-    net::Response response;
-    try {
-      response = handler(request);
-    } catch (...) {
-      response = problem_of_current_exception();
-    }
-    respond(std::move(response));
-  };
+  return
+      [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
+        net::Response response;
+        try {
+          response = handler(request);
+        } catch (...) {
+          response = problem_of_current_exception();
+        }
+        respond(std::move(response));
+      };
 }
 
 std::uint64_t number_of(const net::Request& request,

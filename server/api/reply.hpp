@@ -2,8 +2,9 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include <nlohmann/json.hpp>
 
 #include "server/net/http.hpp"
 #include "server/net/router.hpp"
@@ -29,6 +30,8 @@ net::Handler immediate(std::function<net::Response(const net::Request&)> handler
 /// `?limit=` within 1 to `max`; throws DocumentError.
 std::size_t limit_of(const net::Request& request, std::size_t fallback, std::size_t max);
 /// A whole number of the query, or `fallback`. Throws DocumentError.
-std::uint64_t number_of(const net::Request& request, const std::string& key, std::uint64_t fallback);
+std::uint64_t number_of(const net::Request& request,
+                        const std::string& key,
+                        std::uint64_t fallback);
 
 }  // namespace server

@@ -1,7 +1,7 @@
 // server/api/run_routes.cpp: experiments in, records out.
-#include <fmt/format.h>
-
 #include <cstring>
+
+#include <fmt/format.h>
 
 #include "server/api/api.hpp"
 #include "server/api/reply.hpp"
@@ -103,8 +103,12 @@ void delete_run(ApiContext& context, const net::Request& request, const net::Res
     response.status = 204;
     try {
       switch (store.delete_run(run)) {
-        case db::RunStore::Deletion::Deleted: store.commit(); break;
-        case db::RunStore::Deletion::NotFound: response = no_such_run(run); break;
+        case db::RunStore::Deletion::Deleted:
+          store.commit();
+          break;
+        case db::RunStore::Deletion::NotFound:
+          response = no_such_run(run);
+          break;
         case db::RunStore::Deletion::StillRecording:
           response = net::problem(409, "Still recording", "Cancel or end the run first.");
           break;
@@ -119,8 +123,8 @@ void delete_run(ApiContext& context, const net::Request& request, const net::Res
 net::Response list_ticks(ApiContext& context, const net::Request& request) {
   const db::RunId run = run_id(request);
   if (!context.reader.get(run)) return no_such_run(run);
-  const db::TickPage page = context.reader.ticks(
-      run, number_of(request, "from", 0), limit_of(request, 1000, 10'000));
+  const db::TickPage page =
+      context.reader.ticks(run, number_of(request, "from", 0), limit_of(request, 1000, 10'000));
   json items = json::array();
   for (const db::TickRow& row : page.ticks) items.push_back(to_json(row));
   json body = {{"items", std::move(items)}, {"next", nullptr}};
@@ -159,7 +163,8 @@ net::Response export_csv(ApiContext& context, const net::Request& request) {
   while (from) from = context.reader.csv(run, *from, 10'000, *body, csv_names());
   net::Response response;
   response.content_type = "text/csv; charset=utf-8";
-  response.headers.push_back({"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
+  response.headers.push_back(
+      {"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
   response.body = std::move(body);
   return response;
 }
@@ -184,9 +189,7 @@ void add_run_routes(net::Router& router, ApiContext& context) {
              guarded([&context](const net::Request& request, const net::Responder& respond) {
                delete_run(context, request, respond);
              }));
-  router.add("POST",
-             "/api/v1/runs/{id}/cancel",
-             immediate([&context](const net::Request& request) {
+  router.add("POST", "/api/v1/runs/{id}/cancel", immediate([&context](const net::Request& request) {
                const db::RunId run = run_id(request);
                if (context.experiments.cancel(run)) return json_response(202, {{"ok", true}});
                if (!context.reader.get(run)) return no_such_run(run);

@@ -49,14 +49,13 @@ void add_scenario_routes(net::Router& router, ApiContext& context) {
                context.library.save(scenario);
                return json_response(200, server::to_json(scenario));
              }));
-  router.add("DELETE",
-             "/api/v1/scenarios/{name}",
-             immediate([&context](const net::Request& request) {
-               context.library.remove(request.params.at("name"));
-               net::Response response;
-               response.status = 204;
-               return response;
-             }));
+  router.add(
+      "DELETE", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
+        context.library.remove(request.params.at("name"));
+        net::Response response;
+        response.status = 204;
+        return response;
+      }));
 }
 
 }  // namespace server

@@ -29,8 +29,8 @@ void submit_and_reply(ApiContext& context,
         respond(json_response(status, body));
       });
   if (!given) {
-    net::Response busy =
-        net::problem(503, "Busy", "The control loop has more requests than it can take. Try again.");
+    net::Response busy = net::problem(
+        503, "Busy", "The control loop has more requests than it can take. Try again.");
     busy.headers.push_back({"Retry-After", "1"});
     respond(std::move(busy));
     return;
@@ -70,9 +70,8 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
         [&context, respond, left, refused](const std::optional<std::string>& refusal) {
           if (refusal) *refused = *refusal;
           if (--*left > 0) return;
-          respond(refused->empty()
-                      ? json_response(200, to_json(context.session.state().parameters))
-                      : net::problem(409, "Refused", *refused));
+          respond(refused->empty() ? json_response(200, to_json(context.session.state().parameters))
+                                   : net::problem(409, "Refused", *refused));
         });
     if (!given) {
       respond(net::problem(503, "Busy", "The control loop is busy. Try again."));
@@ -183,9 +182,7 @@ void add_session_routes(net::Router& router, ApiContext& context) {
                  respond(json_response(200, control(context, body)));
                }
              }));
-  router.add("POST",
-             "/api/v1/session/scenario",
-             immediate([&context](const net::Request& request) {
+  router.add("POST", "/api/v1/session/scenario", immediate([&context](const net::Request& request) {
                const json body = body_json(request);
                const JsonReader in(body, "");
                in.only({"name", "title"});

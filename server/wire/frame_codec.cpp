@@ -8,8 +8,9 @@
 #include <utility>
 #include <variant>
 
-#include "algo/explain.hpp"
 #include "telemetry_generated.h"
+
+#include "algo/explain.hpp"
 
 namespace server {
 namespace {
@@ -19,21 +20,23 @@ using Builder = flatbuffers::FlatBufferBuilder;
 template <typename T>
 using Offset = flatbuffers::Offset<T>;
 
-fb::Vec2 to_wire(const algo::Vec2& v) { return {v.x(), v.y()}; }
+fb::Vec2 to_wire(const algo::Vec2& v) {
+  return {v.x(), v.y()};
+}
 fb::Vec2f to_float(const algo::Vec2& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y())};
 }
-fb::Pose2 to_wire(const algo::Pose2& p) { return {p.x, p.y, p.heading}; }
-fb::Twist2 to_wire(const algo::Twist2& t) { return {t.v, t.omega}; }
+fb::Pose2 to_wire(const algo::Pose2& p) {
+  return {p.x, p.y, p.heading};
+}
+fb::Twist2 to_wire(const algo::Twist2& t) {
+  return {t.v, t.omega};
+}
 fb::Odometry to_wire(const algo::Odometry& o) {
   return {o.stamp, to_wire(o.pose), to_wire(o.twist)};
 }
 fb::RangeReading to_wire(const algo::RangeReading& r) {
-  return {to_wire(r.mount_R),
-          r.stamp,
-          r.range,
-          r.range_max,
-          static_cast<fb::BeamStatus>(r.status)};
+  return {to_wire(r.mount_R), r.stamp, r.range, r.range_max, static_cast<fb::BeamStatus>(r.status)};
 }
 fb::Bumper to_wire(const algo::BumperReading& b) {
   return {to_wire(b.mount_R), b.stamp, b.pressed};
@@ -45,10 +48,18 @@ fb::Node to_wire(const algo::Node& n) {
   return {to_float(n.position_W), to_float(n.internal_W), to_float(n.external_W)};
 }
 
-algo::Vec2 from_wire(const fb::Vec2& v) { return {v.x(), v.y()}; }
-algo::Vec2 from_wire(const fb::Vec2f& v) { return {v.x(), v.y()}; }
-algo::Pose2 from_wire(const fb::Pose2& p) { return {p.x(), p.y(), p.heading()}; }
-algo::Twist2 from_wire(const fb::Twist2& t) { return {t.v(), t.omega()}; }
+algo::Vec2 from_wire(const fb::Vec2& v) {
+  return {v.x(), v.y()};
+}
+algo::Vec2 from_wire(const fb::Vec2f& v) {
+  return {v.x(), v.y()};
+}
+algo::Pose2 from_wire(const fb::Pose2& p) {
+  return {p.x(), p.y(), p.heading()};
+}
+algo::Twist2 from_wire(const fb::Twist2& t) {
+  return {t.v(), t.omega()};
+}
 
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
   fb::ShapeKind kind{};
@@ -92,9 +103,15 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
   const double a = o->size()->x();
   const double c = o->size()->y();
   switch (o->kind()) {
-    case fb::ShapeKind_Cylinder: out.shape = algo::Cylinder{a}; break;
-    case fb::ShapeKind_Box: out.shape = algo::Box{a, c}; break;
-    case fb::ShapeKind_Wall: out.shape = algo::Wall{a, c}; break;
+    case fb::ShapeKind_Cylinder:
+      out.shape = algo::Cylinder{a};
+      break;
+    case fb::ShapeKind_Box:
+      out.shape = algo::Box{a, c};
+      break;
+    case fb::ShapeKind_Wall:
+      out.shape = algo::Wall{a, c};
+      break;
     case fb::ShapeKind_Polygon: {
       algo::Polygon polygon;
       if (o->points() != nullptr) {
@@ -103,7 +120,8 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
       out.shape = std::move(polygon);
       break;
     }
-    default: throw WireError("An obstacle in the frame has an unknown shape.");
+    default:
+      throw WireError("An obstacle in the frame has an unknown shape.");
   }
   return out;
 }
@@ -165,8 +183,10 @@ algo::SetParameter read_parameter(const fb::SetParameter& r) {
 algo::Request read_request(const fb::RequestBox& box) {
   if (box.request() == nullptr) throw WireError("The frame has an empty request.");
   switch (box.request_type()) {
-    case fb::Request_SetGoal: return read_goal(*box.request_as_SetGoal());
-    case fb::Request_ClearGoal: return algo::ClearGoal{};
+    case fb::Request_SetGoal:
+      return read_goal(*box.request_as_SetGoal());
+    case fb::Request_ClearGoal:
+      return algo::ClearGoal{};
     case fb::Request_AddObstacle:
       return algo::AddObstacle{read_obstacle(box.request_as_AddObstacle()->obstacle())};
     case fb::Request_MoveObstacle: {
@@ -180,9 +200,12 @@ algo::Request read_request(const fb::RequestBox& box) {
       const auto* stick = box.request_as_Joystick();
       return algo::Joystick{stick->forward(), stick->turn()};
     }
-    case fb::Request_Stop: return algo::Stop{box.request_as_Stop()->engaged()};
-    case fb::Request_SetParameter: return read_parameter(*box.request_as_SetParameter());
-    default: throw WireError("The frame has a request of an unknown kind.");
+    case fb::Request_Stop:
+      return algo::Stop{box.request_as_Stop()->engaged()};
+    case fb::Request_SetParameter:
+      return read_parameter(*box.request_as_SetParameter());
+    default:
+      throw WireError("The frame has a request of an unknown kind.");
   }
 }
 

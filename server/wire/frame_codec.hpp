@@ -1,13 +1,13 @@
 // server/wire/frame_codec.hpp: Telemetry <-> the FlatBuffers frame of web/telemetry.fbs.
 #pragma once
 
-#include <flatbuffers/flatbuffers.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
 #include <vector>
+
+#include <flatbuffers/flatbuffers.h>
 
 #include "algo/telemetry.hpp"
 #include "db/block_codec.hpp"

@@ -1,13 +1,13 @@
 // server/wire/scene_json.cpp: foxglove.* messages by their published schemas: every property there.
 #include "server/wire/scene_json.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <type_traits>
 #include <variant>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace server {
 namespace {
@@ -24,7 +24,9 @@ constexpr Colour kExternal{0.76, 0.32, 0.05, 1};
 constexpr Colour kElastic{0.48, 0.25, 0.71, 1};
 constexpr Colour kObstacle{0.55, 0.60, 0.66, 1};
 
-json to_json(const Colour& c) { return {{"r", c.r}, {"g", c.g}, {"b", c.b}, {"a", c.a}}; }
+json to_json(const Colour& c) {
+  return {{"r", c.r}, {"g", c.g}, {"b", c.b}, {"a", c.a}};
+}
 
 json time_json(double stamp) {
   const double whole = std::floor(std::max(0.0, stamp));
@@ -41,7 +43,8 @@ json rotation_json(double heading) {
 }
 
 json pose_json(const algo::Pose2& pose, double z = 0) {
-  return {{"position", point_json(pose.position(), z)}, {"orientation", rotation_json(pose.heading)}};
+  return {{"position", point_json(pose.position(), z)},
+          {"orientation", rotation_json(pose.heading)}};
 }
 
 json transform_json(double stamp, const char* parent, const char* child, const algo::Pose2& pose) {
@@ -58,8 +61,15 @@ json entity_json(double stamp, const std::string& id) {
                  {"id", id},
                  {"lifetime", {{"sec", 0}, {"nsec", 0}}},
                  {"frame_locked", false}};
-  for (const char* list : {"metadata", "arrows", "cubes", "spheres", "cylinders", "lines",
-                           "triangles", "texts", "models"}) {
+  for (const char* list : {"metadata",
+                           "arrows",
+                           "cubes",
+                           "spheres",
+                           "cylinders",
+                           "lines",
+                           "triangles",
+                           "texts",
+                           "models"}) {
     entity[list] = json::array();
   }
   return entity;
@@ -113,14 +123,12 @@ json prism_json(const std::vector<algo::Vec2>& outline, double height) {
 json obstacle_entity(double stamp, const algo::Obstacle& o) {
   json entity = entity_json(stamp, fmt::format("obstacle-{}", o.id));
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&o.shape)) {
-    entity["cylinders"].push_back({{"pose", pose_json(o.pose_W, o.height / 2)},
-                                   {"size",
-                                    {{"x", 2 * cylinder->radius},
-                                     {"y", 2 * cylinder->radius},
-                                     {"z", o.height}}},
-                                   {"bottom_scale", 1.0},
-                                   {"top_scale", 1.0},
-                                   {"color", to_json(kObstacle)}});
+    entity["cylinders"].push_back(
+        {{"pose", pose_json(o.pose_W, o.height / 2)},
+         {"size", {{"x", 2 * cylinder->radius}, {"y", 2 * cylinder->radius}, {"z", o.height}}},
+         {"bottom_scale", 1.0},
+         {"top_scale", 1.0},
+         {"color", to_json(kObstacle)}});
   } else {
     entity["triangles"].push_back(prism_json(algo::outline_W(o), o.height));
   }
@@ -203,9 +211,8 @@ std::string goal_json(const algo::Telemetry& t) {
     const algo::Vec2& p = t.goal->position_W;
     pose = {p.x(), p.y(), t.goal->heading.value_or(0)};
   }
-  return json{{"timestamp", time_json(t.observation.stamp)},
-              {"frame_id", "map"},
-              {"pose", pose_json(pose)}}
+  return json{
+      {"timestamp", time_json(t.observation.stamp)}, {"frame_id", "map"}, {"pose", pose_json(pose)}}
       .dump();
 }
 

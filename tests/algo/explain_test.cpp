@@ -44,10 +44,14 @@ TEST(Explain, AHoldComesBeforeEverythingElse) {
 }
 
 TEST(Explain, EveryStateHasItsSentences) {
-  for (const Hold hold : {Hold::None, Hold::Stopped, Hold::Bumper, Hold::StaleScan,
-                          Hold::NotFinite, Hold::LinkLost}) {
-    for (const Mission mission : {Mission::Idle, Mission::Driving, Mission::Arrived,
-                                  Mission::Stuck, Mission::Held}) {
+  for (const Hold hold : {Hold::None,
+                          Hold::Stopped,
+                          Hold::Bumper,
+                          Hold::StaleScan,
+                          Hold::NotFinite,
+                          Hold::LinkLost}) {
+    for (const Mission mission :
+         {Mission::Idle, Mission::Driving, Mission::Arrived, Mission::Stuck, Mission::Held}) {
       for (const bool with_goal : {false, true}) {
         Telemetry t;
         t.hold = hold;

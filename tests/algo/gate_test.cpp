@@ -1,9 +1,9 @@
 // tests/algo/gate_test.cpp: nothing dangerous passes the gate, and it says why.
 #include "algo/gate.hpp"
 
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 namespace algo {
 namespace {

@@ -1,9 +1,9 @@
 // tests/algo/metrics_test.cpp: the figures of a run on paths simple enough to do by hand.
 #include "algo/metrics.hpp"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace algo {
 namespace {

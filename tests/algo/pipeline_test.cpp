@@ -1,12 +1,11 @@
 // tests/algo/pipeline_test.cpp: one tick after the other: what reaches the motors, and why.
 #include "algo/pipeline.hpp"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <string>
 
 #include "tests/algo/allocations.hpp"
+#include <gtest/gtest.h>
 
 namespace algo {
 namespace {

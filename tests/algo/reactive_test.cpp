@@ -1,10 +1,10 @@
 // tests/algo/reactive_test.cpp: who wins, whose limits bind, and how long a proposal is held.
 #include "algo/reactive.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
+
+#include <gtest/gtest.h>
 
 namespace algo {
 namespace {

@@ -1,12 +1,13 @@
-// tests/server/frame_codec_test.cpp: what a pipeline needs comes back bit for bit; garbage does not.
+// tests/server/frame_codec_test.cpp: what a pipeline needs comes back bit for bit; garbage does
+// not.
 #include "server/wire/frame_codec.hpp"
-
-#include <gtest/gtest.h>
 
 #include <cstring>
 #include <random>
 #include <string>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace server {
 namespace {
@@ -115,8 +116,7 @@ TEST(FrameCodec, WindowsPointAtTheRanges) {
   const auto bytes = encoder.encode(t);
   ASSERT_EQ(encoder.windows().size(), 2u);  // the ranges and the strip
   const auto windows = encoder.windows();
-  const db::Window window =
-      windows[0].kind == db::Window::Kind::Samples ? windows[0] : windows[1];
+  const db::Window window = windows[0].kind == db::Window::Kind::Samples ? windows[0] : windows[1];
   ASSERT_EQ(window.kind, db::Window::Kind::Samples);
   ASSERT_EQ(window.count, 361u);
   std::uint16_t sample = 0;

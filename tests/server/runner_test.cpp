@@ -2,10 +2,10 @@
 // and that the robot is stopped on every way out.
 #include "server/runner.hpp"
 
-#include <gtest/gtest.h>
-
 #include <thread>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace server {
 namespace {
