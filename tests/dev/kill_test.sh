@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# tests/dev/kill_test.sh: kills the real server at random moments of a 1x run and looks at what is
+# left: at most 1.1 s lost, the file sound, the run marked interrupted at the next start.
+#
+# tests/dev/kill_test.sh PROGRAM [KILLS]
+set -euo pipefail
+program=$1
+kills=${2:-20}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+worst=0
+
+for ((i = 1; i <= kills; ++i)); do
+  "$program" serve --port 0 --db "$folder/runs.db" --scenario case1 >"$folder/log" 2>&1 &
+  server=$!
+  until url=$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1) && [ -n "$url" ]; do sleep 0.02; done
+  sleep "$(awk -v r="$RANDOM" 'BEGIN{print 1.2 + 2.5 * r / 32768}')"
+  # The newest tick a viewer was shown just before the end.
+  seen=$(curl -s "${url%/}/api/v1/session" | python3 -c 'import json,sys; d=json.load(sys.stdin); print(d["run"]["id"], d["stamp"])')
+  kill -9 "$server"
+  wait "$server" 2>/dev/null || true
+  read -r run stamp <<<"$seen"
+  check=$(sqlite3 "$folder/runs.db" 'PRAGMA integrity_check')
+  stored=$(sqlite3 "$folder/runs.db" "SELECT coalesce(max(t), 0) FROM tick WHERE run = $run")
+  lost=$(awk -v a="$stamp" -v b="$stored" 'BEGIN{printf "%.3f", a - b}')
+  worst=$(awk -v a="$worst" -v b="$lost" 'BEGIN{print (b > a) ? b : a}')
+  printf 'kill %2d: run %s shown up to %.2f s, stored up to %.2f s, lost %s s, integrity %s\n' \
+    "$i" "$run" "$stamp" "$stored" "$lost" "$check"
+  [ "$check" = ok ] || exit 1
+  awk -v l="$lost" 'BEGIN{exit !(l <= 1.1)}' || { echo "More than 1.1 s lost."; exit 1; }
+done
+
+"$program" serve --port 0 --db "$folder/runs.db" --scenario case1 >"$folder/log" 2>&1 &
+server=$!
+until grep -q http "$folder/log"; do sleep 0.02; done
+interrupted=$(sqlite3 "$folder/runs.db" "SELECT count(*) FROM run WHERE status = 'interrupted'" 2>/dev/null ||
+  curl -s "$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1)api/v1/runs?status=interrupted" | grep -o '"status":"interrupted"' | wc -l)
+kill "$server"
+wait "$server" 2>/dev/null || true
+echo "worst loss $worst s; $interrupted of $kills runs marked interrupted"
