@@ -94,7 +94,8 @@ int execute(const Options& options) {
   ProgressLine progress;
   const double limit = time_limit(spec);
   headless.progress = [&](double stamp, std::uint64_t ticks) {
-    progress.show(fmt::format("{:.0f} s of at most {:.0f} s, {} ticks", stamp, limit, ticks));
+    const std::string most = limit > 0 ? fmt::format(" of at most {:.0f} s", limit) : std::string();
+    progress.show(fmt::format("{:.0f} s{}, {} ticks", stamp, most, ticks));
   };
 
   std::stop_source stop;

@@ -94,6 +94,7 @@ std::vector<algo::Request> first_requests(const RunSpec& spec) {
 }
 
 double time_limit(const RunSpec& spec) {
+  if (!spec.scenario.log.empty()) return 0;
   if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
   if (!spec.scenario.goal) return 60.0;
   const double straight = (spec.scenario.goal->position_W - spec.scenario.start.position()).norm();

@@ -42,7 +42,8 @@ algo::PipelineConfig pipeline_config(const RunSpec& spec);
 /// The scenario's goal as the request that starts the run; empty without one.
 std::vector<algo::Request> first_requests(const RunSpec& spec);
 
-/// [s] after which a headless run gives up: the scenario's, or 5 x straight line / v_max.
+/// [s] after which a headless run gives up: the scenario's, or 5 x straight line / v_max. 0, none,
+/// for a log, which has its own end.
 double time_limit(const RunSpec& spec);
 
 /// The run row's document: the scenario as run, and the robot's spec, from which replay rebuilds
