@@ -100,7 +100,7 @@ void Run::set_outcome(Outcome outcome, const char* reason) {
   if (result_.outcome == outcome) return;
   result_.outcome = outcome;
   result_.reason = reason;
-  if (links_.on_outcome) links_.on_outcome(outcome);
+  if (links_.on_outcome) links_.on_outcome(outcome, metrics_.metrics());
 }
 
 void Run::judge(const algo::Telemetry& t) {

@@ -61,7 +61,8 @@ struct RunLinks {
   Rings* rings = nullptr;                        // null: nobody watches or asks
   FrameSink* record = nullptr;                   // null: not recorded
   std::function<void(const Frame&)> observer{};  // control thread, after each tick; for tests, CLI
-  std::function<void(algo::Outcome)> on_outcome{};  // control thread, each time it changes
+  /// Control thread, each time the outcome changes; with the figures so far.
+  std::function<void(algo::Outcome, const algo::Metrics&)> on_outcome{};
 };
 
 /// Drives `robot` with `pipeline` until `stop` is requested, the robot ends, or the policy says so.

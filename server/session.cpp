@@ -45,7 +45,11 @@ void LiveRun::control(const std::stop_token& stop) {
   links.pool = pool_.get();
   links.rings = &rings;
   links.record = sink.get();
-  links.on_outcome = [this](algo::Outcome outcome) {
+  links.on_outcome = [this](algo::Outcome outcome, const algo::Metrics& metrics) {
+    {
+      const std::lock_guard lock(mutex_);
+      metrics_ = metrics;
+    }
     outcome_.store(outcome, std::memory_order_relaxed);
   };
   result_ = run(*robot_, pipeline_, first_, {}, links, stop);
@@ -53,6 +57,11 @@ void LiveRun::control(const std::stop_token& stop) {
   outcome_.store(result_.outcome, std::memory_order_relaxed);
   if (channel_) channel_->close(run_end(result_));
   finished_.store(true, std::memory_order_release);
+}
+
+algo::Metrics LiveRun::metrics() const {
+  const std::lock_guard lock(mutex_);
+  return metrics_;
 }
 
 Session::Session(Recorder* recorder) : recorder_(recorder) {}
@@ -250,8 +259,11 @@ void Session::watch_run() {
     state_.outcome = outcome;
     // The row says at once how a run that goes on has come out so far.
     if (!ended && recorder_ != nullptr && live_->id() != 0) {
-      recorder_->post([run = live_->id(), outcome](db::RunStore& store) {
-        if (store.recording(run)) store.set_result(run, algo::name(outcome), "", "");
+      recorder_->post([run = live_->id(), outcome, metrics = live_->metrics()](
+                          db::RunStore& store) {
+        if (!store.recording(run)) return;
+        const bool over = outcome != algo::Outcome::Running;
+        store.set_result(run, algo::name(outcome), "", over ? to_json(metrics).dump() : "");
       });
     }
     changed();

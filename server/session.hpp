@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -47,6 +48,8 @@ class LiveRun {
   Rings rings{};
   algo::Robot& robot() { return *robot_; }
   algo::Outcome outcome() const { return outcome_.load(std::memory_order_relaxed); }
+  /// The figures when the outcome last changed.
+  algo::Metrics metrics() const;
   bool finished() const { return finished_.load(std::memory_order_acquire); }
   /// Only once finished() is true.
   const RunResult& result() const { return result_; }
@@ -62,6 +65,8 @@ class LiveRun {
   std::shared_ptr<RunChannel> channel_;
   std::shared_ptr<FramePool> pool_;
   RunResult result_{};
+  mutable std::mutex mutex_{};
+  algo::Metrics metrics_{};  // guarded by mutex_, which is taken only when the outcome changes
   std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
   std::atomic<bool> finished_{false};
   std::jthread thread_;  // last: starts when all above is there
