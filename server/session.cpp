@@ -259,12 +259,12 @@ void Session::watch_run() {
     state_.outcome = outcome;
     // The row says at once how a run that goes on has come out so far.
     if (!ended && recorder_ != nullptr && live_->id() != 0) {
-      recorder_->post([run = live_->id(), outcome, metrics = live_->metrics()](
-                          db::RunStore& store) {
-        if (!store.recording(run)) return;
-        const bool over = outcome != algo::Outcome::Running;
-        store.set_result(run, algo::name(outcome), "", over ? to_json(metrics).dump() : "");
-      });
+      recorder_->post(
+          [run = live_->id(), outcome, metrics = live_->metrics()](db::RunStore& store) {
+            if (!store.recording(run)) return;
+            const bool over = outcome != algo::Outcome::Running;
+            store.set_result(run, algo::name(outcome), "", over ? to_json(metrics).dump() : "");
+          });
     }
     changed();
   }
