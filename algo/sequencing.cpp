@@ -14,6 +14,13 @@ constexpr double kStuckWindow = 20.0;     // [s] at least
 constexpr double kStuckDistance = 0.800;  // [m] nominal travel within the window
 constexpr double kGoalHeading = 0.05;     // [rad]
 
+bool at_goal(const SetGoal& goal, const Pose2& pose_W, double reach) {
+  const double distance = (goal.position_W - pose_W.position()).norm();
+  if (!(distance < reach)) return false;
+  if (!goal.heading) return true;
+  return std::abs(wrap_angle(*goal.heading - pose_W.heading)) < kGoalHeading;
+}
+
 }  // namespace
 
 double StuckDetector::window(double v_max) {
@@ -55,16 +62,11 @@ void Sequencer::set_goal(const std::optional<SetGoal>& goal) {
   stuck_.restart();
 }
 
-bool Sequencer::at_goal(const Pose2& pose_W, const Parameters& parameters) const {
-  const double distance = (goal_->position_W - pose_W.position()).norm();
-  if (!(distance < parameters[Parameter::GoalReach])) return false;
-  if (!goal_->heading) return true;
-  return std::abs(wrap_angle(*goal_->heading - pose_W.heading)) < kGoalHeading;
-}
-
 Mission Sequencer::update(const Pose2& pose_W, const Parameters& parameters) {
   if (!goal_ || mission_ == Mission::Arrived) return mission_;
-  if (at_goal(pose_W, parameters)) return mission_ = Mission::Arrived;
+  if (at_goal(*goal_, pose_W, parameters[Parameter::GoalReach])) {
+    return mission_ = Mission::Arrived;
+  }
 
   const Vec2 position_W = pose_W.position();
   if (stuck_.update(position_W, parameters[Parameter::MaxSpeed])) {

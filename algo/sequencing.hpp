@@ -40,8 +40,6 @@ class Sequencer {
   Mission update(const Pose2& pose_W, const Parameters& parameters);
 
  private:
-  bool at_goal(const Pose2& pose_W, const Parameters& parameters) const;
-
   std::optional<SetGoal> goal_{};
   Mission mission_ = Mission::Idle;
   StuckDetector stuck_{};

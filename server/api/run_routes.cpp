@@ -160,7 +160,10 @@ net::Response export_csv(ApiContext& context, const net::Request& request) {
   if (!context.reader.get(run)) return no_such_run(run);
   auto body = std::make_shared<std::string>(db::RunReader::csv_header());
   std::optional<std::uint64_t> from = 0;
-  while (from) from = context.reader.csv(run, *from, 10'000, *body, csv_names());
+  while (from) {
+    const std::uint64_t tick = *from;
+    from = context.reader.csv(run, tick, 10'000, *body, csv_names());
+  }
   net::Response response;
   response.content_type = "text/csv; charset=utf-8";
   response.headers.push_back(

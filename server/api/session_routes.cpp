@@ -64,9 +64,10 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
     return;
   }
   for (const auto& [name, unused] : body.items()) {
-    const algo::Parameter parameter = *algo::find_parameter(name);
+    const auto parameter = algo::find_parameter(name);
+    if (!parameter) continue;  // parameters_from_json() has refused unknown ones
     const auto given = context.session.submit(
-        algo::SetParameter{parameter, wanted[parameter]},
+        algo::SetParameter{*parameter, wanted[*parameter]},
         [&context, respond, left, refused](const std::optional<std::string>& refusal) {
           if (refusal) *refused = *refusal;
           if (--*left > 0) return;
