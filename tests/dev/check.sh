@@ -44,12 +44,11 @@ tidy_keys() {
 }
 
 # tidy_file KEY FILE: quiet and remembered when clean. The analyzer is kept for our own logic: on a
-# Beast file it costs 30 s and 1.2 GB, in a test it walks GoogleTest. Nor does clang-tidy know that
-# ASSERT_TRUE(optional) leaves a test.
+# Beast file it costs 30 s and 1.2 GB, in a test it walks GoogleTest.
 tidy_file() {
   local checks=() log=$work/tidy/$1.log
   if [[ $2 == tests/* ]]; then
-    checks=(--checks='-clang-analyzer-*,-bugprone-unchecked-optional-access,-bugprone-reserved-identifier')
+    checks=(--checks='-clang-analyzer-*,-bugprone-reserved-identifier')
   elif grep -qE '#include <boost/(asio|beast)' "$2"; then
     checks=(--checks='-clang-analyzer-*')
   fi
