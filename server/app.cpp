@@ -60,7 +60,10 @@ struct App::Impl {
     std::signal(SIGINT, [](int) { g_terminated = 1; });
     std::signal(SIGTERM, [](int) { g_terminated = 1; });
   }
-  ~Impl() { session.end(); }
+  ~Impl() {
+    session.end();
+    recorder.flush();  // what was posted may still answer through the server: while it is there
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 

@@ -67,7 +67,10 @@ algo::Metrics LiveRun::metrics() const {
 Session::Session(Recorder* recorder) : recorder_(recorder) {}
 
 void Session::load(RunSpec spec) {
-  std::unique_ptr<algo::Robot> robot = make_robot(spec);  // may throw: nothing has changed yet
+  // Both may throw: nothing has changed yet.
+  std::unique_ptr<algo::Robot> robot = make_robot(spec);
+  std::shared_ptr<RunChannel> channel;
+  if (recorder_ != nullptr) channel = recorder_->open(new_run(spec, robot->spec()));
   end();
 
   state_.robot = robot->spec();
@@ -90,8 +93,6 @@ void Session::load(RunSpec spec) {
   std::vector<algo::Request> first = first_requests(spec);
   if (state_.stop) first.push_back(algo::Stop{true});
   for (const algo::Request& request : first) adopt(request);
-  std::shared_ptr<RunChannel> channel;
-  if (recorder_ != nullptr) channel = recorder_->open(new_run(spec, state_.robot));
   state_.spec = spec;
   robot->set_pace(state_.pace);
   live_ = std::make_unique<LiveRun>(
