@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "server/api/api.hpp"
 #include "server/bridge.hpp"
 #include "server/record_sink.hpp"
@@ -62,7 +64,12 @@ struct App::Impl {
   }
   ~Impl() {
     session.end();
-    recorder.flush();  // what was posted may still answer through the server: while it is there
+    // What was posted may still answer through the server: while it is there.
+    try {
+      recorder.flush();
+    } catch (const std::exception& e) {
+      spdlog::error("The last of the record could not be written: {}", e.what());
+    }
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
