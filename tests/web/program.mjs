@@ -36,13 +36,18 @@ export async function serve({ database, scenario = "case1", port = 0, more = [] 
     child.on("error", reject);
     child.on("exit", (code) => reject(new Error(`${binary} ended with ${code}:\n${said}`)));
   });
+  const ended = () => child.exitCode !== null || child.signalCode !== null;
   const url = new URL(address);
   return {
     base: `http://${url.host}`,
     port: Number(url.port),
     said: () => said,
-    stop: (signal = "SIGTERM") => new Promise((resolve) => {
-      if (child.exitCode !== null || child.signalCode !== null) return resolve();
+    /** Rejects when the program has ended before it was told to. */
+    stop: (signal = "SIGTERM") => new Promise((resolve, reject) => {
+      if (ended()) {
+        reject(new Error(`the program ended by itself (${child.exitCode ?? child.signalCode}):\n${said}`));
+        return;
+      }
       child.once("exit", () => resolve());
       child.kill(signal);
       setTimeout(() => child.kill("SIGKILL"), 10_000).unref();

@@ -182,6 +182,18 @@ test("obstacles and parameters are as they were at the shown instant, forward an
   assert.equal(run.scene.half_width, 3);
 });
 
+test("of a run that is still being recorded, what was there when it was opened", async () => {
+  let there = 500;
+  const run = new StoredRun({ ...item, status: "recording", ticks: there }, async (from, limit) => {
+    there += 1000; // it grows faster than it is fetched
+    const frames = Array.from({ length: Math.min(limit, there - from) }, (_, i) => frame_bytes({ tick: from + i }));
+    return { bytes: framed(frames), next: from + limit };
+  });
+  await run.load(() => undefined);
+  assert.equal(run.done, true);
+  assert.ok(run.rows >= 500 && run.rows <= 500 + kPageFrames, `${run.rows} rows`);
+});
+
 test("a run that cannot be fetched says why and keeps what came", async () => {
   let pages = 0;
   const run = new StoredRun(item, async () => {

@@ -84,15 +84,20 @@ export class StoredRun {
     return this.item.ticks > 0 ? Math.min(1, this.rows / this.item.ticks) : 0;
   }
 
-  /** Fetches the whole run once, front to back, reading off columns, events and edits. */
+  /**
+   * Fetches the run once, front to back, reading off columns, events and edits. Of a run that is
+   * still being recorded: what was there when it was opened, or it would never be through.
+   */
   async load(on_progress: () => void, signal?: AbortSignal): Promise<void> {
     let from: number | null = 0;
+    const growing = ["queued", "recording"].includes(this.item.status) && this.item.ticks > 0;
+    const end = growing ? this.item.ticks : Infinity;
     try {
       while (from !== null && !signal?.aborted) {
         const page: { bytes: Uint8Array; next: number | null } =
           await this.fetch_(from, kPageFrames, signal);
         this.take(from, split_frames(page.bytes));
-        from = page.next !== null && page.next > from ? page.next : null;
+        from = page.next !== null && page.next > from && page.next < end ? page.next : null;
         on_progress();
       }
       this.done = from === null;
