@@ -213,11 +213,10 @@ void Bridge::add_topics() {
 void Bridge::publish_frame(const FrameRef& frame) {
   const algo::Telemetry& t = frame->telemetry;
   const std::uint64_t time_ns = now_ns();
-  if (hub_.wanted(telemetry_)) {
-    const auto bytes = frame->bytes();
-    hub_.publish(
-        telemetry_, time_ns, shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
-  }
+  // Whether or not somebody watches: whoever opens the page while time stands still wants the last.
+  const auto bytes = frame->bytes();
+  hub_.publish(
+      telemetry_, time_ns, shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
   const auto publish = [&](ChannelId channel, auto encode) {
     if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));
   };
