@@ -13,7 +13,10 @@
 namespace server {
 
 /// Exit statuses of `run`, also in its --help.
-enum ExitStatus : int { kReached = 0, kBadInput = 1, kNotReached = 2, kCollided = 3 };
+constexpr int kReached = 0;
+constexpr int kBadInput = 1;
+constexpr int kNotReached = 2;
+constexpr int kCollided = 3;
 
 void add_serve_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);
