@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 
 #include "algo/gate.hpp"
 #include "algo/geometry.hpp"
@@ -91,14 +92,21 @@ void Pipeline::apply(const Request& request) {
 }
 
 void Pipeline::sense(Telemetry& t) {
-  scene_.fresh = !t.observation.scans.empty();
-  if (scene_.fresh) {
-    const LaserScan& front = t.observation.scans[0];
+  const LaserScan* front = nullptr;  // a scanner that looks back says nothing about the way ahead
+  for (const LaserScan& scan : t.observation.scans) {
+    if (front == nullptr && std::abs(scan.mount_R.heading) <= std::numbers::pi / 2) front = &scan;
+  }
+  scene_.fresh = front != nullptr;
+  if (front != nullptr) {
     const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
-    filter_.apply(filter_kind_, half_width, front, scene_.scan);
-    scan_stamp_ = front.stamp;
+    filter_.apply(filter_kind_, half_width, *front, scene_.scan);
+    scan_stamp_ = front->stamp;
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
+  } else {
+    // The frame comes from a pool: what explains a stale scan must not be of another tick.
+    t.scene.scan.resize(scene_.scan.size());
+    t.scene.scan.stamp = scene_.scan.stamp;
   }
   t.scene.fresh = scene_.fresh;
   t.scene.left = scene_.left;

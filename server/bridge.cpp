@@ -176,7 +176,8 @@ void Bridge::add_services() {
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   });
   add("/speed", [this](const json& body) {
-    session_.set_speed(JsonReader(body, "").number("speed", {0, 1000}));
+    JsonReader(body, "").number("speed");
+    session_.set_speed(pace_from_json(body, "speed", 1));
   });
 }
 

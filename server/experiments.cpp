@@ -96,7 +96,14 @@ void Experiments::work(const std::stop_token& stop) {
 void Experiments::execute(const Job& job) {
   HeadlessOptions options;
   options.pace = job.pace;
-  options.record = recorder_.open(job.run, wall_time());
+  try {
+    options.record = recorder_.open(job.run, wall_time());
+  } catch (const std::exception& e) {
+    recorder_.post([run = job.run, why = std::string(e.what())](db::RunStore& store) {
+      store.end_run(run, {.status = db::RunStatus::Failed, .outcome = "failed", .reason = why});
+    });
+    return;
+  }
   std::stop_token stop;
   {
     const std::lock_guard lock(mutex_);

@@ -31,6 +31,8 @@ HeadlessResult run_headless(const RunSpec& spec,
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
   algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
   robot.set_pace({.paused = false, .speed = options.pace});
+  // A robot that waits for its time must not wait on when it is asked to end.
+  const std::stop_callback wake(stop, [&] { robot.set_pace({.paused = false, .speed = 0}); });
 
   auto next_progress = std::chrono::steady_clock::now();
   RunLinks links;

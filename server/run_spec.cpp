@@ -49,6 +49,13 @@ RunOverrides overrides_from_json(const json& body) {
   return out;
 }
 
+double pace_from_json(const json& body, const char* key, double fallback) {
+  const JsonReader in(body, "");
+  const double pace = in.number_or(key, fallback, {0, 1000});
+  if (pace > 0 && pace < 0.01) in.fail(key, "must be 0, as fast as it goes, or at least 0.01");
+  return pace;
+}
+
 RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
   if (overrides.controller) scenario.controller = *overrides.controller;
   if (overrides.filter) scenario.filter = *overrides.filter;

@@ -32,6 +32,9 @@ struct RunOverrides {
 /// Reads the optional fields controller, filter, vehicle, seed, parameters. Throws DocumentError.
 RunOverrides overrides_from_json(const nlohmann::json& body);
 
+/// Times real time: 0 (as fast as it goes) or 0.01 to 1000. Throws DocumentError.
+double pace_from_json(const nlohmann::json& body, const char* key, double fallback);
+
 /// Throws DocumentError naming the field that is unknown or out of limits.
 RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides);
 

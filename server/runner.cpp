@@ -26,7 +26,8 @@ class Run {
 
  private:
   void serve_requests();
-  void accept(const algo::Request& request) { pending_.push_back(request); }
+  std::optional<std::string> refusal_of(const algo::Request& request) const;
+  void accept(const algo::Request& request);
   void publish(const FrameRef& frame);
   bool record(const FrameRef& frame);
   void judge(const algo::Telemetry& t);
@@ -41,6 +42,7 @@ class Run {
   const RunLinks& links_;
   const std::stop_token& stop_;
   algo::Recycled<algo::Request> pending_{};  // accepted, for the next tick's record
+  algo::Parameters accepted_{};
   algo::MetricsRecorder metrics_{};
   RunResult result_{};
   bool broken_ = false;
@@ -52,12 +54,28 @@ bool is_real_time(const algo::RobotSpec& spec) {
 
 void Run::serve_requests() {
   if (links_.rings == nullptr) return;
+  if (links_.rings->stop_now.exchange(false)) accept(algo::Stop{true});
   links_.rings->requests.consume_all([&](const Submission& submission) {
-    std::optional<std::string> refusal = pipeline_.refusal(submission.request);
+    std::optional<std::string> refusal = refusal_of(submission.request);
     if (!refusal) refusal = robot_.edit(submission.request);
     if (!refusal) accept(submission.request);
     links_.rings->replies.push({submission.ticket, std::move(refusal)});
   });
+}
+
+/// Parameters are checked against those accepted before, which the pipeline may not have seen yet.
+std::optional<std::string> Run::refusal_of(const algo::Request& request) const {
+  if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
+    return algo::refusal(accepted_, set->parameter, set->value);
+  }
+  return pipeline_.refusal(request);
+}
+
+void Run::accept(const algo::Request& request) {
+  pending_.push_back(request);
+  if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
+    accepted_.set(set->parameter, set->value);
+  }
 }
 
 /// A simulated robot's time waits for a free frame; a real one's cannot, so that tick gets none.
@@ -135,6 +153,7 @@ void Run::step_into(const algo::Command& command, FrameRef& next) {
 
 RunResult Run::execute(const std::vector<algo::Request>& first) {
   metrics_.reset(robot_.spec());
+  accepted_ = pipeline_.parameters();
   for (const algo::Request& request : first) accept(request);
   try {
     FrameRef frame = next_frame();

@@ -1,6 +1,7 @@
 // server/runner.hpp: the loop: one call is one run of one robot with one controller.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -32,6 +33,7 @@ struct Rings {
   boost::lockfree::spsc_queue<Submission> requests{256};
   boost::lockfree::spsc_queue<Reply> replies{1024};
   boost::lockfree::spsc_queue<FrameRef> stream{64};
+  std::atomic<bool> stop_now{false};  // a Stop that found the ring full
 };
 
 /// Where a run's frames are kept. Called on the control thread: must not block.

@@ -14,6 +14,7 @@
 namespace server {
 namespace {
 
+constexpr std::size_t kMaxPending = 900;     // fewer than the ring of replies holds
 constexpr double kPathSpacing = 0.02;        // [m]
 constexpr std::size_t kPathPoints = 20'000;  // then every second one goes
 
@@ -105,11 +106,21 @@ void Session::end() {
   newest_.reset();
   live_.reset();
   state_.running = false;
-  // What the run did not get round to is answered here, so that nobody waits for ever.
-  for (auto& [ticket, pending] : pending_) {
-    if (pending.answer) pending.answer("The run ended before this could be done.");
+  answer_the_rest();
+}
+
+/// What the run did not get round to is answered here, so that nobody waits for ever.
+void Session::answer_the_rest() {
+  const std::map<std::uint64_t, Pending> rest = std::exchange(pending_, {});
+  for (const auto& [ticket, pending] : rest) {
+    if (!pending.answer) continue;
+    if (std::holds_alternative<algo::Stop>(pending.request)) {
+      adopt(pending.request);
+      pending.answer(std::nullopt);
+    } else {
+      pending.answer("The run ended before this could be done.");
+    }
   }
-  pending_.clear();
 }
 
 std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answer) {
@@ -119,12 +130,28 @@ std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answe
     next_obstacle_ = std::max(next_obstacle_, add->obstacle.id + 1);
     id = add->obstacle.id;
   }
+  // Stop holds from this moment on, whatever becomes of the request: it belongs to the session.
+  const auto* stop = std::get_if<algo::Stop>(&request);
+  if (stop != nullptr && stop->engaged && !state_.stop) {
+    state_.stop = true;
+    changed();
+  }
   if (!live_ || live_->finished()) {
-    if (answer) answer("The run is over. Reset or load a scenario first.");
+    if (stop != nullptr) adopt(request);
+    if (answer && stop != nullptr) answer(std::nullopt);
+    if (answer && stop == nullptr) answer("The run is over. Reset or load a scenario first.");
+    if (stop != nullptr) changed();
     return id;
   }
   const std::uint64_t ticket = next_ticket_++;
-  if (!live_->rings.requests.push({ticket, request})) return std::nullopt;
+  const bool full =
+      pending_.size() >= kMaxPending || !live_->rings.requests.push({ticket, request});
+  if (full && stop != nullptr && stop->engaged) {
+    live_->rings.stop_now.store(true);
+    if (answer) answer(std::nullopt);
+    return id;
+  }
+  if (full) return std::nullopt;
   pending_.emplace(ticket, Pending{std::move(request), std::move(answer)});
   return id;
 }
@@ -246,10 +273,12 @@ void Session::narrate(const algo::Telemetry& t) {
 }
 
 void Session::watch_run() {
-  const algo::Outcome outcome = live_->outcome();
   const bool ended = state_.running && live_->finished();
+  const algo::Outcome outcome = ended ? live_->result().outcome : live_->outcome();
   if (ended) {
     state_.running = false;
+    drain_replies();
+    answer_the_rest();
     state_.lost_ticks = live_->result().lost_ticks;
     if (outcome == algo::Outcome::Failed) {
       state_.problem = live_->result().reason;

@@ -121,6 +121,7 @@ class Session {
   void adopt(const algo::Request& request);
   void drain_replies();
   void drain_frames();
+  void answer_the_rest();
   void watch_run();
   void narrate(const algo::Telemetry& t);
   void apply_pace();

@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 constexpr std::uint64_t kMaxRepeats = 10'000;
+constexpr std::size_t kMaxQueued = 20'000;  // runs of all experiments together
 
 db::RunId run_id(const net::Request& request) {
   const std::string& text = request.params.at("id");
@@ -75,12 +76,16 @@ Experiment experiment_from_json(const ApiContext& context, const json& body) {
   experiment.spec = make_spec(std::move(scenario), overrides_from_json(body));
   experiment.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
   if (experiment.repeats == 0) in.fail("repeats", "must be at least 1");
-  experiment.pace = in.number_or("pace", 0, {0, 1000});
+  experiment.pace = pace_from_json(body, "pace", 0);
   return experiment;
 }
 
 void start_runs(ApiContext& context, const net::Request& request, const net::Responder& respond) {
   Experiment experiment = experiment_from_json(context, body_json(request));
+  if (context.experiments.waiting() + experiment.repeats > kMaxQueued) {
+    respond(net::problem(503, "Busy", "Too many runs are queued already. Try again later."));
+    return;
+  }
   context.experiments.start(
       std::move(experiment),
       [&context, respond](const std::vector<db::RunId>& runs, const std::string& failure) {

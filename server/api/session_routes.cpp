@@ -1,4 +1,7 @@
 // server/api/session_routes.cpp: the live session: goal, obstacles, parameters, control.
+#include <algorithm>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "server/api/api.hpp"
@@ -53,22 +56,41 @@ json obstacle_list(const Session& session) {
   return {{"items", std::move(items)}, {"next", nullptr}};
 }
 
+/// The values of `body` in an order in which each is allowed beside those before it; empty when
+/// there is none.
+std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters now) {
+  std::vector<algo::SetParameter> left;
+  for (const auto& [name, value] : body.items()) {
+    if (const auto p = algo::find_parameter(name)) left.push_back({*p, value.get<double>()});
+  }
+  std::vector<algo::SetParameter> order;
+  while (!left.empty()) {
+    const auto next = std::find_if(left.begin(), left.end(), [&](const auto& set) {
+      return !algo::refusal(now, set.parameter, set.value);
+    });
+    if (next == left.end()) return {};
+    now.set(next->parameter, next->value);
+    order.push_back(*next);
+    left.erase(next);
+  }
+  return order;
+}
+
 /// All values are checked together before the first is submitted.
 void patch_parameters(ApiContext& context, const json& body, const net::Responder& respond) {
-  const algo::Parameters wanted =
-      parameters_from_json(body, "", context.session.state().parameters);
-  const auto left = std::make_shared<std::size_t>(body.size());
-  const auto refused = std::make_shared<std::string>();
-  if (body.empty()) {
-    respond(json_response(200, to_json(context.session.state().parameters)));
+  const algo::Parameters& now = context.session.state().parameters;
+  parameters_from_json(body, "", now);
+  const std::vector<algo::SetParameter> order = in_safe_order(body, now);
+  if (order.empty()) {
+    respond(body.empty() ? json_response(200, to_json(now))
+                         : net::problem(409, "Refused", "Change these one at a time."));
     return;
   }
-  for (const auto& [name, unused] : body.items()) {
-    const auto parameter = algo::find_parameter(name);
-    if (!parameter) continue;  // parameters_from_json() has refused unknown ones
+  const auto left = std::make_shared<std::size_t>(order.size());
+  const auto refused = std::make_shared<std::string>();
+  for (const algo::SetParameter& set : order) {
     const auto given = context.session.submit(
-        algo::SetParameter{*parameter, wanted[*parameter]},
-        [&context, respond, left, refused](const std::optional<std::string>& refusal) {
+        set, [&context, respond, left, refused](const std::optional<std::string>& refusal) {
           if (refusal) *refused = *refusal;
           if (--*left > 0) return;
           respond(refused->empty() ? json_response(200, to_json(context.session.state().parameters))
@@ -92,7 +114,8 @@ json control(ApiContext& context, const json& body) {
   } else if (action == "step") {
     session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   } else if (action == "speed") {
-    session.set_speed(in.number("speed", {0, 1000}));
+    in.number("speed");
+    session.set_speed(pace_from_json(body, "speed", 1));
   } else if (action == "reset") {
     session.reset();
   } else if (action == "load") {
