@@ -93,5 +93,8 @@ std::string App::url() const {
 void App::run() {
   impl_->server->run();
 }
+void App::stop() {
+  impl_->server->stop();
+}
 
 }  // namespace server

@@ -29,7 +29,8 @@ class App {
   App& operator=(const App&) = delete;
 
   std::string url() const;
-  void run();  // until SIGINT or SIGTERM
+  void run();   // until SIGINT, SIGTERM or stop()
+  void stop();  // from any thread
 
  private:
   struct Impl;
