@@ -143,7 +143,7 @@ void Recorder::guarded(const Action& action) {
 /// Fails the channels whose runs the store no longer records.
 void Recorder::drop_lost(const std::string& why) {
   for (const auto& channel : channels_) {
-    if (channel->failed() || store_.recording(channel->run())) continue;
+    if (channel->failed() || channel->full_ || store_.recording(channel->run())) continue;
     channel->fail(why);
     lost_.emplace_back(
         channel->run(),
@@ -199,7 +199,8 @@ void Recorder::take_frames(RunChannel& channel) {
     RecordedFrame* popped = nullptr;
     if (!channel.ring_.pop(popped)) return;
     const FrameHandle frame(popped);
-    if (channel.failed()) continue;
+    if (channel.failed() || channel.full_) continue;
+    ++channel.taken_;
     guarded([&] {
       try {
         store_.append_tick(channel.run(), frame->row(), frame->bytes(), frame->windows());
@@ -221,14 +222,16 @@ void Recorder::take_frames(RunChannel& channel) {
 void Recorder::end_closed() {
   for (std::size_t i = 0; i < channels_.size();) {
     RunChannel& channel = *channels_[i];
-    // Closed is read before the ring: what was pushed before close() is then seen.
+    // In this order: whoever closed and then let go is seen to have closed, and what was pushed
+    // before close() is seen in the ring.
+    const bool held = channels_[i].use_count() > 1;
     const bool closed = channel.closed_.load(std::memory_order_acquire);
-    if (!closed && channels_[i].use_count() > 1) {
+    if (!closed && held) {
       ++i;
       continue;
     }
     take_frames(channel);
-    if (!channel.failed()) {
+    if (!channel.failed() && !channel.full_) {
       guarded([&] {
         store_.end_run(channel.run(),
                        closed ? channel.end_
@@ -263,6 +266,23 @@ void Recorder::commit() {
   guarded([&] { store_.commit(); });
 }
 
+/// Only runs in progress are left and they are too much: the longest is recorded no further, and
+/// may then be deleted like any other. Its robot goes on; nobody meant to keep it all.
+void Recorder::cut_longest() {
+  const auto longest =
+      std::max_element(channels_.begin(), channels_.end(), [](const auto& a, const auto& b) {
+        return std::pair(!a->full_, a->taken_) < std::pair(!b->full_, b->taken_);
+      });
+  if (longest == channels_.end() || (*longest)->full_) return;
+  RunChannel& channel = **longest;
+  const std::string why = "Run " + std::to_string(channel.run()) +
+                          " fills the run store alone: from here on it is not recorded.";
+  store_.end_run(channel.run(), {.outcome = "stopped", .reason = why});
+  store_.commit();
+  channel.full_ = true;
+  report(why);
+}
+
 void Recorder::make_room() {
   guarded([&] {
     if (!sweeping_ && options_.retention_bytes > 0) {
@@ -271,6 +291,8 @@ void Recorder::make_room() {
         report("Deleted run " + std::to_string(run->id) + " (" + run->what.scenario + ", " +
                run->what.started + ", " + std::to_string(run->ticks) +
                " ticks): the run store is full.");
+      } else if (store_.used_bytes() > options_.retention_bytes) {
+        cut_longest();
       }
     }
     // Every slice commits, so the frames that came meanwhile are as safe as without it.
@@ -284,7 +306,7 @@ void Recorder::make_room() {
 
 void Recorder::stop_all() {
   for (const auto& channel : channels_) {
-    if (channel->failed()) continue;
+    if (channel->failed() || channel->full_) continue;
     guarded([&] {
       store_.end_run(channel->run(),
                      {.status = db::RunStatus::Interrupted,

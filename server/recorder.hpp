@@ -166,7 +166,9 @@ class RunChannel {
   std::size_t half_ = 0;
   boost::lockfree::spsc_queue<RecordedFrame*> ring_;
   std::shared_ptr<detail::Doorbell> bell_{};
-  db::RunEnd end_{};  // written before closed_
+  std::uint64_t taken_ = 0;  // frames; the database thread's
+  bool full_ = false;        // recorded no further; the database thread's
+  db::RunEnd end_{};         // written before closed_
   std::atomic<bool> closed_ = false;
   std::string problem_{};  // written before failed_
   std::atomic<bool> failed_ = false;
@@ -241,6 +243,7 @@ class Recorder {
   void end_lost();
   void commit();
   void make_room();
+  void cut_longest();
   void stop_all();
   void drop_lost(const std::string& why);
   void report(const std::string& sentence) const;

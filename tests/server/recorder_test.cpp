@@ -192,7 +192,9 @@ TEST_F(RecorderTest, AFullDiskStopsTheRunAndNotTheRecorder) {
     first->close({.outcome = "reached"});
     const auto channel = recorder.open(what());
     cut = channel->run();
-    for (std::uint64_t tick = 0; !channel->failed(); ++tick) {
+    push(*channel, 0);
+    recorder.flush();  // so that some of it is kept, however soon the rest fills the disk
+    for (std::uint64_t tick = 1; !channel->failed(); ++tick) {
       ASSERT_LT(tick, 100'000U);
       push(*channel, tick);
     }
@@ -277,6 +279,33 @@ TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
   ASSERT_FALSE(reports.empty());
   EXPECT_THAT(reports.front(),
               HasSubstr("Deleted run 1 (case1, 2026-11-21T10:40:47Z, 1000 ticks)"));
+}
+
+TEST_F(RecorderTest, ARunThatFillsTheStoreAloneIsRecordedNoFurther) {
+  std::vector<std::string> reports;
+  constexpr std::uint64_t kLimit = 100'000;
+  Recorder recorder(path,
+                    {.retention_bytes = kLimit,
+                     .commit_interval = std::chrono::milliseconds(5),
+                     .report = [&](const std::string& line) { reports.push_back(line); }});
+  const auto channel = recorder.open(what());
+  const auto ended = [&] {
+    return recorder.ask([&](db::RunStore& store) { return !store.recording(channel->run()); });
+  };
+  std::uint64_t tick = 0;
+  while (tick < 20'000 && !ended()) push(*channel, tick++);
+  ASSERT_TRUE(ended());
+  EXPECT_LT(tick, 20'000u);
+  for (int i = 0; i < 100; ++i) push(*channel, tick++);  // taken, and dropped
+  EXPECT_FALSE(channel->failed());                       // no reason to stop the robot
+  channel->close({.outcome = "reached"});
+  const auto other = recorder.open(what());  // the next run is recorded again
+  for (std::uint64_t i = 0; i < 10; ++i) push(*other, i);
+  other->close({.outcome = "reached"});
+  recorder.flush();
+  ASSERT_FALSE(reports.empty());
+  EXPECT_THAT(reports.front(), HasSubstr("fills the run store alone"));
+  expect_frames(other->run(), 10);
 }
 
 /// What the child tells its parent; it outlives the kill.
