@@ -30,20 +30,24 @@ double yaw_of(const JsonReader& q) {
   return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }
 
+/// The same limits as over REST.
+algo::Request goal_at(const JsonReader& position, std::optional<double> heading) {
+  json goal = {{"type", "set_goal"}, {"x", position.number("x")}, {"y", position.number("y")}};
+  if (heading) goal["heading"] = *heading;
+  return request_from_json(goal);
+}
+
 /// geometry_msgs/PoseStamped.
-algo::SetGoal goal_from_pose(const json& message) {
+algo::Request goal_from_pose(const json& message) {
   const JsonReader pose = JsonReader(message, "").object("pose");
-  const JsonReader position = pose.object("position");
-  algo::SetGoal goal;
-  goal.position_W = {position.number("x"), position.number("y")};
-  if (pose.has("orientation")) goal.heading = yaw_of(pose.object("orientation"));
-  return goal;
+  std::optional<double> heading;
+  if (pose.has("orientation")) heading = yaw_of(pose.object("orientation"));
+  return goal_at(pose.object("position"), heading);
 }
 
 /// geometry_msgs/PointStamped.
-algo::SetGoal goal_from_point(const json& message) {
-  const JsonReader point = JsonReader(message, "").object("point");
-  return {.position_W = {point.number("x"), point.number("y")}, .heading = std::nullopt};
+algo::Request goal_from_point(const json& message) {
+  return goal_at(JsonReader(message, "").object("point"), std::nullopt);
 }
 
 /// geometry_msgs/Twist in m/s and rad/s, as a share of the robot's limits.

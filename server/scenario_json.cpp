@@ -249,7 +249,7 @@ bool valid_scenario_name(std::string_view name) {
 algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
   const JsonReader in(value, path);
   algo::Obstacle obstacle;
-  obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, 0xFFFFFFFF));
+  obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, kMaxObstacleId));
   const std::string type = in.text("type");
   if (type == "cylinder") {
     in.only({"id", "type", "x", "y", "heading", "radius", "height", "reflectivity", "specular"});
@@ -321,19 +321,22 @@ algo::Request request_from_json(const json& value) {
     in.only({"type", "x", "y", "heading"});
     return goal_from_json(in);
   }
-  if (type == "clear_goal") return algo::ClearGoal{};
+  if (type == "clear_goal") {
+    in.only({"type"});
+    return algo::ClearGoal{};
+  }
   if (type == "add_obstacle") {
     in.only({"type", "obstacle"});
     return algo::AddObstacle{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
   }
   if (type == "move_obstacle") {
     in.only({"type", "id", "x", "y", "heading"});
-    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", 0xFFFFFFFF)),
+    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId)),
                               pose_from_json(in, 0)};
   }
   if (type == "remove_obstacle") {
     in.only({"type", "id"});
-    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", 0xFFFFFFFF))};
+    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId))};
   }
   if (type == "joystick") {
     in.only({"type", "forward", "turn"});
@@ -415,7 +418,10 @@ sim::Scenario scenario_from_json(const json& document) {
   s.description = in.text_or("description", "");
   s.robot = in.text_or("robot", s.robot);
   s.period = in.number_or("period", s.period, {0.002, 1.0});
-  if (in.has("goal")) s.goal = goal_from_json(in.object("goal"));
+  if (in.has("goal")) {
+    in.object("goal").only({"x", "y", "heading"});
+    s.goal = goal_from_json(in.object("goal"));
+  }
   s.start = start_from_json(in, s.goal);
   if (in.has("obstacles")) read_obstacles(in, s);
   if (in.has("lasers")) {

@@ -2,6 +2,8 @@
 // (docs/interfaces.md).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -14,6 +16,7 @@
 namespace server {
 
 constexpr std::size_t kMaxObstacles = 2000;
+constexpr std::uint32_t kMaxObstacleId = 999'999'999;
 
 /// Reads a whole scenario; throws DocumentError saying which field is wrong and how. Names of
 /// controllers and filters are checked, overlaps with the robot are not (the world does that).

@@ -113,7 +113,9 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
 
 void ScenarioLibrary::save(const sim::Scenario& scenario) const {
   if (!valid_scenario_name(scenario.name)) {
-    throw LibraryError(Kind::BadName, "A name is 1 to 64 of the characters a-z, 0-9, _ and -.");
+    throw LibraryError(
+        Kind::BadName,
+        fmt::format("'{}' is no name: 1 to 64 of the characters a-z, 0-9, _ and -", scenario.name));
   }
   if (find_embedded(scenario.name) != nullptr) {
     throw LibraryError(

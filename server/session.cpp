@@ -10,6 +10,7 @@
 #include "algo/explain.hpp"
 #include "server/record_sink.hpp"
 #include "server/run_json.hpp"
+#include "server/scenario_json.hpp"
 
 namespace server {
 namespace {
@@ -87,9 +88,6 @@ void Session::load(RunSpec spec) {
   told_mission_ = algo::Mission::Idle;
   told_hold_ = algo::Hold::None;
   next_obstacle_ = 1;
-  for (const algo::Obstacle& o : state_.obstacles) {
-    next_obstacle_ = std::max(next_obstacle_, o.id + 1);
-  }
 
   std::vector<algo::Request> first = first_requests(spec);
   if (state_.stop) first.push_back(algo::Stop{true});
@@ -123,11 +121,28 @@ void Session::answer_the_rest() {
   }
 }
 
+/// One that neither an obstacle nor one on its way has. The ids of those removed come last.
+std::uint32_t Session::free_obstacle_id() {
+  const auto taken = [this](std::uint32_t id) {
+    const auto on_its_way = [id](const auto& entry) {
+      const auto* add = std::get_if<algo::AddObstacle>(&entry.second.request);
+      return add != nullptr && add->obstacle.id == id;
+    };
+    return std::any_of(state_.obstacles.begin(),
+                       state_.obstacles.end(),
+                       [id](const auto& o) { return o.id == id; }) ||
+           std::any_of(pending_.begin(), pending_.end(), on_its_way);
+  };
+  std::uint32_t id = next_obstacle_;
+  while (taken(id)) id = id % kMaxObstacleId + 1;
+  next_obstacle_ = id % kMaxObstacleId + 1;
+  return id;
+}
+
 std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answer) {
   std::uint32_t id = 0;
   if (auto* add = std::get_if<algo::AddObstacle>(&request)) {
-    if (add->obstacle.id == 0) add->obstacle.id = next_obstacle_++;
-    next_obstacle_ = std::max(next_obstacle_, add->obstacle.id + 1);
+    if (add->obstacle.id == 0) add->obstacle.id = free_obstacle_id();
     id = add->obstacle.id;
   }
   // Stop holds from this moment on, whatever becomes of the request: it belongs to the session.

@@ -119,6 +119,7 @@ class Session {
   };
 
   void adopt(const algo::Request& request);
+  std::uint32_t free_obstacle_id();
   void drain_replies();
   void drain_frames();
   void answer_the_rest();

@@ -34,6 +34,10 @@ void add_scenario_routes(net::Router& router, ApiContext& context);
 void add_session_routes(net::Router& router, ApiContext& context);
 void add_run_routes(net::Router& router, ApiContext& context);
 
+/// Saves one of the user's own, once its world has been built: what cannot be run is not kept.
+/// Throws LibraryError or what is wrong with the world.
+void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
+
 /// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError,
 /// LibraryError or what the robot says; the present run then goes on.
 void load_from_json(ApiContext& context, const nlohmann::json& body);

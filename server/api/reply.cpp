@@ -55,7 +55,7 @@ net::Response problem_of_current_exception() {
 }
 
 nlohmann::json body_json(const net::Request& request) {
-  if (request.body.empty()) return nlohmann::json::object();
+  if (request.body.empty()) throw JsonError("the body is empty: send a JSON object");
   return parse_json(request.body);
 }
 

@@ -17,13 +17,12 @@ json to_json(const ScenarioEntry& entry) {
           {"kind", entry.is_log ? "log" : "world"}};
 }
 
-/// Builds the world once: what could not be run must not be kept.
-void check_world(const sim::Scenario& scenario) {
-  RunSpec spec = make_spec(scenario, {});
-  make_robot(spec);
-}
-
 }  // namespace
+
+void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
+  make_robot(make_spec(scenario, {}));
+  context.library.save(scenario);
+}
 
 void add_scenario_routes(net::Router& router, ApiContext& context) {
   router.add("GET", "/api/v1/scenarios", immediate([&context](const net::Request&) {
@@ -45,8 +44,7 @@ void add_scenario_routes(net::Router& router, ApiContext& context) {
                if (scenario.name != name) {
                  throw DocumentError("name", "differs from the name in the path");
                }
-               check_world(scenario);
-               context.library.save(scenario);
+               keep_scenario(context, scenario);
                return json_response(200, server::to_json(scenario));
              }));
   router.add(

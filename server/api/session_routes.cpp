@@ -103,32 +103,38 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
   }
 }
 
-json control(ApiContext& context, const json& body) {
+void control(ApiContext& context, const json& body, const net::Responder& respond) {
   const JsonReader in(body, "");
   const std::string action = in.text("action", 32);
   Session& session = context.session;
-  if (action == "play") {
-    session.pause(false);
-  } else if (action == "pause") {
-    session.pause(true);
-  } else if (action == "step") {
-    session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
-  } else if (action == "speed") {
-    in.number("speed");
-    session.set_speed(pace_from_json(body, "speed", 1));
-  } else if (action == "reset") {
-    session.reset();
-  } else if (action == "load") {
+  if (action == "load") {
     json load = body;
     load.erase("action");
     load_from_json(context, load);
+  } else if (action == "step") {
+    in.only({"action", "ticks"});
+    session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
+  } else if (action == "speed") {
+    in.only({"action", "speed"});
+    in.number("speed");
+    session.set_speed(pace_from_json(body, "speed", 1));
+  } else if (action == "stop" || action == "release") {
+    in.only({"action"});
+    submit_and_reply(context, algo::Stop{action == "stop"}, respond);
+    return;
+  } else if (action == "play" || action == "pause") {
+    in.only({"action"});
+    session.pause(action == "pause");
+  } else if (action == "reset") {
+    in.only({"action"});
+    session.reset();
   } else {
     in.fail("action",
             fmt::format("'{}' is unknown; known are play, pause, step, speed, reset, stop, "
                         "release, load",
                         action));
   }
-  return state_json(session);
+  respond(json_response(200, state_json(session)));
 }
 
 }  // namespace
@@ -198,22 +204,20 @@ void add_session_routes(net::Router& router, ApiContext& context) {
   router.add("POST",
              "/api/v1/session/control",
              guarded([&context](const net::Request& request, const net::Responder& respond) {
-               const json body = body_json(request);
-               const std::string action = JsonReader(body, "").text("action", 32);
-               if (action == "stop" || action == "release") {
-                 submit_and_reply(context, algo::Stop{action == "stop"}, respond);
-               } else {
-                 respond(json_response(200, control(context, body)));
-               }
+               control(context, body_json(request), respond);
              }));
   router.add("POST", "/api/v1/session/scenario", immediate([&context](const net::Request& request) {
                const json body = body_json(request);
                const JsonReader in(body, "");
                in.only({"name", "title"});
                const std::string name = in.text("name", 64);
+               if (!context.session.state().spec.scenario.log.empty()) {
+                 return net::problem(
+                     409, "Refused", "A recorded log is playing: there is no world to save.");
+               }
                const sim::Scenario scenario =
                    context.session.as_scenario(name, in.text_or("title", name));
-               context.library.save(scenario);
+               keep_scenario(context, scenario);
                net::Response response = json_response(201, to_json(scenario));
                response.headers.push_back({"Location", "/api/v1/scenarios/" + name});
                return response;

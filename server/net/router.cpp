@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace server::net {
 namespace {
 
@@ -42,7 +44,7 @@ void Router::add(std::string method, std::string pattern, Handler handler) {
   }
   for (const Route& route : routes_) {
     if (route.method == method && route.pattern == pattern) {
-      throw std::invalid_argument("route " + method + ' ' + pattern + " is there already");
+      throw std::invalid_argument(fmt::format("route {} {} is there already", method, pattern));
     }
   }
   entries_.push_back({split(pattern), std::move(handler)});

@@ -23,7 +23,7 @@ using Timer = asio::basic_waitable_timer<Clock, asio::wait_traits<Clock>, Execut
 asio::ip::address parse_address(const std::string& text) {
   if (text == "localhost") return asio::ip::address_v4::loopback();
   boost::system::error_code error;
-  const asio::ip::address address = asio::ip::make_address(text, error);
+  asio::ip::address address = asio::ip::make_address(text, error);
   if (error) {
     throw ServerError("cannot listen on '" + text +
                       "': give an IP address such as 127.0.0.1 or 0.0.0.0");
@@ -177,6 +177,7 @@ void Server::Impl::begin_stop() {
   acceptor.close(ignored);
   retry_timer.cancel();
   std::vector<std::shared_ptr<Connection>> open;
+  open.reserve(core.connections.size());
   for (const auto& [number, connection] : core.connections) open.push_back(connection);
   for (const auto& connection : open) guarded([&] { connection->go_away(); });
   if (core.connections.empty()) {

@@ -40,6 +40,7 @@ class AppTest : public ::testing::Test {
     const std::string url = app_->url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
     thread_ = std::thread([this] { app_->run(); });
+    EXPECT_TRUE(net::test::eventually([this] { return get("/session").contains("pose"); }));
   }
   ~AppTest() override {
     app_->stop();

@@ -32,13 +32,15 @@ void expect_required(const json& api, json schema, const json& sample, const std
     const std::string ref = schema["$ref"];
     schema = api.at(json::json_pointer(ref.substr(1)));
   }
-  for (const auto& key : schema.value("required", json::array())) {
+  const json required = schema.value("required", json::array());
+  for (const auto& key : required) {
     EXPECT_TRUE(sample.contains(key.get<std::string>())) << where << " lacks " << key;
   }
   if (schema.contains("items") && sample.is_array()) {
     for (const json& item : sample) expect_required(api, schema["items"], item, where + "[]");
   }
-  for (const auto& [key, part] : schema.value("properties", json::object()).items()) {
+  const json properties = schema.value("properties", json::object());
+  for (const auto& [key, part] : properties.items()) {
     if (sample.is_object() && sample.contains(key) && !sample[key].is_null()) {
       expect_required(api, part, sample[key], where + "/" + key);
     }
@@ -64,10 +66,11 @@ TEST_F(AppTest, TheDescriptionListsExactlyTheRoutesThereAre) {
                      .experiments = experiments,
                      .recorder = recorder,
                      .reader = reader};
-  net::Router router;
-  add_api(router, context);
+  net::Server server({.port = 0});  // adds the login itself
+  add_api(server.router(), context);
   std::multiset<std::string> routes;
-  for (const auto& route : router.routes()) routes.insert(route.method + " " + route.pattern);
+  for (const auto& route : server.router().routes())
+    routes.insert(route.method + " " + route.pattern);
   EXPECT_EQ(described, routes);
 }
 
@@ -125,7 +128,8 @@ TEST_F(AppTest, ElevenMalformedScenariosAreRefusedByFieldAndNotKept) {
   expect_problem(ask("PUT", "/scenarios/x", R"({"name":"y"})"), 422, "name");
   expect_problem(ask("PUT", "/scenarios/Bad%20Name", R"({"goal":{"x":1,"y":1}})"), 422, "name");
   expect_problem(ask("PUT", "/scenarios/case1", R"({"goal":{"x":1,"y":1}})"), 409, "case1");
-  for (const json& item : get("/scenarios")["items"]) EXPECT_TRUE(item["builtin"]) << item;
+  const json kept = get("/scenarios");
+  for (const json& item : kept["items"]) EXPECT_TRUE(item["builtin"]) << item;
 }
 
 TEST_F(AppTest, AGoodScenarioIsKeptReadRunAndDeleted) {
@@ -253,7 +257,8 @@ TEST_F(AppTest, ObstaclesAreAddedMovedRemovedAndKeptOffTheRobot) {
   ASSERT_EQ(added.status, 201) << added.body;
   const json id = json::parse(added.body)["id"];
   const auto find = [&] {
-    for (const json& o : get("/session/obstacles")["items"]) {
+    const json all = get("/session/obstacles");
+    for (const json& o : all["items"]) {
       if (o["id"] == id) return o;
     }
     return json();
