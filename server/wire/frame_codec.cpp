@@ -433,6 +433,13 @@ void FrameEncoder::find_windows() {
 }
 
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
+  // FlatBuffers reads doubles in place; a frame from the middle of a message may lie anywhere.
+  constexpr std::size_t kAlignment = alignof(double);
+  if (reinterpret_cast<std::uintptr_t>(bytes.data()) % kAlignment != 0) {
+    const std::vector<std::byte> aligned(bytes.begin(), bytes.end());
+    decode_frame(aligned, t);
+    return;
+  }
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   flatbuffers::Verifier verifier(data, bytes.size());
   if (!fb::VerifyFrameBuffer(verifier)) throw WireError("The bytes are not a telemetry frame.");
