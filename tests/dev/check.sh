@@ -105,10 +105,11 @@ verb_fmt() {
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
-    asan) ;;
+    asan) targets=(test_algo test_sim test_db test_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.') ;;
     tsan) targets=(test_server test_db) only=(-E '_NOT_BUILT$|^Dev\.|^fuzz_') ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac
+  need clang-16 libclang-rt-16-dev
   build_all "$1" "${targets[@]}"
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
@@ -117,22 +118,19 @@ verb_sanitize() {
   closing_line
 }
 
-# CMake target `fuzz` builds tests/fuzz/fuzz_NAME for each NAME; tests/fuzz/seeds/NAME are its kept
-# inputs. They run first, then a short search from them. What it finds on its way stays in build/fuzz.
+# CMake target `fuzz` builds tests/fuzz/fuzz_NAME for each NAME, in the asan build; tests/fuzz/seeds/NAME
+# are its kept inputs. They run first, then a short search from them. What it finds on its way stays in
+# build/asan/found.
 verb_fuzz() {
   local target name seconds=${1:-5} status=0
-  if [[ ! -f tests/fuzz/CMakeLists.txt ]]; then
-    say "No fuzz targets here."
-    return
-  fi
   need clang-16 libclang-rt-16-dev
-  build_all fuzz fuzz
-  for target in build/fuzz/tests/fuzz/fuzz_*; do
+  build_all asan fuzz
+  for target in build/asan/tests/fuzz/fuzz_*; do
     [[ -x $target && -f $target ]] || continue
     name=${target##*/fuzz_}
-    mkdir -p "build/fuzz/found/$name"
+    mkdir -p "build/asan/found/$name"
     quietly "fuzz-$name.log" "Fuzzing $name" "$target" -max_total_time="$seconds" -timeout=10 \
-      -artifact_prefix="$work/" "build/fuzz/found/$name" "tests/fuzz/seeds/$name" || status=1
+      -artifact_prefix="$work/" "build/asan/found/$name" "tests/fuzz/seeds/$name" || status=1
   done
   return "$status"
 }
@@ -140,7 +138,7 @@ verb_fuzz() {
 verb_check() {
   local stage broken=() times=() start
   need "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
-  for stage in lint "sanitize asan" "sanitize tsan" fuzz; do
+  for stage in lint "sanitize asan" "sanitize tsan" fuzz image; do
     printf '== %s\n' "$stage"
     start=$SECONDS
     # A process each, so that `set -e` stays in force inside.

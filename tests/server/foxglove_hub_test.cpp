@@ -316,7 +316,7 @@ TEST_F(FoxgloveHub, ARefusedParameterIsASentenceAndTheOldValue) {
   for (const auto& [parameter, sentence] : cases) {
     text(*socket, {{"op", "setParameters"}, {"parameters", json::array({parameter})}});
     ASSERT_EQ(2u, socket->texts.size());
-    EXPECT_EQ(sentence, socket->texts[0].at("message"));
+    EXPECT_EQ(sentence, socket->texts[0].at("message").get<std::string>());
     EXPECT_EQ(1, socket->texts[0].at("level"));
     EXPECT_EQ("parameterValues", socket->texts[1].at("op"));
     for (const json& value : socket->texts[1].at("parameters")) {

@@ -215,7 +215,7 @@ TEST(FoxgloveSchemas, EveryAdvertisedSchemaIsThere) {
     EXPECT_EQ("jsonschema", found.encoding);
     const json text = json::parse(found.text);
     EXPECT_EQ("object", text.at("type"));
-    EXPECT_EQ(std::string("foxglove.") + name, text.at("title"));
+    EXPECT_EQ(std::string("foxglove.") + name, text.at("title").get<std::string>());
   }
   const json state = json::parse(schema("tautline.State").text);
   EXPECT_EQ("object", state.at("type"));
