@@ -10,6 +10,8 @@ export const repository = dirname(dirname(dirname(fileURLToPath(import.meta.url)
 export const require = createRequire(join(repository, "web/package.json"));
 const binary = process.env.TAUTLINE_BIN ?? join(repository, "build/release/server/tautline");
 
+export const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
+
 /** A folder for one test's database, gone with `remove`. */
 export function scratch() {
   const folder = mkdtempSync(join(tmpdir(), "tautline-web-"));
