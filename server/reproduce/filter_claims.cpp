@@ -137,7 +137,7 @@ Claim edges_are_kept(const FilterStudy& study) {
   }
   const Pair step = both(study, "pseudomedian", &SignalResult::step);
   return {
-      .source = "Nong 2008, chapter 3",
+      .source = "chapter 3, Schulze 1990; our words",
       .sentence = "The pseudomedian filter preserves edges.",
       .rule = fmt::format("Reproduced when a step comes out exactly and the scenes' edges shift "
                           "and blur by less than {} beam; in part when only one holds.",
@@ -182,7 +182,7 @@ Claim fast_oscillation_is_blocked(const FilterStudy& study) {
   const Pair median = both(study, "median", &SignalResult::fastest);
   const Pair slower = both(study, "pseudomedian", &SignalResult::slower);
   return {
-      .source = "Nong 2008, chapter 3",
+      .source = "chapter 3, Schulze 1990; our words",
       .sentence = "The pseudomedian filter blocks a fast oscillation that the median lets pass.",
       .rule = fmt::format("An oscillation from beam to beam: less than {:.0f} % left and, by the "
                           "median, more than {:.0f} %; in part when only the first holds.",
@@ -212,7 +212,7 @@ Claim output_may_be_new(const FilterStudy& study) {
     median = std::max({median, other.not_in_window, other.not_whole});
   }
   return {
-      .source = "Nong 2008, chapter 3",
+      .source = "chapter 3; our words",
       .sentence =
           "The result need not be one of the window's values nor an integer, as the "
           "median's is.",
@@ -240,7 +240,7 @@ Claim cheaper_than_a_median(const FilterStudy& study) {
                          each.textbook);
   }
   return {
-      .source = "Nong 2008, chapter 3",
+      .source = "chapter 3, Schulze 1990; our words",
       .sentence = "The pseudomedian filter costs less than a running median.",
       .rule = fmt::format("CPU time, pseudomedian / median, this program's tuned code and plain "
                           "textbook code: below {} everywhere is reproduced, somewhere in part.",

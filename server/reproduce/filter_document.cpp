@@ -257,6 +257,12 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
       "Scenes, noise and the height of the spikes are ours where the thesis is silent: a wall 4 m "
       "ahead between walls 2 m to either side, cylinders, 5 mm of noise in whole millimetres, "
       "spikes of 8000 mm and, on the obstacle, 200 mm.\n\n";
+  out +=
+      "Two sentences are the thesis' own as our notes quote them, on impulses and on the noises of "
+      "the "
+      "figures. The others are in our words: the properties by which the chapter, like Schulze "
+      "(*Mathematical Properties of the Pseudomedian Filter*, University of Texas 1990), tells "
+      "these filters apart.\n\n";
   out += "| sentence | source | verdict | figures | rule |\n| --- | --- | --- | --- | --- |\n";
   for (const Claim& each : study.claims) {
     out += fmt::format("| {} | {} | **{}** | {} | {} |\n",
