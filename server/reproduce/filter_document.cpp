@@ -311,8 +311,11 @@ void write_markdown(const FilterStudy& study, const std::filesystem::path& file)
       throw std::runtime_error(fmt::format("{} cannot be written.", path.string()));
     }
   };
-  const std::filesystem::path pictures = file.parent_path() / "pictures/reproduction";
   std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::runtime_error(fmt::format("{} is a folder, not a file.", file.string()));
+  }
+  const std::filesystem::path pictures = file.parent_path() / "pictures/reproduction";
   std::filesystem::create_directories(pictures, error);
   if (error) {
     throw std::runtime_error(fmt::format("The folder {} cannot be made.", pictures.string()));

@@ -283,6 +283,13 @@ TEST_F(FilterStudyFiles, SectionIsReplacedInPlaceAndItsPicturesExist) {
   }
 }
 
+TEST_F(FilterStudyFiles, AFolderInPlaceOfAFileIsRefusedBeforeAnythingIsWritten) {
+  const fs::path taken = folder_ / "page.md";
+  fs::create_directories(taken);
+  EXPECT_THROW(write_markdown(study(), taken), std::runtime_error);
+  EXPECT_FALSE(fs::exists(folder_ / "pictures"));
+}
+
 TEST_F(FilterStudyFiles, BadFoldersAreRefusedWithASentence) {
   const auto sentence = [](const fs::path& folder) -> std::string {
     try {
