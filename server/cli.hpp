@@ -24,6 +24,7 @@ void add_replay_command(CLI::App& app, int& status);
 void add_export_command(CLI::App& app, int& status);
 void add_verify_command(CLI::App& app, int& status);
 void add_health_command(CLI::App& app, int& status);
+void add_filter_study_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

@@ -1,0 +1,126 @@
+// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, and the
+// coverage page claims nothing built without a file and a test.
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+fs::path root() {
+  return fs::path(TAUTLINE_TESTS).parent_path();
+}
+
+std::string text_of(const fs::path& file) {
+  const std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The page without code blocks and without what stands between backticks: no links are there.
+std::string prose_of(const std::string& markdown) {
+  std::string prose;
+  std::istringstream lines(markdown);
+  bool in_block = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool fence = line.starts_with("```");
+    if (fence) in_block = !in_block;
+    if (fence || in_block) continue;
+    bool in_code = false;
+    for (const char c : line) {
+      if (c == '`') in_code = !in_code;
+      if (!in_code) prose += c;
+    }
+    prose += '\n';
+  }
+  return prose;
+}
+
+/// Targets of [text](target) and ![text](target) that are files of ours, without their anchors.
+std::vector<std::string> links_of(const std::string& markdown) {
+  static const std::regex link(R"(\]\(([^)\s#]+)(#[^)]*)?\))");
+  const std::string prose = prose_of(markdown);
+  std::vector<std::string> found;
+  for (std::sregex_iterator it(prose.begin(), prose.end(), link), end; it != end; ++it) {
+    const std::string target = (*it)[1];
+    if (target.find("://") == std::string::npos) found.push_back(target);
+  }
+  return found;
+}
+
+/// "FILE: TARGET" for each link to a file that is not there.
+std::vector<std::string> broken_links(const fs::path& page) {
+  std::set<std::string> broken;
+  for (const std::string& target : links_of(text_of(page))) {
+    if (!fs::exists(page.parent_path() / target)) {
+      broken.insert(page.filename().string() + ": " + target);
+    }
+  }
+  return {broken.begin(), broken.end()};
+}
+
+std::vector<fs::path> pages() {
+  std::vector<fs::path> found;
+  for (const auto& entry : fs::directory_iterator(root())) {
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  }
+  for (const auto& entry : fs::recursive_directory_iterator(root() / "docs")) {
+    if (entry.path().extension() == ".md") found.push_back(entry.path());
+  }
+  return found;
+}
+
+/// Cells of a row of a table, without the blanks around them; none when the line is no row.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  if (!line.starts_with("| ")) return cells;
+  std::istringstream parts(line.substr(1));
+  for (std::string part; std::getline(parts, part, '|');) {
+    const std::size_t first = part.find_first_not_of(' ');
+    const std::size_t last = part.find_last_not_of(' ');
+    cells.push_back(first == std::string::npos ? "" : part.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+TEST(Docs, LinksAreFoundAsMarkdownHasThem) {
+  EXPECT_THAT(links_of("[a](x.md) and ![b](p/q.svg), [c](y.md#part), [d](https://e.org/z)\n"
+                       "[e](#here) `[f](no.md)`\n```\n[g](no.md)\n```\n[h](adr)"),
+              ElementsAre("x.md", "p/q.svg", "y.md", "adr"));
+}
+
+TEST(Docs, EveryLinkedFileExists) {
+  const std::vector<fs::path> all = pages();
+  EXPECT_GT(all.size(), 5U) << "looked in " << root();
+  for (const fs::path& page : all) EXPECT_THAT(broken_links(page), IsEmpty());
+}
+
+/// Rows of four cells are part, code, test, verdict.
+TEST(Docs, CoverageClaimsNothingBuiltWithoutAFileAndATest) {
+  std::istringstream lines(text_of(root() / "docs/coverage.md"));
+  int built = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() != 4) continue;
+    const std::string& verdict = cells[3];
+    if (!verdict.starts_with("built") && !verdict.starts_with("corrected")) continue;
+    ++built;
+    EXPECT_THAT(links_of(cells[1]), ::testing::Not(IsEmpty())) << line;
+    EXPECT_THAT(links_of(cells[2]), ::testing::Not(IsEmpty())) << line;
+    for (const std::string& test : links_of(cells[2])) EXPECT_TRUE(test.starts_with("../tests/"));
+  }
+  EXPECT_GT(built, 10);
+}
+
+}  // namespace
