@@ -250,7 +250,8 @@ TEST(FilterStudy, SaysWhenNoRecordingsWereGiven) {
   EXPECT_TRUE(study().example.simulated);
   EXPECT_THAT(to_text(study()), HasSubstr("No folder of recordings was given"));
   EXPECT_THAT(to_markdown(study(), "pictures"), HasSubstr("No folder of recordings was given"));
-  for (const json& each : to_json(study()).at("recordings")) EXPECT_EQ(each.at("simulated"), true);
+  const json document = to_json(study());
+  for (const json& each : document.at("recordings")) EXPECT_EQ(each.at("simulated"), true);
 }
 
 /// A folder of its own for one test.

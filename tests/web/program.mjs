@@ -43,6 +43,7 @@ export async function serve({ database, scenario = "case1", port = 0, more = [] 
   return {
     base: `http://${url.host}`,
     port: Number(url.port),
+    pid: child.pid,
     said: () => said,
     /** Rejects when the program has ended before it was told to. */
     stop: (signal = "SIGTERM") => new Promise((resolve, reject) => {
