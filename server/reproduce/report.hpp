@@ -1,0 +1,30 @@
+// server/reproduce/report.hpp: a study as tables and as JSON.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "server/reproduce/study.hpp"
+#include "server/reproduce/table.hpp"
+
+namespace server::reproduce {
+
+/// A layout and a reading a line: outcomes, path, clearance, intrusion, turning, via points, time.
+Table rows_table(std::span<const Row> rows);
+Table checks_table(std::span<const Check> checks);
+Table differences_table(std::span<const Difference> differences);
+
+std::size_t collisions(std::span<const Row> rows);
+std::size_t runs(std::span<const Row> rows);
+
+/// "117 of 118 limits held."
+std::string checks_sentence(std::span<const Check> checks);
+
+/// What `tautline reproduce` prints.
+std::string to_text(const Study& study);
+/// Every metric of every row; a clearance without obstacles is null.
+nlohmann::json to_json(const Study& study);
+
+}  // namespace server::reproduce
