@@ -104,6 +104,15 @@ std::string to_text(const Study& study) {
     text += "\nA, noise-free, one run each\n\n" + to_text(rows_table(study.noise_free));
   }
   text += "\nWhat the file asks for\n\n" + to_text(checks_table(study.checks));
+  if (!study.claims.empty()) text += "\nWhat the sources claim, by table A\n\n";
+  for (const Claim& claim : study.claims) {
+    text += fmt::format(
+        "{}: {}: {}{}\n",
+        claim.layout,
+        claim.text,
+        name(claim.verdict),
+        claim.held_by.empty() ? "" : fmt::format(" ({})", fmt::join(claim.held_by, ", ")));
+  }
   if (!study.full.empty()) {
     text += "\nB. Full simulator: Bullet base, rolling LMS200, 26 ms tick; the same seeds\n\n";
     text += to_text(rows_table(study.full));
@@ -141,15 +150,59 @@ json to_json(const Study& study) {
                            {"full", each.full},
                            {"explanation", each.explanation}});
   }
+  json claims = json::array();
+  for (const Claim& claim : study.claims) {
+    claims.push_back({{"scenario", claim.layout},
+                      {"claim", claim.text},
+                      {"verdict", name(claim.verdict)},
+                      {"held_by", claim.held_by}});
+  }
   return {{"seeds", study.seeds},
           {"first_seed", study.first_seed},
           {"paper_conditions", rows_json(study.paper)},
           {"noise_free", rows_json(study.noise_free)},
           {"accept", checks},
           {"all_held", all_held(study.checks)},
+          {"claims", claims},
           {"full_simulator", rows_json(study.full)},
           {"full_simulator_collisions", collisions(study.full)},
           {"differences", differences}};
+}
+
+std::string to_text(std::span<const Sweep> sweeps) {
+  std::string text;
+  for (const Sweep& sweep : sweeps) {
+    text += fmt::format("\n{}: {}\n{}: {}\nRule: {}\nCells: {}\n\n{}",
+                        sweep.parameter,
+                        sweep.claim,
+                        sweep.verdict,
+                        sweep.because,
+                        sweep.rule,
+                        sweep.legend,
+                        to_text(sweep.table));
+  }
+  return text;
+}
+
+json to_json(std::span<const Sweep> sweeps) {
+  json all = json::array();
+  for (const Sweep& sweep : sweeps) {
+    json lines = json::array();
+    for (const SweepLine& line : sweep.lines) {
+      lines.push_back({{"scenario", line.layout},
+                       {"reading", line.reading},
+                       {"refused", line.refused},
+                       {"rows", rows_json(line.rows)}});
+    }
+    all.push_back({{"parameter", sweep.parameter},
+                   {"values", sweep.values},
+                   {"claim", sweep.claim},
+                   {"rule", sweep.rule},
+                   {"verdict", sweep.verdict},
+                   {"because", sweep.because},
+                   {"lines", lines}});
+  }
+  return all;
 }
 
 }  // namespace server::reproduce

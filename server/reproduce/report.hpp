@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/reproduce/study.hpp"
+#include "server/reproduce/sweeps.hpp"
 #include "server/reproduce/table.hpp"
 
 namespace server::reproduce {
@@ -26,5 +27,8 @@ std::string checks_sentence(std::span<const Check> checks);
 std::string to_text(const Study& study);
 /// Every metric of every row; a clearance without obstacles is null.
 nlohmann::json to_json(const Study& study);
+
+std::string to_text(std::span<const Sweep> sweeps);
+nlohmann::json to_json(std::span<const Sweep> sweeps);
 
 }  // namespace server::reproduce

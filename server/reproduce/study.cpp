@@ -36,6 +36,7 @@ Study run_study(const PaperFile& file, const StudyOptions& options) {
   study.noise_free = run_rows(
       row_jobs(asked, kNoiseFree, 1, options.first_seed), options.threads, progress("noise-free"));
   study.checks = evaluate(file, study.paper, study.noise_free);
+  study.claims = judge_claims(study.paper);
   if (options.full_simulator) {
     study.full = run_rows(row_jobs(file, kFullSimulator, options.seeds, options.first_seed),
                           options.threads,

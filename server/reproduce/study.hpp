@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/reproduce/accept.hpp"
+#include "server/reproduce/claims.hpp"
 #include "server/reproduce/differences.hpp"
 
 namespace server::reproduce {
@@ -27,6 +28,7 @@ struct Study {
   std::vector<Row> noise_free{};  // one run each, where the file asks for it
   std::vector<Row> full{};        // table B
   std::vector<Check> checks{};
+  std::vector<Claim> claims{};
   std::vector<Difference> differences{};
 };
 
