@@ -57,7 +57,10 @@ int execute(Options options) {
     if (options.sweeps) out["sweeps"] = reproduce::to_json(sweeps);
     fmt::print("{}\n", out.dump(2));
   } else {
-    fmt::print("{}{}", reproduce::to_text(sweeps), reproduce::to_text(study));
+    fmt::print("{}{}\n{}\n",
+               reproduce::to_text(study),
+               reproduce::to_text(sweeps),
+               reproduce::checks_sentence(study.checks));
   }
   return reproduce::all_held(study.checks) ? kReached : kNotHeld;
 }

@@ -28,9 +28,9 @@ RunFigures run_once(const RunSpec& spec, bool keep_track) {
   links.pool = pool.get();
   links.observer = [&](const Frame& frame) {
     path.add(frame.telemetry, safety_distance);
-    if (keep_track && frame.telemetry.ground_truth) {
-      figures.track_W.push_back(frame.telemetry.ground_truth->pose.position());
-    }
+    if (!frame.telemetry.ground_truth) return;
+    figures.end_W = frame.telemetry.ground_truth->pose.position();
+    if (keep_track) figures.track_W.push_back(figures.end_W);
   };
   const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
   const RunResult result = run(*robot, pipeline, first_requests(spec), policy, links, {});

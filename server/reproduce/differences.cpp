@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,6 +13,8 @@ namespace server::reproduce {
 namespace {
 
 using algo::Outcome;
+
+constexpr double kHullRadius = 0.35;  // [m]
 
 struct Change {
   const char* name = "";
@@ -37,27 +42,79 @@ bool same_outcomes(const Row& a, const Row& b) {
          same(Outcome::Collided);
 }
 
+/// The runs that end otherwise than most of the paper's.
+std::size_t ends_otherwise(const Row& row, const Row& paper) {
+  return row.runs.size() - count(row, usual(paper));
+}
+
+std::string capital(std::string sentence) {
+  sentence.front() = static_cast<char>(std::toupper(sentence.front()));
+  return sentence;
+}
+
+/// Which change alone is enough, seen in the runs of `tried` (under each of kChanges).
+std::string cause(const Row& paper, std::span<const Row> tried) {
+  if (ends_otherwise(tried[0], paper) > 0) {
+    return capital(
+        fmt::format("{} alone is enough, which the other changes include.", kChanges[0].name));
+  }
+  std::string names;
+  for (std::size_t i = 1; i < kChanges.size(); ++i) {
+    if (ends_otherwise(tried[i], paper) == 0) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", or ", kChanges[i].name);
+  }
+  return names.empty() ? "No change alone is enough; it takes them together."
+                       : capital(fmt::format("{} alone is enough.", names));
+}
+
+double nearest_surface(const Layout& layout, const algo::Vec2& p_W) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const algo::Obstacle& obstacle : layout.obstacles) {
+    nearest = std::min(nearest, algo::signed_distance(obstacle, p_W));
+  }
+  return nearest;
+}
+
+/// Where the stuck runs stand, on average.
+std::string place(const PaperConditions& common, const Layout& layout, const Row& row) {
+  const std::size_t stuck = count(row, Outcome::Stuck);
+  if (stuck == 0) return {};
+  double to_goal = 0;
+  double to_surface = 0;
+  for (const RunFigures& run : row.runs) {
+    if (run.outcome != Outcome::Stuck) continue;
+    to_goal += (run.end_W - layout.goal_W).norm() / static_cast<double>(stuck);
+    to_surface += nearest_surface(layout, run.end_W) / static_cast<double>(stuck);
+  }
+  const double goal_to_surface = nearest_surface(layout, layout.goal_W);
+  const double reach = common.safety_distance + kHullRadius;
+  return fmt::format(
+      " The stuck runs truly stand {:.3f} m from the goal (arrival, by the robot's odometry: {:g} "
+      "m) and {:.2f} m from the nearest surface; the goal lies {:.2f} m from one, {} the {:.2f} m "
+      "in which obstacles push linearly.",
+      to_goal,
+      common.arrival_radius,
+      to_surface,
+      goal_to_surface,
+      goal_to_surface < reach ? "within" : "outside",
+      reach);
+}
+
 /// `tried`: the row under each of kChanges.
-std::string explain(const Row& paper, const Row& full, std::span<const Row> tried) {
+std::string explain(const PaperConditions& common,
+                    const Layout& layout,
+                    const Row& paper,
+                    const Row& full,
+                    std::span<const Row> tried) {
   std::string figures;
-  std::string causes;
   for (std::size_t i = 0; i < kChanges.size(); ++i) {
     figures += fmt::format(
         "{}{}: {}", figures.empty() ? "" : "; ", kChanges[i].name, outcomes_text(tried[i]));
-    if (usual(tried[i]) == usual(full) && usual(full) != usual(paper)) {
-      causes += fmt::format("{}{}", causes.empty() ? "" : " and so does ", kChanges[i].name);
-    }
   }
-  std::string verdict;
-  if (usual(full) == usual(paper)) {
-    verdict = "A matter of single seeds: most runs end alike.";
-  } else if (causes.empty()) {
-    verdict = "No single change does it; they do it together.";
-  } else {
-    verdict = fmt::format(
-        "{}{} alone turns it.", static_cast<char>(std::toupper(causes.front())), causes.substr(1));
-  }
-  return fmt::format("{} With one change at a time, {}.", verdict, figures);
+  return fmt::format("{}{} With one change at a time: {}.",
+                     cause(paper, tried),
+                     place(common, layout, full),
+                     figures);
 }
 
 }  // namespace
@@ -88,7 +145,12 @@ std::vector<Difference> explain_differences(const PaperFile& file,
     const Row& b = full[differing[k]];
     const auto own = std::span(tried).subspan(k * kChanges.size(), kChanges.size());
     differences.push_back(
-        {a.layout, a.reading, outcomes_text(a), outcomes_text(b), explain(a, b, own)});
+        {a.layout,
+         a.reading,
+         outcomes_text(a),
+         outcomes_text(b),
+         explain(
+             file.common, *std::ranges::find(file.layouts, a.layout, &Layout::name), a, b, own)});
   }
   return differences;
 }

@@ -18,6 +18,7 @@ struct RunFigures {
   algo::Outcome outcome = algo::Outcome::Running;
   algo::Metrics metrics{};
   PathFigures path{};
+  algo::Vec2 end_W{0, 0};
   std::vector<algo::Vec2> track_W{};  // where asked for
 };
 

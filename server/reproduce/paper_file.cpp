@@ -17,6 +17,7 @@
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
 #include "server/reproduce/figures.hpp"
+#include "server/reproduce/triangulate.hpp"
 #include "server/scenario_json.hpp"
 
 namespace server::reproduce {
@@ -175,33 +176,46 @@ PaperConditions read_common(const JsonReader& in) {
 
 #undef NUMBER
 
-json metres(const JsonReader& in, const json& value, std::string_view key) {
+double metres(const JsonReader& in, const json& value, std::string_view key) {
   return finite_number(value, in.at(key), kCoordinate_mm) * kPerMillimetre;
 }
 
+/// Solid, with or without notches: one obstacle for each convex part.
+std::vector<algo::Obstacle> read_polygon(const JsonReader& in) {
+  in.only({"type", "points"});
+  const json& points = in.array("points", 256);
+  std::vector<algo::Vec2> outline;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::string at = fmt::format("points/{}", i);
+    if (!points[i].is_array() || points[i].size() != 2) in.fail(at, "must be a point [x, y]");
+    outline.emplace_back(metres(in, points[i][0], at), metres(in, points[i][1], at));
+  }
+  // "Closed": the first vertex may be said again.
+  if (outline.size() > 3 && outline.front() == outline.back()) outline.pop_back();
+  const auto parts = convex_parts(outline);
+  if (!parts)
+    in.fail("points", "must be the outline of a solid: 3 or more, no crossing, some area");
+  std::vector<algo::Obstacle> obstacles;
+  for (const std::vector<algo::Vec2>& part : *parts) {
+    json si{{"type", "polygon"}, {"points", json::array()}};
+    for (const algo::Vec2& p : part) si["points"].push_back({p.x(), p.y()});
+    obstacles.push_back(obstacle_from_json(si, in.at("points")));
+  }
+  return obstacles;
+}
+
 /// As in scenario files, but in millimetres.
-algo::Obstacle read_obstacle(const json& value, const std::string& path) {
+std::vector<algo::Obstacle> read_obstacle(const json& value, const std::string& path) {
   const JsonReader in(value, path);
-  json si = value;
   const std::string type = in.text("type");
-  if (type == "cylinder") {
-    in.only({"type", "x", "y", "radius"});
-    for (const char* key : {"x", "y", "radius"})
-      si[key] = in.number(key, kCoordinate_mm) * kPerMillimetre;
-  } else if (type == "polygon") {
-    in.only({"type", "points"});
-    json& points = si["points"];
-    for (std::size_t i = 0; i < in.array("points", 256).size(); ++i) {
-      const std::string at = fmt::format("points/{}", i);
-      if (!points[i].is_array() || points[i].size() != 2) in.fail(at, "must be a point [x, y]");
-      for (json& coordinate : points[i]) coordinate = metres(in, coordinate, at);
-    }
-    // "Closed": the first vertex may be said again.
-    if (points.size() > 3 && points.front() == points.back()) points.erase(points.size() - 1);
-  } else {
+  if (type == "polygon") return read_polygon(in);
+  if (type != "cylinder") {
     in.fail("type", fmt::format("'{}' is unknown; known are cylinder, polygon", type));
   }
-  return obstacle_from_json(si, path);
+  in.only({"type", "x", "y", "radius"});
+  json si{{"type", type}};
+  for (const char* key : {"x", "y", "radius"}) si[key] = millimetres(in, key, kCoordinate_mm);
+  return {obstacle_from_json(si, path)};
 }
 
 std::string reading_name(const JsonReader& in, std::string_view key) {
@@ -310,16 +324,17 @@ Layout read_layout(const JsonReader& in) {
   layout.expect = in.text_or("expect", "");
   const json& goal = in.array("goal", 2);
   if (goal.size() != 2) in.fail("goal", "must be a point [x, y]");
-  layout.goal_W = {metres(in, goal[0], "goal/0").get<double>(),
-                   metres(in, goal[1], "goal/1").get<double>()};
+  layout.goal_W = {metres(in, goal[0], "goal/0"), metres(in, goal[1], "goal/1")};
   layout.contraction_gain = in.number("K_c", {0, 1});
   layout.repulsion_gain = in.number("K_r", {0.05, 1});
   layout.v_max = millimetres(in, "v_max", {10, 500});
   const json& obstacles = in.array("obstacles", kMaxObstacles);
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const std::string path = fmt::format("{}/{}", in.at("obstacles"), i);
-    layout.obstacles.push_back(read_obstacle(obstacles[i], path));
-    layout.obstacles.back().id = static_cast<std::uint32_t>(i + 1);
+    for (algo::Obstacle& part : read_obstacle(obstacles[i], path)) {
+      part.id = static_cast<std::uint32_t>(layout.obstacles.size() + 1);
+      layout.obstacles.push_back(std::move(part));
+    }
   }
   layout.accept = read_accept(in, "accept");
   layout.accept_compare = read_comparisons(in);

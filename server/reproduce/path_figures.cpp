@@ -40,6 +40,7 @@ void PathRecorder::follow(const algo::Vec2& position_W) {
 }
 
 void PathRecorder::follow_strip(const algo::ControlOutput& output) {
+  figures_.largest_internal = std::max(figures_.largest_internal, output.internal_W.norm());
   const bool pushed = output.external_left_W.norm() + output.external_right_W.norm() > 0;
   if (output.strip.size() != 3 || !pushed) return;
   const double before = (output.strip[1].position_W - output.strip[0].position_W).norm();

@@ -17,7 +17,8 @@ struct PathFigures {
   /// |P^{j+1} - P^j|), over the ticks with an external force: the relative distance that K_c is
   /// said to keep.
   double share_mean = 0;
-  double share_deviation = 0;  // standard deviation
+  double share_deviation = 0;   // standard deviation
+  double largest_internal = 0;  // [m] the largest |F_int|
 };
 
 /// Follows a run tick by tick, the start included.

@@ -29,6 +29,17 @@ json rows_json(std::span<const Row> rows) {
   return all;
 }
 
+json claims_json(std::span<const Claim> claims) {
+  json all = json::array();
+  for (const Claim& claim : claims) {
+    all.push_back({{"scenario", claim.layout},
+                   {"claim", claim.text},
+                   {"verdict", name(claim.verdict)},
+                   {"held_by", claim.held_by}});
+  }
+  return all;
+}
+
 }  // namespace
 
 Table rows_table(std::span<const Row> rows) {
@@ -64,6 +75,21 @@ Table checks_table(std::span<const Check> checks) {
   for (const Check& check : checks) {
     table.rows.push_back(
         {check.layout, check.subject, check.asked, check.figure, check.held ? "held" : "FAILED"});
+  }
+  return table;
+}
+
+Table claims_table(const Study& study) {
+  const auto words = [](const Claim& claim) {
+    return claim.held_by.empty()
+               ? std::string(name(claim.verdict))
+               : fmt::format("{}: {}", name(claim.verdict), fmt::join(claim.held_by, ", "));
+  };
+  Table table{.header = {"case", "claim", "by table A"}, .rows = {}, .words = 4};
+  if (!study.full_claims.empty()) table.header.emplace_back("by table B");
+  for (std::size_t i = 0; i < study.claims.size(); ++i) {
+    table.rows.push_back({study.claims[i].layout, study.claims[i].text, words(study.claims[i])});
+    if (!study.full_claims.empty()) table.rows.back().push_back(words(study.full_claims[i]));
   }
   return table;
 }
@@ -104,15 +130,6 @@ std::string to_text(const Study& study) {
     text += "\nA, noise-free, one run each\n\n" + to_text(rows_table(study.noise_free));
   }
   text += "\nWhat the file asks for\n\n" + to_text(checks_table(study.checks));
-  if (!study.claims.empty()) text += "\nWhat the sources claim, by table A\n\n";
-  for (const Claim& claim : study.claims) {
-    text += fmt::format(
-        "{}: {}: {}{}\n",
-        claim.layout,
-        claim.text,
-        name(claim.verdict),
-        claim.held_by.empty() ? "" : fmt::format(" ({})", fmt::join(claim.held_by, ", ")));
-  }
   if (!study.full.empty()) {
     text += "\nB. Full simulator: Bullet base, rolling LMS200, 26 ms tick; the same seeds\n\n";
     text += to_text(rows_table(study.full));
@@ -130,7 +147,11 @@ std::string to_text(const Study& study) {
                           each.explanation);
     }
   }
-  return text + "\n" + checks_sentence(study.checks) + "\n";
+  if (!study.claims.empty()) {
+    text += "\nWhat the sources claim, and for which readings it holds\n\n";
+    text += to_text(claims_table(study));
+  }
+  return text;
 }
 
 json to_json(const Study& study) {
@@ -150,20 +171,14 @@ json to_json(const Study& study) {
                            {"full", each.full},
                            {"explanation", each.explanation}});
   }
-  json claims = json::array();
-  for (const Claim& claim : study.claims) {
-    claims.push_back({{"scenario", claim.layout},
-                      {"claim", claim.text},
-                      {"verdict", name(claim.verdict)},
-                      {"held_by", claim.held_by}});
-  }
   return {{"seeds", study.seeds},
           {"first_seed", study.first_seed},
           {"paper_conditions", rows_json(study.paper)},
           {"noise_free", rows_json(study.noise_free)},
           {"accept", checks},
           {"all_held", all_held(study.checks)},
-          {"claims", claims},
+          {"claims", claims_json(study.claims)},
+          {"full_simulator_claims", claims_json(study.full_claims)},
           {"full_simulator", rows_json(study.full)},
           {"full_simulator_collisions", collisions(study.full)},
           {"differences", differences}};
@@ -172,7 +187,7 @@ json to_json(const Study& study) {
 std::string to_text(std::span<const Sweep> sweeps) {
   std::string text;
   for (const Sweep& sweep : sweeps) {
-    text += fmt::format("\n{}: {}\n{}: {}\nRule: {}\nCells: {}\n\n{}",
+    text += fmt::format("\n{}. {}\nVerdict: {}. {}\nRule: {}\nCells: {}\n\n{}",
                         sweep.parameter,
                         sweep.claim,
                         sweep.verdict,

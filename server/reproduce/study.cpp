@@ -41,6 +41,7 @@ Study run_study(const PaperFile& file, const StudyOptions& options) {
     study.full = run_rows(row_jobs(file, kFullSimulator, options.seeds, options.first_seed),
                           options.threads,
                           progress("full simulator"));
+    study.full_claims = judge_claims(study.full);
     study.differences = explain_differences(file,
                                             study.paper,
                                             study.full,

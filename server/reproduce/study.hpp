@@ -28,7 +28,8 @@ struct Study {
   std::vector<Row> noise_free{};  // one run each, where the file asks for it
   std::vector<Row> full{};        // table B
   std::vector<Check> checks{};
-  std::vector<Claim> claims{};
+  std::vector<Claim> claims{};       // by table A
+  std::vector<Claim> full_claims{};  // the same by table B
   std::vector<Difference> differences{};
 };
 

@@ -78,9 +78,25 @@ std::vector<double> clearances(const SweepLine& line) {
   return out;
 }
 
-std::size_t rising_lines(const Sweep& sweep, double tolerance_mm) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      sweep.lines, [&](const SweepLine& line) { return rises(clearances(line), tolerance_mm); }));
+/// "22 of 27 lines rise (not: case2 original, case2 modified)".
+struct Rising {
+  std::size_t lines = 0;
+  std::string text{};
+};
+
+Rising rising_lines(const Sweep& sweep, double tolerance_mm) {
+  Rising out;
+  std::vector<std::string> others;
+  for (const SweepLine& line : sweep.lines) {
+    if (rises(clearances(line), tolerance_mm)) {
+      ++out.lines;
+    } else {
+      others.push_back(line.layout + " " + line.reading);
+    }
+  }
+  out.text = fmt::format("{} of {} lines rise", out.lines, sweep.lines.size());
+  if (!others.empty()) out.text += fmt::format(" (not: {})", fmt::join(others, ", "));
+  return out;
 }
 
 void judge_repulsion(Sweep& sweep, double tolerance_mm) {
@@ -90,9 +106,9 @@ void judge_repulsion(Sweep& sweep, double tolerance_mm) {
       "mm, the noise, and up by more than that in all. The claim holds when every line does, in "
       "part when some do.",
       tolerance_mm);
-  const std::size_t rising = rising_lines(sweep, tolerance_mm);
-  sweep.verdict = verdict_of(rising, sweep.lines.size());
-  sweep.because = fmt::format("{} of {} lines rise.", rising, sweep.lines.size());
+  const Rising rising = rising_lines(sweep, tolerance_mm);
+  sweep.verdict = verdict_of(rising.lines, sweep.lines.size());
+  sweep.because = rising.text + ".";
 }
 
 /// The collided runs at each value; of those that are refused elsewhere, too.
@@ -124,63 +140,64 @@ void judge_safety_distance(Sweep& sweep, double tolerance_mm) {
       "values has more than a smaller one. The claim holds when both do in full, in part when "
       "either does or some lines do.",
       tolerance_mm);
-  const std::size_t rising = rising_lines(sweep, tolerance_mm);
+  const Rising rising = rising_lines(sweep, tolerance_mm);
   const Collisions collided = collisions_of(sweep);
   const bool more = std::ranges::is_sorted(collided.at, std::greater<>()) &&
                     collided.at.front() > collided.at.back();
-  const std::size_t parts = (rising == sweep.lines.size() ? 1U : 0U) + (more ? 1U : 0U);
-  sweep.verdict = parts == 2             ? "holds"
-                  : rising == 0 && !more ? "does not hold"
-                                         : "holds only in part";
+  const std::size_t parts = (rising.lines == sweep.lines.size() ? 1U : 0U) + (more ? 1U : 0U);
+  sweep.verdict = parts == 2                   ? "holds"
+                  : rising.lines == 0 && !more ? "does not hold"
+                                               : "holds only in part";
   sweep.because = fmt::format(
-      "{} of {} lines rise; collided runs by d_safe: {}. Of the collisions, {} are at settings "
-      "with S >= K_r d_safe, which this program refuses, and {} at settings it takes.",
-      rising,
-      sweep.lines.size(),
+      "{}; collided runs by d_safe: {}. Of the collisions, {} are at settings with S >= K_r "
+      "d_safe, "
+      "which this program refuses, and {} at settings it takes.",
+      rising.text,
       fmt::join(collided.at, ", "),
       collided.refused,
       collided.accepted);
 }
 
-/// Whether any run goes otherwise with another value.
+/// Whether F_int is ever more than rounding.
 bool acts(const SweepLine& line) {
-  for (const Row& row : line.rows) {
-    for (std::size_t i = 0; i < row.runs.size(); ++i) {
-      const algo::Metrics& a = row.runs[i].metrics;
-      const algo::Metrics& b = line.rows.front().runs[i].metrics;
-      if (a.ticks != b.ticks || a.path_length != b.path_length || a.turning != b.turning) {
-        return true;
-      }
-    }
-  }
-  return false;
+  constexpr double kRounding = 1e-9;  // [m]
+  return std::ranges::any_of(line.rows, [](const Row& row) {
+    return std::ranges::any_of(
+        row.runs, [](const RunFigures& run) { return run.path.largest_internal > kRounding; });
+  });
 }
 
 void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
   sweep.claim = "The scaling factor K_c keeps the relative distance of the control points.";
   sweep.rule =
-      "A line holds when K_c changes the run at all and the share of the strip before its via "
+      "A line holds when F_int is ever above 1e-9 m and the share of the strip before its via "
       "point, |P^j - P^{j-1}| / (|P^j - P^{j-1}| + |P^{j+1} - P^j|), varies less within a run "
       "(standard deviation over the ticks with an external force) at the largest K_c than at "
       "the smallest. The claim holds when every line does, in part when some do.";
+  std::size_t active = 0;
   std::size_t held = 0;
-  std::size_t inert = 0;
+  std::size_t reached = 0;   // runs of the active lines at the largest K_c
+  std::size_t collided = 0;  // the same
   for (const SweepLine& line : sweep.lines) {
-    if (!acts(line)) {
-      ++inert;
-      continue;
-    }
+    if (!acts(line)) continue;
+    ++active;
     const double first = mean(line.rows.front(), &PathFigures::share_deviation);
     const double last = mean(line.rows.back(), &PathFigures::share_deviation);
     if (last < first) ++held;
+    reached += count(line.rows.back(), Outcome::Reached);
+    collided += count(line.rows.back(), Outcome::Collided);
   }
   sweep.verdict = verdict_of(held, sweep.lines.size());
   sweep.because = fmt::format(
-      "In {} of {} lines K_c changes nothing, bit for bit (the via is laid on the chord, so F_int "
-      "is zero); in {} the share varies less at the largest K_c.",
-      inert,
+      "In {} of {} lines F_int is zero but for rounding: the via is laid on the chord, and K_c "
+      "acts on nothing. In {} of the other {} the share varies less at the largest K_c, where {} "
+      "of their runs reach and {} collide.",
+      sweep.lines.size() - active,
       sweep.lines.size(),
-      held);
+      held,
+      active,
+      reached,
+      collided);
 }
 
 void judge_filter(Sweep& sweep, double /*tolerance_mm*/) {
@@ -208,7 +225,7 @@ std::vector<Plan> plans() {
            clearance,
            judge_repulsion},
           {Parameter::SafetyDistance,
-           "d_safe [m]",
+           "d_safe",
            {0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2},
            {"original", "modified_published", "modified"},
            clearance_cell,
@@ -235,7 +252,9 @@ void tabulate(Sweep& sweep, const Plan& plan) {
   sweep.table.words = 2;
   sweep.table.header = {"scenario", "reading"};
   for (const double each : sweep.values) {
-    sweep.table.header.push_back(fmt::format("{} {:g}", plan.name, each));
+    const bool first = sweep.table.header.size() == sweep.table.words;
+    sweep.table.header.push_back(first ? fmt::format("{} = {:g}", plan.name, each)
+                                       : fmt::format("{:g}", each));
   }
   for (const SweepLine& line : sweep.lines) {
     std::vector<std::string> cells{line.layout, line.reading};

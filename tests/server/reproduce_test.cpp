@@ -15,6 +15,7 @@
 #include "server/reproduce/markdown.hpp"
 #include "server/reproduce/pictures.hpp"
 #include "server/reproduce/svg_plot.hpp"
+#include "server/reproduce/triangulate.hpp"
 
 namespace server::reproduce {
 namespace {
@@ -148,6 +149,38 @@ TEST(PaperFile, APolygonMaySayItsFirstVertexAgain) {
   points.push_back(points[0]);
   const PaperFile read = paper_file_from_json(file);
   EXPECT_EQ(algo::outline_W(read.layouts[8].obstacles[0]).size(), 4u);
+}
+
+TEST(PaperFile, APolygonMayHaveANotch) {
+  // An L of three unit squares: area 3, its inner corner at (1, 1) free on one side.
+  const std::vector<algo::Vec2> outline{{0, 0}, {0, 2}, {1, 2}, {1, 1}, {2, 1}, {2, 0}};
+  const auto parts = convex_parts(outline);
+  ASSERT_TRUE(parts);
+  double area = 0;
+  for (const auto& part : *parts) {
+    ASSERT_EQ(part.size(), 3u);
+    const algo::Vec2 a = part[1] - part[0];
+    const algo::Vec2 b = part[2] - part[0];
+    EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0);
+    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+  }
+  EXPECT_DOUBLE_EQ(area, 3);
+  EXPECT_FALSE(convex_parts({{0, 0}, {1, 1}, {1, 0}, {0, 1}}));  // a bow tie
+  EXPECT_FALSE(convex_parts({{0, 0}, {1, 1}, {2, 2}}));
+
+  json file = paper();
+  json& points = file["scenarios"][8]["obstacles"][0]["points"];
+  points = {{2000, 2000}, {3000, 2000}, {3000, 3000}, {2500, 2500}, {2000, 3000}};
+  const PaperFile read = paper_file_from_json(file);
+  ASSERT_EQ(read.layouts[8].obstacles.size(), 3u);
+  double nearest = 10;
+  for (const algo::Obstacle& part : read.layouts[8].obstacles) {
+    nearest = std::min(nearest, algo::signed_distance(part, {2.5, 2.9}));
+  }
+  // In the notch: to the edge from (2.5, 2.5) at 45 degrees, 0.4 sin 45.
+  EXPECT_NEAR(nearest, 0.4 / std::numbers::sqrt2, 1e-9);
+  points = {{2000, 2000}, {3000, 3000}, {3000, 2000}, {2000, 3000}};
+  EXPECT_THAT(complaint(file), HasSubstr("obstacles/0/points: must be the outline of a solid"));
 }
 
 // ---- the figures -------------------------------------------------------------------------------
