@@ -14,8 +14,6 @@ namespace {
 
 using algo::Outcome;
 
-constexpr double kHullRadius = 0.35;  // [m]
-
 struct Change {
   const char* name = "";
   Conditions conditions{};

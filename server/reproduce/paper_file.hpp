@@ -16,6 +16,9 @@
 
 namespace server::reproduce {
 
+/// [m] of the one robot the papers have, and this program with it.
+constexpr double kHullRadius = 0.35;
+
 /// `common`: the conditions of every run, in SI. What a simulated robot here cannot have otherwise
 /// (radius, beams, the used beams, the stuck rule) is checked or described there, not kept.
 struct PaperConditions {

@@ -12,11 +12,9 @@ namespace server::reproduce {
 namespace {
 
 using algo::Vec2;
-constexpr double kWidth = 560;        // [px]
-constexpr double kEdge = 0.6;         // [m] of free plane about what is drawn
-constexpr double kSpacing = 0.03;     // [m] between the points of a path that are drawn
-constexpr double kHullRadius = 0.35;  // [m]
-
+constexpr double kWidth = 560;     // [px]
+constexpr double kEdge = 0.6;      // [m] of free plane about what is drawn
+constexpr double kSpacing = 0.03;  // [m] between the points of a path that are drawn
 // In the order of readings(); dashes as well, for those who see no colours.
 constexpr std::array<const char*, 7> kStyles{
     "stroke=\"#d1495b\" stroke-width=\"2\"",
