@@ -1,4 +1,5 @@
-# Writes OUTPUT: the scenarios in WORLDS and the OPENAPI document as string literals (cmake -P).
+# Writes OUTPUT: the scenarios in WORLDS, the OPENAPI document and the PAPER's scenarios as string
+# literals (cmake -P).
 file(GLOB paths ${WORLDS}/*.json)
 list(SORT paths)
 list(FILTER paths EXCLUDE REGEX "/demo\\.json$")
@@ -10,6 +11,7 @@ foreach(path ${paths})
   string(APPEND entries "    {\"${name}\", R\"world(${json})world\"},\n")
 endforeach()
 file(READ ${OPENAPI} openapi)
+file(READ ${PAPER} paper)
 file(WRITE ${OUTPUT}
 "// Made by server/embed_documents.cmake.
 #include \"server/embedded_documents.hpp\"
@@ -25,6 +27,8 @@ ${entries}  });
 }
 
 std::string_view embedded_openapi() { return R\"api(${openapi})api\"; }
+
+std::string_view embedded_paper() { return R\"paper(${paper})paper\"; }
 
 }  // namespace server
 ")

@@ -1,5 +1,5 @@
-// server/embedded_documents.hpp: the scenarios of sim/worlds and the API's description, compiled
-// in by embed_documents.cmake.
+// server/embedded_documents.hpp: the scenarios of sim/worlds, those of the paper and the API's
+// description, compiled in by embed_documents.cmake.
 #pragma once
 
 #include <span>
@@ -17,5 +17,8 @@ std::span<const EmbeddedWorld> embedded_worlds();
 
 /// The OpenAPI 3.1 document of the REST API.
 std::string_view embedded_openapi();
+
+/// server/reproduce/paper.json: layouts, conditions and limits that `tautline reproduce` holds.
+std::string_view embedded_paper();
 
 }  // namespace server

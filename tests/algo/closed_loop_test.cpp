@@ -1,4 +1,4 @@
-// tests/algo/closed_loop_test.cpp: the controllers drive the layouts of tests/scenarios/paper.json
+// tests/algo/closed_loop_test.cpp: the controllers drive the layouts of server/reproduce/paper.json
 // under that file's own conditions: kinematic robot, flat-time noisy scan, its tick, its metrics.
 #include <cmath>
 #include <fstream>
@@ -25,7 +25,7 @@ using namespace algo::units;
 
 const Json& paper() {
   static const Json loaded = [] {
-    std::ifstream file(std::string(TAUTLINE_TESTS) + "/scenarios/paper.json");
+    std::ifstream file(std::string(TAUTLINE_TESTS) + "/../server/reproduce/paper.json");
     return Json::parse(file);
   }();
   return loaded;
