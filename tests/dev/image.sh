@@ -34,6 +34,7 @@ stop_engine() {
     [[ -e $engine/pid ]] || break
     read -rt 0.25 <> <(:) || true
   done
+  umount "$engine"/exec/netns/* 2>/dev/null || true
   rm -rf --one-file-system -- "$engine"
 }
 
@@ -52,7 +53,8 @@ base_image() {
       chroot \"\$1\" update-ca-certificates >/dev/null 2>&1; fi" \
     --customize-hook="cat \"$(npm config get globalconfig)\" \"$(npm config get userconfig)\" \
       >\"\$1/root/.npmrc\" 2>/dev/null || true" \
-    --customize-hook="rm -rf \"\$1\"/usr/share/{doc,man,info,locale}/* \"\$1\"/var/cache/apt/*" \
+    --customize-hook="rm -rf \"\$1\"/usr/share/{doc,man,info,locale}/* \
+      \"\$1\"/var/cache/apt/* \"\$1\"/var/lib/apt/lists/*" \
     bookworm "$base/base.tar"
   change=(--change 'ENV NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt')
   "$docker" import "${change[@]}" "$base/base.tar" debian:bookworm-slim >/dev/null
