@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { after, before, test } from "node:test";
+import { join } from "node:path";
 import { main_job } from "./main_job.mjs";
 import { desktop, launch, open, phone } from "./page.mjs";
 import { json, near, repository, scratch, serve, until } from "./program.mjs";
@@ -249,3 +250,27 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
     assert.deepEqual(faults, []);
     assert.ok(first);
   }));
+
+test("a server that wants its token asks for it", { timeout: 90_000 }, async () => {
+  const place = scratch();
+  const token = "a token of our own";
+  const server = await serve({ database: place.database, scenario: "demo", more: ["--token", token] });
+  const context = await browser.newContext({ viewport: desktop });
+  try {
+    const page = await context.newPage();
+    await page.goto(server.base);
+    await page.getByTestId("token").fill("not this one");
+    await page.getByTestId("login-go").click();
+    await page.getByTestId("login-problem").waitFor({ timeout: 20_000 });
+    assert.match(await page.getByTestId("login-problem").textContent(), /token/);
+    await page.screenshot({ path: join(repository, "build/screenshots/login.png") });
+    await page.getByTestId("token").fill(token);
+    await page.getByTestId("login-go").click();
+    await page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
+    assert.equal(await page.getByTestId("token").count(), 0);
+  } finally {
+    await context.close();
+    await server.stop();
+    place.remove();
+  }
+});

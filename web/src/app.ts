@@ -22,6 +22,8 @@ export interface Toast { id: number; tone: "info" | "warn" | "bad"; text: string
 
 export interface UiState {
   link: LinkStatus;
+  /** The server answers, and wants its token first. */
+  locked: boolean;
   session: SessionState | null;
   catalog: Catalog | null;
   scenarios: ScenarioItem[];
@@ -65,7 +67,7 @@ export class App {
   constructor() {
     this.ui = new Store<UiState>({
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
-      session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
+      locked: false, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
       theme: initial_theme(), tool: "goal", selection: null, three: false, follow: false,
       force_scale: 1, shortcuts: false, sheet: false, loading: null, undo: null, redo: null,
     });
@@ -317,11 +319,30 @@ export class App {
     this.ui.set({ link: status });
     if (before === status.phase) return;
     if (status.phase === "open") {
+      this.ui.set({ locked: false });
       this.say("Connected");
       void this.fetch_lists();
     } else if (status.phase === "lost" && before === "open") {
       this.say("Connection lost");
     }
+    if (status.phase === "lost") void this.look_for_lock();
+  }
+
+  /** A socket does not say why it was refused; a request does. */
+  private async look_for_lock(): Promise<void> {
+    try {
+      await rest.get("/version");
+      this.ui.set({ locked: false });
+    } catch (error) {
+      this.ui.set({ locked: error instanceof rest.RestError && error.status === 401 });
+    }
+  }
+
+  /** Trades the token for a cookie. Rejects with the server's sentence. */
+  async login(token: string): Promise<void> {
+    await rest.post("/login", { token });
+    this.ui.set({ locked: false });
+    this.link.retry_now();
   }
 
   private read_route(): void {

@@ -12,6 +12,7 @@ import { App, AppContext, use_app } from "./app";
 import { use_store } from "./state/store";
 import { Drive } from "./views/drive";
 import { stop_key, typing } from "./views/keys";
+import { Login } from "./views/login";
 import { Rail } from "./views/rail";
 import { Runs } from "./views/runs";
 import { Shortcuts } from "./views/shortcuts";
@@ -23,6 +24,7 @@ function Shell(): JSX.Element {
   const app = use_app();
   const view = use_store(app.ui, (u) => u.view);
   const shortcuts = use_store(app.ui, (u) => u.shortcuts);
+  const locked = use_store(app.ui, (u) => u.locked);
   useEffect(() => {
     const stop = stop_key(app);
     const help = (e: KeyboardEvent) => {
@@ -49,6 +51,7 @@ function Shell(): JSX.Element {
       <Toasts />
       <Spoken />
       {shortcuts && <Shortcuts />}
+      {locked && <Login />}
     </div>
   );
 }
