@@ -12,8 +12,9 @@
 namespace sim {
 namespace {
 
-constexpr double kLongestPause = 3600;  // [s] a longer one is a clock that was set
-constexpr double kFarthestMount = 1.0;  // [m] a laser farther off its robot is two separate poses
+constexpr double kShortestPause = 1e-3;  // [s] no scanner is faster: such a stamp says nothing
+constexpr double kLongestPause = 3600;   // [s] a longer one is a clock that was set
+constexpr double kFarthestMount = 1.0;   // [m] a laser farther off its robot is two separate poses
 
 std::ifstream open(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -114,7 +115,7 @@ void Replay::time_scans() {
     const double passed = scan.stamp - recorded;
     recorded = scan.stamp;
     if (&scan != &scans_.front()) {
-      now += passed > 0 && passed < kLongestPause ? passed : kFallbackPeriod;
+      now += passed > kShortestPause && passed < kLongestPause ? passed : kFallbackPeriod;
     }
     scan.stamp = now;
   }

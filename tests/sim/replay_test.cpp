@@ -88,6 +88,14 @@ TEST(Replay, FixedPeriodWhereTheStampsSayNothing) {
   EXPECT_NEAR(stamps[3], 0.7, 1e-9);  // a day later: a clock was set
 }
 
+TEST(Replay, StampsTooCloseForAnyScannerSayNothing) {
+  std::string log;
+  for (int i = 0; i < 5; ++i)
+    log += scan("1 2 3 4", "0 0 0 0 0 0", "100.000000" + std::to_string(i));
+  const auto robot = replay(log);
+  EXPECT_GT(robot->spec().period, 1e-3);  // what sizes buffers must not come near zero
+}
+
 TEST(Replay, OriginalPace) {
   const auto robot =
       replay(scan("1 1 1 1", "0 0 0 0 0 0", "1") + scan("1 1 1 1", "0 0 0 0 0 0", "1.05"));
