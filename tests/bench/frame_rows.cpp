@@ -144,9 +144,13 @@ void time_frame(Pass& pass, std::size_t nodes, Figure ratio, Figure size) {
   const auto ticks = driving_ticks(pass.count<std::size_t>(256, 16), nodes);
   server::FrameEncoder encoder;
   double bytes = 0;
+  double words = 0;
   for (const algo::Telemetry& t : ticks) {
     check_frame(t, encoder);
     bytes += static_cast<double>(encoder.encode(t).size()) / static_cast<double>(ticks.size());
+    const algo::Explanation said = algo::explain(t);
+    words +=
+        static_cast<double>(said.what.size() + said.why.size()) / static_cast<double>(ticks.size());
   }
   std::size_t i = 0;
   const auto next = [&]() -> const algo::Telemetry& { return ticks[i = (i + 1) % ticks.size()]; };
@@ -158,6 +162,7 @@ void time_frame(Pass& pass, std::size_t nodes, Figure ratio, Figure size) {
   ratio.note = fmt::format("of ours {} are the two sentences", duration(times[2].seconds));
   pass.add_ratio(std::move(ratio), times[0], times[1]);
   size.value = bytes;
+  size.note = fmt::format("{} of them ranges, {:.0f} the two sentences", 2 * kBeams, words);
   size.unit = "bytes";
   size.better = Better::Lower;
   pass.add(std::move(size));

@@ -244,7 +244,7 @@ void time_rolling(Pass& pass, const Case& about) {
   Figure cast{.row = "P1r", .name = "rolling cast over flat, " + about.name, .floor = 0.4};
   cast.note = fmt::format("{:.0f}x Bullet's rays", times[3].seconds / times[0].seconds);
   pass.add_ratio(cast, times[0], times[2]);
-  Figure sense{.row = "P1r", .name = "the same aimed and rounded"};
+  Figure sense{.row = "P1r", .name = "aimed and rounded too, " + about.name, .floor = 0.4};
   sense.note = fmt::format("{:.0f}x Bullet's rays", times[3].seconds / times[1].seconds);
   pass.add_ratio(sense, times[1], times[2]);
 }

@@ -30,11 +30,11 @@ struct Stored {
   db::TickRow row{};
 };
 
-/// Ticks of a drive through W(20), +-15 mm of noise on every beam, as the record gets them.
-std::vector<Stored> ticks_of_a_drive(std::size_t count, std::size_t nodes) {
+/// Ticks of a drive through W(20), +-`noise` [m] on every beam, as the record gets them.
+std::vector<Stored> ticks_of_a_drive(std::size_t count, std::size_t nodes, double noise = 0.015) {
   sim::LaserConfig laser = full_laser();
   laser.noise_shape = sim::NoiseShape::Uniform;
-  laser.noise = 0.015;
+  laser.noise = noise;
   Driving driving(room_scenario(20, sim::Vehicle::Kinematic, {laser}));
   server::FrameEncoder encoder;
   std::vector<Stored> ticks;
@@ -255,6 +255,20 @@ double hourly(std::uint64_t bytes, std::size_t ticks) {
   return static_cast<double>(bytes) / 1e6 * static_cast<double>(kHour) / static_cast<double>(ticks);
 }
 
+/// What an hour takes without noise, and what the columns beside the frames take.
+void storage_shares(Pass& pass, const Folder& folder, std::size_t count) {
+  std::uint64_t bytes = 0;
+  auto ticks = ticks_of_a_drive(count, 0, 0.0);
+  write_all(folder.file("quiet.db"), ticks, bytes);
+  pass.add_detail("P20", "the same without noise", hourly(bytes, count), "MB");
+  for (Stored& tick : ticks) {
+    tick.bytes.assign(8, std::byte{0});
+    tick.windows.clear();
+  }
+  write_all(folder.file("columns.db"), ticks, bytes);
+  pass.add_detail("P20", "of it columns for queries", hourly(bytes, count), "MB");
+}
+
 }  // namespace
 
 void storage(Pass& pass) {
@@ -298,6 +312,7 @@ void storage(Pass& pass) {
             .floor = 75,
             .stretch = 55,
             .note = "read back and compared value by value"});
+  storage_shares(pass, folder, count);
   replay(pass, folder.file("hour0.db"), count);
 }
 
