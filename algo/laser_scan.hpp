@@ -84,7 +84,10 @@ inline std::uint16_t beam_to_wire(const LaserScan& scan, std::size_t i) {
     const auto code = static_cast<std::uint16_t>(scan.codes[i]);
     return static_cast<std::uint16_t>(kWireCodeBase + (code == 0 ? 1 : code));
   }
-  const double mm = std::nearbyint(scan.ranges[i] * 1000.0);
+  // Adding this number leaves no room for a fraction: rounds as nearbyint() does, which without
+  // SSE 4.1 is a call. Beyond 2^51 it does not, but there the range is clipped.
+  constexpr double kNoFraction = 0x1.8p52;
+  const double mm = (scan.ranges[i] * 1000.0 + kNoFraction) - kNoFraction;
   if (!(mm > 0)) return 0;
   return mm >= kWireMaxRange ? kWireMaxRange : static_cast<std::uint16_t>(mm);
 }

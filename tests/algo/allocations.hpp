@@ -1,5 +1,5 @@
-// tests/algo/allocations.hpp: how often this test program has allocated, to show that a tick does
-// not.
+// tests/algo/allocations.hpp: how often this program has allocated, to show that a tick does not.
+// Needs allocations.cpp in the program.
 #pragma once
 
 #include <cstddef>

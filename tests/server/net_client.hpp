@@ -106,6 +106,8 @@ class Client {
     return ended_;
   }
   const std::string& input() const { return input_; }
+  /// Its file descriptor, for a reader of many clients.
+  int fd() const { return fd_; }
 
  private:
   int fd_ = -1;

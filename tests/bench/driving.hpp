@@ -1,0 +1,80 @@
+// tests/bench/driving.hpp: a robot in W(20) that never stops driving: one tick after the other.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "tests/bench/rooms.hpp"
+
+#include "algo/pipeline.hpp"
+#include "sim/world.hpp"
+
+namespace bench {
+
+inline sim::Scenario room_scenario(std::uint32_t obstacles,
+                                   sim::Vehicle vehicle,
+                                   std::vector<sim::LaserConfig> lasers) {
+  sim::Scenario scenario;
+  scenario.name = "w" + std::to_string(obstacles);
+  scenario.vehicle = vehicle;
+  scenario.period = kTick;
+  scenario.obstacles = reference::room(obstacles);
+  scenario.lasers = std::move(lasers);
+  return scenario;
+}
+
+/// Pipeline of the papers' filter with N = 2.
+inline algo::Pipeline make_pipeline(const algo::RobotSpec& spec) {
+  algo::PipelineConfig config;
+  config.parameters.set(algo::Parameter::FilterHalfWidth, 2);
+  return {config, spec};
+}
+
+/// Gives a robot that has arrived, or is stuck, the next corner of a square about the middle.
+class Patrol {
+ public:
+  void direct(algo::Telemetry& t) {
+    t.requests.clear();
+    if (t.mission == algo::Mission::Driving) return;
+    constexpr std::array<std::array<double, 2>, 4> kCorners{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
+    const auto& corner = kCorners[next_++ % kCorners.size()];
+    t.requests.push_back(algo::SetGoal{{corner[0], corner[1]}, std::nullopt});
+  }
+
+ private:
+  std::size_t next_ = 0;
+};
+
+/// World and pipeline, step by step.
+class Driving {
+ public:
+  explicit Driving(const sim::Scenario& scenario)
+      : world_(scenario, 1), pipeline_(make_pipeline(world_.spec())) {
+    world_.set_pace({.speed = 0});
+    world_.reset(t.observation);
+    pipeline_.reset(t.observation.odometry.pose);
+    pipeline_.tick(t);
+  }
+  /// World, then control.
+  void tick() {
+    sense();
+    pipeline_.tick(t);
+  }
+  void sense() {
+    patrol_.direct(t);
+    world_.step(t.command, t.observation);
+  }
+  void control() { pipeline_.tick(t); }
+  algo::Pose2 truth() const { return world_.ground_truth()->pose; }
+  const sim::World& world() const { return world_; }
+
+  algo::Telemetry t{};
+
+ private:
+  sim::World world_;
+  algo::Pipeline pipeline_;
+  Patrol patrol_{};
+};
+
+}  // namespace bench
