@@ -154,6 +154,7 @@ Table cost_table(const FilterStudy& study) {
 std::string beams_with_spikes(const FilterScene& scene) {
   if (scene.spikes.empty()) return "no spikes";
   std::vector<std::size_t> beams;
+  beams.reserve(scene.spikes.size());
   for (const Spike& spike : scene.spikes) beams.push_back(spike.beam);
   return fmt::format("{} at {}", beams.size() == 1 ? "spike" : "spikes", fmt::join(beams, ", "));
 }

@@ -23,7 +23,7 @@ class Panel {
  public:
   Panel(std::size_t place, std::size_t beams, double top_mm)
       : x_(static_cast<double>(place % kColumns) * kPanelWidth),
-        y_(kHead + static_cast<double>(place / kColumns) * kPanelHeight),
+        y_(kHead + std::floor(static_cast<double>(place) / kColumns) * kPanelHeight),
         beams_(beams),
         top_mm_(top_mm) {}
 
@@ -153,6 +153,7 @@ std::vector<Picture> draw(const FilterStudy& study) {
   std::vector<Picture> out;
   for (const SceneResult& each : study.scenes) {
     std::vector<ScanValues> after;
+    after.reserve(each.after_mm.size());
     for (const std::vector<double>& mm : each.after_mm) after.push_back({.mm = mm, .valid = {}});
     out.push_back({.file = "filter-" + each.scene.name + ".svg",
                    .svg = draw_panels(each.scene.title,

@@ -138,6 +138,7 @@ std::vector<Recording> read_recordings(const std::filesystem::path& folder) {
   }
   std::ranges::sort(files);
   std::vector<Recording> out;
+  out.reserve(files.size());
   for (const std::filesystem::path& file : files) out.push_back(read_recording(file));
   return out;
 }

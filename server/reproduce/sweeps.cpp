@@ -74,6 +74,7 @@ std::string verdict_of(std::size_t held, std::size_t all) {
 
 std::vector<double> clearances(const SweepLine& line) {
   std::vector<double> out;
+  out.reserve(line.rows.size());
   for (const Row& row : line.rows) out.push_back(value(row, "min_clearance_mm"));
   return out;
 }

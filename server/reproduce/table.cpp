@@ -9,6 +9,7 @@ namespace server::reproduce {
 
 std::string to_text(const Table& table) {
   std::vector<std::size_t> widths;
+  widths.reserve(table.header.size());
   for (const std::string& title : table.header) widths.push_back(title.size());
   for (const auto& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());

@@ -90,6 +90,14 @@ Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
       b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular);
 }
 
+/// The library's verifier looks at the length of a vector of structs, not at where its elements
+/// lie.
+template <typename T>
+void check_alignment(const flatbuffers::Vector<const T*>& structs) {
+  if (reinterpret_cast<std::uintptr_t>(structs.Data()) % alignof(T) == 0) return;
+  throw WireError("A list in the frame does not lie where its elements can be read.");
+}
+
 algo::Obstacle read_obstacle(const fb::Obstacle* o) {
   if (o == nullptr || o->pose() == nullptr || o->size() == nullptr) {
     throw WireError("An obstacle in the frame lacks its pose or size.");
@@ -115,6 +123,7 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
     case fb::ShapeKind_Polygon: {
       algo::Polygon polygon;
       if (o->points() != nullptr) {
+        check_alignment(*o->points());
         for (const fb::Vec2* p : *o->points()) polygon.points.push_back(from_wire(*p));
       }
       out.shape = std::move(polygon);
@@ -279,6 +288,7 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   }
   const auto read_ring = [](const auto* wire, algo::Recycled<algo::RangeReading>& ring) {
     if (wire == nullptr) return;
+    check_alignment(*wire);
     for (const fb::RangeReading* r : *wire) {
       check_enum(r->status(), fb::BeamStatus_MAX, "beam status");
       ring.push_back({from_wire(r->mount()),
@@ -291,6 +301,7 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   read_ring(f.sonar(), o.sonar);
   read_ring(f.infrared(), o.infrared);
   if (f.bumpers() != nullptr) {
+    check_alignment(*f.bumpers());
     for (const fb::Bumper* r : *f.bumpers()) {
       o.bumpers.push_back({from_wire(r->mount()), r->stamp(), r->pressed()});
     }
@@ -308,6 +319,7 @@ std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output = {};
   if (f.strip() != nullptr) {
+    check_alignment(*f.strip());
     for (const fb::Node* n : *f.strip()) {
       t.output.strip.push_back(
           {from_wire(n->position()), from_wire(n->internal()), from_wire(n->external())});
