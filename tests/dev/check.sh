@@ -136,9 +136,14 @@ verb_fuzz() {
 }
 
 verb_check() {
-  local stage broken=() times=() start
+  local stage stages=(lint "sanitize asan" "sanitize tsan" fuzz) broken=() times=() start
+  if docker version >/dev/null 2>&1; then
+    stages+=(image)
+  else
+    say "The image is not tried: no container engine runs here. ./dev image starts one of its own."
+  fi
   need "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
-  for stage in lint "sanitize asan" "sanitize tsan" fuzz image; do
+  for stage in "${stages[@]}"; do
     printf '== %s\n' "$stage"
     start=$SECONDS
     # A process each, so that `set -e` stays in force inside.

@@ -35,6 +35,7 @@ stop_engine() {
     read -rt 0.25 <> <(:) || true
   done
   umount "$engine"/exec/netns/* 2>/dev/null || true
+  umount "$engine/data" 2>/dev/null || true
   rm -rf --one-file-system -- "$engine"
 }
 
@@ -43,8 +44,8 @@ stop_engine() {
 base_image() {
   "$docker" image inspect debian:bookworm-slim >/dev/null 2>&1 && return
   timeout 60 "$docker" pull -q debian:bookworm-slim >/dev/null 2>&1 && return
-  local base=$engine/base change=()
-  mkdir -p "$base"
+  local base change=()
+  base=$(mktemp -d)
   apt-config dump | grep '^Acquire::' >"$base/apt.conf" || true
   mmdebstrap --quiet --variant=minbase --include=ca-certificates --aptopt="$base/apt.conf" \
     --customize-hook="copy-in /etc/resolv.conf /etc" \
@@ -58,7 +59,7 @@ base_image() {
     bookworm "$base/base.tar"
   change=(--change 'ENV NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt')
   "$docker" import "${change[@]}" "$base/base.tar" debian:bookworm-slim >/dev/null
-  rm -f "$base/base.tar"
+  rm -rf -- "$base"
 }
 
 compose() { docker-compose -f docker/compose.yaml -p "$project" "$@"; }
@@ -102,12 +103,12 @@ count_runs() { node -e 'let t = ""; process.stdin.on("data", (d) => (t += d)).on
   console.log(JSON.parse(t).items.length))'; }
 
 verb_image() {
-  local docker engine='' project=tautline-check$$
+  # Not local: the trap at the end still needs them.
+  docker='' engine='' project=tautline-check$$
   need "${run_packages[@]}" "${test_packages[@]}"
   install_modules
   start_engine || return 0
-  trap 'compose down -v >/dev/null 2>&1; stop_engine' EXIT
-  engine=${engine:-$(mktemp -d)}
+  trap 'compose down -v >/dev/null 2>&1 || true; stop_engine' EXIT
   export TAUTLINE_PORT=${TAUTLINE_PORT:-18090}
   quietly image-base.log "The base image" base_image
   quietly image.log "Building the image" "$docker" build --network host -t tautline -f docker/Dockerfile .
