@@ -285,21 +285,21 @@ void Recorder::cut_longest() {
 
 void Recorder::make_room() {
   guarded([&] {
-    if (!sweeping_ && options_.retention_bytes > 0) {
-      if (const auto run = store_.retire_oldest(options_.retention_bytes)) {
-        sweeping_ = true;
-        report("Deleted run " + std::to_string(run->id) + " (" + run->what.scenario + ", " +
-               run->what.started + ", " + std::to_string(run->ticks) +
-               " ticks): the run store is full.");
-      } else if (store_.used_bytes() > options_.retention_bytes) {
-        cut_longest();
-      }
-    }
-    // Every slice commits, so the frames that came meanwhile are as safe as without it.
+    // What people deleted goes first: nothing else has to go while that is still there. Every slice
+    // commits, so the frames that came meanwhile are as safe as without it.
     const auto until = Clock::now() + kSweepTime;
-    while (sweeping_ && Clock::now() < until) {
+    bool more = store_.sweep();
+    while (more && Clock::now() < until) {
       take_frames();
-      sweeping_ = store_.sweep();
+      more = store_.sweep();
+    }
+    if (more || options_.retention_bytes == 0) return;
+    if (const auto run = store_.retire_oldest(options_.retention_bytes)) {
+      report("Deleted run " + std::to_string(run->id) + " (" + run->what.scenario + ", " +
+             run->what.started + ", " + std::to_string(run->ticks) +
+             " ticks): the run store is full.");
+    } else if (store_.used_bytes() > options_.retention_bytes) {
+      cut_longest();
     }
   });
 }

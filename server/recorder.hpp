@@ -257,7 +257,6 @@ class Recorder {
   std::vector<std::shared_ptr<RunChannel>> channels_{};   // the database thread's
   std::vector<std::pair<db::RunId, db::RunEnd>> lost_{};  // runs still to be marked as failed
   Clock::time_point commit_due_{};
-  bool sweeping_ = true;  // an earlier program may have left deleted runs behind
 
   std::mutex mutex_{};
   std::vector<Job> jobs_{};  // guarded by mutex_

@@ -308,6 +308,34 @@ TEST_F(RecorderTest, ARunThatFillsTheStoreAloneIsRecordedNoFurther) {
   expect_frames(other->run(), 10);
 }
 
+TEST_F(RecorderTest, ADeletedRunMakesRoomBeforeALiveOneIsCut) {
+  constexpr std::uint64_t kLimit = 1'000'000;
+  Recorder recorder(path,
+                    {.retention_bytes = kLimit, .commit_interval = std::chrono::milliseconds(5)});
+  const auto used = [&] {
+    return recorder.ask([](db::RunStore& store) { return store.used_bytes(); });
+  };
+  const auto old = recorder.open(what());
+  std::uint64_t ticks = 0;
+  while (used() < kLimit * 8 / 10) push(*old, ticks++);
+  old->close({.outcome = "reached"});
+  recorder.flush();
+  const std::uint64_t with_old = used();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // what the start swept is done
+  recorder.ask([&](db::RunStore& store) { return store.delete_run(old->run()); });
+  const auto live = recorder.open(what());
+  for (std::uint64_t i = 0; i < ticks; ++i) push(*live, i);  // both together are over the limit
+  recorder.flush();
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (used() > kLimit && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_LE(used(), kLimit);
+  EXPECT_GT(2 * with_old, kLimit);
+  EXPECT_TRUE(recorder.ask([&](db::RunStore& store) { return store.recording(live->run()); }));
+  live->close({.outcome = "reached"});
+}
+
 /// What the child tells its parent; it outlives the kill.
 struct Shared {
   std::atomic<std::uint64_t> pushed = 0;
