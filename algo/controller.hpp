@@ -9,6 +9,7 @@
 #include "algo/observation.hpp"
 #include "algo/parameters.hpp"
 #include "algo/request.hpp"
+#include "algo/robot.hpp"
 #include "algo/telemetry.hpp"
 #include "algo/types.hpp"
 
@@ -18,9 +19,10 @@ struct ControlInput {
   double stamp = 0;  // [s] run clock
   double dt = 0;     // [s] tick
   Odometry odometry{};
-  const Scene* scene = nullptr;  // never null in update()
+  const Scene* scene = nullptr;              // never null in update(), as are the other two
+  const Observation* observation = nullptr;  // for what the scene leaves out: sonar, other scanners
   std::optional<SetGoal> goal{};
-  double robot_radius = 0;  // [m]
+  const RobotSpec* spec = nullptr;  // hull, limits, delay
 };
 
 /// The block "obstacle avoidance" and "determining velocity" of the thesis (Fig. 22).

@@ -29,21 +29,6 @@ bool finite(const LaserScan& scan) {
   return wrong == 0;
 }
 
-/// Every field but the strip's buffer, which is kept for the next tick.
-void clear(ControlOutput& out) {
-  out.twist = {};
-  out.strip.clear();
-  out.internal_W = {0, 0};
-  out.external_left_W = {0, 0};
-  out.external_right_W = {0, 0};
-  out.elastic_W = {0, 0};
-  out.pass_W = {0, 0};
-  out.side = Side::None;
-  out.side_since = 0;
-  out.side_alpha = 0;
-  out.blocked_beam = -1;
-}
-
 /// Turns in place to a wanted heading; at rest when there is none or it is reached.
 Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters) {
   if (!goal.heading) return {};
@@ -68,7 +53,7 @@ bool all_finite(const ControlInput& in, const Parameters& parameters) {
   if (in.goal && !in.goal->position_W.allFinite()) return false;
   if (in.goal && in.goal->heading && !std::isfinite(*in.goal->heading)) return false;
   const Odometry& odometry = in.odometry;
-  return std::isfinite(in.stamp) && std::isfinite(in.dt) && std::isfinite(in.robot_radius) &&
+  return std::isfinite(in.stamp) && std::isfinite(in.dt) && std::isfinite(in.spec->radius) &&
          std::isfinite(odometry.stamp) && finite(odometry.pose) &&
          std::isfinite(odometry.twist.v) && std::isfinite(odometry.twist.omega) &&
          finite(in.scene->left) && finite(in.scene->right) && finite(in.scene->scan);
@@ -139,7 +124,7 @@ void ElasticStripController::choose(const ControlInput& in,
                                     double reach,
                                     ControlOutput& out) {
   const SideInput input{
-      in.stamp, in.odometry.pose, goal_W, reach, in.robot_radius, &in.scene->scan};
+      in.stamp, in.odometry.pose, goal_W, reach, in.spec->radius, &in.scene->scan};
   const SidePush push = side_.update(input, out.external_left_W + out.external_right_W);
   out.elastic_W += push.force_W;
   out.side = side_.state().side;
@@ -151,7 +136,7 @@ void ElasticStripController::choose(const ControlInput& in,
 void ElasticStripController::update(const ControlInput& in,
                                     const Parameters& parameters,
                                     ControlOutput& out) {
-  clear(out);
+  out.clear();
   if (!all_finite(in, parameters)) return;
   if (!in.goal) {
     reset(in.odometry.pose);
@@ -160,7 +145,7 @@ void ElasticStripController::update(const ControlInput& in,
   const SetGoal& goal = *in.goal;
   follow_goal(goal);
   const Pose2& pose = in.odometry.pose;
-  const double reach = parameters[Parameter::SafetyDistance] + in.robot_radius;
+  const double reach = parameters[Parameter::SafetyDistance] + in.spec->radius;
   const ForceSettings settings{
       reading_.law, reach, parameters[Parameter::RepulsionGain], parameters[Parameter::StripStep]};
 

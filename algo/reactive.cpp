@@ -40,8 +40,9 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   input.dt = in.dt;
   input.odometry = in.observation->odometry;
   input.scene = in.scene;
+  input.observation = in.observation;
   if (in.mission != Mission::Arrived) input.goal = in.goal;
-  input.robot_radius = in.spec->radius;
+  input.spec = in.spec;
   controller_->update(input, *in.parameters, output);
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
 }

@@ -26,12 +26,15 @@ class EndOfLog : public RobotError {
 struct RobotSpec {
   std::string name{};
   double radius = 0;                    // [m] of the hull's circle about R
+  double half_length = 0;               // [m] of a rectangular hull along R's x; 0: the disc is it
+  double half_width = 0;                // [m] of a rectangular hull along R's y
   double half_track = 0;                // [m] centre to wheel
   double period = 0;                    // [s] of one tick
   double max_v = 0;                     // [m/s]
   double max_omega = 0;                 // [rad/s]
   double max_acceleration = 0;          // [m/s2]
   double max_angular_acceleration = 0;  // [rad/s2]
+  double command_delay = 0;             // [s] from a command's tick until it acts
   bool editable = false;                // obstacles can be added, moved, removed
   bool paceable = false;                // has pause, single step and speed
   bool drives = false;                  // commands move it; a recorded log does not

@@ -49,4 +49,25 @@ std::string_view name(BehaviourId behaviour) {
   return "rest";
 }
 
+void ControlOutput::clear() {
+  twist = {};
+  strip.clear();
+  internal_W = {0, 0};
+  external_left_W = {0, 0};
+  external_right_W = {0, 0};
+  elastic_W = {0, 0};
+  pass_W = {0, 0};
+  side = Side::None;
+  side_since = 0;
+  side_alpha = 0;
+  blocked_beam = -1;
+  plan_W.clear();
+  candidates.clear();
+  histogram.clear();
+  histogram_threshold = 0;
+  grid.columns = 0;
+  grid.rows = 0;
+  grid.cells.clear();
+}
+
 }  // namespace algo

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
@@ -39,6 +40,26 @@ struct Node {
 
 enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
 
+/// A controller's grid as people see it: row-major from its corner, one byte a cell.
+struct GridLayer {
+  static constexpr std::uint8_t kUnknown = 255;  // else 0 free .. 254 occupied
+  Vec2 corner_W{0, 0};                           // [m] outer corner of cell (0, 0)
+  double cell = 0;                               // [m] edge
+  std::uint32_t columns = 0;                     // along W's x
+  std::uint32_t rows = 0;
+  std::vector<std::uint8_t> cells{};  // columns x rows; empty: the controller keeps no grid
+};
+
+/// A motion that a controller weighed: constant twist held for `horizon`.
+struct Candidate {
+  Twist2 twist{};
+  double horizon = 0;    // [s]
+  double cost = 0;       // in the controller's own measure; less is better
+  bool allowed = false;  // passed the controller's collision test
+  bool chosen = false;
+  bool operator==(const Candidate&) const = default;
+};
+
 /// What a controller decided and why.
 struct ControlOutput {
   Twist2 twist{};
@@ -52,6 +73,14 @@ struct ControlOutput {
   double side_since = 0;   // [s] run clock at which it was chosen
   double side_alpha = 0;   // share of the side push, 0..1
   std::int32_t blocked_beam = -1;
+  Recycled<Vec2> plan_W{};           // a deliberative layer's path, robot to goal
+  Recycled<Candidate> candidates{};  // what a velocity stage weighed
+  std::vector<float> histogram{};    // polar density by bearing in W, first sector from 0 ccw
+  double histogram_threshold = 0;    // sectors below it count as free
+  GridLayer grid{};
+
+  /// Everything but the buffers, which are kept for the next tick.
+  void clear();
 };
 
 /// Why the gate replaced the command by zero.

@@ -111,12 +111,15 @@ double time_limit(const RunSpec& spec) {
 json to_json(const algo::RobotSpec& robot) {
   return {{"name", robot.name},
           {"radius", robot.radius},
+          {"half_length", robot.half_length},
+          {"half_width", robot.half_width},
           {"half_track", robot.half_track},
           {"period", robot.period},
           {"max_v", robot.max_v},
           {"max_omega", robot.max_omega},
           {"max_acceleration", robot.max_acceleration},
           {"max_angular_acceleration", robot.max_angular_acceleration},
+          {"command_delay", robot.command_delay},
           {"editable", robot.editable},
           {"paceable", robot.paceable},
           {"drives", robot.drives}};
@@ -127,12 +130,15 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
   algo::RobotSpec robot;
   robot.name = in.text("name");
   robot.radius = in.number("radius", {0, 10});
+  robot.half_length = in.number_or("half_length", 0, {0, 10});
+  robot.half_width = in.number_or("half_width", 0, {0, 10});
   robot.half_track = in.number("half_track", {0, 10});
   robot.period = in.number("period", {1e-4, 10});
   robot.max_v = in.number("max_v", {0, 100});
   robot.max_omega = in.number("max_omega", {0, 100});
   robot.max_acceleration = in.number("max_acceleration", {0, 1000});
   robot.max_angular_acceleration = in.number("max_angular_acceleration", {0, 1000});
+  robot.command_delay = in.number_or("command_delay", 0, {0, 10});
   robot.editable = in.flag_or("editable", false);
   robot.paceable = in.flag_or("paceable", false);
   robot.drives = in.flag_or("drives", false);

@@ -125,7 +125,7 @@ class Drive {
     in.odometry.pose = pose_;
     in.scene = &scene_;
     in.goal = algo::SetGoal{goal_, std::nullopt};
-    in.robot_radius = 350_mm;
+    in.spec = &spec_;
     controller_->update(in, parameters_, out_);
     return out_.twist;
   }
@@ -154,6 +154,7 @@ class Drive {
   algo::ScanFilter filter_{};
   algo::LaserScan raw_{};
   algo::Scene scene_{};
+  algo::RobotSpec spec_{.radius = 350_mm};
   algo::ControlOutput out_{};
   algo::Pose2 pose_{};
   Vec2 goal_{0, 0};

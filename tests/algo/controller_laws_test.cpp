@@ -33,6 +33,15 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 /// A robot before a post on its way, everything sound.
 struct Situation {
   Scene scene{};
+  algo::Observation observation{};
+  algo::RobotSpec spec{.radius = 0.35,
+                       .half_track = 0.25,
+                       .period = 0.026,
+                       .max_v = 0.5,
+                       .max_omega = 1.0,
+                       .max_acceleration = 0.5,
+                       .max_angular_acceleration = 4,
+                       .drives = true};
   ControlInput in{};
   Parameters parameters{};
 
@@ -46,7 +55,8 @@ struct Situation {
     in.odometry.pose = pose;
     in.scene = &scene;
     in.goal = algo::SetGoal{{4, 0}, 0.5};
-    in.robot_radius = 0.35;
+    in.observation = &observation;
+    in.spec = &spec;
   }
   Situation(const Situation&) = delete;
   Situation& operator=(const Situation&) = delete;
@@ -88,7 +98,7 @@ TEST_P(EveryController, AnyNumberThatIsNotFiniteGivesZero) {
   std::vector<Spoil> spoils = {
       [](Situation& s, double x) { s.in.stamp = x; },
       [](Situation& s, double x) { s.in.dt = x; },
-      [](Situation& s, double x) { s.in.robot_radius = x; },
+      [](Situation& s, double x) { s.spec.radius = x; },
       [](Situation& s, double x) { s.in.odometry.stamp = x; },
       [](Situation& s, double x) { s.in.odometry.pose.x = x; },
       [](Situation& s, double x) { s.in.odometry.pose.y = x; },

@@ -59,7 +59,9 @@ Tick run(const std::string& controller, const Json& vector) {
   in.odometry.pose = golden::pose_mm(vector.at("pose"));
   in.scene = &tick.scene;
   in.goal = algo::SetGoal{golden::point_mm(vector.at("goal")), std::nullopt};
-  in.robot_radius = 350_mm;
+  algo::RobotSpec spec;
+  spec.radius = 350_mm;
+  in.spec = &spec;
   in.dt = 0.05;
   algo::Parameters parameters;
   parameters.set(algo::Parameter::SafetyDistance, 1000_mm);

@@ -187,10 +187,11 @@ TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
   worlds::scan_world(pose, post(1.4, 0.02, 0.3), 8, scene.scan);
   algo::perceive(pose, scene);
   const algo::Parameters parameters;
+  const algo::RobotSpec spec{.radius = 0.35};
   algo::ControlInput in;
   in.scene = &scene;
   in.goal = algo::SetGoal{{4, 0}, std::nullopt};
-  in.robot_radius = 0.35;
+  in.spec = &spec;
   const std::pair<const char*, const char*> pairs[] = {{"original", "original_side"},
                                                        {"modified_c1", "modified"}};
   for (const auto& [without, with] : pairs) {
@@ -216,10 +217,11 @@ TEST(SideChoice, AnotherGoalForgetsTheSide) {
   algo::Scene scene;
   worlds::scan_world(pose, post(1.4, 0.02, 0.3), 8, scene.scan);
   algo::perceive(pose, scene);
+  const algo::RobotSpec spec{.radius = 0.35};
   algo::ControlInput in;
   in.scene = &scene;
   in.goal = algo::SetGoal{{4, 0}, std::nullopt};
-  in.robot_radius = 0.35;
+  in.spec = &spec;
   algo::ControlOutput out;
   const auto controller = algo::make_controller("modified");
   controller->update(in, {}, out);
