@@ -7,11 +7,13 @@
 #include <string>
 
 #include "algo/elastic_strip_controller.hpp"
+#include "algo/full_strip/full_strip_controller.hpp"
 
 namespace algo {
 namespace {
 
-constexpr std::size_t kCount = 7;
+constexpr std::size_t kReadingCount = 7;
+constexpr std::size_t kCount = kReadingCount + 1;
 
 constexpr std::array<ControllerInfo, kCount> kTable{{
     {"modified",
@@ -38,9 +40,13 @@ constexpr std::array<ControllerInfo, kCount> kTable{{
      "Modified strip, via kept",
      "As the modified strip, and the via point of the tick before is pulled onto the line by "
      "K_c: the only one in which K_c acts."},
+    {"strip",
+     "Full elastic strip",
+     "Many nodes on a map of the scans, laid anew by a planner where they break, and a velocity "
+     "stage that proves every command before it is given. Our extension."},
 }};
 
-constexpr std::array<StripReading, kCount> kReadings{{
+constexpr std::array<StripReading, kReadingCount> kReadings{{
     {ForceLaw::C1, Sides::Both, true, false},
     {ForceLaw::Original, Sides::Nearest, false, false},
     {ForceLaw::Original, Sides::Nearest, true, false},
@@ -57,7 +63,8 @@ std::span<const ControllerInfo> controller_table() {
 }
 
 std::unique_ptr<Controller> make_controller(std::string_view name) {
-  for (std::size_t i = 0; i < kCount; ++i) {
+  if (name == "strip") return std::make_unique<FullStripController>();
+  for (std::size_t i = 0; i < kReadingCount; ++i) {
     if (kTable[i].name == name) return std::make_unique<ElasticStripController>(kReadings[i]);
   }
   std::string known;

@@ -44,6 +44,7 @@ struct RobotSpec {
 struct GroundTruth {
   Pose2 pose{};
   double obstacle_distance = 0;  // [m] from the robot's centre to the nearest surface
+  double clearance = 0;          // [m] from the hull's outline to it, negative inside
   bool collided = false;
   bool operator==(const GroundTruth&) const = default;
 };

@@ -60,6 +60,19 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
+/// An obstacle seen moving.
+struct Track {
+  Vec2 position_W{0, 0};
+  Vec2 velocity_W{0, 0};  // [m/s]
+  double radius = 0;      // [m]
+  double age = 0;         // [s] since it was first seen
+  double unseen = 0;      // [s] since it was last seen
+  bool operator==(const Track&) const = default;
+};
+
+/// What a controller with recoveries is about.
+enum class Phase : std::uint8_t { Rest, Follow, Turn, Wait, Escape, BackOff, NoWay, Blocked };
+
 /// What a controller decided and why.
 struct ControlOutput {
   Twist2 twist{};
@@ -73,6 +86,9 @@ struct ControlOutput {
   double side_since = 0;   // [s] run clock at which it was chosen
   double side_alpha = 0;   // share of the side push, 0..1
   std::int32_t blocked_beam = -1;
+  Phase phase = Phase::Rest;
+  double phase_since = 0;  // [s] run clock
+  Recycled<Track> tracks{};
   Recycled<Vec2> plan_W{};           // a deliberative layer's path, robot to goal
   Recycled<Candidate> candidates{};  // what a velocity stage weighed
   std::vector<float> histogram{};    // polar density by bearing in W, first sector from 0 ccw
@@ -96,6 +112,7 @@ enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
 std::string_view name(Hold hold);
 std::string_view name(Mission mission);
 std::string_view name(BehaviourId behaviour);
+std::string_view name(Phase phase);
 
 struct Telemetry {
   std::uint64_t tick = 0;

@@ -14,6 +14,7 @@
 #include "algo/filter.hpp"
 #include "algo/units.hpp"
 #include "server/json_reader.hpp"
+#include "server/motion_json.hpp"
 
 namespace server {
 namespace {
@@ -22,6 +23,7 @@ using nlohmann::json;
 constexpr double kMaxCoordinate = 1e5;  // [m]
 constexpr NumberRange kCoordinate{-kMaxCoordinate, kMaxCoordinate};
 constexpr std::size_t kMaxPolygonPoints = 256;
+constexpr std::uint64_t kMaxBeams = 4096;
 
 algo::Vec2 point_from_json(const json& value, const std::string& path) {
   if (!value.is_array() || value.size() != 2) {
@@ -126,6 +128,8 @@ void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
 
 sim::LaserConfig laser_from_json(const JsonReader& in) {
   in.only({"resolution_deg",
+           "field_of_view_deg",
+           "beams",
            "ideal",
            "mount",
            "height",
@@ -147,6 +151,13 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
                                        : sim::LaserConfig::with_resolution(resolution);
   } catch (const std::invalid_argument& e) {
     in.fail("resolution_deg", e.what());
+  }
+  if (in.has("field_of_view_deg") || in.has("beams")) {
+    if (in.has("resolution_deg")) in.fail("resolution_deg", "cannot stand beside beams");
+    laser = sim::LaserConfig::flat(
+        in.number("field_of_view_deg", {1.0, 360.0}) * algo::units::kRadiansPerDegree,
+        static_cast<std::uint32_t>(in.whole("beams", kMaxBeams)),
+        30.0);
   }
   if (in.has("mount")) laser.mount_R = pose_from_json(in.object("mount"), 0);
   laser.height = in.number_or("height", laser.height, {0.0, 5.0});
@@ -173,22 +184,35 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
   return laser;
 }
 
+/// Whether `degrees` is an angular resolution of the LMS200.
+bool lms200_mode(double degrees) {
+  const auto is = [&](double mode) { return std::abs(degrees - mode) < 1e-9; };
+  return is(0.25) || is(0.5) || is(1.0);
+}
+
 json to_json(const sim::LaserConfig& laser) {
+  json out = {
+      {"mount", to_json(laser.mount_R)},
+      {"height", laser.height},
+      {"rolling", laser.rolling},
+      {"unit", laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm"},
+      {"range_max", laser.range_max},
+      {"bias", laser.bias},
+      {"noise", laser.noise},
+      {"noise_shape", laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian"},
+      {"mixed_pixels", laser.mixed_pixels},
+      {"reflectivity", laser.reflectivity},
+      {"dropout", laser.dropout},
+      {"salt", laser.salt},
+      {"pepper", laser.pepper}};
   const double degrees = laser.angle_increment / algo::units::kRadiansPerDegree;
-  return {{"resolution_deg", std::round(degrees * 100) / 100},
-          {"mount", to_json(laser.mount_R)},
-          {"height", laser.height},
-          {"rolling", laser.rolling},
-          {"unit", laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm"},
-          {"range_max", laser.range_max},
-          {"bias", laser.bias},
-          {"noise", laser.noise},
-          {"noise_shape", laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian"},
-          {"mixed_pixels", laser.mixed_pixels},
-          {"reflectivity", laser.reflectivity},
-          {"dropout", laser.dropout},
-          {"salt", laser.salt},
-          {"pepper", laser.pepper}};
+  if (lms200_mode(degrees)) {
+    out["resolution_deg"] = std::round(degrees * 100) / 100;
+  } else {
+    out["field_of_view_deg"] = laser.field_of_view / algo::units::kRadiansPerDegree;
+    out["beams"] = std::lround(laser.field_of_view / laser.angle_increment) + 1;
+  }
+  return out;
 }
 
 void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
@@ -196,7 +220,9 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
   std::set<std::uint32_t> ids;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string path = fmt::format("obstacles/{}", i);
-    algo::Obstacle obstacle = obstacle_from_json(list[i], path);
+    json one = list[i];
+    if (one.is_object()) one.erase("path");  // not of the obstacle as such: of this world
+    algo::Obstacle obstacle = obstacle_from_json(one, path);
     if (obstacle.id != 0 && !ids.insert(obstacle.id).second) {
       throw DocumentError(path + "/id", fmt::format("{} is used twice", obstacle.id));
     }
@@ -208,6 +234,11 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
     while (ids.count(next) > 0) ++next;
     ids.insert(next);
     obstacle.id = next;
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const JsonReader one(list[i], fmt::format("obstacles/{}", i));
+    if (!one.has("path")) continue;
+    scenario.paths.push_back(path_from_json(one.object("path"), scenario.obstacles[i].id));
   }
 }
 
@@ -403,6 +434,7 @@ sim::Scenario scenario_from_json(const json& document) {
            "period",
            "start",
            "goal",
+           "drive",
            "obstacles",
            "lasers",
            "controller",
@@ -423,6 +455,7 @@ sim::Scenario scenario_from_json(const json& document) {
     s.goal = goal_from_json(in.object("goal"));
   }
   s.start = start_from_json(in, s.goal);
+  if (in.has("drive")) s.drive = drive_from_json(in.object("drive"));
   if (in.has("obstacles")) read_obstacles(in, s);
   if (in.has("lasers")) {
     s.lasers.clear();
@@ -456,6 +489,12 @@ json to_json(const sim::Scenario& s) {
   }
   for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
   for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));
+  for (const sim::ObstaclePath& path : s.paths) {
+    for (json& one : out["obstacles"]) {
+      if (one["id"] == path.id) one["path"] = to_json(path);
+    }
+  }
+  if (s.drive != sim::DriveConfig{}) out["drive"] = to_json(s.drive);
   return out;
 }
 

@@ -6,7 +6,11 @@
 namespace sim {
 
 KinematicVehicle::KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps)
-    : vehicle_(vehicle), period_(period), substeps_(period), with_ramps_(with_ramps) {}
+    : vehicle_(vehicle),
+      hull_(hull_of(vehicle)),
+      period_(period),
+      substeps_(period),
+      with_ramps_(with_ramps) {}
 
 void KinematicVehicle::reset(const algo::Pose2& start) {
   state_ = {};
@@ -23,9 +27,11 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   algo::Twist2 twist = target_;
   algo::Pose2 to = algo::integrate_arc(from, twist, period_);
   state_.contact = false;
-  const double distance = obstacles.distance(to.position());
-  // A robot that is too near already may still leave.
-  if (distance < vehicle_.radius && distance < obstacles.distance(from.position())) {
+  // A robot that overlaps something already may still leave it: a rectangle any way, since how deep
+  // it overlaps is not known.
+  const double clearance = obstacles.clearance(hull_, to);
+  const bool was_clear = obstacles.clearance(hull_, from) > (vehicle_.round ? clearance : 0);
+  if (clearance < 0 && was_clear) {
     state_.contact = true;
     twist.v = 0;
     target_.v = 0;

@@ -19,6 +19,7 @@ class KinematicVehicle final : public VehicleModel {
 
  private:
   VehicleParameters vehicle_{};
+  Hull hull_{};
   double period_ = 0;  // [s]
   Substeps substeps_;
   bool with_ramps_ = false;

@@ -39,15 +39,26 @@ LaserConfig LaserConfig::ideal(double degrees) {
   return config;
 }
 
+LaserConfig LaserConfig::flat(double field_of_view, std::uint32_t beams, double range_max) {
+  LaserConfig config = ideal(1);
+  config.field_of_view = field_of_view;
+  config.angle_increment = beams > 1 ? field_of_view / (beams - 1) : field_of_view;
+  config.range_max = range_max;
+  return config;
+}
+
 std::optional<std::string> defect(const LaserConfig& config) {
   const auto finite_from = [](double value, double low) {
     return std::isfinite(value) && value >= low;
   };
   const auto probability = [](double value) { return value >= 0 && value <= 1; };
   if (!finite_from(config.angle_increment, 1e-5)) return "angle_increment must be above 0";
-  // Half a turn is what the housing leaves open; half a degree more for rounding in a file.
-  if (!finite_from(config.field_of_view, 0) || config.field_of_view > 180.5_deg) {
-    return "field_of_view must be 0 to 180 degrees";
+  // Half a turn is what the housing of an LMS200 leaves open, whose beams have each a time; half a
+  // degree more for rounding in a file.
+  const double widest = config.rolling ? 180.5_deg : 360_deg;
+  if (!finite_from(config.field_of_view, 0) || config.field_of_view > widest) {
+    return config.rolling ? "field_of_view must be 0 to 180 degrees unless rolling is off"
+                          : "field_of_view must be 0 to 360 degrees";
   }
   if (config.turns < 1 || config.turns > 64) return "turns must be 1 to 64";
   if (!finite_from(config.mirror_period, 1e-4)) return "mirror_period must be above 0";

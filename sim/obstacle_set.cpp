@@ -2,10 +2,63 @@
 #include "sim/obstacle_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace sim {
+namespace {
+
+double cross(const algo::Vec2& a, const algo::Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Squared distance [m2] from `p` to the segment from `a` to `b`.
+double squared_distance(const algo::Vec2& p, const algo::Vec2& a, const algo::Vec2& b) {
+  const algo::Vec2 edge = b - a;
+  const algo::Vec2 to_p = p - a;
+  const double length_squared = edge.squaredNorm();
+  const double along =
+      length_squared > 0 ? std::clamp(edge.dot(to_p) / length_squared, 0.0, 1.0) : 0;
+  return (to_p - along * edge).squaredNorm();
+}
+
+/// Whether a side of the counter-clockwise convex `outline` has all of `points` outside it.
+bool side_separates(std::span<const algo::Vec2> outline, std::span<const algo::Vec2> points) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const algo::Vec2& a = outline[i];
+    const algo::Vec2 edge = outline[(i + 1) % outline.size()] - a;
+    if (std::ranges::all_of(points, [&](const algo::Vec2& p) { return cross(edge, p - a) < 0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// [m] Between two convex outlines; -1 where they overlap.
+double between(std::span<const algo::Vec2> one, std::span<const algo::Vec2> other) {
+  if (!side_separates(one, other) && !side_separates(other, one)) return -1;
+  double nearest = std::numeric_limits<double>::infinity();  // squared
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (std::size_t k = 0; k < other.size(); ++k) {
+      nearest = std::min({nearest,
+                          squared_distance(one[i], other[k], other[(k + 1) % other.size()]),
+                          squared_distance(other[k], one[i], one[(i + 1) % one.size()])});
+    }
+  }
+  return std::sqrt(nearest);
+}
+
+/// [m] From `p` to the rectangle about the origin, negative inside.
+double to_rectangle(const algo::Vec2& p, const Hull& hull) {
+  const double dx = std::abs(p.x()) - hull.half_length;
+  const double dy = std::abs(p.y()) - hull.half_width;
+  if (dx <= 0 && dy <= 0) return std::max(dx, dy);
+  return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
+}
+
+}  // namespace
 
 std::optional<std::size_t> ObstacleSet::find(std::uint32_t id) const {
   for (std::size_t i = 0; i < items_.size(); ++i) {
@@ -55,11 +108,8 @@ double ObstacleSet::distance(std::size_t index, const algo::Vec2& p_W) const {
   for (const algo::Vec2& b : item.outline_W) {
     const algo::Vec2 edge = b - *a;
     const algo::Vec2 to_p = p_W - *a;
-    inside = inside && edge.x() * to_p.y() - edge.y() * to_p.x() >= 0;
-    const double length_squared = edge.squaredNorm();
-    const double along =
-        length_squared > 0 ? std::clamp(edge.dot(to_p) / length_squared, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (to_p - along * edge).squaredNorm());
+    inside = inside && cross(edge, to_p) >= 0;
+    nearest = std::min(nearest, squared_distance(p_W, *a, b));
     a = &b;
   }
   return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
@@ -76,6 +126,32 @@ double ObstacleSet::distance(const algo::Vec2& p_W) const {
     // Nothing of it can be nearer than its circle; inside one, every distance must be looked at.
     if (nearest > 0 && !may_reach(i, p_W, nearest)) continue;
     nearest = std::min(nearest, distance(i, p_W));
+  }
+  return nearest;
+}
+
+double ObstacleSet::clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const {
+  if (item.outline_W.empty()) {
+    const algo::Vec2 d = item.centre_W - pose_W.position();
+    const algo::Vec2 ahead = algo::direction(pose_W.heading);
+    return to_rectangle({ahead.dot(d), cross(ahead, d)}, hull) - item.bound;
+  }
+  const double l = hull.half_length;
+  const double w = hull.half_width;
+  const std::array corners_W{algo::to_parent(pose_W, {l, w}),
+                             algo::to_parent(pose_W, {-l, w}),
+                             algo::to_parent(pose_W, {-l, -w}),
+                             algo::to_parent(pose_W, {l, -w})};
+  return between(corners_W, item.outline_W);
+}
+
+double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const {
+  if (hull.half_length <= 0) return distance(pose_W.position()) - hull.radius;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < items_.size(); ++i) {
+    // Nothing of it can be nearer than its circle is to the circle about the rectangle.
+    if (!may_reach(i, pose_W.position(), std::max(nearest, 0.0) + hull.radius)) continue;
+    nearest = std::min(nearest, clearance(items_[i], hull, pose_W));
   }
   return nearest;
 }

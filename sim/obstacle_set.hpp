@@ -11,6 +11,12 @@
 
 namespace sim {
 
+/// The outline of a vehicle in the plane: a rectangle about R, or a disc when it has no length.
+struct Hull {
+  double radius = 0;                       // [m] of the disc, or of the circle about the rectangle
+  double half_length = 0, half_width = 0;  // [m]
+};
+
 /// Obstacles in the order they were added, each with its outline and a circle about it, so that a
 /// distance costs little with a thousand of them and allocates nothing.
 class ObstacleSet {
@@ -30,6 +36,9 @@ class ObstacleSet {
   double distance(const algo::Vec2& p_W) const;
   /// The same to the one obstacle `index`.
   double distance(std::size_t index, const algo::Vec2& p_W) const;
+  /// [m] From the outline of `hull` at `pose_W` to the nearest surface, infinite without obstacles.
+  /// Negative where they overlap: for a disc the depth, for a rectangle some negative number.
+  double clearance(const Hull& hull, const algo::Pose2& pose_W) const;
   /// True when the circle about obstacle `index` comes within `reach` [m] of `p_W`.
   bool may_reach(std::size_t index, const algo::Vec2& p_W, double reach) const;
 
@@ -41,6 +50,7 @@ class ObstacleSet {
     std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
   };
   static Item make(const algo::Obstacle& obstacle);
+  double clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const;
 
   std::vector<Item> items_{};
 };

@@ -22,7 +22,7 @@ enum class NoiseShape : std::uint8_t { Gaussian, Uniform };
 struct LaserConfig {
   algo::Pose2 mount_R{};
   double height = 0.30;        // [m] of the scan plane
-  double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg; set by with_resolution()
+  double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg on an LMS200
   double angle_increment = 0;  // [rad]
   std::uint32_t turns = 1;     // interlaced mirror turns in a sweep
   bool rolling = true;         // beams fired one by one; false: all from one pose at the tick
@@ -42,6 +42,39 @@ struct LaserConfig {
   static LaserConfig with_resolution(double degrees);
   /// Flat-time, noise-free: every beam from the pose at the tick.
   static LaserConfig ideal(double degrees);
+  /// A scanner of another make, flat-time: `beams` over `field_of_view` [rad], Gaussian noise only.
+  static LaserConfig flat(double field_of_view, std::uint32_t beams, double range_max);
+};
+
+/// How a simulated base departs from the robot's table, from what it is told, and from what it
+/// reports. The odometry drifts by what a gyro and worn wheels leave over: equations.md I.
+struct DriveConfig {
+  std::optional<double> max_v{};                     // [m/s] instead of the robot's own
+  std::optional<double> max_omega{};                 // [rad/s]
+  std::optional<double> max_acceleration{};          // [m/s2]
+  std::optional<double> max_angular_acceleration{};  // [rad/s2]
+  bool ramps = false;             // the kinematic vehicle heeds its acceleration limits too
+  std::uint32_t delay_ticks = 0;  // until a command acts
+  double yaw_slip = 0;            // share of each turn that is lost on the floor
+  double odometry_scale = 0;  // error of distances and of angles, each of random sign: 0.02 = 2 %
+  double odometry_noise = 0;  // standard deviation of both per metre and per radian, relative
+  bool operator==(const DriveConfig&) const = default;
+};
+
+/// The way of an obstacle that moves by itself: linear between keys, over and over; from the last
+/// key it jumps to the first.
+struct ObstaclePath {
+  struct Key {
+    double time = 0;  // [s] of the path, ascending
+    algo::Vec2 position_W{0, 0};
+  };
+  std::uint32_t id = 0;  // of the obstacle
+  double period = 0;     // [s] above 0
+  double phase = 0;      // [s] of the path when the run begins
+  std::vector<Key> keys{};
+
+  /// Where its obstacle is at `stamp` [s, run clock].
+  algo::Vec2 at(double stamp) const;
 };
 
 struct Scenario {
@@ -53,7 +86,9 @@ struct Scenario {
   double period = 0.026;  // [s] one tick
   algo::Pose2 start{};
   std::optional<algo::SetGoal> goal{};
+  DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
+  std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
   std::string controller = "modified";
   std::string filter = "pseudomedian";

@@ -49,9 +49,10 @@ const std::array<VehicleParameters, 4> kVehicles{{
      .max_acceleration = 0.5,
      .max_angular_acceleration = 6},
     {.name = "jackal",
-     .radius = std::hypot(0.21, 0.155),
-     .hull_length = 0.42,
-     .hull_width = 0.31,
+     // With its wheels, which reach beyond the chassis box of 0.42 x 0.31 m.
+     .radius = std::hypot(0.254, 0.215),
+     .hull_length = 0.508,
+     .hull_width = 0.43,
      .hull_low = 0.065,
      .hull_high = 0.25,
      .mass = 17,
@@ -101,6 +102,11 @@ const VehicleParameters* find_vehicle(std::string_view name) {
     if (vehicle.name == name) return &vehicle;
   }
   return nullptr;
+}
+
+Hull hull_of(const VehicleParameters& vehicle) {
+  if (vehicle.round) return {.radius = vehicle.radius};
+  return {vehicle.radius, vehicle.hull_length / 2, vehicle.hull_width / 2};
 }
 
 Substeps::Substeps(double period) {

@@ -48,6 +48,9 @@ struct VehicleParameters {
 std::span<const VehicleParameters> vehicle_table();
 const VehicleParameters* find_vehicle(std::string_view name);
 
+/// The outline of `vehicle` in the plane.
+Hull hull_of(const VehicleParameters& vehicle);
+
 /// What a vehicle does at the end of a tick.
 struct VehicleState {
   algo::Pose2 pose_W{};

@@ -41,6 +41,16 @@ const VehicleParameters& vehicle_of(const Scenario& scenario) {
                               known + ".");
 }
 
+/// `vehicle` with the limits that `drive` gives instead of its own.
+VehicleParameters limited(VehicleParameters vehicle, const DriveConfig& drive) {
+  vehicle.max_v = drive.max_v.value_or(vehicle.max_v);
+  vehicle.max_omega = drive.max_omega.value_or(vehicle.max_omega);
+  vehicle.max_acceleration = drive.max_acceleration.value_or(vehicle.max_acceleration);
+  vehicle.max_angular_acceleration =
+      drive.max_angular_acceleration.value_or(vehicle.max_angular_acceleration);
+  return vehicle;
+}
+
 /// Counts of an encoder after `angle` [rad] of its wheel, modulo 2^32.
 std::uint32_t counts(double angle, double per_turn) {
   const double whole = std::floor(angle * per_turn / (2 * std::numbers::pi));
@@ -50,16 +60,23 @@ std::uint32_t counts(double angle, double per_turn) {
 }  // namespace
 
 World::World(const Scenario& scenario, std::uint64_t seed)
-    : scenario_(scenario), seed_(seed), parameters_(vehicle_of(scenario)) {
+    : scenario_(scenario),
+      seed_(seed),
+      parameters_(limited(vehicle_of(scenario), scenario.drive)),
+      hull_(hull_of(parameters_)),
+      errors_(scenario.drive, seed) {
   check();
   spec_ = {.name = std::string(parameters_.name),
            .radius = parameters_.radius,
+           .half_length = hull_.half_length,
+           .half_width = hull_.half_width,
            .half_track = parameters_.half_track,
            .period = scenario_.period,
            .max_v = parameters_.max_v,
            .max_omega = parameters_.max_omega,
            .max_acceleration = parameters_.max_acceleration,
            .max_angular_acceleration = parameters_.max_angular_acceleration,
+           .command_delay = scenario_.period * scenario_.drive.delay_ticks,
            .editable = true,
            .paceable = true,
            .drives = true};
@@ -75,6 +92,9 @@ void World::check() const {
   if (!finite(scenario_.start)) {
     throw std::invalid_argument("The scenario's start must be finite numbers.");
   }
+  if (const auto problem = defect(scenario_.drive)) {
+    throw std::invalid_argument("The scenario's drive: " + *problem + ".");
+  }
 }
 
 /// Everything as the scenario says, at time 0.
@@ -84,11 +104,14 @@ void World::start() {
   if (scenario_.vehicle == Vehicle::Bullet) {
     vehicle_ = std::make_unique<BulletVehicle>(parameters_, scenario_.period);
   } else {
-    vehicle_ = std::make_unique<KinematicVehicle>(parameters_, scenario_.period);
+    vehicle_ =
+        std::make_unique<KinematicVehicle>(parameters_, scenario_.period, scenario_.drive.ramps);
   }
   algo::Pose2 pose = scenario_.start;
   pose.heading = algo::wrap_angle(pose.heading);
   vehicle_->reset(pose);
+  errors_ = DriveErrors(scenario_.drive, seed_);
+  errors_.reset(pose);
 
   double memory = 0;
   for (const LaserConfig& config : scenario_.lasers) {
@@ -102,6 +125,7 @@ void World::start() {
   for (const algo::Obstacle& obstacle : scenario_.obstacles) {
     if (const auto problem = add(obstacle)) throw std::invalid_argument(*problem);
   }
+  follow_paths(0);
   tick_ = 0;
   odometry_ = {.pose = pose};
   encoders_ = {};
@@ -116,10 +140,27 @@ void World::reset(algo::Observation& observation) {
 
 bool World::step(const algo::Command& command, algo::Observation& observation) {
   if (!pacer_.wait(scenario_.period)) return false;
-  vehicle_->drive(command.base, obstacles_, *trail_);
   ++tick_;
+  follow_paths(static_cast<double>(tick_) * scenario_.period);
+  vehicle_->drive(errors_.act(command.base), obstacles_, *trail_);
   sense(observation);
   return true;
+}
+
+/// Obstacles that move by themselves go where they are at `now`, whoever stands there.
+void World::follow_paths(double now) {
+  for (const ObstaclePath& path : scenario_.paths) {
+    const auto index = obstacles_.find(path.id);
+    if (!index) continue;  // somebody removed it
+    const algo::Vec2 at_W = path.at(now);
+    place(*index, {at_W.x(), at_W.y(), obstacles_[*index].pose_W.heading});
+  }
+}
+
+void World::place(std::size_t index, const algo::Pose2& pose_W) {
+  obstacles_.move(index, pose_W);
+  vehicle_->moved(index, obstacles_[index]);
+  for (LaserModel& laser : lasers_) laser.move(obstacles_[index].id, pose_W);
 }
 
 void World::sense(algo::Observation& observation) {
@@ -158,7 +199,7 @@ void World::sense_motion(algo::Observation& observation) {
   }
   odometry_.stamp = now;
   encoders_ = {now, left, right};
-  observation.odometry = odometry_;
+  observation.odometry = errors_.report(odometry_);
   observation.encoders = encoders_;
   observation.bumpers.append() = {
       .mount_R = {parameters_.radius, 0, 0}, .stamp = now, .pressed = state.contact};
@@ -167,9 +208,12 @@ void World::sense_motion(algo::Observation& observation) {
 std::optional<algo::GroundTruth> World::ground_truth() const {
   const VehicleState& state = vehicle_->state();
   const double distance = obstacles_.distance(state.pose_W.position());
+  const double clearance = hull_.half_length > 0 ? obstacles_.clearance(hull_, state.pose_W)
+                                                 : distance - parameters_.radius;
   return algo::GroundTruth{.pose = state.pose_W,
                            .obstacle_distance = distance,
-                           .collided = state.contact || distance < parameters_.radius};
+                           .clearance = clearance,
+                           .collided = state.contact || clearance < 0};
 }
 
 std::optional<std::string> World::edit(const algo::Request& request) {
@@ -194,8 +238,9 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
   if (const auto problem = algo::defect(obstacle)) {
     return name_of(obstacle) + ": " + *problem + ".";
   }
-  const double distance =
-      algo::signed_distance(obstacle, vehicle_->state().pose_W.position()) - parameters_.radius;
+  ObstacleSet alone;
+  alone.add(obstacle);
+  const double distance = alone.clearance(hull_, vehicle_->state().pose_W);
   if (distance < 0) {
     return name_of(obstacle) + " would overlap the robot: " + metres(-distance) + " too close.";
   }
@@ -218,9 +263,10 @@ std::optional<std::string> World::move(std::uint32_t id, const algo::Pose2& pose
   algo::Obstacle obstacle = obstacles_[*index];
   obstacle.pose_W = pose_W;
   if (auto problem = refusal(obstacle)) return problem;
-  obstacles_.move(*index, pose_W);
-  vehicle_->moved(*index, obstacle);
-  for (LaserModel& laser : lasers_) laser.move(id, pose_W);
+  for (const ObstaclePath& path : scenario_.paths) {
+    if (path.id == id) return name_of(obstacle) + " moves by itself.";
+  }
+  place(*index, pose_W);
   return std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algo/robot.hpp"
+#include "sim/drive_errors.hpp"
 #include "sim/laser_model.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/pacer.hpp"
@@ -43,12 +44,15 @@ class World final : public algo::Robot {
   std::optional<std::string> move(std::uint32_t id, const algo::Pose2& pose_W);
   std::optional<std::string> remove(std::uint32_t id);
   std::optional<std::string> refusal(const algo::Obstacle& obstacle) const;
+  void follow_paths(double now);
+  void place(std::size_t index, const algo::Pose2& pose_W);
   void sense(algo::Observation& observation);
   void sense_motion(algo::Observation& observation);
 
   Scenario scenario_{};
   std::uint64_t seed_ = 0;
   VehicleParameters parameters_{};
+  Hull hull_{};
   algo::RobotSpec spec_{};
   Pacer pacer_{};
 
@@ -56,7 +60,8 @@ class World final : public algo::Robot {
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<LaserModel> lasers_{};
   std::unique_ptr<PoseTrail> trail_{};
-  algo::Odometry odometry_{};
+  DriveErrors errors_;
+  algo::Odometry odometry_{};  // without the drift
   algo::Encoders encoders_{};
   std::uint64_t tick_ = 0;
   bool touched_ = false;  // something happened since start()

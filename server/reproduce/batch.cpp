@@ -1,16 +1,13 @@
 // server/reproduce/batch.cpp: workers that take the next run until there is none.
 #include "server/reproduce/batch.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
 #include <stdexcept>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "server/frame_pool.hpp"
+#include "server/parallel.hpp"
 #include "server/runner.hpp"
 
 namespace server::reproduce {
@@ -51,34 +48,21 @@ std::vector<Row> run_rows(const std::vector<RowJob>& jobs,
     for (std::size_t seed = 0; seed < jobs[row].seeds; ++seed) runs.emplace_back(row, seed);
   }
 
-  std::atomic<std::size_t> next{0};
-  std::atomic<bool> broken{false};
-  std::mutex mutex;  // of the two below and of progress
+  std::mutex mutex;  // of progress and its count
   std::size_t done = 0;
-  std::exception_ptr problem;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size() && !broken; i = next++) {
-      const auto [row, seed] = runs[i];
-      try {
-        RunSpec spec = jobs[row].spec;
-        spec.seed += seed;
-        rows[row].runs[seed] = run_once(spec, seed == 0);
-      } catch (const std::exception& e) {
-        const std::lock_guard lock(mutex);
-        broken = true;
-        problem = std::make_exception_ptr(std::runtime_error(
-            fmt::format("{}, {}: {}", jobs[row].layout, jobs[row].reading, e.what())));
-      }
-      const std::lock_guard lock(mutex);
-      if (progress) progress(++done, runs.size());
+  in_parallel(runs.size(), threads, [&](std::size_t i) {
+    const auto [row, seed] = runs[i];
+    try {
+      RunSpec spec = jobs[row].spec;
+      spec.seed += seed;
+      rows[row].runs[seed] = run_once(spec, seed == 0);
+    } catch (const std::exception& e) {
+      throw std::runtime_error(
+          fmt::format("{}, {}: {}", jobs[row].layout, jobs[row].reading, e.what()));
     }
-  };
-  {
-    if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> workers;
-    for (unsigned i = 0; i < threads; ++i) workers.emplace_back(work);
-  }
-  if (problem) std::rethrow_exception(problem);
+    const std::lock_guard lock(mutex);
+    if (progress) progress(++done, runs.size());
+  });
   return rows;
 }
 

@@ -471,7 +471,9 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   read_observation(f, t.observation);
   t.ground_truth.reset();
   if (const auto* g = f.truth()) {
-    t.ground_truth = {from_wire(g->pose()), g->obstacle_distance(), g->collided()};
+    t.ground_truth = {.pose = from_wire(g->pose()),
+                      .obstacle_distance = g->obstacle_distance(),
+                      .collided = g->collided()};
   }
   t.goal.reset();
   if (f.goal() != nullptr) t.goal = read_goal(*f.goal());

@@ -1,0 +1,288 @@
+// algo/full_strip/full_strip_controller.cpp: one tick, layer by layer.
+#include "algo/full_strip/full_strip_controller.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "algo/elastic_strip_controller.hpp"
+
+namespace algo {
+namespace {
+
+constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
+constexpr double kBreak = 0.02;        // [m] a strip may be narrower than what was planned
+constexpr double kPlanEvery = 0.25;    // [s]
+constexpr int kExpansions = 2000;      // of the planner a tick
+constexpr double kRivalShare = 0.9;    // of the present cost that a rival must stay below
+constexpr int kSweepsNew = 15;         // of a strip just laid
+constexpr int kSweeps = 5;             // a tick
+constexpr double kStopShort = 0.35;    // [m] before the place where the strip is broken
+constexpr double kStuckTime = 2.5;     // [s] without way: the strip is dropped
+constexpr double kStuckWay = 0.15;     // [m]
+constexpr double kBackTime = 1.0;      // [s]
+constexpr double kEscapeTime = 0.4;    // [s] an escape is kept up, checked every tick
+constexpr std::size_t kTrail = 64;     // odometries remembered
+constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
+
+/// The pose at `stamp`, between the odometries around it.
+Pose2 pose_at(const std::vector<Odometry>& trail, double stamp) {
+  for (std::size_t i = trail.size(); i-- > 1;) {
+    const Odometry& a = trail[i - 1];
+    const Odometry& b = trail[i];
+    if (stamp < a.stamp && i > 1) continue;
+    const double span = b.stamp - a.stamp;
+    const double t = span > 0 ? std::clamp((stamp - a.stamp) / span, 0.0, 1.0) : 1;
+    return {a.pose.x + t * (b.pose.x - a.pose.x),
+            a.pose.y + t * (b.pose.y - a.pose.y),
+            wrap_angle(a.pose.heading + t * wrap_angle(b.pose.heading - a.pose.heading))};
+  }
+  return trail.back().pose;
+}
+
+}  // namespace
+
+FullStripController::FullStripController() {
+  trail_.reserve(kTrail + 1);
+}
+
+void FullStripController::reset(const Pose2& start_W) {
+  map_.reset(start_W.position());
+  planner_.reset();
+  strip_.clear();
+  goal_W_.reset();
+  level_ = 0;
+  no_way_ = false;
+  broken_at_ = -1;
+  next_plan_ = 0;
+  phase_ = Phase::Rest;
+  phase_since_ = 0;
+  back_until_ = -1;
+  escape_.reset();
+  escape_until_ = -1;
+  under_way_.clear();
+  trail_.clear();
+  path_W_.clear();
+}
+
+double FullStripController::least_clearance() const {
+  return stage_.hull().half_width() + kRoom[level_];
+}
+
+void FullStripController::enter(Phase phase, double stamp) {
+  if (phase_ == phase) return;
+  phase_ = phase;
+  phase_since_ = stamp;
+}
+
+void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
+  stage_.reset(HullDiscs(*in.spec));
+  limits_ = {std::min(parameters[Parameter::MaxSpeed], in.spec->max_v),
+             std::min(parameters[Parameter::MaxTurnRate], in.spec->max_omega),
+             in.spec->max_acceleration,
+             in.spec->max_angular_acceleration};
+  settings_.contraction = parameters[Parameter::ContractionGain];
+  settings_.repulsion = parameters[Parameter::RepulsionGain];
+  settings_.rest_distance = std::min(
+      parameters[Parameter::SafetyDistance] + stage_.hull().half_width() - 0.215, LocalMap::kReach);
+  settings_.least_clearance = least_clearance() - kBreak;
+}
+
+/// Enters a new scan into the map, each beam from where the robot was when it was fired.
+void FullStripController::sense(const ControlInput& in) {
+  trail_.push_back(in.odometry);
+  trail_.back().stamp = in.stamp;
+  if (trail_.size() > kTrail) trail_.erase(trail_.begin());
+  map_.follow(in.odometry.pose.position());
+  const LaserScan& scan = in.scene->scan;
+  if (!in.scene->fresh || scan.size() == 0) return;
+  points_W_.resize(scan.size());
+  const bool rolling = scan.turn_period > 0;
+  const Pose2 middle = pose_at(trail_, scan.stamp - scan.sweep_time() / 2);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok) continue;
+    const Pose2 at = rolling ? pose_at(trail_, scan.beam_time(i)) : middle;
+    const Vec2 p_R = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
+    points_W_[i] = to_parent(at, p_R);
+  }
+  map_.insert(scan, compose(middle, scan.mount_R), points_W_);
+}
+
+/// The deliberative layer: one piece of a search each tick, a new search every kPlanEvery.
+void FullStripController::plan(const ControlInput& in) {
+  const Vec2 here = in.odometry.pose.position();
+  if (planner_.state() != Planner::State::Searching && in.stamp >= next_plan_) {
+    planner_.start(map_, here, *goal_W_, least_clearance());
+    next_plan_ = in.stamp + kPlanEvery;
+  }
+  if (planner_.state() != Planner::State::Searching) return;
+  switch (planner_.search(map_, kExpansions)) {
+    case Planner::State::Found:
+      take_plan(in);
+      return;
+    case Planner::State::NoWay:
+      if (level_ + 1 < kRoom.size()) {
+        ++level_;
+        next_plan_ = in.stamp;
+      } else {
+        no_way_ = true;
+        level_ = 0;
+      }
+      return;
+    default:
+      return;
+  }
+}
+
+/// A plan becomes the strip when there is none, or when it is clearly better than the one there is.
+void FullStripController::take_plan(const ControlInput& in) {
+  no_way_ = false;
+  planner_.path(path_W_);
+  rival_.lay(path_W_);
+  rival_.follow(in.odometry.pose.position());
+  StripSettings settings = settings_;
+  settings.least_clearance = least_clearance() - kBreak;
+  rival_.relax(map_, settings, kSweepsNew);
+  if (rival_.broken_at(map_, settings) >= 0) {
+    // Relaxed out of its way: take the plan as it is.
+    rival_.lay(path_W_);
+    rival_.follow(in.odometry.pose.position());
+  }
+  const bool better =
+      strip_.empty() || broken_at_ >= 0 || rival_.cost(map_) < kRivalShare * strip_.cost(map_);
+  if (better) {
+    std::swap(strip_, rival_);
+    broken_at_ = -1;
+  }
+  level_ = 0;  // the next search begins with the widest again
+}
+
+/// The reactive layer: the strip follows the robot and what the map says.
+void FullStripController::stretch(const ControlInput& in) {
+  if (strip_.empty()) return;
+  strip_.follow(in.odometry.pose.position());
+  strip_.relax(map_, settings_, kSweeps);
+  StripSettings narrow = settings_;
+  narrow.least_clearance = stage_.hull().half_width() + kRoom.back() - kBreak;
+  broken_at_ = strip_.broken_at(map_, narrow);
+  if (broken_at_ >= 0) next_plan_ = std::min(next_plan_, in.stamp);
+}
+
+/// The state when a command given now begins to act.
+MotionState FullStripController::when_acting(const ControlInput& in) const {
+  MotionState state{in.odometry.pose, in.odometry.twist};
+  for (const Twist2& command : under_way_) state = advanced(state, command, limits_, in.dt);
+  return state;
+}
+
+void FullStripController::remember(const Twist2& command) {
+  if (under_way_.empty()) return;
+  std::rotate(under_way_.begin(), under_way_.begin() + 1, under_way_.end());
+  under_way_.back() = command;
+}
+
+void FullStripController::watch_progress(const ControlInput& in) {
+  const Vec2 here = in.odometry.pose.position();
+  const bool turning = phase_ == Phase::Turn && std::abs(in.odometry.twist.omega) > 0.1;
+  if (turning || (here - progress_W_).norm() > kStuckWay) {
+    progress_W_ = here;
+    progress_at_ = in.stamp;
+  }
+  if (in.stamp - progress_at_ < kStuckTime) return;
+  strip_.clear();
+  planner_.reset();
+  next_plan_ = in.stamp;
+  progress_at_ = in.stamp;
+  back_until_ = in.stamp + kBackTime;
+}
+
+Twist2 FullStripController::recover(const StageInput& stage,
+                                    const ControlInput& in,
+                                    ControlOutput& out) {
+  if (in.stamp < back_until_) {
+    if (const auto twist = stage_.back_off(stage, out)) {
+      enter(Phase::BackOff, in.stamp);
+      return *twist;
+    }
+  }
+  const bool still = std::abs(in.odometry.twist.v) < 0.05;
+  if (still) {
+    escape_ = stage_.escape(stage, out);
+    if (escape_) {
+      enter(Phase::Escape, in.stamp);
+      return *escape_;
+    }
+  }
+  enter(no_way_ ? Phase::NoWay : Phase::Blocked, in.stamp);
+  return {};
+}
+
+Twist2 FullStripController::drive(const ControlInput& in,
+                                  const Parameters& parameters,
+                                  ControlOutput& out) {
+  StageInput stage;
+  stage.map = &map_;
+  stage.strip = &strip_;
+  stage.state = when_acting(in);
+  stage.limits = limits_;
+  stage.dt = in.dt;
+  if (broken_at_ >= 0) stage.stop_at = std::max(0.0, broken_at_ - kStopShort);
+
+  const double to_goal = (in.goal->position_W - in.odometry.pose.position()).norm();
+  if (to_goal < parameters[Parameter::GoalReach]) {
+    enter(Phase::Rest, in.stamp);
+    progress_at_ = in.stamp;
+    return {};
+  }
+  watch_progress(in);
+  if (in.stamp < back_until_ || strip_.empty()) return recover(stage, in, out);
+  if (const auto twist = stage_.follow(stage, out)) {
+    const bool turning = twist->v == 0 && twist->omega != 0;
+    enter(turning ? Phase::Turn : Phase::Follow, in.stamp);
+    if (*twist != Twist2{} || broken_at_ < 0) return *twist;
+  }
+  return recover(stage, in, out);
+}
+
+void FullStripController::report(const ControlInput& in, ControlOutput& out) const {
+  out.strip = strip_.nodes();
+  out.plan_W = path_W_;
+  out.phase = phase_;
+  out.phase_since = phase_since_;
+  if (in.scene->fresh) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
+}
+
+void FullStripController::update(const ControlInput& in,
+                                 const Parameters& parameters,
+                                 ControlOutput& out) {
+  out.clear();
+  if (!all_finite(in, parameters)) return;
+  const auto delay = static_cast<std::size_t>(std::lround(in.spec->command_delay / in.dt));
+  if (under_way_.size() != delay) under_way_.assign(delay, {});
+  prepare(in, parameters);
+  sense(in);
+  if (!in.goal) {
+    strip_.clear();
+    goal_W_.reset();
+    enter(Phase::Rest, in.stamp);
+    remember({});
+    return;
+  }
+  if (!goal_W_ || *goal_W_ != in.goal->position_W) {
+    goal_W_ = in.goal->position_W;
+    strip_.clear();
+    planner_.reset();
+    next_plan_ = in.stamp;
+    progress_W_ = in.odometry.pose.position();
+    progress_at_ = in.stamp;
+    no_way_ = false;
+    level_ = 0;
+  }
+  stretch(in);
+  plan(in);
+  out.twist = drive(in, parameters, out);
+  remember(out.twist);
+  report(in, out);
+}
+
+}  // namespace algo

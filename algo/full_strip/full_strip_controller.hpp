@@ -1,0 +1,68 @@
+// algo/full_strip/full_strip_controller.hpp: `strip`, the full elastic strip: a planner on the map
+// of the scans (deliberative), a strip of many nodes (reactive), phases and recoveries
+// (sequencing), and a velocity stage that proves every command.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "algo/controller.hpp"
+#include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/motion.hpp"
+#include "algo/full_strip/node_strip.hpp"
+#include "algo/full_strip/planner.hpp"
+#include "algo/full_strip/velocity_stage.hpp"
+
+namespace algo {
+
+class FullStripController final : public Controller {
+ public:
+  FullStripController();
+
+  void reset(const Pose2& start_W) override;
+  void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+
+ private:
+  void prepare(const ControlInput& in, const Parameters& parameters);
+  void sense(const ControlInput& in);
+  void plan(const ControlInput& in);
+  void take_plan(const ControlInput& in);
+  void stretch(const ControlInput& in);
+  Twist2 drive(const ControlInput& in, const Parameters& parameters, ControlOutput& out);
+  Twist2 recover(const StageInput& stage, const ControlInput& in, ControlOutput& out);
+  MotionState when_acting(const ControlInput& in) const;
+  void remember(const Twist2& command);
+  void watch_progress(const ControlInput& in);
+  void enter(Phase phase, double stamp);
+  double least_clearance() const;
+  void report(const ControlInput& in, ControlOutput& out) const;
+
+  LocalMap map_{};
+  Planner planner_{};
+  NodeStrip strip_{};
+  NodeStrip rival_{};
+  VelocityStage stage_{};
+  StripSettings settings_{};
+  MotionLimits limits_{};
+
+  std::optional<Vec2> goal_W_{};
+  std::size_t level_ = 0;  // of the planner's clearance, 0 the widest
+  bool no_way_ = false;    // not even at the narrowest
+  double broken_at_ = -1;  // [m] along the strip; negative: whole
+  double next_plan_ = 0;   // [s] run clock
+  Phase phase_ = Phase::Rest;
+  double phase_since_ = 0;  // [s]
+  Vec2 progress_W_{0, 0};   // where the robot last made way
+  double progress_at_ = 0;  // [s]
+  double back_until_ = -1;  // [s]
+  std::optional<Twist2> escape_{};
+  double escape_until_ = -1;  // [s]
+
+  std::vector<Twist2> under_way_{};  // commands given that do not act yet, oldest first
+  std::vector<Vec2> points_W_{};     // of the scan's beams
+  std::vector<Odometry> trail_{};    // newest last: where the robot was when a beam was fired
+  Recycled<Vec2> path_W_{};          // the planner's, last found
+};
+
+}  // namespace algo

@@ -1,0 +1,292 @@
+// algo/full_strip/local_map.cpp: hits, looks through, stamped distances.
+#include "algo/full_strip/local_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace algo {
+namespace {
+
+constexpr int kSize = LocalMap::kSize;
+constexpr double kCell = LocalMap::kCell;
+constexpr int kRadius = 20;  // cells: kReach
+constexpr int kWidth = 2 * kRadius + 1;
+constexpr std::int16_t kFar = 1000;  // [mm] kReach
+
+constexpr std::uint8_t kHit = 2;         // a hit counts this much,
+constexpr std::uint8_t kMost = 8;        // up to here;
+constexpr std::uint8_t kOccupied = 3;    // from here on a cell is occupied: two hits
+constexpr int kLook = 2;                 // a look through takes this much
+constexpr double kBeyond = 0.15;         // [m] a beam must go on behind a cell to have seen through
+constexpr double kClearRange = 8.0;      // [m] cells farther than this are left as they are
+constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells' ages
+constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cell fades
+
+constexpr int kTile = 32;  // cells along a tile's edge
+constexpr int kTiles = kSize / kTile;
+constexpr std::size_t kTilesATick = 8;  // more wait: distances too short are safe meanwhile
+constexpr double kMiddle = 3.0;         // [m] the robot may be from the window's middle
+
+}  // namespace
+
+LocalMap::LocalMap()
+    : hits_(static_cast<std::size_t>(kSize) * kSize),
+      seen_(hits_.size()),
+      field_(hits_.size(), kFar),
+      kernel_(static_cast<std::size_t>(kWidth) * kWidth),
+      soiled_(static_cast<std::size_t>(kTiles) * kTiles) {
+  active_.reserve(hits_.size());
+  kept_.reserve(hits_.size());
+  tiles_.reserve(soiled_.size() + 1);
+  for (int y = -kRadius; y <= kRadius; ++y) {
+    for (int x = -kRadius; x <= kRadius; ++x) {
+      const double mm = std::hypot(x, y) * kCell * 1000;
+      kernel_[static_cast<std::size_t>((y + kRadius) * kWidth + x + kRadius)] =
+          static_cast<std::int16_t>(std::min<double>(std::nearbyint(mm), kFar));
+    }
+  }
+  reset({0, 0});
+}
+
+void LocalMap::reset(const Vec2& centre_W) {
+  std::ranges::fill(hits_, std::uint8_t{0});
+  std::ranges::fill(field_, kFar);
+  std::ranges::fill(soiled_, std::uint8_t{0});
+  active_.clear();
+  tiles_.clear();
+  first_tile_ = 0;
+  occupied_ = 0;
+  scans_ = 0;
+  const double half = kSize * kCell / 2;
+  corner_W_ = {std::floor((centre_W.x() - half) / kCell) * kCell,
+               std::floor((centre_W.y() - half) / kCell) * kCell};
+}
+
+bool LocalMap::inside(const Vec2& p_W) const {
+  const Vec2 p = p_W - corner_W_;
+  const double edge = kSize * kCell;
+  return p.x() >= 0 && p.y() >= 0 && p.x() < edge && p.y() < edge;
+}
+
+bool LocalMap::follow(const Vec2& position_W) {
+  const double half = kSize * kCell / 2;
+  const Vec2 off = position_W - corner_W_ - Vec2(half, half);
+  if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
+  shift(static_cast<int>(std::lround(off.x() / kCell)),
+        static_cast<int>(std::lround(off.y() / kCell)));
+  return true;
+}
+
+/// Copies what stays inside; what leaves is forgotten, what comes in is free.
+void LocalMap::shift(int columns, int rows) {
+  corner_W_ += Vec2(columns * kCell, rows * kCell);
+  kept_.clear();
+  for (const std::uint32_t cell : active_) kept_.push_back({cell, seen_[cell], hits_[cell]});
+  std::ranges::fill(hits_, std::uint8_t{0});
+  std::ranges::fill(field_, kFar);
+  std::ranges::fill(soiled_, std::uint8_t{0});
+  tiles_.clear();
+  first_tile_ = 0;
+  active_.clear();
+  occupied_ = 0;
+  for (const Kept& kept : kept_) {
+    const int column = static_cast<int>(kept.cell) % kSize - columns;
+    const int row = static_cast<int>(kept.cell) / kSize - rows;
+    if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
+    const std::size_t cell = index(column, row);
+    hits_[cell] = kept.hits;
+    seen_[cell] = kept.seen;
+    active_.push_back(static_cast<std::uint32_t>(cell));
+    if (hits_[cell] < kOccupied) continue;
+    ++occupied_;
+    stamp(column, row, 0, 0, kSize, kSize);
+  }
+}
+
+void LocalMap::insert(const LaserScan& scan,
+                      const Pose2& sensor_W,
+                      const std::vector<Vec2>& points_W) {
+  ++scans_;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] == Beam::Ok) hit(points_W[i]);
+  }
+  look_through(scan, sensor_W);
+  if (scans_ % kAgeEvery == 0) age();
+  rebuild_soiled();
+}
+
+void LocalMap::hit(const Vec2& point_W) {
+  const Vec2 p = (point_W - corner_W_) / kCell;
+  if (!(p.x() >= 0 && p.y() >= 0 && p.x() < kSize && p.y() < kSize)) return;
+  const int column = static_cast<int>(p.x());
+  const int row = static_cast<int>(p.y());
+  const std::size_t cell = index(column, row);
+  const std::uint8_t before = hits_[cell];
+  if (before == 0) active_.push_back(static_cast<std::uint32_t>(cell));
+  hits_[cell] = std::min<std::uint8_t>(kMost, before + kHit);
+  seen_[cell] = static_cast<std::uint16_t>(scans_);
+  if (before >= kOccupied || hits_[cell] < kOccupied) return;
+  ++occupied_;
+  stamp(column, row, 0, 0, kSize, kSize);
+}
+
+/// Lowers the field around an occupied cell, inside the given part of the window.
+void LocalMap::stamp(int column, int row, int left, int bottom, int right, int top) {
+  const int x0 = std::max(left, column - kRadius);
+  const int x1 = std::min(right, column + kRadius + 1);
+  const int y0 = std::max(bottom, row - kRadius);
+  const int y1 = std::min(top, row + kRadius + 1);
+  for (int y = y0; y < y1; ++y) {
+    const std::int16_t* from =
+        &kernel_[static_cast<std::size_t>((y - row + kRadius) * kWidth + x0 - column + kRadius)];
+    std::int16_t* to = &field_[index(x0, y)];
+    for (int x = 0; x < x1 - x0; ++x) to[x] = std::min(to[x], from[x]);
+  }
+}
+
+/// Takes hits from a cell. False when it has none left.
+bool LocalMap::weaken(std::size_t cell, int by) {
+  const std::uint8_t before = hits_[cell];
+  hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
+  if (before >= kOccupied && hits_[cell] < kOccupied) {
+    --occupied_;
+    soil(cell);
+  }
+  return hits_[cell] > 0;
+}
+
+/// Every second cell a scan: of those that the scanner looked beyond with three beams side by side.
+void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
+  if (scan.size() < 3) return;
+  const Vec2 ahead = direction(sensor_W.heading);
+  const double per_radian = 1 / scan.angle_increment;
+  const auto last = static_cast<double>(scan.size() - 2);
+  for (std::size_t i = scans_ % 2; i < active_.size(); i += 2) {
+    const std::size_t cell = active_[i];
+    const Vec2 centre_W = corner_W_ + Vec2((static_cast<double>(cell % kSize) + 0.5) * kCell,
+                                           (static_cast<double>(cell / kSize) + 0.5) * kCell);
+    const Vec2 d = centre_W - sensor_W.position();
+    const double far = d.squaredNorm();
+    if (far > kClearRange * kClearRange) continue;
+    const double bearing =
+        std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d)) - scan.angle_min;
+    const double beam = bearing * per_radian + 0.5;
+    if (!(beam >= 1 && beam < last)) continue;
+    const auto b = static_cast<std::size_t>(beam);
+    double nearest = scan.range_max;
+    bool measured = true;
+    for (std::size_t k = b - 1; k <= b + 1; ++k) {
+      measured = measured && scan.status[k] != Beam::Invalid;
+      if (scan.status[k] == Beam::Ok) nearest = std::min(nearest, scan.ranges[k]);
+    }
+    const double reach = nearest - kBeyond;
+    if (!measured || reach <= 0 || reach * reach < far) continue;
+    if (weaken(cell, kLook)) continue;
+    active_[i] = active_.back();
+    active_.pop_back();
+  }
+}
+
+void LocalMap::age() {
+  const auto now = static_cast<std::uint16_t>(scans_);
+  for (std::size_t i = 0; i < active_.size();) {
+    const std::size_t cell = active_[i];
+    const auto since = static_cast<std::uint16_t>(now - seen_[cell]);
+    if (since < kAgeAfter || weaken(cell, 1)) {
+      ++i;
+      continue;
+    }
+    active_[i] = active_.back();
+    active_.pop_back();
+  }
+}
+
+/// The field around a cleared cell is too low now.
+void LocalMap::soil(std::size_t cell) {
+  const int column = static_cast<int>(cell) % kSize;
+  const int row = static_cast<int>(cell) / kSize;
+  const int x0 = std::max(0, column - kRadius) / kTile;
+  const int x1 = std::min(kSize - 1, column + kRadius) / kTile;
+  const int y0 = std::max(0, row - kRadius) / kTile;
+  const int y1 = std::min(kSize - 1, row + kRadius) / kTile;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const auto tile = static_cast<std::size_t>(y * kTiles + x);
+      if (soiled_[tile] != 0) continue;
+      soiled_[tile] = 1;
+      tiles_.push_back(static_cast<std::uint16_t>(tile));
+    }
+  }
+}
+
+void LocalMap::rebuild_soiled() {
+  for (std::size_t k = 0; k < kTilesATick && first_tile_ < tiles_.size(); ++k) {
+    const int tile = tiles_[first_tile_++];
+    soiled_[static_cast<std::size_t>(tile)] = 0;
+    rebuild(tile);
+  }
+  if (first_tile_ == 0) return;
+  tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_));
+  first_tile_ = 0;
+}
+
+void LocalMap::rebuild(int tile) {
+  const int left = tile % kTiles * kTile;
+  const int bottom = tile / kTiles * kTile;
+  for (int y = bottom; y < bottom + kTile; ++y) {
+    std::fill_n(&field_[index(left, y)], kTile, kFar);
+  }
+  const int x0 = std::max(0, left - kRadius);
+  const int x1 = std::min(kSize, left + kTile + kRadius);
+  for (int y = std::max(0, bottom - kRadius); y < std::min(kSize, bottom + kTile + kRadius); ++y) {
+    for (int x = x0; x < x1; ++x) {
+      if (hits_[index(x, y)] < kOccupied) continue;
+      stamp(x, y, left, bottom, left + kTile, bottom + kTile);
+    }
+  }
+}
+
+double LocalMap::distance(const Vec2& p_W) const {
+  // Between the four cell centres around.
+  const double x = (p_W.x() - corner_W_.x()) / kCell - 0.5;
+  const double y = (p_W.y() - corner_W_.y()) / kCell - 0.5;
+  if (!(x >= 0 && y >= 0 && x < kSize - 1 && y < kSize - 1)) return kReach;
+  const int column = static_cast<int>(x);
+  const int row = static_cast<int>(y);
+  const double u = x - column;
+  const double v = y - row;
+  const std::int16_t* low = &field_[index(column, row)];
+  const std::int16_t* high = low + kSize;
+  const double below = low[0] + u * (low[1] - low[0]);
+  const double above = high[0] + u * (high[1] - high[0]);
+  return (below + v * (above - below)) * 0.001;
+}
+
+Vec2 LocalMap::gradient(const Vec2& p_W) const {
+  const double h = kCell;
+  const Vec2 slope{distance(p_W + Vec2(h, 0)) - distance(p_W - Vec2(h, 0)),
+                   distance(p_W + Vec2(0, h)) - distance(p_W - Vec2(0, h))};
+  const double length = slope.norm();
+  if (length < 1e-6) return {0, 0};
+  return slope / length;
+}
+
+void LocalMap::draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const {
+  const int half = static_cast<int>(side) / 2;
+  const Vec2 p = (about_W - corner_W_) / kCell;
+  const int left = std::clamp(static_cast<int>(p.x()) - half, 0, kSize - 2 * half);
+  const int bottom = std::clamp(static_cast<int>(p.y()) - half, 0, kSize - 2 * half);
+  out.corner_W = corner_W_ + Vec2(left * kCell, bottom * kCell);
+  out.cell = kCell;
+  out.columns = static_cast<std::uint32_t>(2 * half);
+  out.rows = out.columns;
+  out.cells.resize(static_cast<std::size_t>(out.columns) * out.rows);
+  for (int y = 0; y < 2 * half; ++y) {
+    const std::uint8_t* from = &hits_[index(left, bottom + y)];
+    std::uint8_t* to = &out.cells[static_cast<std::size_t>(y) * out.columns];
+    for (int x = 0; x < 2 * half; ++x) to[x] = from[x] >= kOccupied ? 254 : 0;
+  }
+}
+
+}  // namespace algo

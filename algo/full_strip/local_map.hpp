@@ -1,0 +1,83 @@
+// algo/full_strip/local_map.hpp: what the scans have shown around the robot: a rolling occupancy
+// grid and the distance to the nearest occupied cell.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A square window of the odometry frame W that moves along with the robot in whole cells.
+///
+/// A cell is occupied after two hits and free again after the scanner has looked through it
+/// several times; where nobody looks it ages. Everything is allocated in the constructor.
+class LocalMap {
+ public:
+  static constexpr double kCell = 0.05;  // [m]
+  static constexpr int kSize = 512;      // cells along an edge: 25.6 m
+  static constexpr double kReach = 1.0;  // [m] distances are known up to here
+
+  LocalMap();
+
+  /// Forgets everything; the window is centred on `centre_W`.
+  void reset(const Vec2& centre_W);
+
+  /// Moves the window when the robot has left its middle. True when it moved.
+  bool follow(const Vec2& position_W);
+
+  /// Enters the hits of `scan` as points of W and clears what it looked through. `sensor_W` is the
+  /// scanner's pose at the middle of its sweep, `points_W` B points (only those of Ok beams count).
+  void insert(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+
+  /// [m] From `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
+  double distance(const Vec2& p_W) const;
+  /// Gradient of distance(): away from the nearest obstacle, zero where none is within reach.
+  Vec2 gradient(const Vec2& p_W) const;
+
+  bool inside(const Vec2& p_W) const;
+  const Vec2& corner_W() const { return corner_W_; }
+  /// [mm] Distance of the cell (column, row), which must be inside.
+  std::int16_t cell_distance(int column, int row) const { return field_[index(column, row)]; }
+  std::size_t occupied() const { return occupied_; }
+
+  /// The part that people look at: `side` x `side` cells about the robot.
+  void draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const;
+
+ private:
+  static std::size_t index(int column, int row) {
+    return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
+  }
+  struct Kept {
+    std::uint32_t cell = 0;
+    std::uint16_t seen = 0;
+    std::uint8_t hits = 0;
+  };
+  void hit(const Vec2& point_W);
+  void look_through(const LaserScan& scan, const Pose2& sensor_W);
+  void age();
+  bool weaken(std::size_t cell, int by);
+  void stamp(int column, int row, int left, int bottom, int right, int top);
+  void soil(std::size_t cell);
+  void rebuild_soiled();
+  void rebuild(int tile);
+  void shift(int columns, int rows);
+
+  Vec2 corner_W_{0, 0};
+  std::vector<std::uint8_t> hits_;
+  std::vector<std::uint16_t> seen_;    // scan number of the last hit
+  std::vector<std::int16_t> field_;    // [mm]
+  std::vector<std::uint32_t> active_;  // cells with hits
+  std::vector<Kept> kept_;             // workspace of shift()
+  std::vector<std::int16_t> kernel_;   // [mm]
+  std::vector<std::uint8_t> soiled_;   // tiles whose distances are too short: a cell was cleared
+  std::vector<std::uint16_t> tiles_;   // those, in the order they became so
+  std::size_t first_tile_ = 0;
+  std::size_t occupied_ = 0;
+  std::uint32_t scans_ = 0;
+};
+
+}  // namespace algo

@@ -1,0 +1,58 @@
+// algo/full_strip/node_strip.hpp: the reactive layer: an elastic strip of many nodes.
+#pragma once
+
+#include <cstddef>
+
+#include "algo/full_strip/local_map.hpp"
+#include "algo/recycled.hpp"
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+struct StripSettings {
+  double contraction = 0.4;     // K_c
+  double repulsion = 0.6;       // K_r
+  double rest_distance = 0.75;  // [m] d_o: clearance from which on nothing pushes
+  double least_clearance = 0;   // [m] below it the strip is broken
+};
+
+/// Nodes from the robot to the goal, every kSpacing. Each is pulled straight by its neighbours
+/// (Eq. 2 of the thesis) and pushed by what stands on its left and on its right (the thesis' two
+/// sides, at every node).
+class NodeStrip {
+ public:
+  static constexpr double kSpacing = 0.15;  // [m]
+  static constexpr std::size_t kMost = 400;
+
+  NodeStrip();
+  void clear() { nodes_.clear(); }
+  bool empty() const { return nodes_.size() < 2; }
+
+  /// Lays the strip along `path` (robot to goal).
+  void lay(const Recycled<Vec2>& path);
+  /// Cuts what the robot has passed, lets it start at the robot, spaces the nodes evenly.
+  void follow(const Vec2& robot_W);
+  /// `sweeps` rounds of forces over the first `reach` [m] of the strip, the rest less often.
+  void relax(const LocalMap& map, const StripSettings& settings, int sweeps);
+  /// Whether a node lacks room: metres from the robot to it, or a negative number when none does.
+  double broken_at(const LocalMap& map, const StripSettings& settings) const;
+
+  /// Cost [m] of the strip in the planner's measure.
+  double cost(const LocalMap& map) const;
+  /// [m] along its nodes.
+  double length() const;
+  /// The point `s` [m] along the strip, its end when it is shorter.
+  Vec2 at(double s) const;
+  const Recycled<Node>& nodes() const { return nodes_; }
+  Vec2 end_W() const { return nodes_.back().position_W; }
+
+ private:
+  void space_out();
+  void push(const LocalMap& map, const StripSettings& settings, std::size_t i);
+
+  Recycled<Node> nodes_{};
+  Recycled<Vec2> line_{};  // workspace of space_out()
+};
+
+}  // namespace algo

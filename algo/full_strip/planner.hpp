@@ -1,0 +1,72 @@
+// algo/full_strip/planner.hpp: the deliberative layer: a way to the goal through the local map.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "algo/full_strip/local_map.hpp"
+#include "algo/recycled.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A* on a lattice of 0.1 m, from the goal to the robot, a bounded piece of it at a time.
+///
+/// A step costs its length x (1 + 3 ((0.7 - d) / 0.5)^2) for a clearance d below 0.7 m; below
+/// the least clearance there is no way, but for the cells at the robot, which may stand anywhere.
+class Planner {
+ public:
+  enum class State : std::uint8_t { Idle, Searching, Found, NoWay };
+
+  Planner();
+  void reset() { state_ = State::Idle; }
+
+  /// Begins a search. A goal without room is replaced by the nearest place that has it; one outside
+  /// the map by a place on its border.
+  void start(const LocalMap& map, const Vec2& robot_W, const Vec2& goal_W, double least_clearance);
+  /// Expands up to `budget` lattice points.
+  State search(const LocalMap& map, int budget);
+
+  State state() const { return state_; }
+  /// Whether the way ends at another place than the goal asked for.
+  bool goal_replaced() const { return goal_replaced_; }
+  /// Cost [m] of the way found.
+  double cost() const;
+  /// The way found, robot first. At most one point a lattice step.
+  void path(Recycled<Vec2>& out) const;
+
+  /// Cost [m per m] of moving with clearance `d` [m].
+  static double unit_cost(double d);
+
+ private:
+  static constexpr int kSize = LocalMap::kSize / 2;
+  static constexpr double kStep = 2 * LocalMap::kCell;  // [m]
+  struct Entry {
+    float f = 0;
+    std::uint32_t point = 0;
+  };
+  std::uint32_t point_at(const Vec2& p_W) const;
+  Vec2 position_W(std::uint32_t point) const;
+  double clearance(const LocalMap& map, std::uint32_t point) const;
+  bool near_robot(std::uint32_t point) const;
+  float heuristic(std::uint32_t point) const;
+  void push(std::uint32_t point, float g, std::uint8_t towards);
+  std::uint32_t free_point(const LocalMap& map, std::uint32_t wanted) const;
+  void expand(const LocalMap& map, std::uint32_t point);
+
+  State state_ = State::Idle;
+  bool goal_replaced_ = false;
+  double least_clearance_ = 0;
+  Vec2 corner_W_{0, 0};
+  Vec2 robot_W_{0, 0};
+  Vec2 goal_W_{0, 0};
+  std::uint32_t robot_ = 0;
+  std::uint32_t root_ = 0;
+  std::uint32_t round_ = 0;  // of the search: what an older one wrote does not count
+  std::vector<std::uint32_t> opened_, closed_;  // round in which it was
+  std::vector<float> g_;                        // [m]
+  std::vector<std::uint8_t> towards_;           // neighbour on the way to the goal
+  std::vector<Entry> heap_;
+};
+
+}  // namespace algo

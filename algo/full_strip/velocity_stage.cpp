@@ -1,0 +1,198 @@
+// algo/full_strip/velocity_stage.cpp: speed profile, pursuit, proofs.
+#include "algo/full_strip/velocity_stage.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace algo {
+namespace {
+
+constexpr double kCreep = 0.35;        // [m/s] where the hull just fits
+constexpr double kCreepRoom = 0.055;   // [m] beside the hull there
+constexpr double kSpeedPerRoom = 3.0;  // [1/s] faster for every metre more
+constexpr double kSlowest = 0.25;      // [m/s]
+constexpr double kLateral = 2.0;       // [m/s2] in curves
+constexpr double kTurnShare = 0.8;     // of the turn rate that the profile plans with
+constexpr double kBrakeShare = 0.7;    // of the deceleration
+constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
+constexpr double kTurnGain = 2.5;      // [1/s]
+constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
+constexpr std::array<double, 2> kReverseShares{0.6, 0.3};
+constexpr double kReverseSpeed = 0.4;  // [m/s]
+
+/// [m] Ahead of the robot that it aims at, at speed `v`.
+double lookahead(double v) {
+  return std::clamp(0.3 + 0.4 * std::abs(v), 0.35, 1.0);
+}
+
+}  // namespace
+
+/// The highest speed at each node: by room, curvature, turn rate; then so that the robot can brake
+/// for what comes.
+void VelocityStage::profile(const StageInput& in) {
+  const Recycled<Node>& nodes = in.strip->nodes();
+  profiled_ = std::min(kProfile, nodes.size());
+  const double spacing = NodeStrip::kSpacing;
+  const double deceleration = kBrakeShare * in.limits.acceleration;
+  const double narrow = hull_.half_width() + kCreepRoom;
+  for (std::size_t i = 0; i < profiled_; ++i) {
+    const Vec2& p = nodes[i].position_W;
+    double v = in.limits.max_v;
+    v = std::min(v, kCreep + kSpeedPerRoom * (in.map->distance(p) - narrow));
+    if (i > 0 && i + 1 < nodes.size()) {
+      const Vec2 a = p - nodes[i - 1].position_W;
+      const Vec2 b = nodes[i + 1].position_W - p;
+      const double turn = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+      const double curvature = turn / std::max(0.5 * (a.norm() + b.norm()), 0.02);
+      v = std::min({v,
+                    std::sqrt(kLateral / std::max(curvature, 1e-3)),
+                    kTurnShare * in.limits.max_omega / std::max(curvature, 1e-3)});
+    }
+    v = std::max(v, kSlowest);
+    const double s = static_cast<double>(i) * spacing;
+    const double end = in.stop_at >= 0 ? in.stop_at : in.strip->length();
+    v = std::min(v, std::sqrt(2 * deceleration * std::max(0.0, end - s)));
+    speed_[i] = v;
+  }
+  for (std::size_t i = profiled_; i-- > 1;) {
+    const double reachable = std::sqrt(speed_[i] * speed_[i] + 2 * deceleration * spacing);
+    speed_[i - 1] = std::min(speed_[i - 1], reachable);
+  }
+}
+
+double VelocityStage::speed_at(double s) const {
+  if (profiled_ == 0) return 0;
+  const double at = std::max(0.0, s / NodeStrip::kSpacing);
+  const auto i = static_cast<std::size_t>(at);
+  if (i + 1 >= profiled_) return speed_[profiled_ - 1];
+  return speed_[i] + (at - static_cast<double>(i)) * (speed_[i + 1] - speed_[i]);
+}
+
+/// The command at `state`, `s` [m] along the strip.
+Twist2 VelocityStage::pursue(const StageInput& in,
+                             const MotionState& state,
+                             double s,
+                             const Gait& gait) const {
+  const double ahead = lookahead(state.twist.v);
+  Vec2 to = in.strip->at(s + ahead) - state.pose_W.position();
+  const Vec2 x = direction(state.pose_W.heading) * (gait.reverse ? -1 : 1);
+  const Vec2 aim{x.dot(to), x.x() * to.y() - x.y() * to.x()};
+  const double length = aim.norm();
+  if (length < 1e-6) return {};
+  const double error = std::atan2(aim.y(), aim.x());
+  const double w_max = in.limits.max_omega;
+  if (std::abs(error) > kTurnOnSpot) {
+    return {0, std::clamp(kTurnGain * error, -w_max, w_max)};
+  }
+  double v = speed_at(s) * gait.share;
+  if (gait.reverse) v = std::min(v, kReverseSpeed * gait.share);
+  const double curvature = 2 * aim.y() / (length * length);
+  double omega = curvature * v;
+  if (std::abs(omega) > w_max) {
+    v *= w_max / std::abs(omega);
+    omega = std::clamp(omega, -w_max, w_max);
+  }
+  return {gait.reverse ? -v : v, omega};
+}
+
+bool VelocityStage::admissible(const StageInput& in,
+                               const Gait& gait,
+                               Twist2& first,
+                               Vec2& aim_W) const {
+  MotionState state = in.state;
+  double s = 0;
+  // How far the robot has come along the strip by the time its command acts.
+  s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
+  const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
+  for (int k = 0; k < ticks; ++k) {
+    const Twist2 command = pursue(in, state, s, gait);
+    if (k == 0) {
+      first = command;
+      aim_W = in.strip->at(s + lookahead(state.twist.v));
+    }
+    const Vec2 before = state.pose_W.position();
+    state = advanced(state, command, in.limits, in.dt);
+    s += (state.pose_W.position() - before).norm();
+    if (hull_.clearance(*in.map, state.pose_W) < kMargin) return false;
+    if (state.twist == Twist2{} && command == Twist2{}) return true;
+  }
+  return rests_clear(*in.map, hull_, state, in.limits, in.dt, kMargin);
+}
+
+std::optional<Twist2> VelocityStage::follow(const StageInput& in, ControlOutput& out) {
+  profile(in);
+  const auto attempt = [&](const Gait& gait) -> std::optional<Twist2> {
+    Twist2 first;
+    Vec2 aim_W{0, 0};
+    const bool allowed = admissible(in, gait, first, aim_W);
+    out.candidates.push_back({first, kHorizon, 1 - gait.share, allowed, allowed});
+    if (!allowed) return std::nullopt;
+    out.pass_W = aim_W;
+    return first;
+  };
+  for (const double share : kShares) {
+    if (const auto twist = attempt({share, false})) return twist;
+  }
+  for (const double share : kReverseShares) {
+    const auto twist = attempt({share, true});
+    if (twist && *twist != Twist2{}) return twist;
+  }
+  return std::nullopt;
+}
+
+/// `twist` held for `horizon` and braked: `gain` [m] is how much more room there is at its end.
+bool VelocityStage::holds(const StageInput& in,
+                          const Twist2& twist,
+                          double horizon,
+                          double& gain) const {
+  MotionState state = in.state;
+  const double start = hull_.clearance(*in.map, state.pose_W);
+  double least = start;
+  const int ticks = std::max(1, static_cast<int>(std::lround(horizon / in.dt)));
+  for (int k = 0; k < ticks + 400; ++k) {
+    state = advanced(state, k < ticks ? twist : Twist2{}, in.limits, in.dt);
+    const double room = hull_.clearance(*in.map, state.pose_W);
+    // Too close already: every step must lead away.
+    const double floor = std::min(least, kMargin) - 1e-3;
+    if (room < floor) return false;
+    least = std::max(least, room);
+    if (k >= ticks && state.twist == Twist2{}) {
+      gain = room - start;
+      return true;
+    }
+  }
+  return false;
+}
+
+std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput& out) const {
+  constexpr double kTime = 0.6;  // [s]
+  constexpr double kV = 0.25;    // [m/s]
+  constexpr double kW = 1.0;     // [rad/s]
+  constexpr std::array<Twist2, 8> kPrimitives{
+      {{kV, 0}, {-kV, 0}, {kV, kW}, {kV, -kW}, {-kV, kW}, {-kV, -kW}, {0, kW}, {0, -kW}}};
+  std::optional<Twist2> best;
+  double most = 0.003;  // [m] less is no way out
+  for (const Twist2& twist : kPrimitives) {
+    double gain = 0;
+    const bool allowed = holds(in, twist, kTime, gain);
+    out.candidates.push_back({twist, kTime, -gain, allowed, false});
+    if (!allowed || gain <= most) continue;
+    most = gain;
+    best = twist;
+  }
+  return best;
+}
+
+std::optional<Twist2> VelocityStage::back_off(const StageInput& in, ControlOutput& out) const {
+  for (const double turn : {0.0, 0.8, -0.8}) {
+    double gain = 0;
+    const Twist2 twist{-kReverseSpeed * 0.6, turn};
+    const bool allowed = holds(in, twist, 0.5, gain);
+    out.candidates.push_back({twist, 0.5, -gain, allowed, allowed});
+    if (allowed) return twist;
+  }
+  return std::nullopt;
+}
+
+}  // namespace algo

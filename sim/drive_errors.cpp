@@ -1,0 +1,82 @@
+// sim/drive_errors.cpp: a ring of commands, and pose increments scaled and disturbed.
+#include "sim/drive_errors.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace sim {
+namespace {
+
+enum class Purpose : std::uint64_t { Scale = 0x0d01, Noise };  // apart from the scanners'
+
+Random stream(std::uint64_t seed, Purpose purpose) {
+  return Random(seed, static_cast<std::uint64_t>(purpose));
+}
+
+}  // namespace
+
+std::optional<std::string> defect(const DriveConfig& config) {
+  const auto good = [](const std::optional<double>& limit) {
+    return !limit || (std::isfinite(*limit) && *limit > 0);
+  };
+  if (!good(config.max_v) || !good(config.max_omega) || !good(config.max_acceleration) ||
+      !good(config.max_angular_acceleration)) {
+    return "limits must be above 0";
+  }
+  if (config.delay_ticks > 100) return "delay_ticks must be 0 to 100";
+  if (!(config.yaw_slip >= 0 && config.yaw_slip < 1)) return "yaw_slip must be 0 to below 1";
+  if (!(std::abs(config.odometry_scale) < 1)) return "odometry_scale must be within -1 and 1";
+  if (!(config.odometry_noise >= 0 && config.odometry_noise < 1)) {
+    return "odometry_noise must be 0 to below 1";
+  }
+  return std::nullopt;
+}
+
+DriveErrors::DriveErrors(const DriveConfig& config, std::uint64_t seed)
+    : config_(config), noise_(stream(seed, Purpose::Noise)), under_way_(config.delay_ticks) {
+  Random scale = stream(seed, Purpose::Scale);
+  distance_scale_ = 1 + (scale.uniform() < 0.5 ? -1 : 1) * config.odometry_scale;
+  angle_scale_ = 1 + (scale.uniform() < 0.5 ? -1 : 1) * config.odometry_scale;
+}
+
+void DriveErrors::reset(const algo::Pose2& start_W) {
+  under_way_.assign(config_.delay_ticks, {});
+  next_ = 0;
+  sound_W_ = start_W;
+  reported_W_ = start_W;
+}
+
+algo::Twist2 DriveErrors::act(const algo::Twist2& command) {
+  algo::Twist2 acting = command;
+  if (!under_way_.empty()) {
+    std::swap(acting, under_way_[next_]);
+    next_ = (next_ + 1) % under_way_.size();
+  }
+  if (config_.yaw_slip > 0) acting.omega *= 1 - config_.yaw_slip;
+  return acting;
+}
+
+algo::Odometry DriveErrors::report(const algo::Odometry& sound) {
+  if (config_.odometry_scale == 0 && config_.odometry_noise == 0) return sound;
+  // The way since the last report in the robot's own frame then.
+  const algo::Vec2 way_W = sound.pose.position() - sound_W_.position();
+  const algo::Vec2 ahead = algo::direction(sound_W_.heading);
+  algo::Vec2 way{ahead.dot(way_W), ahead.x() * way_W.y() - ahead.y() * way_W.x()};
+  double turn = algo::wrap_angle(sound.pose.heading - sound_W_.heading);
+  std::array<double, 2> draws{};
+  if (config_.odometry_noise > 0) noise_.fill_normal(draws);
+  // Noise of a random walk: its variance, not its deviation, grows with the way.
+  const double length = way.norm();
+  way *= distance_scale_;
+  if (length > 0) way += way / length * std::sqrt(length) * config_.odometry_noise * draws[0];
+  turn = turn * angle_scale_ + std::sqrt(std::abs(turn)) * config_.odometry_noise * draws[1];
+
+  reported_W_ = algo::compose(reported_W_, {way.x(), way.y(), turn});
+  sound_W_ = sound.pose;
+  algo::Odometry out = sound;
+  out.pose = reported_W_;
+  out.twist = {sound.twist.v * distance_scale_, sound.twist.omega * angle_scale_};
+  return out;
+}
+
+}  // namespace sim
