@@ -57,6 +57,8 @@ std::string_view name(Phase phase) {
       return "follow";
     case Phase::Turn:
       return "turn";
+    case Phase::Maneuver:
+      return "maneuver";
     case Phase::Wait:
       return "wait";
     case Phase::Escape:

@@ -71,7 +71,17 @@ struct Track {
 };
 
 /// What a controller with recoveries is about.
-enum class Phase : std::uint8_t { Rest, Follow, Turn, Wait, Escape, BackOff, NoWay, Blocked };
+enum class Phase : std::uint8_t {
+  Rest,
+  Follow,
+  Turn,
+  Maneuver,
+  Wait,
+  Escape,
+  BackOff,
+  NoWay,
+  Blocked
+};
 
 /// What a controller decided and why.
 struct ControlOutput {

@@ -11,18 +11,28 @@ namespace algo {
 namespace {
 
 constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
-constexpr double kBreak = 0.02;        // [m] a strip may be narrower than what was planned
-constexpr double kPlanEvery = 0.25;    // [s]
-constexpr int kExpansions = 2000;      // of the planner a tick
-constexpr double kRivalShare = 0.9;    // of the present cost that a rival must stay below
-constexpr int kSweepsNew = 15;         // of a strip just laid
-constexpr int kSweeps = 5;             // a tick
-constexpr double kStopShort = 0.35;    // [m] before the place where the strip is broken
-constexpr double kStuckTime = 2.5;     // [s] without way: the strip is dropped
-constexpr double kStuckWay = 0.15;     // [m]
-constexpr double kBackTime = 1.0;      // [s]
-constexpr double kEscapeTime = 0.4;    // [s] an escape is kept up, checked every tick
+constexpr double kBreak = 0.02;            // [m] a strip may be narrower than what was planned
+constexpr double kPlanEvery = 0.25;        // [s]
+constexpr int kExpansions = 400;           // of the planner a tick
+constexpr int kExpansionsNow = 1200;       // when there is no strip to follow
+constexpr double kRivalShare = 0.9;        // of the present cost that a rival must stay below
+constexpr int kSweepsNew = 15;             // of a strip just laid
+constexpr int kSweeps = 5;                 // a tick
+constexpr double kStopShort = 0.35;        // [m] before the place where the strip is broken
+constexpr double kStuckTime = 2.5;         // [s] without way: the strip is dropped
+constexpr double kStuckWay = 0.15;         // [m]
+constexpr double kBackTime = 1.0;          // [s]
+constexpr double kPatience = 1.2;          // [s] without way until a manoeuvre is looked for
+constexpr double kSearchEvery = 1.0;       // [s] after a search that found nothing
+constexpr int kManeuverExpansions = 150;   // a tick
+constexpr double kManeuverMargin = 0.025;  // [m] of room on the way
+constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
+constexpr std::size_t kFarthest = 11;
+constexpr std::size_t kAim = 7;        // and where it is looked for
+constexpr double kOnStrip = 0.10;      // [m]
+constexpr double kAlongStrip = 0.35;   // [rad]
 constexpr std::size_t kTrail = 64;     // odometries remembered
+constexpr double kDrawEvery = 0.5;     // [s]
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
 
 /// The pose at `stamp`, between the odometries around it.
@@ -40,6 +50,17 @@ Pose2 pose_at(const std::vector<Odometry>& trail, double stamp) {
   return trail.back().pose;
 }
 
+/// A frame ready to map many points.
+struct Frame {
+  Vec2 origin{0, 0};
+  Vec2 ahead{1, 0};
+  Vec2 left{0, 1};
+};
+Frame frame_of(const Pose2& pose) {
+  const Vec2 ahead = direction(pose.heading);
+  return {pose.position(), ahead, {-ahead.y(), ahead.x()}};
+}
+
 }  // namespace
 
 FullStripController::FullStripController() {
@@ -50,16 +71,18 @@ void FullStripController::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
   planner_.reset();
   strip_.clear();
+  search_.reset();
+  maneuver_.reset();
+  way_since_ = 0;
   goal_W_.reset();
   level_ = 0;
   no_way_ = false;
   broken_at_ = -1;
   next_plan_ = 0;
+  next_drawing_ = 0;
   phase_ = Phase::Rest;
   phase_since_ = 0;
   back_until_ = -1;
-  escape_.reset();
-  escape_until_ = -1;
   under_way_.clear();
   trail_.clear();
   path_W_.clear();
@@ -76,7 +99,7 @@ void FullStripController::enter(Phase phase, double stamp) {
 }
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
-  stage_.reset(HullDiscs(*in.spec));
+  stage_.set_hull(HullCheck(*in.spec));
   limits_ = {std::min(parameters[Parameter::MaxSpeed], in.spec->max_v),
              std::min(parameters[Parameter::MaxTurnRate], in.spec->max_omega),
              in.spec->max_acceleration,
@@ -88,6 +111,18 @@ void FullStripController::prepare(const ControlInput& in, const Parameters& para
   settings_.least_clearance = least_clearance() - kBreak;
 }
 
+/// The beams' directions in the scanner's frame, kept while the scanner stays the same.
+void FullStripController::aim_beams(const LaserScan& scan) {
+  if (beams_.size() == scan.size() && beams_min_ == scan.angle_min &&
+      beams_step_ == scan.angle_increment) {
+    return;
+  }
+  beams_.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) beams_[i] = direction(scan.angle(i));
+  beams_min_ = scan.angle_min;
+  beams_step_ = scan.angle_increment;
+}
+
 /// Enters a new scan into the map, each beam from where the robot was when it was fired.
 void FullStripController::sense(const ControlInput& in) {
   trail_.push_back(in.odometry);
@@ -97,13 +132,15 @@ void FullStripController::sense(const ControlInput& in) {
   const LaserScan& scan = in.scene->scan;
   if (!in.scene->fresh || scan.size() == 0) return;
   points_W_.resize(scan.size());
+  aim_beams(scan);
   const bool rolling = scan.turn_period > 0;
   const Pose2 middle = pose_at(trail_, scan.stamp - scan.sweep_time() / 2);
+  Frame at = frame_of(compose(middle, scan.mount_R));
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] != Beam::Ok) continue;
-    const Pose2 at = rolling ? pose_at(trail_, scan.beam_time(i)) : middle;
-    const Vec2 p_R = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
-    points_W_[i] = to_parent(at, p_R);
+    if (rolling) at = frame_of(compose(pose_at(trail_, scan.beam_time(i)), scan.mount_R));
+    points_W_[i] =
+        at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
   }
   map_.insert(scan, compose(middle, scan.mount_R), points_W_);
 }
@@ -116,7 +153,8 @@ void FullStripController::plan(const ControlInput& in) {
     next_plan_ = in.stamp + kPlanEvery;
   }
   if (planner_.state() != Planner::State::Searching) return;
-  switch (planner_.search(map_, kExpansions)) {
+  const bool urgent = strip_.empty() || broken_at_ >= 0;
+  switch (planner_.search(map_, urgent ? kExpansionsNow : kExpansions)) {
     case Planner::State::Found:
       take_plan(in);
       return;
@@ -184,7 +222,11 @@ void FullStripController::remember(const Twist2& command) {
 void FullStripController::watch_progress(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
   const bool turning = phase_ == Phase::Turn && std::abs(in.odometry.twist.omega) > 0.1;
-  if (turning || (here - progress_W_).norm() > kStuckWay) {
+  if ((here - way_W_).norm() > kStuckWay) {
+    way_W_ = here;
+    way_since_ = in.stamp;
+  }
+  if (turning || maneuver_.active() || (here - progress_W_).norm() > kStuckWay) {
     progress_W_ = here;
     progress_at_ = in.stamp;
   }
@@ -207,14 +249,59 @@ Twist2 FullStripController::recover(const StageInput& stage,
   }
   const bool still = std::abs(in.odometry.twist.v) < 0.05;
   if (still) {
-    escape_ = stage_.escape(stage, out);
-    if (escape_) {
+    if (const auto twist = stage_.escape(stage, out)) {
       enter(Phase::Escape, in.stamp);
-      return *escape_;
+      return *twist;
     }
   }
   enter(no_way_ ? Phase::NoWay : Phase::Blocked, in.stamp);
   return {};
+}
+
+/// Searches, a piece a tick, for a way to a pose on the strip ahead that points along it.
+void FullStripController::look_for_maneuver(const ControlInput& in) {
+  const Recycled<Node>& nodes = strip_.nodes();
+  if (nodes.size() < 3) return;
+  const Pose2& here = in.odometry.pose;
+  if (search_.state() == ManeuverSearch::State::NoWay && in.stamp < next_search_) return;
+  if (search_.state() != ManeuverSearch::State::Searching) {
+    const bool moving = std::abs(in.odometry.twist.v) > 0.05;
+    if (moving) return;
+    const std::size_t aim = std::min(nodes.size() - 1, kAim);
+    search_.start(here, nodes[aim].position_W, kManeuverMargin);
+    next_search_ = in.stamp + kSearchEvery;
+  }
+  const auto arrived = [&](const Pose2& pose_W) {
+    const std::size_t end = std::min(nodes.size() - 1, kFarthest);
+    for (std::size_t i = std::min(end - 1, kNearest); i < end; ++i) {
+      const Vec2 way = nodes[i + 1].position_W - nodes[i].position_W;
+      if ((nodes[i].position_W - pose_W.position()).squaredNorm() > kOnStrip * kOnStrip) continue;
+      const double error = std::atan2(way.y(), way.x()) - pose_W.heading;
+      if (std::abs(wrap_angle(error)) < kAlongStrip) return true;
+    }
+    return false;
+  };
+  if (search_.search(map_, stage_.hull(), arrived, kManeuverExpansions) ==
+      ManeuverSearch::State::Found) {
+    maneuver_.start(search_.pieces());
+    search_.reset();
+  }
+}
+
+/// The next command of the manoeuvre under way; nothing when it is over or no longer free.
+std::optional<Twist2> FullStripController::carry_on(const StageInput& stage,
+                                                    const ControlInput& in,
+                                                    ControlOutput& out) {
+  const auto wanted = maneuver_.next(stage.state.pose_W, limits_);
+  if (wanted) {
+    if (const auto twist = stage_.proven(stage, *wanted, out)) {
+      enter(Phase::Maneuver, in.stamp);
+      return twist;
+    }
+  }
+  maneuver_.reset();
+  way_since_ = in.stamp;
+  return std::nullopt;
 }
 
 Twist2 FullStripController::drive(const ControlInput& in,
@@ -236,20 +323,28 @@ Twist2 FullStripController::drive(const ControlInput& in,
   }
   watch_progress(in);
   if (in.stamp < back_until_ || strip_.empty()) return recover(stage, in, out);
+  if (maneuver_.active()) {
+    if (const auto twist = carry_on(stage, in, out)) return *twist;
+  }
   if (const auto twist = stage_.follow(stage, out)) {
     const bool turning = twist->v == 0 && twist->omega != 0;
     enter(turning ? Phase::Turn : Phase::Follow, in.stamp);
+    if (in.stamp - way_since_ > kPatience) look_for_maneuver(in);
     if (*twist != Twist2{} || broken_at_ < 0) return *twist;
+  } else {
+    look_for_maneuver(in);
   }
   return recover(stage, in, out);
 }
 
-void FullStripController::report(const ControlInput& in, ControlOutput& out) const {
+void FullStripController::report(const ControlInput& in, ControlOutput& out) {
+  const bool draw = in.stamp >= next_drawing_;
+  if (draw) next_drawing_ = in.stamp + kDrawEvery;
   out.strip = strip_.nodes();
   out.plan_W = path_W_;
   out.phase = phase_;
   out.phase_since = phase_since_;
-  if (in.scene->fresh) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
+  if (draw) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
 }
 
 void FullStripController::update(const ControlInput& in,
@@ -277,6 +372,10 @@ void FullStripController::update(const ControlInput& in,
     progress_at_ = in.stamp;
     no_way_ = false;
     level_ = 0;
+    search_.reset();
+    maneuver_.reset();
+    way_W_ = progress_W_;
+    way_since_ = in.stamp;
   }
   stretch(in);
   plan(in);

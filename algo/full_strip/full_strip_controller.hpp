@@ -9,6 +9,7 @@
 
 #include "algo/controller.hpp"
 #include "algo/full_strip/local_map.hpp"
+#include "algo/full_strip/maneuver.hpp"
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
 #include "algo/full_strip/planner.hpp"
@@ -25,24 +26,34 @@ class FullStripController final : public Controller {
 
  private:
   void prepare(const ControlInput& in, const Parameters& parameters);
+  void aim_beams(const LaserScan& scan);
   void sense(const ControlInput& in);
   void plan(const ControlInput& in);
   void take_plan(const ControlInput& in);
   void stretch(const ControlInput& in);
   Twist2 drive(const ControlInput& in, const Parameters& parameters, ControlOutput& out);
+  void look_for_maneuver(const ControlInput& in);
+  std::optional<Twist2> carry_on(const StageInput& stage,
+                                 const ControlInput& in,
+                                 ControlOutput& out);
   Twist2 recover(const StageInput& stage, const ControlInput& in, ControlOutput& out);
   MotionState when_acting(const ControlInput& in) const;
   void remember(const Twist2& command);
   void watch_progress(const ControlInput& in);
   void enter(Phase phase, double stamp);
   double least_clearance() const;
-  void report(const ControlInput& in, ControlOutput& out) const;
+  void report(const ControlInput& in, ControlOutput& out);
 
   LocalMap map_{};
   Planner planner_{};
   NodeStrip strip_{};
   NodeStrip rival_{};
   VelocityStage stage_{};
+  ManeuverSearch search_{};
+  ManeuverDrive maneuver_{};
+  double next_search_ = 0;  // [s] run clock
+  Vec2 way_W_{0, 0};        // where the robot last made way, turning not counted
+  double way_since_ = 0;    // [s]
   StripSettings settings_{};
   MotionLimits limits_{};
 
@@ -56,13 +67,14 @@ class FullStripController final : public Controller {
   Vec2 progress_W_{0, 0};   // where the robot last made way
   double progress_at_ = 0;  // [s]
   double back_until_ = -1;  // [s]
-  std::optional<Twist2> escape_{};
-  double escape_until_ = -1;  // [s]
 
-  std::vector<Twist2> under_way_{};  // commands given that do not act yet, oldest first
-  std::vector<Vec2> points_W_{};     // of the scan's beams
-  std::vector<Odometry> trail_{};    // newest last: where the robot was when a beam was fired
-  Recycled<Vec2> path_W_{};          // the planner's, last found
+  std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
+  std::vector<Vec2> beams_{};              // directions in the scanner's frame
+  double beams_min_ = 0, beams_step_ = 0;  // [rad] of the scanner they are of
+  double next_drawing_ = 0;                // [s] run clock
+  std::vector<Vec2> points_W_{};           // of the scan's beams
+  std::vector<Odometry> trail_{};          // newest last: where the robot was when a beam was fired
+  Recycled<Vec2> path_W_{};                // the planner's, last found
 };
 
 }  // namespace algo

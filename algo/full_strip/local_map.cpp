@@ -16,7 +16,6 @@ constexpr std::int16_t kFar = 1000;  // [mm] kReach
 
 constexpr std::uint8_t kHit = 2;         // a hit counts this much,
 constexpr std::uint8_t kMost = 8;        // up to here;
-constexpr std::uint8_t kOccupied = 3;    // from here on a cell is occupied: two hits
 constexpr int kLook = 2;                 // a look through takes this much
 constexpr double kBeyond = 0.15;         // [m] a beam must go on behind a cell to have seen through
 constexpr double kClearRange = 8.0;      // [m] cells farther than this are left as they are
@@ -26,18 +25,39 @@ constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cel
 constexpr int kTile = 32;  // cells along a tile's edge
 constexpr int kTiles = kSize / kTile;
 constexpr std::size_t kTilesATick = 8;  // more wait: distances too short are safe meanwhile
-constexpr double kMiddle = 3.0;         // [m] the robot may be from the window's middle
+constexpr double kMiddle = 4.0;         // [m] the robot may be from the window's middle
+
+/// A square of `size` x `size` moved by (columns, rows) down and left; what comes in is `fresh`.
+template <typename T>
+void move_rows(std::vector<T>& cells, int size, int columns, int rows, T fresh) {
+  const int x0 = std::max(0, -columns);
+  const int x1 = std::min(size, size - columns);
+  // In the order in which no row is overwritten before it has been moved.
+  for (int k = 0; k < size; ++k) {
+    const int y = rows >= 0 ? k : size - 1 - k;
+    T* const to = &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(size)];
+    const int from = y + rows;
+    if (from < 0 || from >= size || x1 <= x0) {
+      std::fill_n(to, size, fresh);
+      continue;
+    }
+    const T* const row = &cells[static_cast<std::size_t>(from) * static_cast<std::size_t>(size)];
+    std::memmove(to + x0, row + x0 + columns, static_cast<std::size_t>(x1 - x0) * sizeof(T));
+    std::fill(to, to + x0, fresh);
+    std::fill(to + x1, to + size, fresh);
+  }
+}
 
 }  // namespace
 
 LocalMap::LocalMap()
     : hits_(static_cast<std::size_t>(kSize) * kSize),
       seen_(hits_.size()),
+      means_(hits_.size()),
       field_(hits_.size(), kFar),
       kernel_(static_cast<std::size_t>(kWidth) * kWidth),
       soiled_(static_cast<std::size_t>(kTiles) * kTiles) {
   active_.reserve(hits_.size());
-  kept_.reserve(hits_.size());
   tiles_.reserve(soiled_.size() + 1);
   for (int y = -kRadius; y <= kRadius; ++y) {
     for (int x = -kRadius; x <= kRadius; ++x) {
@@ -55,7 +75,6 @@ void LocalMap::reset(const Vec2& centre_W) {
   std::ranges::fill(soiled_, std::uint8_t{0});
   active_.clear();
   tiles_.clear();
-  first_tile_ = 0;
   occupied_ = 0;
   scans_ = 0;
   const double half = kSize * kCell / 2;
@@ -73,35 +92,36 @@ bool LocalMap::follow(const Vec2& position_W) {
   const double half = kSize * kCell / 2;
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
-  shift(static_cast<int>(std::lround(off.x() / kCell)),
-        static_cast<int>(std::lround(off.y() / kCell)));
+  const auto tiles = [](double metres) {
+    return static_cast<int>(std::lround(metres / (kCell * kTile)));
+  };
+  shift(tiles(off.x()), tiles(off.y()));
   return true;
 }
 
 /// Copies what stays inside; what leaves is forgotten, what comes in is free.
 void LocalMap::shift(int columns, int rows) {
-  corner_W_ += Vec2(columns * kCell, rows * kCell);
-  kept_.clear();
-  for (const std::uint32_t cell : active_) kept_.push_back({cell, seen_[cell], hits_[cell]});
-  std::ranges::fill(hits_, std::uint8_t{0});
-  std::ranges::fill(field_, kFar);
-  std::ranges::fill(soiled_, std::uint8_t{0});
+  corner_W_ += Vec2(columns * kTile * kCell, rows * kTile * kCell);
+  move_rows(hits_, kSize, columns * kTile, rows * kTile, std::uint8_t{0});
+  move_rows(seen_, kSize, columns * kTile, rows * kTile, std::uint16_t{0});
+  move_rows(means_, kSize, columns * kTile, rows * kTile, Offset{});
+  move_rows(field_, kSize, columns * kTile, rows * kTile, kFar);
+  move_rows(soiled_, kTiles, columns, rows, std::uint8_t{0});
   tiles_.clear();
-  first_tile_ = 0;
-  active_.clear();
+  for (std::size_t tile = 0; tile < soiled_.size(); ++tile) {
+    if (soiled_[tile] != 0) tiles_.push_back(static_cast<std::uint16_t>(tile));
+  }
   occupied_ = 0;
-  for (const Kept& kept : kept_) {
-    const int column = static_cast<int>(kept.cell) % kSize - columns;
-    const int row = static_cast<int>(kept.cell) / kSize - rows;
+  std::size_t kept = 0;
+  for (const std::uint32_t old : active_) {
+    const int column = static_cast<int>(old) % kSize - columns * kTile;
+    const int row = static_cast<int>(old) / kSize - rows * kTile;
     if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
     const std::size_t cell = index(column, row);
-    hits_[cell] = kept.hits;
-    seen_[cell] = kept.seen;
-    active_.push_back(static_cast<std::uint32_t>(cell));
-    if (hits_[cell] < kOccupied) continue;
-    ++occupied_;
-    stamp(column, row, 0, 0, kSize, kSize);
+    active_[kept++] = static_cast<std::uint32_t>(cell);
+    if (hits_[cell] >= kOccupied) ++occupied_;
   }
+  active_.resize(kept);
 }
 
 void LocalMap::insert(const LaserScan& scan,
@@ -126,6 +146,13 @@ void LocalMap::hit(const Vec2& point_W) {
   if (before == 0) active_.push_back(static_cast<std::uint32_t>(cell));
   hits_[cell] = std::min<std::uint8_t>(kMost, before + kHit);
   seen_[cell] = static_cast<std::uint16_t>(scans_);
+  // A mean that forgets, so that it follows what drifts.
+  const Vec2 off = point_W - centre_W(cell);
+  Offset& mean = means_[cell];
+  if (before == 0) mean = {};
+  const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kHit);
+  mean.x += share * (static_cast<float>(off.x()) - mean.x);
+  mean.y += share * (static_cast<float>(off.y()) - mean.y);
   if (before >= kOccupied || hits_[cell] < kOccupied) return;
   ++occupied_;
   stamp(column, row, 0, 0, kSize, kSize);
@@ -221,14 +248,12 @@ void LocalMap::soil(std::size_t cell) {
 }
 
 void LocalMap::rebuild_soiled() {
-  for (std::size_t k = 0; k < kTilesATick && first_tile_ < tiles_.size(); ++k) {
-    const int tile = tiles_[first_tile_++];
-    soiled_[static_cast<std::size_t>(tile)] = 0;
-    rebuild(tile);
+  const std::size_t now = std::min(kTilesATick, tiles_.size());
+  for (std::size_t k = 0; k < now; ++k) {
+    soiled_[tiles_[k]] = 0;
+    rebuild(tiles_[k]);
   }
-  if (first_tile_ == 0) return;
-  tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(first_tile_));
-  first_tile_ = 0;
+  tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(now));
 }
 
 void LocalMap::rebuild(int tile) {

@@ -2,6 +2,8 @@
 // grid and the distance to the nearest occupied cell.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,9 +19,10 @@ namespace algo {
 /// several times; where nobody looks it ages. Everything is allocated in the constructor.
 class LocalMap {
  public:
-  static constexpr double kCell = 0.05;  // [m]
-  static constexpr int kSize = 512;      // cells along an edge: 25.6 m
-  static constexpr double kReach = 1.0;  // [m] distances are known up to here
+  static constexpr double kCell = 0.05;         // [m]
+  static constexpr int kSize = 512;             // cells along an edge: 25.6 m
+  static constexpr double kReach = 1.0;         // [m] distances are known up to here
+  static constexpr std::uint8_t kOccupied = 3;  // hits from which on a cell is occupied: two
 
   LocalMap();
 
@@ -38,6 +41,22 @@ class LocalMap {
   /// Gradient of distance(): away from the nearest obstacle, zero where none is within reach.
   Vec2 gradient(const Vec2& p_W) const;
 
+  /// Calls `see(point_W)` for each occupied cell of the square of half edge `reach` [m] about
+  /// `p_W`, with the mean of the hits in it: where the surface is, closer than its cell tells.
+  template <typename See>
+  void each_near(const Vec2& p_W, double reach, See&& see) const {
+    const int x0 = std::max(0, column_of(p_W.x() - reach));
+    const int x1 = std::min(kSize - 1, column_of(p_W.x() + reach));
+    const int y0 = std::max(0, row_of(p_W.y() - reach));
+    const int y1 = std::min(kSize - 1, row_of(p_W.y() + reach));
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        const std::size_t cell = index(x, y);
+        if (hits_[cell] >= kOccupied) see(mean_W(cell));
+      }
+    }
+  }
+
   bool inside(const Vec2& p_W) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.
@@ -48,14 +67,27 @@ class LocalMap {
   void draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const;
 
  private:
+  /// Where in a cell its hits lie, from its middle.
+  struct Offset {
+    float x = 0, y = 0;  // [m]
+  };
+  int column_of(double x_W) const {
+    return static_cast<int>(std::floor((x_W - corner_W_.x()) / kCell));
+  }
+  int row_of(double y_W) const {
+    return static_cast<int>(std::floor((y_W - corner_W_.y()) / kCell));
+  }
+  Vec2 centre_W(std::size_t cell) const {
+    return corner_W_ + Vec2((static_cast<double>(cell % kSize) + 0.5) * kCell,
+                            (static_cast<double>(cell / kSize) + 0.5) * kCell);
+  }
+  Vec2 mean_W(std::size_t cell) const {
+    const Offset& o = means_[cell];
+    return centre_W(cell) + Vec2(static_cast<double>(o.x), static_cast<double>(o.y));
+  }
   static std::size_t index(int column, int row) {
     return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
   }
-  struct Kept {
-    std::uint32_t cell = 0;
-    std::uint16_t seen = 0;
-    std::uint8_t hits = 0;
-  };
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
   void age();
@@ -69,13 +101,12 @@ class LocalMap {
   Vec2 corner_W_{0, 0};
   std::vector<std::uint8_t> hits_;
   std::vector<std::uint16_t> seen_;    // scan number of the last hit
+  std::vector<Offset> means_;          // of the hits
   std::vector<std::int16_t> field_;    // [mm]
   std::vector<std::uint32_t> active_;  // cells with hits
-  std::vector<Kept> kept_;             // workspace of shift()
   std::vector<std::int16_t> kernel_;   // [mm]
   std::vector<std::uint8_t> soiled_;   // tiles whose distances are too short: a cell was cleared
   std::vector<std::uint16_t> tiles_;   // those, in the order they became so
-  std::size_t first_tile_ = 0;
   std::size_t occupied_ = 0;
   std::uint32_t scans_ = 0;
 };

@@ -6,30 +6,52 @@
 
 namespace algo {
 
-HullDiscs::HullDiscs(const RobotSpec& spec) {
-  if (spec.half_length <= 0 || spec.half_width <= 0) {
-    radius_ = spec.radius;
-    half_width_ = spec.radius;
-    return;
-  }
+HullCheck::HullCheck(const RobotSpec& spec)
+    : disc_(spec.radius), radius_(spec.radius), half_width_(spec.radius) {
+  if (spec.half_length <= 0 || spec.half_width <= 0) return;
+  half_length_ = spec.half_length;
+  half_width_ = spec.half_width;
   // The more discs the closer they follow the long side; one more than twice its length is enough.
   const double ratio = spec.half_length / spec.half_width;
   count_ = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(2 * ratio + 1)), 1, kMost);
   const double piece = spec.half_length / static_cast<double>(count_);  // half of what one covers
-  radius_ = std::hypot(piece, spec.half_width);
-  half_width_ = spec.half_width;
+  disc_ = std::hypot(piece, spec.half_width);
   for (std::size_t i = 0; i < count_; ++i) {
     along_[i] = -spec.half_length + piece * (2 * static_cast<double>(i) + 1);
   }
 }
 
-double HullDiscs::clearance(const LocalMap& map, const Pose2& pose_W) const {
+double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
   const Vec2 ahead = direction(pose_W.heading);
   double least = LocalMap::kReach;
   for (std::size_t i = 0; i < count_; ++i) {
     least = std::min(least, map.distance(pose_W.position() + along_[i] * ahead));
   }
-  return least - radius_;
+  const double coarse = least - disc_;
+  return coarse < kExact ? exact(map, pose_W) : coarse;
+}
+
+double HullCheck::exact(const LocalMap& map, const Pose2& pose_W) const {
+  const Vec2 ahead = direction(pose_W.heading);
+  const Vec2 centre = pose_W.position();
+  // Beyond it nothing can be nearer than kExact, but for what its cell's middle and mean differ by.
+  const double reach = radius_ + kExact + LocalMap::kCell;
+  double least = kExact + LocalMap::kCell;
+  map.each_near(centre, reach, [&](const Vec2& point_W) {
+    const Vec2 d = point_W - centre;
+    if (half_length_ <= 0) {
+      least = std::min(least, d.norm() - radius_);
+      return;
+    }
+    const double dx = std::abs(ahead.dot(d)) - half_length_;
+    const double dy = std::abs(ahead.x() * d.y() - ahead.y() * d.x()) - half_width_;
+    const bool within = dx <= 0 && dy <= 0;
+    const double out = within ? std::max(dx, dy)
+                              : std::sqrt(std::max(dx, 0.0) * std::max(dx, 0.0) +
+                                          std::max(dy, 0.0) * std::max(dy, 0.0));
+    least = std::min(least, out);
+  });
+  return least;
 }
 
 MotionState advanced(const MotionState& state,
@@ -46,7 +68,7 @@ MotionState advanced(const MotionState& state,
 }
 
 bool rests_clear(const LocalMap& map,
-                 const HullDiscs& hull,
+                 const HullCheck& hull,
                  MotionState state,
                  const MotionLimits& limits,
                  double dt,

@@ -12,20 +12,27 @@
 
 namespace algo {
 
-/// The hull as equal discs along R's x axis that cover it: one test of the map's distance each.
-class HullDiscs {
+/// Room around the hull in the map. Coarse: the hull as equal discs along R's x axis that cover it,
+/// one look at the map's distances each. Where that finds little room: the outline itself against
+/// the hits in the cells around.
+class HullCheck {
  public:
-  explicit HullDiscs(const RobotSpec& spec = {});
-  double radius() const { return radius_; }          // [m] of a disc
-  double half_width() const { return half_width_; }  // [m] of the hull
-  /// [m] Free room around the hull at `pose_W`, negative when it overlaps an occupied cell.
+  explicit HullCheck(const RobotSpec& spec = {});
+  double half_width() const { return half_width_; }  // [m] of the hull, or the radius of a disc
+  /// [m] Free room around the hull at `pose_W`; exact where it is less than kExact, there negative
+  /// when something is inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;
 
  private:
+  static constexpr double kExact = 0.12;  // [m]
   static constexpr std::size_t kMost = 7;
+  double exact(const LocalMap& map, const Pose2& pose_W) const;
+
   std::array<double, kMost> along_{};  // [m] centres
   std::size_t count_ = 1;
-  double radius_ = 0;
+  double disc_ = 0;         // [m] radius of a disc
+  double radius_ = 0;       // [m] of the circle about the hull
+  double half_length_ = 0;  // [m] 0: the hull is a disc
   double half_width_ = 0;
 };
 
@@ -47,7 +54,7 @@ MotionState advanced(const MotionState& state,
 
 /// Whether `state` braked to rest, both parts at once, keeps `margin` [m] of room all the way.
 bool rests_clear(const LocalMap& map,
-                 const HullDiscs& hull,
+                 const HullCheck& hull,
                  MotionState state,
                  const MotionLimits& limits,
                  double dt,

@@ -24,11 +24,13 @@ constexpr std::array<Move, 8> kMoves{{{1, 0, kStraight},
                                       {0, -1, kStraight},
                                       {1, -1, kDiagonal}}};
 constexpr std::uint8_t kRoot = 255;
-constexpr double kAtRobot = 0.3;  // [m] around the robot everything can be left
-constexpr double kLeaving = 8;    // [m per m] where there is too little room
-constexpr double kComfort = 0.7;  // [m] clearance from which on more is not worth a detour
-constexpr double kBorder = 0.5;   // [m] of the map that is no goal
-constexpr int kSearchFree = 15;   // lattice steps: a replaced goal is at most so far away
+constexpr double kAtRobot = 0.3;        // [m] around the robot everything can be left
+constexpr double kLeaving = 8;          // [m per m] where there is too little room
+constexpr float kBucket = 0.02F;        // [m]
+constexpr std::size_t kBuckets = 8192;  // 160 m; what costs more shares the last
+constexpr double kComfort = 0.7;        // [m] clearance from which on more is not worth a detour
+constexpr double kBorder = 0.5;         // [m] of the map that is no goal
+constexpr int kSearchFree = 15;         // lattice steps: a replaced goal is at most so far away
 
 }  // namespace
 
@@ -36,8 +38,11 @@ Planner::Planner()
     : opened_(static_cast<std::size_t>(kSize) * kSize),
       closed_(opened_.size()),
       g_(opened_.size()),
-      towards_(opened_.size()) {
-  heap_.reserve(4 * opened_.size());
+      towards_(opened_.size()),
+      costed_(opened_.size()),
+      cost_(opened_.size()),
+      buckets_(kBuckets) {
+  entries_.reserve(4 * opened_.size());
 }
 
 double Planner::unit_cost(double d) {
@@ -82,8 +87,29 @@ void Planner::push(std::uint32_t point, float g, std::uint8_t towards) {
   opened_[point] = round_;
   g_[point] = g;
   towards_[point] = towards;
-  heap_.push_back({g + heuristic(point), point});
-  std::ranges::push_heap(heap_, std::greater{}, &Entry::f);
+  const auto bucket = static_cast<std::size_t>((g + heuristic(point)) / kBucket);
+  const std::size_t at = std::clamp(bucket, bucket_, kBuckets - 1);
+  entries_.push_back({point, buckets_[at]});
+  buckets_[at] = static_cast<std::uint32_t>(entries_.size());
+}
+
+/// One of the cheapest points waiting.
+std::optional<std::uint32_t> Planner::pop() {
+  while (bucket_ < kBuckets && buckets_[bucket_] == 0) ++bucket_;
+  if (bucket_ == kBuckets) return std::nullopt;
+  const Entry entry = entries_[buckets_[bucket_] - 1];
+  buckets_[bucket_] = entry.next;
+  return entry.point;
+}
+
+/// Cost [m per m] of a step to `point`, negative where there is no way.
+float Planner::cost_of(const LocalMap& map, std::uint32_t point) {
+  if (costed_[point] == round_) return cost_[point];
+  const double d = clearance(map, point);
+  double cost = unit_cost(d);
+  if (d < least_clearance_) cost = near_robot(point) ? kLeaving : -1;
+  costed_[point] = round_;
+  return cost_[point] = static_cast<float>(cost);
 }
 
 /// The nearest point with room to stand.
@@ -132,7 +158,9 @@ void Planner::start(const LocalMap& map,
     goal_W_ = position_W(root_);
   }
   ++round_;
-  heap_.clear();
+  entries_.clear();
+  std::ranges::fill(buckets_, 0U);
+  bucket_ = 0;
   push(root_, 0, kRoot);
   state_ = State::Searching;
 }
@@ -141,10 +169,9 @@ Planner::State Planner::search(const LocalMap& map, int budget) {
   if (state_ == State::Searching && corner_W_ != map.corner_W()) state_ = State::Idle;
   if (state_ != State::Searching) return state_;
   while (budget-- > 0) {
-    if (heap_.empty()) return state_ = State::NoWay;
-    std::ranges::pop_heap(heap_, std::greater{}, &Entry::f);
-    const std::uint32_t point = heap_.back().point;
-    heap_.pop_back();
+    const std::optional<std::uint32_t> next = pop();
+    if (!next) return state_ = State::NoWay;
+    const std::uint32_t point = *next;
     if (closed_[point] == round_) {
       ++budget;
       continue;
@@ -165,13 +192,9 @@ void Planner::expand(const LocalMap& map, std::uint32_t point) {
     if (x < 1 || y < 1 || x >= kSize - 1 || y >= kSize - 1) continue;
     const auto next = static_cast<std::uint32_t>(y * kSize + x);
     if (closed_[next] == round_) continue;
-    const double d = clearance(map, next);
-    double cost = unit_cost(d);
-    if (d < least_clearance_) {
-      if (!near_robot(next)) continue;
-      cost = kLeaving;
-    }
-    const float g = g_[point] + kMoves[m].length * static_cast<float>(cost);
+    const float cost = cost_of(map, next);
+    if (cost < 0) continue;
+    const float g = g_[point] + kMoves[m].length * cost;
     if (opened_[next] == round_ && g_[next] <= g) continue;
     push(next, g, static_cast<std::uint8_t>((m + 4) % kMoves.size()));  // back the way it came
   }

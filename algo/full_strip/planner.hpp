@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "algo/full_strip/local_map.hpp"
@@ -41,9 +42,10 @@ class Planner {
  private:
   static constexpr int kSize = LocalMap::kSize / 2;
   static constexpr double kStep = 2 * LocalMap::kCell;  // [m]
+  /// A point waiting to be expanded; those of a bucket are chained.
   struct Entry {
-    float f = 0;
     std::uint32_t point = 0;
+    std::uint32_t next = 0;  // entry + 1; 0: the last
   };
   std::uint32_t point_at(const Vec2& p_W) const;
   Vec2 position_W(std::uint32_t point) const;
@@ -51,6 +53,8 @@ class Planner {
   bool near_robot(std::uint32_t point) const;
   float heuristic(std::uint32_t point) const;
   void push(std::uint32_t point, float g, std::uint8_t towards);
+  std::optional<std::uint32_t> pop();
+  float cost_of(const LocalMap& map, std::uint32_t point);
   std::uint32_t free_point(const LocalMap& map, std::uint32_t wanted) const;
   void expand(const LocalMap& map, std::uint32_t point);
 
@@ -66,7 +70,12 @@ class Planner {
   std::vector<std::uint32_t> opened_, closed_;  // round in which it was
   std::vector<float> g_;                        // [m]
   std::vector<std::uint8_t> towards_;           // neighbour on the way to the goal
-  std::vector<Entry> heap_;
+  std::vector<std::uint32_t> costed_;           // round in which cost_ was found
+  std::vector<float> cost_;                     // [m per m]; negative: no way
+  // A queue of buckets kBucket wide: costs rise along a search, so the first filled one is near.
+  std::vector<std::uint32_t> buckets_;  // entry + 1
+  std::vector<Entry> entries_;
+  std::size_t bucket_ = 0;
 };
 
 }  // namespace algo

@@ -18,7 +18,7 @@ constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr std::array<double, 2> kReverseShares{0.6, 0.3};
+constexpr double kSlack = 0.002;       // [m] a position may be nearer than the one before
 constexpr double kReverseSpeed = 0.4;  // [m/s]
 
 /// [m] Ahead of the robot that it aims at, at speed `v`.
@@ -73,40 +73,42 @@ double VelocityStage::speed_at(double s) const {
 Twist2 VelocityStage::pursue(const StageInput& in,
                              const MotionState& state,
                              double s,
-                             const Gait& gait) const {
+                             double share) const {
   const double ahead = lookahead(state.twist.v);
   Vec2 to = in.strip->at(s + ahead) - state.pose_W.position();
-  const Vec2 x = direction(state.pose_W.heading) * (gait.reverse ? -1 : 1);
+  const Vec2 x = direction(state.pose_W.heading);
   const Vec2 aim{x.dot(to), x.x() * to.y() - x.y() * to.x()};
   const double length = aim.norm();
   if (length < 1e-6) return {};
   const double error = std::atan2(aim.y(), aim.x());
   const double w_max = in.limits.max_omega;
   if (std::abs(error) > kTurnOnSpot) {
-    return {0, std::clamp(kTurnGain * error, -w_max, w_max)};
+    return {0, share * std::clamp(kTurnGain * error, -w_max, w_max)};
   }
-  double v = speed_at(s) * gait.share;
-  if (gait.reverse) v = std::min(v, kReverseSpeed * gait.share);
+  double v = speed_at(s) * share;
   const double curvature = 2 * aim.y() / (length * length);
   double omega = curvature * v;
   if (std::abs(omega) > w_max) {
     v *= w_max / std::abs(omega);
     omega = std::clamp(omega, -w_max, w_max);
   }
-  return {gait.reverse ? -v : v, omega};
+  return {v, omega};
 }
 
 bool VelocityStage::admissible(const StageInput& in,
-                               const Gait& gait,
+                               double share,
                                Twist2& first,
                                Vec2& aim_W) const {
   MotionState state = in.state;
   double s = 0;
   // How far the robot has come along the strip by the time its command acts.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
+  // Too close already: no step may lead closer until there is room again.
+  double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
+  if (margin < 0) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   for (int k = 0; k < ticks; ++k) {
-    const Twist2 command = pursue(in, state, s, gait);
+    const Twist2 command = pursue(in, state, s, share);
     if (k == 0) {
       first = command;
       aim_W = in.strip->at(s + lookahead(state.twist.v));
@@ -114,31 +116,46 @@ bool VelocityStage::admissible(const StageInput& in,
     const Vec2 before = state.pose_W.position();
     state = advanced(state, command, in.limits, in.dt);
     s += (state.pose_W.position() - before).norm();
-    if (hull_.clearance(*in.map, state.pose_W) < kMargin) return false;
+    const double room = hull_.clearance(*in.map, state.pose_W);
+    if (room < margin) return false;
+    margin = std::max(margin, std::min(kMargin, room - kSlack));
     if (state.twist == Twist2{} && command == Twist2{}) return true;
   }
-  return rests_clear(*in.map, hull_, state, in.limits, in.dt, kMargin);
+  return rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
 }
 
 std::optional<Twist2> VelocityStage::follow(const StageInput& in, ControlOutput& out) {
   profile(in);
-  const auto attempt = [&](const Gait& gait) -> std::optional<Twist2> {
+  const auto attempt = [&](double share) -> std::optional<Twist2> {
     Twist2 first;
     Vec2 aim_W{0, 0};
-    const bool allowed = admissible(in, gait, first, aim_W);
-    out.candidates.push_back({first, kHorizon, 1 - gait.share, allowed, allowed});
+    const bool allowed = admissible(in, share, first, aim_W);
+    out.candidates.push_back({first, kHorizon, 1 - share, allowed, allowed});
     if (!allowed) return std::nullopt;
     out.pass_W = aim_W;
     return first;
   };
   for (const double share : kShares) {
-    if (const auto twist = attempt({share, false})) return twist;
-  }
-  for (const double share : kReverseShares) {
-    const auto twist = attempt({share, true});
-    if (twist && *twist != Twist2{}) return twist;
+    if (const auto twist = attempt(share)) return twist;
   }
   return std::nullopt;
+}
+
+std::optional<Twist2> VelocityStage::proven(const StageInput& in,
+                                            const Twist2& wanted,
+                                            ControlOutput& out) const {
+  const double here = hull_.clearance(*in.map, in.state.pose_W);
+  const double margin = std::min(kMargin, here) - kSlack;
+  MotionState state = in.state;
+  bool allowed = margin >= 0;
+  for (int k = 0; allowed && k < 2; ++k) {
+    state = advanced(state, wanted, in.limits, in.dt);
+    allowed = hull_.clearance(*in.map, state.pose_W) >= margin;
+  }
+  allowed = allowed && rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
+  out.candidates.push_back({wanted, 2 * in.dt, 0, allowed, allowed});
+  if (!allowed) return std::nullopt;
+  return wanted;
 }
 
 /// `twist` held for `horizon` and braked: `gain` [m] is how much more room there is at its end.

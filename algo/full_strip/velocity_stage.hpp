@@ -27,12 +27,17 @@ class VelocityStage {
   static constexpr double kHorizon = 1.0;  // [s]
   static constexpr double kMargin = 0.02;  // [m]
 
-  void reset(const HullDiscs& hull) { hull_ = hull; }
-  const HullDiscs& hull() const { return hull_; }
+  void set_hull(const HullCheck& hull) { hull_ = hull; }
+  const HullCheck& hull() const { return hull_; }
 
   /// The fastest admissible command along the strip, nothing when there is none. Notes in `out`
   /// what was weighed and where the robot is sent.
   std::optional<Twist2> follow(const StageInput& in, ControlOutput& out);
+
+  /// `wanted` when the robot can still be braked to rest after a tick of it.
+  std::optional<Twist2> proven(const StageInput& in,
+                               const Twist2& wanted,
+                               ControlOutput& out) const;
 
   /// A way out of too narrow a place: the primitive whose clearance grows most and never falls.
   std::optional<Twist2> escape(const StageInput& in, ControlOutput& out) const;
@@ -41,17 +46,13 @@ class VelocityStage {
 
  private:
   static constexpr std::size_t kProfile = 28;  // nodes of the speed profile: 4 m
-  struct Gait {
-    double share = 1;  // of the profile's speed
-    bool reverse = false;
-  };
   void profile(const StageInput& in);
   double speed_at(double s) const;
-  Twist2 pursue(const StageInput& in, const MotionState& state, double s, const Gait& gait) const;
-  bool admissible(const StageInput& in, const Gait& gait, Twist2& first, Vec2& aim_W) const;
+  Twist2 pursue(const StageInput& in, const MotionState& state, double s, double share) const;
+  bool admissible(const StageInput& in, double share, Twist2& first, Vec2& aim_W) const;
   bool holds(const StageInput& in, const Twist2& twist, double horizon, double& gain) const;
 
-  HullDiscs hull_{};
+  HullCheck hull_{};
   std::array<double, kProfile> speed_{};  // [m/s] at each kSpacing of the strip
   std::size_t profiled_ = 0;
 };

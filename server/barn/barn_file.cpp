@@ -167,7 +167,7 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
                          {Parameter::MaxSpeed, 2.0},
                          {Parameter::MaxTurnRate, *scenario.drive.max_omega},
                          {Parameter::GoalReach, std::min(0.3, world.goal_radius)},
-                         {Parameter::FilterHalfWidth, 0}};
+                         {Parameter::FilterHalfWidth, 2}};
   scenario.time_limit = 100;
   return scenario;
 }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <mutex>
 
@@ -23,6 +23,13 @@ constexpr double kOptimalSpeed = 2.0;  // [m/s]
 double score_of(const World& world, double time, double low) {
   const double optimal = world.optimal_length / kOptimalSpeed;
   return optimal / std::clamp(time, low * optimal, 8 * optimal);
+}
+
+/// [s] That this thread has had a core: what else runs on the machine does not count.
+double cpu_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 class Trial {
@@ -44,11 +51,9 @@ class Trial {
     pipeline.reset(t.observation.odometry.pose);
     for (const algo::Request& request : first_requests(spec_)) t.requests.push_back(request);
     while (true) {
-      const auto begin = std::chrono::steady_clock::now();
+      const double begin = cpu_time();
       pipeline.tick(t);
-      const std::chrono::duration<float, std::micro> cost =
-          std::chrono::steady_clock::now() - begin;
-      tick_us.push_back(cost.count());
+      tick_us.push_back(static_cast<float>((cpu_time() - begin) * 1e6));
       t.requests.clear();
       robot->step(t.command, t.observation);
       if (judge(*robot->ground_truth(), t.observation.stamp)) break;

@@ -34,7 +34,7 @@ struct Options {
 struct Result {
   std::size_t worlds = 0;
   std::vector<Run> runs{};       // by world, then by seed
-  std::vector<float> tick_us{};  // [us] of every control tick, in no order
+  std::vector<float> tick_us{};  // [us] CPU time of every control tick, in no order
 };
 
 /// Throws std::exception with a sentence when a world cannot be run.
