@@ -20,12 +20,37 @@ constexpr double kSettleTime = 0.5;   // [s] for the wheels to find the floor
 constexpr double kNear = 1.0;         // [m] beyond the hull: obstacles the dynamics know
 constexpr double kRegather = 0.5;     // [m] driven before they are chosen anew
 constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
+constexpr double kSideways = 0.1;     // z of a contact's normal below which it holds nothing up
 constexpr int kHullPart = 0;
 
 /// Which wheel side a part of the chassis belongs to, by its sign.
 int side_of(const btCompoundShape& chassis, int part, std::size_t supports) {
   if (part <= kHullPart || part > static_cast<int>(2 * supports)) return 0;
   return chassis.getChildTransform(part).getOrigin().y() > 0 ? 1 : -1;
+}
+
+/// Lets go of the contacts at the sides of a wheel. A support ball stands in for a wheel: it
+/// reaches out farther than that, and what stands beside the robot is for the hull to touch.
+void drop_wheel_sides(btBroadphasePair& pair,
+                      btCollisionDispatcher& dispatcher,
+                      const btDispatcherInfo& info) {
+  btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+  if (pair.m_algorithm == nullptr) return;
+  static thread_local btManifoldArray manifolds;  // keeps its memory
+  manifolds.resize(0);
+  pair.m_algorithm->getAllContactManifolds(manifolds);
+  for (int m = 0; m < manifolds.size(); ++m) {
+    btPersistentManifold& manifold = *manifolds[m];
+    const int last_wheel =
+        std::max(manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex());
+    const bool first = manifold.getBody0()->getUserIndex() == last_wheel;
+    for (int c = manifold.getNumContacts() - 1; c >= 0; --c) {
+      const btManifoldPoint& point = manifold.getContactPoint(c);
+      const int part = first ? point.m_index0 : point.m_index1;
+      const bool wheel = part > kHullPart && part <= last_wheel;
+      if (wheel && std::abs(point.m_normalWorldOnB.z()) < kSideways) manifold.removeContactPoint(c);
+    }
+  }
 }
 
 }  // namespace
@@ -44,6 +69,7 @@ BulletVehicle::~BulletVehicle() {
 void BulletVehicle::build_world() {
   configuration_ = make_bullet<btDefaultCollisionConfiguration>();
   dispatcher_ = make_bullet<btCollisionDispatcher>(configuration_.get());
+  dispatcher_->setNearCallback(drop_wheel_sides);
   broadphase_ = make_bullet<btDbvtBroadphase>();
   solver_ = make_bullet<btSequentialImpulseConstraintSolver>();
   world_ = make_bullet<btDiscreteDynamicsWorld>(
@@ -98,7 +124,8 @@ void BulletVehicle::build_chassis() {
   info.m_friction = 0;
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
   chassis_ = make_bullet<btRigidBody>(info);
-  chassis_->setActivationState(DISABLE_DEACTIVATION);  // parking is ours
+  chassis_->setUserIndex(static_cast<int>(2 * p.supports));  // its last wheel; -1 on all else
+  chassis_->setActivationState(DISABLE_DEACTIVATION);        // parking is ours
   world_->addRigidBody(chassis_.get());
 
   double axle_x = 0;

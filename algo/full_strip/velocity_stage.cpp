@@ -18,6 +18,7 @@ constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
+constexpr double kFloor = 0.01;        // [m] nearer only an escape is tried
 constexpr double kSlack = 0.002;       // [m] a position may be nearer than the one before
 constexpr double kReverseSpeed = 0.4;  // [m/s]
 
@@ -105,7 +106,7 @@ bool VelocityStage::admissible(const StageInput& in,
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
   // Too close already: no step may lead closer until there is room again.
   double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
-  if (margin < 0) return false;
+  if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   for (int k = 0; k < ticks; ++k) {
     const Twist2 command = pursue(in, state, s, share);
@@ -147,7 +148,7 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
   const double here = hull_.clearance(*in.map, in.state.pose_W);
   const double margin = std::min(kMargin, here) - kSlack;
   MotionState state = in.state;
-  bool allowed = margin >= 0;
+  bool allowed = margin >= kFloor;
   for (int k = 0; allowed && k < 2; ++k) {
     state = advanced(state, wanted, in.limits, in.dt);
     allowed = hull_.clearance(*in.map, state.pose_W) >= margin;
