@@ -11,19 +11,20 @@ namespace algo {
 namespace {
 
 constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
-constexpr double kBreak = 0.02;            // [m] a strip may be narrower than what was planned
-constexpr double kPlanEvery = 0.25;        // [s]
-constexpr int kExpansions = 400;           // of the planner a tick
-constexpr int kExpansionsNow = 1200;       // when there is no strip to follow
-constexpr double kRivalShare = 0.9;        // of the present cost that a rival must stay below
-constexpr int kSweepsNew = 15;             // of a strip just laid
-constexpr int kSweeps = 5;                 // a tick
-constexpr double kStopShort = 0.35;        // [m] before the place where the strip is broken
-constexpr double kStuckTime = 2.5;         // [s] without way: the strip is dropped
-constexpr double kStuckWay = 0.15;         // [m]
-constexpr double kBackTime = 1.0;          // [s]
-constexpr double kPatience = 1.2;          // [s] without way until a manoeuvre is looked for
-constexpr double kSearchEvery = 1.0;       // [s] after a search that found nothing
+constexpr double kBreak = 0.02;       // [m] a strip may be narrower than what was planned
+constexpr double kPlanEvery = 0.25;   // [s]
+constexpr int kExpansions = 400;      // of the planner a tick
+constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
+constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below
+constexpr int kSweepsNew = 15;        // of a strip just laid
+constexpr int kSweeps = 5;            // a tick
+constexpr double kStopShort = 0.35;   // [m] before the place where the strip is broken
+constexpr double kStuckTime = 2.5;    // [s] without way: the strip is dropped
+constexpr double kStuckWay = 0.15;    // [m]
+constexpr double kBackTime = 1.0;     // [s]
+constexpr double kTrace = 0.25;       // [m] about something found moving, what it left in the map
+constexpr double kPatience = 1.2;     // [s] without way until a manoeuvre is looked for
+constexpr double kSearchEvery = 1.0;  // [s] after a search that found nothing
 constexpr int kManeuverExpansions = 150;   // a tick
 constexpr double kManeuverMargin = 0.025;  // [m] of room on the way
 constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
@@ -69,6 +70,7 @@ FullStripController::FullStripController() {
 
 void FullStripController::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
+  tracker_.reset();
   planner_.reset();
   strip_.clear();
   search_.reset();
@@ -129,6 +131,7 @@ void FullStripController::sense(const ControlInput& in) {
   trail_.back().stamp = in.stamp;
   if (trail_.size() > kTrail) trail_.erase(trail_.begin());
   map_.follow(in.odometry.pose.position());
+  tracker_.predict(in.stamp);
   const LaserScan& scan = in.scene->scan;
   if (!in.scene->fresh || scan.size() == 0) return;
   points_W_.resize(scan.size());
@@ -142,7 +145,12 @@ void FullStripController::sense(const ControlInput& in) {
     points_W_[i] =
         at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
   }
-  map_.insert(scan, compose(middle, scan.mount_R), points_W_);
+  const Pose2 sensor_W = compose(middle, scan.mount_R);
+  tracker_.update(scan, sensor_W, points_W_, scan.stamp);
+  map_.insert(scan, sensor_W, points_W_, tracker_);
+  for (const Track& track : tracker_.just_found()) {
+    map_.erase(track.position_W, track.radius + kTrace);
+  }
 }
 
 /// The deliberative layer: one piece of a search each tick, a new search every kPlanEvery.
@@ -238,6 +246,43 @@ void FullStripController::watch_progress(const ControlInput& in) {
   back_until_ = in.stamp + kBackTime;
 }
 
+/// Among things that move, the beam search decides instead of the pursuit of the strip, which still
+/// tells the way to go.
+std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
+                                                    const ControlInput& in,
+                                                    ControlOutput& out) {
+  SpaceTimeInput search;
+  search.map = &map_;
+  search.hull = &stage_.hull();
+  search.spec = in.spec;
+  search.tracks = &tracker_.moving();
+  search.lead = in.dt * static_cast<double>(under_way_.size());
+  search.state = stage.state;
+  search.limits = limits_;
+  if (!SpaceTimeSearch::needed(search)) return std::nullopt;
+  // The farthest point of the strip that can be seen.
+  search.carrot_W = in.goal->position_W;
+  if (!strip_.empty()) {
+    const Recycled<Node>& nodes = strip_.nodes();
+    std::size_t carrot = 1;
+    for (std::size_t i = 4; i < nodes.size() + 3; i += 4) {
+      const std::size_t at = std::min(i, nodes.size() - 1);
+      if (!map_.sees(nodes[0].position_W, nodes[at].position_W, stage_.hull().half_width())) break;
+      carrot = at;
+    }
+    search.carrot_W = nodes[carrot].position_W;
+    search.beyond = static_cast<double>(nodes.size() - 1 - carrot) * NodeStrip::kSpacing;
+  }
+  const Twist2 twist = space_time_.search(search, out);
+  out.pass_W = search.carrot_W;
+  maneuver_.reset();
+  progress_at_ = in.stamp;
+  way_since_ = in.stamp;
+  enter(space_time_.clear() ? Phase::Wait : Phase::Escape, in.stamp);
+  if (twist.v > 0.1) enter(Phase::Follow, in.stamp);
+  return twist;
+}
+
 Twist2 FullStripController::recover(const StageInput& stage,
                                     const ControlInput& in,
                                     ControlOutput& out) {
@@ -321,6 +366,7 @@ Twist2 FullStripController::drive(const ControlInput& in,
     progress_at_ = in.stamp;
     return {};
   }
+  if (const auto twist = give_way(stage, in, out)) return *twist;
   watch_progress(in);
   if (in.stamp < back_until_ || strip_.empty()) return recover(stage, in, out);
   if (maneuver_.active()) {
@@ -344,6 +390,7 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) {
   out.plan_W = path_W_;
   out.phase = phase_;
   out.phase_since = phase_since_;
+  out.tracks = tracker_.moving();
   if (draw) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
 }
 

@@ -13,6 +13,8 @@
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
 #include "algo/full_strip/planner.hpp"
+#include "algo/full_strip/space_time.hpp"
+#include "algo/full_strip/tracker.hpp"
 #include "algo/full_strip/velocity_stage.hpp"
 
 namespace algo {
@@ -36,6 +38,9 @@ class FullStripController final : public Controller {
   std::optional<Twist2> carry_on(const StageInput& stage,
                                  const ControlInput& in,
                                  ControlOutput& out);
+  std::optional<Twist2> give_way(const StageInput& stage,
+                                 const ControlInput& in,
+                                 ControlOutput& out);
   Twist2 recover(const StageInput& stage, const ControlInput& in, ControlOutput& out);
   MotionState when_acting(const ControlInput& in) const;
   void remember(const Twist2& command);
@@ -45,6 +50,8 @@ class FullStripController final : public Controller {
   void report(const ControlInput& in, ControlOutput& out);
 
   LocalMap map_{};
+  Tracker tracker_{};
+  SpaceTimeSearch space_time_{};
   Planner planner_{};
   NodeStrip strip_{};
   NodeStrip rival_{};

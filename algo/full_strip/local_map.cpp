@@ -126,10 +126,11 @@ void LocalMap::shift(int columns, int rows) {
 
 void LocalMap::insert(const LaserScan& scan,
                       const Pose2& sensor_W,
-                      const std::vector<Vec2>& points_W) {
+                      const std::vector<Vec2>& points_W,
+                      const Tracker& tracker) {
   ++scans_;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] == Beam::Ok) hit(points_W[i]);
+    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i)) hit(points_W[i]);
   }
   look_through(scan, sensor_W);
   if (scans_ % kAgeEvery == 0) age();
@@ -215,6 +216,16 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   }
 }
 
+void LocalMap::erase(const Vec2& centre_W, double radius) {
+  std::size_t kept = 0;
+  for (const std::uint32_t cell : active_) {
+    const bool within = (mean_W(cell) - centre_W).squaredNorm() < radius * radius;
+    if (within && !weaken(cell, kMost)) continue;
+    active_[kept++] = cell;
+  }
+  active_.resize(kept);
+}
+
 void LocalMap::age() {
   const auto now = static_cast<std::uint16_t>(scans_);
   for (std::size_t i = 0; i < active_.size();) {
@@ -286,6 +297,18 @@ double LocalMap::distance(const Vec2& p_W) const {
   const double below = low[0] + u * (low[1] - low[0]);
   const double above = high[0] + u * (high[1] - high[0]);
   return (below + v * (above - below)) * 0.001;
+}
+
+bool LocalMap::sees(const Vec2& from_W, const Vec2& to_W, double room) const {
+  const Vec2 way = to_W - from_W;
+  const double length = way.norm();
+  if (length < 1e-6) return true;
+  for (double s = 0; s < length;) {
+    const double d = distance(from_W + way * (s / length));
+    if (d < room && s > room) return false;
+    s += std::max(kCell, d - room);
+  }
+  return true;
 }
 
 Vec2 LocalMap::gradient(const Vec2& p_W) const {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algo/full_strip/tracker.hpp"
 #include "algo/laser_scan.hpp"
 #include "algo/telemetry.hpp"
 #include "algo/types.hpp"
@@ -32,9 +33,15 @@ class LocalMap {
   /// Moves the window when the robot has left its middle. True when it moved.
   bool follow(const Vec2& position_W);
 
-  /// Enters the hits of `scan` as points of W and clears what it looked through. `sensor_W` is the
-  /// scanner's pose at the middle of its sweep, `points_W` B points (only those of Ok beams count).
-  void insert(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+  /// Enters the hits of `scan` as points of W, but for those on something that moves, and clears
+  /// what it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
+  /// `points_W` B points (only those of Ok beams count).
+  void insert(const LaserScan& scan,
+              const Pose2& sensor_W,
+              const std::vector<Vec2>& points_W,
+              const Tracker& tracker);
+  /// Frees the disc about `centre_W`: what stood there has begun to move.
+  void erase(const Vec2& centre_W, double radius);
 
   /// [m] From `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
   double distance(const Vec2& p_W) const;
@@ -57,6 +64,8 @@ class LocalMap {
     }
   }
 
+  /// Whether the straight line between two points keeps `room` [m] from all that is occupied.
+  bool sees(const Vec2& from_W, const Vec2& to_W, double room) const;
   bool inside(const Vec2& p_W) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.

@@ -1,0 +1,171 @@
+// algo/full_strip/space_time.cpp: levels, bins, the best few.
+#include "algo/full_strip/space_time.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace algo {
+namespace {
+
+constexpr std::size_t kBeam = 60;  // states kept a level
+constexpr std::array<double, 11> kLevels{0.2, 0.3, 0.3, 0.4, 0.4, 0.4, 0.4, 0.5, 0.5, 0.5, 0.5};
+constexpr double kSubstep = 0.1;                               // [s]
+constexpr std::array<double, 5> kSpeeds{1, 0.5, 0, -0.5, -1};  // of the top speed
+constexpr std::array<double, 5> kTurns{0, 0.4, -0.4, 1, -1};   // of the top turn rate
+constexpr std::size_t kCommands = kSpeeds.size() * kTurns.size();
+constexpr double kMargin = 0.08;  // [m] from what moves, now
+constexpr double kMarginPerSecond = 0.04;
+constexpr double kStaticMargin = 0.03;  // [m] from what stands
+constexpr double kTimePerMetre = 0.6;   // [s/m] to the goal
+constexpr double kRiskReach = 0.6;      // [m] room beyond the margin that is worth something
+constexpr double kRisk = 0.8;           // [s/s] at no room at all
+constexpr double kRiskFades = 2.5;      // [s] prediction time after which it counts 1/e
+constexpr double kReverse = 0.15;       // [s/s] for driving into where the scanner does not look
+constexpr double kReach = 6.0;          // [m] tracks farther than this from the motion do not count
+constexpr std::size_t kBins = 1 << 16;
+
+Twist2 command(std::size_t index, const MotionLimits& limits) {
+  return {kSpeeds[index / kTurns.size()] * limits.max_v,
+          kTurns[index % kTurns.size()] * limits.max_omega};
+}
+
+/// [m] From `p` (in R) to the hull.
+double to_hull(const RobotSpec& spec, const Vec2& p) {
+  if (spec.half_length <= 0) return p.norm() - spec.radius;
+  const double dx = std::max(0.0, std::abs(p.x()) - spec.half_length);
+  const double dy = std::max(0.0, std::abs(p.y()) - spec.half_width);
+  return std::sqrt(dx * dx + dy * dy);
+}
+
+}  // namespace
+
+SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
+  states_.reserve(kBeam * kCommands);
+  next_.reserve(kBeam * kCommands);
+  order_.reserve(kBeam * kCommands);
+  near_tracks_.reserve(64);
+}
+
+bool SpaceTimeSearch::needed(const SpaceTimeInput& in) {
+  const Vec2 here = in.state.pose_W.position();
+  for (const Track& track : *in.tracks) {
+    // Closest approach of the two within the horizon, the robot going anywhere at its top speed.
+    const double horizon = 4.0;
+    const double far = (track.position_W - here).norm();
+    const double closing = in.limits.max_v + track.velocity_W.norm();
+    if (far - track.radius - in.spec->radius < closing * horizon) return true;
+  }
+  return false;
+}
+
+/// [m] Room at `pose_W`, `time` [s] after the start, beyond the margin to what moves.
+double SpaceTimeSearch::room(const SpaceTimeInput& in, double time, const Pose2& pose_W) const {
+  const Vec2 ahead = direction(pose_W.heading);
+  double least = kRiskReach;
+  for (const Track& track : near_tracks_) {
+    const Vec2 d = track.position_W + track.velocity_W * (in.lead + time) - pose_W.position();
+    const double most = least + track.radius + in.spec->radius + 1;
+    if (d.squaredNorm() > most * most) continue;
+    const Vec2 p{ahead.dot(d), ahead.x() * d.y() - ahead.y() * d.x()};
+    const double margin = kMargin + kMarginPerSecond * time;
+    least = std::min(least, to_hull(*in.spec, p) - track.radius - margin);
+  }
+  return least;
+}
+
+/// Drives `s` on for a level. False when something is hit.
+bool SpaceTimeSearch::step(
+    const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const {
+  const auto substeps = static_cast<int>(std::lround(length / kSubstep));
+  for (int k = 1; k <= substeps; ++k) {
+    s.motion = advanced(s.motion, command, in.limits, kSubstep);
+    const double now = time + k * kSubstep;
+    const double room_now = room(in, now, s.motion.pose_W);
+    if (room_now < 0) return false;
+    if (in.map->distance(s.motion.pose_W.position()) < in.spec->radius + kStaticMargin &&
+        in.hull->clearance(*in.map, s.motion.pose_W) < kStaticMargin) {
+      return false;
+    }
+    const double lacking = 1 - room_now / kRiskReach;
+    s.risk += kSubstep * kRisk * lacking * lacking * std::exp(-now / kRiskFades);
+    if (s.motion.twist.v < -0.05) s.risk += kSubstep * kReverse;
+  }
+  return true;
+}
+
+/// The cheapest state of each bin of place, heading and speed; of these the best kBeam.
+void SpaceTimeSearch::keep_best() {
+  order_.resize(next_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
+  std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+    return next_[a].cost != next_[b].cost ? next_[a].cost < next_[b].cost : a < b;
+  });
+  ++round_;
+  states_.clear();
+  for (const std::uint32_t i : order_) {
+    const MotionState& m = next_[i].motion;
+    const auto x =
+        static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(m.pose_W.x / 0.25)));
+    const auto y =
+        static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(m.pose_W.y / 0.25)));
+    const auto h =
+        static_cast<std::uint32_t>(std::lround(m.pose_W.heading / (std::numbers::pi / 8)) & 15);
+    const auto v = static_cast<std::uint32_t>(std::lround(m.twist.v / 0.5) & 15);
+    const std::uint32_t key =
+        (x * 73856093U) ^ (y * 19349663U) ^ (h * 83492791U) ^ (v * 2654435761U);
+    const std::uint32_t bin = key % kBins;
+    if (bin_round_[bin] == round_) continue;
+    bin_round_[bin] = round_;
+    states_.push_back(next_[i]);
+    if (states_.size() == kBeam) break;
+  }
+}
+
+Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
+  near_tracks_.clear();
+  const Vec2 here = in.state.pose_W.position();
+  for (const Track& track : *in.tracks) {
+    const double reach = kReach + 4 * track.velocity_W.norm();
+    if ((track.position_W - here).norm() < reach) near_tracks_.push_back(track);
+  }
+  states_.assign(1, State{in.state, 0, 0, 0});
+  Twist2 best{};
+  std::array<bool, kCommands> alive{};
+  double time = 0;
+  clear_ = true;
+  for (std::size_t level = 0; level < kLevels.size(); ++level) {
+    next_.clear();
+    for (const State& from : states_) {
+      for (std::size_t c = 0; c < kCommands; ++c) {
+        State s = from;
+        if (level == 0) s.first = static_cast<std::uint32_t>(c);
+        if (!step(in, time, kLevels[level], command(c, in.limits), s)) continue;
+        if (level == 0) alive[c] = true;
+        const double left = (s.motion.pose_W.position() - in.carrot_W).norm() + in.beyond;
+        // What points away from the way to go has a turn before it.
+        const Vec2 to = in.carrot_W - s.motion.pose_W.position();
+        const double error =
+            std::abs(wrap_angle(std::atan2(to.y(), to.x()) - s.motion.pose_W.heading));
+        s.cost = s.risk + kTimePerMetre * left + 0.15 * error / in.limits.max_omega;
+        next_.push_back(s);
+      }
+    }
+    if (next_.empty()) {
+      clear_ = false;
+      break;
+    }
+    keep_best();
+    best = command(states_.front().first, in.limits);
+    time += kLevels[level];
+  }
+  for (std::size_t c = 0; c < kCommands; ++c) {
+    const Twist2 twist = command(c, in.limits);
+    out.candidates.push_back({twist, kLevels[0], 0, alive[c], twist == best});
+  }
+  return best;
+}
+
+}  // namespace algo

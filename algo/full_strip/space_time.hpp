@@ -1,0 +1,63 @@
+// algo/full_strip/space_time.hpp: a beam search over motions in space and time, among things that
+// move: driving on, waiting, giving way and stepping back are all just motions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "algo/full_strip/motion.hpp"
+#include "algo/recycled.hpp"
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+struct SpaceTimeInput {
+  const LocalMap* map = nullptr;
+  const HullCheck* hull = nullptr;
+  const RobotSpec* spec = nullptr;
+  const Recycled<Track>* tracks = nullptr;  // at the run-clock time of `state` minus `lead`
+  double lead = 0;                          // [s] from the tracks' time to that of `state`
+  MotionState state{};
+  MotionLimits limits{};
+  Vec2 carrot_W{0, 0};  // where the straight way to go ends,
+  double beyond = 0;    // [m] and how far the goal is from there
+};
+
+/// Commands are held for a level of the search; each level keeps the best few states. The first
+/// command of the cheapest motion that stays clear to the end is the answer.
+class SpaceTimeSearch {
+ public:
+  SpaceTimeSearch();
+
+  /// Whether a track may come near the robot within the search's horizon.
+  static bool needed(const SpaceTimeInput& in);
+  /// The command; when no motion stays clear to the end, the one that does so longest.
+  Twist2 search(const SpaceTimeInput& in, ControlOutput& out);
+  /// Whether the last answer stays clear to the end.
+  bool clear() const { return clear_; }
+
+ private:
+  struct State {
+    MotionState motion{};
+    double risk = 0;
+    double cost = 0;
+    std::uint32_t first = 0;  // index of the first command
+  };
+  bool step(
+      const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const;
+  double room(const SpaceTimeInput& in, double time, const Pose2& pose_W) const;
+  void keep_best();
+
+  std::vector<State> states_, next_;
+  std::vector<std::uint32_t> bins_, bin_round_;
+  std::vector<std::uint32_t> order_;
+  std::uint32_t round_ = 0;
+  std::size_t near_ = 0;
+  std::vector<Track> near_tracks_;
+  bool clear_ = false;
+};
+
+}  // namespace algo

@@ -1,0 +1,263 @@
+// algo/full_strip/tracker.cpp: clusters, circles, filters.
+#include "algo/full_strip/tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Dense>
+
+namespace algo {
+namespace {
+
+constexpr std::size_t kMostFilters = 64;
+constexpr double kGap = 0.20;          // [m] between neighbours of one cluster, at range 0,
+constexpr double kGapPerMetre = 0.03;  // and more for every metre of range
+constexpr std::size_t kFewest = 4;     // beams of a cluster
+constexpr double kLongest = 1.6;       // [m] of a cluster's chord
+constexpr double kThinnest = 0.06, kThickest = 0.8;  // [m] radii
+constexpr double kRound = 0.035;                     // [m] residual of what passes for a circle
+constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] before anything is known
+constexpr double kTrackSpread = 0.05;                          // [m] of a radius that is known
+constexpr double kNoise = 0.02;                                // [m] of a hit
+constexpr double kGate = 0.45;         // [m] a track may be off its prediction
+constexpr double kCentreNoise = 0.04;  // [m] of a fitted centre
+constexpr double kAcceleration = 0.9;  // [m/s2] that a constant velocity does not explain
+constexpr double kSurprise = 9;        // normalised innovation squared that opens the velocity
+constexpr double kFirstSpeed = 1.5;    // [m/s] standard deviation of a new track
+constexpr double kFound = 0.25;        // [s] a track is watched before it may count as moving
+constexpr double kMoves = 0.25;        // [m/s]
+constexpr double kGone = 0.12;         // [m] from where it was first seen
+constexpr double kStands = 0.12;       // [m/s] below it, for kStandsFor, it stands
+constexpr double kStandsFor = 1.0;     // [s]
+constexpr double kCoast = 3.0;         // [s] a moving track is believed unseen
+constexpr double kForget = 0.4;        // [s] any other
+constexpr int kEmpty = 3;              // scans that look through a track end it
+
+}  // namespace
+
+Tracker::Tracker() {
+  filters_.reserve(kMostFilters);
+  clusters_.reserve(256);
+}
+
+void Tracker::reset() {
+  filters_.clear();
+  moving_.clear();
+  just_found_.clear();
+  std::ranges::fill(moving_beam_, std::uint8_t{0});
+  now_ = 0;
+}
+
+/// Neighbouring hits that lie close together.
+void Tracker::cluster(const LaserScan& scan,
+                      const Pose2& sensor_W,
+                      const std::vector<Vec2>& points_W) {
+  clusters_.clear();
+  Cluster open;
+  bool is_open = false;
+  std::size_t last_ok = 0;
+  const auto end = [&] {
+    if (is_open) close(open, sensor_W, points_W);
+    is_open = false;
+  };
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok) continue;
+    if (is_open) {
+      const double gap = (points_W[i] - points_W[last_ok]).norm();
+      if (i - last_ok > 3 || gap > kGap + kGapPerMetre * scan.ranges[i]) end();
+    }
+    if (!is_open) {
+      open = {};
+      open.first = i;
+      is_open = true;
+    }
+    open.last = i;
+    last_ok = i;
+  }
+  end();
+}
+
+void Tracker::close(Cluster& c, const Pose2& sensor_W, const std::vector<Vec2>& points_W) {
+  if (c.last - c.first + 1 < kFewest || clusters_.size() == clusters_.capacity()) return;
+  c.chord = (points_W[c.last] - points_W[c.first]).norm();
+  if (c.chord > kLongest) return;
+  fit(c, sensor_W, points_W, kTypicalRadius, kRadiusSpread);
+  clusters_.push_back(c);
+}
+
+/// Gauss-Newton on the centre and the radius, which a prior `radius` +- `spread` holds.
+void Tracker::fit(Cluster& c,
+                  const Pose2& sensor_W,
+                  const std::vector<Vec2>& points_W,
+                  double radius,
+                  double spread) const {
+  Vec2 mean{0, 0};
+  const std::size_t stride = std::max<std::size_t>(1, (c.last - c.first) / 24);
+  double count = 0;
+  for (std::size_t i = c.first; i <= c.last; i += stride) {
+    mean += points_W[i];
+    count += 1;
+  }
+  mean /= count;
+  const Vec2 line = mean - sensor_W.position();
+  c.radius = std::clamp(std::min(radius, 0.6 * c.chord + 0.03), kThinnest, kThickest);
+  if (spread < kRadiusSpread) c.radius = radius;
+  const double prior = c.radius;
+  c.centre_W = mean + line.normalized() * (0.7 * c.radius);
+  for (int round = 0; round < 6; ++round) {
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    const double weight = kNoise * kNoise / (spread * spread);
+    normal(2, 2) += weight;
+    right(2) += weight * (prior - c.radius);
+    double sum = 0;
+    for (std::size_t i = c.first; i <= c.last; i += stride) {
+      const Vec2 d = points_W[i] - c.centre_W;
+      const double far = std::max(1e-6, d.norm());
+      const Eigen::Vector3d slope(-d.x() / far, -d.y() / far, -1);  // of far - radius
+      const double off = far - c.radius;
+      normal += slope * slope.transpose();
+      right -= slope * off;
+      sum += off * off;
+    }
+    c.residual = std::sqrt(sum / count);
+    normal.diagonal().array() += 1e-6;
+    const Eigen::Vector3d step = normal.ldlt().solve(right);
+    if (!step.allFinite()) break;
+    const double most = 0.3;
+    const double size = step.norm();
+    const Eigen::Vector3d bounded = size > most ? Eigen::Vector3d(step * (most / size)) : step;
+    c.centre_W += bounded.head<2>();
+    c.radius = std::clamp(c.radius + bounded(2), kThinnest, kThickest);
+  }
+  // Its centre lies behind its surface, or it is a hollow.
+  const bool bulges = (c.centre_W - sensor_W.position()).norm() > line.norm();
+  c.round = bulges && c.residual < kRound && c.radius > kThinnest && c.radius < kThickest;
+}
+
+void Tracker::predict(double stamp) {
+  const double dt = stamp - now_;
+  now_ = stamp;
+  if (!(dt > 0)) return;
+  const double q = kAcceleration * kAcceleration;
+  for (Filter& f : filters_) {
+    f.position_W += f.velocity_W * dt;
+    f.pp += 2 * dt * f.pv + dt * dt * f.vv + q * dt * dt * dt / 3;
+    f.pv += dt * f.vv + q * dt * dt / 2;
+    f.vv += q * dt;
+  }
+  publish(stamp);
+}
+
+void Tracker::correct(Filter& f, const Cluster& c, double stamp) {
+  const Vec2 off = c.centre_W - f.position_W;
+  const double r = kCentreNoise * kCentreNoise;
+  if (off.squaredNorm() / (2 * (f.pp + r)) > kSurprise) f.vv += 1;
+  const double gain_p = f.pp / (f.pp + r);
+  const double gain_v = f.pv / (f.pp + r);
+  f.position_W += gain_p * off;
+  f.velocity_W += gain_v * off;
+  f.vv -= gain_v * f.pv;
+  f.pv -= gain_p * f.pv;
+  f.pp -= gain_p * f.pp;
+  f.radius += (c.radius - f.radius) / std::min(10, f.hits + 1);
+  ++f.hits;
+  f.seen = stamp;
+  f.empty = 0;
+}
+
+/// Each track takes the nearest cluster within its gate, the surest track first.
+void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp) {
+  std::ranges::sort(filters_, std::greater{}, &Filter::hits);
+  for (Filter& f : filters_) {
+    Cluster* best = nullptr;
+    double nearest = kGate + std::min(0.5, f.velocity_W.norm() * 0.15);
+    for (Cluster& c : clusters_) {
+      if (c.taken) continue;
+      const double far = (c.centre_W - f.position_W).norm();
+      if (far >= nearest) continue;
+      nearest = far;
+      best = &c;
+    }
+    if (best == nullptr) continue;
+    fit(*best, sensor_W, points_W, f.radius, kTrackSpread);
+    if (!best->round && best->residual > 2 * kRound) continue;
+    best->taken = true;
+    correct(f, *best, stamp);
+    judge(f, stamp);
+    if (!f.moving) continue;
+    for (std::size_t i = best->first; i <= best->last; ++i) moving_beam_[i] = 1;
+  }
+  for (const Cluster& c : clusters_) {
+    if (c.taken || !c.round || filters_.size() == kMostFilters) continue;
+    Filter f;
+    f.position_W = c.centre_W;
+    f.born_at_W = c.centre_W;
+    f.radius = c.radius;
+    f.pp = kCentreNoise * kCentreNoise;
+    f.vv = kFirstSpeed * kFirstSpeed;
+    f.born = stamp;
+    f.seen = stamp;
+    f.hits = 1;
+    filters_.push_back(f);
+  }
+}
+
+void Tracker::judge(Filter& f, double stamp) {
+  const double speed = f.velocity_W.norm();
+  if (speed > kStands) f.slow_since = stamp;
+  if (f.moving) {
+    f.moving = stamp - f.slow_since < kStandsFor;
+    return;
+  }
+  f.moving = stamp - f.born > kFound && speed > kMoves && speed > 3 * std::sqrt(f.vv) &&
+             (f.position_W - f.born_at_W).norm() > kGone;
+  if (f.moving) {
+    just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0});
+  }
+}
+
+/// Whether the beams at the track's place go well beyond it.
+bool Tracker::looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const {
+  const Vec2 d = f.position_W - sensor_W.position();
+  const Vec2 ahead = direction(sensor_W.heading);
+  const double far = d.norm();
+  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
+  const double beam = (bearing - scan.angle_min) / scan.angle_increment;
+  if (!(beam >= 2 && beam < static_cast<double>(scan.size()) - 3)) return false;
+  if (far + f.radius > scan.range_max) return false;
+  const auto b = static_cast<std::size_t>(beam);
+  for (std::size_t i = b - 2; i <= b + 2; ++i) {
+    if (scan.status[i] == Beam::Invalid || scan.ranges[i] < far + f.radius + 0.2) return false;
+  }
+  return true;
+}
+
+void Tracker::update(const LaserScan& scan,
+                     const Pose2& sensor_W,
+                     const std::vector<Vec2>& points_W,
+                     double stamp) {
+  predict(stamp);
+  just_found_.clear();
+  moving_beam_.assign(scan.size(), 0);
+  cluster(scan, sensor_W, points_W);
+  associate(sensor_W, points_W, stamp);
+  for (Filter& f : filters_) {
+    if (f.seen < stamp && looked_through(f, scan, sensor_W)) ++f.empty;
+  }
+  std::erase_if(filters_, [&](const Filter& f) {
+    return f.empty >= kEmpty || stamp - f.seen > (f.moving ? kCoast : kForget);
+  });
+  publish(stamp);
+}
+
+void Tracker::publish(double stamp) {
+  moving_.clear();
+  for (const Filter& f : filters_) {
+    if (!f.moving) continue;
+    moving_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen});
+  }
+}
+
+}  // namespace algo

@@ -1,0 +1,81 @@
+// algo/full_strip/tracker.hpp: things that move, seen in the scans: clusters fitted by circles and
+// followed by constant-velocity Kalman filters.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/recycled.hpp"
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A cluster counts as moving only once it has gone somewhere at a speed that its uncertainty does
+/// not explain; until then, and for good if it stands, it belongs to the static map.
+class Tracker {
+ public:
+  Tracker();
+  void reset();
+
+  /// Follows the clusters of a new scan. `points_W` B points (only those of Ok beams count),
+  /// `sensor_W` the scanner at the middle of its sweep.
+  void update(const LaserScan& scan,
+              const Pose2& sensor_W,
+              const std::vector<Vec2>& points_W,
+              double stamp);
+  /// Moves every track on to `stamp` [s, run clock] without a scan.
+  void predict(double stamp);
+
+  /// Whether beam `i` of the last scan hit something that moves.
+  bool on_moving(std::size_t i) const { return i < moving_beam_.size() && moving_beam_[i] != 0; }
+  /// What moves, at the time of the last update() or predict().
+  const Recycled<Track>& moving() const { return moving_; }
+  /// Circles that have begun to count as moving in the last update(): the map holds traces of them.
+  const Recycled<Track>& just_found() const { return just_found_; }
+
+ private:
+  struct Cluster {
+    std::size_t first = 0, last = 0;  // beams
+    Vec2 centre_W{0, 0};
+    double radius = 0;    // [m]
+    double residual = 0;  // [m] root mean square off the circle
+    double chord = 0;     // [m] between its ends
+    bool round = false;
+    bool taken = false;
+  };
+  struct Filter {
+    Vec2 position_W{0, 0};
+    Vec2 velocity_W{0, 0};
+    double pp = 0, pv = 0, vv = 0;  // covariance, the same along both axes
+    double radius = 0;
+    Vec2 born_at_W{0, 0};
+    double born = 0, seen = 0;  // [s]
+    int hits = 0;
+    int empty = 0;  // scans that looked through it
+    bool moving = false;
+    double slow_since = 0;  // [s]
+  };
+  void cluster(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+  void close(Cluster& c, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+  void fit(Cluster& c,
+           const Pose2& sensor_W,
+           const std::vector<Vec2>& points_W,
+           double radius,
+           double spread) const;
+  void correct(Filter& f, const Cluster& c, double stamp);
+  void associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp);
+  void judge(Filter& f, double stamp);
+  bool looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const;
+  void publish(double stamp);
+
+  std::vector<Filter> filters_{};
+  std::vector<Cluster> clusters_{};
+  std::vector<std::uint8_t> moving_beam_{};
+  Recycled<Track> moving_{};
+  Recycled<Track> just_found_{};
+  double now_ = 0;  // [s] of the filters' states
+};
+
+}  // namespace algo
