@@ -122,18 +122,23 @@ void ScanFilter::filter_believed(FilterKind kind, int half_width, LaserScan& out
       lulu(values_, believed_, half_width, scratch_, filtered, out_believed_);
       break;
   }
+  // Nearly all are believed: first those as set_ok() and set_free() do, without a branch.
+  const double range_max = out.range_max;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out_believed_[i] != 0) {
-      if (filtered[i] < out.range_max) {
-        out.set_ok(i, filtered[i]);
-      } else {
-        out.set_free(i);
-      }
-    } else if (out.status[i] != Beam::Invalid) {
-      const double kept = out.ranges[i];
-      out.set_invalid(i, BeamCode::Unknown);
-      if (std::isfinite(kept)) out.ranges[i] = kept;
-    }
+    const bool believed = out_believed_[i] != 0;
+    const bool ok = filtered[i] < range_max;
+    const double range = ok ? filtered[i] : range_max;
+    const Beam state = ok ? Beam::Ok : Beam::Free;
+    const BeamCode code = ok ? BeamCode::None : BeamCode::BeyondRange;
+    out.ranges[i] = believed ? range : out.ranges[i];
+    out.status[i] = believed ? state : out.status[i];
+    out.codes[i] = believed ? code : out.codes[i];
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out_believed_[i] != 0 || out.status[i] == Beam::Invalid) continue;
+    const double kept = out.ranges[i];
+    out.set_invalid(i, BeamCode::Unknown);
+    if (std::isfinite(kept)) out.ranges[i] = kept;
   }
 }
 
