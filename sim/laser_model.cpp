@@ -174,17 +174,18 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
       ux_.data(), uy_.data(), turns_.data(), turns_.size(), rays_.ux.data(), rays_.uy.data());
 }
 
-/// Where the scanner is when the beams from at_[first] on are fired, those of one mirror turn
-/// within one physics step. @return the first beam after them
+/// Where the scanner is when the beams from at_[first] on are fired, as many as lie within one
+/// physics step; at_ ascends. @return the first beam after them
 std::size_t LaserModel::follow_motion(std::size_t first) {
   const auto k = static_cast<std::size_t>(at_[first]);
   const auto number = static_cast<double>(k);
   const algo::Pose2& a = motion_[k];
   const algo::Pose2& b = motion_[k + 1];
-  std::size_t end = first + 1;
-  while (end < at_.size() && at_[end] > at_[end - 1] && at_[end] < number + 1) ++end;
+  const double* const at = at_.data();
+  const double* const next = std::lower_bound(at + first + 1, at + at_.size(), number + 1);
+  const auto end = static_cast<std::size_t>(next - at);
   follow({number, a.x, a.y, a.heading, b.x - a.x, b.y - a.y, b.heading - a.heading},
-         at_.data(),
+         at,
          {first, end},
          way_.x.data(),
          way_.y.data(),
