@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -65,18 +66,20 @@ bool ScanFilter::believe(const LaserScan& in) {
   believed_.resize(n);
   const double range_max = in.range_max;
   const unsigned sound = std::isfinite(range_max) ? 1 : 0;
-  unsigned all = 1;
+  // Restricted: bytes may be part of anything, so that each store would make all be read again.
+  const double* const ranges = in.ranges.data();
+  const Beam* const status = in.status.data();
+  double* const __restrict values = values_.data();
+  std::uint8_t* const __restrict believed = believed_.data();
   for (std::size_t i = 0; i < n; ++i) {
-    const double value = in.status[i] == Beam::Ok ? in.ranges[i] : range_max;
+    const double value = status[i] == Beam::Ok ? ranges[i] : range_max;
     // A comparison that a NaN fails as well; an infinite range is no reading either.
     const bool finite = std::abs(value) <= std::numeric_limits<double>::max();
-    const unsigned believed = sound & static_cast<unsigned>(finite) &
-                              static_cast<unsigned>(in.status[i] != Beam::Invalid);
-    values_[i] = finite ? value : 0.0;
-    believed_[i] = static_cast<std::uint8_t>(believed);
-    all &= believed;
+    values[i] = finite ? value : 0.0;
+    believed[i] = static_cast<std::uint8_t>(sound & static_cast<unsigned>(finite) &
+                                            static_cast<unsigned>(status[i] != Beam::Invalid));
   }
-  return all != 0;
+  return n == 0 || std::memchr(believed, 0, n) == nullptr;
 }
 
 /// The usual case: every beam is believed.
@@ -122,18 +125,23 @@ void ScanFilter::filter_believed(FilterKind kind, int half_width, LaserScan& out
       lulu(values_, believed_, half_width, scratch_, filtered, out_believed_);
       break;
   }
+  // Nearly all are believed: first those as set_ok() and set_free() do, without a branch.
+  const double range_max = out.range_max;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out_believed_[i] != 0) {
-      if (filtered[i] < out.range_max) {
-        out.set_ok(i, filtered[i]);
-      } else {
-        out.set_free(i);
-      }
-    } else if (out.status[i] != Beam::Invalid) {
-      const double kept = out.ranges[i];
-      out.set_invalid(i, BeamCode::Unknown);
-      if (std::isfinite(kept)) out.ranges[i] = kept;
-    }
+    const bool believed = out_believed_[i] != 0;
+    const bool ok = filtered[i] < range_max;
+    const double range = ok ? filtered[i] : range_max;
+    const Beam state = ok ? Beam::Ok : Beam::Free;
+    const BeamCode code = ok ? BeamCode::None : BeamCode::BeyondRange;
+    out.ranges[i] = believed ? range : out.ranges[i];
+    out.status[i] = believed ? state : out.status[i];
+    out.codes[i] = believed ? code : out.codes[i];
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (out_believed_[i] != 0 || out.status[i] == Beam::Invalid) continue;
+    const double kept = out.ranges[i];
+    out.set_invalid(i, BeamCode::Unknown);
+    if (std::isfinite(kept)) out.ranges[i] = kept;
   }
 }
 

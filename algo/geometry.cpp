@@ -2,6 +2,7 @@
 #include "algo/geometry.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -41,19 +42,55 @@ BeamSpan left_beams(const LaserScan& scan) {
   return beams_between(scan, 0.0, kUsedHalfField + 2 * kOnLimit);  // the limit itself is used
 }
 
+namespace {
+
+/// Least square of the believed ranges from `begin` to `end`; infinite where there is none. Eight
+/// at a time, so that it vectorises; a NaN is never the least.
+double least_square(const LaserScan& scan, BeamSpan beams) {
+  constexpr std::size_t kLanes = 8;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::array<double, kLanes> least{};
+  least.fill(kNone);
+  const double* const ranges = scan.ranges.data();
+  const Beam* const status = scan.status.data();
+  const auto square = [=](std::size_t i) {
+    return status[i] == Beam::Ok ? ranges[i] * ranges[i] : kNone;
+  };
+  std::size_t i = beams.begin;
+  for (; i + kLanes <= beams.end; i += kLanes) {
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const double here = square(i + k);
+      least[k] = here < least[k] ? here : least[k];
+    }
+  }
+  for (; i < beams.end; ++i) least[0] = square(i) < least[0] ? square(i) : least[0];
+  return *std::min_element(least.begin(), least.end());
+}
+
+/// The scanner at the robot's centre: the ranges themselves are compared, so that equal ones tie.
+std::optional<NearestBeam> nearest_centred(const LaserScan& scan, BeamSpan beams) {
+  const double least = least_square(scan, beams);
+  if (std::isinf(least)) return std::nullopt;
+  std::size_t found = beams.begin;
+  while (scan.status[found] != Beam::Ok || scan.ranges[found] * scan.ranges[found] != least) {
+    ++found;
+  }
+  return NearestBeam{found, std::sqrt(least)};
+}
+
+}  // namespace
+
 std::optional<NearestBeam> nearest_beam(const LaserScan& scan, BeamSpan beams) {
   const Vec2 l = scan.mount_R.position();
-  const bool offset = l.x() != 0 || l.y() != 0;
+  if (l.x() == 0 && l.y() == 0) return nearest_centred(scan, beams);
   double least = std::numeric_limits<double>::infinity();
   std::size_t found = beams.end;
   for (std::size_t i = beams.begin; i < beams.end; ++i) {
     if (scan.status[i] != Beam::Ok) continue;
     const double r = scan.ranges[i];
-    // |l + r e|^2; without an offset the ranges themselves are compared, so that equal ranges tie.
+    // |l + r e|^2
     double square = r * r;
-    if (offset) {
-      square += 2 * r * l.dot(direction(scan.mount_R.heading + scan.angle(i))) + l.squaredNorm();
-    }
+    square += 2 * r * l.dot(direction(scan.mount_R.heading + scan.angle(i))) + l.squaredNorm();
     if (square < least) {
       least = square;
       found = i;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "algo/types.hpp"
@@ -91,6 +92,9 @@ inline std::uint16_t beam_to_wire(const LaserScan& scan, std::size_t i) {
   if (!(mm > 0)) return 0;
   return mm >= kWireMaxRange ? kWireMaxRange : static_cast<std::uint16_t>(mm);
 }
+
+/// All beams of `scan` as their wire values, `out` having room for as many; the same as one by one.
+void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out);
 
 inline void beam_from_wire(LaserScan& scan, std::size_t i, std::uint16_t wire) {
   if (wire == kWireFree) {

@@ -49,7 +49,8 @@ void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
   const double distance =
       t.ground_truth ? t.ground_truth->obstacle_distance : t.clearance + radius_;
   const double d_safe = parameters[Parameter::SafetyDistance];
-  metrics_.min_clearance = std::min(metrics_.min_clearance, distance - radius_);
+  const double clearance = t.ground_truth ? t.ground_truth->clearance : t.clearance;
+  metrics_.min_clearance = std::min(metrics_.min_clearance, clearance);
   metrics_.intrusion = std::max(metrics_.intrusion, d_safe - distance);
   // A tick is the time since the one before: at the start none has gone by.
   if (distance < d_safe && metrics_.ticks > 1) metrics_.infringed_time += period_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 
@@ -19,6 +20,20 @@ struct Overloaded : Ts... {
 };
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
+
+/// [m] To the nearest return of all beams: what stands abeam, outside of both sides, is close too,
+/// though it exerts no force.
+double nearest_distance(const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto take = [&least](const auto& found) {
+    if (found) least = std::min(least, found->distance);
+  };
+  take(scene.right);
+  take(scene.left);
+  take(nearest_beam(scene.scan, {0, right_beams(scene.scan).begin}));
+  take(nearest_beam(scene.scan, {left_beams(scene.scan).end, scene.scan.size()}));
+  return std::isfinite(least) ? least : scene.scan.range_max;
+}
 
 bool within_unit(double axis) {
   return axis >= -1.0 && axis <= 1.0;
@@ -112,11 +127,7 @@ void Pipeline::sense(Telemetry& t) {
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
 
-  if (scene_.fresh) {
-    // All beams: what stands abeam is close too, though it exerts no force.
-    const auto nearest = nearest_beam(scene_.scan, {0, scene_.scan.size()});
-    clearance_ = (nearest ? nearest->distance : scene_.scan.range_max) - spec_.radius;
-  }
+  if (scene_.fresh) clearance_ = nearest_distance(scene_) - spec_.radius;
   t.clearance = clearance_;
 }
 

@@ -1,6 +1,7 @@
 // algo/robot.hpp: the one port to a robot: a simulated world, a recorded log, or hardware.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -81,6 +82,8 @@ class Robot {
 
   /// May be called from any thread.
   virtual void set_pace(const Pace& /*pace*/) {}
+  /// Periods whose time went by unused because step() came too late for them.
+  virtual std::uint64_t missed_periods() const { return 0; }
 };
 
 }  // namespace algo

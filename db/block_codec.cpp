@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
+#include "db/turned_scan.hpp"
 
 namespace db {
 
@@ -24,21 +26,18 @@ std::span<const std::byte> part(std::span<const std::byte> frame, const Window& 
   return frame.subspan(window.offset, window.count * width_of(window));
 }
 
-/// Bits left by predicting `window` so: the size it will have, near enough to choose by.
+std::uint16_t folded_difference(std::span<const std::byte> window,
+                                std::size_t i,
+                                std::uint16_t expected) {
+  return fold16(static_cast<std::uint16_t>(load<std::uint16_t>(window, i) - expected));
+}
+
+/// Bits left by predicting floats so: the size they will have, near enough to choose by.
 std::size_t cost(std::span<const std::byte> window,
                  std::span<const std::byte> reference,
                  const Window& shape,
                  Choice choice) {
   std::size_t bits = 0;
-  if (shape.kind == Window::Kind::Samples) {
-    for (std::size_t i = 0; i < shape.count; ++i) {
-      const int difference =
-          load<std::uint16_t>(window, i) - expected_sample(window, reference, i, choice);
-      bits +=
-          static_cast<std::size_t>(std::bit_width(fold16(static_cast<std::uint16_t>(difference))));
-    }
-    return bits;
-  }
   for (std::size_t i = 0; i < shape.count; ++i) {
     const std::uint32_t difference =
         load<std::uint32_t>(window, i) - expected_float(window, reference, i, shape.stride, choice);
@@ -47,21 +46,46 @@ std::size_t cost(std::span<const std::byte> window,
   return bits;
 }
 
-void write_window(std::span<const std::byte> window,
+/// Samples from their left neighbours or from the reference, turned as fits best.
+void write_samples(std::span<const std::byte> window,
+                   std::span<const std::byte> reference,
+                   std::size_t count,
+                   TurnedScan& turned,
+                   Streams& streams) {
+  std::optional<Turn> turn{};
+  std::span<const std::uint16_t> expected{};
+  if (!reference.empty()) {
+    turned.set_reference(reference);
+    turn = turned.find(window);
+  }
+  const Choice choice = turn ? Choice::Reference : Choice::Within;
+  streams[kLayout].push_back(static_cast<std::uint8_t>(choice));
+  if (turn) {
+    append_bytes(streams[kLayout], std::as_bytes(std::span(*turn)));
+    expected = turned.expect(*turn);
+  }
+  auto& low = streams[kLow];
+  auto& high = streams[kHigh];
+  const std::size_t start = low.size();
+  low.resize(start + count);
+  high.resize(start + count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t folded =
+        folded_difference(window, i, turn ? expected[i] : left_of(window, i));
+    low[start + i] = static_cast<std::uint8_t>(folded & 0xFFU);
+    high[start + i] = static_cast<std::uint8_t>(folded >> 8U);
+  }
+}
+
+void write_floats(std::span<const std::byte> window,
                   std::span<const std::byte> reference,
                   const Window& shape,
-                  Choice choice,
                   Streams& streams) {
-  if (shape.kind == Window::Kind::Samples) {
-    for (std::size_t i = 0; i < shape.count; ++i) {
-      const int difference =
-          load<std::uint16_t>(window, i) - expected_sample(window, reference, i, choice);
-      const std::uint16_t folded = fold16(static_cast<std::uint16_t>(difference));
-      streams[kLow].push_back(static_cast<std::uint8_t>(folded & 0xFFU));
-      streams[kHigh].push_back(static_cast<std::uint8_t>(folded >> 8U));
-    }
-    return;
-  }
+  const Choice choice = !reference.empty() && cost(window, reference, shape, Choice::Reference) <
+                                                  cost(window, reference, shape, Choice::Within)
+                            ? Choice::Reference
+                            : Choice::Within;
+  streams[kLayout].push_back(static_cast<std::uint8_t>(choice));
   // Field by field, so that the zeros of an unused field lie together.
   for (std::size_t field = 0; field < shape.stride; ++field) {
     for (std::size_t i = field; i < shape.count; i += shape.stride) {
@@ -77,7 +101,7 @@ void write_window(std::span<const std::byte> window,
 
 }  // namespace
 
-BlockEncoder::BlockEncoder() : compressor_(new Compressor) {}
+BlockEncoder::BlockEncoder() : turned_(new TurnedScan), compressor_(new Compressor) {}
 
 void BlockEncoder::clear() {
   table_.clear();
@@ -148,13 +172,13 @@ void BlockEncoder::encode_frame(std::size_t i) {
     append_bytes(rest_, frame.subspan(done, window.offset - done));
     const auto here = part(frame, window);
     done = window.offset + here.size();
-    const auto there = distance == 0 ? here : part(reference, reference_windows[k]);
-    const Choice choice = distance > 0 && cost(here, there, window, Choice::Reference) <
-                                              cost(here, there, window, Choice::Within)
-                              ? Choice::Reference
-                              : Choice::Within;
-    layout.push_back(static_cast<std::uint8_t>(choice));
-    write_window(here, there, window, choice, streams_);
+    const auto there =
+        distance == 0 ? std::span<const std::byte>{} : part(reference, reference_windows[k]);
+    if (window.kind == Window::Kind::Samples) {
+      write_samples(here, there, window.count, *turned_, streams_);
+    } else {
+      write_floats(here, there, window, streams_);
+    }
   }
   append_bytes(rest_, frame.subspan(done));
 }

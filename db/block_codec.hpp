@@ -67,11 +67,13 @@ constexpr std::size_t kStreams = 8;
 using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
 
 class Cursor;
+class TurnedScan;
 struct Compressor;    // a zstd context and its output buffer
 struct Decompressor;  // the same for unpacking
-struct ZstdDeleter {
+struct Deleter {
   void operator()(Compressor* compressor) const noexcept;
   void operator()(Decompressor* decompressor) const noexcept;
+  void operator()(TurnedScan* turned) const noexcept;
 };
 
 }  // namespace detail
@@ -79,10 +81,10 @@ struct ZstdDeleter {
 /// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
 ///
 /// Every frame is predicted from an earlier frame of the block laid out alike (its reference):
-/// samples from the same sample of the reference or from their left neighbour, whichever leaves
-/// less in that window; floats by the line through the two records before, or from the reference;
-/// all other bytes from the byte at their place. What is left goes through zstd stream by stream,
-/// and is stored as it is where zstd does not pay.
+/// samples from the reference, turned as the robot seems to have, or from their left neighbour,
+/// whichever leaves less in that window; floats by the line through the two records before, or from
+/// the reference; all other bytes from the byte at their place. What is left goes through zstd
+/// stream by stream, and is stored as it is where zstd does not pay.
 class BlockEncoder {
  public:
   BlockEncoder();
@@ -112,7 +114,8 @@ class BlockEncoder {
   std::vector<std::uint8_t> rest_{};       // the frames without their windows, end to end
   std::vector<std::size_t> rest_starts_{};
   std::vector<std::byte> packed_{};
-  std::unique_ptr<detail::Compressor, detail::ZstdDeleter> compressor_;
+  std::unique_ptr<detail::TurnedScan, detail::Deleter> turned_;
+  std::unique_ptr<detail::Compressor, detail::Deleter> compressor_;
 };
 
 /// Unpacks blocks. Not thread-safe.
@@ -140,10 +143,11 @@ class BlockDecoder {
   detail::FrameTable table_{};
   detail::Streams streams_{};
   std::vector<std::size_t> references_{};
-  std::vector<std::uint8_t> choices_{};  // one per window of the table
+  std::vector<std::array<std::uint8_t, 3>> choices_{};  // of each window, with its turn
   std::vector<std::uint8_t> rest_{};
   std::vector<std::size_t> rest_starts_{};
-  std::unique_ptr<detail::Decompressor, detail::ZstdDeleter> decompressor_;
+  std::unique_ptr<detail::TurnedScan, detail::Deleter> turned_;
+  std::unique_ptr<detail::Decompressor, detail::Deleter> decompressor_;
 };
 
 }  // namespace db

@@ -6,6 +6,7 @@
 #include "db/block_codec.hpp"
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
+#include "db/turned_scan.hpp"
 
 namespace db {
 
@@ -26,15 +27,23 @@ struct Position {
 void read_window(std::span<std::byte> window,
                  std::span<const std::byte> reference,
                  const Window& shape,
-                 Choice choice,
+                 const std::array<std::uint8_t, 3>& how,
+                 TurnedScan& turned,
                  const Streams& streams,
                  Position& at) {
+  const auto choice = static_cast<Choice>(how[0]);
   if (shape.kind == Window::Kind::Samples) {
+    std::span<const std::uint16_t> expected{};
+    if (choice == Choice::Reference) {
+      turned.set_reference(reference);
+      expected = turned.expect({how[1], how[2]});
+    }
     for (std::size_t i = 0; i < shape.count; ++i, ++at.sample) {
       const unsigned folded = streams[kLow][at.sample] | (streams[kHigh][at.sample] * 256U);
-      const unsigned value = unfold16(static_cast<std::uint16_t>(folded)) +
-                             expected_sample(window, reference, i, choice);
-      store(window, i, static_cast<std::uint16_t>(value));
+      const unsigned before = choice == Choice::Reference ? expected[i] : left_of(window, i);
+      store(window,
+            i,
+            static_cast<std::uint16_t>(unfold16(static_cast<std::uint16_t>(folded)) + before));
     }
     return;
   }
@@ -52,7 +61,7 @@ void read_window(std::span<std::byte> window,
 
 }  // namespace
 
-BlockDecoder::BlockDecoder() : decompressor_(new Decompressor) {}
+BlockDecoder::BlockDecoder() : turned_(new TurnedScan), decompressor_(new Decompressor) {}
 
 void BlockDecoder::decode(std::span<const std::byte> block) {
   table_.clear();
@@ -118,7 +127,15 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
     if (choice > static_cast<std::uint8_t>(Choice::Reference) || (choice != 0 && distance == 0)) {
       throw CodecError("a window of the block is predicted in an unknown way");
     }
-    choices_.push_back(choice);
+    choices_.push_back({choice, kNotTurned, kNotTurned});
+    if (choice != 0 && used[k].kind == Window::Kind::Samples) {
+      for (std::size_t parity = 1; parity <= 2; ++parity) {
+        choices_.back()[parity] = layout.byte();
+        if (choices_.back()[parity] > kMostTurned) {
+          throw CodecError("a window of the block is turned too far");
+        }
+      }
+    }
     in_windows += bytes_of(used[k]);
   }
   rest_starts_.push_back(rest_starts_.back() + size - in_windows);
@@ -144,7 +161,7 @@ void BlockDecoder::check_sizes() const {
     const auto windows = table_.windows_of(i);
     const auto reference = table_.windows_of(i - references_[i]);
     for (std::size_t k = 0; k < windows.size(); ++k, ++at) {
-      if (choices_[at] == 0) continue;
+      if (choices_[at][0] == 0) continue;
       if (k >= reference.size() || reference[k].kind != windows[k].kind ||
           reference[k].count != windows[k].count || reference[k].stride != windows[k].stride) {
         throw CodecError("a window of the block refers to another kind of window");
@@ -190,12 +207,12 @@ void BlockDecoder::fill_frames() {
     };
     for (std::size_t k = 0; k < windows.size(); ++k, ++choice) {
       copy_rest(windows[k].offset);
-      const auto how = static_cast<Choice>(choices_[choice]);
+      const auto& how = choices_[choice];
       const auto here = frame.subspan(windows[k].offset, bytes_of(windows[k]));
-      const auto there = how == Choice::Reference
+      const auto there = how[0] == static_cast<std::uint8_t>(Choice::Reference)
                              ? reference.subspan(reference_windows[k].offset, here.size())
                              : std::span<const std::byte>{};
-      read_window(here, there, windows[k], how, streams_, at);
+      read_window(here, there, windows[k], how, *turned_, streams_, at);
       done = windows[k].offset + here.size();
     }
     copy_rest(frame.size());

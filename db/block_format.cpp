@@ -7,6 +7,8 @@
 #include <new>
 #include <string>
 
+#include "db/turned_scan.hpp"
+
 namespace db::detail {
 
 namespace {
@@ -61,10 +63,13 @@ std::span<const Window> FrameTable::windows_of(std::size_t i) const {
   return std::span(windows).subspan(entries[i].first_window, entries[i].window_count);
 }
 
-void ZstdDeleter::operator()(Compressor* compressor) const noexcept {
+void Deleter::operator()(TurnedScan* turned) const noexcept {
+  delete turned;
+}
+void Deleter::operator()(Compressor* compressor) const noexcept {
   delete compressor;
 }
-void ZstdDeleter::operator()(Decompressor* decompressor) const noexcept {
+void Deleter::operator()(Decompressor* decompressor) const noexcept {
   delete decompressor;
 }
 

@@ -16,7 +16,7 @@
 
 namespace db::detail {
 
-constexpr std::uint8_t kFormatVersion = 1;
+constexpr std::uint8_t kFormatVersion = 2;
 constexpr std::size_t kHeaderBytes = 20;
 
 struct Header {

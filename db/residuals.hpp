@@ -45,12 +45,8 @@ inline std::uint32_t unfold32(std::uint32_t folded) {
 /// How a window was predicted; the first is used where the frame has no reference.
 enum class Choice : std::uint8_t { Within, Reference };
 
-/// What sample `i` is expected to be, from its left neighbour or from the reference's sample.
-inline std::uint16_t expected_sample(std::span<const std::byte> window,
-                                     std::span<const std::byte> reference,
-                                     std::size_t i,
-                                     Choice choice) {
-  if (choice == Choice::Reference) return load<std::uint16_t>(reference, i);
+/// What sample `i` is expected to be from its left neighbour.
+inline std::uint16_t left_of(std::span<const std::byte> window, std::size_t i) {
   return i == 0 ? std::uint16_t{0} : load<std::uint16_t>(window, i - 1);
 }
 

@@ -186,6 +186,7 @@ RunResult Run::execute(const std::vector<algo::Request>& first) {
   }
   robot_.stop();
   result_.metrics = metrics_.metrics();
+  result_.missed_periods = robot_.missed_periods();
   return result_;
 }
 

@@ -55,7 +55,8 @@ struct RunResult {
   algo::Outcome outcome = algo::Outcome::Running;
   std::string reason{};  // one sentence where the outcome does not speak for itself
   algo::Metrics metrics{};
-  std::uint64_t lost_ticks = 0;  // not recorded because the record could not keep up
+  std::uint64_t lost_ticks = 0;      // not recorded because the record could not keep up
+  std::uint64_t missed_periods = 0;  // gone by unused because a tick took too long
 };
 
 struct RunLinks {

@@ -81,6 +81,7 @@ void Session::load(RunSpec spec) {
   state_.parameters = spec.parameters;
   state_.outcome = algo::Outcome::Running;
   state_.lost_ticks = 0;
+  state_.missed_periods = 0;
   state_.problem.reset();
   state_.running = true;
   path_.clear();
@@ -295,6 +296,7 @@ void Session::watch_run() {
     drain_replies();
     answer_the_rest();
     state_.lost_ticks = live_->result().lost_ticks;
+    state_.missed_periods = live_->result().missed_periods;
     if (outcome == algo::Outcome::Failed) {
       state_.problem = live_->result().reason;
       log(LogLevel::Error, "The run broke off: " + live_->result().reason);

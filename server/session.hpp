@@ -33,6 +33,7 @@ struct SessionState {
   algo::Outcome outcome = algo::Outcome::Running;
   bool running = false;  // the run's control thread is at work
   std::uint64_t lost_ticks = 0;
+  std::uint64_t missed_periods = 0;
   std::optional<std::string> problem{};
 };
 

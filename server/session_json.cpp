@@ -34,6 +34,7 @@ json state_json(const Session& session) {
       {"obstacles", std::move(obstacles)},
       {"parameters", to_json(s.parameters)},
       {"lost_ticks", s.lost_ticks},
+      {"missed_periods", s.missed_periods},
       {"problem", nullptr},
   };
   if (s.goal) out["goal"] = to_json(*s.goal);

@@ -147,6 +147,72 @@ TAUTLINE_WIDE void write_hits(const double* tag, std::span<std::uint32_t> hits) 
   }
 }
 
+TAUTLINE_WIDE void follow(const MotionStep& step,
+                          const double* at,
+                          BeamRange which,
+                          double* x,
+                          double* y,
+                          double* heading) {
+  const MotionStep s = step;
+  double* __restrict out_x = x;
+  double* __restrict out_y = y;
+  double* __restrict out_heading = heading;
+  for (std::size_t i = which.begin; i < which.end; ++i) {
+    const double part = at[i] - s.number;
+    out_x[i] = s.x + part * s.way_x;
+    out_y[i] = s.y + part * s.way_y;
+    out_heading[i] = s.heading + part * s.way_heading;
+  }
+}
+
+TAUTLINE_WIDE void interlace(const double* in, std::size_t beams, std::size_t rows, double* out) {
+  double* __restrict to = out;
+  if (rows == 2) {  // the usual mode, written so that it vectorises
+    const double* odd = in + (beams + 1) / 2;
+    for (std::size_t i = 0; i < beams / 2; ++i) {
+      to[2 * i] = in[i];
+      to[2 * i + 1] = odd[i];
+    }
+    if (beams % 2 == 1) to[beams - 1] = in[beams / 2];
+    return;
+  }
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t i = row; i < beams; i += rows) to[i] = *in++;
+  }
+}
+
+TAUTLINE_WIDE void flag_edges(const double* ranges,
+                              const std::uint32_t* hits,
+                              std::size_t beams,
+                              double jump,
+                              std::uint8_t* flags) {
+  std::uint8_t* __restrict out = flags;
+  for (std::size_t i = 0; i + 1 < beams; ++i) {
+    const double step = std::abs(ranges[i] - ranges[i + 1]);
+    const unsigned far = step > jump ? 1 : 0;
+    const unsigned other = hits[i] != hits[i + 1] ? 1 : 0;
+    out[i] = static_cast<std::uint8_t>(far & other);
+  }
+}
+
+TAUTLINE_WIDE void split_readings(const double* readings,
+                                  std::size_t count,
+                                  double range_max,
+                                  std::uint8_t free_code,
+                                  const SplitReadings& out) {
+  double* __restrict ranges = out.ranges;
+  std::uint8_t* __restrict state = out.state;
+  std::uint8_t* __restrict code = out.code;
+  for (std::size_t i = 0; i < count; ++i) {
+    ranges[i] = readings[i] < range_max ? readings[i] : range_max;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool free = !(readings[i] < range_max);
+    state[i] = free ? 1 : 0;
+    code[i] = free ? free_code : std::uint8_t{0};
+  }
+}
+
 TAUTLINE_WIDE void turn_directions(const double* ux,
                                    const double* uy,
                                    const double* turn,

@@ -75,6 +75,44 @@ void write_ranges(const double* inverse, double range_max, std::span<double> ran
 /// Tags to obstacle indices; -1 becomes the largest number there is.
 void write_hits(const double* tag, std::span<std::uint32_t> hits);
 
+/// A straight stretch of a sensor's motion: at `at` in [number, number + 1) it has come from the
+/// pose (x, y, heading) by that part of the way.
+struct MotionStep {
+  double number = 0;
+  double x = 0, y = 0, heading = 0;              // [m, m, rad] at its start
+  double way_x = 0, way_y = 0, way_heading = 0;  // to its end
+};
+void follow(const MotionStep& step,
+            const double* at,
+            BeamRange which,
+            double* x,
+            double* y,
+            double* heading);
+
+/// Deals rows out to the beams: the first row has beams 0, rows, 2 rows .., the next one beams 1,
+/// rows + 1 .., and so on. `in` has them end to end.
+void interlace(const double* in, std::size_t beams, std::size_t rows, double* out);
+
+/// Sets flags[i] where beams i and i + 1 met different things farther apart than `jump` [m].
+void flag_edges(const double* ranges,
+                const std::uint32_t* hits,
+                std::size_t beams,
+                double jump,
+                std::uint8_t* flags);
+
+/// Readings as a scan has them: `nearer` and its `state` 0 where below range_max, else range_max
+/// and 1, with `free_code`.
+struct SplitReadings {
+  double* ranges = nullptr;
+  std::uint8_t* state = nullptr;
+  std::uint8_t* code = nullptr;
+};
+void split_readings(const double* readings,
+                    std::size_t count,
+                    double range_max,
+                    std::uint8_t free_code,
+                    const SplitReadings& out);
+
 /// Rays from poses interpolated between those of a moving sensor, and turned by small angles
 /// `turn` [rad] off the directions (ux, uy); of |turn| <= 0.5 good to 1e-8.
 void turn_directions(const double* ux,

@@ -46,15 +46,23 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
   if (index > 0) phase_ = stream(seed, index, Purpose::Phase).uniform(0, config_.mirror_period);
 
   const std::size_t beams = pattern_.beams;
-  fired_.resize(beams);
+  fired_.reserve(beams);
+  at_.resize(beams);
+  way_.resize(beams);
+  way_turns_.resize(beams);
   ux_.resize(beams);
   uy_.resize(beams);
   for (std::size_t i = 0; i < beams; ++i) {
     const double angle = pattern_.angle_min + static_cast<double>(i) * pattern_.angle_increment;
-    const auto turn = static_cast<double>(i % config_.turns);
-    fired_[i] = (turn + (angle + pi / 2) / (2 * pi)) * config_.mirror_period;
     ux_[i] = std::cos(angle);
     uy_[i] = std::sin(angle);
+  }
+  for (std::size_t turn = 0; turn < config_.turns; ++turn) {
+    for (std::size_t i = turn; i < beams; i += config_.turns) {
+      const double angle = pattern_.angle_min + static_cast<double>(i) * pattern_.angle_increment;
+      const double turned = static_cast<double>(turn) + (angle + pi / 2) / (2 * pi);
+      fired_.push_back(turned * config_.mirror_period);
+    }
   }
   rays_.resize(beams);
   ranges_.resize(beams);
@@ -62,6 +70,7 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
   draws_.resize(beams);
   turns_.resize(beams);
   first_.resize(beams + 1);
+  edge_flags_.resize(beams + sizeof(std::uint64_t));  // read in words
   edges_.reserve(beams);
 }
 
@@ -156,19 +165,32 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
 
   const double per_step = 1 / step;
   const double offset = (begin - trail.newest()) * per_step + static_cast<double>(oldest);
-  const algo::Pose2* motion = motion_.data();
-  for (std::size_t i = 0; i < pattern_.beams; ++i) {
-    const double at = offset + fired_[i] * per_step;
-    const auto k = static_cast<std::int32_t>(at);
-    const double part = at - k;
-    const algo::Pose2& a = motion[k];
-    const algo::Pose2& b = motion[k + 1];
-    rays_.x[i] = a.x + part * (b.x - a.x);
-    rays_.y[i] = a.y + part * (b.y - a.y);
-    turns_[i] = a.heading + part * (b.heading - a.heading);
-  }
+  for (std::size_t i = 0; i < at_.size(); ++i) at_[i] = offset + fired_[i] * per_step;
+  for (std::size_t i = 0; i < at_.size();) i = follow_motion(i);
+  interlace(way_.x.data(), at_.size(), config_.turns, rays_.x.data());
+  interlace(way_.y.data(), at_.size(), config_.turns, rays_.y.data());
+  interlace(way_turns_.data(), at_.size(), config_.turns, turns_.data());
   turn_directions(
       ux_.data(), uy_.data(), turns_.data(), turns_.size(), rays_.ux.data(), rays_.uy.data());
+}
+
+/// Where the scanner is when the beams from at_[first] on are fired, as many as lie within one
+/// physics step; at_ ascends. @return the first beam after them
+std::size_t LaserModel::follow_motion(std::size_t first) {
+  const auto k = static_cast<std::size_t>(at_[first]);
+  const auto number = static_cast<double>(k);
+  const algo::Pose2& a = motion_[k];
+  const algo::Pose2& b = motion_[k + 1];
+  const double* const at = at_.data();
+  const double* const next = std::lower_bound(at + first + 1, at + at_.size(), number + 1);
+  const auto end = static_cast<std::size_t>(next - at);
+  follow({number, a.x, a.y, a.heading, b.x - a.x, b.y - a.y, b.heading - a.heading},
+         at,
+         {first, end},
+         way_.x.data(),
+         way_.y.data(),
+         way_turns_.data());
+  return end;
 }
 
 /// The rays of a scan without motion.
@@ -192,13 +214,20 @@ void LaserModel::report(algo::LaserScan& scan) {
   read_ranges(ranges_.data(), draws_.data(), draws_.size(), reading_);
   const double range_max = config_.range_max;
   const bool echoes = config_.reflectivity && !plain_;
-  const auto invalid = [&](std::size_t i) { return echoes && hits_[i] == kNoEcho; };
+  static_assert(static_cast<int>(algo::Beam::Ok) == 0 && static_cast<int>(algo::Beam::Free) == 1 &&
+                static_cast<int>(algo::BeamCode::None) == 0);
+  split_readings(draws_.data(),
+                 draws_.size(),
+                 range_max,
+                 static_cast<std::uint8_t>(algo::BeamCode::BeyondRange),
+                 {scan.ranges.data(),
+                  reinterpret_cast<std::uint8_t*>(scan.status.data()),
+                  reinterpret_cast<std::uint8_t*>(scan.codes.data())});
+  if (!echoes) return;
   for (std::size_t i = 0; i < pattern_.beams; ++i) {
-    const bool ok = draws_[i] < range_max;
-    scan.ranges[i] = ok ? draws_[i] : range_max;
-    scan.status[i] = ok ? algo::Beam::Ok : algo::Beam::Free;
-    scan.codes[i] = ok ? algo::BeamCode::None : algo::BeamCode::BeyondRange;
-    if (!ok && invalid(i)) scan.set_invalid(i, algo::BeamCode::NoEcho);
+    if (scan.status[i] == algo::Beam::Free && hits_[i] == kNoEcho) {
+      scan.set_invalid(i, algo::BeamCode::NoEcho);
+    }
   }
 }
 

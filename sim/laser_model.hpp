@@ -52,6 +52,7 @@ class LaserModel {
 
   void note_surfaces();
   void aim(double end, const PoseTrail& trail);
+  std::size_t follow_motion(std::size_t first);
   void aim_still();
   void allow_for_spot();
   void apply_surfaces(const Rays& rays,
@@ -77,7 +78,10 @@ class LaserModel {
   std::uint64_t delivered_ = 0;  // sweeps
 
   // Tables and workspace, one entry a beam unless said otherwise.
-  std::vector<double> fired_{};        // [s] after the sweep's start
+  std::vector<double> fired_{};  // [s] after the sweep's start, one mirror turn after another
+  std::vector<double> at_{};     // the same in physics steps since the oldest of motion_
+  Rays way_{};                   // x and y, one mirror turn after another
+  std::vector<double> way_turns_{};
   std::vector<double> ux_{}, uy_{};    // directions in the scanner's frame
   std::vector<algo::Pose2> motion_{};  // the scanner at the physics steps of the sweep
   algo::Pose2 reference_W_{};
@@ -86,9 +90,10 @@ class LaserModel {
   std::vector<double> ranges_{};
   std::vector<std::uint32_t> hits_{};
   std::vector<double> draws_{};
-  std::vector<double> turns_{};         // [rad] of the scanner off the reference when a beam leaves
-  std::vector<std::uint32_t> edges_{};  // beams whose spot may lie on an edge
-  Rays more_{};                         // kSubRays - 1 rays for each of them
+  std::vector<double> turns_{};  // [rad] of the scanner off the reference when a beam leaves
+  std::vector<std::uint8_t> edge_flags_{};  // between a beam and the next
+  std::vector<std::uint32_t> edges_{};      // beams whose spot may lie on an edge
+  Rays more_{};                             // kSubRays - 1 rays for each of them
   std::vector<std::uint32_t> first_{};
   std::vector<double> more_ranges_{};
   std::vector<std::uint32_t> more_hits_{};

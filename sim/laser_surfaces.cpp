@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "algo/units.hpp"
 #include "sim/laser_model.hpp"
@@ -73,12 +74,18 @@ void LaserModel::apply_surfaces(const Rays& rays,
 /// on one (convex) obstacle have no edge between them, however steeply it recedes.
 void LaserModel::mark_edges() {
   edges_.clear();
-  bool marked = false;  // beam i is in the list already
-  for (std::uint32_t i = 0; i + 1 < ranges_.size(); ++i) {
-    const bool edge = hits_[i] != hits_[i + 1] && std::abs(ranges_[i] - ranges_[i + 1]) > kJump;
-    if (edge && !marked) edges_.push_back(i);
-    if (edge) edges_.push_back(i + 1);
-    marked = edge;
+  flag_edges(ranges_.data(), hits_.data(), ranges_.size(), kJump, edge_flags_.data());
+  // Few are: eight are looked at together.
+  constexpr std::uint32_t kTogether = sizeof(std::uint64_t);
+  for (std::uint32_t first = 0; first + 1 < ranges_.size(); first += kTogether) {
+    std::uint64_t together = 0;
+    std::memcpy(&together, edge_flags_.data() + first, kTogether);
+    if (together == 0) continue;
+    for (std::uint32_t i = first; i < first + kTogether && i + 1 < ranges_.size(); ++i) {
+      if (edge_flags_[i] == 0) continue;
+      if (edges_.empty() || edges_.back() != i) edges_.push_back(i);
+      edges_.push_back(i + 1);
+    }
   }
 }
 
@@ -122,13 +129,26 @@ void LaserModel::mix(std::size_t beam, std::size_t first_more) {
     std::uint32_t hit = 0;
   };
   constexpr std::size_t kRays = kSubRays.size() + 1;
-  std::array<Echo, kRays> echoes{};
+  std::array<Echo, kRays> rays{};
   for (std::size_t k = 0; k < kSubRays.size(); ++k) {
-    echoes[k] = {more_ranges_[first_more + k], more_hits_[first_more + k]};
+    rays[k] = {more_ranges_[first_more + k], more_hits_[first_more + k]};
   }
-  echoes.back() = {ranges_[beam], hits_[beam]};
-  std::sort(
-      echoes.begin(), echoes.end(), [](const Echo& a, const Echo& b) { return a.range < b.range; });
+  rays.back() = {ranges_[beam], hits_[beam]};
+  const auto [nearest, farthest] =
+      std::minmax({rays[0].range, rays[1].range, rays[2].range, rays[3].range, rays[4].range});
+  static_assert(kRays == 5);
+  if (!(farthest - nearest > kJump)) return;  // no gap can be wider
+  // Sorted by counting who is farther: which one is, is not predictable. Equals keep their order.
+  std::array<std::size_t, kRays> place{};
+  for (std::size_t a = 0; a < kRays; ++a) {
+    for (std::size_t b = a + 1; b < kRays; ++b) {
+      const std::size_t swapped = rays[b].range < rays[a].range ? 1 : 0;
+      place[a] += swapped;
+      place[b] += 1 - swapped;
+    }
+  }
+  std::array<Echo, kRays> echoes{};
+  for (std::size_t k = 0; k < kRays; ++k) echoes[place[k]] = rays[k];
   std::size_t near_count = 0;
   double widest = kJump;
   for (std::size_t k = 1; k < kRays; ++k) {

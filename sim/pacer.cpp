@@ -12,9 +12,14 @@ constexpr double kLongestPeriod = 3600;  // [s] of wall time; keeps the conversi
 }  // namespace
 
 Deadlines::Clock::time_point Deadlines::next(Clock::time_point now, Clock::duration length) {
-  if (!running_ || now - last_ > kStall + length) last_ = now;
+  if (!running_) last_ = now;
   running_ = true;
   last_ += length;
+  if (length > Clock::duration::zero() && now - last_ >= length) {
+    const auto skipped = (now - last_) / length;
+    last_ += skipped * length;
+    missed_ += static_cast<std::uint64_t>(skipped);
+  }
   return last_;
 }
 
@@ -40,6 +45,11 @@ algo::Pace Pacer::pace() const {
 void Pacer::restart() {
   const std::lock_guard lock(mutex_);
   deadlines_.restart();
+}
+
+std::uint64_t Pacer::missed() const {
+  const std::lock_guard lock(mutex_);
+  return deadlines_.missed();
 }
 
 bool Pacer::wait(double seconds) {

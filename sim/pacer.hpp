@@ -12,20 +12,24 @@ namespace sim {
 
 /// Absolute deadlines of successive periods; a pure value, the clock is an argument.
 ///
-/// Each deadline follows from the one before, so that lateness of one period does not delay the
-/// next. After a stall longer than kStall the row starts anew: time lost is not caught up.
+/// Each deadline follows from the one before, so that lateness of less than a period does not delay
+/// the next. Whole periods that went by are missed: they are counted and left out, never made good
+/// in a burst, and the row goes on in step with its old deadlines.
 class Deadlines {
  public:
   using Clock = std::chrono::steady_clock;
-  static constexpr std::chrono::milliseconds kStall{500};
 
   /// Forgets the row: the next deadline counts from `now`.
   void restart() { running_ = false; }
-  /// The deadline `length` after the last one.
+  /// The deadline `length` after the last one, or so many periods later that it lies less than one
+  /// before `now`.
   Clock::time_point next(Clock::time_point now, Clock::duration length);
+  /// Periods left out since the start; restart() keeps the count.
+  std::uint64_t missed() const { return missed_; }
 
  private:
   Clock::time_point last_{};
+  std::uint64_t missed_ = 0;
   bool running_ = false;
 };
 
@@ -41,6 +45,8 @@ class Pacer {
   algo::Pace pace() const;
   /// The next period counts from the moment it is waited for.
   void restart();
+  /// Periods of wall time that went by unused because the caller came too late.
+  std::uint64_t missed() const;
   /// Waits for the end of a period of `seconds` of robot time. False when paused and no single step
   /// is left: no period has gone by.
   bool wait(double seconds);

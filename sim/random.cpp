@@ -74,7 +74,8 @@ double Random::uniform() {
   return to_unit(bits());
 }
 
-double Random::normal() {
+/// In place in fill_normal(), where the state stays in registers.
+inline double Random::normal() {
   for (;;) {
     const std::uint64_t draw = bits();  // low 7 bits choose the layer, high 53 the place in it
     const std::size_t layer = draw % kLayers;
@@ -95,7 +96,9 @@ double Random::normal() {
 }
 
 void Random::fill_normal(std::span<double> out) {
-  for (double& value : out) value = normal();
+  Random drawn = *this;
+  for (double& value : out) value = drawn.normal();
+  *this = drawn;
 }
 
 void Random::fill_uniform(std::span<double> out) {

@@ -44,6 +44,7 @@ class Replay final : public algo::Robot {
   void stop() noexcept override {}
   std::optional<std::string> edit(const algo::Request& request) override;
   void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
+  std::uint64_t missed_periods() const override { return pacer_.missed(); }
 
   std::size_t size() const { return scans_.size(); }
   CarmenUnit unit() const { return unit_; }

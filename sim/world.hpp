@@ -36,6 +36,7 @@ class World final : public algo::Robot {
   std::optional<std::string> edit(const algo::Request& request) override;
   std::optional<algo::GroundTruth> ground_truth() const override;
   void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
+  std::uint64_t missed_periods() const override { return pacer_.missed(); }
 
  private:
   void check() const;

@@ -10,8 +10,6 @@
 
 #include "telemetry_generated.h"
 
-#include "algo/explain.hpp"
-
 namespace server {
 namespace {
 
@@ -32,20 +30,20 @@ fb::Pose2 to_wire(const algo::Pose2& p) {
 fb::Twist2 to_wire(const algo::Twist2& t) {
   return {t.v, t.omega};
 }
-fb::Odometry to_wire(const algo::Odometry& o) {
-  return {o.stamp, to_wire(o.pose), to_wire(o.twist)};
+fb::Pose2f to_float(const algo::Pose2& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.heading)};
 }
 fb::RangeReading to_wire(const algo::RangeReading& r) {
   return {to_wire(r.mount_R), r.stamp, r.range, r.range_max, static_cast<fb::BeamStatus>(r.status)};
 }
 fb::Bumper to_wire(const algo::BumperReading& b) {
-  return {to_wire(b.mount_R), b.stamp, b.pressed};
+  return {b.stamp, to_float(b.mount_R), b.pressed};
 }
 fb::Nearest to_wire(const algo::Nearest& n) {
   return {to_float(n.point_W), static_cast<float>(n.distance), n.beam};
 }
-fb::Node to_wire(const algo::Node& n) {
-  return {to_float(n.position_W), to_float(n.internal_W), to_float(n.external_W)};
+fb::Vec2f to_wire(const algo::Node& n) {
+  return to_float(n.position_W);
 }
 
 algo::Vec2 from_wire(const fb::Vec2& v) {
@@ -55,6 +53,9 @@ algo::Vec2 from_wire(const fb::Vec2f& v) {
   return {v.x(), v.y()};
 }
 algo::Pose2 from_wire(const fb::Pose2& p) {
+  return {p.x(), p.y(), p.heading()};
+}
+algo::Pose2 from_wire(const fb::Pose2f& p) {
   return {p.x(), p.y(), p.heading()};
 }
 algo::Twist2 from_wire(const fb::Twist2& t) {
@@ -218,29 +219,28 @@ algo::Request read_request(const fb::RequestBox& box) {
   }
 }
 
-Offset<fb::LaserScan> write_scan(Builder& b,
-                                 const algo::LaserScan& scan,
-                                 std::vector<std::uint16_t>& samples) {
-  samples.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) samples[i] = algo::beam_to_wire(scan, i);
-  const auto ranges = b.CreateVector(samples);
+Offset<fb::LaserScan> write_scan(Builder& b, const algo::LaserScan& scan) {
+  std::uint16_t* samples = nullptr;
+  const auto ranges = b.CreateUninitializedVector(scan.size(), &samples);
+  algo::beams_to_wire(scan, {samples, scan.size()});
   const fb::Pose2 mount = to_wire(scan.mount_R);
-  return fb::CreateLaserScan(b,
-                             &mount,
-                             scan.stamp,
-                             scan.angle_min,
-                             scan.angle_increment,
-                             scan.range_max,
-                             scan.turn_period,
-                             scan.turns,
-                             ranges);
+  fb::LaserScanBuilder out(b);
+  out.add_stamp(scan.stamp);
+  if (scan.mount_R != algo::Pose2{}) out.add_mount(&mount);
+  out.add_angle_min(scan.angle_min);
+  out.add_angle_increment(scan.angle_increment);
+  out.add_range_max(scan.range_max);
+  out.add_turn_period(scan.turn_period);
+  out.add_turns(scan.turns);
+  out.add_ranges(ranges);
+  return out.Finish();
 }
 
 void read_scan(const fb::LaserScan& in, algo::LaserScan& scan) {
-  if (in.mount() == nullptr || in.ranges() == nullptr || in.turns() == 0) {
-    throw WireError("A scan in the frame lacks its mount, turns or ranges.");
+  if (in.ranges() == nullptr || in.turns() == 0) {
+    throw WireError("A scan in the frame lacks its turns or ranges.");
   }
-  scan.mount_R = from_wire(*in.mount());
+  scan.mount_R = in.mount() == nullptr ? algo::Pose2{} : from_wire(*in.mount());
   scan.stamp = in.stamp();
   scan.angle_min = in.angle_min();
   scan.angle_increment = in.angle_increment();
@@ -256,10 +256,9 @@ void read_scan(const fb::LaserScan& in, algo::LaserScan& scan) {
 template <typename Wire, typename List>
 Offset<flatbuffers::Vector<const Wire*>> write_structs(Builder& b, const List& list) {
   if (list.empty()) return 0;
-  Wire* out = nullptr;
-  const auto vector = b.CreateUninitializedVectorOfStructs(list.size(), &out);
-  for (const auto& item : list) *out++ = to_wire(item);
-  return vector;
+  // Not CreateUninitializedVectorOfStructs(), which takes a struct's size for its alignment.
+  return b.CreateVectorOfStructs<Wire>(list.size(),
+                                       [&](std::size_t i, Wire* out) { *out = to_wire(list[i]); });
 }
 
 Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
@@ -282,7 +281,9 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   o.clear_sensors();
   o.stamp = f.stamp();
   const fb::Odometry& odometry = *f.odometry();
-  o.odometry = {odometry.stamp(), from_wire(odometry.pose()), from_wire(odometry.twist())};
+  o.odometry = {f.odometry_stamp().value_or(o.stamp),
+                from_wire(odometry.pose()),
+                from_wire(odometry.twist())};
   if (f.scans() != nullptr) {
     for (const fb::LaserScan* scan : *f.scans()) read_scan(*scan, o.scans.append());
   }
@@ -306,9 +307,13 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
       o.bumpers.push_back({from_wire(r->mount()), r->stamp(), r->pressed()});
     }
   }
-  if (const auto* g = f.gyro()) o.gyro = {g->stamp(), g->rate()};
-  if (const auto* i = f.inclinometer()) o.inclinometer = {i->stamp(), i->roll(), i->pitch()};
-  if (const auto* e = f.encoders()) o.encoders = {e->stamp(), e->left(), e->right()};
+  if (const auto* g = f.gyro()) o.gyro = {f.gyro_stamp().value_or(o.stamp), g->rate()};
+  if (const auto* i = f.inclinometer()) {
+    o.inclinometer = {f.inclinometer_stamp().value_or(o.stamp), i->roll(), i->pitch()};
+  }
+  if (const auto* e = f.encoders()) {
+    o.encoders = {f.encoders_stamp().value_or(o.stamp), e->left(), e->right()};
+  }
 }
 
 std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
@@ -317,23 +322,116 @@ std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
 }
 
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
-  t.output = {};
+  algo::ControlOutput& out = t.output;
+  out = {};
   if (f.strip() != nullptr) {
     check_alignment(*f.strip());
-    for (const fb::Node* n : *f.strip()) {
-      t.output.strip.push_back(
-          {from_wire(n->position()), from_wire(n->internal()), from_wire(n->external())});
-    }
+    for (const fb::Vec2f* p : *f.strip()) out.strip.push_back({from_wire(*p), {0, 0}, {0, 0}});
   }
-  const auto vec = [](const fb::Vec2f* v) { return v ? from_wire(*v) : algo::Vec2{0, 0}; };
-  t.output.pass_W = vec(f.pass());
-  t.output.external_left_W = vec(f.external_left());
-  t.output.external_right_W = vec(f.external_right());
-  t.output.elastic_W = vec(f.elastic());
-  t.output.side = static_cast<algo::Side>(f.side() > 0 ? 1 : (f.side() < 0 ? -1 : 0));
+  if (const auto* forces = f.forces()) {
+    out.internal_W = from_wire(forces->internal());
+    out.external_left_W = from_wire(forces->external_left());
+    out.external_right_W = from_wire(forces->external_right());
+    out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
+    if (const auto* push = f.side_push()) out.elastic_W += from_wire(*push);
+  }
+  if (out.strip.size() > 1) {
+    algo::Node& pass = out.strip[1];
+    out.pass_W = pass.position_W;
+    pass.internal_W = out.internal_W;
+    pass.external_W = out.elastic_W - out.internal_W;
+  }
+  const std::int8_t side = f.decision()->side();
+  out.side = static_cast<algo::Side>(side > 0 ? 1 : (side < 0 ? -1 : 0));
+  out.side_since = f.side_since();
   t.scene.fresh = !t.observation.scans.empty();
   t.scene.left = read_nearest(f.left());
   t.scene.right = read_nearest(f.right());
+}
+
+struct FrameWriter {
+  fb::FrameBuilder frame;
+  const algo::Telemetry& t;
+
+  void sensors();
+  void decision();
+  void stamps();
+};
+
+// Structs live inside the table: the locals only have to outlive their add_ call.
+void FrameWriter::sensors() {
+  const algo::Observation& o = t.observation;
+  const fb::Odometry odometry(to_wire(o.odometry.pose), to_wire(o.odometry.twist));
+  frame.add_odometry(&odometry);
+  if (o.gyro) {
+    const fb::YawGyro gyro(o.gyro->rate);
+    frame.add_gyro(&gyro);
+  }
+  if (o.inclinometer) {
+    const fb::Inclinometer inclinometer(o.inclinometer->roll, o.inclinometer->pitch);
+    frame.add_inclinometer(&inclinometer);
+  }
+  if (o.encoders) {
+    const fb::Encoders encoders(o.encoders->left, o.encoders->right);
+    frame.add_encoders(&encoders);
+  }
+  if (t.ground_truth) {
+    const algo::GroundTruth& g = *t.ground_truth;
+    const fb::GroundTruth truth(to_float(g.pose),
+                                static_cast<float>(g.obstacle_distance),
+                                static_cast<float>(g.clearance));
+    frame.add_truth(&truth);
+    frame.add_collided(g.collided);
+  }
+}
+
+void FrameWriter::decision() {
+  const algo::ControlOutput& out = t.output;
+  const fb::Twist2 command = to_wire(t.command.base);
+  frame.add_command(&command);
+  const fb::Decision decision(static_cast<float>(t.clearance),
+                              static_cast<fb::Hold>(t.hold),
+                              static_cast<fb::Mission>(t.mission),
+                              static_cast<fb::Behaviour>(t.behaviour),
+                              static_cast<std::int8_t>(out.side));
+  frame.add_decision(&decision);
+  if (t.goal) {
+    const fb::Vec2f goal = to_float(t.goal->position_W);
+    frame.add_goal(&goal);
+    if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
+  }
+  if (!out.strip.empty()) {
+    const fb::Forces forces(
+        to_float(out.internal_W), to_float(out.external_left_W), to_float(out.external_right_W));
+    frame.add_forces(&forces);
+    const algo::Vec2 push =
+        out.elastic_W - out.internal_W - out.external_left_W - out.external_right_W;
+    const fb::Vec2f side_push = to_float(push);
+    if (push != algo::Vec2{0, 0}) frame.add_side_push(&side_push);
+  }
+  if (out.side != algo::Side::None) frame.add_side_since(out.side_since);
+  if (t.scene.left) {
+    const fb::Nearest left = to_wire(*t.scene.left);
+    frame.add_left(&left);
+  }
+  if (t.scene.right) {
+    const fb::Nearest right = to_wire(*t.scene.right);
+    frame.add_right(&right);
+  }
+  if (t.hold == algo::Hold::StaleScan && t.scene.scan.size() > 0) {
+    frame.add_newest_scan(t.scene.scan.stamp);
+  }
+}
+
+/// Only those that are not the frame's own.
+void FrameWriter::stamps() {
+  const algo::Observation& o = t.observation;
+  if (o.odometry.stamp != o.stamp) frame.add_odometry_stamp(o.odometry.stamp);
+  if (o.encoders && o.encoders->stamp != o.stamp) frame.add_encoders_stamp(o.encoders->stamp);
+  if (o.gyro && o.gyro->stamp != o.stamp) frame.add_gyro_stamp(o.gyro->stamp);
+  if (o.inclinometer && o.inclinometer->stamp != o.stamp) {
+    frame.add_inclinometer_stamp(o.inclinometer->stamp);
+  }
 }
 
 }  // namespace
@@ -343,77 +441,29 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   b.Clear();
   const algo::Observation& o = t.observation;
 
-  std::vector<Offset<fb::LaserScan>> scans;
-  for (const algo::LaserScan& scan : o.scans) scans.push_back(write_scan(b, scan, samples_));
-  const auto scan_vector = scans.empty() ? 0 : b.CreateVector(scans);
+  // Tables and vectors first: FlatBuffers writes from the leaves to the root.
+  scans_.clear();
+  for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
+  const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
   const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
   const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
   const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
   const auto requests = write_requests(b, t.requests);
-  const auto strip = write_structs<fb::Node>(b, t.output.strip);
-  const auto goal = t.goal ? write_goal(b, *t.goal) : 0;
-  const algo::Explanation explanation = algo::explain(t);
-  const auto what = b.CreateString(explanation.what);
-  const auto why = b.CreateString(explanation.why);
+  const auto strip = write_structs<fb::Vec2f>(b, t.output.strip);
 
-  const fb::Odometry odometry = to_wire(o.odometry);
-  const fb::Twist2 command = to_wire(t.command.base);
-  fb::FrameBuilder frame(b);
+  FrameWriter writer{fb::FrameBuilder(b), t};
+  fb::FrameBuilder& frame = writer.frame;
   frame.add_tick(t.tick);
   frame.add_stamp(o.stamp);
-  frame.add_odometry(&odometry);
-  if (!scans.empty()) frame.add_scans(scan_vector);
+  if (!o.scans.empty()) frame.add_scans(scans);
   if (!o.sonar.empty()) frame.add_sonar(sonar);
   if (!o.infrared.empty()) frame.add_infrared(infrared);
   if (!o.bumpers.empty()) frame.add_bumpers(bumpers);
   if (!t.requests.empty()) frame.add_requests(requests);
-  frame.add_command(&command);
-  if (t.goal) frame.add_goal(goal);
   if (!t.output.strip.empty()) frame.add_strip(strip);
-  frame.add_what(what);
-  frame.add_why(why);
-
-  // Structs live inside the table: the locals only have to outlive their add_ call.
-  if (o.gyro) {
-    const fb::YawGyro gyro(o.gyro->stamp, o.gyro->rate);
-    frame.add_gyro(&gyro);
-  }
-  if (o.inclinometer) {
-    const fb::Inclinometer i(o.inclinometer->stamp, o.inclinometer->roll, o.inclinometer->pitch);
-    frame.add_inclinometer(&i);
-  }
-  if (o.encoders) {
-    const fb::Encoders encoders(o.encoders->stamp, o.encoders->left, o.encoders->right);
-    frame.add_encoders(&encoders);
-  }
-  if (t.ground_truth) {
-    const algo::GroundTruth& g = *t.ground_truth;
-    const fb::GroundTruth truth(to_wire(g.pose), g.obstacle_distance, g.collided);
-    frame.add_truth(&truth);
-  }
-  frame.add_hold(static_cast<fb::Hold>(t.hold));
-  frame.add_mission(static_cast<fb::Mission>(t.mission));
-  frame.add_behaviour(static_cast<fb::Behaviour>(t.behaviour));
-  frame.add_clearance(static_cast<float>(t.clearance));
-  frame.add_side(static_cast<std::int8_t>(t.output.side));
-  if (!t.output.strip.empty()) {
-    const fb::Vec2f pass = to_float(t.output.pass_W);
-    const fb::Vec2f left = to_float(t.output.external_left_W);
-    const fb::Vec2f right = to_float(t.output.external_right_W);
-    const fb::Vec2f elastic = to_float(t.output.elastic_W);
-    frame.add_pass(&pass);
-    frame.add_external_left(&left);
-    frame.add_external_right(&right);
-    frame.add_elastic(&elastic);
-  }
-  if (t.scene.left) {
-    const fb::Nearest left = to_wire(*t.scene.left);
-    frame.add_left(&left);
-  }
-  if (t.scene.right) {
-    const fb::Nearest right = to_wire(*t.scene.right);
-    frame.add_right(&right);
-  }
+  writer.sensors();
+  writer.decision();
+  writer.stamps();
   b.Finish(frame.Finish());
 
   find_windows();
@@ -436,7 +486,7 @@ void FrameEncoder::find_windows() {
     }
   }
   if (const auto* strip = frame->strip()) {
-    constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Node) / sizeof(float));
+    constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Vec2f) / sizeof(float));
     add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats);
   }
   std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
@@ -456,12 +506,13 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   flatbuffers::Verifier verifier(data, bytes.size());
   if (!fb::VerifyFrameBuffer(verifier)) throw WireError("The bytes are not a telemetry frame.");
   const fb::Frame& f = *fb::GetFrame(data);
-  if (f.odometry() == nullptr || f.command() == nullptr) {
-    throw WireError("The frame lacks its odometry or command.");
+  if (f.odometry() == nullptr || f.command() == nullptr || f.decision() == nullptr) {
+    throw WireError("The frame lacks its odometry, command or decision.");
   }
-  check_enum(f.hold(), fb::Hold_MAX, "hold");
-  check_enum(f.mission(), fb::Mission_MAX, "mission");
-  check_enum(f.behaviour(), fb::Behaviour_MAX, "behaviour");
+  const fb::Decision& decision = *f.decision();
+  check_enum(decision.hold(), fb::Hold_MAX, "hold");
+  check_enum(decision.mission(), fb::Mission_MAX, "mission");
+  check_enum(decision.behaviour(), fb::Behaviour_MAX, "behaviour");
 
   t.tick = f.tick();
   t.requests.clear();
@@ -473,16 +524,20 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   if (const auto* g = f.truth()) {
     t.ground_truth = {.pose = from_wire(g->pose()),
                       .obstacle_distance = g->obstacle_distance(),
-                      .collided = g->collided()};
+                      .clearance = g->clearance(),
+                      .collided = f.collided()};
   }
   t.goal.reset();
-  if (f.goal() != nullptr) t.goal = read_goal(*f.goal());
+  if (const auto* goal = f.goal()) {
+    t.goal = algo::SetGoal{from_wire(*goal), std::nullopt};
+    if (const auto heading = f.goal_heading()) t.goal->heading = *heading;
+  }
   read_output(f, t);
   t.command = {from_wire(*f.command())};
-  t.hold = static_cast<algo::Hold>(f.hold());
-  t.mission = static_cast<algo::Mission>(f.mission());
-  t.behaviour = static_cast<algo::BehaviourId>(f.behaviour());
-  t.clearance = f.clearance();
+  t.hold = static_cast<algo::Hold>(decision.hold());
+  t.mission = static_cast<algo::Mission>(decision.mission());
+  t.behaviour = static_cast<algo::BehaviourId>(decision.behaviour());
+  t.clearance = decision.clearance();
 }
 
 }  // namespace server

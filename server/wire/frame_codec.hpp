@@ -12,6 +12,10 @@
 #include "algo/telemetry.hpp"
 #include "db/block_codec.hpp"
 
+namespace tautline::wire {
+struct LaserScan;
+}
+
 namespace server {
 
 /// Bytes that are not a frame, with what is wrong.
@@ -33,13 +37,13 @@ class FrameEncoder {
   void find_windows();
 
   flatbuffers::FlatBufferBuilder builder_{2048};
-  std::vector<std::uint16_t> samples_{};
+  std::vector<flatbuffers::Offset<tautline::wire::LaserScan>> scans_{};
   std::vector<db::Window> windows_{};
 };
 
 /// Reads back what a pipeline needs to repeat a tick (observation, requests) and what it commanded
-/// (command, hold, mission, behaviour, truth, clearance, goal). What only people look at (strip,
-/// forces, sentences) is read back at the frame's float precision. Throws WireError.
+/// (command, hold, mission, behaviour). What only people look at (truth, clearance, goal, strip,
+/// forces) is read back at the frame's float precision. Throws WireError.
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t);
 
 }  // namespace server

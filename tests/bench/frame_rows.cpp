@@ -8,7 +8,6 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "algo/explain.hpp"
 #include "server/wire/frame_codec.hpp"
 
 namespace bench {
@@ -62,7 +61,6 @@ json sensors_json(const algo::Observation& o) {
 /// What a driving tick's frame holds, as a document.
 json frame_json(const algo::Telemetry& t) {
   const algo::ControlOutput& out = t.output;
-  const algo::Explanation words = algo::explain(t);
   json frame = sensors_json(t.observation);
   frame["tick"] = t.tick;
   frame["stamp"] = t.observation.stamp;
@@ -81,20 +79,14 @@ json frame_json(const algo::Telemetry& t) {
   frame["behaviour"] = static_cast<int>(t.behaviour);
   frame["clearance"] = t.clearance;
   frame["strip"] = json::array();
-  for (const algo::Node& node : out.strip) {
-    frame["strip"].push_back({{"position", point(node.position_W)},
-                              {"internal", point(node.internal_W)},
-                              {"external", point(node.external_W)}});
-  }
-  frame["pass"] = point(out.pass_W);
+  for (const algo::Node& node : out.strip) frame["strip"].push_back(point(node.position_W));
+  frame["internal"] = point(out.internal_W);
   if (t.scene.left) frame["left"] = nearest(*t.scene.left);
   if (t.scene.right) frame["right"] = nearest(*t.scene.right);
   frame["external_left"] = point(out.external_left_W);
   frame["external_right"] = point(out.external_right_W);
-  frame["elastic"] = point(out.elastic_W);
   frame["side"] = static_cast<int>(out.side);
-  frame["what"] = words.what;
-  frame["why"] = words.why;
+  frame["side_since"] = out.side_since;
   return frame;
 }
 
@@ -116,7 +108,7 @@ void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
   }
   same(document.at("strip").size() == back.output.strip.size(), "the strip");
   for (std::size_t k = 0; k < back.output.strip.size(); ++k) {
-    const double x = document.at("strip")[k].at("position").at("x");
+    const double x = document.at("strip")[k].at("x");
     same(std::abs(x - back.output.strip[k].position_W.x()) < 1e-5, "a strip node");
   }
 }
@@ -144,25 +136,19 @@ void time_frame(Pass& pass, std::size_t nodes, Figure ratio, Figure size) {
   const auto ticks = driving_ticks(pass.count<std::size_t>(256, 16), nodes);
   server::FrameEncoder encoder;
   double bytes = 0;
-  double words = 0;
   for (const algo::Telemetry& t : ticks) {
     check_frame(t, encoder);
     bytes += static_cast<double>(encoder.encode(t).size()) / static_cast<double>(ticks.size());
-    const algo::Explanation said = algo::explain(t);
-    words +=
-        static_cast<double>(said.what.size() + said.why.size()) / static_cast<double>(ticks.size());
   }
   std::size_t i = 0;
   const auto next = [&]() -> const algo::Telemetry& { return ticks[i = (i + 1) % ticks.size()]; };
   const auto times =
       pass.time(ratio.name,
                 {{"ours", [&] { benchmark::DoNotOptimize(encoder.encode(next())); }},
-                 {"json", [&] { benchmark::DoNotOptimize(frame_json(next()).dump()); }},
-                 {"words", [&] { benchmark::DoNotOptimize(algo::explain(next())); }}});
-  ratio.note = fmt::format("of ours {} are the two sentences", duration(times[2].seconds));
+                 {"json", [&] { benchmark::DoNotOptimize(frame_json(next()).dump()); }}});
   pass.add_ratio(std::move(ratio), times[0], times[1]);
   size.value = bytes;
-  size.note = fmt::format("{} of them ranges, {:.0f} the two sentences", 2 * kBeams, words);
+  size.note = fmt::format("{} of them ranges", 2 * kBeams);
   size.unit = "bytes";
   size.better = Better::Lower;
   pass.add(std::move(size));

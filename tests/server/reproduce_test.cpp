@@ -188,7 +188,7 @@ TEST(PaperFile, APolygonMayHaveANotch) {
 struct PathFiguresTest : ::testing::Test {
   void at(double x, double y, double distance) {
     algo::Telemetry t;
-    t.ground_truth = algo::GroundTruth{{x, y, 0}, distance, false};
+    t.ground_truth = algo::GroundTruth{{x, y, 0}, distance, distance - 0.35, false};
     recorder.add(t, 1.0);
   }
   PathRecorder recorder{0.35, 0.1};
@@ -223,7 +223,7 @@ TEST(PathFigures, ShareOfTheStripBeforeItsVia) {
   PathRecorder recorder(0.35, 0.1);
   const auto tick = [&](double via, double push) {
     algo::Telemetry t;
-    t.ground_truth = algo::GroundTruth{{0, 0, 0}, 2, false};
+    t.ground_truth = algo::GroundTruth{{0, 0, 0}, 2, 1.65, false};
     for (const double x : {0.0, via, 0.2}) t.output.strip.append().position_W = {x, 0};
     t.output.external_left_W = {0, push};
     recorder.add(t, 1.0);

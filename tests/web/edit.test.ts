@@ -229,8 +229,8 @@ test("a pointer hits a turned box within its slack", () => {
 });
 
 test("the arrow of the elastic force ends at the pass point it made", () => {
-  const f = decode_frame(frame_bytes({ tick: 0, pass: [0.5, 0.25], elastic: [-0.25, 0.125],
-    strip: [[0, 0, 0, 0, 0, 0], [0.5, 0.25, 0, 0, -0.25, 0], [0.75, 0.125, 0, 0, 0, 0]] }));
+  const f = decode_frame(frame_bytes({ tick: 0, external_left: [-0.25, 0.125],
+    strip: [[0, 0], [0.5, 0.25], [0.75, 0.125]] }));
   const elastic = force_arrows(f).find((a) => a.colour === "elastic")!;
   assert.deepEqual(elastic.at, { x: 0.75, y: 0.125 }, "which is where the strip ended before it was pushed");
   assert.deepEqual([elastic.at.x + elastic.force.x, elastic.at.y + elastic.force.y], [0.5, 0.25]);

@@ -12,12 +12,11 @@ export interface FrameSpec {
   goal?: [number, number, number | null];
   mission?: wire.Mission;
   hold?: wire.Hold;
-  strip?: [number, number, number, number, number, number][];
+  strip?: [number, number][];
+  internal?: [number, number];
+  external_left?: [number, number];
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
-  pass?: [number, number];
-  elastic?: [number, number];
-  what?: string;
 }
 
 export const add_cylinder = (id: number, x: number, y: number, radius: number) =>
@@ -77,42 +76,36 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     return wire.RequestBox.endRequestBox(b);
   });
   const requests = wire.Frame.createRequestsVector(b, boxes);
-  let goal = 0;
-  if (spec.goal) {
-    const [x, y, heading] = spec.goal;
-    wire.SetGoal.startSetGoal(b);
-    wire.SetGoal.addPosition(b, wire.Vec2.createVec2(b, x, y));
-    if (heading !== null) {
-      wire.SetGoal.addHeading(b, heading);
-      wire.SetGoal.addHasHeading(b, true);
-    }
-    goal = wire.SetGoal.endSetGoal(b);
-  }
   let strip = 0;
   if (spec.strip) {
     wire.Frame.startStripVector(b, spec.strip.length);
-    for (const node of [...spec.strip].reverse()) wire.Node.createNode(b, ...node);
+    for (const node of [...spec.strip].reverse()) wire.Vec2f.createVec2f(b, ...node);
     strip = b.endVector();
   }
-  const what = spec.what === undefined ? 0 : b.createString(spec.what);
   wire.Frame.startFrame(b);
   wire.Frame.addTick(b, BigInt(spec.tick));
   wire.Frame.addStamp(b, spec.stamp ?? spec.tick * 0.026);
   const [x, y, heading] = spec.pose ?? [0, 0, 0];
-  wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, 0, x, y, heading, 0.25, -0.5));
+  wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, x, y, heading, 0.25, -0.5));
   if (scans) wire.Frame.addScans(b, scans);
   wire.Frame.addRequests(b, requests);
-  if (goal) wire.Frame.addGoal(b, goal);
+  if (spec.goal) {
+    const [gx, gy, heading] = spec.goal;
+    wire.Frame.addGoal(b, wire.Vec2f.createVec2f(b, gx, gy));
+    if (heading !== null) wire.Frame.addGoalHeading(b, heading);
+  }
   if (spec.truth) {
     const [tx, ty, th, d, hit] = spec.truth;
-    wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, hit));
+    wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, d - 0.5));
+    wire.Frame.addCollided(b, hit);
   }
-  wire.Frame.addHold(b, spec.hold ?? wire.Hold.None);
-  wire.Frame.addMission(b, spec.mission ?? wire.Mission.Idle);
+  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.hold ?? wire.Hold.None,
+    spec.mission ?? wire.Mission.Idle, wire.Behaviour.Rest, 0));
   if (strip) wire.Frame.addStrip(b, strip);
-  if (spec.pass) wire.Frame.addPass(b, wire.Vec2f.createVec2f(b, ...spec.pass));
-  if (spec.elastic) wire.Frame.addElastic(b, wire.Vec2f.createVec2f(b, ...spec.elastic));
-  if (what) wire.Frame.addWhat(b, what);
+  if (spec.strip) {
+    wire.Frame.addForces(b, wire.Forces.createForces(b, ...(spec.internal ?? [0, 0]),
+      ...(spec.external_left ?? [0, 0]), 0, 0));
+  }
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();
 }

@@ -45,6 +45,7 @@ export interface SessionState {
   obstacles: ObstacleJson[];
   parameters: Record<string, number>;
   lost_ticks: number;
+  missed_periods: number;
   problem: string | null;
 }
 

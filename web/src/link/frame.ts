@@ -68,8 +68,8 @@ export interface Frame {
   external_right: Point;
   elastic: Point;
   side: number;
-  what: string;
-  why: string;
+  side_since: number;         // [s] run clock at which `side` was chosen
+  newest_scan: number | null; // [s] its stamp, only while it is too old to drive by
 }
 
 interface XY { x(): number; y(): number }
@@ -89,7 +89,17 @@ export function decode_frame(bytes: Uint8Array): Frame {
   const truth = f.truth();
   const command = f.command();
   const goal = f.goal();
-  const pass = f.pass();
+  const decision = f.decision();
+  const forces = f.forces();
+  const strip = list(f.stripLength(), (i): StripNode => {
+    return { position: point(f.strip(i)), internal: zero, external: zero };
+  });
+  const internal = point(forces?.internal() ?? null);
+  const left = point(forces?.externalLeft() ?? null);
+  const right = point(forces?.externalRight() ?? null);
+  const push = point(f.sidePush());
+  const external = { x: left.x + right.x + push.x, y: left.y + right.y + push.y };
+  if (strip.length > 1) strip[1] = { position: strip[1].position, internal, external };
   return {
     tick: Number(f.tick()),
     stamp: f.stamp(),
@@ -104,30 +114,23 @@ export function decode_frame(bytes: Uint8Array): Frame {
     truth: truth && {
       pose: pose(truth.pose()),
       obstacle_distance: truth.obstacleDistance(),
-      collided: truth.collided(),
+      collided: f.collided(),
     },
-    goal: goal && set_goal(goal),
-    hold: kHolds[f.hold()] ?? "none",
-    mission: kMissions[f.mission()] ?? "idle",
-    behaviour: kBehaviours[f.behaviour()] ?? "rest",
-    clearance: f.clearance(),
-    strip: list(f.stripLength(), (i) => {
-      const n = f.strip(i)!;
-      return {
-        position: point(n.position()),
-        internal: point(n.internal()),
-        external: point(n.external()),
-      };
-    }),
-    pass: pass && point(pass),
+    goal: goal && { ...point(goal), heading: f.goalHeading() },
+    hold: kHolds[decision?.hold() ?? 0] ?? "none",
+    mission: kMissions[decision?.mission() ?? 0] ?? "idle",
+    behaviour: kBehaviours[decision?.behaviour() ?? 0] ?? "rest",
+    clearance: decision?.clearance() ?? 0,
+    strip,
+    pass: strip.length > 1 ? strip[1].position : null,
     left: nearest(f.left()),
     right: nearest(f.right()),
-    external_left: point(f.externalLeft()),
-    external_right: point(f.externalRight()),
-    elastic: point(f.elastic()),
-    side: f.side(),
-    what: f.what() ?? "",
-    why: f.why() ?? "",
+    external_left: left,
+    external_right: right,
+    elastic: { x: internal.x + external.x, y: internal.y + external.y },
+    side: decision?.side() ?? 0,
+    side_since: f.sideSince(),
+    newest_scan: f.newestScan(),
   };
 }
 

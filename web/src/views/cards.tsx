@@ -3,11 +3,12 @@
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app } from "../app";
+import { explain } from "../explain";
 import { Frame } from "../link/frame";
 import { use_pulse, use_store } from "../state/store";
 import { link_words } from "../words";
 
-/** What the robot is doing, and why, with the numbers; from the frame itself. */
+/** What the robot is doing, and why, with the numbers. */
 export function Explain(): JSX.Element | null {
   const app = use_app();
   use_pulse(150);
@@ -31,13 +32,11 @@ function explain_words(f: Frame | null, drives: boolean, paused: boolean, known:
     return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
       why: paused ? "Press play to begin." : "", tone: "muted" };
   }
-  if (!drives) return { what: "Replaying the log", why: f.why, tone: "accent" };
-  if (f.what === "" && f.mission === "idle" && drives) {
-    return { what: "Waiting for a goal", why: "Press where the robot should go; drag to say which way it should face.", tone: "muted" };
-  }
+  const said = explain(f);
+  if (!drives) return { what: "Replaying the log", why: said.why, tone: "accent" };
   const tone = f.hold !== "none" || f.mission === "held" ? "bad"
     : f.mission === "stuck" ? "warn" : f.mission === "arrived" ? "ok" : "accent";
-  return { what: f.what || "Replaying the log", why: f.why, tone };
+  return { ...said, tone };
 }
 
 /** A strip across the top of the scene for what must not be missed. */

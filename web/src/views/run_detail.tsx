@@ -7,6 +7,7 @@ import { Metrics, RunItem } from "../contract";
 import { Ghost } from "../draw/scene";
 import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
+import { explain } from "../explain";
 import { Bounds, include } from "../geometry";
 import { Player } from "../link/player";
 import * as rest from "../link/rest";
@@ -17,7 +18,7 @@ import { SceneCanvas } from "../ui/canvas";
 import { Dialog, Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
-import { clock, driver_word, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
+import { clock, driver_word, fixed, run_word, sentence_of, speed_word, titled } from "../words";
 import { Lanes } from "./lanes";
 import { typing } from "./keys";
 
@@ -180,15 +181,15 @@ function Opened(props: {
   );
 }
 
-/** What the robot did and why at the shown instant, in the record's own words. */
+/** What the robot did and why at the shown instant. */
 function Instant(props: { run: StoredRun }): JSX.Element | null {
   const f = props.run.scene.frame;
   if (!f) return null;
-  const state = frame_word(f);
+  const said = explain(f);
   return (
     <div class={`card explain tone-${f.hold !== "none" ? "bad" : "accent"}`} data-testid="run-explain">
-      <b>{props.run.scene.world && f.what ? f.what : props.run.scene.world ? state.word : "Replaying the log"}</b>
-      {f.why && <span>{f.why}</span>}
+      <b>{props.run.scene.world ? said.what : "Replaying the log"}</b>
+      {said.why && <span>{said.why}</span>}
     </div>
   );
 }

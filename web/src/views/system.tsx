@@ -56,6 +56,7 @@ export function System(): JSX.Element {
           ["Limits", `${fixed(session.robot.max_v, 2)} m/s, ${fixed(session.robot.max_omega, 2)} rad/s`],
           ["Seed", String(session.seed)],
           ["Lost ticks", String(session.lost_ticks)],
+          ["Missed periods", String(session.missed_periods)],
         ]} />
       </section>}
       <section class="card block keys-block">

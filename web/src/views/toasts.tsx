@@ -2,6 +2,7 @@
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_app } from "../app";
+import { explain } from "../explain";
 import { use_pulse, use_store } from "../state/store";
 import { icons } from "../ui/icons";
 import { state_word } from "../words";
@@ -30,7 +31,8 @@ export function Spoken(): JSX.Element {
   const word = state_word(app.scene.frame, session, link.phase === "open").word;
   const last = useRef(word);
   useEffect(() => {
-    if (last.current !== word) app.say(`${word}. ${app.scene.frame?.what ?? ""}`);
+    const frame = app.scene.frame;
+    if (last.current !== word) app.say(`${word}. ${frame ? explain(frame).what : ""}`);
     last.current = word;
   }, [word]);
   return <div class="spoken" aria-live="polite">{spoken}</div>;

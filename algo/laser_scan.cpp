@@ -1,0 +1,38 @@
+// algo/laser_scan.cpp: a whole scan as its wire values, written so that it vectorises.
+#include "algo/laser_scan.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace algo {
+namespace {
+
+/// Ranges as if all were distances. The sum leaves no room for a fraction and has the integer in
+/// its low bits; the clamps turn a NaN into 0.
+void ranges_to_wire(const double* ranges, std::size_t count, std::uint16_t* out) {
+  constexpr double kMax = kWireMaxRange;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double mm = ranges[i] * 1000.0;
+    const double positive = mm > 0 ? mm : 0;
+    const double clipped = positive < kMax ? positive : kMax;
+    out[i] = static_cast<std::uint16_t>(std::bit_cast<std::uint64_t>(clipped + 0x1p52));
+  }
+}
+
+}  // namespace
+
+void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out) {
+  ranges_to_wire(scan.ranges.data(), scan.size(), out.data());
+  // Few beams carry none: eight are looked at together.
+  constexpr std::size_t kTogether = sizeof(std::uint64_t);
+  for (std::size_t first = 0; first < scan.size(); first += kTogether) {
+    const std::size_t last = std::min(first + kTogether, scan.size());
+    std::uint64_t together = 0;
+    std::memcpy(&together, scan.status.data() + first, last - first);
+    static_assert(static_cast<int>(Beam::Ok) == 0);
+    for (std::size_t i = first; together != 0 && i < last; ++i) out[i] = beam_to_wire(scan, i);
+  }
+}
+
+}  // namespace algo
