@@ -148,9 +148,26 @@ void FullStripController::sense(const ControlInput& in) {
   const Pose2 sensor_W = compose(middle, scan.mount_R);
   tracker_.update(scan, sensor_W, points_W_, scan.stamp);
   map_.insert(scan, sensor_W, points_W_, tracker_);
+  forget_traces(in);
+}
+
+/// Frees the map of what cannot stand there: on the way of something found moving, and inside the
+/// robot's own hull, which nothing looks at.
+void FullStripController::forget_traces(const ControlInput& in) {
   for (const Track& track : tracker_.just_found()) {
-    map_.erase(track.position_W, track.radius + kTrace);
+    const Vec2 way_W = track.velocity_W * track.age;
+    const double length = way_W.norm();
+    const double reach = track.radius + kTrace;
+    map_.erase_near(track.position_W, reach + length, [&](const Vec2& point_W) {
+      const Vec2 d = point_W - track.position_W;
+      const double back = length > 0 ? std::clamp(-d.dot(way_W) / (length * length), 0.0, 1.0) : 0;
+      return (d + back * way_W).squaredNorm() < reach * reach;
+    });
   }
+  const Pose2& here = in.odometry.pose;
+  map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
+    return stage_.hull().covers(here, point_W);
+  });
 }
 
 /// The deliberative layer: one piece of a search each tick, a new search every kPlanEvery.

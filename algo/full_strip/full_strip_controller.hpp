@@ -30,6 +30,7 @@ class FullStripController final : public Controller {
   void prepare(const ControlInput& in, const Parameters& parameters);
   void aim_beams(const LaserScan& scan);
   void sense(const ControlInput& in);
+  void forget_traces(const ControlInput& in);
   void plan(const ControlInput& in);
   void take_plan(const ControlInput& in);
   void stretch(const ControlInput& in);

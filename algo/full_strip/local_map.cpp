@@ -216,14 +216,9 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   }
 }
 
-void LocalMap::erase(const Vec2& centre_W, double radius) {
-  std::size_t kept = 0;
-  for (const std::uint32_t cell : active_) {
-    const bool within = (mean_W(cell) - centre_W).squaredNorm() < radius * radius;
-    if (within && !weaken(cell, kMost)) continue;
-    active_[kept++] = cell;
-  }
-  active_.resize(kept);
+/// Leaves the cell without hits in the list of active ones, from which look_through() drops it.
+void LocalMap::clear(std::size_t cell) {
+  weaken(cell, kMost);
 }
 
 void LocalMap::age() {

@@ -40,8 +40,21 @@ class LocalMap {
               const Pose2& sensor_W,
               const std::vector<Vec2>& points_W,
               const Tracker& tracker);
-  /// Frees the disc about `centre_W`: what stood there has begun to move.
-  void erase(const Vec2& centre_W, double radius);
+  /// Frees each occupied or suspected cell of the square of half edge `reach` [m] about `p_W` for
+  /// which `free(point_W)` holds: where the robot itself stands, or what has begun to move.
+  template <typename Free>
+  void erase_near(const Vec2& p_W, double reach, Free&& free) {
+    const int x0 = std::max(0, column_of(p_W.x() - reach));
+    const int x1 = std::min(kSize - 1, column_of(p_W.x() + reach));
+    const int y0 = std::max(0, row_of(p_W.y() - reach));
+    const int y1 = std::min(kSize - 1, row_of(p_W.y() + reach));
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        const std::size_t cell = index(x, y);
+        if (hits_[cell] > 0 && free(mean_W(cell))) clear(cell);
+      }
+    }
+  }
 
   /// [m] From `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
   double distance(const Vec2& p_W) const;
@@ -101,6 +114,7 @@ class LocalMap {
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
   void age();
   bool weaken(std::size_t cell, int by);
+  void clear(std::size_t cell);
   void stamp(int column, int row, int left, int bottom, int right, int top);
   void soil(std::size_t cell);
   void rebuild_soiled();

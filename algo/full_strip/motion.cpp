@@ -31,6 +31,17 @@ double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
   return coarse < kExact ? exact(map, pose_W) : coarse;
 }
 
+/// [m] From the hull with its nose along `ahead` to the point at `d` from its centre.
+double HullCheck::outside(const Vec2& d, const Vec2& ahead) const {
+  if (half_length_ <= 0) return d.norm() - radius_;
+  const double dx = std::abs(ahead.dot(d)) - half_length_;
+  const double dy = std::abs(ahead.x() * d.y() - ahead.y() * d.x()) - half_width_;
+  if (dx <= 0 && dy <= 0) return std::max(dx, dy);
+  const double x = std::max(dx, 0.0);
+  const double y = std::max(dy, 0.0);
+  return std::sqrt(x * x + y * y);
+}
+
 double HullCheck::exact(const LocalMap& map, const Pose2& pose_W) const {
   const Vec2 ahead = direction(pose_W.heading);
   const Vec2 centre = pose_W.position();
@@ -38,20 +49,14 @@ double HullCheck::exact(const LocalMap& map, const Pose2& pose_W) const {
   const double reach = radius_ + kExact + LocalMap::kCell;
   double least = kExact + LocalMap::kCell;
   map.each_near(centre, reach, [&](const Vec2& point_W) {
-    const Vec2 d = point_W - centre;
-    if (half_length_ <= 0) {
-      least = std::min(least, d.norm() - radius_);
-      return;
-    }
-    const double dx = std::abs(ahead.dot(d)) - half_length_;
-    const double dy = std::abs(ahead.x() * d.y() - ahead.y() * d.x()) - half_width_;
-    const bool within = dx <= 0 && dy <= 0;
-    const double out = within ? std::max(dx, dy)
-                              : std::sqrt(std::max(dx, 0.0) * std::max(dx, 0.0) +
-                                          std::max(dy, 0.0) * std::max(dy, 0.0));
-    least = std::min(least, out);
+    least = std::min(least, outside(point_W - centre, ahead));
   });
   return least;
+}
+
+bool HullCheck::covers(const Pose2& pose_W, const Vec2& point_W) const {
+  constexpr double kDepth = 0.04;  // [m]
+  return outside(point_W - pose_W.position(), direction(pose_W.heading)) < -kDepth;
 }
 
 MotionState advanced(const MotionState& state,

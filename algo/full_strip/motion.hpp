@@ -22,11 +22,14 @@ class HullCheck {
   /// [m] Free room around the hull at `pose_W`; exact where it is less than kExact, there negative
   /// when something is inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;
+  /// Whether the hull at `pose_W` stands on `point_W`, by more than what a hit may be off.
+  bool covers(const Pose2& pose_W, const Vec2& point_W) const;
 
  private:
   static constexpr double kExact = 0.12;  // [m]
   static constexpr std::size_t kMost = 7;
   double exact(const LocalMap& map, const Pose2& pose_W) const;
+  double outside(const Vec2& d, const Vec2& ahead) const;
 
   std::array<double, kMost> along_{};  // [m] centres
   std::size_t count_ = 1;

@@ -86,7 +86,7 @@ bool SpaceTimeSearch::step(
     const double room_now = room(in, now, s.motion.pose_W);
     if (room_now < 0) return false;
     if (in.map->distance(s.motion.pose_W.position()) < in.spec->radius + kStaticMargin &&
-        in.hull->clearance(*in.map, s.motion.pose_W) < kStaticMargin) {
+        in.hull->clearance(*in.map, s.motion.pose_W) < static_margin_) {
       return false;
     }
     const double lacking = 1 - room_now / kRiskReach;
@@ -131,6 +131,9 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
     const double reach = kReach + 4 * track.velocity_W.norm();
     if ((track.position_W - here).norm() < reach) near_tracks_.push_back(track);
   }
+  // Too close to something that stands already: no closer.
+  static_margin_ =
+      std::clamp(in.hull->clearance(*in.map, in.state.pose_W) - 0.002, 0.0, kStaticMargin);
   states_.assign(1, State{in.state, 0, 0, 0});
   Twist2 best{};
   std::array<bool, kCommands> alive{};

@@ -55,8 +55,8 @@ class SpaceTimeSearch {
   std::vector<std::uint32_t> bins_, bin_round_;
   std::vector<std::uint32_t> order_;
   std::uint32_t round_ = 0;
-  std::size_t near_ = 0;
   std::vector<Track> near_tracks_;
+  double static_margin_ = 0;  // [m] of this search
   bool clear_ = false;
 };
 

@@ -20,19 +20,20 @@ constexpr double kRound = 0.035;                     // [m] residual of what pas
 constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] before anything is known
 constexpr double kTrackSpread = 0.05;                          // [m] of a radius that is known
 constexpr double kNoise = 0.02;                                // [m] of a hit
-constexpr double kGate = 0.45;         // [m] a track may be off its prediction
-constexpr double kCentreNoise = 0.04;  // [m] of a fitted centre
-constexpr double kAcceleration = 0.9;  // [m/s2] that a constant velocity does not explain
-constexpr double kSurprise = 9;        // normalised innovation squared that opens the velocity
-constexpr double kFirstSpeed = 1.5;    // [m/s] standard deviation of a new track
-constexpr double kFound = 0.25;        // [s] a track is watched before it may count as moving
-constexpr double kMoves = 0.25;        // [m/s]
-constexpr double kGone = 0.12;         // [m] from where it was first seen
-constexpr double kStands = 0.12;       // [m/s] below it, for kStandsFor, it stands
-constexpr double kStandsFor = 1.0;     // [s]
-constexpr double kCoast = 3.0;         // [s] a moving track is believed unseen
-constexpr double kForget = 0.4;        // [s] any other
-constexpr int kEmpty = 3;              // scans that look through a track end it
+constexpr double kGate = 0.45;          // [m] a track may be off its prediction
+constexpr double kCentreNoise = 0.025;  // [m] of a fitted centre
+constexpr double kAcceleration = 0.5;   // [m/s2] that a constant velocity does not explain
+constexpr double kSurprise = 9;         // normalised innovation squared that opens the velocity
+constexpr double kFirstSpeed = 1.5;     // [m/s] standard deviation of a new track
+constexpr double kFound = 0.25;         // [s] a track is watched before it may count as moving
+constexpr double kMoves = 0.25;         // [m/s]
+constexpr double kGone = 0.12;          // [m] from where it was first seen
+constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it stands
+constexpr double kStandsFor = 1.0;      // [s]
+constexpr double kAround = 0.15;        // [m] about a moving circle that its hits may lie in
+constexpr double kCoast = 3.0;          // [s] a moving track is believed unseen
+constexpr double kForget = 0.4;         // [s] any other
+constexpr int kEmpty = 3;               // scans that look through a track end it
 
 }  // namespace
 
@@ -211,7 +212,7 @@ void Tracker::judge(Filter& f, double stamp) {
     f.moving = stamp - f.slow_since < kStandsFor;
     return;
   }
-  f.moving = stamp - f.born > kFound && speed > kMoves && speed > 3 * std::sqrt(f.vv) &&
+  f.moving = stamp - f.born > kFound && speed > kMoves && speed > 1.5 * std::sqrt(f.vv) &&
              (f.position_W - f.born_at_W).norm() > kGone;
   if (f.moving) {
     just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0});
@@ -250,6 +251,15 @@ void Tracker::update(const LaserScan& scan,
     return f.empty >= kEmpty || stamp - f.seen > (f.moving ? kCoast : kForget);
   });
   publish(stamp);
+  // What two things standing together show is no circle: their places count all the same.
+  for (const Track& track : moving_) {
+    const double reach = track.radius + kAround;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      const bool hit = scan.status[i] == Beam::Ok;
+      if (hit && (points_W[i] - track.position_W).squaredNorm() < reach * reach)
+        moving_beam_[i] = 1;
+    }
+  }
 }
 
 void Tracker::publish(double stamp) {

@@ -377,9 +377,8 @@ void FrameWriter::sensors() {
   }
   if (t.ground_truth) {
     const algo::GroundTruth& g = *t.ground_truth;
-    const fb::GroundTruth truth(to_float(g.pose),
-                                static_cast<float>(g.obstacle_distance),
-                                static_cast<float>(g.clearance));
+    const fb::GroundTruth truth(
+        to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
     frame.add_truth(&truth);
     frame.add_collided(g.collided);
   }

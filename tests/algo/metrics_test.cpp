@@ -17,7 +17,7 @@ struct MetricsTest : ::testing::Test {
   void at(double x, double y, double distance) {
     Telemetry t;
     t.observation.stamp = 5.0 + 0.1 * tick++;  // a run need not start at zero
-    t.ground_truth = GroundTruth{{x, y, 0}, distance, false};
+    t.ground_truth = GroundTruth{{x, y, 0}, distance, distance - spec.radius, false};
     t.clearance = distance - spec.radius;
     t.scene.left = Nearest{.beam = 200, .point_W = {x, y + distance}, .distance = distance};
     t.output.pass_W = {x + 0.2, y};
