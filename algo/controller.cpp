@@ -1,4 +1,5 @@
-// algo/controller.cpp: the table of controllers: the readings of the elastic strip.
+// algo/controller.cpp: the table of controllers: the readings of the elastic strip, then what they
+// are compared with.
 #include "algo/controller.hpp"
 
 #include <algorithm>
@@ -7,48 +8,90 @@
 #include <string>
 
 #include "algo/elastic_strip_controller.hpp"
+#include "algo/rivals/go_to_goal.hpp"
+#include "algo/rivals/potential_field.hpp"
+#include "algo/rivals/vff.hpp"
+#include "algo/rivals/vfh.hpp"
 
 namespace algo {
 namespace {
 
-constexpr std::size_t kCount = 7;
+using Made = std::unique_ptr<Controller>;
 
-constexpr std::array<ControllerInfo, kCount> kTable{{
-    {"modified",
-     "Modified strip with side choice",
-     "Both sides push, without a jump, and on a blocked line the strip chooses a side. Keeps the "
-     "most clearance; needs about 2 m between obstacles."},
-    {"original",
-     "Original strip",
-     "The nearest obstacle point pushes (Eq. 7). Gets stuck head-on and enters the safety circle."},
-    {"original_side",
-     "Original strip with side choice",
-     "As the original, and on a blocked line the strip chooses a side. Reaches the most goals, "
-     "closest to obstacles."},
-    {"modified_published",
-     "Modified strip as published",
-     "Both sides push by Eq. 13-14 as printed, limited at its pole."},
-    {"modified_linear",
-     "Modified strip, linear part",
-     "Eq. 13-14 without the second branch: nothing pushes beyond the safety distance."},
-    {"modified_c1",
-     "Modified strip, continuous",
-     "Both sides push by a law without a jump, and no side is chosen. Gets stuck head-on."},
-    {"via_kept",
-     "Modified strip, via kept",
-     "As the modified strip, and the via point of the tick before is pulled onto the line by "
-     "K_c: the only one in which K_c acts."},
-}};
+struct Entry {
+  ControllerInfo about{};
+  Made (*make)() = nullptr;
+};
 
-constexpr std::array<StripReading, kCount> kReadings{{
-    {ForceLaw::C1, Sides::Both, true, false},
-    {ForceLaw::Original, Sides::Nearest, false, false},
-    {ForceLaw::Original, Sides::Nearest, true, false},
-    {ForceLaw::Published, Sides::Both, false, false},
-    {ForceLaw::Linear, Sides::Both, false, false},
-    {ForceLaw::C1, Sides::Both, false, false},
-    {ForceLaw::C1, Sides::Both, true, true},
-}};
+template <ForceLaw law, Sides sides, bool choose_side, bool keep_via = false>
+Made strip() {
+  return std::make_unique<ElasticStripController>(StripReading{law, sides, choose_side, keep_via});
+}
+
+template <typename Type>
+Made rival() {
+  return std::make_unique<Type>();
+}
+
+constexpr auto kEntries = std::to_array<Entry>({
+    {{"modified",
+      "Modified strip with side choice",
+      "Both sides push, without a jump, and on a blocked line the strip chooses a side. Keeps the "
+      "most clearance; needs about 2 m between obstacles."},
+     strip<ForceLaw::C1, Sides::Both, true>},
+    {{"original",
+      "Original strip",
+      "The nearest obstacle point pushes (Eq. 7). Gets stuck head-on and enters the safety "
+      "circle."},
+     strip<ForceLaw::Original, Sides::Nearest, false>},
+    {{"original_side",
+      "Original strip with side choice",
+      "As the original, and on a blocked line the strip chooses a side. Reaches the most goals, "
+      "closest to obstacles."},
+     strip<ForceLaw::Original, Sides::Nearest, true>},
+    {{"modified_published",
+      "Modified strip as published",
+      "Both sides push by Eq. 13-14 as printed, limited at its pole."},
+     strip<ForceLaw::Published, Sides::Both, false>},
+    {{"modified_linear",
+      "Modified strip, linear part",
+      "Eq. 13-14 without the second branch: nothing pushes beyond the safety distance."},
+     strip<ForceLaw::Linear, Sides::Both, false>},
+    {{"modified_c1",
+      "Modified strip, continuous",
+      "Both sides push by a law without a jump, and no side is chosen. Gets stuck head-on."},
+     strip<ForceLaw::C1, Sides::Both, false>},
+    {{"via_kept",
+      "Modified strip, via kept",
+      "As the modified strip, and the via point of the tick before is pulled onto the line by "
+      "K_c: the only one in which K_c acts."},
+     strip<ForceLaw::C1, Sides::Both, true, true>},
+    {{"go_to_goal",
+      "Straight to the goal",
+      "Sees nothing and drives at the goal: what every other controller must do better than."},
+     rival<GoToGoal>},
+    {{"potential_field",
+      "Potential field",
+      "The goal pulls, each obstacle pushes from its nearest point (Khatib 1986). Comes to rest "
+      "where they cancel."},
+     rival<PotentialField>},
+    {{"vff",
+      "Virtual force field",
+      "Cells that returned readings push, the goal pulls (Borenstein and Koren 1989). Comes to "
+      "rest where they cancel."},
+     rival<Vff>},
+    {{"vfh",
+      "Vector field histogram",
+      "Steers through the free valley of a polar histogram nearest to the goal (Borenstein and "
+      "Koren 1991)."},
+     rival<Vfh>},
+});
+
+constexpr auto kTable = [] {
+  std::array<ControllerInfo, kEntries.size()> table{};
+  std::ranges::transform(kEntries, table.begin(), &Entry::about);
+  return table;
+}();
 
 }  // namespace
 
@@ -57,8 +100,8 @@ std::span<const ControllerInfo> controller_table() {
 }
 
 std::unique_ptr<Controller> make_controller(std::string_view name) {
-  for (std::size_t i = 0; i < kCount; ++i) {
-    if (kTable[i].name == name) return std::make_unique<ElasticStripController>(kReadings[i]);
+  for (const Entry& entry : kEntries) {
+    if (entry.about.name == name) return entry.make();
   }
   std::string known;
   for (const ControllerInfo& each : kTable) {

@@ -51,6 +51,7 @@ std::string_view name(BehaviourId behaviour) {
 
 void ControlOutput::clear() {
   twist = {};
+  manner = Manner::None;
   strip.clear();
   internal_W = {0, 0};
   external_left_W = {0, 0};

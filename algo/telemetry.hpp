@@ -60,9 +60,25 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
+/// What a controller without a strip is about, for the sentences of explain().
+enum class Manner : std::uint8_t {
+  None,        // a strip speaks by its forces
+  ToGoal,      // straight, whatever is in between
+  TakingScan,  // standing still to look
+  ToEdge,      // past the edge of an obstacle
+  Pushed,      // the way is the sum of pull and pushes
+  Planned,     // along plan_W
+  NoPlan,      // no way over the grid
+  Valley,      // through a free valley of the histogram
+  Walled,      // no sector is free
+  Window,      // the chosen one of the candidates
+  NoWindow,    // no candidate is allowed
+};
+
 /// What a controller decided and why.
 struct ControlOutput {
   Twist2 twist{};
+  Manner manner = Manner::None;
   Recycled<Node> strip{};  // start .. end; the second is the pass point
   Vec2 internal_W{0, 0};   // [m] F_int at the via point
   Vec2 external_left_W{0, 0};
