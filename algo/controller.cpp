@@ -8,6 +8,9 @@
 #include <string>
 
 #include "algo/elastic_strip_controller.hpp"
+#include "algo/rivals/certainty_grid.hpp"
+#include "algo/rivals/dwa.hpp"
+#include "algo/rivals/edge_detection.hpp"
 #include "algo/rivals/go_to_goal.hpp"
 #include "algo/rivals/potential_field.hpp"
 #include "algo/rivals/vff.hpp"
@@ -70,11 +73,21 @@ constexpr auto kEntries = std::to_array<Entry>({
       "Straight to the goal",
       "Sees nothing and drives at the goal: what every other controller must do better than."},
      rival<GoToGoal>},
+    {{"edge_detection",
+      "Edge detection",
+      "Stops before an obstacle, looks for its edges and drives past one of them (as in Borenstein "
+      "and Koren 1988)."},
+     rival<EdgeDetection>},
     {{"potential_field",
       "Potential field",
       "The goal pulls, each obstacle pushes from its nearest point (Khatib 1986). Comes to rest "
       "where they cancel."},
      rival<PotentialField>},
+    {{"certainty_grid",
+      "Certainty grid with A*",
+      "Maps what is surely empty or occupied (Moravec and Elfes 1985) and follows the least-cost "
+      "path over the map."},
+     rival<CertaintyGridPlanner>},
     {{"vff",
       "Virtual force field",
       "Cells that returned readings push, the goal pulls (Borenstein and Koren 1989). Comes to "
@@ -85,6 +98,11 @@ constexpr auto kEntries = std::to_array<Entry>({
       "Steers through the free valley of a polar histogram nearest to the goal (Borenstein and "
       "Koren 1991)."},
      rival<Vfh>},
+    {{"dwa",
+      "Dynamic window",
+      "Of the speeds it can reach and stop, takes the best by heading, clearance and speed (Fox, "
+      "Burgard and Thrun 1997). Knows no way but the arc ahead."},
+     rival<Dwa>},
 });
 
 constexpr auto kTable = [] {

@@ -261,7 +261,8 @@ TEST_P(EveryController, StaysWithinItsSpeeds) {
 }
 
 TEST_P(EveryController, ParametersActAtOnce) {
-  Situation s({-0.8, 0, 0});  // far enough for all of them to drive on
+  Situation s({-0.8, 0, 0});     // far enough for all of them to drive on
+  s.spec.max_acceleration = 10;  // nor does any have to get up speed first
   const auto controller = make();
   ControlOutput slow;
   ControlOutput fast;
@@ -319,9 +320,12 @@ TEST(ControllerTable, HoldsTheReadingsWithLabelAndHelp) {
                                         "modified",
                                         "via_kept",
                                         "go_to_goal",
+                                        "edge_detection",
                                         "potential_field",
+                                        "certainty_grid",
                                         "vff",
-                                        "vfh"};
+                                        "vfh",
+                                        "dwa"};
   const auto all = names();
   EXPECT_EQ(std::set<std::string>(all.begin(), all.end()), wanted);
   EXPECT_EQ(all.size(), wanted.size());
