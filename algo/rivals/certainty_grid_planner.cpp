@@ -35,8 +35,14 @@ GridCell CertaintyGridPlanner::place(Cell c) const {
   return {c.i - grid_.first().i, c.j - grid_.first().j};
 }
 
+/// Whether the robot stands where no path may lead.
+bool CertaintyGridPlanner::too_near(const Vec2& robot_W) const {
+  const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
+  return view.blocked(place(grid_.cell_of(robot_W)));
+}
+
 /// 1 in the open, more near occupied cells, blocked where the hull of `radius` would touch them.
-void CertaintyGridPlanner::fill_costs(const Vec2& robot_W, double radius) {
+void CertaintyGridPlanner::fill_costs(double radius) {
   constexpr int kSide = CertaintyGrid::kSide;
   constexpr double kCell = CertaintyGrid::kCell;
   const double hard = radius + kMargin;
@@ -56,28 +62,34 @@ void CertaintyGridPlanner::fill_costs(const Vec2& robot_W, double radius) {
       }
     }
   };
-  const auto occupied = [&](GridCell c) {
-    return grid_.certainty({first.i + c.column, first.j + c.row}) >= kOccupied;
-  };
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
-      if (occupied({column, row})) spread({column, row});
+      const Cell cell{first.i + column, first.j + row};
+      if (grid_.certainty(cell) >= kOccupied) spread({column, row});
     }
   }
-  // Too near already: there must be a way out.
+}
+
+/// Cells under the robot that are too near to something, but not occupied, may be crossed.
+void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
+  constexpr int kSide = CertaintyGrid::kSide;
+  const CostGrid view{kSide, kSide, costs_};
+  const Cell first = grid_.first();
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
       float& cost = costs_[view.index({column, row})];
-      const Vec2 centre = grid_.centre({first.i + column, first.j + row});
-      const bool under = (centre - robot_W).norm() < kWayOut;
-      if (cost < 1 && under && !occupied({column, row})) cost = kWayOutCost;
+      const Cell cell{first.i + column, first.j + row};
+      const bool under = (grid_.centre(cell) - robot_W).norm() < kWayOut;
+      if (cost < 1 && under && grid_.certainty(cell) < kOccupied) cost = kWayOutCost;
     }
   }
 }
 
 void CertaintyGridPlanner::plan(const ControlInput& in) {
   const Vec2 p = in.odometry.pose.position();
-  fill_costs(p, in.spec->radius);
+  fill_costs(in.spec->radius);
+  const bool trapped = too_near(p);
+  if (trapped) open_way_out(p);
   Vec2 aim = goal_W(in);
   const double farthest = (CertaintyGrid::kSide / 2 - 1) * CertaintyGrid::kCell;
   const double over = (aim - p).cwiseAbs().maxCoeff() / farthest;
@@ -86,6 +98,8 @@ void CertaintyGridPlanner::plan(const ControlInput& in) {
   reaches_ = search_.find(view, place(grid_.cell_of(p)), place(grid_.cell_of(aim)));
   path_W_.clear();
   path_W_.push_back(p);
+  // Out of too narrow a place only to the goal: the place nearest to it could be a wall.
+  if (trapped && !reaches_) return;
   const auto path = search_.path();
   for (std::size_t k = 1; k < path.size(); ++k) {
     const Cell first = grid_.first();

@@ -16,11 +16,11 @@ constexpr double kInterval = 0.25;  // [s] the paper's control interval
 constexpr int kSpeeds = 9;          // [D] samples of the window
 constexpr int kTurns = 21;          // [D]
 constexpr double kMargin = 0.05;    // [m] [D] kept beyond the hull
-constexpr double kFarthest = 2.0;   // [m] [D] more room than this is no better
+constexpr double kFarthest = 3.0;   // [m] [D] more room than this is no better
 constexpr double kShown = 1.5;      // [s] [D] of each candidate that is drawn
-constexpr double kHeadingWeight = 0.8;
-constexpr double kRoomWeight = 0.1;
-constexpr double kSpeedWeight = 0.1;
+constexpr double kHeadingWeight = 0.4;
+constexpr double kRoomWeight = 0.4;
+constexpr double kSpeedWeight = 0.2;
 constexpr std::size_t kBearings = 180;
 
 double full_turn(double angle) {
@@ -61,11 +61,11 @@ double disc_turn(double radius, const Vec2& c, const Vec2& q, double sign) {
 /// of the places where the point's circle crosses the rectangle's edges.
 double box_turn(const Hull& hull, const Vec2& c, const Vec2& q, double sign) {
   const double square = q.squaredNorm();
-  const double bearing = std::atan2(q.y(), q.x());
   double least = kInf;
   const auto cross = [&](double x, double y) {  // (x, y) seen from c
     const bool on_edge = std::abs(x) <= hull.half_length && std::abs(y + c.y()) <= hull.half_width;
-    if (on_edge) least = std::min(least, full_turn(sign * (bearing - std::atan2(y, x))));
+    if (!on_edge) return;
+    least = std::min(least, full_turn(sign * (std::atan2(q.y(), q.x()) - std::atan2(y, x))));
   };
   const double end_square = square - hull.half_length * hull.half_length;
   if (end_square >= 0) {

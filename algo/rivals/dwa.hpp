@@ -47,9 +47,10 @@ DynamicWindow dynamic_window(const Twist2& now,
                              const RobotSpec& spec,
                              const Parameters& parameters);
 
-/// G = 0.8 heading + 0.1 dist + 0.1 velocity [D], each of 0..1. heading = 1 - |angle to the goal| /
+/// G = 0.4 heading + 0.4 dist + 0.2 velocity [D], each of 0..1. heading = 1 - |angle to the goal| /
 /// pi at the pose the twist leads to in one interval and then braking the turn; dist the room, 1
-/// from 2 m on [D]; velocity = v / v_max. The paper smooths the sum over the window; this does not.
+/// from 3 m on [D]; velocity = v / v_max. The paper smooths the sum over the window; this does not.
+/// With most of the weight on the heading, the robot stops facing a post on its line.
 double dwa_objective(const Pose2& pose_W,
                      const Vec2& goal_W,
                      const Twist2& twist,

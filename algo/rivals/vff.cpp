@@ -1,6 +1,7 @@
 // algo/rivals/vff.cpp: the forces, the speed, and one tick.
 #include "algo/rivals/vff.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace algo {
@@ -9,6 +10,9 @@ namespace {
 // [D] A post of six certain cells face-on balances the goal at sqrt(6 15 F_cr / F_ct) = 6.7 cells.
 constexpr double kRepulsion = 0.5;   // F_cr
 constexpr double kAttraction = 1.0;  // F_ct
+// [D] Share of v_max that is always left. The law stands still before the faintest push from
+// straight ahead, for good: nothing else then changes.
+constexpr double kCreep = 0.1;
 
 }  // namespace
 
@@ -47,7 +51,8 @@ void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const VffForces forces = vff_forces(grid_, pose.position(), goal_W(in), kRepulsion, kAttraction);
   const Vec2 sum = forces.sum();
   if (!(sum.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
-  const double speed = vff_speed(forces.repulsion, pose.heading, parameters[Parameter::MaxSpeed]);
+  const double v_max = parameters[Parameter::MaxSpeed];
+  const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
   steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);
 }
 
