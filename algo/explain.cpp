@@ -28,7 +28,7 @@ const Nearest* nearest_of(const Telemetry& t) {
 
 std::string surroundings(const Telemetry& t) {
   const Nearest* nearest = nearest_of(t);
-  if (nearest == nullptr) return "The scanner sees nothing within range.";
+  if (nearest == nullptr) return "Nothing is seen within range.";
   return format("The nearest return is %.2f m from the robot's centre.", nearest->distance);
 }
 
@@ -39,6 +39,10 @@ Explanation explain_hold(const Telemetry& t) {
     case Hold::Bumper:
       return {"Touching something", "The bumper is pressed. Back away by hand, or reset."};
     case Hold::StaleScan: {
+      if (t.scene.scan.size() == 0 && !t.scene.echoes.empty()) {
+        return {"Waiting for the sonar",
+                "No new reading comes, or the controller cannot do without a laser."};
+      }
       const double age = t.observation.stamp - t.scene.scan.stamp;
       if (t.scene.scan.size() == 0) {
         return {"Waiting for the laser", "No scan has come yet. The robot waits."};

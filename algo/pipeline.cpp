@@ -30,6 +30,9 @@ Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
     : spec_(spec), filter_kind_(config.filter), initial_parameters_(config.parameters) {
   coordinator_.add(std::make_unique<ManualBehaviour>());
   coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
+  by_sonar_ = !spec.has_laser && std::ranges::any_of(controller_table(), [&](const auto& about) {
+    return about.by_sonar && about.name == config.controller;
+  });
   reset({});
 }
 
@@ -108,7 +111,9 @@ void Pipeline::sense(Telemetry& t) {
     t.scene.scan.resize(scene_.scan.size());
     t.scene.scan.stamp = scene_.scan.stamp;
   }
+  if (!spec_.has_laser) sense_sonar(t);
   t.scene.fresh = scene_.fresh;
+  t.scene.echoes = scene_.echoes;
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
 
@@ -118,6 +123,23 @@ void Pipeline::sense(Telemetry& t) {
     clearance_ = (nearest ? nearest->distance : scene_.scan.range_max) - spec_.radius;
   }
   t.clearance = clearance_;
+}
+
+/// A controller that needs a scanner is held: only those that drive by sonar let its stamps count.
+void Pipeline::sense_sonar(Telemetry& t) {
+  const Observation& observation = t.observation;
+  const Vec2 p = observation.odometry.pose.position();
+  perceive(observation.odometry.pose, observation.sonar, scene_);
+  double nearest = 0;
+  for (const RangeReading& reading : observation.sonar) {
+    if (by_sonar_ && reading.status != Beam::Invalid) scan_stamp_ = reading.stamp;
+    nearest = std::max(nearest, reading.range_max);
+  }
+  if (observation.sonar.empty()) return;
+  for (const Echo& echo : scene_.echoes) {
+    if (echo.hit) nearest = std::min(nearest, (echo.point_W - p).norm());
+  }
+  clearance_ = nearest - spec_.radius;
 }
 
 bool Pipeline::manual() const {

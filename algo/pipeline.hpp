@@ -39,6 +39,7 @@ class Pipeline {
  private:
   void apply(const Request& request);
   void sense(Telemetry& t);
+  void sense_sonar(Telemetry& t);
   void control(Telemetry& t);
   void hold(Telemetry& t);
   bool manual() const;
@@ -51,8 +52,9 @@ class Pipeline {
   BehaviourCoordinator coordinator_{};
   Sequencer sequencer_{};
   Scene scene_{};
-  std::optional<double> scan_stamp_{};
-  double clearance_ = 0;  // [m] of the newest scan
+  bool by_sonar_ = false;               // the ring stands in for the scanner
+  std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
+  double clearance_ = 0;                // [m] of the newest scan
   Joystick joystick_{};
   std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
   bool stopped_ = false;

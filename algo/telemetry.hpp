@@ -22,12 +22,24 @@ struct Nearest {
   bool operator==(const Nearest&) const = default;
 };
 
+/// The newest reading of one sonar of a ring.
+struct Echo {
+  Pose2 mount_R{};
+  double stamp = 0;    // [s] run clock
+  bool hit = false;    // something was in range
+  Vec2 point_W{0, 0};  // on the axis; meaningful only with a hit
+  bool operator==(const Echo&) const = default;
+};
+
 /// What perception makes of the newest scan. `scan` is filtered and may be older than this tick.
+/// On a robot without a scanner `echoes` stands in for it; left and right are then the nearest
+/// echoes, and their beam counts the sonars.
 struct Scene {
   LaserScan scan{};
   bool fresh = false;  // a new scan came this tick
   std::optional<Nearest> left{};
   std::optional<Nearest> right{};
+  Recycled<Echo> echoes{};  // one a sonar, as they first came; empty on a robot with a scanner
 };
 
 /// One control point of the strip. Forces are displacements [m].
@@ -42,7 +54,7 @@ enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
 
 /// A controller's grid as people see it: row-major from its corner, one byte a cell.
 struct GridLayer {
-  static constexpr std::uint8_t kUnknown = 255;  // else 0 free .. 254 occupied
+  static constexpr std::uint8_t kUnknown = 255;  // else 0 free, 127 even, 254 occupied
   Vec2 corner_W{0, 0};                           // [m] outer corner of cell (0, 0)
   double cell = 0;                               // [m] edge
   std::uint32_t columns = 0;                     // along W's x

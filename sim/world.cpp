@@ -49,6 +49,14 @@ std::uint32_t counts(double angle, double per_turn) {
 
 }  // namespace
 
+bool has_laser(const Scenario& scenario) {
+  // A scanner that looks back says nothing about the way ahead.
+  const bool looks_ahead = std::ranges::any_of(scenario.lasers, [](const LaserConfig& laser) {
+    return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
+  });
+  return looks_ahead || !scenario.sonar;
+}
+
 World::World(const Scenario& scenario, std::uint64_t seed)
     : scenario_(scenario), seed_(seed), parameters_(vehicle_of(scenario)) {
   check();
@@ -63,6 +71,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
            .editable = true,
            .paceable = true,
            .drives = true};
+  spec_.has_laser = has_laser(scenario_);
   start();
 }
 
@@ -94,6 +103,11 @@ void World::start() {
   for (const LaserConfig& config : scenario_.lasers) {
     lasers_.emplace_back(config, seed_, static_cast<std::uint32_t>(lasers_.size()));
     memory = std::max(memory, lasers_.back().memory());
+  }
+  sonar_.reset();
+  if (scenario_.sonar) {
+    sonar_.emplace(*scenario_.sonar, parameters_.radius, seed_);
+    memory = std::max(memory, scenario_.sonar->ping);
   }
   const Substeps substeps(scenario_.period);
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
@@ -131,6 +145,7 @@ void World::sense(algo::Observation& observation) {
   for (LaserModel& laser : lasers_) {
     if (!laser.sense(now, *trail_, observation.scans.append())) observation.scans.pop_back();
   }
+  if (sonar_) sonar_->sense(now, *trail_, observation.sonar);
 }
 
 /// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
@@ -209,6 +224,7 @@ std::optional<std::string> World::add(const algo::Obstacle& obstacle) {
   obstacles_.add(obstacle);
   vehicle_->added(obstacle);
   for (LaserModel& laser : lasers_) laser.add(obstacle);
+  if (sonar_) sonar_->add(obstacle);
   return std::nullopt;
 }
 
@@ -221,6 +237,7 @@ std::optional<std::string> World::move(std::uint32_t id, const algo::Pose2& pose
   obstacles_.move(*index, pose_W);
   vehicle_->moved(*index, obstacle);
   for (LaserModel& laser : lasers_) laser.move(id, pose_W);
+  if (sonar_) sonar_->move(id, pose_W);
   return std::nullopt;
 }
 
@@ -230,6 +247,7 @@ std::optional<std::string> World::remove(std::uint32_t id) {
   obstacles_.remove(*index);
   vehicle_->removed(*index);
   for (LaserModel& laser : lasers_) laser.remove(id);
+  if (sonar_) sonar_->remove(id);
   return std::nullopt;
 }
 

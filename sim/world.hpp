@@ -13,6 +13,7 @@
 #include "sim/pacer.hpp"
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
+#include "sim/sonar_model.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -55,6 +56,7 @@ class World final : public algo::Robot {
   ObstacleSet obstacles_{};
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<LaserModel> lasers_{};
+  std::optional<SonarModel> sonar_{};
   std::unique_ptr<PoseTrail> trail_{};
   algo::Odometry odometry_{};
   algo::Encoders encoders_{};

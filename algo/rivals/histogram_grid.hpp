@@ -52,8 +52,11 @@ class HistogramGrid {
     }
   }
 
+  /// A cell that returned nothing is unknown: the grid knows no free ones.
   void show(GridLayer& layer) const {
-    cells_.show(layer, [](std::uint8_t c) { return static_cast<std::uint8_t>(c * 254 / 15); });
+    cells_.show(layer, [](std::uint8_t c) {
+      return c == 0 ? GridLayer::kUnknown : static_cast<std::uint8_t>(127 + c * 127 / kCertain);
+    });
   }
 
  private:

@@ -54,7 +54,9 @@ void nearest_points(const ControlInput& in, std::vector<Vec2>& points_W) {
   const Pose2& pose = in.odometry.pose;
   NearestOfEach groups(pose.position(), points_W);
   if (lacks_laser(*in.scene)) {
-    for_each_return(in, [&](const Vec2& point_W) { groups.add(point_W, true); });
+    for (const Echo& echo : in.scene->echoes) {
+      if (echo.hit) groups.add(echo.point_W, true);
+    }
     return;
   }
   const LaserScan& scan = in.scene->scan;
