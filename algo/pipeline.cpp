@@ -20,6 +20,10 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
+constexpr double kGridPeriod = 0.5;  // [s] between two grids in the telemetry, which are large
+constexpr double kGridRefresh =
+    5.0;  // [s] after which an unchanged one comes again, for latecomers
+
 bool within_unit(double axis) {
   return axis >= -1.0 && axis <= 1.0;
 }  // false for NaN
@@ -45,6 +49,7 @@ void Pipeline::reset(const Pose2& start_W) {
   clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
+  grid_shown_at_.reset();
   stopped_ = false;
   tick_ = 0;
 }
@@ -75,6 +80,7 @@ void Pipeline::tick(Telemetry& t) {
   sense(t);    // filter the newest scan, find the nearest return of each side
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
+  thin_grid(t);
 }
 
 void Pipeline::apply(const Request& request) {
@@ -176,6 +182,23 @@ void Pipeline::hold(Telemetry& t) {
   t.command = {};
   sequencer_.interrupt();
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
+}
+
+/// People need a grid twice a second, and only when it is another.
+void Pipeline::thin_grid(Telemetry& t) {
+  GridLayer& grid = t.output.grid;
+  if (grid.cells.empty()) return;
+  const double age = t.observation.stamp - grid_shown_at_.value_or(-kGridRefresh);
+  // Written so that a stamp that is not a number lets it pass.
+  const bool due = !(age < kGridPeriod) && (!(age < kGridRefresh) || !(grid == shown_grid_));
+  if (due) {
+    shown_grid_ = grid;
+    grid_shown_at_ = t.observation.stamp;
+    return;
+  }
+  grid.columns = 0;
+  grid.rows = 0;
+  grid.cells.clear();
 }
 
 }  // namespace algo

@@ -59,7 +59,9 @@ struct GridLayer {
   double cell = 0;                               // [m] edge
   std::uint32_t columns = 0;                     // along W's x
   std::uint32_t rows = 0;
-  std::vector<std::uint8_t> cells{};  // columns x rows; empty: the controller keeps no grid
+  // columns x rows. Empty: the controller keeps no grid, or this tick brings none (Pipeline).
+  std::vector<std::uint8_t> cells{};
+  bool operator==(const GridLayer&) const = default;
 };
 
 /// A motion that a controller weighed: constant twist held for `horizon`.

@@ -70,6 +70,39 @@ TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
   EXPECT_GT(t.command.base.v, 0);
 }
 
+TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
+  Pipeline pipeline({.controller = "vff"}, disc());
+  pipeline.reset({});
+  Telemetry t;
+  t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  int brought = 0;
+  const auto run = [&](int from, int to, bool changing) {
+    for (int tick = from; tick < to; ++tick) {
+      t.observation.clear_sensors();
+      t.observation.stamp = 0.025 * tick;
+      LaserScan& scan = t.observation.scans.append();
+      scan.stamp = t.observation.stamp;
+      scan.angle_min = -0.1;
+      scan.angle_increment = 0.1;
+      scan.range_max = 8;
+      scan.resize(3);
+      for (std::size_t i = 0; i < 3; ++i) {
+        scan.set_free(i);
+        if (changing) scan.set_ok(i, 1.0 + 0.005 * tick);
+      }
+      pipeline.tick(t);
+      t.requests.clear();
+      brought += t.output.grid.cells.empty() ? 0 : 1;
+    }
+  };
+  run(0, 200, true);  // 5 s
+  EXPECT_NEAR(brought, 10, 1);
+  brought = 0;
+  run(200, 800, false);  // 15 s, nothing new but the last returns
+  EXPECT_GE(brought, 3);
+  EXPECT_LE(brought, 4);
+}
+
 /// One tick of a robot that has a sonar ring and no scanner; the sonar ahead pings in each fourth.
 struct SonarPipeline {
   explicit SonarPipeline(const char* controller)
