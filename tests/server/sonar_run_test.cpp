@@ -30,7 +30,7 @@ constexpr const char* kPost = R"({"type":"cylinder","x":2.5,"y":0.45,"radius":0.
 TEST(SonarRun, TheControllersThatDriveBySonarPassAPost) {
   for (const char* controller : {"potential_field", "certainty_grid", "vff", "vfh"}) {
     const HeadlessResult result = run(by_sonar(controller, kPost));
-    EXPECT_EQ(result.run.outcome, "reached") << controller;
+    EXPECT_EQ(result.run.outcome, algo::Outcome::Reached) << controller;
   }
 }
 
