@@ -18,6 +18,10 @@ export interface FrameSpec {
   pass?: [number, number];
   elastic?: [number, number];
   what?: string;
+  grid?: { corner: [number, number]; cell: number; columns: number; cells: number[] };
+  plan?: [number, number][];
+  candidates?: [number, number, number, number, boolean, boolean][];
+  histogram?: { density: number[]; threshold: number };
 }
 
 export const add_cylinder = (id: number, x: number, y: number, radius: number) =>
@@ -94,6 +98,29 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     for (const node of [...spec.strip].reverse()) wire.Node.createNode(b, ...node);
     strip = b.endVector();
   }
+  let grid = 0;
+  if (spec.grid) {
+    const cells = wire.Grid.createCellsVector(b, spec.grid.cells);
+    wire.Grid.startGrid(b);
+    wire.Grid.addCorner(b, wire.Vec2f.createVec2f(b, ...spec.grid.corner));
+    wire.Grid.addCell(b, spec.grid.cell);
+    wire.Grid.addColumns(b, spec.grid.columns);
+    wire.Grid.addCells(b, cells);
+    grid = wire.Grid.endGrid(b);
+  }
+  let plan = 0;
+  if (spec.plan) {
+    wire.Frame.startPlanVector(b, spec.plan.length);
+    for (const p of [...spec.plan].reverse()) wire.Vec2f.createVec2f(b, ...p);
+    plan = b.endVector();
+  }
+  let candidates = 0;
+  if (spec.candidates) {
+    wire.Frame.startCandidatesVector(b, spec.candidates.length);
+    for (const c of [...spec.candidates].reverse()) wire.Candidate.createCandidate(b, ...c);
+    candidates = b.endVector();
+  }
+  const histogram = spec.histogram ? wire.Frame.createHistogramVector(b, spec.histogram.density) : 0;
   const what = spec.what === undefined ? 0 : b.createString(spec.what);
   wire.Frame.startFrame(b);
   wire.Frame.addTick(b, BigInt(spec.tick));
@@ -113,6 +140,13 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   if (spec.pass) wire.Frame.addPass(b, wire.Vec2f.createVec2f(b, ...spec.pass));
   if (spec.elastic) wire.Frame.addElastic(b, wire.Vec2f.createVec2f(b, ...spec.elastic));
   if (what) wire.Frame.addWhat(b, what);
+  if (grid) wire.Frame.addGrid(b, grid);
+  if (plan) wire.Frame.addPlan(b, plan);
+  if (candidates) wire.Frame.addCandidates(b, candidates);
+  if (histogram) {
+    wire.Frame.addHistogram(b, histogram);
+    wire.Frame.addHistogramThreshold(b, spec.histogram!.threshold);
+  }
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();
 }
