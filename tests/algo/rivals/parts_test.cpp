@@ -6,6 +6,7 @@
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/controller.hpp"
 #include "algo/diff_drive.hpp"
 #include "algo/parameters.hpp"
 #include "algo/rivals/certainty_grid.hpp"
@@ -60,6 +61,34 @@ TEST(HistogramGrid, CountsToFifteen) {
     EXPECT_NEAR(offset.x(), 1.05, 1e-12);
   });
   EXPECT_EQ(sum, 15);
+}
+
+/// What the sonar ring gives beside a scan is looked at too.
+TEST(Rival, ASonarReadingThatIsNotFiniteGivesZero) {
+  algo::Scene scene;
+  algo::RobotSpec spec;
+  spec.radius = 0.35;
+  for (const algo::ControllerInfo& about : algo::controller_table()) {
+    if (!about.by_sonar) continue;
+    algo::Observation observation;
+    observation.sonar.push_back({{0.35, 0, 0}, 1, 2.0, 5.0, algo::Beam::Ok});
+    algo::ControlInput in;
+    in.scene = &scene;
+    in.observation = &observation;
+    in.spec = &spec;
+    in.goal = algo::SetGoal{{4, 0}, std::nullopt};
+    const auto controller = algo::make_controller(about.name);
+    controller->reset({});
+    algo::ControlOutput out;
+    controller->update(in, {}, out);
+    EXPECT_GT(out.twist.v, 0) << about.name;
+    observation.sonar[0].range = std::nan("");
+    controller->update(in, {}, out);
+    EXPECT_EQ(out.twist, algo::Twist2{}) << about.name;
+    observation.sonar[0].status = algo::Beam::Free;  // then its range is no distance
+    controller->update(in, {}, out);
+    EXPECT_GT(out.twist.v, 0) << about.name;
+  }
 }
 
 TEST(Vff, SpeedFallsAgainstThePushAndNotAcrossIt) {
