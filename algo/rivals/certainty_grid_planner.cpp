@@ -91,7 +91,8 @@ void CertaintyGridPlanner::plan(const ControlInput& in) {
   const bool trapped = too_near(p);
   if (trapped) open_way_out(p);
   Vec2 aim = goal_W(in);
-  const double farthest = (CertaintyGrid::kSide / 2 - 1) * CertaintyGrid::kCell;
+  constexpr int kHalf = CertaintyGrid::kSide / 2;
+  const double farthest = (kHalf - 1) * CertaintyGrid::kCell;
   const double over = (aim - p).cwiseAbs().maxCoeff() / farthest;
   if (over > 1) aim = p + (aim - p) / over;  // on the border of the grid
   const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
