@@ -43,6 +43,7 @@ struct ControllerInfo {
   std::string_view name{};   // "modified": REST, command line, scenario files
   std::string_view label{};  // for people
   std::string_view help{};
+  bool by_sonar = false;  // drives a robot that has a sonar ring and no laser
 };
 
 std::span<const ControllerInfo> controller_table();

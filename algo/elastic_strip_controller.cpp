@@ -1,75 +1,13 @@
 // algo/elastic_strip_controller.cpp: one tick of the strip.
 #include "algo/elastic_strip_controller.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace algo {
-namespace {
-
-constexpr double kHeadingReach = 0.05;  // [rad] a wanted heading counts as reached within this
-
-bool finite(const Pose2& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
-}
-
-bool finite(const std::optional<Nearest>& nearest) {
-  return !nearest || (nearest->point_W.allFinite() && std::isfinite(nearest->distance));
-}
-
-bool finite(const LaserScan& scan) {
-  if (!finite(scan.mount_R) || !std::isfinite(scan.angle_min) ||
-      !std::isfinite(scan.angle_increment) || !std::isfinite(scan.range_max)) {
-    return false;
-  }
-  unsigned wrong = 0;
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    wrong |= static_cast<unsigned>(scan.status[i] == Beam::Ok && !std::isfinite(scan.ranges[i]));
-  }
-  return wrong == 0;
-}
-
-/// Turns in place to a wanted heading; at rest when there is none or it is reached.
-Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters) {
-  if (!goal.heading) return {};
-  const double error = wrap_angle(*goal.heading - pose_W.heading);
-  if (std::abs(error) < kHeadingReach) return {};
-  const double limit = parameters[Parameter::MaxTurnRate];
-  return {0, std::clamp(parameters[Parameter::HeadingGain] * error, -limit, limit)};
-}
-
-}  // namespace
 
 struct ElasticStripController::Strip {
   Vec2 start_W{0, 0};  // P^{j-1}
   Vec2 via_W{0, 0};    // P^j
   Vec2 end_W{0, 0};    // P^{j+1}
 };
-
-bool all_finite(const ControlInput& in, const Parameters& parameters) {
-  for (const ParameterInfo& about : parameter_table()) {
-    if (!std::isfinite(parameters[about.id])) return false;
-  }
-  if (in.goal && !in.goal->position_W.allFinite()) return false;
-  if (in.goal && in.goal->heading && !std::isfinite(*in.goal->heading)) return false;
-  const Odometry& odometry = in.odometry;
-  return std::isfinite(in.stamp) && std::isfinite(in.dt) && std::isfinite(in.spec->radius) &&
-         std::isfinite(odometry.stamp) && finite(odometry.pose) &&
-         std::isfinite(odometry.twist.v) && std::isfinite(odometry.twist.omega) &&
-         finite(in.scene->left) && finite(in.scene->right) && finite(in.scene->scan);
-}
-
-Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters) {
-  const Vec2 e = pass_W - pose_W.position();
-  const double length = e.norm();
-  if (!(length > 0)) return {};
-  const double v_max = parameters[Parameter::MaxSpeed];
-  const double w_max = parameters[Parameter::MaxTurnRate];
-  const double turn = wrap_angle(std::atan2(e.y(), e.x()) - pose_W.heading);
-  const double v = std::min(v_max, length * v_max / parameters[Parameter::StripStep]);
-  const double w = parameters[Parameter::HeadingGain] * turn;
-  return {v * std::max(0.0, std::cos(turn)), std::clamp(w, -w_max, w_max)};
-}
 
 void ElasticStripController::reset(const Pose2& /*start_W*/) {
   side_.reset();

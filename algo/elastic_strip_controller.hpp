@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "algo/controller.hpp"
+#include "algo/driving.hpp"
 #include "algo/side_choice.hpp"
 #include "algo/strip.hpp"
 
@@ -45,13 +46,5 @@ class ElasticStripController final : public Controller {
   std::optional<SetGoal> goal_{};     // of the tick before
   std::optional<Vec2> kept_via_W_{};  // pass point of the tick before
 };
-
-/// The twist towards `pass_W`: e = pass - p, Dth = wrap(atan2(e) - th), w = clamp(gain Dth,
-/// +-w_max), v = min(v_max, |e| v_max / S) max(0, cos Dth); zero for e = 0 (equations.md D).
-Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters);
-
-/// Whether every number a controller may read is finite; the ranges of Ok beams only, since those
-/// of the others are not distances.
-bool all_finite(const ControlInput& in, const Parameters& parameters);
 
 }  // namespace algo

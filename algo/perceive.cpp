@@ -1,6 +1,8 @@
 // algo/perceive.cpp: nearest return on either side.
 #include "algo/perceive.hpp"
 
+#include <cmath>
+
 #include "algo/geometry.hpp"
 
 namespace algo {
@@ -14,7 +16,39 @@ std::optional<Nearest> nearest(const Pose2& pose_W, const LaserScan& scan, BeamS
   return Nearest{static_cast<std::uint32_t>(i), point_W, hit->distance};
 }
 
+/// The place of the sonar at `mount_R` in the ring; a new one when it has not reported before.
+Echo& echo_of(Recycled<Echo>& ring, const Pose2& mount_R) {
+  for (Echo& echo : ring) {
+    if (echo.mount_R == mount_R) return echo;
+  }
+  Echo& echo = ring.append();
+  echo = {};
+  echo.mount_R = mount_R;
+  return echo;
+}
+
 }  // namespace
+
+void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene) {
+  for (const RangeReading& reading : readings) {
+    if (reading.status == Beam::Invalid) continue;
+    Echo& echo = echo_of(scene.echoes, reading.mount_R);
+    echo.stamp = reading.stamp;
+    echo.hit = reading.status == Beam::Ok;
+    if (echo.hit) echo.point_W = beam_point_W(pose_W, reading.mount_R, 0, reading.range);
+  }
+  scene.left.reset();
+  scene.right.reset();
+  for (std::size_t k = 0; k < scene.echoes.size(); ++k) {
+    const Echo& echo = scene.echoes[k];
+    const Vec2 way = echo.point_W - pose_W.position();
+    const double bearing = wrap_angle(std::atan2(way.y(), way.x()) - pose_W.heading);
+    if (!echo.hit || std::abs(bearing) > kUsedHalfField) continue;
+    std::optional<Nearest>& side = bearing >= 0 ? scene.left : scene.right;
+    if (side && side->distance <= way.norm()) continue;
+    side = Nearest{static_cast<std::uint32_t>(k), echo.point_W, way.norm()};
+  }
+}
 
 void perceive(const Pose2& pose_W, Scene& scene) {
   scene.right = nearest(pose_W, scene.scan, right_beams(scene.scan));

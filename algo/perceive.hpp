@@ -11,4 +11,8 @@ namespace algo {
 /// without a return below range_max is empty (equations.md C).
 void perceive(const Pose2& pose_W, Scene& scene);
 
+/// The same from a sonar ring: takes the new `readings` into scene.echoes, then the nearest echoes
+/// of the used field either side.
+void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene);
+
 }  // namespace algo

@@ -21,6 +21,10 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
+constexpr double kGridPeriod = 0.5;  // [s] between two grids in the telemetry, which are large
+constexpr double kGridRefresh =
+    5.0;  // [s] after which an unchanged one comes again, for latecomers
+
 /// [m] To the nearest return of all beams: what stands abeam, outside of both sides, is close too,
 /// though it exerts no force.
 double nearest_distance(const Scene& scene) {
@@ -45,6 +49,9 @@ Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
     : spec_(spec), filter_kind_(config.filter), initial_parameters_(config.parameters) {
   coordinator_.add(std::make_unique<ManualBehaviour>());
   coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
+  by_sonar_ = !spec.has_laser && std::ranges::any_of(controller_table(), [&](const auto& about) {
+    return about.by_sonar && about.name == config.controller;
+  });
   reset({});
 }
 
@@ -57,6 +64,7 @@ void Pipeline::reset(const Pose2& start_W) {
   clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
+  grid_shown_at_.reset();
   stopped_ = false;
   tick_ = 0;
 }
@@ -87,6 +95,7 @@ void Pipeline::tick(Telemetry& t) {
   sense(t);    // filter the newest scan, find the nearest return of each side
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
+  thin_grid(t);
 }
 
 void Pipeline::apply(const Request& request) {
@@ -123,12 +132,31 @@ void Pipeline::sense(Telemetry& t) {
     t.scene.scan.resize(scene_.scan.size());
     t.scene.scan.stamp = scene_.scan.stamp;
   }
+  if (!spec_.has_laser) sense_sonar(t);
   t.scene.fresh = scene_.fresh;
+  t.scene.echoes = scene_.echoes;
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
 
   if (scene_.fresh) clearance_ = nearest_distance(scene_) - spec_.radius;
   t.clearance = clearance_;
+}
+
+/// A controller that needs a scanner is held: only those that drive by sonar let its stamps count.
+void Pipeline::sense_sonar(Telemetry& t) {
+  const Observation& observation = t.observation;
+  const Vec2 p = observation.odometry.pose.position();
+  perceive(observation.odometry.pose, observation.sonar, scene_);
+  double nearest = 0;
+  for (const RangeReading& reading : observation.sonar) {
+    if (by_sonar_ && reading.status != Beam::Invalid) scan_stamp_ = reading.stamp;
+    nearest = std::max(nearest, reading.range_max);
+  }
+  if (observation.sonar.empty()) return;
+  for (const Echo& echo : scene_.echoes) {
+    if (echo.hit) nearest = std::min(nearest, (echo.point_W - p).norm());
+  }
+  clearance_ = nearest - spec_.radius;
 }
 
 bool Pipeline::manual() const {
@@ -165,6 +193,23 @@ void Pipeline::hold(Telemetry& t) {
   t.command = {};
   sequencer_.interrupt();
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
+}
+
+/// People need a grid twice a second, and only when it is another.
+void Pipeline::thin_grid(Telemetry& t) {
+  GridLayer& grid = t.output.grid;
+  if (grid.cells.empty()) return;
+  const double age = t.observation.stamp - grid_shown_at_.value_or(-kGridRefresh);
+  // Written so that a stamp that is not a number lets it pass.
+  const bool due = !(age < kGridPeriod) && (!(age < kGridRefresh) || !(grid == shown_grid_));
+  if (due) {
+    shown_grid_ = grid;
+    grid_shown_at_ = t.observation.stamp;
+    return;
+  }
+  grid.columns = 0;
+  grid.rows = 0;
+  grid.cells.clear();
 }
 
 }  // namespace algo

@@ -39,8 +39,10 @@ class Pipeline {
  private:
   void apply(const Request& request);
   void sense(Telemetry& t);
+  void sense_sonar(Telemetry& t);
   void control(Telemetry& t);
   void hold(Telemetry& t);
+  void thin_grid(Telemetry& t);
   bool manual() const;
 
   RobotSpec spec_{};
@@ -51,10 +53,13 @@ class Pipeline {
   BehaviourCoordinator coordinator_{};
   Sequencer sequencer_{};
   Scene scene_{};
-  std::optional<double> scan_stamp_{};
-  double clearance_ = 0;  // [m] of the newest scan
+  bool by_sonar_ = false;               // the ring stands in for the scanner
+  std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
+  double clearance_ = 0;                // [m] of the newest scan
   Joystick joystick_{};
-  std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
+  std::uint64_t joystick_ticks_ = 0;       // ticks the stick's value still counts
+  GridLayer shown_grid_{};                 // the newest that telemetry brought
+  std::optional<double> grid_shown_at_{};  // [s] run clock
   bool stopped_ = false;
   std::uint64_t tick_ = 0;
 };

@@ -36,6 +36,7 @@ struct RobotSpec {
   double max_acceleration = 0;          // [m/s2]
   double max_angular_acceleration = 0;  // [rad/s2]
   double command_delay = 0;             // [s] from a command's tick until it acts
+  bool has_laser = true;                // looking ahead; without one the sonar ring stands in
   bool editable = false;                // obstacles can be added, moved, removed
   bool paceable = false;                // has pause, single step and speed
   bool drives = false;                  // commands move it; a recorded log does not

@@ -49,32 +49,9 @@ std::string_view name(BehaviourId behaviour) {
   return "rest";
 }
 
-std::string_view name(Phase phase) {
-  switch (phase) {
-    case Phase::Rest:
-      return "rest";
-    case Phase::Follow:
-      return "follow";
-    case Phase::Turn:
-      return "turn";
-    case Phase::Maneuver:
-      return "maneuver";
-    case Phase::Wait:
-      return "wait";
-    case Phase::Escape:
-      return "escape";
-    case Phase::BackOff:
-      return "back_off";
-    case Phase::NoWay:
-      return "no_way";
-    case Phase::Blocked:
-      return "blocked";
-  }
-  return "rest";
-}
-
 void ControlOutput::clear() {
   twist = {};
+  manner = Manner::None;
   strip.clear();
   internal_W = {0, 0};
   external_left_W = {0, 0};
@@ -85,8 +62,6 @@ void ControlOutput::clear() {
   side_since = 0;
   side_alpha = 0;
   blocked_beam = -1;
-  phase = Phase::Rest;
-  phase_since = 0;
   tracks.clear();
   plan_W.clear();
   candidates.clear();

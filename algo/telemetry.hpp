@@ -22,12 +22,24 @@ struct Nearest {
   bool operator==(const Nearest&) const = default;
 };
 
+/// The newest reading of one sonar of a ring.
+struct Echo {
+  Pose2 mount_R{};
+  double stamp = 0;    // [s] run clock
+  bool hit = false;    // something was in range
+  Vec2 point_W{0, 0};  // on the axis; meaningful only with a hit
+  bool operator==(const Echo&) const = default;
+};
+
 /// What perception makes of the newest scan. `scan` is filtered and may be older than this tick.
+/// On a robot without a scanner `echoes` stands in for it; left and right are then the nearest
+/// echoes, and their beam counts the sonars.
 struct Scene {
   LaserScan scan{};
   bool fresh = false;  // a new scan came this tick
   std::optional<Nearest> left{};
   std::optional<Nearest> right{};
+  Recycled<Echo> echoes{};  // one a sonar, as they first came; empty on a robot with a scanner
 };
 
 /// One control point of the strip. Forces are displacements [m].
@@ -42,12 +54,14 @@ enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
 
 /// A controller's grid as people see it: row-major from its corner, one byte a cell.
 struct GridLayer {
-  static constexpr std::uint8_t kUnknown = 255;  // else 0 free .. 254 occupied
+  static constexpr std::uint8_t kUnknown = 255;  // else 0 free, 127 even, 254 occupied
   Vec2 corner_W{0, 0};                           // [m] outer corner of cell (0, 0)
   double cell = 0;                               // [m] edge
   std::uint32_t columns = 0;                     // along W's x
   std::uint32_t rows = 0;
-  std::vector<std::uint8_t> cells{};  // columns x rows; empty: the controller keeps no grid
+  // columns x rows. Empty: the controller keeps no grid, or this tick brings none (Pipeline).
+  std::vector<std::uint8_t> cells{};
+  bool operator==(const GridLayer&) const = default;
 };
 
 /// A motion that a controller weighed: constant twist held for `horizon`.
@@ -70,22 +84,34 @@ struct Track {
   bool operator==(const Track&) const = default;
 };
 
-/// What a controller with recoveries is about.
-enum class Phase : std::uint8_t {
-  Rest,
-  Follow,
-  Turn,
-  Maneuver,
-  Wait,
-  Escape,
-  BackOff,
-  NoWay,
-  Blocked
+/// What a controller is about, for the sentences of explain().
+enum class Manner : std::uint8_t {
+  None,         // a strip of one via point speaks by its forces
+  ToGoal,       // straight, whatever is in between
+  TakingScan,   // standing still to look
+  ToEdge,       // past the edge of an obstacle
+  Pushed,       // the way is the sum of pull and pushes
+  Planned,      // along plan_W
+  NoPlan,       // no way over the grid
+  Valley,       // through a free valley of the histogram
+  Walled,       // no sector is free
+  Window,       // the chosen one of the candidates
+  NoWindow,     // no candidate is allowed
+  Following,    // along the strip of many nodes
+  Turning,      // on the spot, towards the strip
+  Maneuvering,  // to and fro in a narrow place
+  GivingWay,    // to what moves
+  Cornered,     // every motion would meet what moves
+  Escaping,     // out of too narrow a place
+  BackingOff,   // the way was blocked for long
+  NoWay,        // the map has no way to the goal
+  Blocked,      // nothing is free just now
 };
 
 /// What a controller decided and why.
 struct ControlOutput {
   Twist2 twist{};
+  Manner manner = Manner::None;
   Recycled<Node> strip{};  // start .. end; the second is the pass point
   Vec2 internal_W{0, 0};   // [m] F_int at the via point
   Vec2 external_left_W{0, 0};
@@ -96,8 +122,6 @@ struct ControlOutput {
   double side_since = 0;   // [s] run clock at which it was chosen
   double side_alpha = 0;   // share of the side push, 0..1
   std::int32_t blocked_beam = -1;
-  Phase phase = Phase::Rest;
-  double phase_since = 0;  // [s] run clock
   Recycled<Track> tracks{};
   Recycled<Vec2> plan_W{};           // a deliberative layer's path, robot to goal
   Recycled<Candidate> candidates{};  // what a velocity stage weighed
@@ -122,7 +146,6 @@ enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
 std::string_view name(Hold hold);
 std::string_view name(Mission mission);
 std::string_view name(BehaviourId behaviour);
-std::string_view name(Phase phase);
 
 struct Telemetry {
   std::uint64_t tick = 0;

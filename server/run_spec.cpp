@@ -29,6 +29,15 @@ void check_choices(const sim::Scenario& scenario) {
     throw DocumentError("controller",
                         fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
   }
+  const auto by_sonar = [&](const auto& c) { return c.name == scenario.controller && c.by_sonar; };
+  if (!sim::has_laser(scenario) && std::ranges::none_of(controllers, by_sonar)) {
+    std::string fit;
+    for (const auto& c : controllers) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
+    throw DocumentError(
+        "controller",
+        fmt::format(
+            "'{}' needs a laser; with a sonar ring alone there are{}", scenario.controller, fit));
+  }
   if (!algo::find_filter(scenario.filter)) {
     throw DocumentError("filter",
                         fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none",
@@ -120,6 +129,7 @@ json to_json(const algo::RobotSpec& robot) {
           {"max_acceleration", robot.max_acceleration},
           {"max_angular_acceleration", robot.max_angular_acceleration},
           {"command_delay", robot.command_delay},
+          {"has_laser", robot.has_laser},
           {"editable", robot.editable},
           {"paceable", robot.paceable},
           {"drives", robot.drives}};
@@ -139,6 +149,7 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
   robot.max_acceleration = in.number("max_acceleration", {0, 1000});
   robot.max_angular_acceleration = in.number("max_angular_acceleration", {0, 1000});
   robot.command_delay = in.number_or("command_delay", 0, {0, 10});
+  robot.has_laser = in.flag_or("has_laser", true);
   robot.editable = in.flag_or("editable", false);
   robot.paceable = in.flag_or("paceable", false);
   robot.drives = in.flag_or("drives", false);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
@@ -77,6 +78,19 @@ struct ObstaclePath {
   algo::Vec2 at(double stamp) const;
 };
 
+/// A ring of sonars (sensors.md 3), evenly over `field` on the hull, pinging in turn.
+struct SonarConfig {
+  std::uint32_t count = 12;
+  double field = 2 * std::numbers::pi;      // [rad] that the axes are spread over
+  double cone = std::numbers::pi / 6;       // [rad] whole beam
+  double ping = 0.04;                       // [s] from one sensor's ping to the next one's
+  double range_min = 0.15;                  // [m] nearer things read as that
+  double range_max = 5.0;                   // [m] nothing within it: Free
+  double noise = 0.01;                      // [m] standard deviation
+  double incidence = std::numbers::pi / 3;  // [rad] a surface met more obliquely gives no echo
+  double height = 0.30;                     // [m] of the ring
+};
+
 struct Scenario {
   std::string name{};  // [a-z0-9_-]+, at most 64
   std::string title{};
@@ -90,11 +104,15 @@ struct Scenario {
   std::vector<algo::Obstacle> obstacles{};
   std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
+  std::optional<SonarConfig> sonar{};
   std::string controller = "modified";
   std::string filter = "pseudomedian";
   std::vector<std::pair<algo::Parameter, double>> parameters{};  // where not initial
   double time_limit = 0;  // [s] run clock for headless runs; 0 = 5 x straight line / v_max
   std::string log{};      // path of a CARMEN log to replay instead of a world
 };
+
+/// Whether a scanner looks ahead; with a sonar ring and none, the ring stands in for it.
+bool has_laser(const Scenario& scenario);
 
 }  // namespace sim

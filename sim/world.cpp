@@ -59,6 +59,14 @@ std::uint32_t counts(double angle, double per_turn) {
 
 }  // namespace
 
+bool has_laser(const Scenario& scenario) {
+  // A scanner that looks back says nothing about the way ahead.
+  const bool looks_ahead = std::ranges::any_of(scenario.lasers, [](const LaserConfig& laser) {
+    return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
+  });
+  return looks_ahead || !scenario.sonar;
+}
+
 World::World(const Scenario& scenario, std::uint64_t seed)
     : scenario_(scenario),
       seed_(seed),
@@ -80,6 +88,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
            .editable = true,
            .paceable = true,
            .drives = true};
+  spec_.has_laser = has_laser(scenario_);
   start();
 }
 
@@ -117,6 +126,11 @@ void World::start() {
   for (const LaserConfig& config : scenario_.lasers) {
     lasers_.emplace_back(config, seed_, static_cast<std::uint32_t>(lasers_.size()));
     memory = std::max(memory, lasers_.back().memory());
+  }
+  sonar_.reset();
+  if (scenario_.sonar) {
+    sonar_.emplace(*scenario_.sonar, parameters_.radius, seed_);
+    memory = std::max(memory, scenario_.sonar->ping);
   }
   const Substeps substeps(scenario_.period);
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
@@ -161,6 +175,7 @@ void World::place(std::size_t index, const algo::Pose2& pose_W) {
   obstacles_.move(index, pose_W);
   vehicle_->moved(index, obstacles_[index]);
   for (LaserModel& laser : lasers_) laser.move(obstacles_[index].id, pose_W);
+  if (sonar_) sonar_->move(obstacles_[index].id, pose_W);
 }
 
 void World::sense(algo::Observation& observation) {
@@ -172,6 +187,7 @@ void World::sense(algo::Observation& observation) {
   for (LaserModel& laser : lasers_) {
     if (!laser.sense(now, *trail_, observation.scans.append())) observation.scans.pop_back();
   }
+  if (sonar_) sonar_->sense(now, *trail_, observation.sonar);
 }
 
 /// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
@@ -254,6 +270,7 @@ std::optional<std::string> World::add(const algo::Obstacle& obstacle) {
   obstacles_.add(obstacle);
   vehicle_->added(obstacle);
   for (LaserModel& laser : lasers_) laser.add(obstacle);
+  if (sonar_) sonar_->add(obstacle);
   return std::nullopt;
 }
 
@@ -276,6 +293,7 @@ std::optional<std::string> World::remove(std::uint32_t id) {
   obstacles_.remove(*index);
   vehicle_->removed(*index);
   for (LaserModel& laser : lasers_) laser.remove(id);
+  if (sonar_) sonar_->remove(id);
   return std::nullopt;
 }
 

@@ -14,6 +14,7 @@
 #include "sim/pacer.hpp"
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
+#include "sim/sonar_model.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -60,6 +61,7 @@ class World final : public algo::Robot {
   ObstacleSet obstacles_{};
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<LaserModel> lasers_{};
+  std::optional<SonarModel> sonar_{};
   std::unique_ptr<PoseTrail> trail_{};
   DriveErrors errors_;
   algo::Odometry odometry_{};  // without the drift

@@ -82,8 +82,7 @@ void FullStripController::reset(const Pose2& start_W) {
   broken_at_ = -1;
   next_plan_ = 0;
   next_drawing_ = 0;
-  phase_ = Phase::Rest;
-  phase_since_ = 0;
+  manner_ = Manner::None;
   back_until_ = -1;
   under_way_.clear();
   trail_.clear();
@@ -92,12 +91,6 @@ void FullStripController::reset(const Pose2& start_W) {
 
 double FullStripController::least_clearance() const {
   return stage_.hull().half_width() + kRoom[level_];
-}
-
-void FullStripController::enter(Phase phase, double stamp) {
-  if (phase_ == phase) return;
-  phase_ = phase;
-  phase_since_ = stamp;
 }
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
@@ -246,7 +239,7 @@ void FullStripController::remember(const Twist2& command) {
 
 void FullStripController::watch_progress(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
-  const bool turning = phase_ == Phase::Turn && std::abs(in.odometry.twist.omega) > 0.1;
+  const bool turning = manner_ == Manner::Turning && std::abs(in.odometry.twist.omega) > 0.1;
   if ((here - way_W_).norm() > kStuckWay) {
     way_W_ = here;
     way_since_ = in.stamp;
@@ -295,8 +288,8 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
   maneuver_.reset();
   progress_at_ = in.stamp;
   way_since_ = in.stamp;
-  enter(space_time_.clear() ? Phase::Wait : Phase::Escape, in.stamp);
-  if (twist.v > 0.1) enter(Phase::Follow, in.stamp);
+  manner_ = space_time_.clear() ? Manner::GivingWay : Manner::Cornered;
+  if (space_time_.clear() && twist.v > 0.1) manner_ = Manner::Following;
   return twist;
 }
 
@@ -305,18 +298,18 @@ Twist2 FullStripController::recover(const StageInput& stage,
                                     ControlOutput& out) {
   if (in.stamp < back_until_) {
     if (const auto twist = stage_.back_off(stage, out)) {
-      enter(Phase::BackOff, in.stamp);
+      manner_ = Manner::BackingOff;
       return *twist;
     }
   }
   const bool still = std::abs(in.odometry.twist.v) < 0.05;
   if (still) {
     if (const auto twist = stage_.escape(stage, out)) {
-      enter(Phase::Escape, in.stamp);
+      manner_ = Manner::Escaping;
       return *twist;
     }
   }
-  enter(no_way_ ? Phase::NoWay : Phase::Blocked, in.stamp);
+  manner_ = no_way_ ? Manner::NoWay : Manner::Blocked;
   return {};
 }
 
@@ -357,7 +350,7 @@ std::optional<Twist2> FullStripController::carry_on(const StageInput& stage,
   const auto wanted = maneuver_.next(stage.state.pose_W, limits_);
   if (wanted) {
     if (const auto twist = stage_.proven(stage, *wanted, out)) {
-      enter(Phase::Maneuver, in.stamp);
+      manner_ = Manner::Maneuvering;
       return twist;
     }
   }
@@ -379,7 +372,7 @@ Twist2 FullStripController::drive(const ControlInput& in,
 
   const double to_goal = (in.goal->position_W - in.odometry.pose.position()).norm();
   if (to_goal < parameters[Parameter::GoalReach]) {
-    enter(Phase::Rest, in.stamp);
+    manner_ = Manner::None;
     progress_at_ = in.stamp;
     return {};
   }
@@ -391,7 +384,7 @@ Twist2 FullStripController::drive(const ControlInput& in,
   }
   if (const auto twist = stage_.follow(stage, out)) {
     const bool turning = twist->v == 0 && twist->omega != 0;
-    enter(turning ? Phase::Turn : Phase::Follow, in.stamp);
+    manner_ = turning ? Manner::Turning : Manner::Following;
     if (in.stamp - way_since_ > kPatience) look_for_maneuver(in);
     if (*twist != Twist2{} || broken_at_ < 0) return *twist;
   } else {
@@ -405,8 +398,7 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) {
   if (draw) next_drawing_ = in.stamp + kDrawEvery;
   out.strip = strip_.nodes();
   out.plan_W = path_W_;
-  out.phase = phase_;
-  out.phase_since = phase_since_;
+  out.manner = manner_;
   out.tracks = tracker_.moving();
   if (draw) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
 }
@@ -423,7 +415,7 @@ void FullStripController::update(const ControlInput& in,
   if (!in.goal) {
     strip_.clear();
     goal_W_.reset();
-    enter(Phase::Rest, in.stamp);
+    manner_ = Manner::None;
     remember({});
     return;
   }

@@ -46,7 +46,6 @@ class FullStripController final : public Controller {
   MotionState when_acting(const ControlInput& in) const;
   void remember(const Twist2& command);
   void watch_progress(const ControlInput& in);
-  void enter(Phase phase, double stamp);
   double least_clearance() const;
   void report(const ControlInput& in, ControlOutput& out);
 
@@ -70,8 +69,7 @@ class FullStripController final : public Controller {
   bool no_way_ = false;    // not even at the narrowest
   double broken_at_ = -1;  // [m] along the strip; negative: whole
   double next_plan_ = 0;   // [s] run clock
-  Phase phase_ = Phase::Rest;
-  double phase_since_ = 0;  // [s]
+  Manner manner_ = Manner::None;
   Vec2 progress_W_{0, 0};   // where the robot last made way
   double progress_at_ = 0;  // [s]
   double back_until_ = -1;  // [s]

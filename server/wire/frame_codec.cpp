@@ -46,6 +46,22 @@ fb::Vec2f to_wire(const algo::Node& n) {
   return to_float(n.position_W);
 }
 
+fb::Track to_wire(const algo::Track& track) {
+  return {to_float(track.position_W),
+          to_float(track.velocity_W),
+          static_cast<float>(track.radius),
+          static_cast<float>(track.unseen)};
+}
+
+fb::Candidate to_wire(const algo::Candidate& c) {
+  return {static_cast<float>(c.twist.v),
+          static_cast<float>(c.twist.omega),
+          static_cast<float>(c.horizon),
+          static_cast<float>(c.cost),
+          c.allowed,
+          c.chosen};
+}
+
 algo::Vec2 from_wire(const fb::Vec2& v) {
   return {v.x(), v.y()};
 }
@@ -272,6 +288,22 @@ Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
   return b.CreateVector(boxes);
 }
 
+Offset<flatbuffers::Vector<const fb::Vec2f*>> write_path(Builder& b,
+                                                         const algo::Recycled<algo::Vec2>& path) {
+  if (path.empty()) return 0;
+  fb::Vec2f* out = nullptr;
+  const auto vector = b.CreateUninitializedVectorOfStructs(path.size(), &out);
+  for (const algo::Vec2& p : path) *out++ = to_float(p);
+  return vector;
+}
+
+Offset<fb::Grid> write_grid(Builder& b, const algo::GridLayer& grid) {
+  if (grid.cells.empty()) return 0;
+  const auto cells = b.CreateVector(grid.cells);
+  const fb::Vec2f corner = to_float(grid.corner_W);
+  return fb::CreateGrid(b, &corner, static_cast<float>(grid.cell), grid.columns, cells);
+}
+
 template <typename T>
 void check_enum(T value, T max, const char* what) {
   if (value > max) throw WireError(std::string("The frame has an unknown ") + what + ".");
@@ -321,6 +353,45 @@ std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
   return algo::Nearest{n->beam(), from_wire(n->point()), n->distance()};
 }
 
+void read_grid(const fb::Grid& wire, algo::GridLayer& grid) {
+  if (wire.corner() == nullptr || wire.cells() == nullptr || wire.columns() == 0 ||
+      wire.cells()->size() % wire.columns() != 0) {
+    throw WireError("The grid in the frame lacks a corner or a part of a row.");
+  }
+  grid.corner_W = from_wire(*wire.corner());
+  grid.cell = wire.cell();
+  grid.columns = wire.columns();
+  grid.rows = wire.cells()->size() / wire.columns();
+  grid.cells.assign(wire.cells()->begin(), wire.cells()->end());
+}
+
+/// What a controller without a strip weighed.
+void read_weighing(const fb::Frame& f, algo::ControlOutput& out) {
+  if (f.plan() != nullptr) {
+    check_alignment(*f.plan());
+    for (const fb::Vec2f* p : *f.plan()) out.plan_W.push_back(from_wire(*p));
+  }
+  if (f.candidates() != nullptr) {
+    check_alignment(*f.candidates());
+    for (const fb::Candidate* c : *f.candidates()) {
+      out.candidates.push_back(
+          {{c->v(), c->omega()}, c->horizon(), c->cost(), c->allowed(), c->chosen()});
+    }
+  }
+  if (f.histogram() != nullptr) {
+    out.histogram.assign(f.histogram()->begin(), f.histogram()->end());
+  }
+  out.histogram_threshold = f.histogram_threshold();
+  if (f.grid() != nullptr) read_grid(*f.grid(), out.grid);
+  if (f.tracks() != nullptr) {
+    check_alignment(*f.tracks());
+    for (const fb::Track* k : *f.tracks()) {
+      out.tracks.push_back(
+          {from_wire(k->position()), from_wire(k->velocity()), k->radius(), 0, k->unseen()});
+    }
+  }
+}
+
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
   algo::ControlOutput& out = t.output;
   out = {};
@@ -344,6 +415,7 @@ void read_output(const fb::Frame& f, algo::Telemetry& t) {
   const std::int8_t side = f.decision()->side();
   out.side = static_cast<algo::Side>(side > 0 ? 1 : (side < 0 ? -1 : 0));
   out.side_since = f.side_since();
+  read_weighing(f, out);
   t.scene.fresh = !t.observation.scans.empty();
   t.scene.left = read_nearest(f.left());
   t.scene.right = read_nearest(f.right());
@@ -449,6 +521,16 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
   const auto requests = write_requests(b, t.requests);
   const auto strip = write_structs<fb::Vec2f>(b, t.output.strip);
+  const auto plan = write_path(b, t.output.plan_W);
+  const auto candidates = write_structs<fb::Candidate>(b, t.output.candidates);
+  const auto histogram = t.output.histogram.empty() ? 0 : b.CreateVector(t.output.histogram);
+  const auto grid = write_grid(b, t.output.grid);
+  const auto tracks = write_structs<fb::Track>(b, t.output.tracks);
+  const bool own_words =
+      t.output.manner != algo::Manner::None && t.behaviour == algo::BehaviourId::Avoid;
+  const algo::Explanation words = own_words ? algo::explain(t) : algo::Explanation{};
+  const auto what = own_words ? b.CreateString(words.what) : 0;
+  const auto why = own_words ? b.CreateString(words.why) : 0;
 
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;
@@ -463,6 +545,18 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   writer.sensors();
   writer.decision();
   writer.stamps();
+  if (own_words) {
+    frame.add_what(what);
+    frame.add_why(why);
+  }
+  if (!t.output.plan_W.empty()) frame.add_plan(plan);
+  if (!t.output.candidates.empty()) frame.add_candidates(candidates);
+  if (!t.output.histogram.empty()) {
+    frame.add_histogram(histogram);
+    frame.add_histogram_threshold(static_cast<float>(t.output.histogram_threshold));
+  }
+  if (!t.output.grid.cells.empty()) frame.add_grid(grid);
+  if (!t.output.tracks.empty()) frame.add_tracks(tracks);
   b.Finish(frame.Finish());
 
   find_windows();

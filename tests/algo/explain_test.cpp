@@ -34,6 +34,41 @@ TEST(Explain, FreeDrivingSaysHowFarToGo) {
   EXPECT_EQ(explain(t).why, "5.00 m to go. The nearest return is 1.00 m from the robot's centre.");
 }
 
+TEST(Explain, AControllerWithoutAStripSaysWhatItIsAbout) {
+  Telemetry t = driving();
+  t.output.manner = Manner::Planned;
+  for (const double x : {0.0, 1.0, 2.5}) t.output.plan_W.push_back({x, 0});
+  EXPECT_EQ(explain(t).what, "Following its plan");
+  EXPECT_EQ(explain(t).why, "The path over the grid is 2.50 m long.");
+
+  t.output.manner = Manner::Valley;
+  t.output.histogram = {10, 200, 400, 299};
+  t.output.histogram_threshold = 300;
+  t.output.pass_W = {4, -3};  // at right angles to the goal
+  EXPECT_EQ(explain(t).why, "3 of 4 sectors are free; the way is 90 degrees off the goal.");
+
+  t.output.manner = Manner::Window;
+  t.output.twist = {0.25, -0.5};
+  t.output.candidates.push_back({.twist = {0.25, -0.5}, .allowed = true, .chosen = true});
+  t.output.candidates.push_back({.twist = {0.5, 0}});
+  EXPECT_EQ(explain(t).why,
+            "1 of 2 motions can be stopped in time; the best is 0.25 m/s, -0.50 rad/s.");
+  t.mission = Mission::Stuck;
+  t.output.manner = Manner::Walled;
+  EXPECT_EQ(explain(t).why,
+            "No sector of the histogram is free. 5.00 m to go. Move an obstacle or the goal.");
+}
+
+TEST(Explain, EveryMannerHasItsSentences) {
+  for (int manner = 0; manner <= static_cast<int>(Manner::NoWindow); ++manner) {
+    Telemetry t = driving();
+    t.output.external_left_W = {0, 0};
+    t.output.manner = static_cast<Manner>(manner);
+    EXPECT_FALSE(explain(t).what.empty()) << manner;
+    EXPECT_FALSE(explain(t).why.empty()) << manner;
+  }
+}
+
 TEST(Explain, AHoldComesBeforeEverythingElse) {
   Telemetry t = driving();
   t.hold = Hold::StaleScan;

@@ -70,6 +70,100 @@ TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
   EXPECT_GT(t.command.base.v, 0);
 }
 
+TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
+  Pipeline pipeline({.controller = "vff"}, disc());
+  pipeline.reset({});
+  Telemetry t;
+  t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  int brought = 0;
+  const auto run = [&](int from, int to, bool changing) {
+    for (int tick = from; tick < to; ++tick) {
+      t.observation.clear_sensors();
+      t.observation.stamp = 0.025 * tick;
+      LaserScan& scan = t.observation.scans.append();
+      scan.stamp = t.observation.stamp;
+      scan.angle_min = -0.1;
+      scan.angle_increment = 0.1;
+      scan.range_max = 8;
+      scan.resize(3);
+      for (std::size_t i = 0; i < 3; ++i) {
+        scan.set_free(i);
+        if (changing) scan.set_ok(i, 1.0 + 0.005 * tick);
+      }
+      pipeline.tick(t);
+      t.requests.clear();
+      brought += t.output.grid.cells.empty() ? 0 : 1;
+    }
+  };
+  run(0, 200, true);  // 5 s
+  EXPECT_NEAR(brought, 10, 1);
+  brought = 0;
+  run(200, 800, false);  // 15 s, nothing new but the last returns
+  EXPECT_GE(brought, 3);
+  EXPECT_LE(brought, 4);
+}
+
+/// One tick of a robot that has a sonar ring and no scanner; the sonar ahead pings in each fourth.
+struct SonarPipeline {
+  explicit SonarPipeline(const char* controller)
+      : pipeline({.controller = controller}, without_laser()) {
+    pipeline.reset({});
+    t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  }
+  static RobotSpec without_laser() {
+    RobotSpec spec = disc();
+    spec.has_laser = false;
+    return spec;
+  }
+  const Telemetry& tick(bool ping) {
+    t.observation.clear_sensors();
+    t.observation.stamp = 0.025 * static_cast<double>(ticks++);
+    if (ping) {
+      t.observation.sonar.push_back({{0.35, 0, 0}, t.observation.stamp, 1.65, 5.0, Beam::Ok});
+    }
+    pipeline.tick(t);
+    t.requests.clear();
+    return t;
+  }
+
+  Pipeline pipeline;
+  Telemetry t{};
+  int ticks = 0;
+};
+
+TEST(PipelineBySonar, ItsStampsCountAndGoStale) {
+  for (const char* controller : {"vff", "vfh", "certainty_grid", "potential_field"}) {
+    SonarPipeline robot(controller);
+    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << "nothing has come yet";
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_EQ(robot.tick(i % 4 == 0).hold, Hold::None) << controller << ' ' << i;
+    }
+    EXPECT_GT(robot.t.command.base.v, 0) << controller;
+    EXPECT_NEAR(robot.t.clearance, 1.65, 1e-12) << controller;
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(robot.tick(false).hold, Hold::None) << i;
+    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << controller;
+    EXPECT_EQ(robot.t.command, Command{});
+    EXPECT_EQ(robot.tick(true).hold, Hold::None) << controller;
+  }
+}
+
+TEST(PipelineBySonar, AControllerThatNeedsALaserIsHeld) {
+  for (const char* controller : {"modified", "dwa", "edge_detection"}) {
+    SonarPipeline robot(controller);
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(robot.tick(true).hold, Hold::StaleScan) << controller;
+  }
+}
+
+/// A scanner that has not reported yet is no licence to drive by sonar.
+TEST(PipelineBySonar, ARobotWithALaserWaitsForIt) {
+  Pipeline pipeline({.controller = "vff"}, disc());
+  Telemetry t;
+  t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  t.observation.sonar.push_back({{0.35, 0, 0}, 0, 1.65, 5.0, Beam::Ok});
+  pipeline.tick(t);
+  EXPECT_EQ(t.hold, Hold::StaleScan);
+}
+
 TEST_F(PipelineTest, StopIsLatchedAndSurvivesANewGoal) {
   ask(SetGoal{{3, 0}, std::nullopt});
   ask(Stop{true});

@@ -153,6 +153,32 @@ TEST(FrameCodec, AScannerUnlikeTheDefaultComesBack) {
   }
 }
 
+TEST(FrameCodec, WhatAControllerWeighsComesBack) {
+  algo::Telemetry t = full_telemetry();
+  algo::ControlOutput& out = t.output;
+  for (int i = 0; i < 4; ++i) out.plan_W.push_back({0.5 * i, -0.25 * i});
+  out.candidates.push_back({{0.25, -0.5}, 1.5, 0.125, true, true});
+  out.candidates.push_back({{0.5, 0}, 1.5, 0.0625, false, false});
+  out.histogram = {0, 1, 2.5F, 300};
+  out.histogram_threshold = 300;
+  out.grid = {{-1.5, 2}, 0.125, 3, 2, {0, 127, 254, 255, 7, 0}};
+  FrameEncoder encoder;
+  algo::Telemetry back;
+  decode_frame(encoder.encode(t), back);
+  ASSERT_EQ(back.output.plan_W.size(), 4U);
+  EXPECT_EQ(back.output.plan_W[3], out.plan_W[3]);
+  ASSERT_EQ(back.output.candidates.size(), 2U);
+  EXPECT_EQ(back.output.candidates[0], out.candidates[0]);
+  EXPECT_EQ(back.output.candidates[1], out.candidates[1]);
+  EXPECT_EQ(back.output.histogram, out.histogram);
+  EXPECT_EQ(back.output.histogram_threshold, 300);
+  EXPECT_EQ(back.output.grid, out.grid);
+
+  decode_frame(encoder.encode(full_telemetry()), back);  // nothing of it stays
+  EXPECT_TRUE(back.output.plan_W.empty() && back.output.candidates.empty());
+  EXPECT_TRUE(back.output.histogram.empty() && back.output.grid.cells.empty());
+}
+
 TEST(FrameCodec, AFrameReadsWhereverItLies) {
   FrameEncoder encoder;
   const auto bytes = encoder.encode(full_telemetry());

@@ -59,6 +59,9 @@ TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
         R"({"name":"e","vehicle":"kinematic","controller":"original","filter":"lulu",)"
         R"("parameters":{"k_r":0.3,"v_max":0.1},"time_limit":12.5,"period":0.05})",
         R"({"name":"f","lasers":[]})",
+        R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
+        R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
+        R"("range_min":0.2,"range_max":1,"noise":0,"incidence_deg":50,"height":0.2}})",
         R"({"name":"g","obstacles":[{"type":"box","x":1,"y":1,"heading":0.3,"length":0.6,)"
         R"("width":0.4,"height":0.2,"reflectivity":0.5,"specular":true},)"
         R"({"type":"polygon","points":[[0.1,0],[1.3,0.1],[1,1.7]]},)"
@@ -137,6 +140,11 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
       {R"({"name":"a","lasers":[{},{},{},{},{}]})", "lasers: has more than 4 entries"},
       {R"({"name":"a","lasers":[{"resolution_deg":0.3}]})", "lasers/0/resolution_deg: "},
       {R"({"name":"a","lasers":[{"rolling":1}]})", "lasers/0/rolling: must be true or false"},
+      {R"({"name":"a","sonar":[]})", "sonar: must be an object, not array"},
+      {R"({"name":"a","sonar":{"sensors":8}})", "sonar: unknown field 'sensors'"},
+      {R"({"name":"a","sonar":{"count":0}})", "sonar: count must be 1 to 64"},
+      {R"({"name":"a","sonar":{"ping":0}})", "sonar: ping must be 0.001 to 1 s"},
+      {R"({"name":"a","sonar":{"range_min":9}})", "sonar: range_min must be 0 to range_max"},
       {R"({"name":"a","obstacles":{}})", "obstacles: must be a list, not object"},
       {R"({"name":"a","obstacles":[{"type":"torus"}]})",
        "obstacles/0/type: 'torus' is unknown; known are cylinder, box, polygon, wall"},

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { RunDocument, RunItem } from "../../web/src/contract";
+import { arc_points } from "../../web/src/draw/weighing";
 import { decode_frame } from "../../web/src/link/frame";
 import { Player } from "../../web/src/link/player";
 import { StoredRun, kPageFrames, split_frames } from "../../web/src/link/stored";
@@ -30,6 +31,46 @@ test("a frame is read back whole", () => {
   assert.ok(first.type === "add_obstacle" && first.obstacle.radius === 0.25 && first.obstacle.pose.y === -2);
   assert.deepEqual(second, { type: "set_parameter", name: "k_r", value: 0.5 });
   assert.throws(() => decode_frame(new Uint8Array(3)), /too short/);
+});
+
+test("what a controller weighs is read back, from wherever the bytes lie", () => {
+  const bytes = frame_bytes({
+    tick: 1, pose: [1, 2, 0], plan: [[1, 2], [1.5, 2.25]],
+    candidates: [[0.25, -0.5, 1.5, 0.125, true, true], [0.5, 0, 1.5, 0.5, false, false]],
+    histogram: { density: [0, 1.5, 400], threshold: 300 },
+    grid: { corner: [-1, 0.5], cell: 0.125, columns: 2, cells: [0, 254, 127, 255] },
+  });
+  for (let shift = 0; shift < 4; ++shift) {
+    const moved = new Uint8Array(bytes.length + shift);
+    moved.set(bytes, shift);
+    const f = decode_frame(moved.subarray(shift));
+    assert.deepEqual(f.plan, [{ x: 1, y: 2 }, { x: 1.5, y: 2.25 }]);
+    assert.deepEqual(f.candidates[0],
+      { v: 0.25, omega: -0.5, horizon: 1.5, cost: 0.125, allowed: true, chosen: true });
+    assert.deepEqual([...f.histogram], [0, 1.5, 400]);
+    assert.equal(f.histogram_threshold, 300);
+    assert.deepEqual(f.grid?.corner, { x: -1, y: 0.5 });
+    assert.deepEqual([...f.grid!.cells], [0, 254, 127, 255]);
+  }
+});
+
+test("a grid holds until another comes, or another run", () => {
+  const scene = new_scene();
+  const grid = { corner: [0, 0] as [number, number], cell: 0.1, columns: 1, cells: [254] };
+  fold_frame(scene, frame({ tick: 5, grid }));
+  fold_frame(scene, frame({ tick: 6 }));
+  assert.equal(scene.grid?.cells[0], 254);
+  fold_frame(scene, frame({ tick: 0 }));
+  assert.equal(scene.grid, null);
+});
+
+test("a candidate's arc is the way of its constant twist", () => {
+  const c = { v: 0.5, omega: Math.PI / 2, horizon: 1, cost: 0, allowed: true, chosen: true };
+  const radius = 0.5 / (Math.PI / 2);
+  const end = arc_points({ x: 1, y: 1, heading: 0 }, c).at(-1)!;
+  assert.ok(Math.abs(end.x - (1 + radius)) < 1e-12 && Math.abs(end.y - (1 + radius)) < 1e-12);
+  const straight = arc_points({ x: 0, y: 0, heading: Math.PI }, { ...c, omega: 0 }).at(-1)!;
+  assert.ok(Math.abs(straight.x + 0.5) < 1e-12);
 });
 
 test("beams end where the geometry says, from the scanner's own place", () => {

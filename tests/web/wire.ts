@@ -17,6 +17,11 @@ export interface FrameSpec {
   external_left?: [number, number];
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
+  what?: string;
+  grid?: { corner: [number, number]; cell: number; columns: number; cells: number[] };
+  plan?: [number, number][];
+  candidates?: [number, number, number, number, boolean, boolean][];
+  histogram?: { density: number[]; threshold: number };
 }
 
 export const add_cylinder = (id: number, x: number, y: number, radius: number) =>
@@ -82,6 +87,30 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     for (const node of [...spec.strip].reverse()) wire.Vec2f.createVec2f(b, ...node);
     strip = b.endVector();
   }
+  let grid = 0;
+  if (spec.grid) {
+    const cells = wire.Grid.createCellsVector(b, spec.grid.cells);
+    wire.Grid.startGrid(b);
+    wire.Grid.addCorner(b, wire.Vec2f.createVec2f(b, ...spec.grid.corner));
+    wire.Grid.addCell(b, spec.grid.cell);
+    wire.Grid.addColumns(b, spec.grid.columns);
+    wire.Grid.addCells(b, cells);
+    grid = wire.Grid.endGrid(b);
+  }
+  let plan = 0;
+  if (spec.plan) {
+    wire.Frame.startPlanVector(b, spec.plan.length);
+    for (const p of [...spec.plan].reverse()) wire.Vec2f.createVec2f(b, ...p);
+    plan = b.endVector();
+  }
+  let candidates = 0;
+  if (spec.candidates) {
+    wire.Frame.startCandidatesVector(b, spec.candidates.length);
+    for (const c of [...spec.candidates].reverse()) wire.Candidate.createCandidate(b, ...c);
+    candidates = b.endVector();
+  }
+  const histogram = spec.histogram ? wire.Frame.createHistogramVector(b, spec.histogram.density) : 0;
+  const what = spec.what === undefined ? 0 : b.createString(spec.what);
   wire.Frame.startFrame(b);
   wire.Frame.addTick(b, BigInt(spec.tick));
   wire.Frame.addStamp(b, spec.stamp ?? spec.tick * 0.026);
@@ -105,6 +134,14 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   if (spec.strip) {
     wire.Frame.addForces(b, wire.Forces.createForces(b, ...(spec.internal ?? [0, 0]),
       ...(spec.external_left ?? [0, 0]), 0, 0));
+  }
+  if (what) wire.Frame.addWhat(b, what);
+  if (grid) wire.Frame.addGrid(b, grid);
+  if (plan) wire.Frame.addPlan(b, plan);
+  if (candidates) wire.Frame.addCandidates(b, candidates);
+  if (histogram) {
+    wire.Frame.addHistogram(b, histogram);
+    wire.Frame.addHistogramThreshold(b, spec.histogram!.threshold);
   }
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();

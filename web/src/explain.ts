@@ -9,6 +9,7 @@ export interface Explanation { what: string; why: string }
 
 /** One sentence for what the robot is doing, one for why, with the numbers. */
 export function explain(f: Frame): Explanation {
+  if (f.what) return { what: f.what, why: f.why }; // a controller with words of its own
   if (f.hold !== "none") return explain_hold(f);
   if (f.behaviour === "manual") {
     return { what: "Driven by hand",
@@ -67,7 +68,7 @@ function surroundings(f: Frame): string {
   const nearest: Nearest | null =
     f.left && (!f.right || f.left.distance <= f.right.distance) ? f.left : f.right;
   return nearest ? `The nearest return is ${metres(nearest.distance)} m from the robot's centre.`
-    : "The scanner sees nothing within range.";
+    : "Nothing is seen within range.";
 }
 
 const metres = (value: number): string => value.toFixed(2);

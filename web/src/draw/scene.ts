@@ -9,6 +9,7 @@ import { draw_goal, draw_robot, draw_safety, draw_truth } from "./robot";
 import { draw_fan, draw_nearest, draw_returns } from "./sensing";
 import { draw_forces, draw_path, draw_strip } from "./strip";
 import { Insets, View } from "./view";
+import { draw_candidates, draw_cells, draw_histogram, draw_plan } from "./weighing";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
 export type Selection = { kind: "goal" } | { kind: "obstacle"; id: number } | null;
@@ -51,6 +52,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
   for (const sweep of scene.sweeps) draw_returns(g, view, palette, sweep);
+  if (scene.grid && f?.goal) draw_cells(g, view, palette, scene.grid);
   const path = overlay.path_colour ?? palette.path;
   if (overlay.future) {
     draw_path(g, view, scene.columns, 0, scene.columns.length, path, 2, 0.3);
@@ -63,7 +65,10 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
     draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal", !!overlay.draft.goal);
   }
   if (f) draw_nearest(g, view, palette, f);
+  if (f) draw_plan(g, view, palette, f);
+  if (f) draw_histogram(g, view, palette, f);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track);
+  if (f) draw_candidates(g, view, palette, f);
   if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius);
   }

@@ -23,6 +23,15 @@ export interface StripNode { position: Point; internal: Point; external: Point }
 export interface Goal { x: number; y: number; heading: number | null }
 export interface RangeReading { mount: Pose; range: number; status: number }
 
+/** A motion the controller weighed: constant twist for `horizon` seconds. */
+export interface Candidate {
+  v: number; omega: number; horizon: number; cost: number; allowed: boolean; chosen: boolean;
+}
+/** Byte of a cell of which nothing is known; else 0 free .. 254 occupied. */
+export const kUnknownCell = 255;
+/** A controller's grid, row-major from its corner in W. */
+export interface GridLayer { corner: Point; cell: number; columns: number; cells: Uint8Array }
+
 export type FrameRequest =
   | { type: "set_goal"; goal: Goal }
   | { type: "clear_goal" }
@@ -70,6 +79,13 @@ export interface Frame {
   side: number;
   side_since: number;         // [s] run clock at which `side` was chosen
   newest_scan: number | null; // [s] its stamp, only while it is too old to drive by
+  what: string;
+  why: string;
+  plan: Point[];
+  candidates: Candidate[];
+  histogram: Float32Array;  // density by bearing in W, ccw from 0
+  histogram_threshold: number;
+  grid: GridLayer | null;   // null: none, or as in the frames before
 }
 
 interface XY { x(): number; y(): number }
@@ -82,8 +98,9 @@ const pose = (p: XYH | null): Pose =>
 /** Decodes `bytes`; throws when they are too short to be a frame. The ranges are copied. */
 export function decode_frame(bytes: Uint8Array): Frame {
   if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
-  // The ranges are read as a Uint16Array over the buffer, which must start at an even address.
-  const aligned = bytes.byteOffset % 2 === 0 ? bytes : bytes.slice();
+  // Ranges and densities are read as typed arrays over the buffer, which must start where their
+  // elements may lie.
+  const aligned = bytes.byteOffset % 4 === 0 ? bytes : bytes.slice();
   const f = wire.Frame.getRootAsFrame(new flatbuffers.ByteBuffer(aligned));
   const odometry = f.odometry();
   const truth = f.truth();
@@ -131,6 +148,13 @@ export function decode_frame(bytes: Uint8Array): Frame {
     side: decision?.side() ?? 0,
     side_since: f.sideSince(),
     newest_scan: f.newestScan(),
+    what: f.what() ?? "",
+    why: f.why() ?? "",
+    plan: list(f.planLength(), (i) => point(f.plan(i))),
+    candidates: list(f.candidatesLength(), (i) => candidate(f.candidates(i)!)),
+    histogram: f.histogramArray()?.slice() ?? new Float32Array(0),
+    histogram_threshold: f.histogramThreshold(),
+    grid: grid(f.grid()),
   };
 }
 
@@ -157,6 +181,22 @@ function reading(r: wire.RangeReading): RangeReading {
 
 function nearest(n: wire.Nearest | null): Nearest | null {
   return n && { point: point(n.point()), distance: n.distance(), beam: n.beam() };
+}
+
+function candidate(c: wire.Candidate): Candidate {
+  return {
+    v: c.v(), omega: c.omega(), horizon: c.horizon(), cost: c.cost(),
+    allowed: c.allowed(), chosen: c.chosen(),
+  };
+}
+
+function grid(layer: wire.Grid | null): GridLayer | null {
+  const cells = layer?.cellsArray();
+  if (!layer || !cells || layer.columns() === 0) return null;
+  return {
+    corner: point(layer.corner()), cell: layer.cell(), columns: layer.columns(),
+    cells: cells.slice(),
+  };
 }
 
 function set_goal(g: wire.SetGoal): Goal {

@@ -8,7 +8,7 @@ import { Columns } from "../state/columns";
 import {
   SceneState, edited, new_scene, place_sweeps, show_frame, take_parameters,
 } from "../state/scene";
-import { Frame, decode_frame } from "./frame";
+import { Frame, GridLayer, decode_frame } from "./frame";
 
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
@@ -18,6 +18,7 @@ interface Chunk { from_tick: number; first_row: number; frames: Uint8Array[] | n
 export const kPageFrames = 400;
 const kMostChunks = 60;      // about 24 000 frames, some 40 MB
 const kScanLookBack = 60;    // frames; the newest sweep lies within them
+const kGridLookBack = 200;   // frames; the newest grid of a controller that keeps one does
 
 /** Splits an answer of /frames: each frame is a u32 length and its bytes. */
 export function split_frames(bytes: Uint8Array): Uint8Array[] {
@@ -48,6 +49,7 @@ export class StoredRun {
   private parameters_: { row: number; name: string; value: number }[] = [];
   private clock_ = 0;
   private wanted_ = -1;
+  private has_grid_ = false;
 
   constructor(
     readonly item: RunItem,
@@ -133,8 +135,18 @@ export class StoredRun {
       place_sweeps(this.scene, earlier);
       break;
     }
+    if (this.has_grid_) this.scene.grid = this.grid_at(at);
     this.scene.rows = at + 1;
     return true;
+  }
+
+  /** Grids are sent seldom: the newest up to row `at`. */
+  private grid_at(at: number): GridLayer | null {
+    for (let back = 0; back < kGridLookBack; ++back) {
+      const grid = this.frame(at - back)?.grid;
+      if (grid) return grid;
+    }
+    return null;
   }
 
   private take(from_tick: number, frames: Uint8Array[]): void {
@@ -145,6 +157,7 @@ export class StoredRun {
       const row = this.rows;
       this.columns.push(f);
       this.events.push(f);
+      this.has_grid_ ||= f.grid !== null;
       for (const request of f.requests) {
         const before = this.worlds_.at(-1)!.obstacles;
         const after = edited(before, request);

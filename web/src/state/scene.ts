@@ -3,7 +3,7 @@
 import { SessionState } from "../contract";
 import { FilterName, apply_filter, samples_of } from "../filter";
 import { Bounds, Pose, compose, empty_bounds, include } from "../geometry";
-import { Frame, FrameRequest, Goal, Sweep, kMaxRange } from "../link/frame";
+import { Frame, FrameRequest, Goal, GridLayer, Sweep, kMaxRange } from "../link/frame";
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
@@ -23,6 +23,7 @@ export interface SweepPoints { raw: Float32Array; filtered: Float32Array; end: F
 export interface SceneState {
   frame: Frame | null;
   sweeps: PlacedSweep[];
+  grid: GridLayer | null; // the controller's newest
   columns: Columns;
   rows: number;           // of columns that have happened at the shown instant
   obstacles: Obstacle[];
@@ -41,7 +42,7 @@ export interface SceneState {
 
 export function new_scene(most_rows = Infinity): SceneState {
   return {
-    frame: null, sweeps: [], columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
+    frame: null, sweeps: [], grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
     goal: null, radius: 0.35, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
     events: new EventLog(), run: null, world: true,
   };
@@ -51,6 +52,7 @@ export function new_scene(most_rows = Infinity): SceneState {
 export function begin_run(scene: SceneState): void {
   scene.frame = null;
   scene.sweeps = [];
+  scene.grid = null;
   scene.columns.clear();
   scene.rows = 0;
   scene.events.clear();
@@ -88,6 +90,7 @@ export function fold_frame(scene: SceneState, f: Frame): void {
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
+  scene.grid = f.grid ?? scene.grid;
   place_sweeps(scene, f);
 }
 

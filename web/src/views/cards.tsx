@@ -77,7 +77,8 @@ export function Banner(): JSX.Element | null {
   return null;
 }
 
-const kKey: { colour: string; label: string; shape: string }[] = [
+interface Key { colour: string; label: string; shape: string }
+const kKey: Key[] = [
   { colour: "scan", label: "Raw scan", shape: "dots" },
   { colour: "filtered", label: "Filtered scan", shape: "dots" },
   { colour: "internal", label: "Internal force", shape: "arrow" },
@@ -91,6 +92,28 @@ const kKey: { colour: string; label: string; shape: string }[] = [
 /** What a log can show: it has a scan and a path, but no strip of its own. */
 const kSeen = ["Raw scan", "Filtered scan", "Travelled path"];
 
+/** What a controller without a strip shows instead of it and its forces. */
+const kCells: Key = { colour: "external", label: "Occupied cells", shape: "line" };
+const kInstead: Record<string, Key[]> = {
+  go_to_goal: [],
+  edge_detection: [],
+  potential_field: [],
+  certainty_grid: [kCells, { colour: "accent", label: "Plan", shape: "dashed" }],
+  vff: [kCells],
+  vfh: [{ ...kCells, label: "Occupied cells, blocked sectors" }],
+  dwa: [
+    { colour: "accent", label: "Motion chosen", shape: "line" },
+    { colour: "scan", label: "Motions weighed", shape: "line" },
+  ],
+};
+
+function keys_of(controller: string | undefined, drives: boolean): Key[] {
+  const seen = kKey.filter((k) => kSeen.includes(k.label));
+  if (!drives) return seen;
+  const instead = kInstead[controller ?? ""];
+  return instead ? [...seen, kKey.at(-1)!, ...instead] : kKey;
+}
+
 /** What the colours mean, and how much the forces are enlarged. */
 export function Legend(): JSX.Element {
   const app = use_app();
@@ -98,7 +121,9 @@ export function Legend(): JSX.Element {
   const times = use_store(app.ui, (u) => u.force_scale);
   const next = { 1: 2, 2: 5, 5: 1 }[times] ?? 1;
   const drives = use_store(app.ui, (u) => u.session?.robot.drives ?? true);
-  const shown = drives ? kKey : kKey.filter((k) => kSeen.includes(k.label));
+  const controller = use_store(app.ui, (u) => u.session?.controller);
+  const shown = keys_of(controller, drives);
+  const forces = shown.some((k) => k.shape === "arrow");
   return (
     <div class={`card legend ${open === null ? "auto" : open ? "open" : "closed"}`}>
       <button class="text legend-button" aria-expanded={open ?? undefined}
@@ -111,7 +136,7 @@ export function Legend(): JSX.Element {
           <li key={k.label}><i class={`swatch c-${k.colour} ${k.shape}`} />{k.label}</li>
         ))}
       </ul>
-      {drives && <button class="text scale-button" data-testid="force-scale"
+      {forces && <button class="text scale-button" data-testid="force-scale"
         title="A force is a displacement in metres; this enlarges its arrow"
         onClick={() => app.ui.set({ force_scale: next })}>Forces drawn ×{times}</button>}
     </div>

@@ -1,0 +1,74 @@
+// algo/driving.cpp: the driving law and the check of its inputs.
+#include "algo/driving.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace algo {
+namespace {
+
+constexpr double kHeadingReach = 0.05;  // [rad] a wanted heading counts as reached within this
+
+bool finite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
+}
+
+bool finite(const std::optional<Nearest>& nearest) {
+  return !nearest || (nearest->point_W.allFinite() && std::isfinite(nearest->distance));
+}
+
+bool finite(const LaserScan& scan) {
+  if (!finite(scan.mount_R) || !std::isfinite(scan.angle_min) ||
+      !std::isfinite(scan.angle_increment) || !std::isfinite(scan.range_max)) {
+    return false;
+  }
+  unsigned wrong = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    wrong |= static_cast<unsigned>(scan.status[i] == Beam::Ok && !std::isfinite(scan.ranges[i]));
+  }
+  return wrong == 0;
+}
+
+}  // namespace
+
+bool all_finite(const ControlInput& in, const Parameters& parameters) {
+  for (const ParameterInfo& about : parameter_table()) {
+    if (!std::isfinite(parameters[about.id])) return false;
+  }
+  if (in.goal && !in.goal->position_W.allFinite()) return false;
+  if (in.goal && in.goal->heading && !std::isfinite(*in.goal->heading)) return false;
+  const Odometry& odometry = in.odometry;
+  return std::isfinite(in.stamp) && std::isfinite(in.dt) && std::isfinite(in.spec->radius) &&
+         std::isfinite(odometry.stamp) && finite(odometry.pose) &&
+         std::isfinite(odometry.twist.v) && std::isfinite(odometry.twist.omega) &&
+         finite(in.scene->left) && finite(in.scene->right) && finite(in.scene->scan);
+}
+
+Twist2 drive_along(const Pose2& pose_W,
+                   double bearing_W,
+                   double speed,
+                   const Parameters& parameters) {
+  const double w_max = parameters[Parameter::MaxTurnRate];
+  const double turn = wrap_angle(bearing_W - pose_W.heading);
+  const double w = parameters[Parameter::HeadingGain] * turn;
+  return {speed * std::max(0.0, std::cos(turn)), std::clamp(w, -w_max, w_max)};
+}
+
+Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters) {
+  const Vec2 e = pass_W - pose_W.position();
+  const double length = e.norm();
+  if (!(length > 0)) return {};
+  const double v_max = parameters[Parameter::MaxSpeed];
+  const double v = std::min(v_max, length * v_max / parameters[Parameter::StripStep]);
+  return drive_along(pose_W, std::atan2(e.y(), e.x()), v, parameters);
+}
+
+Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters) {
+  if (!goal.heading) return {};
+  const double error = wrap_angle(*goal.heading - pose_W.heading);
+  if (std::abs(error) < kHeadingReach) return {};
+  const double limit = parameters[Parameter::MaxTurnRate];
+  return {0, std::clamp(parameters[Parameter::HeadingGain] * error, -limit, limit)};
+}
+
+}  // namespace algo

@@ -1,0 +1,102 @@
+// sim/sonar_model.cpp: pings, cones and echoes.
+#include "sim/sonar_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+constexpr std::uint64_t kPurpose = 0x534f4e4152;  // of its noise: no scanner's
+constexpr std::size_t kRays = 31;                 // of a cone
+constexpr double kRounding = 1e-9;                // [rad] of degrees to radians and back
+constexpr double kOnTime = 1e-9;                  // [s] below any period, above rounding
+
+const SonarConfig& checked(const SonarConfig& config) {
+  if (const auto problem = defect(config)) throw std::invalid_argument("Sonar: " + *problem + ".");
+  return config;
+}
+
+/// Axis of sensor `k` [rad]: evenly over the field, a whole turn without its end, from straight
+/// ahead leftwards; a part of a turn from its right to its left border.
+double axis(const SonarConfig& config, std::uint32_t k) {
+  const double turn = 2 * std::numbers::pi;
+  if (config.field >= turn - kRounding) return algo::wrap_angle(turn * k / config.count);
+  if (config.count == 1) return 0;
+  return -config.field / 2 + config.field * k / (config.count - 1);
+}
+
+}  // namespace
+
+std::optional<std::string> defect(const SonarConfig& config) {
+  const auto within = [](double value, double low, double high) {
+    return value >= low && value <= high;  // false for NaN
+  };
+  if (config.count < 1 || config.count > 64) return "count must be 1 to 64";
+  if (!within(config.field, 0, 2 * std::numbers::pi + kRounding))
+    return "field must be 0 to 360 degrees";
+  if (!within(config.cone, 0.01, std::numbers::pi / 2)) return "cone must be 0.6 to 90 degrees";
+  if (!within(config.ping, 1e-3, 1)) return "ping must be 0.001 to 1 s";
+  if (!within(config.range_min, 0, config.range_max)) return "range_min must be 0 to range_max";
+  if (!within(config.range_max, 0.1, 20)) return "range_max must be 0.1 to 20 m";
+  if (!within(config.noise, 0, 1)) return "noise must be 0 to 1 m";
+  if (!within(config.incidence, 0, std::numbers::pi / 2))
+    return "incidence must be 0 to 90 degrees";
+  if (!within(config.height, 0, 5)) return "height must be 0 to 5 m";
+  return std::nullopt;
+}
+
+SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t seed)
+    : config_(checked(config)),
+      cone_{-config.cone / 2, config.cone / (kRays - 1), kRays},
+      caster_(config.height),
+      noise_(seed, kPurpose),
+      ranges_(kRays),
+      hits_(kRays) {
+  for (std::uint32_t k = 0; k < config_.count; ++k) {
+    const double heading = axis(config_, k);
+    const algo::Vec2 place = radius * algo::direction(heading);
+    mounts_R_.push_back({place.x(), place.y(), heading});
+  }
+}
+
+/// [m] Of the nearest surface in the cone that is not met more obliquely than config_.incidence.
+std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
+  caster_.cast(sensor_W, cone_, config_.range_max, ranges_, hits_);
+  const double least_cosine = std::cos(config_.incidence) - 1e-9;
+  std::optional<double> nearest;
+  for (std::size_t i = 0; i < kRays; ++i) {
+    if (hits_[i] == RangeCaster::kNothing || (nearest && ranges_[i] >= *nearest)) continue;
+    const double bearing =
+        sensor_W.heading + cone_.angle_min + static_cast<double>(i) * cone_.angle_increment;
+    const algo::Vec2 ray = algo::direction(bearing);
+    const algo::Vec2 normal = caster_.normal_W(hits_[i], sensor_W.position() + ranges_[i] * ray);
+    if (-ray.dot(normal) >= least_cosine) nearest = ranges_[i];
+  }
+  return nearest;
+}
+
+void SonarModel::sense(double now,
+                       const PoseTrail& trail,
+                       algo::Recycled<algo::RangeReading>& readings) {
+  for (;; ++pings_) {
+    const double fired = static_cast<double>(pings_) * config_.ping;
+    if (fired > now + kOnTime) return;
+    const algo::Pose2& mount = mounts_R_[pings_ % mounts_R_.size()];
+    const auto echo = nearest_echo(algo::compose(trail.at(fired), mount));
+    double error = 0;
+    noise_.fill_normal(std::span(&error, 1));
+    algo::RangeReading& reading = readings.append();
+    reading = {mount, fired, config_.range_max, config_.range_max, algo::Beam::Free};
+    if (!echo) continue;
+    const double range = std::max(config_.range_min, *echo + config_.noise * error);
+    if (range >= config_.range_max) continue;
+    reading.range = range;
+    reading.status = algo::Beam::Ok;
+  }
+}
+
+}  // namespace sim
