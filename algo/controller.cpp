@@ -74,7 +74,12 @@ constexpr auto kEntries = std::to_array<Entry>({
       "Full elastic strip",
       "Many nodes on a map of the scans, laid anew by a planner where they break, and a velocity "
       "stage that proves every command before it is given. Our extension."},
-     made<FullStripController>},
+     [] { return Made(std::make_unique<FullStripController>()); }},
+    {{"strip_moving",
+      "Full elastic strip among moving things",
+      "As the full strip, and what moves is tracked in the scans; a search in space and time gives "
+      "way to it. An experiment: of the moving obstacles it is measured on it still meets many."},
+     [] { return Made(std::make_unique<FullStripController>(true)); }},
     {{"go_to_goal",
       "Straight to the goal",
       "Sees nothing and drives at the goal: what every other controller must do better than.",

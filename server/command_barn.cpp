@@ -148,7 +148,9 @@ void add_barn_command(CLI::App& app, int& status) {
   CLI::App* barn = app.add_subcommand(
       "barn", "Run the worlds of a BARN or DynaBARN file and score them by the official formula");
   barn->add_option("file", command->file, "The worlds, as JSON")->required()->type_name("FILE");
-  barn->add_option("--controller", command->options.conditions.controller, "Default: strip");
+  barn->add_option("--controller",
+                   command->options.conditions.controller,
+                   "Default: strip; strip_moving where something moves");
   barn->add_flag("--stress",
                  command->options.conditions.stress,
                  "Short scanner, slow base, delay, slip, drifting odometry");

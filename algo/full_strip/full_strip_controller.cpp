@@ -64,7 +64,7 @@ Frame frame_of(const Pose2& pose) {
 
 }  // namespace
 
-FullStripController::FullStripController() {
+FullStripController::FullStripController(bool among_moving) : among_moving_(among_moving) {
   trail_.reserve(kTrail + 1);
 }
 
@@ -139,7 +139,7 @@ void FullStripController::sense(const ControlInput& in) {
         at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
   }
   const Pose2 sensor_W = compose(middle, scan.mount_R);
-  tracker_.update(scan, sensor_W, points_W_, scan.stamp);
+  if (among_moving_) tracker_.update(scan, sensor_W, points_W_, scan.stamp);
   map_.insert(scan, sensor_W, points_W_, tracker_);
   forget_traces(in);
 }
@@ -269,7 +269,7 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
   search.lead = in.dt * static_cast<double>(under_way_.size());
   search.state = stage.state;
   search.limits = limits_;
-  if (!SpaceTimeSearch::needed(search)) return std::nullopt;
+  if (!SpaceTimeSearch::needed(search, strip_)) return std::nullopt;
   // The farthest point of the strip that can be seen.
   search.carrot_W = in.goal->position_W;
   if (!strip_.empty()) {

@@ -21,7 +21,8 @@ namespace algo {
 
 class FullStripController final : public Controller {
  public:
-  FullStripController();
+  /// `among_moving`: things that move are tracked and the beam search gives way to them.
+  explicit FullStripController(bool among_moving = false);
 
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
@@ -49,6 +50,7 @@ class FullStripController final : public Controller {
   double least_clearance() const;
   void report(const ControlInput& in, ControlOutput& out);
 
+  bool among_moving_ = false;
   LocalMap map_{};
   Tracker tracker_{};
   SpaceTimeSearch space_time_{};

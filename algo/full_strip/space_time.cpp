@@ -49,14 +49,25 @@ SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
   near_tracks_.reserve(64);
 }
 
-bool SpaceTimeSearch::needed(const SpaceTimeInput& in) {
-  const Vec2 here = in.state.pose_W.position();
+bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
+  constexpr double kStep = 0.25;    // [s]
+  constexpr double kHorizon = 4.0;  // [s]
+  constexpr double kNear = 0.5;     // [m] room that is enough,
+  constexpr double kSpread = 0.15;  // [m/s] and more the farther ahead one looks
+  const Recycled<Node>& nodes = strip.nodes();
   for (const Track& track : *in.tracks) {
-    // Closest approach of the two within the horizon, the robot going anywhere at its top speed.
-    const double horizon = 4.0;
-    const double far = (track.position_W - here).norm();
-    const double closing = in.limits.max_v + track.velocity_W.norm();
-    if (far - track.radius - in.spec->radius < closing * horizon) return true;
+    for (double time = 0; time <= kHorizon; time += kStep) {
+      const Vec2 at_W = track.position_W + track.velocity_W * time;
+      const double reach = track.radius + in.spec->radius + kNear + kSpread * time;
+      const auto near = [&](const Vec2& p_W) { return (p_W - at_W).squaredNorm() < reach * reach; };
+      if (near(in.state.pose_W.position())) return true;
+      // Anywhere along the strip that the robot may have come to by then.
+      const double way = in.limits.max_v * time + NodeStrip::kSpacing;
+      const auto end = std::min(nodes.size(), static_cast<std::size_t>(way / NodeStrip::kSpacing));
+      for (std::size_t i = 0; i < end; i += 2) {
+        if (near(nodes[i].position_W)) return true;
+      }
+    }
   }
   return false;
 }

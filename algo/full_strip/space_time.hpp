@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algo/full_strip/motion.hpp"
+#include "algo/full_strip/node_strip.hpp"
 #include "algo/recycled.hpp"
 #include "algo/telemetry.hpp"
 #include "algo/types.hpp"
@@ -32,8 +33,8 @@ class SpaceTimeSearch {
  public:
   SpaceTimeSearch();
 
-  /// Whether a track may come near the robot within the search's horizon.
-  static bool needed(const SpaceTimeInput& in);
+  /// Whether a track may come near the robot or its way along `strip` within the next seconds.
+  static bool needed(const SpaceTimeInput& in, const NodeStrip& strip);
   /// The command; when no motion stays clear to the end, the one that does so longest.
   Twist2 search(const SpaceTimeInput& in, ControlOutput& out);
   /// Whether the last answer stays clear to the end.

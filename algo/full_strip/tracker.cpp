@@ -30,10 +30,17 @@ constexpr double kMoves = 0.25;         // [m/s]
 constexpr double kGone = 0.12;          // [m] from where it was first seen
 constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it stands
 constexpr double kStandsFor = 1.0;      // [s]
-constexpr double kAround = 0.15;        // [m] about a moving circle that its hits may lie in
-constexpr double kCoast = 3.0;          // [s] a moving track is believed unseen
-constexpr double kForget = 0.4;         // [s] any other
-constexpr int kEmpty = 3;               // scans that look through a track end it
+constexpr double kMemoryEvery = 0.09;   // [s] between two scans kept,
+constexpr double kMemoryLeast = 0.2;    // and how old one must be to compare with,
+constexpr double kMemoryMore = 0.5;     // and how much older than the track it may be
+constexpr double kBeyond = 0.2;         // [m] an earlier beam went on behind what stands there now
+constexpr double kSame = 0.1;           // [m] an earlier hit was at the same place
+constexpr std::size_t kSolid = 8;       // beams of a cluster that may be found moving
+constexpr double kStout = 0.12;   // [m] and its radius: thinner things come and go in the filter
+constexpr double kAround = 0.15;  // [m] about a moving circle that its hits may lie in
+constexpr double kCoast = 3.0;    // [s] a moving track is believed unseen
+constexpr double kForget = 0.4;   // [s] any other
+constexpr int kEmpty = 3;         // scans that look through a track end it
 
 }  // namespace
 
@@ -48,6 +55,7 @@ void Tracker::reset() {
   just_found_.clear();
   std::ranges::fill(moving_beam_, std::uint8_t{0});
   now_ = 0;
+  for (Memory& memory : memories_) memory.stamp = -1;
 }
 
 /// Neighbouring hits that lie close together.
@@ -186,7 +194,7 @@ void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W
     if (!best->round && best->residual > 2 * kRound) continue;
     best->taken = true;
     correct(f, *best, stamp);
-    judge(f, stamp);
+    judge(f, *best, points_W, stamp);
     if (!f.moving) continue;
     for (std::size_t i = best->first; i <= best->last; ++i) moving_beam_[i] = 1;
   }
@@ -205,7 +213,72 @@ void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W
   }
 }
 
-void Tracker::judge(Filter& f, double stamp) {
+void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp) {
+  angle_min_ = scan.angle_min;
+  angle_increment_ = scan.angle_increment;
+  if (stamp - memories_[newest_].stamp < kMemoryEvery && memories_[newest_].stamp >= 0) return;
+  newest_ = (newest_ + 1) % kMemories;
+  Memory& memory = memories_[newest_];
+  memory.stamp = stamp;
+  memory.sensor_W = sensor_W;
+  memory.ranges.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const bool measured = scan.status[i] != Beam::Invalid;
+    memory.ranges[i] = measured ? static_cast<float>(scan.ranges[i]) : 0.0F;
+  }
+}
+
+/// Whether an earlier scan looked well beyond the point.
+bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
+  const Vec2 d = point_W - memory.sensor_W.position();
+  const Vec2 ahead = direction(memory.sensor_W.heading);
+  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
+  const double beam = (bearing - angle_min_) / angle_increment_;
+  if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
+  const auto b = static_cast<std::size_t>(beam + 0.5);
+  const double far = d.norm();
+  for (std::size_t i = b - 1; i <= b + 1; ++i) {
+    if (static_cast<double>(memory.ranges[i]) < far + kBeyond) return false;
+  }
+  return true;
+}
+
+/// Whether an earlier scan hit something at the point.
+bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
+  const Vec2 d = point_W - memory.sensor_W.position();
+  const Vec2 ahead = direction(memory.sensor_W.heading);
+  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
+  const double beam = (bearing - angle_min_) / angle_increment_;
+  if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
+  const auto range = static_cast<double>(memory.ranges[static_cast<std::size_t>(beam + 0.5)]);
+  return std::abs(range - d.norm()) < kSame;
+}
+
+/// Whether something stands where an earlier scan saw nothing, or nothing where something stood. In
+/// a world at rest neither happens, however the robot's own motion uncovers and hides things.
+bool Tracker::changed(const Filter& f, const Cluster& c, const std::vector<Vec2>& points_W) const {
+  const Memory& now = memories_[newest_];
+  for (std::size_t k = 1; k < kMemories; ++k) {
+    const Memory& then = memories_[(newest_ + k) % kMemories];  // the oldest first
+    const double since = now_ - then.stamp;
+    if (then.stamp < 0 || since < kMemoryLeast || since > now_ - f.born + kMemoryMore) continue;
+    const std::size_t stride = std::max<std::size_t>(1, (c.last - c.first) / 16);
+    int count = 0;
+    int fresh = 0;
+    for (std::size_t i = c.first; i <= c.last; i += stride) {
+      ++count;
+      fresh += free_in(then, points_W[i]) ? 1 : 0;
+    }
+    if (3 * fresh >= count) return true;
+    const Vec2 was = f.position_W - f.velocity_W * since;
+    const Vec2 to_sensor = (then.sensor_W.position() - was).normalized();
+    const Vec2 front = was + to_sensor * f.radius;
+    if (hit_in(then, front) && free_in(now, front)) return true;
+  }
+  return false;
+}
+
+void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp) {
   const double speed = f.velocity_W.norm();
   if (speed > kStands) f.slow_since = stamp;
   if (f.moving) {
@@ -213,7 +286,8 @@ void Tracker::judge(Filter& f, double stamp) {
     return;
   }
   f.moving = stamp - f.born > kFound && speed > kMoves && speed > 1.5 * std::sqrt(f.vv) &&
-             (f.position_W - f.born_at_W).norm() > kGone;
+             (f.position_W - f.born_at_W).norm() > kGone && c.last - c.first >= kSolid &&
+             f.radius > kStout && changed(f, c, points_W);
   if (f.moving) {
     just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0});
   }
@@ -242,6 +316,7 @@ void Tracker::update(const LaserScan& scan,
   predict(stamp);
   just_found_.clear();
   moving_beam_.assign(scan.size(), 0);
+  memorise(scan, sensor_W, stamp);
   cluster(scan, sensor_W, points_W);
   associate(sensor_W, points_W, stamp);
   for (Filter& f : filters_) {

@@ -2,6 +2,7 @@
 // followed by constant-velocity Kalman filters.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -66,7 +67,17 @@ class Tracker {
            double spread) const;
   void correct(Filter& f, const Cluster& c, double stamp);
   void associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp);
-  void judge(Filter& f, double stamp);
+  /// An earlier scan, kept to see what has changed since.
+  struct Memory {
+    double stamp = -1;
+    Pose2 sensor_W{};
+    std::vector<float> ranges{};  // [m] 0 where nothing was measured, beyond range_max where free
+  };
+  void judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp);
+  bool changed(const Filter& f, const Cluster& c, const std::vector<Vec2>& points_W) const;
+  void memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp);
+  bool hit_in(const Memory& memory, const Vec2& point_W) const;
+  bool free_in(const Memory& memory, const Vec2& point_W) const;
   bool looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const;
   void publish(double stamp);
 
@@ -76,6 +87,10 @@ class Tracker {
   Recycled<Track> moving_{};
   Recycled<Track> just_found_{};
   double now_ = 0;  // [s] of the filters' states
+  static constexpr std::size_t kMemories = 12;
+  std::array<Memory, kMemories> memories_{};
+  std::size_t newest_ = 0;
+  double angle_min_ = 0, angle_increment_ = 1;  // [rad] of the scanner
 };
 
 }  // namespace algo

@@ -160,6 +160,7 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
   }
   equip(scenario, conditions);
   scenario.controller = conditions.controller;
+  if (scenario.controller.empty()) scenario.controller = moving ? "strip_moving" : "strip";
   scenario.filter = "median";
   scenario.parameters = {{Parameter::ContractionGain, 0.4},
                          {Parameter::RepulsionGain, 0.6},

@@ -29,8 +29,8 @@ struct World {
 struct Conditions {
   bool stress = false;
   sim::Vehicle vehicle = sim::Vehicle::Bullet;
-  std::string controller = "strip";
-  double phase = 0;  // [s] of the moving obstacles' paths when a run begins
+  std::string controller{};  // empty: `strip`, or `strip_moving` where something moves
+  double phase = 0;          // [s] of the moving obstacles' paths when a run begins
 };
 
 /// Throws DocumentError naming the field, or std::runtime_error when the file cannot be read.

@@ -10,6 +10,8 @@
 
 #include "telemetry_generated.h"
 
+#include "algo/explain.hpp"
+
 namespace server {
 namespace {
 
