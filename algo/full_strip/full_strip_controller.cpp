@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "algo/elastic_strip_controller.hpp"
+#include "algo/driving.hpp"
 
 namespace algo {
 namespace {
@@ -29,10 +29,11 @@ constexpr int kManeuverExpansions = 150;   // a tick
 constexpr double kManeuverMargin = 0.025;  // [m] of room on the way
 constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
 constexpr std::size_t kFarthest = 11;
-constexpr std::size_t kAim = 7;        // and where it is looked for
-constexpr double kOnStrip = 0.10;      // [m]
-constexpr double kAlongStrip = 0.35;   // [rad]
-constexpr std::size_t kTrail = 64;     // odometries remembered
+constexpr std::size_t kAim = 7;       // and where it is looked for
+constexpr double kOnStrip = 0.10;     // [m]
+constexpr double kAlongStrip = 0.35;  // [rad]
+constexpr std::size_t kTrail = 64;    // odometries remembered
+constexpr std::size_t kMostWeighed = 32;
 constexpr double kDrawEvery = 0.5;     // [s]
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
 
@@ -49,6 +50,11 @@ Pose2 pose_at(const std::vector<Odometry>& trail, double stamp) {
             wrap_angle(a.pose.heading + t * wrap_angle(b.pose.heading - a.pose.heading))};
   }
   return trail.back().pose;
+}
+
+/// Whether a return lies in the robot's very centre: what drives it there is past saving.
+bool stands_on_a_return(const Scene& scene) {
+  return (scene.left && scene.left->distance <= 0) || (scene.right && scene.right->distance <= 0);
 }
 
 /// A frame ready to map many points.
@@ -374,7 +380,8 @@ Twist2 FullStripController::drive(const ControlInput& in,
   if (to_goal < parameters[Parameter::GoalReach]) {
     manner_ = Manner::None;
     progress_at_ = in.stamp;
-    return {};
+    return stage_.proven(stage, turn_to(in.odometry.pose, *in.goal, parameters), out)
+        .value_or(Twist2{});
   }
   if (const auto twist = give_way(stage, in, out)) return *twist;
   watch_progress(in);
@@ -407,7 +414,11 @@ void FullStripController::update(const ControlInput& in,
                                  const Parameters& parameters,
                                  ControlOutput& out) {
   out.clear();
-  if (!all_finite(in, parameters)) return;
+  // Room for the most it ever weighs, so that a tick which weighs more than those before it does
+  // not allocate.
+  while (out.candidates.size() < kMostWeighed) out.candidates.append();
+  out.candidates.clear();
+  if (!all_finite(in, parameters) || stands_on_a_return(*in.scene)) return;
   const auto delay = static_cast<std::size_t>(std::lround(in.spec->command_delay / in.dt));
   if (under_way_.size() != delay) under_way_.assign(delay, {});
   prepare(in, parameters);

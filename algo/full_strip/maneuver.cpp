@@ -29,10 +29,11 @@ constexpr std::array<Action, 12> kActions{{{kAhead, 0, 0.10F},
                                            {-kAhead, -2 * kNotch, 0.17F},
                                            {0, kNotch, 0.06F},
                                            {0, -kNotch, 0.06F}}};
-constexpr float kShift = 0.10F;     // [m] cost of changing between forward, back and turning
-constexpr double kSpeed = 0.3;      // [m/s] of a piece
-constexpr double kTurnSpeed = 0.8;  // [rad/s]
-constexpr double kAim = 0.20;       // [m] ahead on the piece that the robot steers for
+constexpr std::size_t kLongest = 256;  // pieces there is room for from the start
+constexpr float kShift = 0.10F;        // [m] cost of changing between forward, back and turning
+constexpr double kSpeed = 0.3;         // [m/s] of a piece
+constexpr double kTurnSpeed = 0.8;     // [rad/s]
+constexpr double kAim = 0.20;          // [m] ahead on the piece that the robot steers for
 
 /// The pose after `share` of an arc.
 Pose2 along(const Pose2& from, double length, double turn, double share) {
@@ -47,6 +48,8 @@ int sign(double value) {
 
 ManeuverSearch::ManeuverSearch() : nodes_(static_cast<std::size_t>(kCells) * kCells * kHeadings) {
   heap_.reserve(4 * nodes_.size() / 10);
+  for (std::size_t i = 0; i < kLongest; ++i) pieces_.append();
+  pieces_.clear();
 }
 
 std::optional<std::uint32_t> ManeuverSearch::node_at(const Pose2& pose_W) const {
@@ -142,6 +145,11 @@ void ManeuverSearch::trace(std::uint32_t node) {
     pieces_.push_back({{n.x, n.y, n.heading}, action.length, action.turn});
   }
   std::reverse(pieces_.begin(), pieces_.end());
+}
+
+ManeuverDrive::ManeuverDrive() {
+  for (std::size_t i = 0; i < kLongest; ++i) pieces_.append();
+  pieces_.clear();
 }
 
 void ManeuverDrive::start(const Recycled<Piece>& pieces) {

@@ -77,6 +77,7 @@ class ManeuverSearch {
 /// Drives the pieces one by one.
 class ManeuverDrive {
  public:
+  ManeuverDrive();
   void reset() { pieces_.clear(); }
   bool active() const { return next_ < pieces_.size(); }
   void start(const Recycled<Piece>& pieces);

@@ -50,7 +50,7 @@ void VelocityStage::profile(const StageInput& in) {
                     std::sqrt(kLateral / std::max(curvature, 1e-3)),
                     kTurnShare * in.limits.max_omega / std::max(curvature, 1e-3)});
     }
-    v = std::max(v, kSlowest);
+    v = std::min(std::max(v, kSlowest), in.limits.max_v);
     const double s = static_cast<double>(i) * spacing;
     const double end = in.stop_at >= 0 ? in.stop_at : in.strip->length();
     v = std::min(v, std::sqrt(2 * deceleration * std::max(0.0, end - s)));

@@ -82,7 +82,7 @@ TEST(LaserConfig, DefectsAreNamed) {
   EXPECT_EQ(problem([](LaserConfig& c) { c.angle_increment = 0; }),
             "angle_increment must be above 0");
   EXPECT_EQ(problem([](LaserConfig& c) { c.field_of_view = 4; }),
-            "field_of_view must be 0 to 180 degrees");
+            "field_of_view must be 0 to 180 degrees unless rolling is off");
   EXPECT_EQ(problem([](LaserConfig& c) { c.noise = -1; }), "noise must be 0 or more");
   EXPECT_EQ(problem([](LaserConfig& c) { c.dropout = 1.5; }), "dropout must be 0 to 1");
   EXPECT_EQ(problem([](LaserConfig& c) { c.mount_R.x = std::nan(""); }),

@@ -1,0 +1,103 @@
+// tests/algo/full_strip/local_map_test.cpp: what becomes occupied, what free again, and distances.
+#include "algo/full_strip/local_map.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "tests/algo/worlds.hpp"
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::LaserScan;
+using algo::LocalMap;
+using algo::Pose2;
+using algo::Vec2;
+
+/// Scans `world` from `pose` and enters it `times` times.
+void see(LocalMap& map, const worlds::World& world, const Pose2& pose, int times = 1) {
+  LaserScan scan;
+  worlds::scan_world(pose, world, 8.0, scan);
+  std::vector<Vec2> points(scan.size(), Vec2(0, 0));
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    points[i] = algo::to_parent(pose, scan.ranges[i] * algo::direction(scan.angle(i)));
+  }
+  for (int k = 0; k < times; ++k) map.insert(scan, pose, points, {});
+}
+
+worlds::World post(double x, double y, double radius) {
+  return {{{{x, y}, radius}}, {}};
+}
+
+TEST(LocalMap, DistancesAreThoseToTheSurfaceSeen) {
+  LocalMap map;
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
+  EXPECT_GT(map.occupied(), 5U);
+  for (double x = 0.9; x < 1.6; x += 0.05) {
+    EXPECT_NEAR(map.distance({x, 0}), std::min(1.0, 1.7 - x), 0.04) << x;
+  }
+  EXPECT_EQ(map.distance({0, 2}), LocalMap::kReach);
+  EXPECT_EQ(map.distance({1000, 0}), LocalMap::kReach);
+}
+
+TEST(LocalMap, OneStrayHitIsNoObstacle) {
+  LocalMap map;
+  LaserScan scan;
+  scan.angle_increment = 0.01;
+  scan.range_max = 8;
+  scan.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) scan.set_free(i);
+  scan.set_ok(1, 1.0);
+  const std::vector<Vec2> points{{0, 0}, {1, 0}, {0, 0}};
+  map.insert(scan, {}, points, {});
+  EXPECT_EQ(map.occupied(), 0U);
+  map.insert(scan, {}, points, {});
+  EXPECT_EQ(map.occupied(), 1U);
+}
+
+TEST(LocalMap, WhatIsLookedThroughBecomesFreeAndItsDistancesGrow) {
+  LocalMap map;
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 5);
+  const worlds::World empty{{{{6, 0}, 0.5}}, {}};
+  see(map, empty, {0, 0, 0}, 30);
+  EXPECT_EQ(map.distance({1.6, 0}), LocalMap::kReach);
+}
+
+TEST(LocalMap, AMovedWindowKeepsWhatItHolds) {
+  LocalMap map;
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
+  const std::size_t before = map.occupied();
+  const double near = map.distance({1.5, 0.05});
+  ASSERT_TRUE(map.follow({4.1, -4.3}));
+  EXPECT_EQ(map.occupied(), before);
+  EXPECT_DOUBLE_EQ(map.distance({1.5, 0.05}), near);
+  EXPECT_FALSE(map.follow({4.1, -4.3}));
+  ASSERT_TRUE(map.follow({40, 0}));
+  EXPECT_EQ(map.occupied(), 0U);
+}
+
+TEST(LocalMap, TheDistancesAreThoseOfAllCellsWhateverTheOrderOfEvents) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-3, 3);
+  LocalMap map;
+  for (int round = 0; round < 12; ++round) {
+    see(map, post(place(random), place(random), 0.2), {place(random), place(random), 0}, 6);
+  }
+  const worlds::World empty{{{{20, 0}, 0.5}}, {}};
+  for (int k = 0; k < 40; ++k) see(map, empty, {0, 0, 0.1 * k});  // all rebuilds have come to pass
+  for (int k = 0; k < 500; ++k) {
+    const Vec2 p{place(random), place(random)};
+    double least = LocalMap::kReach;
+    map.each_near(p, 1.1, [&](const Vec2& q) { least = std::min(least, (q - p).norm()); });
+    EXPECT_NEAR(map.distance(p), least, 0.05) << p.transpose();
+  }
+}
+
+TEST(LocalMap, ErasesWhereItIsTold) {
+  LocalMap map;
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
+  map.erase_near({2, 0}, 1, [](const Vec2&) { return true; });
+  EXPECT_EQ(map.occupied(), 0U);
+}
+
+}  // namespace

@@ -1,0 +1,143 @@
+// tests/algo/full_strip/planner_test.cpp: ways, no ways, replaced goals, and bounded work.
+#include "algo/full_strip/planner.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "algo/full_strip/node_strip.hpp"
+
+namespace {
+
+using algo::LocalMap;
+using algo::Planner;
+using algo::Vec2;
+
+/// Occupies the straight line from `a` to `b`.
+void wall(LocalMap& map, const Vec2& a, const Vec2& b) {
+  algo::LaserScan scan;
+  scan.angle_increment = 0.01;
+  scan.range_max = 8;
+  const auto count = static_cast<std::size_t>((b - a).norm() / 0.02) + 1;
+  scan.resize(count);
+  std::vector<Vec2> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    scan.set_ok(i, 0.01);  // looks through nothing
+    points.push_back(a + (b - a) * (static_cast<double>(i) / static_cast<double>(count)));
+  }
+  map.insert(scan, {-1000, -1000, 0}, points, {});
+}
+
+Planner::State finish(Planner& planner, const LocalMap& map) {
+  Planner::State state = planner.state();
+  for (int k = 0; k < 10'000 && state == Planner::State::Searching; ++k) {
+    state = planner.search(map, 50);
+  }
+  return state;
+}
+
+double length(const algo::Recycled<Vec2>& path) {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum += (path[i] - path[i - 1]).norm();
+  return sum;
+}
+
+TEST(Planner, GoesStraightWhereNothingStands) {
+  LocalMap map;
+  Planner planner;
+  planner.start(map, {0, 0}, {5, 0}, 0.3);
+  ASSERT_EQ(finish(planner, map), Planner::State::Found);
+  algo::Recycled<Vec2> path;
+  planner.path(path);
+  EXPECT_NEAR(length(path), 5, 0.15);
+  EXPECT_NEAR(planner.cost(), 5, 0.15);
+  EXPECT_FALSE(planner.goal_replaced());
+}
+
+TEST(Planner, TakesTheGapAndKeepsItsClearance) {
+  LocalMap map;
+  wall(map, {2, -4}, {2, 1.0});
+  wall(map, {2, 2.0}, {2, 4});
+  Planner planner;
+  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  ASSERT_EQ(finish(planner, map), Planner::State::Found);
+  algo::Recycled<Vec2> path;
+  planner.path(path);
+  for (const Vec2& p : path) EXPECT_GE(map.distance(p), 0.28);
+}
+
+TEST(Planner, SaysWhenThereIsNoWay) {
+  LocalMap map;
+  for (const double y : {-1.5, 1.5}) wall(map, {2.5, y}, {5.5, y});
+  for (const double x : {2.5, 5.5}) wall(map, {x, -1.5}, {x, 1.5});
+  Planner planner;
+  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  EXPECT_EQ(finish(planner, map), Planner::State::NoWay);
+}
+
+TEST(Planner, AGoalInAnObstacleIsReplacedByThePlaceBesideIt) {
+  LocalMap map;
+  wall(map, {4, -0.1}, {4, 0.1});
+  Planner planner;
+  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  ASSERT_EQ(finish(planner, map), Planner::State::Found);
+  EXPECT_TRUE(planner.goal_replaced());
+}
+
+TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
+  LocalMap map;
+  Planner planner;
+  planner.start(map, {0, 0}, {400, 0}, 0.3);
+  ASSERT_EQ(finish(planner, map), Planner::State::Found);
+  EXPECT_TRUE(planner.goal_replaced());
+}
+
+TEST(Planner, DoesNoMoreThanItsBudget) {
+  LocalMap map;
+  Planner planner;
+  planner.start(map, {-5, -5}, {5, 4}, 0.3);
+  EXPECT_EQ(planner.search(map, 10), Planner::State::Searching);
+  EXPECT_EQ(finish(planner, map), Planner::State::Found);
+}
+
+TEST(NodeStrip, RelaxesToTheMiddleOfACorridor) {
+  LocalMap map;
+  wall(map, {-1, 0.6}, {6, 0.6});
+  wall(map, {-1, -0.6}, {6, -0.6});
+  algo::Recycled<Vec2> path;
+  path.push_back({0, 0});
+  path.push_back({1, 0.25});
+  path.push_back({4, 0.25});
+  path.push_back({5, 0});
+  algo::NodeStrip strip;
+  strip.lay(path);
+  const algo::StripSettings settings{.least_clearance = 0.25};
+  strip.relax(map, settings, 60);
+  for (const algo::Node& node : strip.nodes()) EXPECT_NEAR(node.position_W.y(), 0, 0.06);
+  EXPECT_LT(strip.broken_at(map, settings), 0);
+}
+
+TEST(NodeStrip, FollowCutsWhatThePassedRobotLeftBehind) {
+  algo::Recycled<Vec2> path;
+  path.push_back({0, 0});
+  path.push_back({3, 0});
+  algo::NodeStrip strip;
+  strip.lay(path);
+  strip.follow({1, 0.1});
+  EXPECT_EQ(strip.nodes()[0].position_W, Vec2(1, 0.1));
+  EXPECT_NEAR(strip.length(), 2, 0.1);
+  EXPECT_EQ(strip.end_W(), Vec2(3, 0));
+}
+
+TEST(NodeStrip, IsBrokenWhereSomethingHasComeToStand) {
+  LocalMap map;
+  algo::Recycled<Vec2> path;
+  path.push_back({0, 0});
+  path.push_back({3, 0});
+  algo::NodeStrip strip;
+  strip.lay(path);
+  wall(map, {1.5, -0.3}, {1.5, 0.3});
+  EXPECT_NEAR(strip.broken_at(map, {.least_clearance = 0.2}), 1.35, 0.16);
+}
+
+}  // namespace
