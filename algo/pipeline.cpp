@@ -21,6 +21,21 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
+/// [m] From a rectangular hull to the nearest return of all beams.
+double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
+  double least = scan.range_max - spec.radius;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok) continue;
+    const Vec2 p = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
+    const double dx = std::abs(p.x()) - spec.half_length;
+    const double dy = std::abs(p.y()) - spec.half_width;
+    const bool inside = dx <= 0 && dy <= 0;
+    least = std::min(least,
+                     inside ? std::max(dx, dy) : std::hypot(std::max(dx, 0.0), std::max(dy, 0.0)));
+  }
+  return least;
+}
+
 constexpr double kGridPeriod = 0.5;  // [s] between two grids in the telemetry, which are large
 constexpr double kGridRefresh =
     5.0;  // [s] after which an unchanged one comes again, for latecomers
@@ -138,7 +153,10 @@ void Pipeline::sense(Telemetry& t) {
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
 
-  if (scene_.fresh) clearance_ = nearest_distance(scene_) - spec_.radius;
+  if (scene_.fresh) {
+    clearance_ = spec_.half_length > 0 ? rectangle_clearance(scene_.scan, spec_)
+                                       : nearest_distance(scene_) - spec_.radius;
+  }
   t.clearance = clearance_;
 }
 

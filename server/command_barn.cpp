@@ -106,9 +106,10 @@ void write_scenarios(const std::vector<barn::World>& worlds,
     out << to_json(scenario).dump(1) << '\n';
     if (!out) throw std::runtime_error("cannot write " + path.string());
   }
-  fmt::print("{} scenarios written; `tautline serve {}/NAME.json` opens one in the page\n",
-             worlds.size(),
-             folder.string());
+  fmt::print(
+      "{} scenarios written; `tautline serve --scenario {}/NAME.json` opens one in the page\n",
+      worlds.size(),
+      folder.string());
 }
 
 int execute(BarnCommand command) {

@@ -60,7 +60,8 @@ TEST(DriveErrors, DefectsAreNamed) {
   EXPECT_EQ(defect(DriveConfig{.yaw_slip = 1}), "yaw_slip must be 0 to below 1");
   EXPECT_EQ(defect(DriveConfig{.max_v = 0}), "limits must be above 0");
   EXPECT_EQ(defect(DriveConfig{.delay_ticks = 101}), "delay_ticks must be 0 to 100");
-  EXPECT_EQ(defect(DriveConfig{.odometry_scale = std::nan("")}), "odometry_scale must be within -1 and 1");
+  EXPECT_EQ(defect(DriveConfig{.odometry_scale = std::nan("")}),
+            "odometry_scale must be within -1 and 1");
   EXPECT_FALSE(defect(DriveConfig{}));
 }
 

@@ -57,9 +57,9 @@ TEST(ObstacleSet, AgreesWithPointsSampledAlongTheOutline) {
     double least = 1e9;
     for (double s = -1; s <= 1; s += 0.01) {
       for (const algo::Vec2& p : {algo::Vec2(0.3 * s, 0.2),
-                                 algo::Vec2(0.3 * s, -0.2),
-                                 algo::Vec2(0.3, 0.2 * s),
-                                 algo::Vec2(-0.3, 0.2 * s)}) {
+                                  algo::Vec2(0.3 * s, -0.2),
+                                  algo::Vec2(0.3, 0.2 * s),
+                                  algo::Vec2(-0.3, 0.2 * s)}) {
         least = std::min(least, algo::signed_distance(obstacle, algo::to_parent(pose, p)));
       }
     }

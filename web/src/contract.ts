@@ -18,6 +18,8 @@ export interface ScenarioDocument {
 export interface RobotInfo {
   name: string;
   radius: number;
+  half_length?: number; // of a rectangular hull; 0: a disc
+  half_width?: number;
   half_track: number;
   period: number;
   max_v: number;

@@ -3,9 +3,11 @@ import { Pose } from "../geometry";
 import { Goal } from "../link/frame";
 import { Palette } from "./palette";
 import { arrow } from "./strip";
+import { SceneState } from "../state/scene";
 import { View } from "./view";
 
 type Context = CanvasRenderingContext2D;
+type Hull = SceneState["hull"];
 
 export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose,
   radius: number): void {
@@ -22,7 +24,7 @@ export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose
 
 /** Hull, two wheels and an arrowhead ahead. */
 export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose, radius: number,
-  half_track: number, colour = palette.robot, alpha = 1): void {
+  half_track: number, colour = palette.robot, alpha = 1, hull: Hull | null = null): void {
   const s = view.scale;
   const r = Math.max(radius * s, 6);
   const k = r / radius; // small robots are drawn no smaller than 12 px across
@@ -34,7 +36,11 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.strokeStyle = colour;
   g.lineWidth = Math.max(1.5, Math.min(2.4, r / 8));
   g.beginPath();
-  g.arc(0, 0, r, 0, 2 * Math.PI);
+  if (hull) {
+    g.rect(-hull.half_length * s, -hull.half_width * s, 2 * hull.half_length * s, 2 * hull.half_width * s);
+  } else {
+    g.arc(0, 0, r, 0, 2 * Math.PI);
+  }
   g.fill();
   g.stroke();
   g.fillStyle = colour;

@@ -67,7 +67,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   if (f) draw_nearest(g, view, palette, f);
   if (f) draw_plan(g, view, palette, f);
   if (f) draw_histogram(g, view, palette, f);
-  if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track);
+  if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
   if (f) draw_candidates(g, view, palette, f);
   if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius);

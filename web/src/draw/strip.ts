@@ -76,10 +76,10 @@ export function draw_strip(g: Context, view: View, palette: Palette, f: Frame): 
   g.stroke();
   g.fillStyle = palette.accent;
   g.strokeStyle = palette.bg;
-  g.lineWidth = 1.5;
+  g.lineWidth = points.length > 3 ? 0.75 : 1.5;
   for (const p of points.slice(1, -1)) {
     g.beginPath();
-    g.arc(p.x, p.y, 4.5, 0, 2 * Math.PI);
+    g.arc(p.x, p.y, points.length > 3 ? 2.5 : 4.5, 0, 2 * Math.PI);
     g.fill();
     g.stroke();
   }

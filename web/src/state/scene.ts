@@ -1,5 +1,6 @@
 // web/src/state/scene.ts: what there is to draw, as one plain object, and how a frame and the
 // session's document are folded into it. Live session and stored run fill the same object.
+import { moved_along, ObstaclePath, paths_of } from "./paths";
 import { SessionState } from "../contract";
 import { FilterName, apply_filter, samples_of } from "../filter";
 import { Bounds, Pose, compose, empty_bounds, include } from "../geometry";
@@ -27,9 +28,11 @@ export interface SceneState {
   columns: Columns;
   rows: number;           // of columns that have happened at the shown instant
   obstacles: Obstacle[];
+  paths: ObstaclePath[];  // of those that move by themselves
   start: Pose | null;
   goal: Goal | null;
   radius: number;         // [m] hull
+  hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
   filter: FilterName | string;
   half_width: number;
@@ -42,8 +45,8 @@ export interface SceneState {
 
 export function new_scene(most_rows = Infinity): SceneState {
   return {
-    frame: null, sweeps: [], grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
-    goal: null, radius: 0.35, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
+    frame: null, sweeps: [], grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
+    goal: null, radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
     events: new EventLog(), run: null, world: true,
   };
 }
@@ -63,9 +66,12 @@ export function fold_session(scene: SceneState, s: SessionState): void {
   if (run !== scene.run) begin_run(scene);
   scene.run = run;
   scene.obstacles = (s.obstacles ?? []).map(obstacle_from_json);
+  scene.paths = paths_of(s.scenario?.obstacles ?? []);
   scene.start = s.scenario?.start ?? null;
   scene.goal = s.goal ? { x: s.goal.x, y: s.goal.y, heading: s.goal.heading ?? null } : null;
   scene.radius = s.robot?.radius ?? scene.radius;
+  const { half_length = 0, half_width = 0 } = s.robot ?? {};
+  scene.hull = half_length > 0 ? { half_length, half_width } : null;
   scene.half_track = s.robot?.half_track ?? scene.half_track;
   scene.filter = s.filter;
   scene.world = s.source === "simulation";
@@ -91,6 +97,7 @@ export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
   scene.grid = f.grid ?? scene.grid;
+  if (scene.paths.length > 0) scene.obstacles = moved_along(scene.obstacles, scene.paths, f.stamp);
   place_sweeps(scene, f);
 }
 
