@@ -9,7 +9,6 @@ namespace algo {
 namespace {
 
 constexpr int kSize = LocalMap::kSize;
-constexpr double kCell = LocalMap::kCell;
 constexpr int kRadius = 20;  // cells: kReach
 constexpr int kWidth = 2 * kRadius + 1;
 constexpr std::int16_t kFar = 1000;  // [mm] kReach
@@ -26,6 +25,11 @@ constexpr int kTile = 32;  // cells along a tile's edge
 constexpr int kTiles = kSize / kTile;
 constexpr std::size_t kTilesATick = 8;  // more wait: distances too short are safe meanwhile
 constexpr double kMiddle = 4.0;         // [m] the robot may be from the window's middle
+
+/// Where the kernel holds the distance to (x, y) cells from its middle.
+std::size_t kernel_index(int x, int y) {
+  return static_cast<std::size_t>(y + kRadius) * kWidth + static_cast<std::size_t>(x + kRadius);
+}
 
 /// A square of `size` x `size` moved by (columns, rows) down and left; what comes in is `fresh`.
 template <typename T>
@@ -62,7 +66,7 @@ LocalMap::LocalMap()
   for (int y = -kRadius; y <= kRadius; ++y) {
     for (int x = -kRadius; x <= kRadius; ++x) {
       const double mm = std::hypot(x, y) * kCell * 1000;
-      kernel_[static_cast<std::size_t>((y + kRadius) * kWidth + x + kRadius)] =
+      kernel_[kernel_index(x, y)] =
           static_cast<std::int16_t>(std::min<double>(std::nearbyint(mm), kFar));
     }
   }
@@ -93,7 +97,7 @@ bool LocalMap::follow(const Vec2& position_W) {
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
   const auto tiles = [](double metres) {
-    return static_cast<int>(std::lround(metres / (kCell * kTile)));
+    return static_cast<int>(std::lround(metres / (LocalMap::kCell * kTile)));
   };
   shift(tiles(off.x()), tiles(off.y()));
   return true;
@@ -166,8 +170,7 @@ void LocalMap::stamp(int column, int row, int left, int bottom, int right, int t
   const int y0 = std::max(bottom, row - kRadius);
   const int y1 = std::min(top, row + kRadius + 1);
   for (int y = y0; y < y1; ++y) {
-    const std::int16_t* from =
-        &kernel_[static_cast<std::size_t>((y - row + kRadius) * kWidth + x0 - column + kRadius)];
+    const std::int16_t* from = &kernel_[kernel_index(x0 - column, y - row)];
     std::int16_t* to = &field_[index(x0, y)];
     for (int x = 0; x < x1 - x0; ++x) to[x] = std::min(to[x], from[x]);
   }
@@ -192,9 +195,7 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   const auto last = static_cast<double>(scan.size() - 2);
   for (std::size_t i = scans_ % 2; i < active_.size(); i += 2) {
     const std::size_t cell = active_[i];
-    const Vec2 centre_W = corner_W_ + Vec2((static_cast<double>(cell % kSize) + 0.5) * kCell,
-                                           (static_cast<double>(cell / kSize) + 0.5) * kCell);
-    const Vec2 d = centre_W - sensor_W.position();
+    const Vec2 d = centre_W(cell) - sensor_W.position();
     const double far = d.squaredNorm();
     if (far > kClearRange * kClearRange) continue;
     const double bearing =
@@ -216,9 +217,12 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   }
 }
 
-/// Leaves the cell without hits in the list of active ones, from which look_through() drops it.
 void LocalMap::clear(std::size_t cell) {
   weaken(cell, kMost);
+  const auto listed = std::ranges::find(active_, static_cast<std::uint32_t>(cell));
+  if (listed == active_.end()) return;
+  *listed = active_.back();
+  active_.pop_back();
 }
 
 void LocalMap::age() {
@@ -245,7 +249,7 @@ void LocalMap::soil(std::size_t cell) {
   const int y1 = std::min(kSize - 1, row + kRadius) / kTile;
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
-      const auto tile = static_cast<std::size_t>(y * kTiles + x);
+      const auto tile = static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x);
       if (soiled_[tile] != 0) continue;
       soiled_[tile] = 1;
       tiles_.push_back(static_cast<std::uint16_t>(tile));

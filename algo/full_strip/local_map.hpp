@@ -100,8 +100,9 @@ class LocalMap {
     return static_cast<int>(std::floor((y_W - corner_W_.y()) / kCell));
   }
   Vec2 centre_W(std::size_t cell) const {
-    return corner_W_ + Vec2((static_cast<double>(cell % kSize) + 0.5) * kCell,
-                            (static_cast<double>(cell / kSize) + 0.5) * kCell);
+    const auto column = static_cast<double>(cell % kSize);
+    const std::size_t row = cell / kSize;
+    return corner_W_ + Vec2((column + 0.5) * kCell, (static_cast<double>(row) + 0.5) * kCell);
   }
   Vec2 mean_W(std::size_t cell) const {
     const Offset& o = means_[cell];

@@ -58,7 +58,9 @@ std::uint32_t Planner::point_at(const Vec2& p_W) const {
 }
 
 Vec2 Planner::position_W(std::uint32_t point) const {
-  return corner_W_ + Vec2((point % kSize + 0.5) * kStep, (point / kSize + 0.5) * kStep);
+  const std::uint32_t column = point % kSize;
+  const std::uint32_t row = point / kSize;
+  return corner_W_ + Vec2((column + 0.5) * kStep, (row + 0.5) * kStep);
 }
 
 /// [m] At the corner that the lattice point's four cells share.

@@ -51,12 +51,13 @@ SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
 
 bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
   constexpr double kStep = 0.25;    // [s]
-  constexpr double kHorizon = 4.0;  // [s]
+  constexpr int kSteps = 16;        // 4 s
   constexpr double kNear = 0.5;     // [m] room that is enough,
   constexpr double kSpread = 0.15;  // [m/s] and more the farther ahead one looks
   const Recycled<Node>& nodes = strip.nodes();
   for (const Track& track : *in.tracks) {
-    for (double time = 0; time <= kHorizon; time += kStep) {
+    for (int k = 0; k <= kSteps; ++k) {
+      const double time = k * kStep;
       const Vec2 at_W = track.position_W + track.velocity_W * time;
       const double reach = track.radius + in.spec->radius + kNear + kSpread * time;
       const auto near = [&](const Vec2& p_W) { return (p_W - at_W).squaredNorm() < reach * reach; };

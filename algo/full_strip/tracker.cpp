@@ -235,7 +235,7 @@ bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
   const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
   const double beam = (bearing - angle_min_) / angle_increment_;
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
-  const auto b = static_cast<std::size_t>(beam + 0.5);
+  const auto b = static_cast<std::size_t>(std::lround(beam));
   const double far = d.norm();
   for (std::size_t i = b - 1; i <= b + 1; ++i) {
     if (static_cast<double>(memory.ranges[i]) < far + kBeyond) return false;
@@ -250,7 +250,8 @@ bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
   const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
   const double beam = (bearing - angle_min_) / angle_increment_;
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
-  const auto range = static_cast<double>(memory.ranges[static_cast<std::size_t>(beam + 0.5)]);
+  const auto range =
+      static_cast<double>(memory.ranges[static_cast<std::size_t>(std::lround(beam))]);
   return std::abs(range - d.norm()) < kSame;
 }
 

@@ -98,6 +98,17 @@ TEST(LocalMap, ErasesWhereItIsTold) {
   see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
   map.erase_near({2, 0}, 1, [](const Vec2&) { return true; });
   EXPECT_EQ(map.occupied(), 0U);
+  // Seen again it stands again, and is freed again no faster than at first.
+  see(map, post(2, 0, 0.3), {0, 0, 0}, 5);
+  LocalMap fresh;
+  see(fresh, post(2, 0, 0.3), {0, 0, 0}, 5);
+  EXPECT_EQ(map.occupied(), fresh.occupied());
+  const worlds::World empty{{{{6, 0}, 0.5}}, {}};
+  for (int k = 0; k < 6; ++k) {
+    see(map, empty, {0, 0, 0});
+    see(fresh, empty, {0, 0, 0});
+    EXPECT_NEAR(static_cast<double>(map.occupied()), static_cast<double>(fresh.occupied()), 8);
+  }
 }
 
 }  // namespace
