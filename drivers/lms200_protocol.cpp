@@ -4,22 +4,22 @@
 namespace drivers::lms200 {
 namespace {
 
-enum Code : std::uint8_t {
-  kReset = 0x10,
-  kMode = 0x20,
-  kValues = 0x30,
-  kStatus = 0x31,
-  kErrors = 0x32,
-  kMean = 0x36,
-  kRange = 0x37,
-  kType = 0x3A,
-  kVariant = 0x3B,
-  kMeanRange = 0x3F,
-  kStartUpRate = 0x66,
-  kReadConfiguration = 0x74,
-  kWriteConfiguration = 0x77,
-  kReadSecond = 0x7B,
-  kWriteSecond = 0x7C,
+enum class Request : std::uint8_t {
+  Reset = 0x10,
+  Mode = 0x20,
+  Values = 0x30,
+  Status = 0x31,
+  Errors = 0x32,
+  Mean = 0x36,
+  Range = 0x37,
+  Type = 0x3A,
+  Variant = 0x3B,
+  MeanRange = 0x3F,
+  StartUpRate = 0x66,
+  ReadConfiguration = 0x74,
+  WriteConfiguration = 0x77,
+  ReadSecond = 0x7B,
+  WriteSecond = 0x7C,
 };
 
 constexpr std::size_t kPasswordBytes = 8;
@@ -34,21 +34,21 @@ Command framed(const Payload& payload, std::uint8_t address) {
   return command;
 }
 
-Command plain(Code code, std::uint8_t address) {
+Command plain(Request code, std::uint8_t address) {
   Payload payload;
-  payload.push_back(code);
+  payload.push_back(static_cast<std::uint8_t>(code));
   return framed(payload, address);
 }
 
-Payload begun(Code code, std::uint8_t parameter) {
+Payload begun(Request code, std::uint8_t parameter) {
   Payload payload;
-  payload.push_back(code);
+  payload.push_back(static_cast<std::uint8_t>(code));
   payload.push_back(parameter);
   return payload;
 }
 
 Payload begun(Mode mode) {
-  return begun(kMode, static_cast<std::uint8_t>(mode));
+  return begun(Request::Mode, static_cast<std::uint8_t>(mode));
 }
 
 void append(Payload& payload, ValueRange range) {
@@ -127,38 +127,38 @@ unsigned baud_of(Rate rate) {
 }
 
 Command reset_command(std::uint8_t address) {
-  return plain(kReset, address);
+  return plain(Request::Reset, address);
 }
 Command status_command(std::uint8_t address) {
-  return plain(kStatus, address);
+  return plain(Request::Status, address);
 }
 Command error_command(std::uint8_t address) {
-  return plain(kErrors, address);
+  return plain(Request::Errors, address);
 }
 Command type_command(std::uint8_t address) {
-  return plain(kType, address);
+  return plain(Request::Type, address);
 }
 Command read_configuration_command(std::uint8_t address) {
-  return plain(kReadConfiguration, address);
+  return plain(Request::ReadConfiguration, address);
 }
 Command read_second_configuration_command(std::uint8_t address) {
-  return plain(kReadSecond, address);
+  return plain(Request::ReadSecond, address);
 }
 
 Command rate_command(Rate rate, std::uint8_t address) {
-  return framed(begun(kMode, static_cast<std::uint8_t>(rate)), address);
+  return framed(begun(Request::Mode, static_cast<std::uint8_t>(rate)), address);
 }
 Command mode_command(Mode mode, std::uint8_t address) {
   return framed(begun(mode), address);
 }
 Command values_command(Wanted wanted, std::uint8_t address) {
-  return framed(begun(kValues, static_cast<std::uint8_t>(wanted)), address);
+  return framed(begun(Request::Values, static_cast<std::uint8_t>(wanted)), address);
 }
 Command mean_command(std::uint8_t scans, std::uint8_t address) {
-  return framed(begun(kMean, scans), address);
+  return framed(begun(Request::Mean, scans), address);
 }
 Command start_up_rate_command(StartUpRate rate, std::uint8_t address) {
-  return framed(begun(kStartUpRate, static_cast<std::uint8_t>(rate)), address);
+  return framed(begun(Request::StartUpRate, static_cast<std::uint8_t>(rate)), address);
 }
 
 Command installation_command(std::string_view password, std::uint8_t address) {
@@ -195,13 +195,13 @@ Command continuous_fields_command(ValueRange range, std::uint8_t address) {
 
 Command range_command(ValueRange range, std::uint8_t address) {
   Payload payload;
-  payload.push_back(kRange);
+  payload.push_back(static_cast<std::uint8_t>(Request::Range));
   append(payload, range);
   return framed(payload, address);
 }
 
 Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address) {
-  Payload payload = begun(kMeanRange, scans);
+  Payload payload = begun(Request::MeanRange, scans);
   append(payload, range);
   return framed(payload, address);
 }
@@ -209,7 +209,7 @@ Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t ad
 Command variant_command(const Variant& variant, std::uint8_t address) {
   if (!exists(variant)) return {};
   Payload payload;
-  payload.push_back(kVariant);
+  payload.push_back(static_cast<std::uint8_t>(Request::Variant));
   payload.append_word(variant.angle_degrees);
   payload.append_word(variant.step_centidegrees);
   return framed(payload, address);
@@ -217,7 +217,7 @@ Command variant_command(const Variant& variant, std::uint8_t address) {
 
 Command write_configuration_command(const Configuration& configuration, std::uint8_t address) {
   Payload payload;
-  payload.push_back(kWriteConfiguration);
+  payload.push_back(static_cast<std::uint8_t>(Request::WriteConfiguration));
   payload.append(configuration.block());
   return framed(payload, address);
 }
@@ -225,7 +225,7 @@ Command write_configuration_command(const Configuration& configuration, std::uin
 Command write_second_configuration_command(ByteView block, std::uint8_t address) {
   if (block.size() != kSecondBytes) return {};
   Payload payload;
-  payload.push_back(kWriteSecond);
+  payload.push_back(static_cast<std::uint8_t>(Request::WriteSecond));
   payload.append(block);
   return framed(payload, address);
 }

@@ -27,12 +27,12 @@ class Printed {
   Bytes frame_{};
 };
 
-Configuration configuration(std::uint8_t threshold_mV,
+Configuration configuration(std::uint8_t threshold_mv,
                             std::uint8_t availability,
                             std::uint8_t mode,
                             bool millimetres) {
   Bytes block = hex("00 00 00 00 00 00 00 00 00 02 02 21x00 02 00");
-  block[2] = threshold_mV;
+  block[2] = threshold_mv;
   Configuration result{block};
   result.set_availability(availability);
   result.set_measuring_mode(mode);
