@@ -1,0 +1,253 @@
+// drivers/lms200_protocol.hpp: what an LMS2xx can be told, and its answers but for measured values
+// (drivers/lms200_scan.hpp).
+//
+// Sources: SICK, Telegrams for Configuring and Operating the LMS2xx (2006), checked against public
+// drivers and a recording. No I/O and no clock: see drivers/lms200_telegram.hpp for the line.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "drivers/bytes.hpp"
+#include "drivers/lms200_telegram.hpp"
+
+namespace drivers::lms200 {
+
+/// The longest, writing the second part of the configuration, has 91 bytes.
+using Command = FixedBytes<96>;
+
+/// A field of view and its step, as the device has it: whole degrees and hundredths of a degree.
+struct Variant {
+  std::uint16_t angle_degrees = 180;      // 100 or 180
+  std::uint16_t step_centidegrees = 100;  // 100, 50 or 25
+
+  /// Of a whole scan, both ends included.
+  std::size_t beams() const { return angle_degrees * 100U / step_centidegrees + 1U; }
+  /// Mirror turns a whole scan needs: each turn measures once a degree.
+  std::uint32_t turns() const { return 100U / step_centidegrees; }
+  bool operator==(const Variant&) const = default;
+};
+
+/// 180 degrees in steps of 0.25 exist as interlaced partial scans alone; the device takes them for
+/// no variant, so variant_command() has no telegram for them.
+bool exists(const Variant& variant);
+
+enum class Rate : std::uint8_t { Baud38400 = 0x40, Baud19200, Baud9600, Baud500000 = 0x48 };
+/// [bit/s]
+unsigned baud_of(Rate rate);
+
+enum class Mode : std::uint8_t {
+  Installation = 0x00,  // takes the password
+  Diagnosis = 0x10,
+  MinimumPerSegment = 0x20,
+  MinimumOnObject = 0x21,
+  MinimumVertical = 0x22,
+  MinimumVerticalOnObject = 0x23,
+  Continuous = 0x24,
+  OnRequest = 0x25,        // as the device starts
+  ContinuousMeans = 0x26,  // takes a number of scans
+  ContinuousRange = 0x27,  // takes first and last value
+  ContinuousMeanRange = 0x28,
+  ContinuousFields = 0x29,  // takes first and last value
+  PartialScans = 0x2A,      // at once after each mirror turn
+};
+
+/// What one request for measured values asks for.
+enum class Wanted : std::uint8_t {
+  All = 0x01,
+  VerticalDistance = 0x02,
+  TaughtField = 0x03,
+  EverySecond = 0x06,
+  EveryTwentieth = 0x07,
+  PartialScan = 0x08,
+};
+
+enum class StartUpRate : std::uint8_t { Baud9600 = 0, KeepPresent = 1, KeepType = 2 };
+
+/// Values counted from 1, as the device does, both included.
+struct ValueRange {
+  std::uint16_t first = 1;
+  std::uint16_t last = 361;
+  bool operator==(const ValueRange&) const = default;
+};
+
+constexpr std::string_view kFactoryPassword = "SICK_LMS";
+
+/// The part of the configuration a driver reads and changes. Old devices have a shorter block, so
+/// its size is what the device sent.
+class Configuration {
+ public:
+  static constexpr std::size_t kBytes = 34;
+
+  Configuration() = default;
+  explicit Configuration(ByteView block) : size_(std::min(block.size(), kBytes)) {
+    std::copy_n(block.begin(), size_, block_.begin());
+  }
+
+  ByteView block() const { return ByteView(block_).first(size_); }
+  bool sends_indices() const { return (block_[kAvailability] & 2U) != 0; }
+  std::uint8_t measuring_mode() const { return block_[kMeasuringMode]; }
+  bool in_millimetres() const { return block_[kUnit] == 1; }
+
+  /// Availability level 3 on or off, indices on or off, dazzle switching outputs or not.
+  void set_availability(std::uint8_t bits) { block_[kAvailability] = bits; }
+  void set_measuring_mode(std::uint8_t mode) { block_[kMeasuringMode] = mode; }
+  void set_millimetres(bool on) { block_[kUnit] = on ? 1 : 0; }
+  bool operator==(const Configuration&) const = default;
+
+ private:
+  static constexpr std::size_t kAvailability = 4;
+  static constexpr std::size_t kMeasuringMode = 5;
+  static constexpr std::size_t kUnit = 6;
+
+  std::array<std::uint8_t, kBytes> block_{};
+  std::size_t size_ = 0;
+};
+
+// ---- requests, framed; `address` 0 is everybody's --------------------------------------------
+
+Command reset_command(std::uint8_t address = kEverybody);
+Command status_command(std::uint8_t address = kEverybody);
+Command error_command(std::uint8_t address = kEverybody);
+Command type_command(std::uint8_t address = kEverybody);
+Command rate_command(Rate rate, std::uint8_t address = kEverybody);
+/// Modes without parameters.
+Command mode_command(Mode mode, std::uint8_t address = kEverybody);
+/// `password` has 8 characters, else no command results.
+Command installation_command(std::string_view password = kFactoryPassword,
+                             std::uint8_t address = kEverybody);
+Command continuous_means_command(std::uint8_t scans, std::uint8_t address = kEverybody);
+Command continuous_range_command(ValueRange range, std::uint8_t address = kEverybody);
+Command continuous_mean_range_command(std::uint8_t scans,
+                                      ValueRange range,
+                                      std::uint8_t address = kEverybody);
+Command continuous_fields_command(ValueRange range, std::uint8_t address = kEverybody);
+Command values_command(Wanted wanted, std::uint8_t address = kEverybody);
+Command mean_command(std::uint8_t scans, std::uint8_t address = kEverybody);
+Command range_command(ValueRange range, std::uint8_t address = kEverybody);
+Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address = kEverybody);
+/// Empty for a variant that does not exist.
+Command variant_command(const Variant& variant, std::uint8_t address = kEverybody);
+/// A rate kept at 500000 leaves the device silent on RS-232: never sent without being asked for.
+Command start_up_rate_command(StartUpRate rate, std::uint8_t address = kEverybody);
+Command read_configuration_command(std::uint8_t address = kEverybody);
+/// Wears out the device's memory: only for a block that differs from the one read, in installation
+/// mode.
+Command write_configuration_command(const Configuration& configuration,
+                                    std::uint8_t address = kEverybody);
+Command read_second_configuration_command(std::uint8_t address = kEverybody);
+/// `block` has 84 bytes, else no command results.
+Command write_second_configuration_command(ByteView block, std::uint8_t address = kEverybody);
+
+// ---- answers ---------------------------------------------------------------------------------
+
+enum class Answer : std::uint8_t {
+  PowerOn = 0x90,  // restarted: at 9600 again, on request, variant as stored
+  ResetConfirmed = 0x91,
+  Refused = 0x92,
+  Mode = 0xA0,
+  Values = 0xB0,
+  Status = 0xB1,
+  Errors = 0xB2,
+  Means = 0xB6,
+  RangeValues = 0xB7,
+  Type = 0xBA,
+  Variant = 0xBB,
+  FieldValues = 0xBE,
+  MeanRange = 0xBF,
+  StartUpRate = 0xE6,
+  Configuration = 0xF4,
+  ConfigurationWritten = 0xF7,
+  SecondConfiguration = 0xFB,
+  SecondConfigurationWritten = 0xFC,
+};
+
+/// The last byte of every answer.
+class Health {
+ public:
+  explicit Health(std::uint8_t byte = 0x10) : byte_(byte) {}
+
+  /// 0 good, 1 info, 2 warning, 3 error, 4 fatal.
+  unsigned level() const { return byte_ & 7U; }
+  bool restart_input() const { return (byte_ & 0x20U) != 0; }
+  bool implausible() const { return (byte_ & 0x40U) != 0; }
+  bool polluted() const { return (byte_ & 0x80U) != 0; }
+  /// A robot may drive on values that come with it.
+  bool usable() const { return level() < 3 && !implausible(); }
+  std::uint8_t byte() const { return byte_; }
+  bool operator==(const Health&) const = default;
+
+ private:
+  std::uint8_t byte_;
+};
+
+/// What is wrong, as a sentence; empty when all is well.
+std::string health_text(Health health);
+
+/// Why a request for a mode, a rate or anything at all was not done; empty when it was, or when
+/// `telegram` is no such answer.
+std::string refusal_text(const Telegram& telegram);
+
+/// Answer to type_command(), or the greeting after power-on: "LMS200;301063;V02.30 ".
+std::optional<std::string_view> type_text(const Telegram& telegram);
+
+struct VariantAnswer {
+  bool done = false;
+  Variant now{};
+  bool operator==(const VariantAnswer&) const = default;
+};
+std::optional<VariantAnswer> variant_answer(const Telegram& telegram);
+
+struct StartUpRateAnswer {
+  bool done = false;
+  StartUpRate now{};
+  bool operator==(const StartUpRateAnswer&) const = default;
+};
+std::optional<StartUpRateAnswer> start_up_rate_answer(const Telegram& telegram);
+
+/// After reading `done` is true. After writing `now` is the block in force, to be compared with
+/// what was sent.
+struct ConfigurationAnswer {
+  bool done = false;
+  Configuration now{};
+};
+std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram);
+
+struct DeviceStatus {
+  std::string_view software{};  // 7 characters, valid as long as the telegram
+  std::uint8_t mode = 0;
+  bool faulty = false;
+  std::uint8_t variant_type = 0;
+  std::array<std::uint16_t, 8> pollution{};  // of the window's parts
+  std::uint16_t motor_microseconds = 0;      // for 1/90 of a turn; 148 nominal
+  std::uint8_t measuring_mode = 0;
+  Variant variant{};
+  unsigned baud = 0;  // [bit/s]; 0 when the word is none of those known
+  std::uint8_t start_up_rate = 0;
+  std::uint8_t address = 0;
+  bool in_millimetres = false;
+  bool laser_on = false;
+};
+std::optional<DeviceStatus> device_status(const Telegram& telegram);
+
+/// One entry of the error memory.
+struct DeviceError {
+  std::uint8_t severity = 0;  // 0 none, 1 info, 2 warning, 3 error, 4 fatal
+  bool present = true;
+  std::uint8_t number = 0;
+  bool operator==(const DeviceError&) const = default;
+};
+
+/// How many entries an answer to error_command() has; nothing when `telegram` is none.
+std::optional<std::size_t> error_count(const Telegram& telegram);
+/// Entry `i` < error_count().
+DeviceError error_at(const Telegram& telegram, std::size_t i);
+/// "error 29: the motor's speed is wrong (no longer present)".
+std::string error_text(const DeviceError& error);
+
+}  // namespace drivers::lms200

@@ -1,0 +1,198 @@
+// drivers/roboteq_protocol.hpp: the text that Roboteq motor controllers take and send.
+//
+// Lines end with CR. The controller repeats what it is sent until told not to, answers commands
+// with + or -, and queries with NAME=value:value. Queries may be repeated by the controller itself,
+// so answers are told apart by their names and not by their order.
+// Source: public drivers; the maker's manual was not at hand. No I/O and no clock. The controller
+// stops by itself when no motor command comes for its watchdog's time, which queries do not feed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "drivers/bytes.hpp"
+
+namespace drivers::roboteq {
+
+using Line = FixedBytes<96>;
+
+constexpr std::uint8_t kEnquiry = 0x05;  // answered by kAck when a controller is there
+constexpr std::uint8_t kAck = 0x06;
+constexpr int kFactoryWatchdog_ms = 1000;
+
+// ---- commands: answered by + or - ------------------------------------------------------------
+
+/// A channel's or no channel's command: "!C 1 0" of ("!C", 1, 0). Ends with CR.
+Line command(std::string_view name);
+Line command(std::string_view name, int value);
+Line command(std::string_view name, int channel, int value);
+
+/// Both motors, -1000..1000 of the full speed (closed loop) or power.
+Line drive(int left, int right);
+/// Both motors' speeds [rpm] in closed loop.
+Line drive_rpm(int left, int right);
+
+inline Line stop_channel(int channel) {
+  return command("!MS", channel);
+}
+/// Motors off until release_stop(); the command of before is forgotten.
+inline Line emergency_stop() {
+  return command("!EX");
+}
+inline Line release_stop() {
+  return command("!MG");
+}
+inline Line set_counter(int channel, int count) {
+  return command("!C", channel, count);
+}
+/// [0.1 rpm/s]
+inline Line acceleration(int channel, int value) {
+  return command("!AC", channel, value);
+}
+inline Line deceleration(int channel, int value) {
+  return command("!DC", channel, value);
+}
+/// The first thing to say: lines before its answer may be echoes.
+inline Line echo_off() {
+  return command("^ECHOF", 1);
+}
+/// 0 turns the watchdog off.
+inline Line set_watchdog(int milliseconds) {
+  return command("^RWD", milliseconds);
+}
+enum class LoopMode : std::uint8_t { Open = 0, ClosedLoopSpeed = 1, PositionCount = 2 };
+inline Line set_loop_mode(int channel, LoopMode mode) {
+  return command("^MMOD", channel, static_cast<int>(mode));
+}
+/// [rpm] at a command of 1000.
+inline Line set_full_speed(int channel, int rpm) {
+  return command("^MXRPM", channel, rpm);
+}
+/// Lines of the encoder a turn: a quarter of its counts.
+inline Line set_encoder_lines(int channel, int lines) {
+  return command("^EPPR", channel, lines);
+}
+/// Parameters last until power-off unless stored.
+inline Line store_parameters() {
+  return command("%EESAV");
+}
+Line restart();
+
+// ---- queries: answered by NAME=values --------------------------------------------------------
+
+/// "?C", or a parameter as "~RWD".
+Line query(std::string_view name);
+Line query(std::string_view name, int channel);
+Line read_parameter(std::string_view name);
+/// Makes the controller ask itself `names` in turn, one each `milliseconds`. Nothing results when
+/// they do not fit a line.
+Line repeat_queries(std::span<const std::string_view> names, int milliseconds);
+Line end_repetition();
+
+// ---- replies ---------------------------------------------------------------------------------
+
+/// What a line says. Names and texts are valid as long as the line.
+struct Reply {
+  enum class Kind : std::uint8_t {
+    Nothing,   // an echo, a cut line, noise
+    Accepted,  // the oldest command that is still unanswered
+    Refused,   // likewise
+    Values,    // NAME=1:-2:3
+    Text,      // NAME=anything else, as the firmware's name
+  };
+  static constexpr std::size_t kValues = 8;
+
+  Kind kind = Kind::Nothing;
+  std::string_view name{};
+  std::string_view text{};  // after the equals sign
+  std::array<std::int32_t, kValues> values{};
+  std::size_t count = 0;
+};
+
+/// `line` without its end.
+Reply parse_reply(std::string_view line);
+
+/// Cuts a stream into lines. Nothing is allocated; a line too long to be one is left out whole.
+class LineReader {
+ public:
+  /// Calls `on_line(std::string_view)` for each line that is not empty, without its end; valid
+  /// during the call.
+  template <class OnLine>
+  void feed(ByteView bytes, OnLine&& on_line) {
+    for (const std::uint8_t byte : bytes) {
+      if (byte != '\r' && byte != '\n') {
+        take(byte);
+        continue;
+      }
+      if (line_.size() > 0 && !too_long_) on_line(line_.text());
+      if (too_long_) ++overlong_;
+      line_.clear();
+      too_long_ = false;
+    }
+  }
+
+  /// Forgets the line begun.
+  void clear() {
+    line_.clear();
+    too_long_ = false;
+  }
+  std::uint64_t overlong_lines() const { return overlong_; }
+
+ private:
+  static constexpr std::size_t kLongest = 160;
+
+  void take(std::uint8_t byte) {
+    too_long_ = too_long_ || line_.size() == kLongest;
+    line_.push_back(byte);
+  }
+
+  FixedBytes<kLongest> line_{};
+  bool too_long_ = false;
+  std::uint64_t overlong_ = 0;
+};
+
+// ---- what the controller reports -------------------------------------------------------------
+
+/// The newest of each answer; the caller notes when it came.
+struct State {
+  std::optional<std::array<std::int32_t, 2>> counts{};  // of the encoders
+  std::optional<std::array<double, 2>> rpm{};
+  std::optional<double> battery_volts{};
+  std::optional<std::array<double, 2>> motor_amperes{};
+  std::optional<std::uint16_t> faults{};
+  std::optional<std::uint16_t> status{};
+  bool one_channel = false;  // speed or counter of one motor only: no base can be driven with it
+};
+
+/// Takes in `reply`; false when it holds nothing of State.
+bool update(State& state, const Reply& reply);
+
+/// Each fault in words, separated by commas; empty when there is none.
+std::string fault_text(std::uint16_t faults);
+std::string status_text(std::uint16_t status);
+/// Faults that stop the power stage or make its motion doubtful: the run has to end.
+bool must_stop(std::uint16_t faults);
+
+/// From metres of the wheel to turns of the motor.
+struct Wheel {
+  double radius = 0.1;        // [m]
+  double gear = 1;            // turns of the motor for one of the wheel
+  double encoder_lines = 1;   // a turn of the motor; four counts each
+  double full_speed_rpm = 1;  // of the motor, at a command of 1000
+
+  /// [rpm] of the motor at `speed` [m/s] of the wheel.
+  double rpm(double speed) const;
+  /// [m/s], the inverse.
+  double speed(double motor_rpm) const;
+  /// [m] the wheel rolls for a difference of counts.
+  double metres(std::int64_t counts) const;
+  /// -1000..1000 for drive(), with `speed` [m/s] clamped to +-`limit` first.
+  int command_for(double speed, double limit) const;
+};
+
+}  // namespace drivers::roboteq

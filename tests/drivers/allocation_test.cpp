@@ -1,0 +1,51 @@
+// tests/drivers/allocation_test.cpp: once scans have their size, reading and decoding allocate
+// nothing.
+#include "tests/algo/allocations.hpp"
+#include "tests/drivers/lms200_telegrams.hpp"
+#include <gtest/gtest.h>
+
+#include "drivers/lms200_scan.hpp"
+#include "drivers/p2os_protocol.hpp"
+#include "drivers/roboteq_protocol.hpp"
+
+namespace drivers {
+namespace {
+
+TEST(DriverAllocations, NoneForAStreamOfScans) {
+  const Bytes stream = lms200::scan_361();
+  const lms200::ScanDecoder decoder({180, 50}, lms200::WordFormat{});
+  lms200::TelegramReader reader;
+  algo::LaserScan scan;
+  int scans = 0;
+  const auto on_frame = [&](ByteView frame) {
+    const auto values = lms200::measured_values(lms200::telegram_of(frame));
+    if (values && decoder.decode(*values, scan)) ++scans;
+  };
+  const auto on_stray = [](std::uint8_t) {};
+  reader.feed(stream, on_frame, on_stray);
+  const std::size_t before = allocations::count();
+  for (int i = 0; i < 10; ++i) reader.feed(stream, on_frame, on_stray);
+  EXPECT_EQ(allocations::count(), before);
+  EXPECT_EQ(scans, 11);
+}
+
+TEST(DriverAllocations, NoneForMotorControllers) {
+  const Bytes body = hex("32 19x00");
+  const std::string_view text = "C=3546:-1787\rFF=16\rS=100:-50\r";
+  const ByteView lines(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  p2os::State base;
+  roboteq::State controller;
+  roboteq::LineReader reader;
+  const std::size_t before = allocations::count();
+  EXPECT_TRUE(p2os::decode_state(body, base));
+  EXPECT_GT(p2os::wheel_velocities(0.2, 0.2, 1).size(), 0U);
+  EXPECT_GT(roboteq::drive(1, 2).size(), 0U);
+  reader.feed(lines, [&](std::string_view line) {
+    roboteq::update(controller, roboteq::parse_reply(line));
+  });
+  EXPECT_EQ(allocations::count(), before);
+  EXPECT_TRUE(controller.counts);
+}
+
+}  // namespace
+}  // namespace drivers
