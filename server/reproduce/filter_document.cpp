@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "server/reproduce/filter_study.hpp"
+#include "server/reproduce/table.hpp"
 
 namespace server {
 namespace {
@@ -15,44 +16,7 @@ namespace {
 constexpr std::string_view kBegin = "<!-- filter study: made by the program, not by hand -->\n";
 constexpr std::string_view kEnd = "<!-- end of the filter study -->\n";
 
-/// A table of words that can be printed for a terminal and for Markdown.
-struct Table {
-  std::vector<std::string> head{};
-  std::vector<std::vector<std::string>> rows{};
-};
-
-std::string aligned(const Table& table) {
-  std::vector<std::size_t> widths;
-  for (std::size_t c = 0; c < table.head.size(); ++c) {
-    std::size_t width = table.head[c].size();
-    for (const auto& row : table.rows) width = std::max(width, row[c].size());
-    widths.push_back(width);
-  }
-  const auto line = [&](const std::vector<std::string>& cells) {
-    std::string out = "  ";
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      // The first column holds names, all others numbers.
-      out += c == 0 ? fmt::format("{:<{}}", cells[c], widths[c])
-                    : fmt::format("  {:>{}}", cells[c], widths[c]);
-    }
-    return out + "\n";
-  };
-  std::string out = line(table.head);
-  for (const auto& row : table.rows) out += line(row);
-  return out;
-}
-
-std::string piped(const Table& table) {
-  const auto line = [](const std::vector<std::string>& cells) {
-    return fmt::format("| {} |\n", fmt::join(cells, " | "));
-  };
-  std::string out = line(table.head);
-  out += "| --- |";
-  for (std::size_t c = 1; c < table.head.size(); ++c) out += " ---: |";
-  out += "\n";
-  for (const auto& row : table.rows) out += line(row);
-  return out;
-}
+using reproduce::Table;
 
 std::string percent(double share) {
   return fmt::format("{:.1f} %", 100 * share);
@@ -62,15 +26,15 @@ std::string or_dash(const std::optional<double>& value, std::string_view format)
 }
 
 Table scene_table(const SceneResult& result) {
-  Table out{.head = {"filter",
-                     "values > 50 mm off",
-                     "of a spike left",
-                     "edge shift [beams]",
-                     "edge blur [beams]",
-                     "oscillation",
-                     "not in window",
-                     "not whole mm",
-                     "RMS off [mm]"}};
+  Table out{.header = {"filter",
+                       "values > 50 mm off",
+                       "of a spike left",
+                       "edge shift [beams]",
+                       "edge blur [beams]",
+                       "oscillation",
+                       "not in window",
+                       "not whole mm",
+                       "RMS off [mm]"}};
   for (const FilterFigures& each : result.figures) {
     out.rows.push_back({each.filter,
                         fmt::format("{:.0f}", each.impulses),
@@ -86,13 +50,13 @@ Table scene_table(const SceneResult& result) {
 }
 
 Table recording_table(const RecordingResult& result) {
-  Table out{.head = {"filter",
-                     "outliers per scan",
-                     "edge shift [beams]",
-                     "edge blur [beams]",
-                     "oscillation",
-                     "not in window",
-                     "no whole step"}};
+  Table out{.header = {"filter",
+                       "outliers per scan",
+                       "edge shift [beams]",
+                       "edge blur [beams]",
+                       "oscillation",
+                       "not in window",
+                       "no whole step"}};
   for (const FilterFigures& each : result.figures) {
     out.rows.push_back({each.filter,
                         fmt::format("{:.2f}", each.impulses),
@@ -106,14 +70,14 @@ Table recording_table(const RecordingResult& result) {
 }
 
 Table signal_table(const FilterStudy& study) {
-  Table out{.head = {"filter, N",
-                     "one impulse",
-                     "two adjacent",
-                     "two, one apart",
-                     "step",
-                     "ramp",
-                     "oscillation 1-1",
-                     "oscillation 2-2"}};
+  Table out{.header = {"filter, N",
+                       "one impulse",
+                       "two adjacent",
+                       "two, one apart",
+                       "step",
+                       "ramp",
+                       "oscillation 1-1",
+                       "oscillation 2-2"}};
   for (const SignalResult& each : study.signals) {
     out.rows.push_back({fmt::format("{}, {}", each.filter, each.half_width),
                         percent(each.single),
@@ -128,10 +92,10 @@ Table signal_table(const FilterStudy& study) {
 }
 
 Table noise_table(const FilterStudy& study) {
-  Table out{.head = {"filter, N"}};
+  Table out{.header = {"filter, N"}};
   for (const NoiseResult& each : study.noise) {
     const std::string column = fmt::format("{:.0f} % spoiled", 100 * each.spoiled);
-    if (std::ranges::find(out.head, column) == out.head.end()) out.head.push_back(column);
+    if (std::ranges::find(out.header, column) == out.header.end()) out.header.push_back(column);
     const std::string row =
         each.half_width == 0 ? each.filter : fmt::format("{}, {}", each.filter, each.half_width);
     auto found = std::ranges::find_if(out.rows, [&](const auto& r) { return r[0] == row; });
@@ -142,7 +106,7 @@ Table noise_table(const FilterStudy& study) {
 }
 
 Table cost_table(const FilterStudy& study) {
-  Table out{.head = {"N", "tuned", "plain"}};
+  Table out{.header = {"N", "tuned", "plain"}};
   for (const CostResult& each : study.cost) {
     out.rows.push_back({fmt::format("{}", each.half_width),
                         fmt::format("{:.2f}", each.product),
@@ -223,21 +187,21 @@ constexpr std::string_view kAboutCost =
 std::string to_text(const FilterStudy& study) {
   std::string out = "Chapter 3: the pseudomedian filter\n";
   for (const SceneResult& each : study.scenes) {
-    out += fmt::format("\n{}\n{}", scene_title(each.scene), aligned(scene_table(each)));
+    out += fmt::format("\n{}\n{}", scene_title(each.scene), to_text(scene_table(each)));
   }
   out += fmt::format(
       "\nThe spikes of the first scene on a flat layout, left after the pseudomedian: "
       "{} (beam: mm)\n",
       flat_changes(study.flat));
   out += fmt::format("{}\n{}\n", phantom(study.scenes.front()), kAboutTable2);
-  out += fmt::format("\nTest signals. {}\n{}", kAboutSignals, aligned(signal_table(study)));
+  out += fmt::format("\nTest signals. {}\n{}", kAboutSignals, to_text(signal_table(study)));
   out +=
-      fmt::format("\nSalt and pepper: values more than 50 mm off\n{}", aligned(noise_table(study)));
+      fmt::format("\nSalt and pepper: values more than 50 mm off\n{}", to_text(noise_table(study)));
   out += fmt::format("\nRecordings. {}\n", about_recordings(study));
   for (const RecordingResult& each : study.recordings) {
-    out += fmt::format("\n{}\n{}", recording_title(each), aligned(recording_table(each)));
+    out += fmt::format("\n{}\n{}", recording_title(each), to_text(recording_table(each)));
   }
-  out += fmt::format("\nCost. {}\n{}", kAboutCost, aligned(cost_table(study)));
+  out += fmt::format("\nCost. {}\n{}", kAboutCost, to_text(cost_table(study)));
   out += "\nVerdicts\n";
   for (const Claim& each : study.claims) {
     out += fmt::format("  {}: {} [{}]\n    {}\n    Rule: {}\n",
@@ -280,7 +244,7 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
                        each.scene.title,
                        pictures,
                        each.scene.name,
-                       piped(scene_table(each)));
+                       to_markdown(scene_table(each)));
   }
   out += fmt::format(
       "\nOscillation: RMS of the second difference on quiet stretches, after / before. "
@@ -288,18 +252,20 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
       "left after the pseudomedian, beam: mm: {}. {}\n",
       flat_changes(study.flat),
       phantom(study.scenes.front()));
-  out += fmt::format(
-      "\n### Test signals\n\n{} {}\n\n{}", kAboutSignals, kAboutTable2, piped(signal_table(study)));
+  out += fmt::format("\n### Test signals\n\n{} {}\n\n{}",
+                     kAboutSignals,
+                     kAboutTable2,
+                     to_markdown(signal_table(study)));
   out += fmt::format(
       "\nSalt (8000) and pepper (0) on the flat layout, 500 scans of 360 values: share "
       "of values more than 50 mm off.\n\n{}",
-      piped(noise_table(study)));
+      to_markdown(noise_table(study)));
   out += fmt::format("\n### Recordings\n\n{}\n", about_recordings(study));
   out += fmt::format("\n![A scan before and after]({}/filter-recording.svg)\n", pictures);
   for (const RecordingResult& each : study.recordings) {
-    out += fmt::format("\n**{}**\n\n{}", recording_title(each), piped(recording_table(each)));
+    out += fmt::format("\n**{}**\n\n{}", recording_title(each), to_markdown(recording_table(each)));
   }
-  out += fmt::format("\n### Cost\n\n{}\n\n{}", kAboutCost, piped(cost_table(study)));
+  out += fmt::format("\n### Cost\n\n{}\n\n{}", kAboutCost, to_markdown(cost_table(study)));
   out += kEnd;
   return out;
 }
