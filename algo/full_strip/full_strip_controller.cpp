@@ -243,6 +243,11 @@ void FullStripController::remember(const Twist2& command) {
   under_way_.back() = command;
 }
 
+/// `patience` [s], or what three times the way that counts as progress takes a slow robot.
+double FullStripController::time_for(double patience) const {
+  return std::max(patience, 3 * kStuckWay / limits_.max_v);
+}
+
 void FullStripController::watch_progress(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
   const bool turning = manner_ == Manner::Turning && std::abs(in.odometry.twist.omega) > 0.1;
@@ -254,7 +259,7 @@ void FullStripController::watch_progress(const ControlInput& in) {
     progress_W_ = here;
     progress_at_ = in.stamp;
   }
-  if (in.stamp - progress_at_ < kStuckTime) return;
+  if (in.stamp - progress_at_ < time_for(kStuckTime)) return;
   strip_.clear();
   planner_.reset();
   next_plan_ = in.stamp;
@@ -392,7 +397,7 @@ Twist2 FullStripController::drive(const ControlInput& in,
   if (const auto twist = stage_.follow(stage, out)) {
     const bool turning = twist->v == 0 && twist->omega != 0;
     manner_ = turning ? Manner::Turning : Manner::Following;
-    if (in.stamp - way_since_ > kPatience) look_for_maneuver(in);
+    if (in.stamp - way_since_ > time_for(kPatience)) look_for_maneuver(in);
     if (*twist != Twist2{} || broken_at_ < 0) return *twist;
   } else {
     look_for_maneuver(in);

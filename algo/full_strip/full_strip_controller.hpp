@@ -46,6 +46,7 @@ class FullStripController final : public Controller {
   Twist2 recover(const StageInput& stage, const ControlInput& in, ControlOutput& out);
   MotionState when_acting(const ControlInput& in) const;
   void remember(const Twist2& command);
+  double time_for(double patience) const;
   void watch_progress(const ControlInput& in);
   double least_clearance() const;
   void report(const ControlInput& in, ControlOutput& out);

@@ -18,13 +18,18 @@ constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kFloor = 0.01;        // [m] nearer only an escape is tried
-constexpr double kSlack = 0.002;       // [m] a position may be nearer than the one before
-constexpr double kReverseSpeed = 0.4;  // [m/s]
+constexpr double kFloor = 0.01;         // [m] nearer only an escape is tried
+constexpr double kSlack = 0.002;        // [m] a position may be nearer than the one before
+constexpr double kReverseSpeed = 0.24;  // [m/s]
 
 /// [m] Ahead of the robot that it aims at, at speed `v`.
 double lookahead(double v) {
   return std::clamp(0.3 + 0.4 * std::abs(v), 0.35, 1.0);
+}
+
+Twist2 within(const Twist2& twist, const MotionLimits& limits) {
+  return {std::clamp(twist.v, -limits.max_v, limits.max_v),
+          std::clamp(twist.omega, -limits.max_omega, limits.max_omega)};
 }
 
 }  // namespace
@@ -191,7 +196,8 @@ std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput&
       {{kV, 0}, {-kV, 0}, {kV, kW}, {kV, -kW}, {-kV, kW}, {-kV, -kW}, {0, kW}, {0, -kW}}};
   std::optional<Twist2> best;
   double most = 0.003;  // [m] less is no way out
-  for (const Twist2& twist : kPrimitives) {
+  for (const Twist2& primitive : kPrimitives) {
+    const Twist2 twist = within(primitive, in.limits);
     double gain = 0;
     const bool allowed = holds(in, twist, kTime, gain);
     out.candidates.push_back({twist, kTime, -gain, allowed, false});
@@ -205,7 +211,7 @@ std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput&
 std::optional<Twist2> VelocityStage::back_off(const StageInput& in, ControlOutput& out) const {
   for (const double turn : {0.0, 0.8, -0.8}) {
     double gain = 0;
-    const Twist2 twist{-kReverseSpeed * 0.6, turn};
+    const Twist2 twist = within({-kReverseSpeed, turn}, in.limits);
     const bool allowed = holds(in, twist, 0.5, gain);
     out.candidates.push_back({twist, 0.5, -gain, allowed, allowed});
     if (allowed) return twist;

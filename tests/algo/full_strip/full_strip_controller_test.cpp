@@ -1,0 +1,104 @@
+// tests/algo/full_strip/full_strip_controller_test.cpp: what the layers do together.
+#include "algo/full_strip/full_strip_controller.hpp"
+
+#include <cmath>
+
+#include "tests/algo/worlds.hpp"
+#include <gtest/gtest.h>
+
+#include "algo/diff_drive.hpp"
+#include "algo/perceive.hpp"
+
+namespace {
+
+using algo::Manner;
+using algo::Parameter;
+using algo::Vec2;
+
+/// A robot that does what it is told, among posts.
+struct Drive {
+  worlds::World world{};
+  algo::RobotSpec spec{.radius = 0.35,
+                       .half_track = 0.25,
+                       .period = 0.05,
+                       .max_v = 0.5,
+                       .max_omega = 1.0,
+                       .max_acceleration = 0.5,
+                       .max_angular_acceleration = 4,
+                       .drives = true};
+  algo::Parameters parameters{};
+  algo::Pose2 pose{};
+  algo::Twist2 twist{};
+  double stamp = 0;
+  algo::Scene scene{};
+  algo::Observation observation{};
+  algo::FullStripController controller{};
+  algo::ControlOutput out{};
+
+  void tick(const Vec2& goal) {
+    worlds::scan_world(pose, world, 8, scene.scan);
+    scene.scan.stamp = stamp;
+    scene.fresh = true;
+    algo::perceive(pose, scene);
+    algo::ControlInput in;
+    in.stamp = stamp;
+    in.dt = spec.period;
+    in.odometry = {stamp, pose, twist};
+    in.scene = &scene;
+    in.observation = &observation;
+    in.spec = &spec;
+    in.goal = algo::SetGoal{goal, std::nullopt};
+    controller.update(in, parameters, out);
+    const double dv = spec.max_acceleration * spec.period;
+    const double dw = spec.max_angular_acceleration * spec.period;
+    twist = {twist.v + std::clamp(out.twist.v - twist.v, -dv, dv),
+             twist.omega + std::clamp(out.twist.omega - twist.omega, -dw, dw)};
+    pose = algo::integrate_arc(pose, twist, spec.period);
+    stamp += spec.period;
+  }
+};
+
+TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
+  Drive drive;
+  drive.parameters.set(Parameter::MaxSpeed, 0.04);
+  drive.controller.reset({});
+  for (int k = 0; k < 1000; ++k) {
+    drive.tick({3, 0});
+    EXPECT_EQ(drive.out.manner, Manner::Following) << "tick " << k;
+    EXPECT_LE(std::abs(drive.out.twist.v), 0.04 + 1e-12);
+  }
+  EXPECT_GT(drive.pose.x, 1.9);
+}
+
+TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
+  Drive drive;
+  drive.parameters.set(Parameter::MaxSpeed, 0.05);
+  drive.parameters.set(Parameter::MaxTurnRate, 0.3);
+  for (int i = 0; i < 16; ++i) {
+    const double bearing = 2 * 3.14159265 * i / 16;
+    drive.world.circles.push_back({0.62 * algo::direction(bearing), 0.12});
+  }
+  drive.controller.reset({});
+  for (int k = 0; k < 600; ++k) {
+    drive.tick({4, 0});
+    EXPECT_LE(std::abs(drive.out.twist.v), 0.05 + 1e-12);
+    EXPECT_LE(std::abs(drive.out.twist.omega), 0.3 + 1e-12);
+  }
+  EXPECT_LT(drive.pose.position().norm(), 0.3);  // there is no way out, and it says so
+  EXPECT_NE(drive.out.manner, Manner::Following);
+}
+
+TEST(FullStrip, PassesAPostOnItsLine) {
+  Drive drive;
+  drive.world.circles = {{{2, 0.02}, 0.3}};
+  drive.controller.reset({});
+  double nearest = 1e9;
+  for (int k = 0; k < 800; ++k) {
+    drive.tick({4, 0});
+    nearest = std::min(nearest, (drive.pose.position() - Vec2(2, 0.02)).norm() - 0.65);
+  }
+  EXPECT_LT((drive.pose.position() - Vec2(4, 0)).norm(), 0.12);
+  EXPECT_GT(nearest, 0.02);
+}
+
+}  // namespace
