@@ -15,6 +15,8 @@ using Vec2 = Eigen::Vector2d;
 
 /// `angle` [rad] wrapped to (-pi, pi].
 inline double wrap_angle(double angle) {
+  // Nearly always it is within already, and the division costs more than all else here.
+  if (std::abs(angle) < std::numbers::pi) return angle;
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }

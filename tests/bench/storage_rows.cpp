@@ -286,7 +286,7 @@ void storage(Pass& pass) {
               .better = Better::Lower,
               .floor = 75,
               .stretch = 55,
-              .note = "no controller here lays more than 3 nodes"});
+              .note = "padded: about what `strip` lays"});
   }
   const auto ticks = ticks_of_a_drive(count, 0);
   std::vector<double> rates;
