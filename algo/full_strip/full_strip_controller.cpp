@@ -15,7 +15,8 @@ constexpr double kBreak = 0.02;       // [m] a strip may be narrower than what w
 constexpr double kPlanEvery = 0.25;   // [s]
 constexpr int kExpansions = 400;      // of the planner a tick
 constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
-constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below
+constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below,
+constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal
 constexpr int kSweepsNew = 15;        // of a strip just laid
 constexpr int kSweeps = 5;            // a tick
 constexpr double kStopShort = 0.35;   // [m] before the place where the strip is broken
@@ -210,8 +211,12 @@ void FullStripController::take_plan(const ControlInput& in) {
     rival_.lay(path_W_);
     rival_.follow(in.odometry.pose.position());
   }
-  const bool better =
-      strip_.empty() || broken_at_ >= 0 || rival_.cost(map_) < kRivalShare * strip_.cost(map_);
+  // A strip laid when the goal lay beyond the map ends short of it, so its cost says little.
+  const auto left = [&](const NodeStrip& strip) {
+    return (strip.nodes()[strip.nodes().size() - 1].position_W - *goal_W_).norm();
+  };
+  const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - kNearer ||
+                      rival_.cost(map_) < kRivalShare * strip_.cost(map_);
   if (better) {
     std::swap(strip_, rival_);
     broken_at_ = -1;

@@ -25,6 +25,9 @@ constexpr double kRisk = 0.8;           // [s/s] at no room at all
 constexpr double kRiskFades = 2.5;      // [s] prediction time after which it counts 1/e
 constexpr double kReverse = 0.15;       // [s/s] for driving into where the scanner does not look
 constexpr double kReach = 6.0;          // [m] tracks farther than this from the motion do not count
+constexpr double kCloser = 0.3;         // of the margins, where nothing else is clear
+constexpr double kHeld = 1.5;           // [s] of the motions weighed when nothing is
+constexpr double kLater = 0.02;         // [m] that room counts more for every substep
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
@@ -82,7 +85,7 @@ double SpaceTimeSearch::room(const SpaceTimeInput& in, double time, const Pose2&
     const double most = least + track.radius + in.spec->radius + 1;
     if (d.squaredNorm() > most * most) continue;
     const Vec2 p{ahead.dot(d), ahead.x() * d.y() - ahead.y() * d.x()};
-    const double margin = kMargin + kMarginPerSecond * time;
+    const double margin = margin_share_ * (kMargin + kMarginPerSecond * time);
     least = std::min(least, to_hull(*in.spec, p) - track.radius - margin);
   }
   return least;
@@ -146,6 +149,14 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
   // Too close to something that stands already: no closer.
   static_margin_ =
       std::clamp(in.hull->clearance(*in.map, in.state.pose_W) - 0.002, 0.0, kStaticMargin);
+  const Twist2 wanted = attempt(in, 1, out);
+  if (clear_) return wanted;
+  const Twist2 closer = attempt(in, kCloser, out);
+  return clear_ ? closer : least_bad(in);
+}
+
+Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, ControlOutput& out) {
+  margin_share_ = margin_share;
   states_.assign(1, State{in.state, 0, 0, 0});
   Twist2 best{};
   std::array<bool, kCommands> alive{};
@@ -176,9 +187,32 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
     best = command(states_.front().first, in.limits);
     time += kLevels[level];
   }
+  out.candidates.clear();
   for (std::size_t c = 0; c < kCommands; ++c) {
     const Twist2 twist = command(c, in.limits);
     out.candidates.push_back({twist, kLevels[0], 0, alive[c], twist == best});
+  }
+  return best;
+}
+
+/// Held for a while, the command that keeps most room.
+Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
+  Twist2 best{};
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < kCommands; ++c) {
+    const Twist2 twist = command(c, in.limits);
+    MotionState state = in.state;
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 1; k * kSubstep <= kHeld; ++k) {
+      state = advanced(state, twist, in.limits, kSubstep);
+      const double standing = in.hull->clearance(*in.map, state.pose_W);
+      // What comes later may still be helped.
+      least =
+          std::min(least, std::min(standing, room(in, k * kSubstep, state.pose_W)) + kLater * k);
+    }
+    if (least <= most) continue;
+    most = least;
+    best = twist;
   }
   return best;
 }

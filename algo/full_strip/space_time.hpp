@@ -35,7 +35,8 @@ class SpaceTimeSearch {
 
   /// Whether a track may come near the robot or its way along `strip` within the next seconds.
   static bool needed(const SpaceTimeInput& in, const NodeStrip& strip);
-  /// The command; when no motion stays clear to the end, the one that does so longest.
+  /// The command of a motion that stays clear to the end; if there is none, of one that does so
+  /// with less room; else the one that comes least near to anything.
   Twist2 search(const SpaceTimeInput& in, ControlOutput& out);
   /// Whether the last answer stays clear to the end.
   bool clear() const { return clear_; }
@@ -47,6 +48,8 @@ class SpaceTimeSearch {
     double cost = 0;
     std::uint32_t first = 0;  // index of the first command
   };
+  Twist2 attempt(const SpaceTimeInput& in, double margin_share, ControlOutput& out);
+  Twist2 least_bad(const SpaceTimeInput& in) const;
   bool step(
       const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const;
   double room(const SpaceTimeInput& in, double time, const Pose2& pose_W) const;
@@ -58,6 +61,7 @@ class SpaceTimeSearch {
   std::uint32_t round_ = 0;
   std::vector<Track> near_tracks_;
   double static_margin_ = 0;  // [m] of this search
+  double margin_share_ = 1;   // of the margins from what moves
   bool clear_ = false;
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <tuple>
 
 #include <Eigen/Dense>
 
@@ -11,8 +13,10 @@ namespace algo {
 namespace {
 
 constexpr std::size_t kMostFilters = 64;
-constexpr double kGap = 0.20;          // [m] between neighbours of one cluster, at range 0,
-constexpr double kGapPerMetre = 0.03;  // and more for every metre of range
+constexpr double kGap = 0.12;          // [m] between neighbours of one cluster, at range 0,
+constexpr double kGapPerMetre = 0.02;  // and more for every metre of range
+constexpr double kCuspArm = 0.15;      // [m] to both sides of a dent that parts two clusters
+constexpr double kCusp = 0.04;         // [m] its depth
 constexpr std::size_t kFewest = 4;     // beams of a cluster
 constexpr double kLongest = 1.6;       // [m] of a cluster's chord
 constexpr double kThinnest = 0.06, kThickest = 0.8;  // [m] radii
@@ -20,7 +24,8 @@ constexpr double kRound = 0.035;                     // [m] residual of what pas
 constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] before anything is known
 constexpr double kTrackSpread = 0.05;                          // [m] of a radius that is known
 constexpr double kNoise = 0.02;                                // [m] of a hit
-constexpr double kGate = 0.45;          // [m] a track may be off its prediction
+constexpr double kGate = 0.30;          // [m] a track may be off its prediction,
+constexpr double kGateSigmas = 3;       // and this much of its uncertainty
 constexpr double kCentreNoise = 0.025;  // [m] of a fitted centre
 constexpr double kAcceleration = 0.5;   // [m/s2] that a constant velocity does not explain
 constexpr double kSurprise = 9;         // normalised innovation squared that opens the velocity
@@ -30,6 +35,8 @@ constexpr double kMoves = 0.25;         // [m/s]
 constexpr double kGone = 0.12;          // [m] from where it was first seen
 constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it stands
 constexpr double kStandsFor = 1.0;      // [s]
+constexpr double kBody = 0.2;           // [m] radius of what may move before it has been seen to
+constexpr double kBodyBend = 0.04;      // [m] root mean square that its arc is off a straight line
 constexpr double kMemoryEvery = 0.09;   // [s] between two scans kept,
 constexpr double kMemoryLeast = 0.2;    // and how old one must be to compare with,
 constexpr double kMemoryMore = 0.5;     // and how much older than the track it may be
@@ -42,11 +49,59 @@ constexpr double kCoast = 3.0;    // [s] a moving track is believed unseen
 constexpr double kForget = 0.4;   // [s] any other
 constexpr int kEmpty = 3;         // scans that look through a track end it
 
+/// [m] Root mean square distance of every `stride`th of the points from their own straight line.
+double bend(const std::vector<Vec2>& points_W,
+            std::size_t first,
+            std::size_t last,
+            std::size_t stride) {
+  Vec2 sum{0, 0};
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  double count = 0;
+  for (std::size_t i = first; i <= last; i += stride) {
+    const Vec2 d = points_W[i] - points_W[first];
+    sum += d;
+    squares += d * d.transpose();
+    count += 1;
+  }
+  const Eigen::Matrix2d spread = squares / count - (sum / count) * (sum / count).transpose();
+  const double half = spread.trace() / 2;
+  const double least = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
+  return std::sqrt(std::max(0.0, least));
+}
+
+/// [m] Of a track's radius after `hits` scans.
+double radius_spread(int hits) {
+  return std::max(kTrackSpread, kRadiusSpread / (hits + 1));
+}
+
+/// The deepest dent of the outline first..last, seen from `eye_W`.
+std::optional<std::size_t> cusp(const std::vector<Vec2>& points_W,
+                                std::size_t first,
+                                std::size_t last,
+                                const Vec2& eye_W) {
+  const double length = (points_W[last] - points_W[first]).norm();
+  const auto count = static_cast<double>(last - first);
+  const auto arm =
+      std::max<std::size_t>(2, static_cast<std::size_t>(kCuspArm / std::max(1e-3, length / count)));
+  std::optional<std::size_t> best;
+  double deepest = kCusp;
+  for (std::size_t i = first + arm; i + arm <= last; ++i) {
+    const Vec2 middle = (points_W[i - 1] + points_W[i] + points_W[i + 1]) / 3;
+    const Vec2 off = middle - (points_W[i - arm] + points_W[i + arm]) / 2;
+    const double depth = off.dot((middle - eye_W).normalized());
+    if (depth <= deepest) continue;
+    deepest = depth;
+    best = i;
+  }
+  return best;
+}
+
 }  // namespace
 
 Tracker::Tracker() {
   filters_.reserve(kMostFilters);
   clusters_.reserve(256);
+  pairs_.reserve(kMostFilters * 8);
 }
 
 void Tracker::reset() {
@@ -63,33 +118,37 @@ void Tracker::cluster(const LaserScan& scan,
                       const Pose2& sensor_W,
                       const std::vector<Vec2>& points_W) {
   clusters_.clear();
-  Cluster open;
-  bool is_open = false;
-  std::size_t last_ok = 0;
-  const auto end = [&] {
-    if (is_open) close(open, sensor_W, points_W);
-    is_open = false;
-  };
+  std::size_t first = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok) continue;
-    if (is_open) {
-      const double gap = (points_W[i] - points_W[last_ok]).norm();
-      if (i - last_ok > 3 || gap > kGap + kGapPerMetre * scan.ranges[i]) end();
+    if (scan.status[i] != Beam::Ok) {
+      if (i > first) close(first, i - 1, sensor_W, points_W);
+      first = i + 1;
+      continue;
     }
-    if (!is_open) {
-      open = {};
-      open.first = i;
-      is_open = true;
+    if (i == first) continue;
+    if ((points_W[i] - points_W[i - 1]).norm() > kGap + kGapPerMetre * scan.ranges[i]) {
+      close(first, i - 1, sensor_W, points_W);
+      first = i;
     }
-    open.last = i;
-    last_ok = i;
   }
-  end();
+  if (first < scan.size()) close(first, scan.size() - 1, sensor_W, points_W);
 }
 
-void Tracker::close(Cluster& c, const Pose2& sensor_W, const std::vector<Vec2>& points_W) {
-  if (c.last - c.first + 1 < kFewest || clusters_.size() == clusters_.capacity()) return;
-  c.chord = (points_W[c.last] - points_W[c.first]).norm();
+/// Makes a cluster of the points first..last, or two where they show a dent: bodies side by side.
+void Tracker::close(std::size_t first,
+                    std::size_t last,
+                    const Pose2& sensor_W,
+                    const std::vector<Vec2>& points_W) {
+  if (last - first + 1 < kFewest || clusters_.size() == clusters_.capacity()) return;
+  if (const auto at = cusp(points_W, first, last, sensor_W.position())) {
+    close(first, *at, sensor_W, points_W);
+    close(*at + 1, last, sensor_W, points_W);
+    return;
+  }
+  Cluster c;
+  c.first = first;
+  c.last = last;
+  c.chord = (points_W[last] - points_W[first]).norm();
   if (c.chord > kLongest) return;
   fit(c, sensor_W, points_W, kTypicalRadius, kRadiusSpread);
   clusters_.push_back(c);
@@ -111,7 +170,7 @@ void Tracker::fit(Cluster& c,
   mean /= count;
   const Vec2 line = mean - sensor_W.position();
   c.radius = std::clamp(std::min(radius, 0.6 * c.chord + 0.03), kThinnest, kThickest);
-  if (spread < kRadiusSpread) c.radius = radius;
+  if (spread < kRadiusSpread) c.radius = radius;  // of a track
   const double prior = c.radius;
   c.centre_W = mean + line.normalized() * (0.7 * c.radius);
   for (int round = 0; round < 6; ++round) {
@@ -143,6 +202,7 @@ void Tracker::fit(Cluster& c,
   // Its centre lies behind its surface, or it is a hollow.
   const bool bulges = (c.centre_W - sensor_W.position()).norm() > line.norm();
   c.round = bulges && c.residual < kRound && c.radius > kThinnest && c.radius < kThickest;
+  c.body = c.round && c.radius > kBody && bend(points_W, c.first, c.last, stride) > kBodyBend;
 }
 
 void Tracker::predict(double stamp) {
@@ -176,41 +236,53 @@ void Tracker::correct(Filter& f, const Cluster& c, double stamp) {
   f.empty = 0;
 }
 
-/// Each track takes the nearest cluster within its gate, the surest track first.
+/// Clusters go to tracks, the nearest pair first: who lost its own does not take another's.
 void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp) {
-  std::ranges::sort(filters_, std::greater{}, &Filter::hits);
-  for (Filter& f : filters_) {
-    Cluster* best = nullptr;
-    double nearest = kGate + std::min(0.5, f.velocity_W.norm() * 0.15);
-    for (Cluster& c : clusters_) {
-      if (c.taken) continue;
-      const double far = (c.centre_W - f.position_W).norm();
-      if (far >= nearest) continue;
-      nearest = far;
-      best = &c;
+  pairs_.clear();
+  for (std::size_t f = 0; f < filters_.size(); ++f) {
+    filters_[f].matched = false;
+    const double gate = kGate + kGateSigmas * std::sqrt(filters_[f].pp);
+    for (std::size_t c = 0; c < clusters_.size() && pairs_.size() < pairs_.capacity(); ++c) {
+      const double far = (clusters_[c].centre_W - filters_[f].position_W).norm();
+      if (far > gate) continue;
+      pairs_.push_back({far, static_cast<std::uint32_t>(f), static_cast<std::uint32_t>(c)});
     }
-    if (best == nullptr) continue;
-    fit(*best, sensor_W, points_W, f.radius, kTrackSpread);
-    if (!best->round && best->residual > 2 * kRound) continue;
-    best->taken = true;
-    correct(f, *best, stamp);
-    judge(f, *best, points_W, stamp);
-    if (!f.moving) continue;
-    for (std::size_t i = best->first; i <= best->last; ++i) moving_beam_[i] = 1;
+  }
+  std::ranges::sort(pairs_, [](const Pair& a, const Pair& b) {
+    return std::tie(a.distance, a.filter, a.cluster) < std::tie(b.distance, b.filter, b.cluster);
+  });
+  for (const Pair& pair : pairs_) {
+    Filter& f = filters_[pair.filter];
+    Cluster& c = clusters_[pair.cluster];
+    if (f.matched || c.taken) continue;
+    fit(c, sensor_W, points_W, f.radius, radius_spread(f.hits));
+    if (!c.round && c.residual > 2 * kRound) continue;
+    f.matched = true;
+    c.taken = true;
+    correct(f, c, stamp);
+    judge(f, c, points_W, stamp);
+    if (f.of_map()) continue;
+    for (std::size_t i = c.first; i <= c.last; ++i) moving_beam_[i] = 1;
   }
   for (const Cluster& c : clusters_) {
-    if (c.taken || !c.round || filters_.size() == kMostFilters) continue;
-    Filter f;
-    f.position_W = c.centre_W;
-    f.born_at_W = c.centre_W;
-    f.radius = c.radius;
-    f.pp = kCentreNoise * kCentreNoise;
-    f.vv = kFirstSpeed * kFirstSpeed;
-    f.born = stamp;
-    f.seen = stamp;
-    f.hits = 1;
-    filters_.push_back(f);
+    if (!c.taken && c.round && filters_.size() < kMostFilters) begin(c, stamp);
   }
+}
+
+void Tracker::begin(const Cluster& c, double stamp) {
+  Filter f;
+  f.position_W = c.centre_W;
+  f.born_at_W = c.centre_W;
+  f.radius = c.radius;
+  f.pp = kCentreNoise * kCentreNoise;
+  f.vv = kFirstSpeed * kFirstSpeed;
+  f.born = stamp;
+  f.seen = stamp;
+  f.slow_since = stamp;
+  f.hits = 1;
+  f.body = c.body;
+  filters_.push_back(f);
+  if (f.body) just_found_.push_back({f.position_W, f.velocity_W, f.radius, 0, 0});
 }
 
 void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp) {
@@ -282,8 +354,10 @@ bool Tracker::changed(const Filter& f, const Cluster& c, const std::vector<Vec2>
 void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp) {
   const double speed = f.velocity_W.norm();
   if (speed > kStands) f.slow_since = stamp;
+  const bool stands = stamp - f.slow_since >= kStandsFor;
+  f.body = f.body && !stands;
   if (f.moving) {
-    f.moving = stamp - f.slow_since < kStandsFor;
+    f.moving = !stands;
     return;
   }
   f.moving = stamp - f.born > kFound && speed > kMoves && speed > 1.5 * std::sqrt(f.vv) &&
@@ -324,7 +398,7 @@ void Tracker::update(const LaserScan& scan,
     if (f.seen < stamp && looked_through(f, scan, sensor_W)) ++f.empty;
   }
   std::erase_if(filters_, [&](const Filter& f) {
-    return f.empty >= kEmpty || stamp - f.seen > (f.moving ? kCoast : kForget);
+    return f.empty >= kEmpty || stamp - f.seen > (f.of_map() ? kForget : kCoast);
   });
   publish(stamp);
   // What two things standing together show is no circle: their places count all the same.
@@ -341,7 +415,7 @@ void Tracker::update(const LaserScan& scan,
 void Tracker::publish(double stamp) {
   moving_.clear();
   for (const Filter& f : filters_) {
-    if (!f.moving) continue;
+    if (f.of_map()) continue;
     moving_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen});
   }
 }

@@ -13,8 +13,9 @@
 
 namespace algo {
 
-/// A cluster counts as moving only once it has gone somewhere at a speed that its uncertainty does
-/// not explain; until then, and for good if it stands, it belongs to the static map.
+/// A round body as thick as a person or more is taken for one that may move from its first scan on,
+/// until it has stood for a while. Anything else counts as moving only once it has gone somewhere
+/// at a speed that its uncertainty does not explain. What stands belongs to the static map.
 class Tracker {
  public:
   Tracker();
@@ -29,9 +30,9 @@ class Tracker {
   /// Moves every track on to `stamp` [s, run clock] without a scan.
   void predict(double stamp);
 
-  /// Whether beam `i` of the last scan hit something that moves.
+  /// Whether beam `i` of the last scan hit something that moves or may.
   bool on_moving(std::size_t i) const { return i < moving_beam_.size() && moving_beam_[i] != 0; }
-  /// What moves, at the time of the last update() or predict().
+  /// What moves or may, at the time of the last update() or predict().
   const Recycled<Track>& moving() const { return moving_; }
   /// Circles that have begun to count as moving in the last update(): the map holds traces of them.
   const Recycled<Track>& just_found() const { return just_found_; }
@@ -44,6 +45,7 @@ class Tracker {
     double residual = 0;  // [m] root mean square off the circle
     double chord = 0;     // [m] between its ends
     bool round = false;
+    bool body = false;  // round beyond doubt, and no thin thing
     bool taken = false;
   };
   struct Filter {
@@ -54,12 +56,18 @@ class Tracker {
     Vec2 born_at_W{0, 0};
     double born = 0, seen = 0;  // [s]
     int hits = 0;
-    int empty = 0;  // scans that looked through it
+    bool matched = false;  // in this scan
+    int empty = 0;         // scans that looked through it
     bool moving = false;
+    bool body = false;      // has not stood yet
     double slow_since = 0;  // [s]
+    bool of_map() const { return !moving && !body; }
   };
   void cluster(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
-  void close(Cluster& c, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+  void close(std::size_t first,
+             std::size_t last,
+             const Pose2& sensor_W,
+             const std::vector<Vec2>& points_W);
   void fit(Cluster& c,
            const Pose2& sensor_W,
            const std::vector<Vec2>& points_W,
@@ -67,12 +75,18 @@ class Tracker {
            double spread) const;
   void correct(Filter& f, const Cluster& c, double stamp);
   void associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp);
+  /// A track and a cluster that may be its.
+  struct Pair {
+    double distance = 0;  // [m]
+    std::uint32_t filter = 0, cluster = 0;
+  };
   /// An earlier scan, kept to see what has changed since.
   struct Memory {
     double stamp = -1;
     Pose2 sensor_W{};
     std::vector<float> ranges{};  // [m] 0 where nothing was measured, beyond range_max where free
   };
+  void begin(const Cluster& c, double stamp);
   void judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp);
   bool changed(const Filter& f, const Cluster& c, const std::vector<Vec2>& points_W) const;
   void memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp);
@@ -83,6 +97,7 @@ class Tracker {
 
   std::vector<Filter> filters_{};
   std::vector<Cluster> clusters_{};
+  std::vector<Pair> pairs_{};
   std::vector<std::uint8_t> moving_beam_{};
   Recycled<Track> moving_{};
   Recycled<Track> just_found_{};
