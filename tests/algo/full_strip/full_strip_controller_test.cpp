@@ -88,6 +88,16 @@ TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
   EXPECT_NE(drive.out.manner, Manner::Following);
 }
 
+TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
+  Drive drive;
+  drive.parameters.set(Parameter::MaxSpeed, 0.5);
+  drive.world.circles.push_back({{15, 0.1}, 0.3});
+  drive.controller.reset({});
+  for (int k = 0; k < 2400 && drive.pose.x < 39; ++k) drive.tick({40, 0});
+  EXPECT_GT(drive.pose.x, 39);
+  EXPECT_EQ(drive.out.manner, Manner::Following);
+}
+
 TEST(FullStrip, PassesAPostOnItsLine) {
   Drive drive;
   drive.world.circles = {{{2, 0.02}, 0.3}};

@@ -1,0 +1,126 @@
+// tests/algo/full_strip/tracker_test.cpp: what moves, what may, and what belongs to the map.
+#include "algo/full_strip/tracker.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "tests/algo/worlds.hpp"
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::Track;
+using algo::Vec2;
+
+constexpr double kPeriod = 0.05;  // [s]
+
+/// A scanner at the origin that sees `world` change.
+struct Watch {
+  worlds::World world{};
+  algo::Tracker tracker{};
+  algo::LaserScan scan{};
+  std::vector<Vec2> points_W{};
+  double stamp = 0;
+
+  void tick() {
+    worlds::scan_world({}, world, 8, scan);
+    points_W.resize(scan.size());
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      points_W[i] = scan.ranges[i] * algo::direction(scan.angle(i));
+    }
+    tracker.update(scan, {}, points_W, stamp);
+    stamp += kPeriod;
+  }
+  void run(double seconds, const std::function<void(double)>& move) {
+    const double end = stamp + seconds;
+    while (stamp < end) {
+      move(stamp);
+      tick();
+    }
+  }
+  const Track* near(const Vec2& p_W) const {
+    const auto found = std::ranges::find_if(tracker.moving(), [&](const Track& track) {
+      return (track.position_W - p_W).norm() < 0.15;
+    });
+    return found == tracker.moving().end() ? nullptr : &*found;
+  }
+  std::size_t beams_taken() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scan.size(); ++i) count += tracker.on_moving(i) ? 1U : 0U;
+    return count;
+  }
+};
+
+TEST(Tracker, FollowsAPersonCrossing) {
+  Watch watch;
+  watch.world.circles.push_back({{3, -1}, 0.3});
+  watch.run(1.0, [&](double t) { watch.world.circles[0].centre = {3, -1 + 1.2 * t}; });
+  const Track* track = watch.near(watch.world.circles[0].centre);
+  ASSERT_NE(track, nullptr);
+  EXPECT_NEAR(track->velocity_W.x(), 0, 0.1);
+  EXPECT_NEAR(track->velocity_W.y(), 1.2, 0.1);
+  EXPECT_NEAR(track->radius, 0.3, 0.05);
+}
+
+TEST(Tracker, ABodyIsKeptOutOfTheMapFromTheFirstScan) {
+  Watch watch;
+  watch.world.circles.push_back({{3, 0}, 0.5});
+  watch.tick();
+  ASSERT_NE(watch.near({3, 0}), nullptr);
+  EXPECT_GT(watch.beams_taken(), 20U);
+}
+
+TEST(Tracker, ABodyThatStandsBelongsToTheMap) {
+  Watch watch;
+  watch.world.circles.push_back({{3, 0}, 0.5});
+  watch.run(2.0, [](double) {});
+  EXPECT_TRUE(watch.tracker.moving().empty());
+  EXPECT_EQ(watch.beams_taken(), 0U);
+  // Until it leaves.
+  watch.run(1.5, [&](double t) { watch.world.circles[0].centre = {3, 0.8 * (t - 2)}; });
+  EXPECT_NE(watch.near(watch.world.circles[0].centre), nullptr);
+}
+
+TEST(Tracker, PostsAndWallsBelongToTheMapAtOnce) {
+  Watch watch;
+  watch.world.circles.push_back({{2, 1}, 0.075});
+  watch.world.polygons.push_back({{3, -0.6}, {3.2, -0.6}, {3.2, 0.4}, {3, 0.4}});
+  watch.run(1.0, [](double) {});
+  EXPECT_TRUE(watch.tracker.moving().empty());
+  EXPECT_EQ(watch.beams_taken(), 0U);
+}
+
+TEST(Tracker, TwoThatPassEachOtherKeepTheirOwnWays) {
+  Watch watch;
+  watch.world.circles = {{{3, -2}, 0.4}, {{4, 2}, 0.4}};
+  watch.run(4.0, [&](double t) {
+    watch.world.circles[0].centre = {3, -2 + t};
+    watch.world.circles[1].centre = {4, 2 - t};
+  });
+  const Track* first = watch.near(watch.world.circles[0].centre);
+  const Track* second = watch.near(watch.world.circles[1].centre);
+  ASSERT_NE(first, nullptr);
+  ASSERT_NE(second, nullptr);
+  EXPECT_NEAR(first->velocity_W.y(), 1, 0.15);
+  EXPECT_NEAR(second->velocity_W.y(), -1, 0.15);
+}
+
+TEST(Tracker, BodiesSideBySideAreTwo) {
+  Watch watch;
+  watch.world.circles = {{{3, 0.45}, 0.5}, {{3, -0.45}, 0.5}};  // they overlap
+  watch.tick();
+  EXPECT_NE(watch.near({3, 0.45}), nullptr);
+  EXPECT_NE(watch.near({3, -0.45}), nullptr);
+}
+
+TEST(Tracker, WhatIsNoLongerThereIsForgotten) {
+  Watch watch;
+  watch.world.circles.push_back({{3, 0}, 0.5});
+  watch.run(0.5, [&](double t) { watch.world.circles[0].centre = {3, t}; });
+  watch.world.circles.clear();
+  watch.run(0.3, [](double) {});
+  EXPECT_TRUE(watch.tracker.moving().empty());
+}
+
+}  // namespace
