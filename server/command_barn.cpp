@@ -38,6 +38,20 @@ std::string_view name(barn::Ending ending) {
   return "timeout";
 }
 
+std::string_view name(barn::Contact contact) {
+  switch (contact) {
+    case barn::Contact::None:
+      return "none";
+    case barn::Contact::Avoidable:
+      return "avoidable";
+    case barn::Contact::Unavoidable:
+      return "unavoidable";
+    case barn::Contact::Jumped:
+      return "jumped";
+  }
+  return "none";
+}
+
 json result_json(const barn::Result& result) {
   const barn::Summary sum = summarise(result);
   json out = {{"worlds", sum.worlds},
@@ -50,11 +64,15 @@ json result_json(const barn::Result& result) {
               {"mean_time_s", sum.mean_time},
               {"tick_us_p50", sum.tick_us_p50},
               {"tick_us_p99", sum.tick_us_p99},
+              {"contacts_avoidable", sum.avoidable},
+              {"contacts_unavoidable", sum.unavoidable},
+              {"contacts_after_jump", sum.jumped},
               {"outcomes", json::array()}};
   for (const barn::Run& run : result.runs) {
     out["outcomes"].push_back({{"world", run.world},
                                {"seed", run.seed},
                                {"outcome", name(run.ending)},
+                               {"contact", name(run.contact)},
                                {"time_s", run.time},
                                {"score", run.score},
                                {"min_clearance_m", run.min_clearance},
@@ -91,6 +109,13 @@ void print_table(const barn::Result& result) {
   fmt::print("timeouts   {:7.2f} %\n", 100 * sum.timeouts);
   fmt::print("score      {:7.4f} of 0.5\n", sum.score);
   fmt::print("           {:7.4f} of 0.25, the formula of 2022 and 2023\n", sum.score_quarter);
+  if (sum.avoidable + sum.unavoidable + sum.jumped > 0) {
+    fmt::print(
+        "contacts   {} avoidable with hindsight, {} not, {} with an obstacle that had jumped\n",
+        sum.avoidable,
+        sum.unavoidable,
+        sum.jumped);
+  }
   fmt::print("mean time  {:7.2f} s\n", sum.mean_time);
   fmt::print("control tick p50 {:.0f} us, p99 {:.0f} us\n", sum.tick_us_p50, sum.tick_us_p99);
 }

@@ -17,7 +17,7 @@ constexpr std::array<double, 5> kSpeeds{1, 0.5, 0, -0.5, -1};  // of the top spe
 constexpr std::array<double, 5> kTurns{0, 0.4, -0.4, 1, -1};   // of the top turn rate
 constexpr std::size_t kCommands = kSpeeds.size() * kTurns.size();
 constexpr double kMargin = 0.08;  // [m] from what moves, now
-constexpr double kMarginPerSecond = 0.04;
+constexpr double kMarginPerSecond = 0.12;  // they may turn
 constexpr double kStaticMargin = 0.03;  // [m] from what stands
 constexpr double kTimePerMetre = 0.6;   // [s/m] to the goal
 constexpr double kRiskReach = 0.6;      // [m] room beyond the margin that is worth something

@@ -18,6 +18,7 @@ constexpr double kMoved = 0.1;         // [m] from the start: the clock begins
 constexpr double kTimeLimit = 100;     // [s] of that clock
 constexpr double kPatience = 60;       // [s] for a robot that never moves
 constexpr double kOptimalSpeed = 2.0;  // [m/s]
+constexpr std::size_t kTrail = 80;     // moments remembered: 4 s
 
 /// s = OT / clip(AT, low OT, 8 OT).
 double score_of(const World& world, double time, double low) {
@@ -56,12 +57,23 @@ class Trial {
       tick_us.push_back(static_cast<float>((cpu_time() - begin) * 1e6));
       t.requests.clear();
       robot->step(t.command, t.observation);
-      if (judge(*robot->ground_truth(), t.observation.stamp)) break;
+      const algo::GroundTruth truth = *robot->ground_truth();
+      remember(t.observation, truth);
+      if (judge(truth, t.observation.stamp)) break;
+    }
+    if (run_.ending == Ending::Collision && !world_.paths.empty()) {
+      run_.contact = judge_contact(spec_.scenario, robot->spec(), trail_);
     }
     return run_;
   }
 
  private:
+  void remember(const algo::Observation& observation, const algo::GroundTruth& truth) {
+    if (world_.paths.empty()) return;
+    if (trail_.size() == kTrail) trail_.erase(trail_.begin());
+    trail_.push_back({observation.stamp, truth.pose, observation.odometry.twist});
+  }
+
   /// Whether the run is over.
   bool judge(const algo::GroundTruth& truth, double stamp) {
     const algo::Vec2 at_W = truth.pose.position();
@@ -89,6 +101,7 @@ class Trial {
   Run run_{};
   std::optional<double> moved_at_{};  // [s] run clock
   std::uint64_t ticks_ = 0;
+  std::vector<Moment> trail_{};  // the last seconds, for the oracle
 };
 
 double quantile(std::vector<float> values, double share) {
@@ -129,6 +142,9 @@ Summary summarise(const Result& result) {
     sum.success += run.ending == Ending::Success ? share : 0;
     sum.collisions += run.ending == Ending::Collision ? share : 0;
     sum.timeouts += run.ending == Ending::Timeout ? share : 0;
+    sum.avoidable += run.contact == Contact::Avoidable ? 1U : 0U;
+    sum.unavoidable += run.contact == Contact::Unavoidable ? 1U : 0U;
+    sum.jumped += run.contact == Contact::Jumped ? 1U : 0U;
     sum.score += run.score * share;
     sum.score_quarter += run.score_quarter * share;
     if (run.ending != Ending::Success) continue;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/barn/barn_file.hpp"
+#include "server/barn/oracle.hpp"
 
 namespace server::barn {
 
@@ -15,12 +16,13 @@ struct Run {
   std::uint64_t world = 0;
   std::uint64_t seed = 0;
   Ending ending = Ending::Timeout;
-  double time = 0;           // [s] from 0.1 m driven to the end
-  double score = 0;          // at most 0.5: editions since 2024
-  double score_quarter = 0;  // at most 0.25: 2022 and 2023
-  double min_clearance = 0;  // [m] hull to surface
-  double path_length = 0;    // [m]
-  algo::Pose2 end{};         // true pose
+  Contact contact = Contact::None;  // in a world where something moves
+  double time = 0;                  // [s] from 0.1 m driven to the end
+  double score = 0;                 // at most 0.5: editions since 2024
+  double score_quarter = 0;         // at most 0.25: 2022 and 2023
+  double min_clearance = 0;         // [m] hull to surface
+  double path_length = 0;           // [m]
+  algo::Pose2 end{};                // true pose
 };
 
 struct Options {
@@ -46,6 +48,7 @@ struct Summary {
   double score = 0, score_quarter = 0;               // means over all runs
   double mean_time = 0;                              // [s] of the runs that succeeded
   double tick_us_p50 = 0, tick_us_p99 = 0;
+  std::size_t avoidable = 0, unavoidable = 0, jumped = 0;  // contacts
 };
 Summary summarise(const Result& result);
 

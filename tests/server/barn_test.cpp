@@ -134,5 +134,34 @@ TEST(BarnRun, TheSameSeedGivesTheSameRunWhateverTheWorkers) {
   }
 }
 
+/// A cylinder that comes at 1 m/s towards the origin, where the robot stands or drives.
+sim::Scenario oncoming() {
+  sim::Scenario scenario = scenario_of(worlds_from_json(crossing()).at(0), {});
+  scenario.paths[0].keys = {{0, {10, 0}}, {20, {-10, 0}}};
+  return scenario;
+}
+
+TEST(Oracle, WhoStandsInTheWayCouldHaveDrivenOn) {
+  const algo::RobotSpec spec{.radius = 0.35,
+                             .max_v = 1,
+                             .max_omega = 2,
+                             .max_acceleration = 2,
+                             .max_angular_acceleration = 4};
+  std::vector<Moment> trail;
+  for (int k = 0; k <= 60; ++k) trail.push_back({6.15 + 0.05 * k, {0, 0, 1.57}, {}});
+  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Avoidable);
+  // Who can hardly move could not.
+  algo::RobotSpec lame = spec;
+  lame.max_v = lame.max_omega = 0.01;
+  EXPECT_EQ(judge_contact(oncoming(), lame, trail), Contact::Unavoidable);
+}
+
+TEST(Oracle, AnObstacleThatJumpedIsNobodysFault) {
+  const algo::RobotSpec spec{.radius = 0.35, .max_v = 1, .max_omega = 2, .max_acceleration = 2};
+  std::vector<Moment> trail;
+  for (int k = 0; k <= 60; ++k) trail.push_back({18.0 + 0.05 * k, {9.1, 0, 0}, {}});
+  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Jumped);
+}
+
 }  // namespace
 }  // namespace server::barn
