@@ -16,18 +16,18 @@ constexpr double kSubstep = 0.1;                               // [s]
 constexpr std::array<double, 5> kSpeeds{1, 0.5, 0, -0.5, -1};  // of the top speed
 constexpr std::array<double, 5> kTurns{0, 0.4, -0.4, 1, -1};   // of the top turn rate
 constexpr std::size_t kCommands = kSpeeds.size() * kTurns.size();
-constexpr double kMargin = 0.08;  // [m] from what moves, now
+constexpr double kMargin = 0.08;           // [m] from what moves, now
 constexpr double kMarginPerSecond = 0.12;  // they may turn
-constexpr double kStaticMargin = 0.03;  // [m] from what stands
-constexpr double kTimePerMetre = 0.6;   // [s/m] to the goal
-constexpr double kRiskReach = 0.6;      // [m] room beyond the margin that is worth something
-constexpr double kRisk = 0.8;           // [s/s] at no room at all
-constexpr double kRiskFades = 2.5;      // [s] prediction time after which it counts 1/e
-constexpr double kReverse = 0.15;       // [s/s] for driving into where the scanner does not look
-constexpr double kReach = 6.0;          // [m] tracks farther than this from the motion do not count
-constexpr double kCloser = 0.3;         // of the margins, where nothing else is clear
-constexpr double kHeld = 1.5;           // [s] of the motions weighed when nothing is
-constexpr double kLater = 0.02;         // [m] that room counts more for every substep
+constexpr double kStaticMargin = 0.03;     // [m] from what stands
+constexpr double kTimePerMetre = 0.6;      // [s/m] to the goal
+constexpr double kRiskReach = 0.6;         // [m] room beyond the margin that is worth something
+constexpr double kRisk = 0.8;              // [s/s] at no room at all
+constexpr double kRiskFades = 2.5;         // [s] prediction time after which it counts 1/e
+constexpr double kReverse = 0.15;          // [s/s] for driving into where the scanner does not look
+constexpr double kReach = 6.0;   // [m] tracks farther than this from the motion do not count
+constexpr double kCloser = 0.3;  // of the margins, where nothing else is clear
+constexpr double kHeld = 1.5;    // [s] of the motions weighed when nothing is
+constexpr double kLater = 0.02;  // [m] that room counts more for every substep
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
