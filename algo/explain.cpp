@@ -134,9 +134,15 @@ Explanation explain_full_strip(const Telemetry& t, double to_goal) {
       return {"Backing off", "There was no way on for too long; a new strip is laid."};
     case Manner::NoWay:
       return {"No way known",
-              format("The map shows no way to the goal, %.2f m away. It is asked again twice a "
-                     "second.",
+              format("The map shows no way to the goal, %.2f m away. It is asked again four times "
+                     "a second.",
                      to_goal)};
+    case Manner::GoalTaken:
+      return {
+          "The goal is taken",
+          format("Something stands on it, %.2f m away, or too close to it. It is looked at again "
+                 "four times a second.",
+                 to_goal)};
     case Manner::Blocked:
       return {"Standing still", "No motion could be braked in time. " + surroundings(t)};
     default:

@@ -110,6 +110,16 @@ constexpr std::array<ParameterInfo, kParameterCount> kTable{{
      0.1,
      0.5,
      "The robot stops when the stick has been silent for this long."},
+    {Parameter::NearestGoal,
+     "nearest_goal",
+     "Goal taken: go near",
+     "",
+     0.0,
+     1.0,
+     1.0,
+     1.0,
+     "What the full strip does when something stands on its goal: 1 drives to the nearest free "
+     "place, 0 stops where it finds out."},
 }};
 
 /// "0.6" rather than "0.600000".

@@ -24,8 +24,9 @@ enum class Parameter : std::uint8_t {
   FilterHalfWidth,  // N
   ScanTimeout,
   JoystickTimeout,
+  NearestGoal,
 };
-constexpr std::size_t kParameterCount = 11;
+constexpr std::size_t kParameterCount = 12;
 
 struct ParameterInfo {
   Parameter id{};

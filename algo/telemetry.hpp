@@ -106,6 +106,7 @@ enum class Manner : std::uint8_t {
   BackingOff,   // the way was blocked for long
   NoWay,        // the map has no way to the goal
   Blocked,      // nothing is free just now
+  GoalTaken,    // something stands on the goal, and this is as far as it goes
 };
 
 /// What a controller decided and why.

@@ -19,6 +19,7 @@ constexpr double kRivalShare = 0.9;   // of the present cost that a rival must s
 constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal
 constexpr int kSweepsNew = 15;        // of a strip just laid
 constexpr int kSweeps = 5;            // a tick
+constexpr double kAtEnd = 0.15;       // [m] from the end of a strip that leads beside its goal
 constexpr double kStopShort = 0.35;   // [m] before the place where the strip is broken
 constexpr double kStuckTime = 2.5;    // [s] without way: the strip is dropped
 constexpr double kStuckWay = 0.15;    // [m]
@@ -86,6 +87,7 @@ void FullStripController::reset(const Pose2& start_W) {
   goal_W_.reset();
   level_ = 0;
   no_way_ = false;
+  goal_taken_ = false;
   broken_at_ = -1;
   next_plan_ = 0;
   next_drawing_ = 0;
@@ -211,10 +213,8 @@ void FullStripController::take_plan(const ControlInput& in) {
     rival_.lay(path_W_);
     rival_.follow(in.odometry.pose.position());
   }
+  goal_taken_ = planner_.goal_taken();
   // A strip laid when the goal lay beyond the map ends short of it, so its cost says little.
-  const auto left = [&](const NodeStrip& strip) {
-    return (strip.nodes()[strip.nodes().size() - 1].position_W - *goal_W_).norm();
-  };
   const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - kNearer ||
                       rival_.cost(map_) < kRivalShare * strip_.cost(map_);
   if (better) {
@@ -222,6 +222,20 @@ void FullStripController::take_plan(const ControlInput& in) {
     broken_at_ = -1;
   }
   level_ = 0;  // the next search begins with the widest again
+}
+
+/// [m] From the end of `strip` to the goal.
+double FullStripController::left(const NodeStrip& strip) const {
+  return (strip.nodes()[strip.nodes().size() - 1].position_W - *goal_W_).norm();
+}
+
+/// Whether something stands on the goal and the robot comes no nearer, or must not try.
+bool FullStripController::ends_here(const ControlInput& in, const Parameters& parameters) const {
+  if (!goal_taken_ || strip_.empty() || left(strip_) < parameters[Parameter::GoalReach])
+    return false;
+  if (parameters[Parameter::NearestGoal] == 0) return true;
+  const Vec2& end_W = strip_.nodes()[strip_.nodes().size() - 1].position_W;
+  return (end_W - in.odometry.pose.position()).norm() < kAtEnd;
 }
 
 /// The reactive layer: the strip follows the robot and what the map says.
@@ -394,6 +408,11 @@ Twist2 FullStripController::drive(const ControlInput& in,
         .value_or(Twist2{});
   }
   if (const auto twist = give_way(stage, in, out)) return *twist;
+  if (ends_here(in, parameters)) {
+    manner_ = Manner::GoalTaken;
+    progress_at_ = in.stamp;
+    return stage_.proven(stage, {}, out).value_or(Twist2{});
+  }
   watch_progress(in);
   if (in.stamp < back_until_ || strip_.empty()) return recover(stage, in, out);
   if (maneuver_.active()) {
@@ -448,6 +467,7 @@ void FullStripController::update(const ControlInput& in,
     progress_W_ = in.odometry.pose.position();
     progress_at_ = in.stamp;
     no_way_ = false;
+    goal_taken_ = false;
     level_ = 0;
     search_.reset();
     maneuver_.reset();

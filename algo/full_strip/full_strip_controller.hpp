@@ -49,6 +49,8 @@ class FullStripController final : public Controller {
   double time_for(double patience) const;
   void watch_progress(const ControlInput& in);
   double least_clearance() const;
+  double left(const NodeStrip& strip) const;
+  bool ends_here(const ControlInput& in, const Parameters& parameters) const;
   void report(const ControlInput& in, ControlOutput& out);
 
   bool among_moving_ = false;
@@ -70,6 +72,7 @@ class FullStripController final : public Controller {
   std::optional<Vec2> goal_W_{};
   std::size_t level_ = 0;  // of the planner's clearance, 0 the widest
   bool no_way_ = false;    // not even at the narrowest
+  bool goal_taken_ = false;
   double broken_at_ = -1;  // [m] along the strip; negative: whole
   double next_plan_ = 0;   // [s] run clock
   Manner manner_ = Manner::None;

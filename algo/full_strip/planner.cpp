@@ -152,10 +152,12 @@ void Planner::start(const LocalMap& map,
     if (goal_W[k] < low[k]) share = std::min(share, (low[k] - robot_W[k]) / way);
   }
   goal_replaced_ = share < 1;
+  goal_taken_ = false;
   goal_W_ = robot_W + share * (goal_W - robot_W);
   root_ = point_at(goal_W_);
   if (clearance(map, root_) < least_clearance_ && !near_robot(root_)) {
     root_ = free_point(map, root_);
+    goal_taken_ = !goal_replaced_;
     goal_replaced_ = true;
     goal_W_ = position_W(root_);
   }

@@ -31,6 +31,8 @@ class Planner {
   State state() const { return state_; }
   /// Whether the way ends at another place than the goal asked for.
   bool goal_replaced() const { return goal_replaced_; }
+  /// Whether that is so because something stands there.
+  bool goal_taken() const { return goal_taken_; }
   /// Cost [m] of the way found.
   double cost() const;
   /// The way found, robot first. At most one point a lattice step.
@@ -60,6 +62,7 @@ class Planner {
 
   State state_ = State::Idle;
   bool goal_replaced_ = false;
+  bool goal_taken_ = false;
   double least_clearance_ = 0;
   Vec2 corner_W_{0, 0};
   Vec2 robot_W_{0, 0};

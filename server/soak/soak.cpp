@@ -32,6 +32,7 @@ bool gives_reason(const algo::Telemetry& t) {
   if (t.mission == algo::Mission::Stuck || t.mission == algo::Mission::Held) return true;
   switch (t.output.manner) {
     case algo::Manner::NoWay:
+    case algo::Manner::GoalTaken:
     case algo::Manner::Blocked:
     case algo::Manner::NoPlan:
     case algo::Manner::Walled:

@@ -98,6 +98,25 @@ TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
   EXPECT_EQ(drive.out.manner, Manner::Following);
 }
 
+TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
+  for (const double near : {1.0, 0.0}) {
+    Drive drive;
+    drive.parameters.set(Parameter::NearestGoal, near);
+    drive.world.circles = {{{4, 0.05}, 0.4}};
+    drive.controller.reset({});
+    for (int k = 0; k < 600; ++k) drive.tick({4, 0});
+    EXPECT_EQ(drive.out.manner, Manner::GoalTaken);
+    EXPECT_EQ(drive.out.twist, algo::Twist2{});
+    const double from_it = (drive.pose.position() - Vec2(4, 0.05)).norm() - 0.75;
+    EXPECT_GT(from_it, 0.02);
+    if (near == 1.0) {
+      EXPECT_LT(from_it, 0.3);
+    } else {
+      EXPECT_GT(from_it, 0.5);
+    }
+  }
+}
+
 TEST(FullStrip, PassesAPostOnItsLine) {
   Drive drive;
   drive.world.circles = {{{2, 0.02}, 0.3}};

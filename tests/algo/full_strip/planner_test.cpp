@@ -82,6 +82,7 @@ TEST(Planner, AGoalInAnObstacleIsReplacedByThePlaceBesideIt) {
   planner.start(map, {0, 0}, {4, 0}, 0.3);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   EXPECT_TRUE(planner.goal_replaced());
+  EXPECT_TRUE(planner.goal_taken());
 }
 
 TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
@@ -90,6 +91,7 @@ TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
   planner.start(map, {0, 0}, {400, 0}, 0.3);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   EXPECT_TRUE(planner.goal_replaced());
+  EXPECT_FALSE(planner.goal_taken());
 }
 
 TEST(Planner, DoesNoMoreThanItsBudget) {
