@@ -34,6 +34,8 @@ std::string surroundings(const Telemetry& t) {
 
 Explanation explain_hold(const Telemetry& t) {
   switch (t.hold) {
+    case Hold::Halted:
+      return explain(t.observation.halt);
     case Hold::Stopped:
       return {"Stopped", "Stop is engaged. The robot stays here until it is released."};
     case Hold::Bumper:
@@ -209,6 +211,39 @@ Explanation explain_stuck(const Telemetry& t, double to_goal) {
 }
 
 }  // namespace
+
+Explanation explain(Halt halt) {
+  switch (halt) {
+    case Halt::Disarmed:
+      return {"The motors are off",
+              "Nobody has armed this robot. It moves only once somebody does."};
+    case Halt::BaseLost:
+      return {"Waiting for the base", "The motor controller is silent. The wheels are held still."};
+    case Halt::ScannerLost:
+      return {"Waiting for the laser", "The scanner is silent. The wheels are held still."};
+    case Halt::BadLine:
+      return {"Holding still",
+              "More of what the scanner sends comes damaged than whole: look at its cable."};
+    case Halt::ScannerFault:
+      return {"Holding still", "The scanner reports a fault of its own."};
+    case Halt::StopButton:
+      return {"Stop button pressed",
+              "The stop button on the robot is pressed. Release it, then arm again."};
+    case Halt::BaseFault:
+      return {"Holding still", "The motor controller reports a fault."};
+    case Halt::OverCurrent:
+      return {"Holding still", "A motor took more current than it may: is a wheel blocked?"};
+    case Halt::BatteryLow:
+      return {"Battery low", "The battery is below its limit. Charge it."};
+    case Halt::MotorsOff:
+      return {"Waiting for the motors", "The robot is armed, but its motors are not on yet."};
+    case Halt::LateTick:
+      return {"Holding still", "The control loop came too late; the wheels were stopped."};
+    case Halt::None:
+      break;
+  }
+  return {"Holding still", "The robot holds its wheels still."};
+}
 
 Explanation explain(const Telemetry& t) {
   if (t.hold != Hold::None) return explain_hold(t);

@@ -14,5 +14,7 @@ struct Explanation {
 
 /// A pure function of the tick, so that the live page, the record and a replay say the same.
 Explanation explain(const Telemetry& t);
+/// The same for what keeps real hardware still, which is known without a tick too.
+Explanation explain(Halt halt);
 
 }  // namespace algo

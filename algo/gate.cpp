@@ -21,6 +21,7 @@ bool finite(const Twist2& twist) {
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
   if (in.stopped) return Hold::Stopped;
   if (in.link_lost) return Hold::LinkLost;
+  if (observation.halt != Halt::None) return Hold::Halted;
   if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
     return Hold::NotFinite;
   }

@@ -57,8 +57,26 @@ struct Encoders {
   bool operator==(const Encoders&) const = default;
 };
 
+/// Why real hardware holds its own wheels still, whatever it is told. The port has done so already
+/// when it says so; the device concerned is named where people look for devices.
+enum class Halt : std::uint8_t {
+  None,
+  Disarmed,      // nobody has enabled the motors
+  BaseLost,      // the base is not there, or has been silent for too long
+  ScannerLost,   // no whole scan for three of its periods
+  BadLine,       // more telegrams damaged than whole
+  ScannerFault,  // the scanner says that its values must not be relied on
+  StopButton,    // pressed on the robot
+  BaseFault,     // the motor controller reports a fault
+  OverCurrent,   // a motor takes more than it may
+  BatteryLow,
+  MotorsOff,  // armed, but the base has not switched its motors on
+  LateTick,   // the control loop came too late for its own deadlines
+};
+
 struct Observation {
   double stamp = 0;  // [s] run clock, the only clock algo sees
+  Halt halt = Halt::None;
   Odometry odometry{};
   Recycled<LaserScan> scans{};  // empty when no new one came this tick
   Recycled<RangeReading> sonar{};

@@ -17,6 +17,38 @@ std::string_view name(Hold hold) {
       return "not_finite";
     case Hold::LinkLost:
       return "link_lost";
+    case Hold::Halted:
+      return "halted";
+  }
+  return "none";
+}
+
+std::string_view name(Halt halt) {
+  switch (halt) {
+    case Halt::None:
+      return "none";
+    case Halt::Disarmed:
+      return "disarmed";
+    case Halt::BaseLost:
+      return "base_lost";
+    case Halt::ScannerLost:
+      return "scanner_lost";
+    case Halt::BadLine:
+      return "bad_line";
+    case Halt::ScannerFault:
+      return "scanner_fault";
+    case Halt::StopButton:
+      return "stop_button";
+    case Halt::BaseFault:
+      return "base_fault";
+    case Halt::OverCurrent:
+      return "over_current";
+    case Halt::BatteryLow:
+      return "battery_low";
+    case Halt::MotorsOff:
+      return "motors_off";
+    case Halt::LateTick:
+      return "late_tick";
   }
   return "none";
 }

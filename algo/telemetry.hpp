@@ -135,7 +135,15 @@ struct ControlOutput {
 };
 
 /// Why the gate replaced the command by zero.
-enum class Hold : std::uint8_t { None, Stopped, Bumper, StaleScan, NotFinite, LinkLost };
+enum class Hold : std::uint8_t {
+  None,
+  Stopped,
+  Bumper,
+  StaleScan,
+  NotFinite,
+  LinkLost,
+  Halted,  // by the robot itself: observation.halt says why
+};
 
 /// The sequencing layer's state.
 enum class Mission : std::uint8_t { Idle, Driving, Arrived, Stuck, Held };
@@ -145,6 +153,7 @@ enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
 
 /// "stale_scan", "driving", "avoid": as REST and CSV spell them.
 std::string_view name(Hold hold);
+std::string_view name(Halt halt);
 std::string_view name(Mission mission);
 std::string_view name(BehaviourId behaviour);
 

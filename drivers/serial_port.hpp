@@ -43,6 +43,8 @@ class SerialPort {
   std::size_t read(std::span<std::uint8_t> into, Milliseconds timeout);
   /// Writes all. Throws LineError when the device has gone or takes nothing for `timeout`.
   void write(ByteView bytes, Milliseconds timeout);
+  /// For poll(): there is something to read, or the device has gone.
+  int descriptor() const { return fd_; }
   /// Forgets what has come and was not read.
   void discard_input();
 

@@ -28,6 +28,7 @@ void add_health_command(CLI::App& app, int& status);
 void add_reproduce_command(CLI::App& app, int& status);
 void add_barn_command(CLI::App& app, int& status);
 void add_soak_command(CLI::App& app, int& status);
+void add_emulate_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

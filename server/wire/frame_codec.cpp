@@ -314,6 +314,8 @@ void check_enum(T value, T max, const char* what) {
 void read_observation(const fb::Frame& f, algo::Observation& o) {
   o.clear_sensors();
   o.stamp = f.stamp();
+  check_enum(f.halt(), fb::Halt_MAX, "halt");
+  o.halt = static_cast<algo::Halt>(f.halt());
   const fb::Odometry& odometry = *f.odometry();
   o.odometry = {f.odometry_stamp().value_or(o.stamp),
                 from_wire(odometry.pose()),
@@ -468,6 +470,7 @@ void FrameWriter::decision() {
                               static_cast<fb::Behaviour>(t.behaviour),
                               static_cast<std::int8_t>(out.side));
   frame.add_decision(&decision);
+  frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
   if (t.goal) {
     const fb::Vec2f goal = to_float(t.goal->position_W);
     frame.add_goal(&goal);

@@ -17,6 +17,7 @@ algo::Telemetry full_telemetry() {
   t.tick = 4711;
   algo::Observation& o = t.observation;
   o.stamp = 12.345678901234567;
+  o.halt = algo::Halt::StopButton;
   o.odometry = {12.34, {1.0 / 3.0, -2.0 / 7.0, 0.1}, {0.3, -0.2}};
   algo::LaserScan& scan = o.scans.append();
   scan.mount_R = {0.1, -0.05, 0.01};
@@ -80,6 +81,7 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
 
   EXPECT_EQ(back.tick, t.tick);
   EXPECT_EQ(back.observation.stamp, t.observation.stamp);
+  EXPECT_EQ(back.observation.halt, t.observation.halt);
   EXPECT_EQ(back.observation.odometry, t.observation.odometry);
   ASSERT_EQ(back.observation.scans.size(), 1u);
   const algo::LaserScan& a = t.observation.scans[0];

@@ -38,6 +38,11 @@ std::vector<algo::Telemetry> ticks() {
     out.push_back(driving());
     out.back().hold = static_cast<algo::Hold>(hold);
   }
+  for (int halt = 1; halt <= static_cast<int>(algo::Halt::LateTick); ++halt) {
+    out.push_back(driving());
+    out.back().hold = algo::Hold::Halted;
+    out.back().observation.halt = static_cast<algo::Halt>(halt);
+  }
   out.push_back(driving());
   out.back().hold = algo::Hold::StaleScan;
   out.back().scene.scan.resize(1);

@@ -1,6 +1,6 @@
 // web/src/explain.ts: words for a tick, formed where they are read. The server says the same in its
 // log and over REST (algo/explain.cpp); tests/golden/words.json holds both to the same sentences.
-import { Frame, Nearest } from "./link/frame";
+import { Frame, Halt, Nearest } from "./link/frame";
 import { Point } from "./geometry";
 
 const kNoticeable = 0.005; // [m] a smaller force is not worth a sentence
@@ -30,8 +30,36 @@ export function explain(f: Frame): Explanation {
   }
 }
 
+const kHalts: Record<Exclude<Halt, "none">, Explanation> = {
+  disarmed: { what: "The motors are off",
+    why: "Nobody has armed this robot. It moves only once somebody does." },
+  base_lost: { what: "Waiting for the base",
+    why: "The motor controller is silent. The wheels are held still." },
+  scanner_lost: { what: "Waiting for the laser",
+    why: "The scanner is silent. The wheels are held still." },
+  bad_line: { what: "Holding still",
+    why: "More of what the scanner sends comes damaged than whole: look at its cable." },
+  scanner_fault: { what: "Holding still",
+    why: "The scanner reports a fault of its own." },
+  stop_button: { what: "Stop button pressed",
+    why: "The stop button on the robot is pressed. Release it, then arm again." },
+  base_fault: { what: "Holding still",
+    why: "The motor controller reports a fault." },
+  over_current: { what: "Holding still",
+    why: "A motor took more current than it may: is a wheel blocked?" },
+  battery_low: { what: "Battery low",
+    why: "The battery is below its limit. Charge it." },
+  motors_off: { what: "Waiting for the motors",
+    why: "The robot is armed, but its motors are not on yet." },
+  late_tick: { what: "Holding still",
+    why: "The control loop came too late; the wheels were stopped." },
+};
+
 function explain_hold(f: Frame): Explanation {
   switch (f.hold) {
+    case "halted":
+      return f.halt === "none"
+        ? { what: "Holding still", why: "The robot holds its wheels still." } : kHalts[f.halt];
     case "stopped":
       return { what: "Stopped", why: "Stop is engaged. The robot stays here until it is released." };
     case "bumper":

@@ -42,11 +42,17 @@ export type FrameRequest =
   | { type: "stop"; engaged: boolean }
   | { type: "set_parameter"; name: string; value: number };
 
-export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost";
+export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost" | "halted";
+/** Why real hardware holds its own wheels still. */
+export type Halt = "none" | "disarmed" | "base_lost" | "scanner_lost" | "bad_line" | "scanner_fault" |
+  "stop_button" | "base_fault" | "over_current" | "battery_low" | "motors_off" | "late_tick";
 export type Mission = "idle" | "driving" | "arrived" | "stuck" | "held";
 export type Behaviour = "rest" | "avoid" | "manual";
 
-const kHolds: Hold[] = ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost"];
+const kHolds: Hold[] =
+  ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost", "halted"];
+const kHalts: Halt[] = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
+  "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"];
 const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
 const kBehaviours: Behaviour[] = ["rest", "avoid", "manual"];
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
@@ -66,6 +72,7 @@ export interface Frame {
   truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
   goal: Goal | null;
   hold: Hold;
+  halt: Halt;
   mission: Mission;
   behaviour: Behaviour;
   clearance: number;        // [m] hull to nearest filtered return
@@ -135,6 +142,7 @@ export function decode_frame(bytes: Uint8Array): Frame {
     },
     goal: goal && { ...point(goal), heading: f.goalHeading() },
     hold: kHolds[decision?.hold() ?? 0] ?? "none",
+    halt: kHalts[f.halt()] ?? "none",
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
     behaviour: kBehaviours[decision?.behaviour() ?? 0] ?? "rest",
     clearance: decision?.clearance() ?? 0,

@@ -1,6 +1,6 @@
 // web/src/state/events.ts: what is worth a mark on the timeline: changes of mission and hold, and
 // what people asked for.
-import { Frame } from "../link/frame";
+import { Frame, Halt } from "../link/frame";
 
 export type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
 export interface RunEvent { t: number; kind: EventKind; label: string }
@@ -15,17 +15,34 @@ const kHoldWords: Record<string, string> = {
   stale_scan: "Scan too old",
   not_finite: "A number was not finite",
   link_lost: "Link to the robot lost",
+  halted: "Held by the robot",
+};
+
+const kHaltWords: Record<Exclude<Halt, "none">, string> = {
+  disarmed: "Disarmed",
+  base_lost: "Base silent",
+  scanner_lost: "Laser silent",
+  bad_line: "Laser's line bad",
+  scanner_fault: "Laser reports a fault",
+  stop_button: "Stop button",
+  base_fault: "Base reports a fault",
+  over_current: "Motor current too high",
+  battery_low: "Battery low",
+  motors_off: "Motors not on",
+  late_tick: "Tick too late",
 };
 
 export class EventLog {
   readonly list: RunEvent[] = [];
   private mission_ = "";
   private hold_ = "none";
+  private halt_ = "none";
 
   clear(): void {
     this.list.length = 0;
     this.mission_ = "";
     this.hold_ = "none";
+    this.halt_ = "none";
   }
 
   push(f: Frame): void {
@@ -46,7 +63,9 @@ export class EventLog {
       if (f.mission === "stuck") this.add(f.stamp, "bad", "Stuck");
     }
     const before_first_scan = f.hold === "stale_scan" && f.stamp < kFirstScan;
-    if (!before_first_scan && f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
+    if (f.hold === "halted" && f.halt !== this.halt_ && f.halt !== "none") {
+      this.add(f.stamp, "hold", kHaltWords[f.halt]);
+    } else if (!before_first_scan && f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
       this.add(f.stamp, "hold", kHoldWords[f.hold] ?? f.hold);
     }
     if (f.truth?.collided && this.list.at(-1)?.label !== "Collision") {
@@ -54,6 +73,7 @@ export class EventLog {
     }
     this.mission_ = f.mission;
     this.hold_ = f.hold;
+    this.halt_ = f.hold === "halted" ? f.halt : "none";
   }
 
   private add(t: number, kind: EventKind, label: string): void {

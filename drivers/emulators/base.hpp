@@ -1,0 +1,68 @@
+// drivers/emulators/base.hpp: what emulated bases have in common: wheels that a world turns.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "drivers/emulators/device.hpp"
+
+namespace drivers::emulators {
+
+struct WheelMotion {
+  double left = 0;   // [m/s] over the ground
+  double right = 0;  // [m/s]
+  bool operator==(const WheelMotion&) const = default;
+};
+
+struct SonarEcho {
+  std::uint8_t index = 0;
+  double range = 0;  // [m]
+};
+
+/// What the world tells a base.
+struct BaseSenses {
+  double left_travel = 0;   // [m] each wheel has rolled since the beginning
+  double right_travel = 0;  // [m]
+  WheelMotion motion{};     // as measured
+  bool front_bumper = false;
+  bool rear_bumper = false;
+  std::vector<SonarEcho> echoes{};  // new ones
+};
+
+/// A command of the host that concerns motion, for the record.
+struct BaseCommand {
+  double time = 0;       // [s]
+  WheelMotion wanted{};  // of the wheels, before any ramp
+};
+
+class Base : public Device {
+ public:
+  virtual void feel(const BaseSenses& senses, double now) = 0;
+  /// What its motors make the wheels do at `now`.
+  virtual WheelMotion drive(double now) = 0;
+  /// Called for each command that concerns motion, and with 0 when the base stops by itself.
+  std::function<void(const BaseCommand&)> on_command{};
+
+  virtual void press_stop_button(bool pressed) = 0;
+  virtual void press_bumper(bool pressed) = 0;
+  virtual void set_battery(double volts) = 0;
+  /// Bits as the device reports them.
+  virtual void set_faults_reported(std::uint16_t bits) = 0;
+  /// Its controller starts anew: everything the host has set is forgotten.
+  virtual void restart(double now, double boot_time) = 0;
+
+ protected:
+  using Device::Device;
+
+  /// `now` moved towards `wanted` by at most `most`.
+  static double towards(double now, double wanted, double most) {
+    return now + std::clamp(wanted - now, -most, most);
+  }
+  void report(double time, const WheelMotion& wanted) const {
+    if (on_command) on_command({.time = time, .wanted = wanted});
+  }
+};
+
+}  // namespace drivers::emulators

@@ -1,0 +1,687 @@
+// drivers/emulators/lms200_emulator.cpp: what an LMS200 makes of the telegrams it gets.
+#include "drivers/emulators/lms200_emulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+
+namespace drivers::lms200 {
+namespace {
+
+constexpr double kLongestGap = 0.006;        // [s] between two bytes of a request
+constexpr std::size_t kLongestRequest = 96;  // LENGTH; writing the second configuration has 85
+constexpr std::uint8_t kAccepted = 1;
+constexpr std::uint8_t kRejected = 0;
+
+/// Requests, as the manual numbers them.
+enum class Request : std::uint8_t {
+  Reset = 0x10,
+  Mode = 0x20,
+  Values = 0x30,
+  Status = 0x31,
+  Errors = 0x32,
+  Mean = 0x36,
+  Range = 0x37,
+  Type = 0x3A,
+  Variant = 0x3B,
+  MeanRange = 0x3F,
+  StartUp = 0x66,
+  ReadConfiguration = 0x74,
+  WriteConfiguration = 0x77,
+  ReadSecond = 0x7B,
+  WriteSecond = 0x7C,
+};
+constexpr std::uint8_t kTestPassword = 0x30;  // as a mode
+constexpr std::uint8_t kAnswerBit = 0x80;
+
+// What a mode request comes to.
+constexpr std::uint8_t kDone = 0;
+constexpr std::uint8_t kWrongPassword = 1;
+constexpr std::uint8_t kFault = 2;
+
+constexpr std::size_t kAvailability = 4;  // in the configuration
+constexpr std::size_t kMeasuringMode = 5;
+constexpr std::size_t kUnit = 6;
+
+std::uint8_t code_of(Answer answer) {
+  return static_cast<std::uint8_t>(answer);
+}
+
+Configuration factory_configuration() {
+  std::array<std::uint8_t, Configuration::kBytes> block{};
+  block[2] = 0x46;  // stop threshold [mV]
+  block[kUnit] = 1;
+  block[9] = 2;   // multiple evaluation
+  block[10] = 2;  // restart mode
+  block[32] = 2;  // evaluations when dazzled
+  return Configuration(block);
+}
+
+/// The rate as the status names it.
+std::uint16_t rate_word(unsigned baud) {
+  switch (baud) {
+    case 500000:
+      return 0x8001;
+    case 38400:
+      return 0x8019;
+    case 19200:
+      return 0x8033;
+    default:
+      return 0x8067;
+  }
+}
+
+std::optional<unsigned> rate_of_mode(std::uint8_t mode) {
+  switch (mode) {
+    case 0x40:
+      return 38400;
+    case 0x41:
+      return 19200;
+    case 0x42:
+      return 9600;
+    case 0x48:
+      return 500000;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// What is above the distance in a value word, and where the codes lie.
+struct WordLayout {
+  std::uint16_t top = 0x1FFF;  // the code for no echo
+  std::uint16_t field_a = 0;   // flag
+  std::uint16_t dazzle = 0;    // flag
+};
+
+std::optional<WordLayout> layout_of(std::uint8_t measuring_mode) {
+  switch (measuring_mode) {
+    case 0x00:
+      return WordLayout{.top = 0x1FFF, .field_a = 0x2000, .dazzle = 0x8000};
+    case 0x01:
+      return WordLayout{.top = 0x1FFF};
+    case 0x02:
+      return WordLayout{.top = 0x1FFF, .field_a = 0x2000};
+    case 0x03:
+      return WordLayout{.top = 0x3FFF};
+    case 0x04:
+      return WordLayout{.top = 0x3FFF, .field_a = 0x4000};
+    case 0x05:
+    case 0x0F:  // its codes are not in the manual: those of the other modes of 32 m
+      return WordLayout{.top = 0x7FFF};
+    case 0x06:
+      return WordLayout{.top = 0x7FFF, .field_a = 0x8000};
+    default:
+      return std::nullopt;
+  }
+}
+
+constexpr unsigned kCodes = 8;  // below the top there are codes, no distances
+
+/// Word `word` as a receiver is to keep it.
+std::uint16_t beam_of(std::uint16_t word, const WordLayout& layout, bool millimetres) {
+  const unsigned value = word & layout.top;
+  if (value + kCodes < layout.top) {
+    return static_cast<std::uint16_t>(
+        std::min<unsigned>(millimetres ? value : 10 * value, algo::kWireMaxRange));
+  }
+  const unsigned digit = value & 0xFU;
+  if (digit == static_cast<unsigned>(algo::BeamCode::BeyondRange)) return algo::kWireFree;
+  return static_cast<std::uint16_t>(algo::kWireCodeBase + digit);
+}
+
+}  // namespace
+
+Emulator::Emulator(const EmulatorOptions& options)
+    : Device(options.start_rate, options.seed),
+      options_(options),
+      boot_end_(-emulators::kNever),
+      variant_(options.variant),
+      configuration_(factory_configuration()),
+      stored_rate_(options.start_rate),
+      start_up_(options.start_up) {
+  note_sweep();
+}
+
+// ---- the line ----------------------------------------------------------------------------------
+
+void Emulator::on_byte(std::uint8_t byte, double at) {
+  if (!started(at)) return;
+  if (request_.size() == 0 && byte != kStart) return;
+  request_.push_back(byte);
+  const ByteView so_far = request_.view();
+  if (so_far.size() < 4) return;
+  const std::size_t length = word_at(so_far, 2);
+  if (so_far[1] >= kAnswerAddress || length == 0 || length > kLongestRequest) {
+    request_.clear();
+    return;
+  }
+  if (so_far.size() < length + kFrameBytes) return;
+  const FixedBytes<128> frame = request_;
+  request_.clear();
+  take(frame.view(), at);
+}
+
+void Emulator::on_quiet(double silence) {
+  if (silence > kLongestGap) request_.clear();
+}
+
+void Emulator::work(double now) {
+  if (!begun_) {
+    begun_ = true;
+    if (!options_.powered) restart(now, options_.boot_time);
+  }
+  if (!greeted_ && now >= boot_end_) {
+    greeted_ = true;
+    std::vector<std::uint8_t> text(options_.type.begin(), options_.type.end());
+    say(code_of(Answer::PowerOn), text, boot_end_);
+  }
+  while (!jobs_.empty() && jobs_.front().due <= now) {
+    const Job job = std::move(jobs_.front());
+    jobs_.erase(jobs_.begin());
+    job.run(job.due);
+  }
+  if (leaving_ && leaving_->end <= now) {
+    close_scan(mute_at(now) ? SentScan::Fate::Muted : leaving_->fate);
+  }
+}
+
+double Emulator::next_duty() const {
+  double next = jobs_.empty() ? emulators::kNever : jobs_.front().due;
+  if (!greeted_) next = std::min(next, boot_end_);
+  return next;
+}
+
+void Emulator::later(double due, std::function<void(double)> run) {
+  jobs_.push_back({.due = due, .run = std::move(run)});
+}
+
+void Emulator::take(ByteView frame, double at) {
+  const bool mine = frame[1] == kEverybody || frame[1] == options_.address;
+  if (!mine) return;
+  // Whatever it is sending, a request breaks it off.
+  if (line().cut(at) && leaving_) close_scan(SentScan::Fate::Cut);
+  once_ = {};
+  const ByteView checked = frame.first(frame.size() - 2);
+  const bool sound = crc(checked) == word_at(frame, checked.size());
+  const double answered = at + options_.times.acknowledge;
+  if (!sound || refusals_ > 0) {
+    if (sound) --refusals_;
+    ++bad_telegrams_;
+    line().say(std::array{kNak}, answered);
+    return;
+  }
+  if (!jobs_.empty()) return;  // busy with the one before: silence
+  line().say(std::array{kAck}, answered);
+  carry_out(frame.subspan(4, frame.size() - kFrameBytes), answered);
+}
+
+void Emulator::carry_out(ByteView payload, double at) {
+  const ByteView data = payload.subspan(1);
+  const double soon = options_.times.answer;
+  const auto bare = [&](std::uint8_t code, const std::vector<std::uint8_t>& content) {
+    if (data.empty()) {
+      answer(code, content, soon, at);
+    } else {
+      refuse(at);
+    }
+  };
+  switch (static_cast<Request>(payload[0])) {
+    case Request::Reset:
+      bare(code_of(Answer::ResetConfirmed), {});
+      later(at + soon, [this](double due) {
+        later(std::max(due, line().free_at()),
+              [this](double then) { restart(then, options_.boot_time); });
+      });
+      return;
+    case Request::Mode:
+      change_mode(data, at);
+      return;
+    case Request::Values:
+    case Request::Mean:
+    case Request::Range:
+    case Request::MeanRange:
+      take_values(payload, at);
+      return;
+    case Request::Status:
+      bare(code_of(Answer::Status), status());
+      return;
+    case Request::Errors:
+      bare(code_of(Answer::Errors), errors());
+      return;
+    case Request::Type:
+      bare(code_of(Answer::Type), {options_.type.begin(), options_.type.end()});
+      return;
+    case Request::Variant:
+      change_variant(data, at);
+      return;
+    case Request::StartUp:
+      change_start_up(data, at);
+      return;
+    case Request::ReadConfiguration: {
+      const ByteView block = configuration_.block();
+      bare(code_of(Answer::Configuration), {block.begin(), block.end()});
+      return;
+    }
+    case Request::WriteConfiguration:
+      write_configuration(data, at);
+      return;
+    case Request::ReadSecond:
+      bare(code_of(Answer::SecondConfiguration), {second_.begin(), second_.end()});
+      return;
+    case Request::WriteSecond:
+      write_second(data, at);
+      return;
+    default:
+      refuse(at);
+  }
+}
+
+void Emulator::answer(std::uint8_t code,
+                      const std::vector<std::uint8_t>& data,
+                      double delay,
+                      double at) {
+  later(at + delay, [this, code, data](double due) { say(code, data, due); });
+}
+
+void Emulator::refuse(double at) {
+  answer(code_of(Answer::Refused), {}, options_.times.answer, at);
+}
+
+emulators::Sending Emulator::say(std::uint8_t code, ByteView data, double at) {
+  FixedBytes<kLongestLength + kFrameBytes> payload;
+  payload.push_back(code);
+  payload.append(data);
+  payload.push_back(health_);
+  FixedBytes<kLongestLength + kFrameBytes> frame;
+  append_frame(frame, static_cast<std::uint8_t>(kAnswerAddress + options_.address), payload.view());
+  return line().say(frame.view(), at);
+}
+
+// ---- modes and settings ------------------------------------------------------------------------
+
+void Emulator::enter(Mode mode, const Taking& stream) {
+  mode_ = mode;
+  stream_ = stream;
+  summed_ = 0;
+  note_sweep();
+}
+
+void Emulator::change_mode(ByteView data, double at) {
+  if (data.empty()) return refuse(at);
+  const ByteView parameters = data.subspan(1);
+  const auto done = [&](std::uint8_t result) {
+    answer(code_of(Answer::Mode), {result}, options_.times.mode, at);
+  };
+  const auto enter_then = [&](Mode mode, const Taking& stream) {
+    done(kDone);
+    later(at + options_.times.mode, [this, mode, stream](double) { enter(mode, stream); });
+  };
+
+  if (const auto baud = rate_of_mode(data[0])) {
+    if (!parameters.empty()) return refuse(at);
+    if (*baud == 500000 && !options_.rs422) return done(kFault);
+    done(kDone);
+    // The answer still comes at the old rate.
+    later(at + options_.times.mode, [this, rate = *baud](double due) {
+      later(std::max(due, line().free_at()), [this, rate](double) { line().set_baud(rate); });
+    });
+    return;
+  }
+  const auto means_at = [&](std::size_t i) -> unsigned { return parameters[i]; };
+  const auto range_at = [&](std::size_t i) {
+    return ValueRange{word_at(parameters, i), word_at(parameters, i + 2)};
+  };
+  const auto fits = [&](const Taking& taking) {
+    return taking.means >= 1 && taking.means <= 250 && (!taking.range || range_fits(*taking.range));
+  };
+  const auto stream = [&](const Taking& taking) {
+    if (!fits(taking)) return refuse(at);
+    enter_then(static_cast<Mode>(data[0]), taking);
+  };
+  switch (data[0]) {
+    case 0x00:
+    case kTestPassword:
+      if (text_of(parameters) != options_.password) return done(kWrongPassword);
+      if (data[0] == kTestPassword) return done(kDone);
+      return enter_then(Mode::Installation, {});
+    case 0x10:
+      return parameters.empty() ? enter_then(Mode::Diagnosis, {}) : refuse(at);
+    case 0x24:
+      return parameters.empty() ? stream({.code = code_of(Answer::Values)}) : refuse(at);
+    case 0x25:
+      return parameters.empty() ? enter_then(Mode::OnRequest, {}) : refuse(at);
+    case 0x26:
+      if (parameters.size() != 1 || means_at(0) < 2) return refuse(at);
+      return stream({.code = code_of(Answer::Means), .means = means_at(0)});
+    case 0x27:
+      if (parameters.size() != 4) return refuse(at);
+      return stream({.code = code_of(Answer::RangeValues), .range = range_at(0)});
+    case 0x28:
+      if (parameters.size() != 5 || means_at(0) < 2) return refuse(at);
+      return stream(
+          {.code = code_of(Answer::MeanRange), .means = means_at(0), .range = range_at(1)});
+    case 0x2A:
+      return parameters.empty() ? stream({.code = code_of(Answer::Values), .parts = true})
+                                : refuse(at);
+    default:
+      return refuse(at);  // minima, fields, reflectivity: nothing here asks for them
+  }
+}
+
+void Emulator::take_values(ByteView payload, double at) {
+  constexpr std::uint8_t kAll = 1;
+  if (mode_ == Mode::Installation || mode_ == Mode::Diagnosis) return refuse(at);
+  const ByteView data = payload.subspan(1);
+  Taking once{.code = static_cast<std::uint8_t>(payload[0] + kAnswerBit)};
+  std::size_t expected = 1;
+  switch (static_cast<Request>(payload[0])) {
+    case Request::Values:
+      if (data.size() == 1 && data[0] != kAll) return refuse(at);  // every second and the like
+      break;
+    case Request::Mean:
+      if (data.size() == 1) once.means = data[0];
+      break;
+    case Request::Range:
+      expected = 4;
+      if (data.size() == expected) once.range = ValueRange{word_at(data, 0), word_at(data, 2)};
+      break;
+    default:
+      expected = 5;
+      if (data.size() == expected) {
+        once.means = data[0];
+        once.range = ValueRange{word_at(data, 1), word_at(data, 3)};
+      }
+  }
+  const auto request = static_cast<Request>(payload[0]);
+  const bool averages = request == Request::Mean || request == Request::MeanRange;
+  const bool means_fit = !averages || (once.means >= 2 && once.means <= 250);
+  if (data.size() != expected || !means_fit || (once.range && !range_fits(*once.range))) {
+    return refuse(at);
+  }
+  later(at + options_.times.answer, [this, once](double) {
+    once_ = once;
+    summed_ = 0;
+  });
+}
+
+bool Emulator::range_fits(const ValueRange& range) const {
+  return range.first >= 1 && range.first <= range.last && range.last <= variant_.beams();
+}
+
+void Emulator::change_variant(ByteView data, double at) {
+  if (data.size() != 4) return refuse(at);
+  const Variant wanted{.angle_degrees = word_at(data, 0), .step_centidegrees = word_at(data, 2)};
+  const bool done = exists(wanted);
+  later(at + options_.times.variant, [this, wanted, done](double due) {
+    if (done) {
+      variant_ = wanted;
+      // A stream does not outlive its variant.
+      enter(mode_ == Mode::Installation ? mode_ : Mode::OnRequest, {});
+    }
+    FixedBytes<5> content;
+    content.push_back(done ? kAccepted : kRejected);
+    content.append_word(variant_.angle_degrees);
+    content.append_word(variant_.step_centidegrees);
+    say(code_of(Answer::Variant), content.view(), due);
+  });
+}
+
+void Emulator::change_start_up(ByteView data, double at) {
+  const bool done = data.size() == 1 && data[0] <= 2;
+  if (done) {
+    start_up_ = static_cast<StartUpRate>(data[0]);
+    if (start_up_ == StartUpRate::Baud9600) stored_rate_ = 9600;
+    if (start_up_ == StartUpRate::KeepPresent) stored_rate_ = baud();
+    ++memory_writes_;
+  }
+  answer(code_of(Answer::StartUpRate),
+         {done ? kAccepted : kRejected, static_cast<std::uint8_t>(start_up_)},
+         options_.times.answer,
+         at);
+}
+
+void Emulator::write_configuration(ByteView data, double at) {
+  constexpr std::size_t kShortest = 7;
+  if (mode_ != Mode::Installation) return refuse(at);
+  std::array<std::uint8_t, Configuration::kBytes> block{};
+  std::ranges::copy(configuration_.block(), block.begin());
+  bool done = data.size() >= kShortest && data.size() <= block.size();
+  if (done) {
+    std::ranges::copy(data, block.begin());
+    constexpr std::uint8_t kEnergy = 0x3F;
+    const std::uint8_t mode = block[kMeasuringMode];
+    done = block[kUnit] <= 1 && block[kAvailability] <= 7 && (layout_of(mode) || mode == kEnergy);
+  }
+  later(at + options_.times.write_configuration, [this, block, done](double due) {
+    if (done) {
+      configuration_ = Configuration(block);
+      ++memory_writes_;
+    }
+    std::vector<std::uint8_t> content{done ? kAccepted : kRejected};
+    const ByteView now = configuration_.block();
+    content.insert(content.end(), now.begin(), now.end());
+    say(code_of(Answer::ConfigurationWritten), content, due);
+  });
+}
+
+void Emulator::write_second(ByteView data, double at) {
+  if (mode_ != Mode::Installation) return refuse(at);
+  const bool done = data.size() == second_.size();
+  if (done) {
+    std::ranges::copy(data, second_.begin());
+    ++memory_writes_;
+  }
+  std::vector<std::uint8_t> content{done ? kAccepted : kRejected};
+  content.insert(content.end(), second_.begin(), second_.end());
+  answer(
+      code_of(Answer::SecondConfigurationWritten), content, options_.times.write_configuration, at);
+}
+
+std::vector<std::uint8_t> Emulator::status() const {
+  constexpr std::size_t kBytes = 152;
+  constexpr std::size_t kMotor = 148;  // [us] for 1/90 of a turn, as it should be
+  std::vector<std::uint8_t> data(kBytes);
+  // The manual counts from the code of the answer, which is byte 0.
+  const auto put = [&data](std::size_t at, std::size_t value) {
+    data[at - 1] = static_cast<std::uint8_t>(value & 0xFFU);
+  };
+  const auto put_word = [&put](std::size_t at, std::size_t value) {
+    put(at, value);
+    put(at + 1, value >> 8U);
+  };
+  const auto put_text = [&put](std::size_t at, std::string_view text) {
+    for (std::size_t i = 0; i < text.size(); ++i) put(at + i, static_cast<std::uint8_t>(text[i]));
+  };
+  const ByteView block = configuration_.block();
+  const std::size_t version = options_.type.rfind(';') + 1;
+  put_text(1, std::string_view(options_.type).substr(version, 7));
+  put(8, static_cast<std::size_t>(mode_));
+  put(9, (health_ & 7U) >= 3 ? 1 : 0);
+  constexpr std::size_t kClean = 100;  // a pollution word of a clean window
+  for (std::size_t i = 0; i < 8; ++i) put_word(19 + 2 * i, kClean);
+  put_word(67, kMotor);
+  put(102, block[kMeasuringMode]);
+  put_word(107, variant_.angle_degrees);
+  put_word(109, variant_.step_centidegrees);
+  put(111, block[10]);
+  put_word(112, block[11]);
+  put_word(116, rate_word(baud()));
+  put(118, block[9]);
+  put(119, static_cast<std::size_t>(start_up_));
+  put(120, options_.address);
+  put(122, block[kUnit]);
+  put(123, 1);
+  put_text(124, "X01.27 ");
+  return data;
+}
+
+std::vector<std::uint8_t> Emulator::errors() const {
+  constexpr std::uint8_t kWarning = 2;
+  constexpr std::uint8_t kGone = 0x80;
+  constexpr std::uint8_t kDazzledNumber = 5;
+  if (!was_dazzled_) return {};
+  return {static_cast<std::uint8_t>(dazzled_ ? kWarning : kWarning | kGone), kDazzledNumber};
+}
+
+void Emulator::restart(double now, double boot_time) {
+  if (line().cut(now) && leaving_) close_scan(SentScan::Fate::Cut);
+  jobs_.clear();
+  request_.clear();
+  once_ = {};
+  line().set_baud(stored_rate_);
+  variant_ = options_.variant;
+  enter(Mode::OnRequest, {});
+  boot_end_ = now + boot_time;
+  greeted_ = false;
+}
+
+void Emulator::dazzle(bool on) {
+  dazzled_ = on;
+  was_dazzled_ = was_dazzled_ || on;
+}
+
+// ---- measured values ---------------------------------------------------------------------------
+
+void Emulator::note_sweep() {
+  sweep_ = {.variant = variant_};
+  if (!stream_.parts) return;
+  const bool quarters = options_.interlaced && variant_.angle_degrees == 180;
+  const unsigned step = quarters ? 1 : variant_.step_centidegrees / 25U;
+  for (unsigned part = 0; part < 4; part += step) {
+    sweep_.parts.push_back(static_cast<std::uint8_t>(part));
+  }
+}
+
+std::uint16_t Emulator::word_of(const algo::LaserScan& scan, std::size_t beam) const {
+  constexpr std::uint16_t kEnergy = 100;  // a value in the middle, in no unit
+  const auto layout = layout_of(configuration_.measuring_mode());
+  if (!layout) return scan.status[beam] == algo::Beam::Ok ? kEnergy : 0;
+  const auto code = [&layout](algo::BeamCode digit) {
+    return static_cast<std::uint16_t>((layout->top & ~0xFU) | static_cast<unsigned>(digit));
+  };
+  if (dazzled_) {
+    return static_cast<std::uint16_t>(code(algo::BeamCode::Dazzled) | layout->dazzle);
+  }
+  if (scan.status[beam] == algo::Beam::Free) return code(algo::BeamCode::BeyondRange);
+  if (scan.status[beam] == algo::Beam::Invalid) {
+    const bool known = scan.codes[beam] > algo::BeamCode::Unknown;
+    return code(known ? scan.codes[beam] : algo::BeamCode::NoEcho);
+  }
+  const double per_metre = configuration_.in_millimetres() ? 1000 : 100;
+  const int value = rounded(scan.ranges[beam] * per_metre, 0xFFFF);
+  if (value < 0 || static_cast<unsigned>(value) + kCodes >= layout->top) {
+    return code(algo::BeamCode::BeyondRange);
+  }
+  const bool in_field = scan.ranges[beam] < options_.field_a;
+  return static_cast<std::uint16_t>(static_cast<unsigned>(value) |
+                                    (in_field ? layout->field_a : 0U));
+}
+
+void Emulator::convert(const algo::LaserScan& scan, std::optional<std::uint8_t> part) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const std::size_t values =
+      part ? variant_.angle_degrees + (*part == 0 ? 1U : 0U) : variant_.beams();
+  const double step = (part ? 100 : variant_.step_centidegrees) / 100.0 * kDegree;
+  const double first =
+      -variant_.angle_degrees / 2.0 * kDegree + (part ? *part * 0.25 * kDegree : 0.0);
+  const auto layout = layout_of(configuration_.measuring_mode());
+  words_.assign(values, layout ? layout->top : std::uint16_t{0});
+  for (std::size_t i = 0; i < values; ++i) {
+    const double bearing = first + static_cast<double>(i) * step;
+    const double beam = (bearing - scan.angle_min) / scan.angle_increment;
+    if (!(beam > -0.5) || beam > static_cast<double>(scan.size()) - 0.5) continue;
+    words_[i] = word_of(scan, static_cast<std::size_t>(std::lround(std::max(beam, 0.0))));
+  }
+}
+
+/// Adds words_ to the sums, flags and codes left out.
+void Emulator::average() {
+  if (summed_ == 0 || sums_.size() != words_.size()) {
+    sums_.assign(words_.size(), 0);
+    summands_.assign(words_.size(), 0);
+    summed_ = 0;
+  }
+  const auto layout = layout_of(configuration_.measuring_mode()).value_or(WordLayout{});
+  for (std::size_t i = 0; i < words_.size(); ++i) {
+    const unsigned value = words_[i] & layout.top;
+    if (value + kCodes >= layout.top) continue;
+    sums_[i] += value;
+    ++summands_[i];
+  }
+  ++summed_;
+}
+
+void Emulator::offer(const algo::LaserScan& scan, double now, std::optional<std::uint8_t> part) {
+  advance(now);
+  if (!started(now)) return;
+  ++sweeps_;
+  turn_index_ = static_cast<std::uint8_t>(turn_index_ + (part ? 1U : variant_.turns()));
+  const bool once = once_.code != 0;
+  const Taking taking = once ? once_ : stream_;
+  if (taking.code == 0 || taking.parts != part.has_value()) return;
+  convert(scan, part);
+  if (taking.means > 1) {
+    average();
+    if (summed_ < taking.means) return;
+    summed_ = 0;
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      if (summands_[i] > 0) {
+        words_[i] = static_cast<std::uint16_t>(std::lround(sums_[i] / summands_[i]));
+      }
+    }
+  }
+  send_values(taking, now, part);
+  if (once) once_ = {};
+}
+
+void Emulator::send_values(const Taking& taking, double now, std::optional<std::uint8_t> part) {
+  constexpr unsigned kPartial = 0x2000;
+  constexpr unsigned kMillimetres = 0x4000;
+  SentScan scan{.number = sweeps_, .part = part};
+  std::span<const std::uint16_t> words(words_);
+  if (taking.range) {
+    words = words.subspan(taking.range->first - 1U, taking.range->last - taking.range->first + 1U);
+  }
+  const auto layout = layout_of(configuration_.measuring_mode());
+  for (const std::uint16_t word : words) {
+    scan.beams.push_back(layout ? beam_of(word, *layout, configuration_.in_millimetres()) : word);
+  }
+  // The line carries one telegram at a time, and there is no room for a second.
+  if (line().free_at() > now || !jobs_.empty()) {
+    scan.fate = SentScan::Fate::Lost;
+    scan.end = now;
+    if (on_scan) on_scan(scan);
+    return;
+  }
+  FixedBytes<kLongestLength> data;
+  if (taking.means > 1) data.push_back(static_cast<std::uint8_t>(taking.means));
+  if (taking.range) {
+    data.append_word(taking.range->first);
+    data.append_word(taking.range->last);
+  }
+  auto count = static_cast<unsigned>(words.size());
+  if (part) count |= kPartial | (unsigned{*part} << 11U);
+  if (configuration_.in_millimetres()) count |= kMillimetres;
+  data.append_word(static_cast<std::uint16_t>(count));
+  for (const std::uint16_t word : words) data.append_word(word);
+  if (configuration_.sends_indices()) {
+    data.push_back(turn_index_);
+    data.push_back(telegram_index_);
+  }
+  ++telegram_index_;
+  const emulators::Sending sending = say(taking.code, data.view(), now);
+  scan.fate = sending.intact ? SentScan::Fate::Sent : SentScan::Fate::Damaged;
+  scan.end = sending.end;
+  leaving_ = std::move(scan);
+}
+
+void Emulator::close_scan(SentScan::Fate fate) {
+  SentScan scan = std::move(*leaving_);
+  leaving_.reset();
+  scan.fate = fate;
+  if (on_scan) on_scan(scan);
+}
+
+}  // namespace drivers::lms200

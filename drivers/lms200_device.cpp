@@ -1,0 +1,93 @@
+// drivers/lms200_device.cpp: a scanner's machine and its thread, and its report in words.
+#include "drivers/lms200_device.hpp"
+
+#include <array>
+#include <cstdio>
+#include <utility>
+
+namespace drivers::lms200 {
+namespace {
+
+constexpr double kStorm = 0.5;  // share of telegrams that come after damaged ones
+
+template <typename... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), pattern, args...);
+  return text.data();
+}
+
+}  // namespace
+
+Lms200Device::Lms200Device(std::string name, const std::string& port, const LaserSetup& setup)
+    : name_(std::move(name)), machine_(setup), line_(port, machine_) {}
+
+bool Lms200Device::take(algo::LaserScan& scan) {
+  bool taken = false;
+  line_.look([&] { taken = machine_.take(scan); });
+  return taken;
+}
+
+ScannerState Lms200Device::state() {
+  ScannerState out;
+  line_.look([&] {
+    out.running = machine_.stage() == Stage::Running;
+    out.last_scan = machine_.last_scan();
+    out.period = machine_.scan_period();
+    out.bad_line = machine_.damaged() > kStorm;
+    out.faulty = out.running && !machine_.health().usable();
+  });
+  return out;
+}
+
+LaserReport Lms200Device::details() {
+  LaserReport out;
+  line_.look([&] { out = machine_.report(); });
+  return out;
+}
+
+DeviceReport Lms200Device::report() {
+  DeviceReport out = describe(details(), steady_now());
+  out.name = name_;
+  out.port = line_.path();
+  return out;
+}
+
+DeviceReport describe(const LaserReport& report, double now) {
+  DeviceReport out;
+  const std::string health = health_text(report.health);
+  const bool running = report.stage == Stage::Running;
+  const bool storm = report.damaged > kStorm;
+  out.well = running && report.health.usable() && !storm;
+  out.sentence = report.trouble;
+  if (running) out.sentence = format("Well, %.1f scans a second.", 1.0 / report.scan_period);
+  if (running && !health.empty()) out.sentence = health;
+  if (running && storm) {
+    out.sentence = format(
+        "%.0f %% of its telegrams come after damaged ones: look at the cable, its "
+        "shield, and what else the port's computer does.",
+        100 * report.damaged);
+  }
+  out.remarks = report.remarks;
+  out.facts = {{"kind", "SICK LMS2xx"}};
+  if (!report.type.empty()) out.facts.emplace_back("type", report.type);
+  if (report.baud > 0) out.facts.emplace_back("rate", format("%u bit/s", report.baud));
+  if (report.address > 0) out.facts.emplace_back("address", std::to_string(report.address));
+  if (running) {
+    out.facts.emplace_back("field",
+                           format("%u degrees, %.2f degree steps",
+                                  report.variant.angle_degrees,
+                                  report.variant.step_centidegrees / 100.0));
+    out.facts.emplace_back("unit", report.in_millimetres ? "millimetres" : "centimetres");
+    out.facts.emplace_back("scan rate", format("%.2f Hz", 1.0 / report.scan_period));
+    if (report.last_scan > 0) {
+      out.facts.emplace_back("newest scan", format("%.2f s ago", now - report.last_scan));
+    }
+  }
+  out.facts.emplace_back("scans", std::to_string(report.scans));
+  out.facts.emplace_back("damaged telegrams",
+                         std::to_string(report.line.bad_checks + report.line.given_up));
+  return out;
+}
+
+}  // namespace drivers::lms200

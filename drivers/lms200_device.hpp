@@ -1,0 +1,32 @@
+// drivers/lms200_device.hpp: an LMS2xx behind a serial line: its machine, and the thread that
+// serves it.
+#pragma once
+
+#include <string>
+
+#include "drivers/line_thread.hpp"
+#include "drivers/lms200_machine.hpp"
+#include "drivers/scanner.hpp"
+
+namespace drivers::lms200 {
+
+class Lms200Device final : public Scanner {
+ public:
+  Lms200Device(std::string name, const std::string& port, const LaserSetup& setup);
+
+  bool take(algo::LaserScan& scan) override;
+  ScannerState state() override;
+  DeviceReport report() override;
+  /// The same with all its numbers.
+  LaserReport details();
+
+ private:
+  std::string name_;
+  LaserMachine machine_;
+  LineThread line_;  // last: ends first
+};
+
+/// For people.
+DeviceReport describe(const LaserReport& report, double now);
+
+}  // namespace drivers::lms200

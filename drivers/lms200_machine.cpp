@@ -1,0 +1,649 @@
+// drivers/lms200_machine.cpp: the dialogue with an LMS2xx, step by step.
+#include "drivers/lms200_machine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+namespace drivers::lms200 {
+namespace {
+
+constexpr std::array<unsigned, 4> kRates{9600, 19200, 38400, 500'000};
+constexpr unsigned kStartRate = 9600;
+constexpr unsigned kFallbackRate = 38400;
+
+constexpr double kAnswer = 0.06;              // [s] an ordinary one, without its transfer
+constexpr double kProbeWait = 0.2;            // [s] may have to let a cut scan run out first
+constexpr double kModeSwitch = 3.0;           // [s] at most
+constexpr double kConfigurationWrite = 15.0;  // [s] at most
+constexpr double kRateSettle = 0.3;           // [s] after a change of the rate
+constexpr double kByteSilence = 0.03;  // [s] no frame goes on after it: 14 ms and a USB chip's 16
+constexpr double kListen = 3.0;        // [s] for a greeting before all rates are tried again
+constexpr double kBootTime = 60.0;     // [s] at most from power to greeting
+constexpr double kSilent = 1.0;        // [s] without a telegram: the device is looked for again
+constexpr int kTries = 3;
+constexpr std::uint64_t kMostWrites = 2;  // of the configuration in one life of this program
+constexpr double kDamageWeight = 1.0 / 16;
+
+double answer_time(std::size_t bytes, unsigned baud) {
+  return kAnswer + transfer_time(bytes, baud > 0 ? baud : kStartRate);
+}
+
+std::optional<Rate> rate_of(unsigned baud) {
+  for (const Rate rate : {Rate::Baud9600, Rate::Baud19200, Rate::Baud38400, Rate::Baud500000}) {
+    if (baud_of(rate) == baud) return rate;
+  }
+  return std::nullopt;
+}
+
+/// Whether a port that was told `wanted` and says `is` can talk at that rate.
+bool close_enough(unsigned wanted, unsigned is) {
+  constexpr double kTolerance = 0.03;  // of what 8N1 takes
+  return std::abs(static_cast<double>(is) - wanted) <= kTolerance * wanted;
+}
+
+/// Scans that are lost between two sent, best case, by the manual.
+double lost_scans(unsigned baud) {
+  switch (baud) {
+    case 9600:
+      return 29;
+    case 19200:
+      return 15;
+    case 38400:
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+template <typename... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), pattern, args...);
+  return text.data();
+}
+
+std::string variant_text(const Variant& variant) {
+  return format(
+      "%u degrees in steps of %.2f", variant.angle_degrees, variant.step_centidegrees / 100.0);
+}
+
+}  // namespace
+
+LaserMachine::LaserMachine(LaserSetup setup) : setup_(std::move(setup)), wanted_(setup_.baud) {}
+
+// ---- the line --------------------------------------------------------------------------------
+
+void LaserMachine::opened(double now, unsigned baud) {
+  orders_.clear();
+  remarks_.clear();
+  fixed_rate_ = baud == 0;
+  port_baud_ = wanted_;
+  baud_ = 0;
+  last_byte_ = now;
+  if (!fixed_rate_ && !close_enough(wanted_, baud)) {
+    fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
+  }
+  searching_since_ = now;
+  search(now);
+}
+
+void LaserMachine::closed(double /*now*/, const std::string& why) {
+  orders_.clear();
+  reader_.clear();
+  if (step_ != Step::Left) step_ = Step::NoLine;
+  baud_ = 0;
+  trouble_ = why;
+  deadline_ = std::numeric_limits<double>::infinity();
+}
+
+void LaserMachine::rate_set(double now, unsigned baud) {
+  reader_.clear();
+  if (step_ != Step::Probe || fixed_rate_ || close_enough(port_baud_, baud)) return;
+  // No use in asking at a rate that this port cannot make.
+  if (port_baud_ == wanted_) {
+    fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
+  }
+  orders_.clear();
+  ++rate_index_;
+  probe(now);
+}
+
+/// Goes for a lower rate from now on, and says what that costs.
+void LaserMachine::fall_back(const std::string& why) {
+  if (wanted_ <= kFallbackRate) return;
+  wanted_ = kFallbackRate;
+  remark(why + format(" The line runs at %u bit/s instead, which brings 4 to 5 scans a second at "
+                      "half a degree instead of 37: drive slowly.",
+                      kFallbackRate));
+}
+
+void LaserMachine::remark(const std::string& sentence) {
+  if (std::find(remarks_.begin(), remarks_.end(), sentence) == remarks_.end()) {
+    remarks_.push_back(sentence);
+  }
+}
+
+void LaserMachine::receive(double now, ByteView bytes) {
+  last_byte_ = now;
+  reader_.feed(
+      bytes, [&](ByteView frame) { take_telegram(now, frame); }, [](std::uint8_t) {});
+}
+
+void LaserMachine::advance(double now) {
+  if (reader_.pending() > 0 && now - last_byte_ > kByteSilence) {
+    reader_.expire([&](ByteView frame) { take_telegram(now, frame); }, [](std::uint8_t) {});
+  }
+  if (now < deadline_) return;
+  switch (step_) {
+    case Step::NoLine:
+    case Step::Left:
+      deadline_ = std::numeric_limits<double>::infinity();
+      return;
+    case Step::Listen:
+      search(now);
+      return;
+    case Step::RateSettles:
+      reader_.clear();
+      begin(Step::RateConfirmed, now);
+      return;
+    case Step::Streaming:
+      trouble_ = format("The scanner has been silent for %.1f s; it is looked for again.",
+                        now - last_heard_);
+      searching_since_ = now;
+      search(now);
+      return;
+    default:
+      if (tries_left_ > 0) {
+        request(now);
+      } else {
+        unanswered(now);
+      }
+  }
+}
+
+double LaserMachine::wake_time() const {
+  return reader_.pending() > 0 ? std::min(deadline_, last_byte_ + 1.1 * kByteSilence) : deadline_;
+}
+
+// ---- finding it ------------------------------------------------------------------------------
+
+/// Tries the rate wanted first, at which an earlier program may have left the device streaming.
+void LaserMachine::search(double now) {
+  rates_[0] = wanted_;
+  std::size_t n = 1;
+  for (const unsigned rate : kRates) {
+    if (rate != wanted_ && n < rates_.size()) rates_[n++] = rate;
+  }
+  rate_index_ = 0;
+  baud_ = 0;
+  probe(now);
+}
+
+void LaserMachine::probe(double now) {
+  if (rate_index_ >= (fixed_rate_ ? 1 : rates_.size())) {
+    listen(now);
+    return;
+  }
+  const unsigned rate = rates_[rate_index_];
+  if (!fixed_rate_ && rate != port_baud_) orders_.set_baud(rate);
+  port_baud_ = rate;
+  reader_.clear();
+  begin(Step::Probe, now);
+}
+
+/// A device that starts says so, always at the same rate.
+void LaserMachine::listen(double now) {
+  step_ = Step::Listen;
+  deadline_ = now + kListen;
+  const double waited = now - searching_since_;
+  trouble_ = waited < kBootTime
+                 ? format("No answer at any rate; waiting for power-on, %.0f s so far.", waited)
+                 : format(
+                       "No answer at any rate for %.0f s. Is it powered, are RX and TX the right "
+                       "way round, does the plug's jumper fit the line (RS-232 or RS-422)?",
+                       waited);
+  if (fixed_rate_ || port_baud_ == kStartRate) return;
+  orders_.set_baud(kStartRate);
+  port_baud_ = kStartRate;
+  reader_.clear();
+}
+
+void LaserMachine::begin(Step step, double now) {
+  step_ = step;
+  tries_left_ = tries_for(step);
+  request(now);
+}
+
+void LaserMachine::request(double now) {
+  --tries_left_;
+  orders_.send_slowly(command_for(step_).view());
+  deadline_ = now + limit_for(step_);
+}
+
+Command LaserMachine::command_for(Step step) const {
+  switch (step) {
+    case Step::Probe:
+    case Step::Stopping:
+      return mode_command(Mode::OnRequest);
+    case Step::Type:
+    case Step::RateConfirmed:
+      return type_command();
+    case Step::Status:
+      return status_command();
+    case Step::Rate:
+      return rate_command(rate_of(wanted_).value_or(Rate::Baud9600));
+    case Step::Variant:
+      return variant_command(set_variant());
+    case Step::Installation:
+      return installation_command(setup_.password);
+    case Step::ReadConfiguration:
+      return read_configuration_command();
+    case Step::WriteConfiguration:
+      return write_configuration_command(written_block_);
+    case Step::Start:
+      return mode_command(interlaced() ? Mode::PartialScans : Mode::Continuous);
+    case Step::Restoring:
+      return rate_command(Rate::Baud9600);
+    default:
+      return {};
+  }
+}
+
+double LaserMachine::limit_for(Step step) const {
+  constexpr std::size_t kStatusBytes = 160;
+  constexpr std::size_t kShortBytes = 60;
+  switch (step) {
+    case Step::Probe:
+    case Step::Stopping:
+    case Step::Restoring:
+      return kProbeWait + transfer_time(kShortBytes, port_baud_);
+    case Step::Status:
+      return 2 * answer_time(kStatusBytes, port_baud_);
+    case Step::Rate:
+    case Step::Variant:
+    case Step::Installation:
+    case Step::Start:
+      return kModeSwitch;
+    case Step::WriteConfiguration:
+      return kConfigurationWrite;
+    default:
+      return 2 * answer_time(kShortBytes, port_baud_);
+  }
+}
+
+int LaserMachine::tries_for(Step step) const {
+  switch (step) {
+    case Step::WriteConfiguration:
+      return 1;  // asked again it would wear the memory again
+    case Step::Stopping:
+    case Step::Restoring:
+      return 2;
+    default:
+      return kTries;
+  }
+}
+
+// ---- what it says ----------------------------------------------------------------------------
+
+void LaserMachine::take_telegram(double now, ByteView frame) {
+  const Telegram telegram = telegram_of(frame);
+  last_heard_ = now;
+  address_ = static_cast<std::uint8_t>(telegram.address - kAnswerAddress);
+  const LineCounters& line = reader_.counters();
+  const std::uint64_t bad = line.bad_checks + line.given_up;
+  damaged_ += ((bad != bad_before_ ? 1.0 : 0.0) - damaged_) * kDamageWeight;
+  bad_before_ = bad;
+
+  switch (static_cast<Answer>(telegram.code())) {
+    case Answer::Values:
+      if (step_ == Step::Streaming) take_values(now, telegram, frame.size());
+      return;
+    case Answer::PowerOn:
+      // It has restarted, or starts just now: at its first rate, and as nobody has set it up.
+      if (step_ == Step::Stopping || step_ == Step::Restoring || step_ == Step::Left) return;
+      if (step_ == Step::Streaming) {
+        trouble_ = "The scanner has restarted; it is being set up again.";
+        searching_since_ = now;
+      }
+      begin(Step::Type, now);
+      return;
+    default:
+      if (answers(telegram)) answered(now, telegram);
+  }
+}
+
+/// Whether `telegram` is what the present step has asked for.
+bool LaserMachine::answers(const Telegram& telegram) const {
+  const auto code = static_cast<Answer>(telegram.code());
+  if (step_ == Step::NoLine || step_ == Step::Left || step_ == Step::Listen ||
+      step_ == Step::RateSettles || step_ == Step::Streaming) {
+    return false;
+  }
+  if (code == Answer::Refused) return true;
+  switch (step_) {
+    case Step::Type:
+    case Step::RateConfirmed:
+      return code == Answer::Type;
+    case Step::Status:
+      return code == Answer::Status;
+    case Step::Variant:
+      return code == Answer::Variant;
+    case Step::ReadConfiguration:
+      return code == Answer::Configuration;
+    case Step::WriteConfiguration:
+      return code == Answer::ConfigurationWritten;
+    default:
+      return code == Answer::Mode;
+  }
+}
+
+void LaserMachine::answered(double now, const Telegram& telegram) {
+  switch (step_) {
+    case Step::Probe:
+      begin(Step::Type, now);
+      return;
+    case Step::Type:
+      if (const auto text = type_text(telegram)) type_ = *text;
+      baud_ = port_baud_;
+      begin(Step::Status, now);
+      return;
+    case Step::Status:
+      if (const auto status = device_status(telegram)) {
+        software_ = status->software;
+        variant_ = status->variant;
+        measuring_mode_ = status->measuring_mode;
+        in_millimetres_ = status->in_millimetres;
+        motor_microseconds_ = status->motor_microseconds;
+        if (status->faulty) remark("The scanner reports a fault: read its error memory.");
+      }
+      health_ = Health(telegram.status());
+      identified(now);
+      return;
+    case Step::Rate:
+      rate_answered(now, telegram);
+      return;
+    case Step::RateConfirmed:
+      baud_ = port_baud_;
+      begin(Step::Variant, now);
+      if (variant_ == set_variant()) begin(Step::Installation, now);
+      return;
+    case Step::Variant:
+      variant_answered(now, telegram);
+      return;
+    case Step::Installation:
+      if (const std::string why = refusal_text(telegram); !why.empty()) {
+        remark("Its configuration cannot be read: " + why);
+        begin(Step::Start, now);
+      } else {
+        begin(Step::ReadConfiguration, now);
+      }
+      return;
+    case Step::ReadConfiguration:
+      configuration_read(now, telegram);
+      return;
+    case Step::WriteConfiguration:
+      configuration_written(now, telegram);
+      return;
+    case Step::Start:
+      if (const std::string why = refusal_text(telegram); !why.empty()) {
+        listen(now);
+        trouble_ = "The scanner does not start to send: " + why;
+      } else {
+        start_streaming(now);
+      }
+      return;
+    case Step::Stopping:
+      if (fixed_rate_ || baud_ == kStartRate) {
+        step_ = Step::Left;
+      } else {
+        begin(Step::Restoring, now);
+      }
+      return;
+    case Step::Restoring:
+      step_ = Step::Left;
+      return;
+    default:
+      return;
+  }
+}
+
+void LaserMachine::unanswered(double now) {
+  switch (step_) {
+    case Step::Probe:
+      ++rate_index_;
+      probe(now);
+      return;
+    case Step::Status:
+      identified(now);  // it helps, and is not needed
+      return;
+    case Step::RateConfirmed:
+      fall_back(format("The scanner does not answer at %u bit/s.", wanted_));
+      search(now);
+      return;
+    case Step::WriteConfiguration:
+      remark("The scanner did not confirm its new configuration.");
+      begin(Step::ReadConfiguration, now);
+      return;
+    case Step::Stopping:
+    case Step::Restoring:
+      step_ = Step::Left;
+      return;
+    default:
+      trouble_ = "The scanner stopped answering while it was being set up; it is looked for again.";
+      search(now);
+  }
+}
+
+// ---- setting it up ---------------------------------------------------------------------------
+
+void LaserMachine::identified(double now) {
+  if (setup_.as_it_is) {
+    begin(Step::Installation, now);
+  } else if (!fixed_rate_ && baud_ != wanted_) {
+    begin(Step::Rate, now);
+  } else if (variant_ != set_variant()) {
+    begin(Step::Variant, now);
+  } else {
+    begin(Step::Installation, now);
+  }
+}
+
+/// The answer comes at the old rate; then the device switches.
+void LaserMachine::rate_answered(double now, const Telegram& telegram) {
+  if (const std::string why = refusal_text(telegram); !why.empty()) {
+    remark(format("It stays at %u bit/s: ", baud_) + why);
+    begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
+    return;
+  }
+  orders_.set_baud(wanted_);
+  port_baud_ = wanted_;
+  step_ = Step::RateSettles;
+  deadline_ = now + kRateSettle;
+}
+
+void LaserMachine::variant_answered(double now, const Telegram& telegram) {
+  if (const auto answer = variant_answer(telegram)) variant_ = answer->now;
+  if (variant_ != set_variant()) {
+    remark("It does not take " + variant_text(set_variant()) + "; it has " +
+           variant_text(variant_.value_or(Variant{})) + ".");
+  }
+  begin(Step::Installation, now);
+}
+
+/// Nothing but what has to be different is.
+Configuration LaserMachine::wanted_configuration(const Configuration& now) const {
+  // Each range has three modes that differ in what the upper bits say; all are masked alike.
+  const auto mode = [&]() -> std::uint8_t {
+    const std::uint16_t top = setup_.range == 16 ? 0x3FFF : setup_.range == 32 ? 0x7FFF : 0x1FFF;
+    const auto format = word_format(now.measuring_mode());
+    if (format && format->mask == top) return now.measuring_mode();
+    return setup_.range == 16 ? 0x04 : setup_.range == 32 ? 0x06 : 0x00;
+  };
+  Configuration wanted = now;
+  wanted.set_measuring_mode(mode());
+  wanted.set_millimetres(setup_.range != 80);
+  return wanted;
+}
+
+void LaserMachine::adopt(const Configuration& configuration) {
+  configuration_ = configuration;
+  measuring_mode_ = configuration.measuring_mode();
+  in_millimetres_ = configuration.in_millimetres();
+}
+
+void LaserMachine::configuration_read(double now, const Telegram& telegram) {
+  const auto answer = configuration_answer(telegram);
+  if (!answer) {
+    remark("Its configuration cannot be read: " + refusal_text(telegram));
+    begin(Step::Start, now);
+    return;
+  }
+  adopt(answer->now);
+  written_block_ = wanted_configuration(answer->now);
+  if (written_block_ == configuration_ || setup_.as_it_is) {
+    begin(Step::Start, now);
+  } else if (written_ >= kMostWrites) {
+    remark("Its configuration is not as wanted and is not written again, to spare its memory.");
+    begin(Step::Start, now);
+  } else {
+    ++written_;
+    begin(Step::WriteConfiguration, now);
+  }
+}
+
+void LaserMachine::configuration_written(double now, const Telegram& telegram) {
+  const auto answer = configuration_answer(telegram);
+  if (answer) adopt(answer->now);
+  if (!answer || !answer->done || !(configuration_ == written_block_)) {
+    remark("It did not take its configuration; the one in force is used.");
+  }
+  begin(Step::Start, now);
+}
+
+void LaserMachine::start_streaming(double now) {
+  const std::optional<WordFormat> format = word_format(measuring_mode_);
+  if (!format) {
+    listen(now);
+    trouble_ = "The scanner's measuring mode sends no distances.";
+    return;
+  }
+  fresh_ = false;
+  decoder_ = ScanDecoder(variant_.value_or(set_variant()), *format);
+  parts_ = PartialScans(setup_.variant, *format);
+  const double turns = interlaced() ? setup_.variant.turns() : decoder_.variant().turns();
+  period_ = (1 + lost_scans(baud_)) * turns * kTurnPeriod;
+  last_arrival_ = 0;
+  damaged_ = 0;
+  last_heard_ = now;
+  trouble_.clear();
+  ++set_ups_;
+  step_ = Step::Streaming;
+  deadline_ = now + std::max(kSilent, 4 * period_);
+}
+
+// ---- scans -----------------------------------------------------------------------------------
+
+void LaserMachine::take_values(double now, const Telegram& telegram, std::size_t bytes) {
+  deadline_ = now + std::max(kSilent, 4 * period_);
+  const std::optional<MeasuredValues> values = measured_values(telegram);
+  if (!values) return;
+  const bool whole =
+      values->partial ? parts_.add(*values, filling_) : decoder_.decode(*values, filling_);
+  if (whole) deliver(now, bytes, values->health);
+}
+
+void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
+  health_ = health;
+  measure_period(now);
+  if (!health.usable()) {
+    ++unusable_;
+    return;
+  }
+  ++scans_;
+  // Its last byte came only now: the sweep was over when the first one went out.
+  filling_.stamp = now - transfer_time(bytes, baud_);
+  if (setup_.upside_down) {
+    std::reverse(filling_.ranges.begin(), filling_.ranges.end());
+    std::reverse(filling_.status.begin(), filling_.status.end());
+    std::reverse(filling_.codes.begin(), filling_.codes.end());
+  }
+  last_scan_ = now;
+  std::swap(filling_, ready_);
+  fresh_ = true;
+}
+
+void LaserMachine::measure_period(double now) {
+  constexpr double kWeight = 1.0 / 16;
+  constexpr double kLongest = 2.5;  // periods: then scans are missing, and it is none
+  const double gap = now - last_arrival_;
+  if (last_arrival_ > 0 && gap < kLongest * period_) period_ += (gap - period_) * kWeight;
+  last_arrival_ = now;
+}
+
+bool LaserMachine::take(algo::LaserScan& scan) {
+  if (!fresh_) return false;
+  fresh_ = false;
+  const algo::Pose2 mount = scan.mount_R;
+  std::swap(scan, ready_);
+  scan.mount_R = mount;
+  return true;
+}
+
+Stage LaserMachine::stage() const {
+  switch (step_) {
+    case Step::NoLine:
+    case Step::Left:
+      return Stage::NoLine;
+    case Step::Probe:
+    case Step::Listen:
+      return Stage::Searching;
+    case Step::Streaming:
+      return Stage::Running;
+    default:
+      return Stage::SettingUp;
+  }
+}
+
+LaserReport LaserMachine::report() const {
+  LaserReport out;
+  out.stage = stage();
+  out.trouble = trouble_;
+  if (trouble_.empty() && out.stage != Stage::Running) out.trouble = "The scanner is being set up.";
+  out.remarks = remarks_;
+  out.type = type_;
+  out.software = software_;
+  out.baud = baud_;
+  out.address = address_;
+  out.variant = interlaced() ? setup_.variant : variant_.value_or(Variant{});
+  out.measuring_mode = measuring_mode_;
+  out.in_millimetres = in_millimetres_;
+  out.motor_microseconds = motor_microseconds_;
+  out.health = health_;
+  out.line = reader_.counters();
+  out.scans = scans_;
+  out.unusable = unusable_;
+  out.set_ups = set_ups_;
+  out.written = written_;
+  out.damaged = damaged_;
+  out.scan_period = period_;
+  out.last_scan = last_scan_;
+  out.last_heard = last_heard_;
+  return out;
+}
+
+// ---- the way out -----------------------------------------------------------------------------
+
+/// A device whose rate is not known cannot be told anything.
+void LaserMachine::leave(double now) {
+  orders_.clear();
+  if (baud_ == 0) {
+    step_ = Step::Left;
+    return;
+  }
+  begin(Step::Stopping, now);
+}
+
+}  // namespace drivers::lms200

@@ -1,0 +1,298 @@
+// drivers/p2os_machine.cpp: the dialogue with a Pioneer base.
+#include "drivers/p2os_machine.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "algo/units.hpp"
+
+namespace drivers::p2os {
+namespace {
+
+using algo::units::kRadiansPerDegree;
+
+constexpr std::array<unsigned, 5> kRates{9600, 38400, 19200, 115200, 57600};
+constexpr int kTries = 3;
+constexpr double kEchoWait = 0.4;        // [s] for the echo of a greeting
+constexpr double kCloseWait = 0.4;       // [s] after an old session was closed
+constexpr double kSearchPause = 1.0;     // [s] before all rates are tried again
+constexpr double kSilent = 1.0;          // [s] without a state packet: it is looked for again
+constexpr double kCommandPause = 0.005;  // [s] between two packets
+constexpr double kRepeat = 0.9 * kCommandPeriod;  // [s] a tick early rather than one too late
+constexpr double kFastest = 0.04;        // [s] between two commands that differ
+constexpr int kMost = 0x7FFF;
+
+template <typename... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), pattern, args...);
+  return text.data();
+}
+
+int millimetres(double metres) {
+  return rounded(metres * 1000.0, kMost);
+}
+int degrees(double radians) {
+  return rounded(radians / kRadiansPerDegree, kMost);
+}
+
+}  // namespace
+
+PioneerMachine::PioneerMachine(const PioneerSetup& setup) : setup_(setup), odometer_(setup.units) {
+  rates_.push_back(setup.baud);
+  for (const unsigned rate : kRates) {
+    if (rate != setup.baud) rates_.push_back(rate);
+  }
+}
+
+void PioneerMachine::opened(double now, unsigned baud) {
+  orders_.clear();
+  reader_.clear();
+  fixed_rate_ = baud == 0;
+  port_baud_ = setup_.baud;
+  searching_since_ = now;
+  search(now);
+}
+
+void PioneerMachine::closed(double /*now*/, const std::string& why) {
+  orders_.clear();
+  reader_.clear();
+  if (step_ != Step::Left) step_ = Step::NoLine;
+  state_.running = false;
+  state_.motors_on = false;
+  trouble_ = why;
+  deadline_ = std::numeric_limits<double>::infinity();
+}
+
+void PioneerMachine::rate_set(double /*now*/, unsigned /*baud*/) {
+  reader_.clear();  // what came before was read at the wrong rate
+}
+
+void PioneerMachine::receive(double now, ByteView bytes) {
+  reader_.feed(
+      bytes, [&](ByteView packet) { take_packet(now, body_of(packet)); }, [](std::uint8_t) {});
+}
+
+void PioneerMachine::advance(double now) {
+  if (now < deadline_) return;
+  switch (step_) {
+    case Step::NoLine:
+    case Step::Left:
+      deadline_ = std::numeric_limits<double>::infinity();
+      return;
+    case Step::ClosingOld:
+      greet(now);
+      return;
+    case Step::Waiting:
+      search(now);
+      return;
+    case Step::Running:
+      state_.running = false;
+      state_.motors_on = false;
+      trouble_ = format("The base has been silent for %.1f s; it is looked for again.",
+                        now - state_.stamp);
+      searching_since_ = now;
+      search(now);
+      return;
+    case Step::Greeting:
+      if (tries_left_ > 0) {
+        request(now);
+        return;
+      }
+      ++rate_index_;
+      if (rate_index_ < (fixed_rate_ ? 1 : rates_.size())) {
+        greet(now);
+        return;
+      }
+      trouble_ = format(
+          "No base answers at any rate, for %.0f s now. Is it switched on, and the "
+          "cable at its HOST port?",
+          now - searching_since_);
+      step_ = Step::Waiting;
+      deadline_ = now + kSearchPause;
+      return;
+  }
+}
+
+// ---- finding it ------------------------------------------------------------------------------
+
+void PioneerMachine::search(double now) {
+  rate_index_ = 0;
+  greet(now);
+}
+
+void PioneerMachine::greet(double now) {
+  const unsigned rate = rates_[rate_index_];
+  if (!fixed_rate_ && rate != port_baud_) orders_.set_baud(rate);
+  port_baud_ = rate;
+  reader_.clear();
+  handshake_ = Handshake();
+  step_ = Step::Greeting;
+  tries_left_ = kTries;
+  request(now);
+}
+
+void PioneerMachine::request(double now) {
+  --tries_left_;
+  send(handshake_.request());
+  deadline_ = now + kEchoWait;
+}
+
+void PioneerMachine::take_packet(double now, ByteView body) {
+  if (step_ == Step::Running) {
+    if (is_state(body)) take_state(now, body);
+    return;
+  }
+  if (step_ != Step::Greeting) return;
+  switch (handshake_.receive(body)) {
+    case Handshake::Progress::Ignored:
+      return;
+    case Handshake::Progress::Advanced:
+      tries_left_ = kTries;
+      request(now);
+      return;
+    case Handshake::Progress::Done:
+      identity_ = handshake_.identity();
+      open(now);
+      return;
+    case Handshake::Progress::SessionOpen:
+      // Somebody before us did not close it.
+      send(command(Code::Close));
+      step_ = Step::ClosingOld;
+      deadline_ = now + kCloseWait;
+      return;
+  }
+}
+
+/// The motors stay off until somebody asks for them.
+void PioneerMachine::open(double now) {
+  send(command(Code::Open));
+  send(command(Code::Enable, 0));
+  send(command(Code::Acceleration, millimetres(setup_.limits.acceleration)));
+  send(command(Code::Acceleration, -millimetres(setup_.limits.acceleration)));
+  send(command(Code::TurnAcceleration, degrees(setup_.limits.turn_acceleration)));
+  send(command(Code::TurnAcceleration, -degrees(setup_.limits.turn_acceleration)));
+  send(command(Code::BumpStall, 3));  // the base stops itself as well
+  send(command(Code::Sonar, setup_.sonar ? 1 : 0));
+  step_ = Step::Running;
+  deadline_ = now + kSilent;
+  trouble_ = "The base is being set up.";
+  odometer_ = Odometer(setup_.units);
+  sent_ = {};
+  sent_at_ = 0;
+}
+
+// ---- what it says ----------------------------------------------------------------------------
+
+void PioneerMachine::take_state(double now, ByteView body) {
+  if (!decode_state(body, packet_, setup_.units)) return;
+  if (!state_.running) {
+    state_.running = true;
+    ++state_.set_ups;
+    trouble_.clear();
+  }
+  deadline_ = now + kSilent;
+  if (!odometer_.update(packet_)) ++jumps_;
+  state_.stamp = now;
+  state_.pose = odometer_.pose();
+  const double difference = packet_.right_speed - packet_.left_speed;
+  const double track = 2 * setup_.half_track;
+  state_.twist = {(packet_.left_speed + packet_.right_speed) / 2,
+                  track > 0 ? difference / track : 0};
+  state_.motors_on = packet_.motors_on();
+  state_.stop_button = packet_.stop_button();
+  state_.bumper_front = packet_.front_bumpers != 0;
+  state_.bumper_rear = packet_.rear_bumpers != 0;
+  state_.stalled = packet_.stalled();
+  state_.faulty = packet_.tail && packet_.tail->faults != 0;
+  state_.volts = packet_.volts;
+  for (std::size_t i = 0; i < packet_.sonar_count; ++i) {
+    const SonarReading& reading = packet_.sonars[i];
+    if (reading.index >= BaseState::kSonars) continue;
+    state_.sonars[reading.index] = {.range = reading.range, .stamp = now};
+    state_.sonar_count = std::max(state_.sonar_count, reading.index + std::size_t{1});
+  }
+}
+
+// ---- what it is told -------------------------------------------------------------------------
+
+void PioneerMachine::send(const Packet& packet) {
+  orders_.send(packet.view(), kCommandPause);
+}
+
+void PioneerMachine::send_twist(double now, const algo::Twist2& twist) {
+  const VelocityPackets packets = velocity(twist, {setup_.limits.speed, setup_.limits.turn});
+  send(packets.velocity);
+  send(packets.turn_rate);
+  sent_ = twist;
+  sent_at_ = now;
+}
+
+void PioneerMachine::enable(double now, bool on) {
+  if (step_ != Step::Running) return;
+  if (!on) halt(now);
+  send(command(Code::Enable, on ? 1 : 0));
+}
+
+/// A slow line cannot take two packets each tick: what changes goes out 25 times a second, what
+/// does not 10 times, a stop at once.
+void PioneerMachine::drive(double now, const algo::Twist2& twist) {
+  if (step_ != Step::Running) return;
+  const algo::Twist2 wanted = limited(twist, setup_.limits);
+  const bool stopping = wanted == algo::Twist2{} && sent_ != algo::Twist2{};
+  const double age = now - sent_at_;
+  const bool due = wanted == sent_ ? age >= kRepeat : age >= kFastest;
+  if (stopping || due) send_twist(now, wanted);
+}
+
+void PioneerMachine::halt(double now) {
+  if (step_ == Step::Running) send_twist(now, {});
+}
+
+void PioneerMachine::leave(double now) {
+  orders_.clear();
+  if (step_ == Step::Running) {
+    send_twist(now, {});
+    send(command(Code::Enable, 0));
+    send(command(Code::Close));
+  }
+  step_ = Step::Left;
+}
+
+DeviceReport PioneerMachine::report(double now) const {
+  DeviceReport out;
+  out.well = state_.running && trouble_.empty() && !state_.stop_button && !state_.faulty;
+  out.sentence = trouble_;
+  if (state_.running && state_.faulty) {
+    out.sentence = format("The base reports fault flags 0x%04x.", packet_.tail->faults);
+  }
+  if (state_.running && state_.stop_button) {
+    out.sentence = "Its stop button is pressed: release it, then arm.";
+  }
+  if (out.sentence.empty()) {
+    out.sentence = state_.motors_on ? "Well, motors on." : "Well, motors off.";
+  }
+  if (state_.stalled) out.remarks.emplace_back("A wheel is blocked.");
+  if (jumps_ > 0) {
+    out.remarks.push_back(format("Its position jumped %.0f times; the jumps were left out.",
+                                 static_cast<double>(jumps_)));
+  }
+  out.facts = {{"kind", "Pioneer (P2OS)"}, {"rate", format("%u bit/s", port_baud_)}};
+  if (!identity_.name.empty()) {
+    out.facts.emplace_back("type",
+                           identity_.type + "-" + identity_.subtype + ", " + identity_.name);
+  }
+  if (state_.running) {
+    out.facts.emplace_back("battery", format("%.1f V", state_.volts.value_or(0)));
+    out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
+  }
+  out.facts.emplace_back(
+      "damaged packets",
+      std::to_string(reader_.counters().bad_checks + reader_.counters().given_up));
+  return out;
+}
+
+}  // namespace drivers::p2os

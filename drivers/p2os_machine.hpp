@@ -1,0 +1,79 @@
+// drivers/p2os_machine.hpp: how a Pioneer base is found, opened, driven and closed again.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "drivers/base_machine.hpp"
+#include "drivers/p2os_protocol.hpp"
+
+namespace drivers::p2os {
+
+struct PioneerSetup {
+  unsigned baud = 9600;  // [bit/s] tried first; then the others
+  Units units{};
+  BaseLimits limits{};
+  double half_track = 0.165;  // [m]
+  double watchdog = 2.0;      // [s] what the base's own memory says; it cannot be set from here
+  bool sonar = true;
+};
+
+class PioneerMachine final : public BaseMachine {
+ public:
+  explicit PioneerMachine(const PioneerSetup& setup);
+
+  unsigned opening_baud() const override { return setup_.baud; }
+  void opened(double now, unsigned baud) override;
+  void closed(double now, const std::string& why) override;
+  void rate_set(double now, unsigned baud) override;
+  void receive(double now, ByteView bytes) override;
+  void advance(double now) override;
+  double wake_time() const override { return deadline_; }
+  std::optional<LineOrder> next_order() override { return orders_.next(); }
+  void leave(double now) override;
+  bool left() const override { return step_ == Step::Left; }
+
+  void enable(double now, bool on) override;
+  void drive(double now, const algo::Twist2& twist) override;
+  void halt(double now) override;
+  const BaseState& state() const override { return state_; }
+  double watchdog() const override { return setup_.watchdog; }
+  DeviceReport report(double now) const override;
+
+ private:
+  enum class Step : std::uint8_t { NoLine, Greeting, ClosingOld, Waiting, Running, Left };
+
+  void search(double now);
+  void greet(double now);
+  void request(double now);
+  void open(double now);
+  void take_packet(double now, ByteView body);
+  void take_state(double now, ByteView body);
+  void send(const Packet& packet);
+  void send_twist(double now, const algo::Twist2& twist);
+
+  PioneerSetup setup_;
+  LineOrders orders_{};
+  PacketReader reader_{};
+  Handshake handshake_{};
+  Step step_ = Step::NoLine;
+  std::vector<unsigned> rates_{};  // [bit/s] in the order they are tried
+  std::size_t rate_index_ = 0;
+  unsigned port_baud_ = 0;
+  bool fixed_rate_ = false;
+  int tries_left_ = 0;
+  double deadline_ = 0;         // [s]
+  double searching_since_ = 0;  // [s]
+  std::string trouble_{"The port has not been opened yet."};
+
+  Identity identity_{};
+  State packet_{};
+  Odometer odometer_{};
+  BaseState state_{};
+  algo::Twist2 sent_{};      // the command in force
+  double sent_at_ = 0;       // [s]
+  std::uint64_t jumps_ = 0;  // of the odometry, left out
+};
+
+}  // namespace drivers::p2os

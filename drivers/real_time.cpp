@@ -1,0 +1,67 @@
+// drivers/real_time.cpp: asks the system, and takes no for an answer.
+#include "drivers/real_time.hpp"
+
+#include <algorithm>
+#include <fstream>
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace drivers {
+
+bool request_real_time(int priority) {
+  sched_param wanted{};
+  wanted.sched_priority = priority;
+  return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &wanted) == 0;
+}
+
+bool lock_memory() {
+  // As it is used: else the unused part of every thread's stack would be taken from the others.
+  return ::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+}
+
+void name_this_thread(const char* name) {
+  ::pthread_setname_np(::pthread_self(), name);
+}
+
+RealTimeCheck check_real_time() {
+  RealTimeCheck check;
+  // Tried on this thread and taken back: limits alone do not say what capabilities allow.
+  int policy = 0;
+  sched_param before{};
+  ::pthread_getschedparam(::pthread_self(), &policy, &before);
+  check.priority = request_real_time(kControlPriority);
+  ::pthread_setschedparam(::pthread_self(), policy, &before);
+
+  rlimit memory{};
+  ::getrlimit(RLIMIT_MEMLOCK, &memory);
+  constexpr rlim_t kEnough = 512UL * 1024 * 1024;
+  check.memory = memory.rlim_cur >= kEnough || ::geteuid() == 0;
+
+  std::ifstream flag("/sys/kernel/realtime");
+  int value = 0;
+  check.preemptible_kernel = (flag >> value) && value == 1;
+  return check;
+}
+
+std::string priority_advice() {
+  return "No real-time priority is permitted: add \"@dialout - rtprio 50\" to "
+         "/etc/security/limits.d/tautline.conf and log in again.";
+}
+
+std::string memory_advice() {
+  return "Memory cannot be kept in place: add \"@dialout - memlock unlimited\" to "
+         "/etc/security/limits.d/tautline.conf and log in again.";
+}
+
+void LatenessHistogram::add(double late) {
+  const auto it = std::upper_bound(kLimits.begin(), kLimits.end(), late);
+  ++counts_[static_cast<std::size_t>(it - kLimits.begin())];
+  worst_ = std::max(worst_, late);
+  ++ticks_;
+}
+
+}  // namespace drivers

@@ -1,0 +1,56 @@
+// drivers/robot_file.hpp: a robot of real devices, as ten lines of TOML describe it
+// (docs/hardware.md has every key).
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "algo/robot.hpp"
+#include "drivers/base.hpp"
+#include "drivers/lms200_machine.hpp"
+#include "drivers/p2os_machine.hpp"
+#include "drivers/roboteq_machine.hpp"
+
+namespace drivers {
+
+/// what() is "FILE:LINE: what is wrong".
+struct RobotFileError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct LaserEntry {
+  std::string name{};  // "front laser"
+  std::string port{};
+  algo::Pose2 mount_R{};
+  lms200::LaserSetup setup{};
+};
+
+struct BaseEntry {
+  std::string port{};
+  std::variant<p2os::PioneerSetup, roboteq::RoboteqSetup> setup{};
+  double watchdog = 0;     // [s]
+  double battery_low = 0;  // [V] the robot does not drive below; 0: not watched
+  std::vector<algo::Pose2> sonar_mounts_R{};
+};
+
+struct RobotFile {
+  std::string path{};
+  algo::RobotSpec spec{};
+  BaseLimits limits{};
+  std::string controller = "modified";
+  std::string filter = "pseudomedian";
+  std::vector<LaserEntry> lasers{};
+  BaseEntry base{};
+  std::vector<std::string> warnings{};  // allowed, and to be known
+};
+
+/// Throws RobotFileError.
+RobotFile read_robot_file(const std::filesystem::path& path);
+/// The same from a text; `name` stands for the file in messages.
+RobotFile parse_robot(std::string_view text, const std::string& name);
+
+}  // namespace drivers

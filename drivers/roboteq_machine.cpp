@@ -1,0 +1,396 @@
+// drivers/roboteq_machine.cpp: the dialogue with a Roboteq controller.
+#include "drivers/roboteq_machine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <utility>
+
+#include "algo/diff_drive.hpp"
+
+namespace drivers::roboteq {
+namespace {
+
+constexpr double kAnswer = 0.3;  // [s]
+constexpr int kTries = 4;
+constexpr double kPause = 2.0;        // [s] before all begins again
+constexpr double kSilent = 1.0;       // [s] without an answer: it is looked for again
+constexpr int kQueryPeriod_ms = 10;   // between two of the repeated queries
+constexpr double kInputsAge = 0.5;    // [s] bumpers that were not read count as hit
+constexpr double kReleaseTime = 0.5;  // [s] the stop may still be reported after its release
+constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it starts
+constexpr std::uint16_t kStopFault = 16;
+
+template <typename... Args>
+std::string format(const char* pattern, Args... args) {
+  std::array<char, 240> text{};
+  std::snprintf(text.data(), text.size(), pattern, args...);
+  return text.data();
+}
+
+}  // namespace
+
+RoboteqMachine::RoboteqMachine(RoboteqSetup setup) : setup_(std::move(setup)) {
+  const auto whole = [](double value) { return static_cast<int>(std::lround(value)); };
+  wanted_ = {{"RWD", whole(setup_.watchdog * 1000), false},
+             {"MMOD", static_cast<int>(LoopMode::ClosedLoopSpeed), true},
+             {"MXRPM", whole(setup_.wheel.full_speed_rpm), true},
+             {"EPPR", whole(setup_.wheel.encoder_lines), true}};
+}
+
+void RoboteqMachine::opened(double now, unsigned /*baud*/) {
+  searching_since_ = now;
+  greet(now);
+}
+
+void RoboteqMachine::greet(double now) {
+  orders_.clear();
+  reader_.clear();
+  remarks_.clear();
+  values_ = {};
+  counts_.reset();
+  enabled_ = false;
+  state_.running = false;
+  state_.motors_on = false;
+  send(command(""));  // ends a line that an earlier program began
+  send(end_repetition());
+  begin(Step::Greeting, now);
+}
+
+void RoboteqMachine::closed(double /*now*/, const std::string& why) {
+  orders_.clear();
+  if (step_ != Step::Left) step_ = Step::NoLine;
+  state_.running = false;
+  state_.motors_on = false;
+  trouble_ = why;
+  deadline_ = std::numeric_limits<double>::infinity();
+}
+
+void RoboteqMachine::receive(double now, ByteView bytes) {
+  reader_.feed(bytes, [&](std::string_view line) { take_line(now, line); });
+}
+
+void RoboteqMachine::begin(Step step, double now) {
+  step_ = step;
+  tries_left_ = kTries;
+  request(now);
+}
+
+void RoboteqMachine::request(double now) {
+  --tries_left_;
+  deadline_ = now + kAnswer;
+  switch (step_) {
+    case Step::Greeting:
+      send(echo_off());
+      return;
+    case Step::Identity:
+      send(query("FID"));
+      return;
+    case Step::Reading:
+      send(read_parameter(wanted_[parameter_].name));
+      return;
+    case Step::Writing: {
+      const Wanted& wanted = wanted_[parameter_];
+      const std::string name = "^" + std::string(wanted.name);
+      confirmations_ = wanted.per_channel ? 2 : 1;
+      if (wanted.per_channel) {
+        send(command(name, 1, wanted.value));
+        send(command(name, 2, wanted.value));
+      } else {
+        send(command(name, wanted.value));
+      }
+      return;
+    }
+    default:
+      return;
+  }
+}
+
+void RoboteqMachine::advance(double now) {
+  if (now < deadline_) return;
+  switch (step_) {
+    case Step::NoLine:
+    case Step::Left:
+      deadline_ = std::numeric_limits<double>::infinity();
+      return;
+    case Step::Waiting:
+      greet(now);
+      return;
+    case Step::Running:
+      searching_since_ = now;
+      greet(now);
+      trouble_ = format("The motor controller has been silent for %.1f s; it is looked for again.",
+                        now - state_.stamp);
+      return;
+    default:
+      break;
+  }
+  if (tries_left_ > 0) {
+    request(now);
+  } else if (step_ == Step::Reading && !written_) {
+    written_ = true;  // a controller that does not tell its parameter may still take it
+    begin(Step::Writing, now);
+  } else if (step_ == Step::Greeting) {
+    refuse(format("No motor controller answers, for %.0f s now. Is it powered, and is its serial "
+                  "line at %u bit/s?",
+                  now - searching_since_,
+                  setup_.baud),
+           now);
+  } else {
+    refuse("The motor controller stopped answering while it was being set up.", now);
+  }
+}
+
+void RoboteqMachine::refuse(const std::string& why, double now) {
+  trouble_ = why;
+  step_ = Step::Waiting;
+  deadline_ = now + kPause;
+}
+
+// ---- setting it up ---------------------------------------------------------------------------
+
+void RoboteqMachine::take_line(double now, std::string_view line) {
+  const Reply reply = parse_reply(line);
+  using Kind = Reply::Kind;
+  switch (step_) {
+    case Step::Greeting:
+      if (reply.kind == Kind::Accepted) begin(Step::Identity, now);
+      return;
+    case Step::Identity:
+      if (reply.name != "FID") return;
+      firmware_ = reply.text;
+      parameter_ = 0;
+      written_ = false;
+      begin(Step::Reading, now);
+      return;
+    case Step::Reading:
+      if (reply.kind == Kind::Values && reply.name == wanted_[parameter_].name) {
+        parameter_read(now, reply);
+      }
+      return;
+    case Step::Writing:
+      if (reply.kind == Kind::Refused) {
+        refuse("The motor controller does not take its parameter ^" +
+                   std::string(wanted_[parameter_].name) + ".",
+               now);
+      } else if (reply.kind == Kind::Accepted && --confirmations_ <= 0) {
+        begin(Step::Reading, now);  // believed once it is read back
+      }
+      return;
+    case Step::Running:
+      if (reply.kind == Kind::Refused) ++refused_;
+      if (reply.kind == Kind::Values) take_values(now, reply);
+      return;
+    default:
+      return;
+  }
+}
+
+void RoboteqMachine::parameter_read(double now, const Reply& reply) {
+  const Wanted& wanted = wanted_[parameter_];
+  const std::size_t count = std::min(reply.count, reply.values.size());
+  if (wanted.per_channel && count < 2) {
+    refuse("This controller has one channel: no base can be driven with it.", now);
+    return;
+  }
+  const bool as_wanted =
+      count > 0 && std::all_of(reply.values.begin(),
+                               reply.values.begin() + static_cast<std::ptrdiff_t>(count),
+                               [&](int value) { return value == wanted.value; });
+  if (as_wanted) {
+    next_parameter(now);
+  } else if (!written_) {
+    written_ = true;
+    begin(Step::Writing, now);
+  } else {
+    refuse(format("The motor controller keeps ^%.*s at %d instead of %d.",
+                  static_cast<int>(wanted.name.size()),
+                  wanted.name.data(),
+                  reply.values[0],
+                  wanted.value),
+           now);
+  }
+}
+
+void RoboteqMachine::next_parameter(double now) {
+  if (written_) {
+    remarks_.push_back("Its parameter ^" + std::string(wanted_[parameter_].name) +
+                       " was set, until power-off.");
+  }
+  written_ = false;
+  ++parameter_;
+  if (parameter_ < wanted_.size()) {
+    begin(Step::Reading, now);
+  } else {
+    run(now);
+  }
+}
+
+/// The power stage stays off until somebody asks for it.
+void RoboteqMachine::run(double now) {
+  constexpr std::array<std::string_view, 7> kQueries{"C", "S", "FF", "FS", "V", "A", "DI"};
+  const std::size_t count = setup_.bumper_inputs.empty() ? kQueries.size() - 1 : kQueries.size();
+  send(emergency_stop());
+  send(set_counter(1, 0));
+  send(set_counter(2, 0));
+  send(repeat_queries(std::span(kQueries).first(count), kQueryPeriod_ms));
+  step_ = Step::Running;
+  deadline_ = now + kSilent;
+  inputs_at_ = now;
+  state_ = {.set_ups = state_.set_ups};
+  trouble_ = "The motor controller is being set up.";
+}
+
+// ---- what it says ----------------------------------------------------------------------------
+
+template <class T>
+std::array<T, 2> RoboteqMachine::by_side(const std::array<T, 2>& channels) const {
+  std::array<T, 2> sides = channels;
+  if (setup_.swapped) std::swap(sides[0], sides[1]);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (setup_.reversed[i]) sides[i] = -sides[i];
+  }
+  return sides;
+}
+
+void RoboteqMachine::take_values(double now, const Reply& reply) {
+  if (reply.name == "DI") {
+    bumper_ = false;
+    for (const int input : setup_.bumper_inputs) {
+      const auto i = static_cast<std::size_t>(input - 1);
+      bumper_ = bumper_ || i >= reply.count || reply.values[i] != 0;
+    }
+    inputs_at_ = now;
+    return;
+  }
+  if (!update(values_, reply)) {
+    if (values_.one_channel) {
+      refuse("This controller has one channel: no base can be driven with it.", now);
+    }
+    return;
+  }
+  if (reply.name == "C") take_counts(now);
+  judge(now);
+}
+
+void RoboteqMachine::take_counts(double now) {
+  deadline_ = now + kSilent;
+  const std::array<std::int32_t, 2>& counts = *values_.counts;
+  if (counts_) {
+    const auto difference = [&](std::size_t i) {
+      return algo::count_difference(static_cast<std::uint32_t>(counts[i]),
+                                    static_cast<std::uint32_t>((*counts_)[i]));
+    };
+    const auto [left, right] = by_side(std::array<std::int64_t, 2>{difference(0), difference(1)});
+    const double l = setup_.wheel.metres(left);
+    const double r = setup_.wheel.metres(right);
+    // The way of both wheels as if it had been driven in one second: the arc is the same.
+    state_.pose =
+        algo::integrate_arc(state_.pose, {(l + r) / 2, (r - l) / (2 * setup_.half_track)}, 1.0);
+  }
+  counts_ = counts;
+  const auto [left, right] = by_side(std::array<std::int64_t, 2>{counts[0], counts[1]});
+  state_.counts = std::array{static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(right)};
+  state_.stamp = now;
+}
+
+/// The whole state, from the newest of each answer.
+void RoboteqMachine::judge(double now) {
+  if (!state_.running && values_.counts && values_.faults && values_.rpm) {
+    state_.running = true;
+    ++state_.set_ups;
+    trouble_.clear();
+  }
+  if (values_.rpm) {
+    const auto [left, right] = by_side(*values_.rpm);
+    const double l = setup_.wheel.speed(left);
+    const double r = setup_.wheel.speed(right);
+    state_.twist = {(l + r) / 2, (r - l) / (2 * setup_.half_track)};
+  }
+  const std::uint16_t faults = values_.faults.value_or(0);
+  const bool stopped = (faults & kStopFault) != 0;
+  state_.motors_on = enabled_ && !stopped;
+  // With the motors off the stop is ours, and nothing can be told about the button.
+  state_.stop_button = enabled_ && stopped && now - enabled_at_ > kReleaseTime;
+  state_.faulty = must_stop(faults & static_cast<std::uint16_t>(~kStopFault));
+  state_.volts = values_.battery_volts;
+  state_.bumper_front = !setup_.bumper_inputs.empty() && (bumper_ || now - inputs_at_ > kInputsAge);
+  if (values_.motor_amperes && setup_.max_current > 0) {
+    const auto& amperes = *values_.motor_amperes;
+    const bool high = std::max(std::abs(amperes[0]), std::abs(amperes[1])) > setup_.max_current;
+    if (!high) current_since_ = 0;
+    if (high && current_since_ == 0) current_since_ = now;
+    state_.over_current = high && now - current_since_ > kCurrentTime;
+  }
+}
+
+// ---- what it is told -------------------------------------------------------------------------
+
+void RoboteqMachine::enable(double now, bool on) {
+  if (step_ != Step::Running) return;
+  if (!on) halt(now);
+  enabled_ = on;
+  enabled_at_ = now;
+  send(on ? release_stop() : emergency_stop());
+  judge(now);
+}
+
+void RoboteqMachine::drive(double /*now*/, const algo::Twist2& twist) {
+  if (step_ != Step::Running || !enabled_) return;
+  const algo::Twist2 wanted = limited(twist, setup_.limits);
+  const double turn = wanted.omega * setup_.half_track;
+  const double limit = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
+  const std::array<int, 2> sides{setup_.wheel.command_for(wanted.v - turn, limit),
+                                 setup_.wheel.command_for(wanted.v + turn, limit)};
+  std::array<int, 2> channels{setup_.reversed[0] ? -sides[0] : sides[0],
+                              setup_.reversed[1] ? -sides[1] : sides[1]};
+  if (setup_.swapped) std::swap(channels[0], channels[1]);
+  send(roboteq::drive(channels[0], channels[1]));
+}
+
+void RoboteqMachine::halt(double /*now*/) {
+  if (step_ == Step::Running) send(roboteq::drive(0, 0));
+}
+
+void RoboteqMachine::leave(double now) {
+  orders_.clear();
+  halt(now);
+  if (step_ == Step::Running) send(emergency_stop());
+  if (step_ != Step::NoLine) send(end_repetition());
+  step_ = Step::Left;
+}
+
+DeviceReport RoboteqMachine::report(double now) const {
+  DeviceReport out;
+  const std::uint16_t faults = values_.faults.value_or(0);
+  const auto others = static_cast<std::uint16_t>(faults & ~kStopFault);
+  out.well = state_.running && trouble_.empty() && others == 0 && !state_.stop_button &&
+             !state_.over_current;
+  out.sentence = trouble_;
+  if (state_.running && others != 0)
+    out.sentence = "The controller reports: " + fault_text(others) + ".";
+  if (state_.over_current) out.sentence = "A motor takes more current than the file allows.";
+  if (state_.stop_button) out.sentence = "Its stop input is active: release the button, then arm.";
+  if (out.sentence.empty()) {
+    out.sentence = state_.motors_on ? "Well, motors on." : "Well, motors off.";
+  }
+  out.remarks = remarks_;
+  if (refused_ > 0) {
+    out.remarks.push_back("It has refused " + std::to_string(refused_) + " commands.");
+  }
+  out.facts = {{"kind", "Roboteq"}, {"rate", format("%u bit/s", setup_.baud)}};
+  if (!firmware_.empty()) out.facts.emplace_back("firmware", firmware_);
+  if (state_.running) {
+    if (state_.volts) out.facts.emplace_back("battery", format("%.1f V", *state_.volts));
+    if (values_.motor_amperes) {
+      out.facts.emplace_back(
+          "motors",
+          format("%.1f A, %.1f A", (*values_.motor_amperes)[0], (*values_.motor_amperes)[1]));
+    }
+    out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
+  }
+  return out;
+}
+
+}  // namespace drivers::roboteq

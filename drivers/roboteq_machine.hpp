@@ -1,0 +1,107 @@
+// drivers/roboteq_machine.hpp: how a Roboteq controller is found, checked, driven and left.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "drivers/base_machine.hpp"
+#include "drivers/roboteq_protocol.hpp"
+
+namespace drivers::roboteq {
+
+struct RoboteqSetup {
+  unsigned baud = 115'200;
+  Wheel wheel{};
+  double half_track = 0.25;  // [m]
+  BaseLimits limits{};
+  double watchdog = 0.5;             // [s]
+  double max_current = 0;            // [A] of a motor; 0: not watched
+  std::array<bool, 2> reversed{};    // a motor that turns the other way: left, right
+  bool swapped = false;              // channel 1 is the right motor
+  std::vector<int> bumper_inputs{};  // digital inputs, counted from 1, that are 1 when hit
+};
+
+class RoboteqMachine final : public BaseMachine {
+ public:
+  explicit RoboteqMachine(RoboteqSetup setup);
+
+  unsigned opening_baud() const override { return setup_.baud; }
+  void opened(double now, unsigned baud) override;
+  void closed(double now, const std::string& why) override;
+  void rate_set(double /*now*/, unsigned /*baud*/) override {}
+  void receive(double now, ByteView bytes) override;
+  void advance(double now) override;
+  double wake_time() const override { return deadline_; }
+  std::optional<LineOrder> next_order() override { return orders_.next(); }
+  void leave(double now) override;
+  bool left() const override { return step_ == Step::Left; }
+
+  void enable(double now, bool on) override;
+  void drive(double now, const algo::Twist2& twist) override;
+  void halt(double now) override;
+  const BaseState& state() const override { return state_; }
+  double watchdog() const override { return setup_.watchdog; }
+  DeviceReport report(double now) const override;
+
+ private:
+  enum class Step : std::uint8_t {
+    NoLine,
+    Greeting,  // echo off
+    Identity,
+    Reading,  // a parameter
+    Writing,  // a parameter that was not as it should be
+    Running,
+    Waiting,  // before all begins again
+    Left,
+  };
+  /// A parameter that has to have a value, of the controller or of each channel.
+  struct Wanted {
+    std::string_view name{};
+    int value = 0;
+    bool per_channel = false;
+  };
+
+  void greet(double now);
+  void begin(Step step, double now);
+  void request(double now);
+  void take_line(double now, std::string_view line);
+  void parameter_read(double now, const Reply& reply);
+  void next_parameter(double now);
+  void refuse(const std::string& why, double now);
+  void run(double now);
+  void take_values(double now, const Reply& reply);
+  void take_counts(double now);
+  void judge(double now);
+  void send(const Line& line) { orders_.send(line.view()); }
+  /// Of a pair in the controller's order: the left and the right motor's, ahead positive.
+  template <class T>
+  std::array<T, 2> by_side(const std::array<T, 2>& channels) const;
+
+  RoboteqSetup setup_;
+  std::vector<Wanted> wanted_{};
+  LineOrders orders_{};
+  LineReader reader_{};
+  Step step_ = Step::NoLine;
+  int tries_left_ = 0;
+  double deadline_ = 0;         // [s]
+  double searching_since_ = 0;  // [s]
+  std::string trouble_{"The port has not been opened yet."};
+  std::string firmware_{};
+  std::vector<std::string> remarks_{};
+  std::size_t parameter_ = 0;  // of wanted_
+  bool written_ = false;       // this parameter, already
+  int confirmations_ = 0;      // still to come for what was written
+
+  State values_{};
+  std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest
+  bool enabled_ = false;
+  double enabled_at_ = 0;     // [s]
+  double current_since_ = 0;  // [s] that it has been too high; 0: it is not
+  double inputs_at_ = 0;      // [s] when the bumpers were read
+  bool bumper_ = false;
+  std::uint64_t refused_ = 0;
+  BaseState state_{};
+};
+
+}  // namespace drivers::roboteq

@@ -1,0 +1,46 @@
+// drivers/serial_base.cpp: hands everything to the machine, under the line's lock.
+#include "drivers/serial_base.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace drivers {
+
+algo::Twist2 limited(const algo::Twist2& twist, const BaseLimits& limits) {
+  const auto within = [](double value, double limit) {
+    return std::isnan(value) ? 0.0 : std::clamp(value, -limit, limit);
+  };
+  return {within(twist.v, limits.speed), within(twist.omega, limits.turn)};
+}
+
+SerialBase::SerialBase(std::string port, std::unique_ptr<BaseMachine> machine)
+    : machine_(std::move(machine)), line_(std::move(port), *machine_) {}
+
+void SerialBase::enable(bool on) {
+  line_.with([&] { machine_->enable(steady_now(), on); });
+}
+
+void SerialBase::drive(const algo::Twist2& twist) {
+  line_.with([&] { machine_->drive(steady_now(), twist); });
+}
+
+void SerialBase::stop() noexcept {
+  line_.with([&] { machine_->halt(steady_now()); });
+}
+
+BaseState SerialBase::state() {
+  BaseState out;
+  line_.look([&] { out = machine_->state(); });
+  return out;
+}
+
+DeviceReport SerialBase::report() {
+  DeviceReport out;
+  line_.look([&] { out = machine_->report(steady_now()); });
+  out.name = "base";
+  out.port = line_.path();
+  return out;
+}
+
+}  // namespace drivers

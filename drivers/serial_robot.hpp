@@ -1,0 +1,115 @@
+// drivers/serial_robot.hpp: scanners and a base as one algo::Robot, and what stops its wheels.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/robot.hpp"
+#include "drivers/base.hpp"
+#include "drivers/clock.hpp"
+#include "drivers/real_time.hpp"
+#include "drivers/robot_file.hpp"
+#include "drivers/scanner.hpp"
+
+namespace drivers {
+
+/// What people want to know of a robot of real devices.
+struct HardwareReport {
+  bool armed = false;
+  algo::Halt halt = algo::Halt::None;
+  std::string trouble{};  // why the wheels are held still, a sentence; empty when they may turn
+  std::vector<DeviceReport> devices{};
+  std::vector<std::string> warnings{};  // what the file or the system leaves to be wished for
+  bool real_time = false;               // the loop has its priority
+  bool memory_locked = false;
+  LatenessHistogram lateness{};
+  std::uint64_t missed_periods = 0;
+};
+
+/// Real devices behind the robot port. Wheels turn only while the robot is armed and nothing is
+/// wrong; whatever is wrong sends zero to the base at once, in the tick in which it is seen. What
+/// passes by itself within kRearm lets the robot go on; what lasts longer, and what somebody has to
+/// look at, disarms it: a robot that stood still for long must not drive off by itself.
+///
+/// reset(), step(), edit() and missed_periods() belong to the control thread, the rest to any.
+class SerialRobot final : public algo::Robot {
+ public:
+  static constexpr double kBaseTimeout = 0.3;     // [s] the age of the base's newest report
+  static constexpr double kScanPeriods = 3;       // without a scan
+  static constexpr double kArrivalJitter = 0.02;  // [s] a USB chip may keep bytes for 16 ms
+  static constexpr double kOverrun = 3;           // periods between sensing and the command
+  static constexpr double kRearm = 3.0;           // [s]
+
+  /// Scanners in the order of the file. They are already at work on their own.
+  SerialRobot(RobotFile file,
+              std::vector<std::unique_ptr<Scanner>> scanners,
+              std::unique_ptr<Base> base,
+              std::unique_ptr<Clock> clock);
+  ~SerialRobot() override;
+  SerialRobot(const SerialRobot&) = delete;
+  SerialRobot& operator=(const SerialRobot&) = delete;
+
+  const algo::RobotSpec& spec() const override { return file_.spec; }
+  /// Disarms: a new run must not set the robot in motion.
+  void reset(algo::Observation& observation) override;
+  bool step(const algo::Command& command, algo::Observation& observation) override;
+  void stop() noexcept override;
+  std::optional<std::string> edit(const algo::Request& request) override;
+  std::uint64_t missed_periods() const override { return missed_.load(std::memory_order_relaxed); }
+
+  /// Switches the motors on, or says why not.
+  std::optional<std::string> arm();
+  void disarm(const std::string& why = "");
+  HardwareReport report();
+  /// For the report: whether lock_memory() succeeded.
+  void note_memory_locked(bool locked);
+  const RobotFile& file() const { return file_; }
+
+ private:
+  void become_real_time();
+  algo::Halt base_halt(const BaseState& base, double now);
+  algo::Halt scanner_halt(double now);
+  algo::Halt judge(const BaseState& base, double now);
+  void latch(algo::Halt halt, double now);
+  algo::Twist2 permitted(const algo::Command& command,
+                         const BaseState& base,
+                         algo::Halt halt) const;
+  void wait_for_deadline(double now);
+  void observe(algo::Observation& observation);
+  void observe_base(const BaseState& base, algo::Observation& observation) const;
+  std::string words(algo::Halt halt, const std::vector<DeviceReport>& devices) const;
+
+  RobotFile file_;
+  std::vector<std::unique_ptr<Scanner>> scanners_;
+  std::unique_ptr<Base> base_;
+  std::unique_ptr<Clock> clock_;
+
+  double epoch_ = 0;              // [s] steady clock, of the run's time 0
+  algo::Pose2 origin_{};          // of W in the base's own dead reckoning
+  double deadline_ = 0;           // [s]
+  double sensed_at_ = 0;          // [s] of the newest observation
+  double late_until_ = 0;         // [s]
+  double battery_low_since_ = 0;  // [s]; 0: it is not
+  double stalled_since_ = 0;      // [s]; 0: it is not
+  std::atomic<std::uint64_t> missed_{0};
+
+  mutable std::mutex mutex_{};  // guards what follows
+  bool armed_ = false;
+  double armed_at_ = 0;             // [s]
+  std::uint32_t armed_set_up_ = 0;  // of the base, when it was armed
+  std::string disarmed_because_{};
+  algo::Halt halt_ = algo::Halt::Disarmed;
+  double halted_since_ = 0;  // [s]; 0: it is not
+  LatenessHistogram lateness_{};
+  bool real_time_ = false;
+  bool memory_locked_ = false;
+};
+
+/// Opens every device of `file`; those that are not there are waited for.
+std::shared_ptr<SerialRobot> open_robot(const RobotFile& file);
+
+}  // namespace drivers

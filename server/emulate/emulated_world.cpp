@@ -1,0 +1,136 @@
+// server/emulate/emulated_world.cpp: one physics step after another, devices served in between.
+#include "server/emulate/emulated_world.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "algo/diff_drive.hpp"
+#include "server/emulate/clock.hpp"
+
+namespace server::emulate {
+namespace {
+
+/// The scenario as the world beneath the devices: the same physics steps, no sensors but encoders
+/// and contacts, delays as long as they were.
+sim::Scenario bare(sim::Scenario scenario) {
+  const sim::Substeps substeps(scenario.period);
+  scenario.period = substeps.length;
+  scenario.drive.delay_ticks *= static_cast<std::uint32_t>(substeps.count);
+  scenario.lasers.clear();
+  scenario.sonar.reset();
+  return scenario;
+}
+
+double metres_per_count(const std::string& robot) {
+  const sim::VehicleParameters* const vehicle = sim::find_vehicle(robot);
+  if (vehicle == nullptr) return 0;  // the world says so in a sentence
+  return 2 * std::numbers::pi * vehicle->wheel_radius / vehicle->counts_per_turn;
+}
+
+}  // namespace
+
+EmulatedWorld::EmulatedWorld(const sim::Scenario& scenario,
+                             std::uint64_t seed,
+                             Links links,
+                             TruthRecord& record)
+    : scenario_(scenario),
+      links_(std::move(links)),
+      record_(record),
+      metres_per_count_(metres_per_count(scenario.robot)),
+      world_(bare(scenario), seed),
+      trail_(sim::Substeps(scenario.period).length, Mirror::memory() + scenario.period),
+      sonars_(scenario) {
+  for (std::uint32_t i = 0; i < links_.scanners.size(); ++i) {
+    mirrors_.emplace_back(scenario_, seed, i);
+  }
+}
+
+void EmulatedWorld::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+EmulatedWorld::Truth EmulatedWorld::truth() const {
+  const std::lock_guard held(mutex_);
+  return truth_;
+}
+
+void EmulatedWorld::run(const std::stop_token& stop) {
+  algo::Observation observation;
+  world_.reset(observation);
+  trail_.reset(world_.ground_truth()->pose, 0);
+  while (!stop.stop_requested()) {
+    if (!world_.step(command(), observation)) continue;
+    const algo::GroundTruth truth = *world_.ground_truth();
+    trail_.push(truth.pose);
+    feel(observation, truth.pose);
+    look(observation.stamp);
+    note(observation.stamp, truth);
+  }
+}
+
+/// What the base's motors do, as the vehicle takes it.
+algo::Command EmulatedWorld::command() {
+  if (!links_.base) return {};
+  const auto held = links_.base->thread->lock();
+  motion_ = links_.base->device->drive(machine_time());
+  const double track = 2 * world_.spec().half_track;
+  return {.base = {.v = (motion_.left + motion_.right) / 2,
+                   .omega = (motion_.right - motion_.left) / track}};
+}
+
+void EmulatedWorld::feel(const algo::Observation& observation, const algo::Pose2& pose_W) {
+  if (!links_.base) return;
+  const algo::Encoders& now = *observation.encoders;
+  const auto rolled = [this](std::uint32_t count, std::uint32_t before) {
+    return static_cast<double>(algo::count_difference(count, before)) * metres_per_count_;
+  };
+  const double left = rolled(now.left, encoders_.left);
+  const double right = rolled(now.right, encoders_.right);
+  encoders_ = now;
+  senses_.left_travel += left;
+  senses_.right_travel += right;
+  // A step is a few counts: speeds are smoothed over some of them.
+  constexpr double kWeight = 0.2;
+  const double period = world_.spec().period;
+  senses_.motion.left += kWeight * (left / period - senses_.motion.left);
+  senses_.motion.right += kWeight * (right / period - senses_.motion.right);
+  if (std::abs(senses_.motion.left) < 1e-6) senses_.motion.left = 0;
+  if (std::abs(senses_.motion.right) < 1e-6) senses_.motion.right = 0;
+  senses_.front_bumper = observation.bumper_pressed();
+  senses_.echoes.clear();
+  sonars_.sense(observation.stamp, pose_W, senses_.echoes);
+  const auto held = links_.base->thread->lock();
+  links_.base->device->feel(senses_, machine_time());
+}
+
+void EmulatedWorld::look(double now) {
+  for (std::size_t i = 0; i < mirrors_.size(); ++i) {
+    const auto& [device, thread] = links_.scanners[i];
+    const auto held = thread->lock();
+    mirrors_[i].sense(device->sweep(),
+                      now,
+                      trail_,
+                      [&](const algo::LaserScan& scan, std::optional<std::uint8_t> part) {
+                        device->offer(scan, machine_time(), part);
+                        thread->wake();
+                      });
+  }
+}
+
+void EmulatedWorld::note(double now, const algo::GroundTruth& truth) {
+  constexpr double kEvery = 0.1;  // [s]
+  {
+    const std::lock_guard held(mutex_);
+    truth_ = {.time = now,
+              .pose_W = truth.pose,
+              .clearance = truth.clearance,
+              .collided = truth_.collided || truth.collided,
+              .missed = world_.missed_periods()};
+  }
+  if (now < next_note_) return;
+  next_note_ += kEvery;
+  record_.pose(machine_time(), truth.pose, motion_);
+}
+
+}  // namespace server::emulate

@@ -1,0 +1,81 @@
+// server/emulate/emulated_world.hpp: a simulated world in real time, its robot's devices emulated.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+#include "drivers/emulators/base.hpp"
+#include "drivers/emulators/lms200_emulator.hpp"
+#include "server/emulate/device_thread.hpp"
+#include "server/emulate/mirror.hpp"
+#include "server/emulate/sonar_ring.hpp"
+#include "server/emulate/truth_record.hpp"
+#include "sim/world.hpp"
+
+namespace server::emulate {
+
+/// A device and the thread that serves its line.
+template <class Device>
+struct Served {
+  Device* device = nullptr;
+  DeviceThread* thread = nullptr;
+};
+
+/// What turns the wheels of the base and the mirrors of the scanners. Physics goes in the steps
+/// that a pure simulation of the scenario takes, so that both differ by the devices alone.
+class EmulatedWorld {
+ public:
+  struct Links {
+    std::vector<Served<drivers::lms200::Emulator>> scanners{};  // as many as the scenario's lasers
+    std::optional<Served<drivers::emulators::Base>> base{};     // without one the robot stands
+  };
+  struct Truth {
+    double time = 0;  // [s] of the run clock
+    algo::Pose2 pose_W{};
+    double clearance = 0;  // [m]
+    bool collided = false;
+    std::uint64_t missed = 0;  // physics steps that came too late
+  };
+
+  /// Throws std::exception with a sentence when the scenario cannot be run.
+  EmulatedWorld(const sim::Scenario& scenario,
+                std::uint64_t seed,
+                Links links,
+                TruthRecord& record);
+
+  void start();
+  Truth truth() const;
+  /// Of the scenario's vehicle.
+  const algo::RobotSpec& spec() const { return world_.spec(); }
+
+ private:
+  void run(const std::stop_token& stop);
+  algo::Command command();
+  void feel(const algo::Observation& observation, const algo::Pose2& pose_W);
+  void look(double now);
+  void note(double now, const algo::GroundTruth& truth);
+
+  sim::Scenario scenario_{};
+  Links links_{};
+  TruthRecord& record_;
+  double metres_per_count_ = 0;
+  sim::World world_;
+  sim::PoseTrail trail_;
+  std::vector<Mirror> mirrors_{};
+  SonarRing sonars_;
+
+  algo::Encoders encoders_{};
+  drivers::emulators::BaseSenses senses_{};
+  drivers::emulators::WheelMotion motion_{};
+  double next_note_ = 0;
+  mutable std::mutex mutex_{};
+  Truth truth_{};
+  std::jthread thread_{};
+};
+
+}  // namespace server::emulate

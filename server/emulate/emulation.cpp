@@ -1,0 +1,342 @@
+// server/emulate/emulation.cpp: putting devices, lines and world together; the faults.
+#include "server/emulate/emulation.hpp"
+
+#include <array>
+#include <charconv>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/emulate/clock.hpp"
+
+namespace server::emulate {
+
+namespace lms200 = drivers::lms200;
+namespace emulators = drivers::emulators;
+
+/// Members in the order of construction: the thread ends before its device.
+struct Emulation::Scanner {
+  Scanner(std::string name,
+          const lms200::EmulatorOptions& options,
+          const std::filesystem::path& link)
+      : device(options), thread(std::move(name), device, link) {}
+  lms200::Emulator device;
+  DeviceThread thread;
+  std::array<std::uint64_t, 5> fates{};  // of its scans, by SentScan::Fate; under the device's lock
+};
+
+struct Emulation::Base {
+  Base(std::unique_ptr<emulators::Base> made, const std::filesystem::path& link)
+      : device(std::move(made)), thread("base", *device, link) {}
+  std::unique_ptr<emulators::Base> device;
+  DeviceThread thread;
+  std::uint64_t commands = 0;  // that concern motion; under the device's lock
+};
+
+namespace {
+
+/// Everything a line of faults can say.
+enum class Verb : std::uint8_t {
+  Truth,
+  Drop,
+  Flip,
+  Damage,
+  Silence,
+  Restart,
+  Unplug,
+  Nak,
+  Dazzle,
+  Dirty,
+  Health,
+  Stop,
+  Bumper,
+  Battery,
+  Faults,
+};
+enum class Who : std::uint8_t { World, Any, Scanner, Base };
+
+struct VerbRow {
+  Verb verb = Verb::Truth;
+  std::string_view word{};
+  Who who = Who::Any;
+  std::string_view help{};
+};
+
+constexpr std::array<VerbRow, 15> kVerbs{{
+    {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
+    {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
+    {Verb::Flip, "flip", Who::Any, "P: turn over a bit of each byte with this probability"},
+    {Verb::Damage, "damage", Who::Any, "P: lose or flip one byte of each telegram, likewise"},
+    {Verb::Silence, "silence", Who::Any, "SECONDS: say nothing"},
+    {Verb::Restart, "restart", Who::Any, "SECONDS: start anew, which takes so long"},
+    {Verb::Unplug, "unplug", Who::Any, "SECONDS: take the port away, then bring it back"},
+    {Verb::Nak, "nak", Who::Scanner, "N: take the next N telegrams for damaged"},
+    {Verb::Dazzle, "dazzle", Who::Scanner, "on|off: blind all beams"},
+    {Verb::Dirty, "dirty", Who::Scanner, "on|off: report a dirty window"},
+    {Verb::Health, "health", Who::Scanner, "BYTE: the last byte of all answers"},
+    {Verb::Stop, "stop", Who::Base, "on|off: press or release the stop button"},
+    {Verb::Bumper, "bumper", Who::Base, "on|off: press or release a bumper"},
+    {Verb::Battery, "battery", Who::Base, "VOLTS"},
+    {Verb::Faults, "faults", Who::Base, "BITS: fault flags the controller reports"},
+}};
+
+const VerbRow& verb_of(const std::string& word) {
+  for (const VerbRow& row : kVerbs) {
+    if (row.word == word) return row;
+  }
+  throw std::invalid_argument("There is no command '" + word + "'. There are:\n" + command_help());
+}
+
+double value_of(const std::string& text, const VerbRow& row) {
+  if (text == "on") return 1;
+  if (text == "off") return 0;
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  if (text.empty() || std::from_chars(text.data(), end, value).ptr != end || !(value >= 0)) {
+    throw std::invalid_argument(fmt::format("{} needs {}", row.word, row.help));
+  }
+  return value;
+}
+
+/// What may befall any device; false when `verb` is none of it.
+bool befall(Verb verb, double value, DeviceThread& thread, emulators::Device& device) {
+  if (verb == Verb::Unplug) {
+    thread.unplug(value);
+    return true;
+  }
+  const auto held = thread.lock();
+  emulators::LineFaults faults = device.faults();
+  switch (verb) {
+    case Verb::Drop:
+      faults.drop = value;
+      break;
+    case Verb::Flip:
+      faults.flip = value;
+      break;
+    case Verb::Damage:
+      faults.damage = value;
+      break;
+    case Verb::Silence:
+      device.mute(machine_time() + value);
+      return true;
+    default:
+      return false;
+  }
+  device.set_faults(faults);
+  return true;
+}
+
+void befall_scanner(Verb verb, double value, DeviceThread& thread, lms200::Emulator& device) {
+  constexpr std::uint8_t kGood = 0x10;
+  constexpr std::uint8_t kPolluted = 0x92;
+  if (befall(verb, value, thread, device)) return;
+  const auto held = thread.lock();
+  switch (verb) {
+    case Verb::Restart:
+      device.restart(machine_time(), value);
+      break;
+    case Verb::Nak:
+      device.refuse_next(static_cast<unsigned>(value));
+      break;
+    case Verb::Dazzle:
+      device.dazzle(value != 0);
+      break;
+    case Verb::Dirty:
+      device.set_health(value != 0 ? kPolluted : kGood);
+      break;
+    default:
+      device.set_health(static_cast<std::uint8_t>(value));
+  }
+}
+
+void befall_base(Verb verb, double value, DeviceThread& thread, emulators::Base& device) {
+  if (befall(verb, value, thread, device)) return;
+  const auto held = thread.lock();
+  switch (verb) {
+    case Verb::Restart:
+      device.restart(machine_time(), value);
+      break;
+    case Verb::Stop:
+      device.press_stop_button(value != 0);
+      break;
+    case Verb::Bumper:
+      device.press_bumper(value != 0);
+      break;
+    case Verb::Battery:
+      device.set_battery(value);
+      break;
+    default:
+      device.set_faults_reported(static_cast<std::uint16_t>(value));
+  }
+}
+
+/// Who `row` is for, when the line does not say.
+std::string only(const VerbRow& row, std::size_t scanners, bool base) {
+  const bool scanner_verb = row.who != Who::Base;
+  const bool base_verb = row.who != Who::Scanner;
+  if (scanner_verb && scanners == 1 && !(base_verb && base)) return "scanner";
+  if (base_verb && base && !(scanner_verb && scanners > 0)) return "base";
+  throw std::invalid_argument(
+      fmt::format("{}: of which device? Write such as 'scanner {}'.", row.word, row.word));
+}
+
+std::unique_ptr<emulators::Base> make_base(const EmulationOptions& options) {
+  const sim::VehicleParameters* const vehicle = sim::find_vehicle(options.scenario.robot);
+  if (vehicle == nullptr) {
+    throw std::invalid_argument("There is no robot named \"" + options.scenario.robot + "\".");
+  }
+  if (options.base == BaseKind::P2os) {
+    drivers::p2os::EmulatorOptions made;
+    made.half_track = vehicle->half_track;
+    made.seed = options.seed + 100;
+    if (options.watchdog > 0) made.watchdog = options.watchdog;
+    if (options.near_wrap) made.first_x_mm = made.first_y_mm = 0x7FFF - 100;
+    return std::make_unique<drivers::p2os::Emulator>(made);
+  }
+  drivers::roboteq::EmulatorOptions made;
+  made.wheel_radius = vehicle->wheel_radius;
+  made.seed = options.seed + 100;
+  if (options.watchdog > 0) made.watchdog_ms = static_cast<int>(1000 * options.watchdog);
+  if (options.near_wrap) made.first_count = std::numeric_limits<std::int32_t>::max() - 5000;
+  return std::make_unique<drivers::roboteq::Emulator>(made);
+}
+
+}  // namespace
+
+std::string command_help() {
+  std::string text;
+  for (const VerbRow& row : kVerbs) text += fmt::format("  {:8} {}\n", row.word, row.help);
+  return text;
+}
+
+Emulation::Emulation(const EmulationOptions& options) : record_(options.record) {
+  if (options.scanner_links.size() > options.scenario.lasers.size()) {
+    throw std::invalid_argument(
+        "The scenario has " + std::to_string(options.scenario.lasers.size()) + " laser scanners.");
+  }
+  for (std::size_t i = 0; i < options.scanner_links.size(); ++i) add_scanner(options, i);
+  if (options.base != BaseKind::None) add_base(options);
+  if (!options.log.empty()) {
+    if (scanners_.size() != 1 || base_) {
+      throw std::invalid_argument("A log can be shown to one scanner alone.");
+    }
+    player_ = std::make_unique<LogPlayer>(
+        options.log, Served<lms200::Emulator>{&scanners_[0]->device, &scanners_[0]->thread});
+    return;
+  }
+  EmulatedWorld::Links links;
+  for (const auto& scanner : scanners_)
+    links.scanners.push_back({&scanner->device, &scanner->thread});
+  if (base_) links.base = Served<emulators::Base>{base_->device.get(), &base_->thread};
+  world_ = std::make_unique<EmulatedWorld>(options.scenario, options.seed, links, record_);
+}
+
+Emulation::~Emulation() = default;
+
+void Emulation::add_scanner(const EmulationOptions& options, std::size_t index) {
+  lms200::EmulatorOptions made = options.scanner;
+  made.seed = options.seed + index;
+  const std::string name = index == 0 ? "scanner" : "scanner" + std::to_string(index + 1);
+  scanners_.push_back(std::make_unique<Scanner>(name, made, options.scanner_links[index]));
+  Scanner& scanner = *scanners_.back();
+  scanner.device.set_faults(options.faults);
+  scanner.device.on_scan = [this, &scanner](const lms200::SentScan& scan) {
+    ++scanner.fates[static_cast<std::size_t>(scan.fate)];
+    record_.scan(scanner.thread.name(), scan, scanner.thread.listened_to());
+  };
+}
+
+void Emulation::add_base(const EmulationOptions& options) {
+  base_ = std::make_unique<Base>(make_base(options), options.base_link);
+  base_->device->set_faults(options.faults);
+  base_->device->on_command = [this](const emulators::BaseCommand& command) {
+    ++base_->commands;
+    record_.wheels({.time = machine_time(), .wanted = command.wanted});
+  };
+}
+
+void Emulation::start() {
+  for (const auto& scanner : scanners_) scanner->thread.start();
+  if (base_) base_->thread.start();
+  if (world_) world_->start();
+  if (player_) player_->start();
+}
+
+std::string Emulation::command(std::string_view line) {
+  std::istringstream words{std::string(line)};
+  std::string device;
+  std::string word;
+  std::string value;
+  words >> word;
+  if (word.empty() || word[0] == '#') return "";
+  if (word == "base" || word.starts_with("scanner")) {
+    device = word;
+    words >> word;
+  }
+  words >> value;
+  const VerbRow& row = verb_of(word);
+  if (row.verb == Verb::Truth) return truth();
+  if (device.empty()) device = only(row, scanners_.size(), base_ != nullptr);
+  const double number = value_of(value, row);
+  record_.event(machine_time(), line);
+  if (device == "base") {
+    if (!base_ || row.who == Who::Scanner) {
+      throw std::invalid_argument(fmt::format("'{}' is nothing for a base here.", row.word));
+    }
+    befall_base(row.verb, number, base_->thread, *base_->device);
+    base_->thread.wake();
+    return "";
+  }
+  for (const auto& scanner : scanners_) {
+    if (scanner->thread.name() != device) continue;
+    if (row.who == Who::Base) {
+      throw std::invalid_argument(fmt::format("'{}' is nothing for a scanner.", row.word));
+    }
+    befall_scanner(row.verb, number, scanner->thread, scanner->device);
+    scanner->thread.wake();
+    return "";
+  }
+  throw std::invalid_argument("There is no device '" + device + "' here.");
+}
+
+std::string Emulation::truth() {
+  nlohmann::ordered_json out;
+  out["time"] = machine_time();
+  if (world_) {
+    const EmulatedWorld::Truth truth = world_->truth();
+    out["world_time"] = truth.time;
+    out["pose"] = {truth.pose_W.x, truth.pose_W.y, truth.pose_W.heading};
+    out["clearance"] = truth.clearance;
+    out["collided"] = truth.collided;
+    out["missed_steps"] = truth.missed;
+  }
+  for (const auto& scanner : scanners_) {
+    const auto held = scanner->thread.lock();
+    const lms200::Emulator& device = scanner->device;
+    out[scanner->thread.name()] = {{"listened_to", scanner->thread.listened_to()},
+                                   {"baud", device.baud()},
+                                   {"mode", static_cast<int>(device.mode())},
+                                   {"sent", scanner->fates[0]},
+                                   {"damaged", scanner->fates[1]},
+                                   {"cut", scanner->fates[2]},
+                                   {"lost", scanner->fates[3]},
+                                   {"muted", scanner->fates[4]},
+                                   {"memory_writes", device.memory_writes()},
+                                   {"bad_telegrams", device.bad_telegrams()},
+                                   {"overrun", scanner->thread.overrun()}};
+  }
+  if (base_) {
+    const auto held = base_->thread.lock();
+    out["base"] = {{"listened_to", base_->thread.listened_to()},
+                   {"baud", base_->device->baud()},
+                   {"commands", base_->commands},
+                   {"overrun", base_->thread.overrun()}};
+  }
+  return out.dump();
+}
+
+}  // namespace server::emulate

@@ -1,0 +1,71 @@
+// server/emulate/emulation.hpp: emulated devices on their links, in one world, with faults on
+// request.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/emulators/base.hpp"
+#include "drivers/emulators/lms200_emulator.hpp"
+#include "drivers/emulators/p2os_emulator.hpp"
+#include "drivers/emulators/roboteq_emulator.hpp"
+#include "server/emulate/device_thread.hpp"
+#include "server/emulate/emulated_world.hpp"
+#include "server/emulate/log_player.hpp"
+#include "server/emulate/truth_record.hpp"
+#include "sim/scenario.hpp"
+
+namespace server::emulate {
+
+enum class BaseKind : std::uint8_t { None, P2os, Roboteq };
+
+struct EmulationOptions {
+  sim::Scenario scenario{};
+  std::filesystem::path log{};  // for one scanner in place of the scenario
+  std::uint64_t seed = 1;
+  drivers::lms200::EmulatorOptions scanner{};
+  bool near_wrap = false;  // the base's counters stand shortly before they run over
+  double watchdog = 0;     // [s] of the base; 0: as it comes
+  drivers::emulators::LineFaults faults{};  // of all lines
+  std::filesystem::path record{};
+  std::vector<std::filesystem::path> scanner_links{};  // one for each scanner
+  BaseKind base = BaseKind::None;
+  std::filesystem::path base_link{};
+};
+
+/// The words command() takes, one line each, for --help.
+std::string command_help();
+
+class Emulation {
+ public:
+  /// Makes the links. Throws std::exception with a sentence.
+  explicit Emulation(const EmulationOptions& options);
+  ~Emulation();
+
+  void start();
+  /// Carries out one line such as "scanner silence 2" and returns the answer, or nothing when there
+  /// is nothing to say. Throws std::invalid_argument with a sentence when it is none.
+  std::string command(std::string_view line);
+  /// One line of JSON: the robot's pose and what has gone over the lines.
+  std::string truth();
+
+ private:
+  struct Scanner;
+  struct Base;
+
+  void add_scanner(const EmulationOptions& options, std::size_t index);
+  void add_base(const EmulationOptions& options);
+
+  TruthRecord record_;
+  std::vector<std::unique_ptr<Scanner>> scanners_{};
+  std::unique_ptr<Base> base_{};
+  std::unique_ptr<EmulatedWorld> world_{};
+  std::unique_ptr<LogPlayer> player_{};
+};
+
+}  // namespace server::emulate

@@ -1,0 +1,39 @@
+// server/emulate/log_player.cpp: scans of a log, offered to an emulated scanner.
+#include "server/emulate/log_player.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "server/emulate/clock.hpp"
+
+namespace server::emulate {
+
+LogPlayer::LogPlayer(const std::filesystem::path& log, Served<drivers::lms200::Emulator> scanner)
+    : replay_(log), scanner_(scanner) {}
+
+void LogPlayer::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void LogPlayer::run(const std::stop_token& stop) {
+  // A log may hold a pause of minutes, which must not keep the program from ending.
+  const std::stop_callback wake(stop, [this] { replay_.set_pace({.paused = false, .speed = 0}); });
+  algo::Observation observation;
+  replay_.reset(observation);
+  while (!stop.stop_requested()) {
+    for (const algo::LaserScan& scan : observation.scans) {
+      if (std::abs(scan.mount_R.heading) > std::numbers::pi / 2) continue;  // another scanner's
+      const auto held = scanner_.thread->lock();
+      // Partial scans are made of turns of the mirror, of which a log says nothing.
+      if (scanner_.device->sweep().parts.empty()) scanner_.device->offer(scan, machine_time());
+      scanner_.thread->wake();
+    }
+    try {
+      replay_.step({}, observation);
+    } catch (const algo::EndOfLog&) {
+      replay_.reset(observation);
+    }
+  }
+}
+
+}  // namespace server::emulate

@@ -1,0 +1,78 @@
+// server/emulate/mirror.cpp: laser models for each variant and each part of an interlaced scan.
+#include "server/emulate/mirror.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algo/units.hpp"
+
+namespace server::emulate {
+namespace {
+
+constexpr double kDegree = algo::units::kRadiansPerDegree;
+/// [m] The device itself says what is too far for its measuring mode; beams on the wire end here.
+constexpr double kFarthest = 65.5;
+
+}  // namespace
+
+Mirror::Mirror(const sim::Scenario& scenario, std::uint64_t seed, std::uint32_t index)
+    : scenario_(scenario), seed_(seed), index_(index) {}
+
+double Mirror::memory() {
+  constexpr double kSweep = 4.0 / 75;  // [s] the longest
+  return 2 * kSweep;
+}
+
+/// [rad] From the middle of a scan to the middle of its part: parts but the first lack one beam.
+double Mirror::offset(std::uint8_t part) {
+  return part == 0 ? 0 : (part * 0.25 - 0.5) * kDegree;
+}
+
+std::uint64_t Mirror::turn_of(const algo::LaserScan& scan) const {
+  constexpr double kRounding = 1e-6;
+  const double period = scenario_.lasers[index_].mirror_period;
+  return static_cast<std::uint64_t>(scan.stamp / period + kRounding);
+}
+
+sim::LaserConfig Mirror::config_for(const drivers::lms200::Variant& variant,
+                                    std::optional<std::uint8_t> part) const {
+  sim::LaserConfig config = scenario_.lasers[index_];
+  config.rolling = true;
+  config.range_max = kFarthest;
+  config.field_of_view = variant.angle_degrees * kDegree;
+  config.angle_increment = variant.step_centidegrees / 100.0 * kDegree;
+  config.turns = variant.turns();
+  if (part) {
+    config.turns = 1;
+    config.angle_increment = kDegree;
+    if (*part > 0) config.field_of_view -= kDegree;
+    config.mount_R.heading += offset(*part);
+  }
+  return config;
+}
+
+void Mirror::follow(const drivers::lms200::Sweep& sweep, double now) {
+  if (models_.empty() || sweep != sweep_) {
+    sweep_ = sweep;
+    models_.clear();
+    if (sweep.parts.empty()) {
+      models_.emplace_back(config_for(sweep.variant, {}), seed_, index_);
+    }
+    for (const std::uint8_t part : sweep.parts) {
+      models_.emplace_back(config_for(sweep.variant, part), seed_, index_);
+    }
+    for (sim::LaserModel& model : models_) {
+      for (const algo::Obstacle& obstacle : scenario_.obstacles) model.add(obstacle);
+    }
+  }
+  for (const sim::ObstaclePath& path : scenario_.paths) {
+    const auto obstacle = std::ranges::find(scenario_.obstacles, path.id, &algo::Obstacle::id);
+    if (obstacle == scenario_.obstacles.end()) continue;
+    const algo::Vec2 at_W = path.at(now);
+    for (sim::LaserModel& model : models_) {
+      model.move(path.id, {at_W.x(), at_W.y(), obstacle->pose_W.heading});
+    }
+  }
+}
+
+}  // namespace server::emulate

@@ -1,0 +1,90 @@
+// tests/drivers/line_bench.hpp: a machine and a device on a line of their own time: no thread, no
+// port, no waiting.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+#include "tests/drivers/hex.hpp"
+
+#include "drivers/machine.hpp"
+
+namespace drivers {
+
+/// What stands at the other end.
+class LineDevice {
+ public:
+  LineDevice() = default;
+  virtual ~LineDevice() = default;
+  LineDevice(const LineDevice&) = delete;
+  LineDevice& operator=(const LineDevice&) = delete;
+
+  /// Bytes from the host, that were sent at `baud`.
+  virtual void hear(double now, ByteView bytes, unsigned baud) = 0;
+  /// What the host receives at `now`; empty when there is nothing.
+  virtual Bytes say(double now, unsigned host_baud) = 0;
+};
+
+/// Moves time on in steps of a millisecond.
+class LineBench {
+ public:
+  LineBench(Machine& machine, LineDevice& device) : machine_(machine), device_(device) {}
+
+  /// [bit/s] what the port makes of a wish.
+  std::function<unsigned(unsigned)> port = [](unsigned wanted) { return wanted; };
+
+  void open() {
+    baud_ = machine_.opening_baud();
+    machine_.opened(now_, port(baud_));
+    settle();
+  }
+  void unplug() { machine_.closed(now_, "The device at the test has gone."); }
+
+  void run(double seconds) {
+    run_until(seconds, [] { return false; });
+  }
+  /// False when `done` does not become true within `seconds`.
+  template <class Done>
+  bool run_until(double seconds, Done&& done) {
+    const auto steps = static_cast<long>(std::lround(seconds / kStep));
+    for (long i = 0; i < steps; ++i) {
+      if (done()) return true;
+      now_ += kStep;
+      if (const Bytes bytes = device_.say(now_, baud_); !bytes.empty()) {
+        machine_.receive(now_, ByteView(bytes));
+      }
+      settle();
+    }
+    return done();
+  }
+  /// Carries out what the machine has ordered by now.
+  void settle() {
+    machine_.advance(now_);
+    while (const auto order = machine_.next_order()) {
+      if (order->baud) {
+        baud_ = *order->baud;
+        machine_.rate_set(now_, port(baud_));
+      } else {
+        sent.emplace_back(bytes_of(order->bytes.view()));
+        device_.hear(now_, order->bytes.view(), baud_);
+      }
+    }
+  }
+  double now() const { return now_; }
+  unsigned baud() const { return baud_; }
+
+  std::vector<Bytes> sent{};
+
+ private:
+  static constexpr double kStep = 0.001;  // [s]
+
+  Machine& machine_;
+  LineDevice& device_;
+  double now_ = 1000.0;
+  unsigned baud_ = 0;
+};
+
+}  // namespace drivers

@@ -1,0 +1,130 @@
+// tests/drivers/line_thread_test.cpp: a real thread and a pseudo-terminal between a machine and a
+// device.
+#include "drivers/line_thread.hpp"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "tests/drivers/hex.hpp"
+#include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+namespace drivers {
+namespace {
+
+/// Sends back what it receives, says goodbye when it leaves.
+class EchoMachine final : public Machine {
+ public:
+  unsigned opening_baud() const override { return 38400; }
+  void opened(double /*now*/, unsigned /*baud*/) override { ++openings; }
+  void closed(double /*now*/, const std::string& why) override { reason = why; }
+  void rate_set(double /*now*/, unsigned baud) override { rate = baud; }
+  void receive(double /*now*/, ByteView bytes) override { orders.send(bytes); }
+  void advance(double /*now*/) override {}
+  double wake_time() const override { return 1e300; }
+  std::optional<LineOrder> next_order() override { return orders.next(); }
+  void leave(double /*now*/) override {
+    orders.send(ByteView(goodbye));
+    gone = true;
+  }
+  bool left() const override { return gone; }
+
+  LineOrders orders{};
+  Bytes goodbye = hex("FF");
+  int openings = 0;
+  unsigned rate = 0;
+  std::string reason{};
+  bool gone = false;
+};
+
+class Terminal {
+ public:
+  Terminal() {
+    std::array<char, 128> name{};
+    EXPECT_EQ(::openpty(&fd_, &other_, name.data(), nullptr, nullptr), 0);
+    path_ = name.data();
+  }
+  ~Terminal() {
+    unplug();
+    ::close(other_);
+  }
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  const std::string& path() const { return path_; }
+  void unplug() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+  }
+  void send(const Bytes& bytes) const {
+    EXPECT_EQ(::write(fd_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
+  }
+  Bytes receive(std::size_t size) const {
+    Bytes bytes(size);
+    std::size_t got = 0;
+    while (got < size) {
+      const ssize_t more = ::read(fd_, bytes.data() + got, size - got);
+      if (more <= 0) break;
+      got += static_cast<std::size_t>(more);
+    }
+    bytes.resize(got);
+    return bytes;
+  }
+
+ private:
+  int fd_ = -1;
+  int other_ = -1;
+  std::string path_{};
+};
+
+/// Gives up after a time that only a broken program needs.
+template <class Done>
+bool wait_for(Done&& done) {
+  for (int i = 0; i < 3000; ++i) {
+    if (done()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+TEST(LineThread, CarriesBytesBothWaysAndLetsTheMachineLeave) {
+  const Terminal terminal;
+  EchoMachine machine;
+  {
+    LineThread line(terminal.path(), machine);
+    ASSERT_TRUE(wait_for([&] {
+      int openings = 0;
+      line.look([&] { openings = machine.openings; });
+      return openings == 1;
+    }));
+    terminal.send(hex("01 02 03"));
+    EXPECT_EQ(terminal.receive(3), hex("01 02 03"));
+    line.with([&] { machine.orders.send(ByteView(hex("0A 0B"))); });
+    EXPECT_EQ(terminal.receive(2), hex("0A 0B"));
+    line.with([&] { machine.orders.set_baud(500'000); });
+    EXPECT_TRUE(wait_for([&] {
+      unsigned rate = 0;
+      line.look([&] { rate = machine.rate; });
+      return rate == 500'000;
+    }));
+  }
+  EXPECT_EQ(terminal.receive(1), hex("FF"));
+}
+
+TEST(LineThread, PortThatIsNotThereIsASentenceAndWaitedFor) {
+  EchoMachine machine;
+  LineThread line("/dev/no_such_port", machine);
+  EXPECT_TRUE(wait_for([&] {
+    std::string reason;
+    line.look([&] { reason = machine.reason; });
+    return reason.find("plugged in") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace drivers
