@@ -17,7 +17,7 @@ constexpr int kReached = 0;
 constexpr int kBadInput = 1;
 constexpr int kNotReached = 2;
 constexpr int kCollided = 3;
-constexpr int kNotHeld = 3;  // of `reproduce`: a limit did not hold
+constexpr int kNotHeld = 3;  // of `reproduce` and `compare`: a limit did not hold
 
 void add_serve_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);
@@ -29,6 +29,7 @@ void add_reproduce_command(CLI::App& app, int& status);
 void add_barn_command(CLI::App& app, int& status);
 void add_soak_command(CLI::App& app, int& status);
 void add_emulate_command(CLI::App& app, int& status);
+void add_compare_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

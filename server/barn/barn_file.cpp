@@ -87,7 +87,8 @@ World world_from_json(const JsonReader& in) {
   return world;
 }
 
-/// The scanner and the base of full-strip.md, "nominal" or "stress".
+/// Nominal: a wide and precise scanner, one tick of delay. Stress: a narrower, shorter and noisier
+/// scanner, half the acceleration, twice the delay, slip and drifting odometry, all at once.
 void equip(sim::Scenario& scenario, const Conditions& conditions) {
   sim::DriveConfig& drive = scenario.drive;
   drive.ramps = true;

@@ -25,7 +25,7 @@ struct World {
   std::vector<sim::ObstaclePath> paths{};
 };
 
-/// Under which a world is run (full-strip.md): robot, scanner, limits, faults.
+/// Under which a world is run: limits and faults of the base and its scanner.
 struct Conditions {
   bool stress = false;
   sim::Vehicle vehicle = sim::Vehicle::Bullet;

@@ -17,6 +17,9 @@ RunFigures run_once(const RunSpec& spec, bool keep_track) {
   robot->set_pace({.paused = false, .speed = 0});
   algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
   PathRecorder path(robot->spec().radius, robot->spec().period);
+  StandingRecorder standing({.v_max = spec.parameters[algo::Parameter::MaxSpeed],
+                             .omega_max = spec.parameters[algo::Parameter::MaxTurnRate]},
+                            robot->spec().period);
   const double safety_distance = spec.parameters[algo::Parameter::SafetyDistance];
 
   RunFigures figures;
@@ -25,6 +28,7 @@ RunFigures run_once(const RunSpec& spec, bool keep_track) {
   links.pool = pool.get();
   links.observer = [&](const Frame& frame) {
     path.add(frame.telemetry, safety_distance);
+    standing.add(frame.telemetry);
     if (!frame.telemetry.ground_truth) return;
     figures.end_W = frame.telemetry.ground_truth->pose.position();
     if (keep_track) figures.track_W.push_back(figures.end_W);
@@ -35,6 +39,7 @@ RunFigures run_once(const RunSpec& spec, bool keep_track) {
   figures.outcome = result.outcome;
   figures.metrics = result.metrics;
   figures.path = path.figures();
+  figures.standing = standing.figures();
   return figures;
 }
 

@@ -51,6 +51,11 @@ constexpr auto kTable = std::to_array<MetricInfo>({
     {"via_points",
      Aggregate::Mean,
      [](const RunFigures& r) { return static_cast<double>(r.metrics.via_points); }},
+    {"standing_s", Aggregate::Mean, [](const RunFigures& r) { return r.standing.time; }},
+    {"pauses",
+     Aggregate::Mean,
+     [](const RunFigures& r) { return static_cast<double>(r.standing.pauses); }},
+    {"pause_s", Aggregate::Mean, [](const RunFigures& r) { return r.standing.pause_time; }},
 });
 
 double aggregate(const Row& row, const MetricInfo& metric, Aggregate how) {
@@ -106,6 +111,19 @@ std::string outcomes_text(const Row& row) {
     if (runs == 0) continue;
     const std::string_view word = outcome == Outcome::OutOfTime ? "timeout" : algo::name(outcome);
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", runs, word);
+  }
+  return text;
+}
+
+std::string outcome_letters(const Row& row) {
+  std::string text;
+  for (const auto& [outcome, letter] : {std::pair{Outcome::Reached, 'r'},
+                                        std::pair{Outcome::Stuck, 's'},
+                                        std::pair{Outcome::OutOfTime, 't'},
+                                        std::pair{Outcome::Collided, 'C'}}) {
+    const std::size_t runs = count(row, outcome);
+    if (runs == row.runs.size()) return {letter};
+    if (runs > 0) text += fmt::format("{}{}{}", text.empty() ? "" : " ", letter, runs);
   }
   return text;
 }

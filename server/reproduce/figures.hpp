@@ -10,6 +10,7 @@
 
 #include "algo/metrics.hpp"
 #include "server/reproduce/path_figures.hpp"
+#include "server/reproduce/standing.hpp"
 
 namespace server::reproduce {
 
@@ -18,6 +19,7 @@ struct RunFigures {
   algo::Outcome outcome = algo::Outcome::Running;
   algo::Metrics metrics{};
   PathFigures path{};
+  StandingFigures standing{};
   algo::Vec2 end_W{0, 0};
   std::vector<algo::Vec2> track_W{};  // where asked for
 };
@@ -54,6 +56,8 @@ std::size_t count(const Row& row, algo::Outcome outcome);
 std::optional<algo::Outcome> common_outcome(const Row& row);
 /// "10 reached", "7 reached, 3 stuck".
 std::string outcomes_text(const Row& row);
+/// "r", "s", "t" or "C"; "r2 s1" when runs end differently.
+std::string outcome_letters(const Row& row);
 
 const Row* find_row(std::span<const Row> rows, std::string_view layout, std::string_view reading);
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "server/reproduce/filter_study.hpp"
+#include "server/reproduce/marked.hpp"
 #include "server/reproduce/table.hpp"
 
 namespace server {
@@ -293,11 +294,7 @@ void write_markdown(const FilterStudy& study, const std::filesystem::path& file)
   old << std::ifstream(file, std::ios::binary).rdbuf();
   std::string text = old.str();
   const std::string section = to_markdown(study, "pictures/reproduction");
-  const std::size_t begin = text.find(kBegin);
-  const std::size_t end = text.find(kEnd, begin == std::string::npos ? 0 : begin);
-  if (begin != std::string::npos && end != std::string::npos) {
-    text.replace(begin, end + kEnd.size() - begin, section);
-  } else {
+  if (!reproduce::replace_marked(text, {kBegin, kEnd}, section)) {
     if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
     text += section;
   }

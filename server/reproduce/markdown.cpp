@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "server/reproduce/full_strip.hpp"
 #include "server/reproduce/pictures.hpp"
 
 namespace server::reproduce {
@@ -65,6 +66,20 @@ std::string claims_text(const Study& study) {
          to_markdown(claims_table(study));
 }
 
+std::string strip_text(const Study& study) {
+  std::string text =
+      "`strip`, our extension of many nodes, under the same conditions and with the same gains and "
+      "top speeds. Cells: turning [rad] / bending [1e-3 rad2/mm] / time [s], means, or how the "
+      "runs ended.\n\n";
+  text += fmt::format("**A, paper conditions.** {}\n\n{}",
+                      strip_sentences(strip_beside(study.strip, study.paper)),
+                      to_markdown(strip_table(study.strip, study.paper)));
+  if (study.full.empty()) return text;
+  return text + fmt::format("**B, full simulator.** {}\n\n{}",
+                            strip_sentences(strip_beside(study.strip_full, study.full)),
+                            to_markdown(strip_table(study.strip_full, study.full)));
+}
+
 std::string pictures_text(const PaperFile& file, const std::string& folder) {
   std::string text = "Paths of the first run of each row of table A.\n\n";
   for (const Layout& layout : file.layouts) {
@@ -110,6 +125,7 @@ std::vector<Section> study_sections(const PaperFile& file,
                             ? std::string("Nowhere.\n")
                             : to_markdown(differences_table(study.differences))});
   }
+  sections.push_back({"The full strip beside the readings", strip_text(study)});
   sections.push_back(
       {"Limits", checks_sentence(study.checks) + "\n\n" + to_markdown(checks_table(study.checks))});
   sections.push_back({"Pictures", pictures_text(file, pictures)});

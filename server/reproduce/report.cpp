@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "server/reproduce/full_strip.hpp"
+
 namespace server::reproduce {
 namespace {
 
@@ -19,12 +21,8 @@ std::string cell(const Row& row, const char* metric, int digits) {
 json rows_json(std::span<const Row> rows) {
   json all = json::array();
   for (const Row& row : rows) {
-    json metrics = json::object();
-    for (const MetricInfo& metric : metric_table()) {
-      const double value = figure(row, metric);
-      metrics[std::string(metric.name)] = std::isfinite(value) ? json(value) : json(nullptr);
-    }
-    all.push_back({{"scenario", row.layout}, {"reading", row.reading}, {"metrics", metrics}});
+    all.push_back(
+        {{"scenario", row.layout}, {"reading", row.reading}, {"metrics", metrics_json(row)}});
   }
   return all;
 }
@@ -41,6 +39,15 @@ json claims_json(std::span<const Claim> claims) {
 }
 
 }  // namespace
+
+json metrics_json(const Row& row) {
+  json metrics = json::object();
+  for (const MetricInfo& metric : metric_table()) {
+    const double value = figure(row, metric);
+    metrics[std::string(metric.name)] = std::isfinite(value) ? json(value) : json(nullptr);
+  }
+  return metrics;
+}
 
 Table rows_table(std::span<const Row> rows) {
   Table table{.header = {"scenario",
@@ -147,6 +154,14 @@ std::string to_text(const Study& study) {
                           each.explanation);
     }
   }
+  text += fmt::format("\nThe full strip beside the readings, paper conditions. {}\n\n{}",
+                      strip_sentences(strip_beside(study.strip, study.paper)),
+                      to_text(strip_table(study.strip, study.paper)));
+  if (!study.full.empty()) {
+    text += fmt::format("\nThe same in the full simulator. {}\n\n{}",
+                        strip_sentences(strip_beside(study.strip_full, study.full)),
+                        to_text(strip_table(study.strip_full, study.full)));
+  }
   if (!study.claims.empty()) {
     text += "\nWhat the sources claim, and for which readings it holds\n\n";
     text += to_text(claims_table(study));
@@ -180,6 +195,8 @@ json to_json(const Study& study) {
           {"claims", claims_json(study.claims)},
           {"full_simulator_claims", claims_json(study.full_claims)},
           {"full_simulator", rows_json(study.full)},
+          {"full_strip", rows_json(study.strip)},
+          {"full_strip_full_simulator", rows_json(study.strip_full)},
           {"full_simulator_collisions", collisions(study.full)},
           {"differences", differences}};
 }

@@ -25,9 +25,12 @@ std::size_t runs(std::span<const Row> rows);
 /// "117 of 118 limits held."
 std::string checks_sentence(std::span<const Check> checks);
 
+/// Every metric of a row by its name; a clearance without obstacles is null.
+nlohmann::json metrics_json(const Row& row);
+
 /// What `tautline reproduce` prints, but for the last sentence.
 std::string to_text(const Study& study);
-/// Every metric of every row; a clearance without obstacles is null.
+/// Every metric of every row.
 nlohmann::json to_json(const Study& study);
 
 std::string to_text(std::span<const Sweep> sweeps);

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/reproduce/accept.hpp"
@@ -27,6 +29,8 @@ struct Study {
   std::vector<Row> paper{};       // table A: every layout with every reading
   std::vector<Row> noise_free{};  // one run each, where the file asks for it
   std::vector<Row> full{};        // table B
+  std::vector<Row> strip{};       // our full strip under the conditions of table A
+  std::vector<Row> strip_full{};  // and of table B
   std::vector<Check> checks{};
   std::vector<Claim> claims{};       // by table A
   std::vector<Claim> full_claims{};  // the same by table B
@@ -36,10 +40,11 @@ struct Study {
 /// Same file and seeds, same study, however many threads. Throws std::exception with a sentence.
 Study run_study(const PaperFile& file, const StudyOptions& options);
 
-/// One row a layout and reading. `seeds` runs each from `first_seed` on.
+/// One row a layout and controller. `seeds` runs each from `first_seed` on.
 std::vector<RowJob> row_jobs(const PaperFile& file,
                              const Conditions& conditions,
                              std::size_t seeds,
-                             std::uint64_t first_seed);
+                             std::uint64_t first_seed,
+                             std::span<const std::string_view> controllers = readings());
 
 }  // namespace server::reproduce

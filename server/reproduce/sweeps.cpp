@@ -35,36 +35,22 @@ double mean(const Row& row, double PathFigures::*member) {
   return sum / static_cast<double>(row.runs.size());
 }
 
-/// "r", or "r2 s1" when runs end differently.
-std::string letters(const Row& row) {
-  std::string text;
-  for (const auto& [outcome, letter] : {std::pair{Outcome::Reached, 'r'},
-                                        std::pair{Outcome::Stuck, 's'},
-                                        std::pair{Outcome::OutOfTime, 't'},
-                                        std::pair{Outcome::Collided, 'C'}}) {
-    const std::size_t runs = count(row, outcome);
-    if (runs == row.runs.size()) return {letter};
-    if (runs > 0) text += fmt::format("{}{}{}", text.empty() ? "" : " ", letter, runs);
-  }
-  return text;
-}
-
 std::string clearance_cell(const Row& row) {
-  return fmt::format("{:.0f} {}", value(row, "min_clearance_mm"), letters(row));
+  return fmt::format("{:.0f} {}", value(row, "min_clearance_mm"), outcome_letters(row));
 }
 
 std::string strip_cell(const Row& row) {
   return fmt::format("{:.0f} / {:.3f} {}",
                      value(row, "path_mm"),
                      mean(row, &PathFigures::share_deviation),
-                     letters(row));
+                     outcome_letters(row));
 }
 
 std::string turning_cell(const Row& row) {
   return fmt::format("{:.0f} / {:.2f} {}",
                      value(row, "min_clearance_mm"),
                      value(row, "turning_rad"),
-                     letters(row));
+                     outcome_letters(row));
 }
 
 std::string verdict_of(std::size_t held, std::size_t all) {

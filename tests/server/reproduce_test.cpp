@@ -12,6 +12,7 @@
 #include "server/embedded_documents.hpp"
 #include "server/json_reader.hpp"
 #include "server/reproduce/conditions.hpp"
+#include "server/reproduce/full_strip.hpp"
 #include "server/reproduce/markdown.hpp"
 #include "server/reproduce/pictures.hpp"
 #include "server/reproduce/svg_plot.hpp"
@@ -234,6 +235,28 @@ TEST(PathFigures, ShareOfTheStripBeforeItsVia) {
   EXPECT_NEAR(recorder.figures().share_deviation, 0.25, 1e-12);
 }
 
+TEST(Standing, APauseIsARestThatTheRobotDrivesOnFrom) {
+  // At most 1 m/s and 1 rad/s, ticks of 0.05 s: at rest below 2.5 mm and 2.5 mrad a tick.
+  StandingRecorder recorder({.v_max = 1, .omega_max = 1}, 0.05);
+  algo::Pose2 pose{};
+  const auto ticks = [&](int count, double v, double omega) {
+    for (int i = 0; i < count; ++i) {
+      pose = {pose.x + 0.05 * v, pose.y, pose.heading + 0.05 * omega};
+      algo::Telemetry t;
+      t.ground_truth = algo::GroundTruth{pose, 2, 1.65, false};
+      recorder.add(t);
+    }
+  };
+  ticks(1, 0, 0);                        // the start
+  ticks(10, 0.01, 0);                    // 0.5 s of rest before the first motion: no pause
+  ticks(5, 1, 0), ticks(4, 0.01, 0);     // 0.2 s of rest
+  ticks(5, 0, 1), ticks(1, 0, 0);        // turning is no rest; 0.05 s is no pause
+  ticks(5, 0.1, 0), ticks(20, 0, 0.01);  // creeping is no rest; the last rest has no end
+  EXPECT_EQ(recorder.figures().pauses, 1U);
+  EXPECT_NEAR(recorder.figures().pause_time, 0.2, 1e-9);
+  EXPECT_NEAR(recorder.figures().time, 0.5 + 0.2 + 0.05 + 1.0, 1e-9);
+}
+
 RunFigures run_of(Outcome outcome, double time, double path, double clearance, double depth) {
   RunFigures figures{.outcome = outcome};
   figures.metrics.time = time;
@@ -329,6 +352,28 @@ TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
   EXPECT_EQ(judge_claims(rows)[0].verdict, Verdict::NotReproduced);
 }
 
+TEST(FullStrip, IsHeldAgainstTheReadingsThatReach) {
+  const auto row = [](const char* reading, Outcome outcome, double turning, double time) {
+    Row made{"case1", reading, {run_of(outcome, time, 1, 1, 0)}};
+    made.runs[0].metrics.turning = turning;
+    made.runs[0].path.bending = turning;
+    return made;
+  };
+  std::vector<Row> strip{row("strip", Outcome::Reached, 2, 50)};
+  const std::vector<Row> readings{row("original", Outcome::Stuck, 0, 10),
+                                  row("modified", Outcome::Reached, 3, 80),
+                                  row("via_kept", Outcome::Reached, 1, 50)};
+  const StripBeside beside = strip_beside(strip, readings);
+  EXPECT_EQ(beside.rows, 2u);
+  EXPECT_THAT(beside.turns_less, ::testing::ElementsAre("case1 via_kept"));
+  EXPECT_THAT(beside.faster, ::testing::ElementsAre("case1 via_kept"));  // equal is not faster
+  EXPECT_THAT(strip_sentences(beside), HasSubstr("turns less in 1 of 2 (not: case1 via_kept)"));
+  EXPECT_EQ(strip_table(strip, readings).rows[0][2], "1 stuck");
+  strip[0].runs[0].outcome = Outcome::Collided;
+  EXPECT_EQ(strip_beside(strip, readings).rows, 0u);
+  EXPECT_THAT(strip_sentences(strip_beside(strip, readings)), HasSubstr("every run: case1"));
+}
+
 TEST(Sweeps, RisingAllowsTheNoiseAtAStepAndWantsMoreInAll) {
   EXPECT_TRUE(rises({100, 110, 200}, 15));
   EXPECT_TRUE(rises({100, 90, 200}, 15));
@@ -352,6 +397,9 @@ TEST(Study, OneScenarioEndToEnd) {
   EXPECT_EQ(study.paper.size(), readings().size());
   EXPECT_EQ(study.noise_free.size(), readings().size());
   EXPECT_EQ(study.full.size(), readings().size());
+  ASSERT_EQ(study.strip.size(), 1u);
+  EXPECT_EQ(outcomes_text(study.strip[0]), "2 reached");
+  EXPECT_EQ(study.strip_full.size(), 1u);
   EXPECT_EQ(study.checks.size(), 5u);
   EXPECT_TRUE(all_held(study.checks)) << to_text(study);
   const Row& modified = *find_row(study.paper, "free", "modified");

@@ -1,0 +1,35 @@
+// server/reproduce/full_strip.hpp: our full strip beside every reading of the papers' one: is it
+// smoother, is it faster?
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/reproduce/figures.hpp"
+#include "server/reproduce/table.hpp"
+
+namespace server::reproduce {
+
+constexpr std::string_view kFullStrip = "strip";
+
+/// The full strip against the rows of the readings that reach in every run.
+struct StripBeside {
+  std::size_t rows = 0;  // such rows; the strip must reach, too
+  /// "case2 original": the rows in which the strip is not better.
+  std::vector<std::string> turns_less{};
+  std::vector<std::string> bends_less{};
+  std::vector<std::string> faster{};
+  std::vector<std::string> not_reached{};  // layouts that the strip did not reach in every run
+  std::vector<std::string> entered{};      // "exp1 by 170 mm": into the safety circle
+};
+StripBeside strip_beside(std::span<const Row> strip, std::span<const Row> readings);
+
+/// A layout a line, a controller a column: turning [rad] / bending [1e-3 rad2/mm] / time [s].
+Table strip_table(std::span<const Row> strip, std::span<const Row> readings);
+
+/// What the rows come to, in sentences.
+std::string strip_sentences(const StripBeside& beside);
+
+}  // namespace server::reproduce
