@@ -22,7 +22,7 @@ constexpr double kSearchPause = 1.0;     // [s] before all rates are tried again
 constexpr double kSilent = 1.0;          // [s] without a state packet: it is looked for again
 constexpr double kCommandPause = 0.005;  // [s] between two packets
 constexpr double kRepeat = 0.9 * kCommandPeriod;  // [s] a tick early rather than one too late
-constexpr double kFastest = 0.04;        // [s] between two commands that differ
+constexpr double kFastest = 0.04;                 // [s] between two commands that differ
 constexpr int kMost = 0x7FFF;
 
 template <typename... Args>
