@@ -36,7 +36,7 @@ TEST(RandomWorld, AClosedDoorIsNoWay) {
 }
 
 TEST(Soak, NothingThatMustNotHappenDoes) {
-  for (const Outcome& o : run_worlds({.worlds = 6})) {
+  for (const Outcome& o : run_worlds({.worlds = 3})) {
     EXPECT_FALSE(is_fault(o.ending)) << o.seed << ": " << name(o.ending) << ", " << o.why;
     EXPECT_GE(o.min_clearance, 0);
   }
