@@ -55,6 +55,7 @@ struct App::Impl {
     server->add(bridge.hub().endpoint("/ws"));
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
     session.load(std::move(options.first));
+    if (options.armed) session.arm_when_ready();
     server->every(kPollPeriod, [this] {
       session.poll();
       if (g_terminated != 0) server->stop();

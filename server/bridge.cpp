@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "server/json_limits.hpp"
@@ -175,6 +176,14 @@ void Bridge::add_services() {
   add("/reset", [this](const json&) { session_.reset(); });
   add("/pause", [this](const json&) { session_.pause(true); });
   add("/play", [this](const json&) { session_.pause(false); });
+  add("/arm", [this](const json& body) {
+    const JsonReader in(body, "");
+    in.only({"armed"});
+    if (!in.has("armed")) in.fail("armed", "must be true or false");
+    if (const auto refusal = session_.arm(in.flag_or("armed", false))) {
+      throw std::runtime_error(*refusal);
+    }
+  });
   add("/step", [this](const json& body) {
     const JsonReader in(body, "");
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));

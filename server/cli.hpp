@@ -18,6 +18,7 @@ constexpr int kBadInput = 1;
 constexpr int kNotReached = 2;
 constexpr int kCollided = 3;
 constexpr int kNotHeld = 3;  // of `reproduce` and `compare`: a limit did not hold
+constexpr int kNotWell = 2;  // of `doctor` and `lms200`: a device is not as it should be
 
 void add_serve_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);
@@ -30,6 +31,8 @@ void add_barn_command(CLI::App& app, int& status);
 void add_soak_command(CLI::App& app, int& status);
 void add_emulate_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
+void add_doctor_command(CLI::App& app, int& status);
+void add_lms200_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

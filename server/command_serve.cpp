@@ -2,12 +2,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "server/app.hpp"
 #include "server/cli.hpp"
+#include "server/hardware.hpp"
 #include "server/paths.hpp"
 #include "server/scenario_library.hpp"
 
@@ -17,9 +20,30 @@ namespace {
 struct Options {
   AppOptions app{};
   std::string scenario = "demo";
+  std::string robot{};  // file of real hardware; empty: simulation
   RunFlags flags{};
   double keep_gigabytes = 2;
 };
+
+/// The spec to begin with: of the devices of a robot's file, or of a scenario.
+RunSpec first_spec(const Options& options) {
+  const RunOverrides overrides = options.flags.resolved();
+  if (options.robot.empty()) {
+    const ScenarioLibrary library(options.app.scenarios, options.app.logs);
+    const bool file = options.scenario.find_first_of("/.") != std::string::npos;
+    return make_spec(
+        file ? ScenarioLibrary::from_file(options.scenario) : library.load(options.scenario),
+        overrides);
+  }
+  const drivers::RobotFile file = drivers::read_robot_file(options.robot);
+  const bool locked = drivers::lock_memory();
+  for (const std::string& warning : file.warnings) spdlog::warn(warning);
+  if (!locked) spdlog::warn(drivers::memory_advice());
+  if (!drivers::check_real_time().priority) spdlog::warn(drivers::priority_advice());
+  const std::shared_ptr<drivers::SerialRobot> robot = drivers::open_robot(file);
+  robot->note_memory_locked(locked);
+  return hardware_spec(robot, overrides);
+}
 
 void serve(Options& options) {
   AppOptions& app = options.app;
@@ -28,15 +52,20 @@ void serve(Options& options) {
     app.net.access.token = token;
   }
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
-  const ScenarioLibrary library(app.scenarios, app.logs);
-  const bool file = options.scenario.find_first_of("/.") != std::string::npos;
-  app.first = make_spec(
-      file ? ScenarioLibrary::from_file(options.scenario) : library.load(options.scenario),
-      options.flags.resolved());
+  app.first = first_spec(options);
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
-  App program(app);
+  const std::string database = app.database.string();
+  const bool armed = app.armed;
+  const bool hardware = app.first.hardware != nullptr;
+  // Moved: the devices are to be left in order when the program ends, not later.
+  App program(std::move(app));
   fmt::print("Tautline is at {}\n", program.url());
-  fmt::print("Runs are kept in {}\n", app.database.string());
+  fmt::print("Runs are kept in {}\n", database);
+  if (hardware) {
+    fmt::print("REAL HARDWARE: {}. It moves only once it is armed{}.\n",
+               options.robot,
+               armed ? ", which it is as soon as its devices are well" : "");
+  }
   std::fflush(stdout);
   program.run();
 }
@@ -87,6 +116,14 @@ void add_serve_command(CLI::App& app, int& status) {
                    options->scenario,
                    "What to load first: a name, a .json file, or a .log to replay")
       ->capture_default_str();
+  command
+      ->add_option("--robot",
+                   options->robot,
+                   "Real hardware, as a TOML file describes it (docs/hardware.md)")
+      ->type_name("FILE");
+  command->add_flag("--armed",
+                    options->app.armed,
+                    "Switch the motors of real hardware on as soon as its devices are well");
   options->flags.add_to(*command);
   command->callback([options, &status] {
     serve(*options);

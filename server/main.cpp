@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
     server::add_soak_command(app, status);
     server::add_emulate_command(app, status);
     server::add_compare_command(app, status);
+    server::add_doctor_command(app, status);
+    server::add_lms200_command(app, status);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".

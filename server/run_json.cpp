@@ -38,14 +38,12 @@ std::string wall_time() {
 }
 
 db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
-  const bool log = !spec.scenario.log.empty();
-  const bool bullet = spec.scenario.vehicle == sim::Vehicle::Bullet;
   db::NewRun row;
   row.scenario = spec.scenario.name;
   row.document = run_document(spec, robot).dump();
   row.controller = spec.scenario.controller;
   row.filter = spec.scenario.filter;
-  row.vehicle = log ? "log" : (bullet ? "bullet" : "kinematic");
+  row.vehicle = vehicle_of(spec);
   row.seed = spec.seed;
   row.parameters = to_json(spec.parameters).dump();
   row.version = kVersion;
@@ -115,7 +113,7 @@ json to_json(const db::RunRow& row) {
 const db::CsvNames& csv_names() {
   static const db::CsvNames names = [] {
     db::CsvNames out;
-    for (int i = 0; i <= static_cast<int>(algo::Hold::LinkLost); ++i) {
+    for (int i = 0; i <= static_cast<int>(algo::Hold::Halted); ++i) {
       out.holds.emplace_back(algo::name(static_cast<algo::Hold>(i)));
     }
     for (int i = 0; i <= static_cast<int>(algo::BehaviourId::Manual); ++i) {

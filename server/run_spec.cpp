@@ -8,6 +8,7 @@
 
 #include "algo/controller.hpp"
 #include "algo/filter.hpp"
+#include "server/hardware.hpp"
 #include "server/json_reader.hpp"
 #include "server/scenario_json.hpp"
 #include "sim/replay.hpp"
@@ -93,7 +94,19 @@ RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
   return spec;
 }
 
+const char* source_of(const RunSpec& spec) {
+  if (spec.hardware) return "hardware";
+  return spec.scenario.log.empty() ? "simulation" : "replay";
+}
+
+const char* vehicle_of(const RunSpec& spec) {
+  if (spec.hardware) return "hardware";
+  if (!spec.scenario.log.empty()) return "log";
+  return spec.scenario.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic";
+}
+
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
+  if (spec.hardware) return std::make_unique<HardwareRun>(spec.hardware);
   if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
   return std::make_unique<sim::World>(spec.scenario, spec.seed);
 }
@@ -157,9 +170,8 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
 }
 
 json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
-  return {{"scenario", to_json(spec.scenario)},
-          {"source", spec.scenario.log.empty() ? "simulation" : "replay"},
-          {"robot", to_json(robot)}};
+  return {
+      {"scenario", to_json(spec.scenario)}, {"source", source_of(spec)}, {"robot", to_json(robot)}};
 }
 
 }  // namespace server

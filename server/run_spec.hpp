@@ -12,6 +12,10 @@
 #include "algo/robot.hpp"
 #include "sim/scenario.hpp"
 
+namespace drivers {
+class SerialRobot;
+}
+
 namespace server {
 
 /// Same spec, same run, bit for bit. Controller, filter and vehicle are the scenario's own.
@@ -19,7 +23,14 @@ struct RunSpec {
   sim::Scenario scenario{};
   algo::Parameters parameters{};
   std::uint64_t seed = 1;
+  /// Real devices to run on, instead of a world; they outlive the run.
+  std::shared_ptr<drivers::SerialRobot> hardware{};
 };
+
+/// "simulation", "replay" or "hardware".
+const char* source_of(const RunSpec& spec);
+/// "bullet", "kinematic", "log" or "hardware".
+const char* vehicle_of(const RunSpec& spec);
 
 /// What a caller may put in place of the scenario's own choices; read from JSON or flags.
 struct RunOverrides {

@@ -83,6 +83,7 @@ void Session::load(RunSpec spec) {
   state_.lost_ticks = 0;
   state_.missed_periods = 0;
   state_.problem.reset();
+  state_.hardware.reset();
   state_.running = true;
   path_.clear();
   newest_.reset();
@@ -178,6 +179,24 @@ void Session::apply_pace() {
   changed();
 }
 
+std::optional<std::string> Session::arm(bool on) {
+  drivers::SerialRobot* robot = state_.spec.hardware.get();
+  if (robot == nullptr) return "This robot is simulated: it has no motors to switch on.";
+  std::optional<std::string> refusal;
+  if (!on) {
+    arm_when_ready_ = false;
+    robot->disarm("Somebody has disarmed it.");
+  } else if (!state_.running) {
+    refusal = "The run is over. Reset first.";
+  } else {
+    refusal = robot->arm();
+  }
+  if (!refusal) log(LogLevel::Warning, on ? "The motors are armed." : "The motors are disarmed.");
+  state_.hardware = robot->report();
+  changed();
+  return refusal;
+}
+
 void Session::pause(bool paused) {
   state_.pace.paused = paused;
   apply_pace();
@@ -199,6 +218,29 @@ void Session::poll() {
   drain_replies();
   drain_frames();
   watch_run();
+  watch_hardware();
+}
+
+/// People are told at once of what moves or stops the robot, of the rest once a second.
+void Session::watch_hardware() {
+  using std::chrono::milliseconds;
+  drivers::SerialRobot* robot = state_.spec.hardware.get();
+  const auto now = std::chrono::steady_clock::now();
+  if (robot == nullptr || now - hardware_seen_ < milliseconds(100)) return;
+  hardware_seen_ = now;
+  drivers::HardwareReport report = robot->report();
+  if (arm_when_ready_ && report.halt == algo::Halt::Disarmed) {
+    arm_when_ready_ = false;
+    if (const auto refusal = arm(true)) log(LogLevel::Warning, *refusal);
+    return;
+  }
+  const bool news = !state_.hardware || state_.hardware->armed != report.armed ||
+                    state_.hardware->halt != report.halt;
+  if (news && !report.trouble.empty()) log(LogLevel::Warning, report.trouble);
+  if (!news && now - hardware_told_ < milliseconds(1000)) return;
+  hardware_told_ = now;
+  state_.hardware = std::move(report);
+  changed();
 }
 
 void Session::drain_replies() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "algo/metrics.hpp"
+#include "drivers/serial_robot.hpp"
 #include "server/frame_pool.hpp"
 #include "server/recorder.hpp"
 #include "server/run_spec.hpp"
@@ -35,6 +37,7 @@ struct SessionState {
   std::uint64_t lost_ticks = 0;
   std::uint64_t missed_periods = 0;
   std::optional<std::string> problem{};
+  std::optional<drivers::HardwareReport> hardware{};  // as people were last told
 };
 
 /// One call of run() with its thread, rings and frames. Made and ended by the io thread.
@@ -94,6 +97,11 @@ class Session {
   /// thread cannot take more just now: try again later.
   std::optional<std::uint32_t> submit(algo::Request request, Answer answer);
 
+  /// Switches the motors of real hardware on or off. Returns why not, as a sentence.
+  std::optional<std::string> arm(bool on);
+  /// The same as soon as its devices are well for the first time.
+  void arm_when_ready() { arm_when_ready_ = true; }
+
   void pause(bool paused);
   void set_speed(double times_real_time);  // 0: as fast as it goes
   void single_step(std::uint32_t ticks);
@@ -125,6 +133,7 @@ class Session {
   void drain_frames();
   void answer_the_rest();
   void watch_run();
+  void watch_hardware();
   void narrate(const algo::Telemetry& t);
   void apply_pace();
   void changed() const;
@@ -139,6 +148,9 @@ class Session {
   std::uint32_t next_obstacle_ = 1;
   algo::Mission told_mission_ = algo::Mission::Idle;
   algo::Hold told_hold_ = algo::Hold::None;
+  bool arm_when_ready_ = false;
+  std::chrono::steady_clock::time_point hardware_seen_{};  // when it was last looked at
+  std::chrono::steady_clock::time_point hardware_told_{};  // when people were last told of it
   std::unique_ptr<LiveRun> live_{};
 };
 

@@ -4,6 +4,7 @@
 #include "algo/controller.hpp"
 #include "algo/explain.hpp"
 #include "algo/filter.hpp"
+#include "server/hardware.hpp"
 #include "server/scenario_json.hpp"
 
 namespace server {
@@ -12,8 +13,6 @@ using nlohmann::json;
 
 json state_json(const Session& session) {
   const SessionState& s = session.state();
-  const bool log = !s.spec.scenario.log.empty();
-  const bool bullet = s.spec.scenario.vehicle == sim::Vehicle::Bullet;
   json obstacles = json::array();
   for (const algo::Obstacle& o : s.obstacles) obstacles.push_back(to_json(o));
   json out = {
@@ -21,11 +20,11 @@ json state_json(const Session& session) {
        {{"id", session.run_id()},
         {"status", s.running ? "recording" : "finished"},
         {"outcome", algo::name(s.outcome)}}},
-      {"source", log ? "replay" : "simulation"},
+      {"source", source_of(s.spec)},
       {"scenario", to_json(s.spec.scenario)},
       {"controller", s.spec.scenario.controller},
       {"filter", s.spec.scenario.filter},
-      {"vehicle", log ? "log" : (bullet ? "bullet" : "kinematic")},
+      {"vehicle", vehicle_of(s.spec)},
       {"seed", s.spec.seed},
       {"robot", to_json(s.robot)},
       {"pace", {{"paused", s.pace.paused}, {"speed", s.pace.speed}}},
@@ -36,9 +35,11 @@ json state_json(const Session& session) {
       {"lost_ticks", s.lost_ticks},
       {"missed_periods", s.missed_periods},
       {"problem", nullptr},
+      {"hardware", nullptr},
   };
   if (s.goal) out["goal"] = to_json(*s.goal);
   if (s.problem) out["problem"] = *s.problem;
+  if (s.hardware) out["hardware"] = to_json(*s.hardware);
   return out;
 }
 

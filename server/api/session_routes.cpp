@@ -6,6 +6,7 @@
 
 #include "server/api/api.hpp"
 #include "server/api/reply.hpp"
+#include "server/hardware.hpp"
 #include "server/json_reader.hpp"
 #include "server/scenario_json.hpp"
 #include "server/session_json.hpp"
@@ -122,6 +123,12 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
     in.only({"action"});
     submit_and_reply(context, algo::Stop{action == "stop"}, respond);
     return;
+  } else if (action == "arm" || action == "disarm") {
+    in.only({"action"});
+    if (const auto refusal = session.arm(action == "arm")) {
+      respond(net::problem(409, "Refused", *refusal));
+      return;
+    }
   } else if (action == "play" || action == "pause") {
     in.only({"action"});
     session.pause(action == "pause");
@@ -131,7 +138,7 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
   } else {
     in.fail("action",
             fmt::format("'{}' is unknown; known are play, pause, step, speed, reset, stop, "
-                        "release, load",
+                        "release, arm, disarm, load",
                         action));
   }
   respond(json_response(200, state_json(session)));
@@ -143,6 +150,15 @@ void load_from_json(ApiContext& context, const json& body) {
   const JsonReader in(body, "");
   in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
   const RunOverrides overrides = overrides_from_json(body);
+  if (const auto& hardware = context.session.state().spec.hardware) {
+    const std::string& name = hardware->spec().name;
+    if (in.has("scenario") && in.text("scenario", 64) != name) {
+      in.fail("scenario",
+              "cannot be loaded: this server drives real hardware. Start another for simulation");
+    }
+    context.session.load(hardware_spec(hardware, overrides));
+    return;
+  }
   sim::Scenario scenario = in.has("scenario") ? context.library.load(in.text("scenario", 64))
                                               : context.session.state().spec.scenario;
   context.session.load(make_spec(std::move(scenario), overrides));

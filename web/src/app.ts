@@ -249,6 +249,10 @@ export class App {
   async stop(engaged: boolean): Promise<void> {
     await this.request({ type: "stop", engaged });
   }
+  /** Switches the motors of real hardware on or off; a refusal says why. */
+  async arm(armed: boolean): Promise<void> {
+    await this.ask("/arm", { armed });
+  }
   async toggle_play(): Promise<void> {
     const s = this.ui.value.session;
     if (s?.robot.paceable) await this.ask(s.pace.paused ? "/play" : "/pause");

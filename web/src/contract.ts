@@ -31,6 +31,30 @@ export interface RobotInfo {
 
 export type Source = "simulation" | "replay" | "hardware";
 
+/** One device of real hardware, in words. */
+export interface DeviceInfo {
+  name: string;
+  port: string;
+  well: boolean;
+  sentence: string;
+  remarks: string[];
+  facts: Record<string, string>;
+}
+
+/** Real hardware as the server sees it; null in simulation. */
+export interface HardwareInfo {
+  armed: boolean;
+  halt: string;
+  trouble: string; // why the wheels are held still; empty when they may turn
+  devices: DeviceInfo[];
+  warnings: string[];
+  real_time: boolean;
+  memory_locked: boolean;
+  missed_periods: number;
+  /** How late the loop woke: ticks later than the bucket before and below `below` [s]. */
+  lateness: { ticks: number; worst: number; buckets: { below: number | null; ticks: number }[] };
+}
+
 /** The /state document. */
 export interface SessionState {
   run: { id: number; status: string; outcome: string } | null;
@@ -49,6 +73,7 @@ export interface SessionState {
   lost_ticks: number;
   missed_periods: number;
   problem: string | null;
+  hardware?: HardwareInfo | null;
 }
 
 export type RequestJson =

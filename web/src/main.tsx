@@ -5,6 +5,7 @@ import "./style/layout.css";
 import "./style/controls.css";
 import "./style/scene.css";
 import "./style/runs.css";
+import "./style/hardware.css";
 import "./style/narrow.css";
 import { JSX, render } from "preact";
 import { useEffect } from "preact/hooks";
@@ -12,6 +13,7 @@ import { App, AppContext, use_app } from "./app";
 import { use_store } from "./state/store";
 import { Drive } from "./views/drive";
 import { stop_key, typing } from "./views/keys";
+import { HardwareBar } from "./views/hardware";
 import { Login } from "./views/login";
 import { Rail } from "./views/rail";
 import { Runs } from "./views/runs";
@@ -25,6 +27,7 @@ function Shell(): JSX.Element {
   const view = use_store(app.ui, (u) => u.view);
   const shortcuts = use_store(app.ui, (u) => u.shortcuts);
   const locked = use_store(app.ui, (u) => u.locked);
+  const hardware = use_store(app.ui, (u) => u.session?.source === "hardware");
   useEffect(() => {
     const stop = stop_key(app);
     const help = (e: KeyboardEvent) => {
@@ -42,9 +45,10 @@ function Shell(): JSX.Element {
     };
   }, [app]);
   return (
-    <div class={`shell view-${view}`}>
+    <div class={`shell view-${view} ${hardware ? "real" : ""}`}>
       <TopBar />
       <Rail />
+      <HardwareBar />
       {view === "drive" && <Drive />}
       {view === "runs" && <Runs />}
       {view === "system" && <System />}

@@ -5,6 +5,7 @@ import { use_app } from "../app";
 import * as rest from "../link/rest";
 import { use_pulse, use_store } from "../state/store";
 import { fixed, link_words, sentence_of, titled } from "../words";
+import { Devices } from "./hardware";
 import { ShortcutTable } from "./shortcuts";
 
 export function System(): JSX.Element {
@@ -44,6 +45,7 @@ export function System(): JSX.Element {
           <a class="ghost" href="/api/v1/openapi.json" target="_blank" rel="noreferrer">OpenAPI document</a>
         </div>
       </section>
+      {session?.hardware && <Devices hardware={session.hardware} />}
       {session && <section class="card block">
         <h2>Session</h2>
         <Facts rows={[
@@ -68,7 +70,7 @@ export function System(): JSX.Element {
   );
 }
 
-function Facts(props: { rows: [string, string][] }): JSX.Element {
+export function Facts(props: { rows: [string, string][] }): JSX.Element {
   return (
     <dl class="facts-list">
       {props.rows.map(([name, value]) => <div key={name}><dt>{name}</dt><dd class="num">{value}</dd></div>)}

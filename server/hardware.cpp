@@ -1,0 +1,85 @@
+// server/hardware.cpp: specs and documents of real hardware.
+#include "server/hardware.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "algo/parameters.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+/// `wanted` within what the parameter's table allows.
+double allowed(algo::Parameter parameter, double wanted) {
+  const algo::ParameterInfo& info = algo::info(parameter);
+  return std::clamp(wanted, info.min, info.max);
+}
+
+json to_json(const drivers::DeviceReport& device) {
+  json facts = json::object();
+  for (const auto& [name, value] : device.facts) facts[name] = value;
+  return {{"name", device.name},
+          {"port", device.port},
+          {"well", device.well},
+          {"sentence", device.sentence},
+          {"remarks", device.remarks},
+          {"facts", std::move(facts)}};
+}
+
+json to_json(const drivers::LatenessHistogram& lateness) {
+  json buckets = json::array();
+  const auto& counts = lateness.counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool last = i == drivers::LatenessHistogram::kLimits.size();
+    json below = nullptr;
+    if (!last) below = drivers::LatenessHistogram::kLimits[i];
+    buckets.push_back({{"below", std::move(below)}, {"ticks", counts[i]}});
+  }
+  return {
+      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
+}
+
+}  // namespace
+
+RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOverrides& overrides) {
+  const drivers::RobotFile& file = robot->file();
+  sim::Scenario scenario;
+  scenario.name = file.spec.name;
+  scenario.title = "Real hardware";
+  scenario.description = "Described in " + file.path;
+  scenario.period = file.spec.period;
+  scenario.controller = file.controller;
+  scenario.filter = file.filter;
+  if (!file.spec.has_laser) {
+    scenario.lasers.clear();
+    scenario.sonar.emplace();
+  }
+  using algo::Parameter;
+  // The robot's own limits hold in any case; controllers should plan by them too. How old a scan
+  // may be depends on the scanner's rate, which the robot knows better.
+  scenario.parameters = {
+      {Parameter::MaxSpeed, allowed(Parameter::MaxSpeed, file.limits.speed)},
+      {Parameter::MaxTurnRate, allowed(Parameter::MaxTurnRate, file.limits.turn)},
+      {Parameter::ScanTimeout, allowed(Parameter::ScanTimeout, 2.0)}};
+  RunSpec spec = make_spec(std::move(scenario), overrides);
+  spec.hardware = std::move(robot);
+  return spec;
+}
+
+json to_json(const drivers::HardwareReport& report) {
+  json devices = json::array();
+  for (const drivers::DeviceReport& device : report.devices) devices.push_back(to_json(device));
+  return {{"armed", report.armed},
+          {"halt", algo::name(report.halt)},
+          {"trouble", report.trouble},
+          {"devices", std::move(devices)},
+          {"warnings", report.warnings},
+          {"real_time", report.real_time},
+          {"memory_locked", report.memory_locked},
+          {"lateness", to_json(report.lateness)},
+          {"missed_periods", report.missed_periods}};
+}
+
+}  // namespace server

@@ -1,0 +1,68 @@
+// web/src/views/hardware.tsx: real hardware, on every page in words and colour; its devices, and
+// how well the loop keeps its time.
+import { JSX } from "preact";
+import { use_app } from "../app";
+import { DeviceInfo, HardwareInfo } from "../contract";
+import { use_store } from "../state/store";
+import { titled } from "../words";
+
+/** A bar under the top bar. Says what keeps the wheels still, or that they may turn. */
+export function HardwareBar(): JSX.Element | null {
+  const app = use_app();
+  const session = use_store(app.ui, (u) => u.session);
+  const hardware = session?.hardware;
+  if (session?.source !== "hardware") return null;
+  const armed = hardware?.armed ?? false;
+  const words = hardware?.trouble || (armed ? "Armed: the robot may move." : "Not armed.");
+  return (
+    <div class={`hardware-bar ${armed ? "armed" : ""}`} role="status" data-testid="hardware-bar">
+      <b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span>
+    </div>
+  );
+}
+
+/** The System view's card of them. */
+export function Devices(props: { hardware: HardwareInfo }): JSX.Element {
+  const h = props.hardware;
+  return (
+    <section class="card block" data-testid="devices">
+      <h2>Devices</h2>
+      {h.devices.map((d) => <Device key={d.name} device={d} />)}
+      {h.warnings.map((w) => <p key={w} class="tone-warn device-words">{w}</p>)}
+      <h2>Timing</h2>
+      <dl class="facts-list">
+        <div><dt>Real-time priority</dt><dd>{h.real_time ? "yes" : "not permitted: see tautline doctor"}</dd></div>
+        <div><dt>Memory kept in place</dt><dd>{h.memory_locked ? "yes" : "not permitted"}</dd></div>
+        <div><dt>Missed periods</dt><dd class="num">{h.missed_periods}</dd></div>
+        <div><dt>Latest tick</dt><dd class="num">{milliseconds(h.lateness.worst)} ms late</dd></div>
+        {h.lateness.buckets.filter((b) => b.ticks > 0).map((b) => (
+          <div key={String(b.below)}>
+            <dt>{b.below === null ? "later" : `less than ${milliseconds(b.below)} ms late`}</dt>
+            <dd class="num">{b.ticks}</dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}
+
+function Device(props: { device: DeviceInfo }): JSX.Element {
+  const d = props.device;
+  return (
+    <div class="device" data-testid={`device-${d.name.replace(/ /g, "-")}`}>
+      <p class={`device-words ${d.well ? "tone-ok" : "tone-bad"}`}>
+        <b>{titled(d.name)}</b> {d.port}<br />{d.sentence}
+      </p>
+      {d.remarks.map((r) => <p key={r} class="device-words tone-warn">{r}</p>)}
+      <dl class="facts-list">
+        {Object.entries(d.facts).map(([name, value]) =>
+          <div key={name}><dt>{titled(name)}</dt><dd class="num">{value}</dd></div>)}
+      </dl>
+    </div>
+  );
+}
+
+const milliseconds = (seconds: number): string => {
+  const ms = seconds * 1000;
+  return ms < 10 ? String(Number(ms.toFixed(1))) : ms.toFixed(0);
+};
