@@ -12,7 +12,7 @@ import { json, repository, scratch, serve, until } from "../web/program.mjs";
 const kScene = "demo";
 const kTime = 11; // [s] into the run: among the obstacles
 const kPeriod = 0.026; // [s]
-const kShown = 60; // single steps at the end, slow enough that the page gets every frame of them
+const kShown = 25; // single steps at the end, slow enough that the page gets every frame of them
 const kMost = 120_000; // bytes of a picture
 const folder = join(repository, "docs/pictures/controllers");
 
@@ -23,7 +23,6 @@ const at_tick = (base, wanted) =>
   until(`tick ${wanted}`, 120, () => json(base, "/session"), (s) => s.tick >= wanted);
 
 async function take(p, base, controller) {
-  await control(base, { action: "pause" });
   await control(base, { action: "load", scenario: kScene, controller });
   const last = Math.round(kTime / kPeriod);
   await control(base, { action: "step", ticks: last - kShown });
@@ -32,10 +31,10 @@ async function take(p, base, controller) {
     await control(base, { action: "step", ticks: 1 });
     await pause(40);
   }
-  await until("the page follows", 20, () => p.get("controller").inputValue(), (v) => v === controller);
+  await until("the page follows", 60, () => p.get("controller").inputValue(), (v) => v === controller);
   await pause(1000);
   const file = join(folder, `${controller}.png`);
-  await p.get("scene").screenshot({ path: file });
+  await p.get("scene").screenshot({ path: file, timeout: 120_000 });
   const bytes = statSync(file).size;
   assert.ok(bytes < kMost, `${file}: ${bytes} bytes`);
   const { pose, what, why } = await json(base, "/session");
@@ -47,9 +46,10 @@ const place = scratch();
 const server = await serve({ database: place.database, scenario: kScene });
 const browser = await launch();
 try {
+  await control(server.base, { action: "pause" }); // stays so over the loads
   const { controllers } = await json(server.base, "/catalog");
   const wanted = process.argv.length > 2 ? process.argv.slice(2) : controllers.map((c) => c.name);
-  const p = await open(browser, server.base, { size: { width: 1180, height: 640 } });
+  const p = await open(browser, server.base, { size: { width: 1180, height: 640 }, patience: 180_000 });
   for (const controller of wanted) await take(p, server.base, controller);
   await p.close();
 } finally {

@@ -21,7 +21,7 @@ export function launch(more = []) {
 }
 
 /** A page in a browser context of its own. `faults` gathers console errors, exceptions and CSP. */
-export async function open(browser, base, { size = desktop, theme = "dark", hash = "", touch = false } = {}) {
+export async function open(browser, base, { size = desktop, theme = "dark", hash = "", touch = false, patience = 20_000 } = {}) {
   const context = await browser.newContext({ viewport: size, colorScheme: theme, hasTouch: touch, reducedMotion: "reduce" });
   const page = await context.newPage();
   const faults = [];
@@ -35,7 +35,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
     document.addEventListener("securitypolicyviolation", (e) => window.violations.push(`${e.violatedDirective} ${e.blockedURI}`));
   });
   await page.goto(`${base}/${hash}`);
-  await page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
+  await page.waitForSelector('[data-testid="link"].open', { timeout: patience });
   const get = (id) => page.getByTestId(id);
   return {
     page, context, faults, get,
