@@ -27,6 +27,7 @@ void add_verify_command(CLI::App& app, int& status);
 void add_health_command(CLI::App& app, int& status);
 void add_reproduce_command(CLI::App& app, int& status);
 void add_barn_command(CLI::App& app, int& status);
+void add_map_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
     server::add_health_command(app, status);
     server::add_reproduce_command(app, status);
     server::add_barn_command(app, status);
+    server::add_map_command(app, status);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".
