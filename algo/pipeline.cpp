@@ -75,6 +75,7 @@ void Pipeline::reset(const Pose2& start_W) {
   coordinator_.reset(start_W);
   sequencer_.reset(spec_.period);
   scene_ = {};
+  merge_.reset();
   scan_stamp_.reset();
   clearance_ = 0;
   joystick_ = {};
@@ -135,11 +136,13 @@ void Pipeline::sense(Telemetry& t) {
   for (const LaserScan& scan : t.observation.scans) {
     if (front == nullptr && std::abs(scan.mount_R.heading) <= std::numbers::pi / 2) front = &scan;
   }
+  merge_.take(t.observation);
   scene_.fresh = front != nullptr;
   if (front != nullptr) {
     const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
     filter_.apply(filter_kind_, half_width, *front, scene_.scan);
     scan_stamp_ = front->stamp;
+    merge_.enter(t.observation.odometry.pose, t.observation.stamp, scene_.scan);
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
   } else {

@@ -6,6 +6,7 @@
 
 #include "algo/filter.hpp"
 #include "algo/reactive.hpp"
+#include "algo/sensor_merge.hpp"
 #include "algo/sequencing.hpp"
 #include "algo/telemetry.hpp"
 
@@ -53,6 +54,7 @@ class Pipeline {
   BehaviourCoordinator coordinator_{};
   Sequencer sequencer_{};
   Scene scene_{};
+  SensorMerge merge_{};
   bool by_sonar_ = false;               // the ring stands in for the scanner
   std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
   double clearance_ = 0;                // [m] of the newest scan

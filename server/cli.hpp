@@ -33,6 +33,7 @@ void add_emulate_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_doctor_command(CLI::App& app, int& status);
 void add_lms200_command(CLI::App& app, int& status);
+void add_map_command(CLI::App& app, int& status);
 
 /// Options that several commands share.
 struct RunFlags {

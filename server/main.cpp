@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
     server::add_compare_command(app, status);
     server::add_doctor_command(app, status);
     server::add_lms200_command(app, status);
+    server::add_map_command(app, status);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".

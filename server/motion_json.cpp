@@ -22,7 +22,8 @@ sim::DriveConfig drive_from_json(const JsonReader& in) {
            "delay_ticks",
            "yaw_slip",
            "odometry_scale",
-           "odometry_noise"});
+           "odometry_noise",
+           "odometry_slip"});
   const auto limit = [&](const char* key) -> std::optional<double> {
     if (!in.has(key)) return std::nullopt;
     return in.number(key, {1e-3, 100});
@@ -37,6 +38,7 @@ sim::DriveConfig drive_from_json(const JsonReader& in) {
   drive.yaw_slip = in.number_or("yaw_slip", 0, {0, 0.9});
   drive.odometry_scale = in.number_or("odometry_scale", 0, {0, 0.5});
   drive.odometry_noise = in.number_or("odometry_noise", 0, {0, 0.5});
+  drive.odometry_slip = in.number_or("odometry_slip", 0, {0, 0.9});
   return drive;
 }
 
@@ -45,7 +47,8 @@ json to_json(const sim::DriveConfig& drive) {
               {"delay_ticks", drive.delay_ticks},
               {"yaw_slip", drive.yaw_slip},
               {"odometry_scale", drive.odometry_scale},
-              {"odometry_noise", drive.odometry_noise}};
+              {"odometry_noise", drive.odometry_noise},
+              {"odometry_slip", drive.odometry_slip}};
   const auto put = [&](const char* key, const std::optional<double>& limit) {
     if (limit) out[key] = *limit;
   };

@@ -15,7 +15,7 @@
 #include "algo/units.hpp"
 #include "server/json_reader.hpp"
 #include "server/motion_json.hpp"
-#include "sim/sonar_model.hpp"
+#include "server/sensor_json.hpp"
 
 namespace server {
 namespace {
@@ -214,50 +214,6 @@ json to_json(const sim::LaserConfig& laser) {
     out["beams"] = std::lround(laser.field_of_view / laser.angle_increment) + 1;
   }
   return out;
-}
-
-sim::SonarConfig sonar_from_json(const JsonReader& in) {
-  in.only({"count",
-           "field_deg",
-           "cone_deg",
-           "ping",
-           "range_min",
-           "range_max",
-           "noise",
-           "incidence_deg",
-           "height"});
-  sim::SonarConfig sonar;
-  const auto degrees = [&](std::string_view key, double fallback) {
-    const double initial = fallback / algo::units::kRadiansPerDegree;
-    return in.number_or(key, initial, {0, 360}) * algo::units::kRadiansPerDegree;
-  };
-  sonar.count = static_cast<std::uint32_t>(in.whole_or("count", sonar.count, 64));
-  sonar.field = degrees("field_deg", sonar.field);
-  sonar.cone = degrees("cone_deg", sonar.cone);
-  sonar.ping = in.number_or("ping", sonar.ping);
-  sonar.range_min = in.number_or("range_min", sonar.range_min);
-  sonar.range_max = in.number_or("range_max", sonar.range_max);
-  sonar.noise = in.number_or("noise", sonar.noise);
-  sonar.incidence = degrees("incidence_deg", sonar.incidence);
-  sonar.height = in.number_or("height", sonar.height);
-  if (const auto complaint = sim::defect(sonar)) throw DocumentError("sonar", *complaint);
-  return sonar;
-}
-
-json to_json(const sim::SonarConfig& sonar) {
-  // Short numbers for whole degrees; 1e-9 degrees are no difference.
-  const auto degrees = [](double angle) {
-    return std::round(angle / algo::units::kRadiansPerDegree * 1e9) / 1e9;
-  };
-  return {{"count", sonar.count},
-          {"field_deg", degrees(sonar.field)},
-          {"cone_deg", degrees(sonar.cone)},
-          {"ping", sonar.ping},
-          {"range_min", sonar.range_min},
-          {"range_max", sonar.range_max},
-          {"noise", sonar.noise},
-          {"incidence_deg", degrees(sonar.incidence)},
-          {"height", sonar.height}};
 }
 
 void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
@@ -483,6 +439,11 @@ sim::Scenario scenario_from_json(const json& document) {
            "obstacles",
            "lasers",
            "sonar",
+           "infrared",
+           "gyro",
+           "bumpers",
+           "encoders",
+           "localization",
            "controller",
            "filter",
            "parameters",
@@ -510,7 +471,7 @@ sim::Scenario scenario_from_json(const json& document) {
       s.lasers.push_back(laser_from_json({list[i], fmt::format("lasers/{}", i)}));
     }
   }
-  if (in.has("sonar")) s.sonar = sonar_from_json(in.object("sonar"));
+  read_sensors(in, s);
   read_choices(in, s);
   s.time_limit = in.number_or("time_limit", 0, {0.0, 1e6});
   return s;
@@ -535,7 +496,7 @@ json to_json(const sim::Scenario& s) {
     out["parameters"][std::string(algo::info(parameter).name)] = value;
   }
   for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
-  if (s.sonar) out["sonar"] = to_json(*s.sonar);
+  write_sensors(s, out);
   for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));
   for (const sim::ObstaclePath& path : s.paths) {
     for (json& one : out["obstacles"]) {

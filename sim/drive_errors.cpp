@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "algo/mapping/pose_step.hpp"
+
 namespace sim {
 namespace {
 
@@ -25,6 +27,9 @@ std::optional<std::string> defect(const DriveConfig& config) {
   }
   if (config.delay_ticks > 100) return "delay_ticks must be 0 to 100";
   if (!(config.yaw_slip >= 0 && config.yaw_slip < 1)) return "yaw_slip must be 0 to below 1";
+  if (!(config.odometry_slip >= 0 && config.odometry_slip < 1)) {
+    return "odometry_slip must be 0 to below 1";
+  }
   if (!(std::abs(config.odometry_scale) < 1)) return "odometry_scale must be within -1 and 1";
   if (!(config.odometry_noise >= 0 && config.odometry_noise < 1)) {
     return "odometry_noise must be 0 to below 1";
@@ -57,12 +62,14 @@ algo::Twist2 DriveErrors::act(const algo::Twist2& command) {
 }
 
 algo::Odometry DriveErrors::report(const algo::Odometry& sound) {
-  if (config_.odometry_scale == 0 && config_.odometry_noise == 0) return sound;
-  // The way since the last report in the robot's own frame then.
-  const algo::Vec2 way_W = sound.pose.position() - sound_W_.position();
-  const algo::Vec2 ahead = algo::direction(sound_W_.heading);
-  algo::Vec2 way{ahead.dot(way_W), ahead.x() * way_W.y() - ahead.y() * way_W.x()};
-  double turn = algo::wrap_angle(sound.pose.heading - sound_W_.heading);
+  const bool drifts =
+      config_.odometry_scale != 0 || config_.odometry_noise != 0 || config_.odometry_slip != 0;
+  if (!drifts) return sound;
+  const algo::Pose2 step = algo::pose_step(sound_W_, sound.pose);
+  algo::Vec2 way = step.position();
+  // The encoders count what slipped away on the floor like the rest.
+  const double counted = 1 / (1 - config_.odometry_slip);
+  double turn = step.heading * counted;
   std::array<double, 2> draws{};
   if (config_.odometry_noise > 0) noise_.fill_normal(draws);
   // Noise of a random walk: its variance, not its deviation, grows with the way.
@@ -75,8 +82,22 @@ algo::Odometry DriveErrors::report(const algo::Odometry& sound) {
   sound_W_ = sound.pose;
   algo::Odometry out = sound;
   out.pose = reported_W_;
-  out.twist = {sound.twist.v * distance_scale_, sound.twist.omega * angle_scale_};
+  out.twist = {sound.twist.v * distance_scale_, sound.twist.omega * counted * angle_scale_};
   return out;
+}
+
+std::vector<algo::Pose2> reported_path(std::span<const algo::Pose2> path_W,
+                                       const DriveConfig& config,
+                                       std::uint64_t seed) {
+  std::vector<algo::Pose2> reported_W;
+  if (path_W.empty()) return reported_W;
+  DriveErrors errors(config, seed);
+  errors.reset(path_W.front());
+  reported_W.reserve(path_W.size());
+  for (const algo::Pose2& pose_W : path_W) {
+    reported_W.push_back(errors.report({.pose = pose_W}).pose);
+  }
+  return reported_W;
 }
 
 }  // namespace sim

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,5 +40,11 @@ class DriveErrors {
   algo::Pose2 sound_W_{};     // the last pose it was given
   algo::Pose2 reported_W_{};  // and what was made of it
 };
+
+/// `path_W` as the odometry of a base with these errors would have reported it, from the same first
+/// pose on. Delay, limits and what the base makes of commands say nothing here.
+std::vector<algo::Pose2> reported_path(std::span<const algo::Pose2> path_W,
+                                       const DriveConfig& config,
+                                       std::uint64_t seed);
 
 }  // namespace sim

@@ -59,6 +59,7 @@ struct DriveConfig {
   double yaw_slip = 0;            // share of each turn that is lost on the floor
   double odometry_scale = 0;  // error of distances and of angles, each of random sign: 0.02 = 2 %
   double odometry_noise = 0;  // standard deviation of both per metre and per radian, relative
+  double odometry_slip = 0;   // share of each turn of the wheels that the floor did not follow
   bool operator==(const DriveConfig&) const = default;
 };
 
@@ -91,6 +92,32 @@ struct SonarConfig {
   double height = 0.30;                     // [m] of the ring
 };
 
+/// An infrared range scanner, by the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams,
+/// low on the hull, where it meets what lies under the laser's plane.
+struct InfraredConfig {
+  algo::Pose2 mount_R{};
+  double height = 0.10;                         // [m] of the fan
+  std::uint32_t beams = 121;                    // over the field
+  double field = 212 * std::numbers::pi / 180;  // [rad] about the mount's heading
+  double period = 0.18;                         // [s] from one scan to the next
+  double range_min = 0.10;                      // [m] nearer things read as that
+  double range_max = 3.5;                       // [m] nothing within it: Free
+  double noise = 0.02;                          // [m] standard deviation
+};
+
+/// A yaw gyro (sensors.md 4): rate = true + bias + noise, the bias on a random walk.
+struct GyroConfig {
+  double bias = 0;       // [rad/s] standard deviation of the bias a run begins with
+  double bias_walk = 0;  // [rad/s] that it wanders off in a second, standard deviation
+  double noise = 0;      // [rad/s] standard deviation of a reading
+};
+
+/// What the odometry is made of.
+enum class Localization : std::uint8_t {
+  Encoders,  // the wheels alone
+  Gyro,      // distances from the wheels, turns from the gyro (algo/local_localization.hpp)
+};
+
 struct Scenario {
   std::string name{};  // [a-z0-9_-]+, at most 64
   std::string title{};
@@ -105,6 +132,13 @@ struct Scenario {
   std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
   std::optional<SonarConfig> sonar{};
+  std::vector<InfraredConfig> infrared{};
+  /// Absent: an ideal one with dynamics, none without.
+  std::optional<GyroConfig> gyro{};
+  bool has_gyro = true;
+  std::uint32_t bumpers = 1;  // evenly round the hull from straight ahead, each its share of it
+  bool encoders = true;
+  Localization localization = Localization::Encoders;
   std::string controller = "modified";
   std::string filter = "pseudomedian";
   std::vector<std::pair<algo::Parameter, double>> parameters{};  // where not initial

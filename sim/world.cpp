@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "algo/diff_drive.hpp"
+#include "algo/mapping/pose_step.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 
 constexpr double kLongestPeriod = 1.0;    // [s]
 constexpr double kShortestPeriod = 1e-3;  // [s]
+constexpr double kGyroRest = 2.0;         // [s] at rest before a run, for the gyro's bias
+constexpr std::uint32_t kMostBumpers = 8;
 
 bool finite(const algo::Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
@@ -104,6 +107,14 @@ void World::check() const {
   if (const auto problem = defect(scenario_.drive)) {
     throw std::invalid_argument("The scenario's drive: " + *problem + ".");
   }
+  if (scenario_.bumpers > kMostBumpers) {
+    throw std::invalid_argument("The scenario's bumpers must be 0 to 8.");
+  }
+  const bool has_gyro =
+      scenario_.has_gyro && (scenario_.gyro || scenario_.vehicle == Vehicle::Bullet);
+  if (scenario_.localization == Localization::Gyro && !has_gyro) {
+    throw std::invalid_argument("The scenario's localization needs a gyro.");
+  }
 }
 
 /// Everything as the scenario says, at time 0.
@@ -132,6 +143,12 @@ void World::start() {
     sonar_.emplace(*scenario_.sonar, parameters_.radius, seed_);
     memory = std::max(memory, scenario_.sonar->ping);
   }
+  infrared_.clear();
+  for (const InfraredConfig& config : scenario_.infrared) {
+    infrared_.emplace_back(config, seed_, static_cast<std::uint32_t>(infrared_.size()));
+    memory = std::max(memory, config.period);
+  }
+  start_localization(pose);
   const Substeps substeps(scenario_.period);
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
   trail_->reset(pose, 0);
@@ -144,6 +161,22 @@ void World::start() {
   odometry_ = {.pose = pose};
   encoders_ = {};
   touched_ = false;
+}
+
+/// As a driver does it: the gyro's bias is taken before the run, while the robot is known to stand.
+void World::start_localization(const algo::Pose2& pose_W) {
+  wheels_W_ = pose_W;
+  sensed_W_ = pose_W;
+  gyro_.reset();
+  if (scenario_.has_gyro && scenario_.gyro) gyro_.emplace(*scenario_.gyro, seed_);
+  localization_ = {};
+  if (scenario_.localization == Localization::Gyro && gyro_) {
+    const auto readings = static_cast<int>(kGyroRest / scenario_.period);
+    for (int k = 0; k < readings; ++k) {
+      localization_.update({}, gyro_->read(0, scenario_.period), scenario_.period);
+    }
+  }
+  localization_.reset(pose_W);
 }
 
 void World::reset(algo::Observation& observation) {
@@ -176,6 +209,7 @@ void World::place(std::size_t index, const algo::Pose2& pose_W) {
   vehicle_->moved(index, obstacles_[index]);
   for (LaserModel& laser : lasers_) laser.move(obstacles_[index].id, pose_W);
   if (sonar_) sonar_->move(obstacles_[index].id, pose_W);
+  for (InfraredModel& scanner : infrared_) scanner.move(obstacles_[index].id, pose_W);
 }
 
 void World::sense(algo::Observation& observation) {
@@ -188,6 +222,8 @@ void World::sense(algo::Observation& observation) {
     if (!laser.sense(now, *trail_, observation.scans.append())) observation.scans.pop_back();
   }
   if (sonar_) sonar_->sense(now, *trail_, observation.sonar);
+  for (InfraredModel& scanner : infrared_) scanner.sense(now, *trail_, observation.infrared);
+  sense_contact(observation);
 }
 
 /// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
@@ -210,15 +246,64 @@ void World::sense_motion(algo::Observation& observation) {
     odometry_.twist = algo::forward_kinematics(
         geometry,
         {static_cast<double>(moved.left) * radians, static_cast<double>(moved.right) * radians});
-    observation.gyro = algo::YawGyro{now, state.twist.omega};
     observation.inclinometer = algo::Inclinometer{now, state.roll, state.pitch};
   }
   odometry_.stamp = now;
   encoders_ = {now, left, right};
   observation.odometry = errors_.report(odometry_);
-  observation.encoders = encoders_;
-  observation.bumpers.append() = {
-      .mount_R = {parameters_.radius, 0, 0}, .stamp = now, .pressed = state.contact};
+  if (scenario_.encoders) observation.encoders = encoders_;
+  sense_turn(observation);
+}
+
+/// The gyro, and the odometry made of it where the scenario has it so. A gyro of the scenario's own
+/// reads the mean rate since the tick before.
+void World::sense_turn(algo::Observation& observation) {
+  const VehicleState& state = vehicle_->state();
+  const double turned = algo::wrap_angle(state.pose_W.heading - sensed_W_.heading);
+  sensed_W_ = state.pose_W;
+  const algo::Pose2 wheels_R = algo::pose_step(wheels_W_, observation.odometry.pose);
+  wheels_W_ = observation.odometry.pose;
+  if (gyro_) {
+    const double rate = gyro_->read(turned / scenario_.period, scenario_.period);
+    observation.gyro = algo::YawGyro{observation.stamp, rate};
+  } else if (scenario_.has_gyro && scenario_.vehicle == Vehicle::Bullet) {
+    observation.gyro = algo::YawGyro{observation.stamp, state.twist.omega};
+  }
+  if (scenario_.localization != Localization::Gyro) return;
+  const double rate = observation.gyro->rate;
+  if (tick_ > 0) localization_.update(wheels_R, rate, scenario_.period);
+  observation.odometry.pose = localization_.pose_W();
+  observation.odometry.twist.omega = rate - localization_.bias();
+}
+
+/// [rad] In R, of the surface nearest to the robot's centre: against the slope of the distance.
+double World::contact_bearing() const {
+  constexpr double kStep = 1e-4;  // [m]
+  const algo::Pose2& pose_W = vehicle_->state().pose_W;
+  const algo::Vec2 p_W = pose_W.position();
+  const auto slope = [&](const algo::Vec2& step) {
+    return obstacles_.distance(p_W + step) - obstacles_.distance(p_W - step);
+  };
+  const double bearing = std::atan2(-slope({0, kStep}), -slope({kStep, 0}));
+  return algo::wrap_angle(bearing - pose_W.heading);
+}
+
+/// A contact presses the bumper whose share of the hull it lies in.
+void World::sense_contact(algo::Observation& observation) {
+  if (scenario_.bumpers == 0) return;
+  const bool contact = vehicle_->state().contact;
+  const double share = 2 * std::numbers::pi / scenario_.bumpers;
+  const double bearing = contact && scenario_.bumpers > 1 ? contact_bearing() : 0;
+  const auto pressed =
+      static_cast<std::uint32_t>(std::lround(bearing / share) + scenario_.bumpers) %
+      scenario_.bumpers;
+  for (std::uint32_t k = 0; k < scenario_.bumpers; ++k) {
+    const double heading = algo::wrap_angle(share * k);
+    const algo::Vec2 place = parameters_.radius * algo::direction(heading);
+    observation.bumpers.append() = {.mount_R = {place.x(), place.y(), heading},
+                                    .stamp = observation.stamp,
+                                    .pressed = contact && k == pressed};
+  }
 }
 
 std::optional<algo::GroundTruth> World::ground_truth() const {
@@ -271,6 +356,7 @@ std::optional<std::string> World::add(const algo::Obstacle& obstacle) {
   vehicle_->added(obstacle);
   for (LaserModel& laser : lasers_) laser.add(obstacle);
   if (sonar_) sonar_->add(obstacle);
+  for (InfraredModel& scanner : infrared_) scanner.add(obstacle);
   return std::nullopt;
 }
 
@@ -294,6 +380,7 @@ std::optional<std::string> World::remove(std::uint32_t id) {
   vehicle_->removed(*index);
   for (LaserModel& laser : lasers_) laser.remove(id);
   if (sonar_) sonar_->remove(id);
+  for (InfraredModel& scanner : infrared_) scanner.remove(id);
   return std::nullopt;
 }
 

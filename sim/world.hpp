@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "algo/local_localization.hpp"
 #include "algo/robot.hpp"
 #include "sim/drive_errors.hpp"
+#include "sim/gyro_model.hpp"
+#include "sim/infrared_model.hpp"
 #include "sim/laser_model.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/pacer.hpp"
@@ -42,6 +45,7 @@ class World final : public algo::Robot {
  private:
   void check() const;
   void start();
+  void start_localization(const algo::Pose2& pose_W);
   std::optional<std::string> add(const algo::Obstacle& obstacle);
   std::optional<std::string> move(std::uint32_t id, const algo::Pose2& pose_W);
   std::optional<std::string> remove(std::uint32_t id);
@@ -50,6 +54,9 @@ class World final : public algo::Robot {
   void place(std::size_t index, const algo::Pose2& pose_W);
   void sense(algo::Observation& observation);
   void sense_motion(algo::Observation& observation);
+  void sense_turn(algo::Observation& observation);
+  void sense_contact(algo::Observation& observation);
+  double contact_bearing() const;
 
   Scenario scenario_{};
   std::uint64_t seed_ = 0;
@@ -62,9 +69,14 @@ class World final : public algo::Robot {
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<LaserModel> lasers_{};
   std::optional<SonarModel> sonar_{};
+  std::vector<InfraredModel> infrared_{};
+  std::optional<GyroModel> gyro_{};
+  algo::LocalLocalization localization_{};
   std::unique_ptr<PoseTrail> trail_{};
   DriveErrors errors_;
   algo::Odometry odometry_{};  // without the drift
+  algo::Pose2 wheels_W_{};     // with it, by the wheels alone
+  algo::Pose2 sensed_W_{};     // the true pose at the tick before
   algo::Encoders encoders_{};
   std::uint64_t tick_ = 0;
   bool touched_ = false;  // something happened since start()

@@ -50,6 +50,7 @@ class RollingGrid {
     const int dj = next.j - first_.j;
     const Cell before = first_;
     first_ = next;
+    ring_ = {wrapped(next.i), wrapped(next.j)};
     if (std::abs(di) >= side_ || std::abs(dj) >= side_) {
       clear();
       return;
@@ -78,8 +79,14 @@ class RollingGrid {
     return static_cast<int>(std::clamp(std::floor(x / edge_), -kFarthest, kFarthest));
   }
   int wrapped(int k) const { return (k % side_ + side_) % side_; }
+  /// A covered cell is less than a turn of the ring from the first: no division.
+  int turned(int k, int first, int at) const {
+    const int place = k - first + at;
+    return place < side_ ? place : place - side_;
+  }
   std::size_t place(Cell c) const {
-    return static_cast<std::size_t>(wrapped(c.j) * side_ + wrapped(c.i));
+    return static_cast<std::size_t>(turned(c.j, first_.j, ring_.j) * side_ +
+                                    turned(c.i, first_.i, ring_.i));
   }
   void clear_column(int i) {
     for (int j = first_.j; j < first_.j + side_; ++j) (*this)[{i, j}] = T{};
@@ -91,6 +98,7 @@ class RollingGrid {
   double edge_ = 0;  // [m]
   int side_ = 0;
   Cell first_{};  // the covered cell of least i and j
+  Cell ring_{};   // its column and row in memory
   std::vector<T> cells_{};
 };
 

@@ -74,6 +74,30 @@ void SvgPlot::polyline(std::span<const algo::Vec2> points_W, std::string_view st
   body_ += fmt::format("<polyline points=\"{}\" fill=\"none\" {}/>\n", points(points_W), style);
 }
 
+void SvgPlot::cells(const algo::Vec2& corner_W,
+                    double cell,
+                    std::span<const CellRun> runs,
+                    std::string_view colour) {
+  // One path in whole numbers, each run from the end of the one before; half a cell up because a
+  // stroke lies on both sides of its line.
+  const algo::Vec2 p = pixel(corner_W + algo::Vec2(0, cell / 2));
+  body_ += fmt::format("<path transform=\"translate({:.2f} {:.2f}) scale({:.4f} -{:.4f})\" "
+                       "stroke=\"{}\" stroke-width=\"1.05\" d=\"",
+                       p.x(),
+                       p.y(),
+                       cell * scale_,
+                       cell * scale_,
+                       colour);
+  int x = 0;
+  int y = 0;
+  for (const CellRun& run : runs) {
+    body_ += fmt::format("m{} {}h{}", run.column - x, run.row - y, run.length);
+    x = run.column + run.length;
+    y = run.row;
+  }
+  body_ += "\"/>\n";
+}
+
 void SvgPlot::text(const algo::Vec2& at_W, std::string_view words) {
   const algo::Vec2 p = pixel(at_W);
   body_ += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", p.x(), p.y(), escaped(words));

@@ -10,6 +10,13 @@
 
 namespace server::reproduce {
 
+/// Cells of a grid side by side in a row.
+struct CellRun {
+  int column = 0;
+  int row = 0;
+  int length = 0;
+};
+
 /// Shapes in metres of W, drawn with x to the right and y up. What is drawn later lies on top.
 class SvgPlot {
  public:
@@ -23,6 +30,11 @@ class SvgPlot {
   void circle(const algo::Vec2& centre_W, double radius, std::string_view style);
   void polygon(std::span<const algo::Vec2> points_W, std::string_view style);
   void polyline(std::span<const algo::Vec2> points_W, std::string_view style);
+  /// Runs of cells of edge `cell` [m], counted from `corner_W`, filled with `colour`.
+  void cells(const algo::Vec2& corner_W,
+             double cell,
+             std::span<const CellRun> runs,
+             std::string_view colour);
   void text(const algo::Vec2& at_W, std::string_view words);
   /// The next line of the legend: a stroke in `style` and its meaning.
   void legend(std::string_view style, std::string_view words);

@@ -62,6 +62,11 @@ TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
         R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
         R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
         R"("range_min":0.2,"range_max":1,"noise":0,"incidence_deg":50,"height":0.2}})",
+        R"({"name":"f","infrared":[{},{"mount":{"x":-0.3,"y":0,"heading":3},"height":0.2,"beams":31,)"
+        R"("field_deg":180,"period":0.1,"range_min":0,"range_max":2,"noise":0}],)"
+        R"("gyro":{"bias":0.01,"bias_walk":0.001,"noise":0.002},"bumpers":3,"encoders":false,)"
+        R"("localization":"gyro","drive":{"odometry_slip":0.05}})",
+        R"({"name":"f","gyro":false,"bumpers":0})",
         R"({"name":"g","obstacles":[{"type":"box","x":1,"y":1,"heading":0.3,"length":0.6,)"
         R"("width":0.4,"height":0.2,"reflectivity":0.5,"specular":true},)"
         R"({"type":"polygon","points":[[0.1,0],[1.3,0.1],[1,1.7]]},)"

@@ -54,6 +54,22 @@ test("what a controller weighs is read back, from wherever the bytes lie", () =>
   }
 });
 
+test("readings of sonar and infrared stay where they were taken until they are old", () => {
+  const scene = new_scene();
+  const reading = (range: number) => ({ mount: { x: 0.5, y: 0, heading: 0.25 }, range, status: 0 });
+  fold_frame(scene, { ...frame({ tick: 1, stamp: 0.1, pose: [1, 2, 0] }), infrared: [reading(2)] });
+  fold_frame(scene, { ...frame({ tick: 2, stamp: 0.2, pose: [2, 2, 0] }), sonar: [reading(3)] });
+  const [first, second] = [...scene.readings.values()];
+  assert.deepEqual(first, { kind: "infrared", origin: { x: 1.5, y: 2, heading: 0.25 }, range: 2, hit: true, stamp: 0.1 });
+  assert.equal(second.kind, "sonar");
+  fold_frame(scene, { ...frame({ tick: 3, stamp: 0.3, pose: [3, 2, 0] }), infrared: [reading(1)] });
+  assert.equal(scene.readings.size, 2);
+  fold_frame(scene, frame({ tick: 4, stamp: 1.25, pose: [3, 2, 0] }));
+  assert.deepEqual([...scene.readings.values()].map((r) => r.range), [1]);
+  fold_frame(scene, frame({ tick: 1, stamp: 0, pose: [1, 2, 0] })); // a new run
+  assert.equal(scene.readings.size, 0);
+});
+
 test("a grid holds until another comes, or another run", () => {
   const scene = new_scene();
   const grid = { corner: [0, 0] as [number, number], cell: 0.1, columns: 1, cells: [254] };

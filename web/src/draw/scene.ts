@@ -5,6 +5,7 @@ import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
 import { SceneState, robot_pose } from "../state/scene";
 import { Palette } from "./palette";
+import { draw_bumpers, draw_ranging } from "./ranging";
 import { draw_goal, draw_robot, draw_safety, draw_truth } from "./robot";
 import { draw_fan, draw_nearest, draw_returns } from "./sensing";
 import { draw_forces, draw_path, draw_strip } from "./strip";
@@ -52,6 +53,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
   for (const sweep of scene.sweeps) draw_returns(g, view, palette, sweep);
+  draw_ranging(g, view, palette, scene.readings);
   if (scene.grid && f?.goal) draw_cells(g, view, palette, scene.grid);
   const path = overlay.path_colour ?? palette.path;
   if (overlay.future) {
@@ -68,6 +70,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   if (f) draw_plan(g, view, palette, f);
   if (f) draw_histogram(g, view, palette, f);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
+  if (f) draw_bumpers(g, view, palette, f, scene.radius);
   if (f) draw_candidates(g, view, palette, f);
   if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius);

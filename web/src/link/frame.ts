@@ -66,7 +66,8 @@ export interface Frame {
   sweeps: Sweep[];          // only those new in this tick
   sonar: RangeReading[];
   infrared: RangeReading[];
-  bumper: boolean;
+  bumper: boolean;          // one of the bumpers is pressed
+  bumpers: { mount: Pose; pressed: boolean }[];
   requests: FrameRequest[]; // applied before this tick
   command: { v: number; omega: number };
   truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
@@ -132,6 +133,10 @@ export function decode_frame(bytes: Uint8Array): Frame {
     sweeps: list(f.scansLength(), (i) => sweep(f.scans(i)!)),
     sonar: list(f.sonarLength(), (i) => reading(f.sonar(i)!)),
     infrared: list(f.infraredLength(), (i) => reading(f.infrared(i)!)),
+    bumpers: list(f.bumpersLength(), (i) => {
+      const bumper = f.bumpers(i)!;
+      return { mount: pose(bumper.mount()), pressed: bumper.pressed() };
+    }),
     bumper: list(f.bumpersLength(), (i) => f.bumpers(i)!.pressed()).includes(true),
     requests: requests(f),
     command: { v: command?.v() ?? 0, omega: command?.omega() ?? 0 },

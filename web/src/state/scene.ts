@@ -8,6 +8,7 @@ import { Frame, FrameRequest, Goal, GridLayer, Sweep, kMaxRange } from "../link/
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
+import { PlacedReadings, place_readings } from "./ranging";
 
 /** A sweep where it was taken. Points are worked out when first drawn, not per message. */
 export interface PlacedSweep {
@@ -23,7 +24,8 @@ export interface SweepPoints { raw: Float32Array; filtered: Float32Array; end: F
 
 export interface SceneState {
   frame: Frame | null;
-  sweeps: PlacedSweep[];
+  sweeps: PlacedSweep[];    // the newest of each scanner
+  readings: PlacedReadings; // of sonar and infrared
   grid: GridLayer | null; // the controller's newest
   columns: Columns;
   rows: number;           // of columns that have happened at the shown instant
@@ -45,7 +47,7 @@ export interface SceneState {
 
 export function new_scene(most_rows = Infinity): SceneState {
   return {
-    frame: null, sweeps: [], grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
+    frame: null, sweeps: [], readings: new Map(), grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
     goal: null, radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
     events: new EventLog(), run: null, world: true,
   };
@@ -55,6 +57,7 @@ export function new_scene(most_rows = Infinity): SceneState {
 export function begin_run(scene: SceneState): void {
   scene.frame = null;
   scene.sweeps = [];
+  scene.readings.clear();
   scene.grid = null;
   scene.columns.clear();
   scene.rows = 0;
@@ -99,17 +102,25 @@ export function show_frame(scene: SceneState, f: Frame): void {
   scene.grid = f.grid ?? scene.grid;
   if (scene.paths.length > 0) scene.obstacles = moved_along(scene.obstacles, scene.paths, f.stamp);
   place_sweeps(scene, f);
+  place_readings(scene.readings, f);
 }
+
+const same = (a: Pose, b: Pose): boolean =>
+  a.x === b.x && a.y === b.y && a.heading === b.heading;
 
 export function place_sweeps(scene: SceneState, f: Frame): void {
   if (f.sweeps.length === 0) return;
-  scene.sweeps = f.sweeps.map((sweep) => ({
+  // Scanners deliver when they are ready, each in its own phase: the others' sweeps stay.
+  const others = scene.sweeps.filter((old) => old.sweep.stamp <= f.stamp &&
+    !f.sweeps.some((sweep) => same(sweep.mount, old.sweep.mount)));
+  const fresh = f.sweeps.map((sweep) => ({
     sweep,
     origin: compose(f.pose, sweep.mount),
     filter: scene.filter,
     half_width: scene.half_width,
     points: null,
   }));
+  scene.sweeps = [...others, ...fresh];
 }
 
 /** Obstacles after `request`, as a new list; the old one when it changes nothing. */

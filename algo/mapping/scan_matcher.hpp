@@ -1,0 +1,181 @@
+// algo/mapping/scan_matcher.hpp: where a robot must stand for its scan to lie on the walls of a
+// map.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A piece of wall in a map.
+struct Surface {
+  Vec2 on_W{0, 0};      // [m] a point of it
+  Vec2 normal_W{1, 0};  // unit
+};
+
+/// Weighted moments of points near each other, and the line through them.
+class SurfaceFit {
+ public:
+  void add(const Vec2& point, double weight);
+  /// The line of least squares; nothing when the points are too few or too round a heap for one.
+  std::optional<Surface> line() const;
+
+ private:
+  std::size_t count_ = 0;
+  double weight_ = 0;
+  Vec2 sum_{0, 0};
+  double xx_ = 0, xy_ = 0, yy_ = 0;
+};
+
+/// How far the odometry is believed, as if so many points said the same as it does.
+struct MatchPrior {
+  double position = 4;  // points
+  double heading = 8;   // points x m2
+};
+
+struct ScanMatch {
+  Pose2 pose_W{};        // of R
+  double share = 0;      // of the scan's points that found a surface
+  double deviation = 0;  // [m] root mean square from their surfaces
+};
+
+/// Point-to-line ICP (Chen and Medioni 1992; Censi 2008) with a correlative search before it where
+/// the odometry is too far off (Olson 2009). Minimises over the pose of R
+///
+///   sum_i rho(n_i . (T p_i - c_i)) + prior: w_p |t - t0|^2 + w_h (heading - heading0)^2
+///
+/// with (c_i, n_i) the line through the map's points around T p_i, found anew in each step, in
+/// squares that shrink; rho is Geman and McClure's. Allocates only while scans grow; the same input
+/// gives the same pose bit for bit.
+///
+/// A Map has `each_near(p_W, reach, see)`: LocalMap and OccupancyMap.
+class ScanMatcher {
+ public:
+  /// Takes the scan to be matched: its Ok beams up to `reach` [m], thinned to kSpacing apart, so
+  /// that near walls do not outvote far ones.
+  void take(const LaserScan& scan, double reach);
+  std::size_t points() const { return points_R_.size(); }
+
+  /// The pose near `guess_W` in which the scan lies on the map best; `guess_W` itself when the map
+  /// says nothing.
+  template <typename Map>
+  ScanMatch match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const;
+
+  /// The pose of the window about `guess_W` in which most points lie on the map: coarse, for a
+  /// match to begin at.
+  template <typename Map>
+  Pose2 search(const Map& map, const Pose2& guess_W) const;
+
+ private:
+  static constexpr double kSpacing = 0.08;                           // [m] between two points
+  static constexpr std::size_t kFewest = 20;                         // points
+  static constexpr std::array<double, 3> kReaches{0.5, 0.25, 0.15};  // [m] half edge of the square
+  static constexpr int kIterations = 8;                              // at most, of each
+  static constexpr double kSettled = 1e-4;                           // [m] and [rad]
+  static constexpr double kWindow = 0.6;       // [m] of the search, either way
+  static constexpr double kWindowStep = 0.1;   // [m]
+  static constexpr double kTurnWindow = 0.26;  // [rad]
+  static constexpr double kTurnStep = 0.02;    // [rad]
+  static constexpr std::size_t kSearched = 3;  // every third point
+
+  /// Normal equations of one Gauss-Newton step about `pose_W`.
+  class Step {
+   public:
+    Step(const Pose2& pose_W, const Pose2& guess_W, const MatchPrior& prior);
+    void add(const Vec2& p_W, const Surface& surface, double scale);
+    /// The pose a step on; the same when the equations do not say where.
+    Pose2 taken() const;
+    std::size_t used() const { return used_; }
+    double deviation() const { return used_ > 0 ? std::sqrt(squares_ / weight_) : 0; }
+
+   private:
+    Pose2 pose_W_{};
+    Eigen::Matrix3d h_ = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d g_ = Eigen::Vector3d::Zero();
+    std::size_t used_ = 0;
+    double weight_ = 0;
+    double squares_ = 0;  // [m2]
+  };
+
+  template <typename Map>
+  static std::optional<Surface> surface_near(const Map& map, const Vec2& p_W, double reach) {
+    SurfaceFit fit;
+    map.each_near(p_W, reach, [&](const Vec2& point_W) {
+      const double near = 1 - (point_W - p_W).squaredNorm() / (reach * reach);
+      if (near > 0) fit.add(point_W, near);
+    });
+    return fit.line();
+  }
+
+  /// How many of the points searched with have something of the map about them.
+  template <typename Map>
+  std::size_t lying_on(const Map& map, const Pose2& pose_W) const;
+
+  std::vector<Vec2> points_R_{};
+};
+
+template <typename Map>
+ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const {
+  ScanMatch found{guess_W, 0, 0};
+  if (points_R_.size() < kFewest) return found;
+  for (const double reach : kReaches) {
+    for (int k = 0; k < kIterations; ++k) {
+      Step step(found.pose_W, guess_W, prior);
+      for (const Vec2& p_R : points_R_) {
+        const Vec2 p_W = to_parent(found.pose_W, p_R);
+        if (const auto surface = surface_near(map, p_W, reach)) step.add(p_W, *surface, reach / 3);
+      }
+      found.share = static_cast<double>(step.used()) / static_cast<double>(points_R_.size());
+      found.deviation = step.deviation();
+      if (step.used() < kFewest) return {guess_W, found.share, found.deviation};
+      const Pose2 before = std::exchange(found.pose_W, step.taken());
+      const double moved = (found.pose_W.position() - before.position()).norm();
+      const double turned = std::abs(wrap_angle(found.pose_W.heading - before.heading));
+      if (moved < kSettled && turned < kSettled) break;
+    }
+  }
+  return found;
+}
+
+template <typename Map>
+std::size_t ScanMatcher::lying_on(const Map& map, const Pose2& pose_W) const {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < points_R_.size(); k += kSearched) {
+    bool met = false;
+    map.each_near(
+        to_parent(pose_W, points_R_[k]), kWindowStep / 2, [&](const Vec2&) { met = true; });
+    count += met ? 1 : 0;
+  }
+  return count;
+}
+
+template <typename Map>
+Pose2 ScanMatcher::search(const Map& map, const Pose2& guess_W) const {
+  const int turns = static_cast<int>(kTurnWindow / kTurnStep);
+  const int steps = static_cast<int>(kWindow / kWindowStep);
+  Pose2 best = guess_W;
+  std::size_t most = lying_on(map, guess_W);
+  for (int a = -turns; a <= turns; ++a) {
+    for (int i = -steps; i <= steps; ++i) {
+      for (int j = -steps; j <= steps; ++j) {
+        const Pose2 pose_W{guess_W.x + i * kWindowStep,
+                           guess_W.y + j * kWindowStep,
+                           wrap_angle(guess_W.heading + a * kTurnStep)};
+        const std::size_t count = lying_on(map, pose_W);
+        if (count <= most) continue;
+        most = count;
+        best = pose_W;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace algo

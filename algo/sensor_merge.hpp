@@ -1,0 +1,54 @@
+// algo/sensor_merge.hpp: what the sonar ring and the infrared scanners returned, entered into the
+// front scan where its scanner did not see it.
+#pragma once
+
+#include <cstddef>
+
+#include "algo/observation.hpp"
+#include "algo/recycled.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// What is low, high or transparent lies outside a laser's plane. Entered into the scan, the
+/// returns of the other sensors are obstacles to all that look at the scan: the search for the
+/// nearest point on either side, the forces, the side choice, maps and clearances.
+///
+/// A reading holds until its sensor's beam is read again, for kMemory at most, fixed to W. It is
+/// explained, and left out, when the laser returns from as near within the sensor's beam: a sonar
+/// does not know where in its cone the echo came from, so that its axis would be a guess. Otherwise
+/// it stands in for the beams within kHalfBeam of its axis. Allocates only while sensors appear.
+class SensorMerge {
+ public:
+  static constexpr double kMemory = 0.5;       // [s]
+  static constexpr double kHalfBeam = 0.0175;  // [rad] 1 degree: infrared, and what is filled in
+  static constexpr double kHalfCone = 0.2618;  // [rad] 15 degrees: sonar
+  static constexpr double kAsNear = 0.15;      // [m] a laser return may be farther and explain it
+
+  void reset() { kept_.clear(); }
+
+  /// Takes this tick's readings, of a robot at `observation.odometry`.
+  void take(const Observation& observation);
+
+  /// Enters into `scan`, of a robot at `pose_W` at `now` [s, run clock], what is not explained.
+  void enter(const Pose2& pose_W, double now, LaserScan& scan);
+
+ private:
+  struct Kept {
+    Pose2 mount_R{};
+    double half_width = 0;  // [rad]
+    double stamp = 0;       // [s] run clock
+    bool hit = false;
+    Vec2 point_W{0, 0};
+    double range = 0, bearing = 0;  // [m], [rad] from the scanner that it is entered for,
+    bool missed = false;            // which did not see it
+  };
+  static bool explained(const Kept& kept, const LaserScan& scan);
+  Kept& place_of(const Pose2& mount_R, double half_width);
+  void take(const Recycled<RangeReading>& readings, const Pose2& pose_W, double half_width);
+
+  Recycled<Kept> kept_{};   // one a sensor's beam
+  std::size_t cursor_ = 0;  // where the next reading is looked for first: they come in one order
+};
+
+}  // namespace algo

@@ -1,0 +1,41 @@
+// sim/gyro_model.cpp: a bias that wanders, and noise.
+#include "sim/gyro_model.hpp"
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+namespace sim {
+namespace {
+
+constexpr std::uint64_t kPurpose = 0x4759524f;  // of its errors: no other sensor's
+
+}  // namespace
+
+std::optional<std::string> defect(const GyroConfig& config) {
+  const auto within = [](double value) { return value >= 0 && value <= 1; };  // false for NaN
+  if (!within(config.bias)) return "bias must be 0 to 1 rad/s";
+  if (!within(config.bias_walk)) return "bias_walk must be 0 to 1 rad/s";
+  if (!within(config.noise)) return "noise must be 0 to 1 rad/s";
+  return std::nullopt;
+}
+
+GyroModel::GyroModel(const GyroConfig& config, std::uint64_t seed)
+    : config_(config), random_(seed, kPurpose) {
+  if (const auto problem = defect(config)) {
+    throw std::invalid_argument("Gyro: " + *problem + ".");
+  }
+  double draw = 0;
+  random_.fill_normal(std::span(&draw, 1));
+  bias_ = config_.bias * draw;
+}
+
+double GyroModel::read(double rate, double dt) {
+  std::array<double, 2> draws{};
+  random_.fill_normal(draws);
+  bias_ += config_.bias_walk * std::sqrt(dt) * draws[0];
+  return rate + bias_ + config_.noise * draws[1];
+}
+
+}  // namespace sim

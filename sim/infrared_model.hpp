@@ -1,0 +1,50 @@
+// sim/infrared_model.hpp: what an infrared range scanner reports of a world.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/observation.hpp"
+#include "algo/obstacle.hpp"
+#include "sim/pose_trail.hpp"
+#include "sim/random.hpp"
+#include "sim/range_caster.hpp"
+#include "sim/scenario.hpp"
+
+namespace sim {
+
+/// What is wrong with the configuration as a sentence part, or nothing.
+std::optional<std::string> defect(const InfraredConfig& config);
+
+/// Scan n is taken at (n + phase) x period [s, run clock], all beams at once; the phase is drawn
+/// once a run, so that two scanners do not fire together.
+class InfraredModel {
+ public:
+  /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
+  InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index);
+
+  const InfraredConfig& config() const { return config_; }
+  void add(const algo::Obstacle& obstacle) { caster_.add(obstacle); }
+  void move(std::uint32_t id, const algo::Pose2& pose_W) { caster_.move(id, pose_W); }
+  void remove(std::uint32_t id) { caster_.remove(id); }
+
+  /// Appends the readings of the newest scan taken by `now` [s, run clock], unless it was reported
+  /// before.
+  void sense(double now, const PoseTrail& trail, algo::Recycled<algo::RangeReading>& readings);
+
+ private:
+  InfraredConfig config_{};
+  BeamPattern fan_{};
+  RangeCaster caster_;
+  Random noise_;
+  double phase_ = 0;                     // [s]
+  std::int64_t scans_ = 0;               // reported, or passed over
+  std::vector<algo::Pose2> mounts_R_{};  // of the beams
+  std::vector<double> ranges_{};
+  std::vector<std::uint32_t> hits_{};
+  std::vector<double> errors_{};
+};
+
+}  // namespace sim

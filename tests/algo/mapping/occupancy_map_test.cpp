@@ -1,0 +1,73 @@
+// tests/algo/mapping/occupancy_map_test.cpp: what beams leave in the cells.
+#include "algo/mapping/occupancy_map.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::LaserScan;
+using algo::OccupancyMap;
+using algo::Vec2;
+
+/// One beam ahead; a second one, without a reading, so that there is a step between two.
+LaserScan beam(double range) {
+  LaserScan scan;
+  scan.angle_increment = 0.1;
+  scan.range_max = 8;
+  scan.resize(2);
+  scan.set_ok(0, range);
+  scan.set_invalid(1, algo::BeamCode::NoEcho);
+  return scan;
+}
+
+/// Columns about the origin, which is in the middle: 20 are to the left of it.
+const OccupancyMap::Tally& ahead(const OccupancyMap& map, double x) {
+  const Vec2 off = (Vec2(x, 0.01) - map.corner_W()) / map.cell_edge();
+  return map.at(static_cast<int>(off.x()), static_cast<int>(off.y()));
+}
+
+TEST(OccupancyMap, ABeamPassesThroughCellsAndHitsTheLast) {
+  OccupancyMap map(0.1, 41, {0, 0});
+  map.insert(beam(1.02), {0.05, 0.01, 0}, 8);
+  EXPECT_EQ(ahead(map, 1.05).hits, 1);
+  EXPECT_EQ(ahead(map, 1.05).passes, 0);
+  for (double x : {0.05, 0.15, 0.55, 0.95}) {
+    EXPECT_EQ(ahead(map, x).passes, 1) << x;
+    EXPECT_EQ(ahead(map, x).hits, 0) << x;
+  }
+  EXPECT_FALSE(ahead(map, 1.15).known());
+}
+
+TEST(OccupancyMap, ReturnsBeyondReachClearTheWayOnly) {
+  OccupancyMap map(0.1, 41, {0, 0});
+  map.insert(beam(1.5), {0, 0.01, 0}, 1.0);
+  EXPECT_EQ(ahead(map, 0.55).passes, 1);
+  EXPECT_FALSE(ahead(map, 1.5).known());
+}
+
+TEST(OccupancyMap, WhatWentAwayIsNoLongerOccupied) {
+  OccupancyMap map(0.1, 41, {0, 0});
+  for (int k = 0; k < 3; ++k) map.insert(beam(1.05), {0, 0.01, 0}, 8);
+  EXPECT_TRUE(ahead(map, 1.05).occupied());
+  EXPECT_EQ(ahead(map, 1.05).occupancy(), 1);
+  for (int k = 0; k < 20; ++k) map.insert(beam(1.85), {0, 0.01, 0}, 8);
+  EXPECT_FALSE(ahead(map, 1.05).occupied());
+  EXPECT_NEAR(ahead(map, 1.05).occupancy(), 3.0 / 23, 1e-12);
+}
+
+TEST(OccupancyMap, TellsOccupiedCellsByTheMeanOfTheirHits) {
+  OccupancyMap map(0.1, 41, {0, 0});
+  map.insert(beam(1.02), {0, 0.01, 0}, 8);
+  map.insert(beam(1.06), {0, 0.01, 0}, 8);
+  std::vector<Vec2> seen;
+  map.each_near({1, 0}, 0.2, [&](const Vec2& p_W) { seen.push_back(p_W); });
+  ASSERT_EQ(seen.size(), 1U);
+  EXPECT_NEAR(seen[0].x(), 1.04, 1e-6);
+  EXPECT_NEAR(seen[0].y(), 0.01, 1e-6);
+  map.each_near({100, 100}, 0.2, [&](const Vec2& p_W) { seen.push_back(p_W); });
+  EXPECT_EQ(seen.size(), 1U);
+}
+
+}  // namespace

@@ -1,0 +1,36 @@
+// web/src/state/ranging.ts: the newest readings of the sonar ring and the infrared scanners, where
+// they were taken.
+import { Pose, compose } from "../geometry";
+import { Frame, RangeReading } from "../link/frame";
+
+export type RangeKind = "sonar" | "infrared";
+
+export interface PlacedReading {
+  kind: RangeKind;
+  origin: Pose;  // of the sensor in W, its axis the heading
+  range: number; // [m]
+  hit: boolean;  // something returned from there
+  stamp: number; // [s] of the frame it came in
+}
+
+/** By sensor: kind and mount. */
+export type PlacedReadings = Map<string, PlacedReading>;
+
+const kLast = 1; // [s] after which a reading says nothing any more
+const kOk = 0;   // BeamStatus.Ok
+
+/** Takes the frame's readings and forgets what is too old, or of later than the frame. */
+export function place_readings(placed: PlacedReadings, f: Frame): void {
+  for (const [key, reading] of placed) {
+    if (reading.stamp > f.stamp || f.stamp - reading.stamp > kLast) placed.delete(key);
+  }
+  const take = (kind: RangeKind, readings: RangeReading[]): void => {
+    for (const { mount, range, status } of readings) {
+      placed.set(`${kind} ${mount.x} ${mount.y} ${mount.heading}`, {
+        kind, origin: compose(f.pose, mount), range, hit: status === kOk, stamp: f.stamp,
+      });
+    }
+  };
+  take("sonar", f.sonar);
+  take("infrared", f.infrared);
+}
