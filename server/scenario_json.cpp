@@ -427,27 +427,10 @@ algo::Parameters parameters_of(const sim::Scenario& scenario) {
 
 sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
-  in.only({"name",
-           "title",
-           "description",
-           "robot",
-           "vehicle",
-           "period",
-           "start",
-           "goal",
-           "drive",
-           "obstacles",
-           "lasers",
-           "sonar",
-           "infrared",
-           "gyro",
-           "bumpers",
-           "encoders",
-           "localization",
-           "controller",
-           "filter",
-           "parameters",
-           "time_limit"});
+  in.only({"name",     "title",      "description", "robot",     "vehicle",      "period",
+           "start",    "goal",       "drive",       "obstacles", "lasers",       "sonar",
+           "infrared", "gyro",       "bumpers",     "encoders",  "localization", "controller",
+           "filter",   "parameters", "time_limit"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_scenario_name(s.name)) {

@@ -69,14 +69,7 @@ json to_json(const sim::SonarConfig& sonar) {
 }
 
 sim::InfraredConfig infrared_from_json(const JsonReader& in, const std::string& path) {
-  in.only({"mount",
-           "height",
-           "beams",
-           "field_deg",
-           "period",
-           "range_min",
-           "range_max",
-           "noise"});
+  in.only({"mount", "height", "beams", "field_deg", "period", "range_min", "range_max", "noise"});
   sim::InfraredConfig scanner;
   if (in.has("mount")) scanner.mount_R = mount_from_json(in.object("mount"));
   scanner.height = in.number_or("height", scanner.height);
@@ -92,17 +85,16 @@ sim::InfraredConfig infrared_from_json(const JsonReader& in, const std::string& 
 }
 
 json to_json(const sim::InfraredConfig& scanner) {
-  return {{"mount",
-           {{"x", scanner.mount_R.x},
-            {"y", scanner.mount_R.y},
-            {"heading", scanner.mount_R.heading}}},
-          {"height", scanner.height},
-          {"beams", scanner.beams},
-          {"field_deg", in_degrees(scanner.field)},
-          {"period", scanner.period},
-          {"range_min", scanner.range_min},
-          {"range_max", scanner.range_max},
-          {"noise", scanner.noise}};
+  return {
+      {"mount",
+       {{"x", scanner.mount_R.x}, {"y", scanner.mount_R.y}, {"heading", scanner.mount_R.heading}}},
+      {"height", scanner.height},
+      {"beams", scanner.beams},
+      {"field_deg", in_degrees(scanner.field)},
+      {"period", scanner.period},
+      {"range_min", scanner.range_min},
+      {"range_max", scanner.range_max},
+      {"noise", scanner.noise}};
 }
 
 /// `false`: none; an object: one with those errors; absent: as the vehicle has it.

@@ -12,11 +12,11 @@ using algo::OccupancyMap;
 using algo::Vec2;
 using reproduce::CellRun;
 
-constexpr double kWidth = 900;         // [px]
-constexpr int kMostColumns = 800;      // of cells in the picture; a larger map is drawn coarser
-constexpr int kEdge = 6;               // cells of the map around what is known
-constexpr double kSpacing = 0.15;      // [m] between the points of the path that are drawn
-constexpr std::uint16_t kEnough = 3;   // passes that make a cell free for sure
+constexpr double kWidth = 900;        // [px]
+constexpr int kMostColumns = 800;     // of cells in the picture; a larger map is drawn coarser
+constexpr int kEdge = 6;              // cells of the map around what is known
+constexpr double kSpacing = 0.15;     // [m] between the points of the path that are drawn
+constexpr std::uint16_t kEnough = 3;  // passes that make a cell free for sure
 
 /// Cells first <= i < end of what is known.
 struct Part {

@@ -16,8 +16,8 @@
 namespace server::mapping {
 namespace {
 
-constexpr double kMargin = 15;     // [m] of map about the path
-constexpr double kLargest = 400;   // [m] edge of a map; a log that needs more has lost its poses
+constexpr double kMargin = 15;    // [m] of map about the path
+constexpr double kLargest = 400;  // [m] edge of a map; a log that needs more has lost its poses
 
 double cpu_seconds() {
   std::timespec now{};
@@ -34,10 +34,10 @@ algo::Mapper mapper_for(const std::vector<algo::Pose2>& path_W, bool match) {
   }
   const double edge = (high_W - low_W).maxCoeff() + 2 * kMargin;
   if (!(edge <= kLargest)) {
-    throw std::runtime_error(
-        fmt::format("The path of the log is {:.0f} m wide; a map of more than {:.0f} m is not made.",
-                    edge - 2 * kMargin,
-                    kLargest - 2 * kMargin));
+    throw std::runtime_error(fmt::format(
+        "The path of the log is {:.0f} m wide; a map of more than {:.0f} m is not made.",
+        edge - 2 * kMargin,
+        kLargest - 2 * kMargin));
   }
   algo::MapperSettings settings;
   settings.match = match;

@@ -10,8 +10,8 @@ namespace server::mapping {
 
 /// A path against the one held for true, both from the same first pose.
 struct PathError {
-  double end = 0;      // [m] between the last positions
-  double rms_10m = 0;  // [m] relative error over pieces of 10 m, root mean square
+  double end = 0;       // [m] between the last positions
+  double rms_10m = 0;   // [m] relative error over pieces of 10 m, root mean square
   double turn_10m = 0;  // [rad] the same of the heading
   std::size_t pieces = 0;
 };

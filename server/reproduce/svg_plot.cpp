@@ -81,13 +81,14 @@ void SvgPlot::cells(const algo::Vec2& corner_W,
   // One path in whole numbers, each run from the end of the one before; half a cell up because a
   // stroke lies on both sides of its line.
   const algo::Vec2 p = pixel(corner_W + algo::Vec2(0, cell / 2));
-  body_ += fmt::format("<path transform=\"translate({:.2f} {:.2f}) scale({:.4f} -{:.4f})\" "
-                       "stroke=\"{}\" stroke-width=\"1.05\" d=\"",
-                       p.x(),
-                       p.y(),
-                       cell * scale_,
-                       cell * scale_,
-                       colour);
+  body_ += fmt::format(
+      "<path transform=\"translate({:.2f} {:.2f}) scale({:.4f} -{:.4f})\" "
+      "stroke=\"{}\" stroke-width=\"1.05\" d=\"",
+      p.x(),
+      p.y(),
+      cell * scale_,
+      cell * scale_,
+      colour);
   int x = 0;
   int y = 0;
   for (const CellRun& run : runs) {

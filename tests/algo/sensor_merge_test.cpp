@@ -3,9 +3,8 @@
 
 #include <numbers>
 
-#include <gtest/gtest.h>
-
 #include "tests/algo/allocations.hpp"
+#include <gtest/gtest.h>
 
 namespace {
 

@@ -138,8 +138,7 @@ TEST_F(MapStudyOfALog, WhatIsWrongIsSaidInASentence) {
   EXPECT_THROW(read_recording(folder_ / "nothing.log"), std::runtime_error);
   MapOptions options;
   options.errors.odometry_slip = 1;
-  EXPECT_THROW(study_map(read_recording(folder_ / "corridor.log"), options),
-               std::invalid_argument);
+  EXPECT_THROW(study_map(read_recording(folder_ / "corridor.log"), options), std::invalid_argument);
 }
 
 }  // namespace

@@ -50,27 +50,28 @@ TEST(ScenarioJson, EveryBuiltInScenarioComesBackFromItsText) {
 }
 
 TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
-  for (const char* text :
-       {R"({"name":"a"})",
-        R"({"name":"b","goal":{"x":1,"y":-2,"heading":7}})",
-        R"({"name":"c","start":{"x":0.1,"y":0.2},"goal":{"x":0.3,"y":0.7}})",
-        R"({"name":"d","lasers":[{"resolution_deg":0.25,"unit":"cm","noise_shape":"uniform"},)"
-        R"({"resolution_deg":1,"ideal":true,"mount":{"x":0.1,"y":0}}]})",
-        R"({"name":"e","vehicle":"kinematic","controller":"original","filter":"lulu",)"
-        R"("parameters":{"k_r":0.3,"v_max":0.1},"time_limit":12.5,"period":0.05})",
-        R"({"name":"f","lasers":[]})",
-        R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
-        R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
-        R"("range_min":0.2,"range_max":1,"noise":0,"incidence_deg":50,"height":0.2}})",
-        R"({"name":"f","infrared":[{},{"mount":{"x":-0.3,"y":0,"heading":3},"height":0.2,"beams":31,)"
-        R"("field_deg":180,"period":0.1,"range_min":0,"range_max":2,"noise":0}],)"
-        R"("gyro":{"bias":0.01,"bias_walk":0.001,"noise":0.002},"bumpers":3,"encoders":false,)"
-        R"("localization":"gyro","drive":{"odometry_slip":0.05}})",
-        R"({"name":"f","gyro":false,"bumpers":0})",
-        R"({"name":"g","obstacles":[{"type":"box","x":1,"y":1,"heading":0.3,"length":0.6,)"
-        R"("width":0.4,"height":0.2,"reflectivity":0.5,"specular":true},)"
-        R"({"type":"polygon","points":[[0.1,0],[1.3,0.1],[1,1.7]]},)"
-        R"({"type":"wall","from":[0.1,2],"to":[3.3,4],"thickness":0.2}]})"}) {
+  for (
+      const char* text :
+      {R"({"name":"a"})",
+       R"({"name":"b","goal":{"x":1,"y":-2,"heading":7}})",
+       R"({"name":"c","start":{"x":0.1,"y":0.2},"goal":{"x":0.3,"y":0.7}})",
+       R"({"name":"d","lasers":[{"resolution_deg":0.25,"unit":"cm","noise_shape":"uniform"},)"
+       R"({"resolution_deg":1,"ideal":true,"mount":{"x":0.1,"y":0}}]})",
+       R"({"name":"e","vehicle":"kinematic","controller":"original","filter":"lulu",)"
+       R"("parameters":{"k_r":0.3,"v_max":0.1},"time_limit":12.5,"period":0.05})",
+       R"({"name":"f","lasers":[]})",
+       R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
+       R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
+       R"("range_min":0.2,"range_max":1,"noise":0,"incidence_deg":50,"height":0.2}})",
+       R"({"name":"f","infrared":[{},{"mount":{"x":-0.3,"y":0,"heading":3},"height":0.2,"beams":31,)"
+       R"("field_deg":180,"period":0.1,"range_min":0,"range_max":2,"noise":0}],)"
+       R"("gyro":{"bias":0.01,"bias_walk":0.001,"noise":0.002},"bumpers":3,"encoders":false,)"
+       R"("localization":"gyro","drive":{"odometry_slip":0.05}})",
+       R"({"name":"f","gyro":false,"bumpers":0})",
+       R"({"name":"g","obstacles":[{"type":"box","x":1,"y":1,"heading":0.3,"length":0.6,)"
+       R"("width":0.4,"height":0.2,"reflectivity":0.5,"specular":true},)"
+       R"({"type":"polygon","points":[[0.1,0],[1.3,0.1],[1,1.7]]},)"
+       R"({"type":"wall","from":[0.1,2],"to":[3.3,4],"thickness":0.2}]})"}) {
     SCOPED_TRACE(text);
     const sim::Scenario scenario = read(text);
     expect_same(scenario, read(to_json(scenario).dump()));

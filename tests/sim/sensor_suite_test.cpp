@@ -1,4 +1,5 @@
-// tests/sim/sensor_suite_test.cpp: infrared scanners, gyro, bumpers and what the odometry is made of.
+// tests/sim/sensor_suite_test.cpp: infrared scanners, gyro, bumpers and what the odometry is made
+// of.
 #include <cmath>
 #include <numbers>
 

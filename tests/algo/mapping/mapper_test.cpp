@@ -2,10 +2,10 @@
 // matching.
 #include "algo/mapping/mapper.hpp"
 
+#include "tests/algo/mapping/rooms.hpp"
 #include <gtest/gtest.h>
 
 #include "algo/mapping/pose_step.hpp"
-#include "tests/algo/mapping/rooms.hpp"
 
 namespace {
 
@@ -13,8 +13,8 @@ using algo::Mapper;
 using algo::MapperSettings;
 using algo::Pose2;
 
-/// [m] Off the true pose in the end, of a drive twice round whose odometry says 3 % too much of each
-/// way and 8 % too much of each turn.
+/// [m] Off the true pose in the end, of a drive twice round whose odometry says 3 % too much of
+/// each way and 8 % too much of each turn.
 double end_error(bool match) {
   MapperSettings settings;
   settings.match = match;

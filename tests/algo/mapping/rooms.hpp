@@ -4,19 +4,19 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/algo/worlds.hpp"
+
 #include "algo/laser_scan.hpp"
 #include "algo/types.hpp"
-#include "tests/algo/worlds.hpp"
 
 namespace rooms {
 
 /// 12 x 8 m with a recess, a pillar and two cupboards.
 inline worlds::World room() {
   worlds::World world;
-  world.polygons = {
-      {{-2, -3}, {10, -3}, {10, 1}, {8.5, 1}, {8.5, 3}, {10, 3}, {10, 5}, {-2, 5}},
-      {{3, 3.6}, {4.8, 3.6}, {4.8, 4.2}, {3, 4.2}},
-      {{5, -2.2}, {6.1, -2.2}, {6.1, -1.4}, {5, -1.4}}};
+  world.polygons = {{{-2, -3}, {10, -3}, {10, 1}, {8.5, 1}, {8.5, 3}, {10, 3}, {10, 5}, {-2, 5}},
+                    {{3, 3.6}, {4.8, 3.6}, {4.8, 4.2}, {3, 4.2}},
+                    {{5, -2.2}, {6.1, -2.2}, {6.1, -1.4}, {5, -1.4}}};
   world.circles = {{{1.5, 2.5}, 0.35}};
   return world;
 }

@@ -4,12 +4,12 @@
 #include <array>
 #include <numbers>
 
+#include "tests/algo/allocations.hpp"
+#include "tests/algo/mapping/rooms.hpp"
 #include <gtest/gtest.h>
 
 #include "algo/full_strip/local_map.hpp"
 #include "algo/mapping/occupancy_map.hpp"
-#include "tests/algo/allocations.hpp"
-#include "tests/algo/mapping/rooms.hpp"
 
 namespace {
 
