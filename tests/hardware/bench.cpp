@@ -1,0 +1,147 @@
+// tests/hardware/bench.cpp: setting up both ends of the cables.
+#include "tests/hardware/bench.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "server/cli.hpp"
+#include "server/emulate/clock.hpp"
+#include "server/recorder.hpp"
+#include "server/run_json.hpp"
+#include "server/scenario_library.hpp"
+
+namespace server::hardware {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string robot_file(const BenchOptions& options, const sim::Scenario& scenario) {
+  const bool p2os = options.base == emulate::BaseKind::P2os;
+  std::string text = fmt::format(
+      "name = \"emulated\"\nperiod = {}\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\nturn = 1.0\n"
+      "[[laser]]\nname = \"front laser\"\nport = \"{}\"\nrate = 500000\nstep_deg = 0.5\nx = {}\n"
+      "[base]\ntype = \"{}\"\nport = \"{}\"\ntrack = 0.5\nwatchdog = {}\nbattery_low = {}\n",
+      scenario.period,
+      (options.folder / "scanner").string(),
+      scenario.lasers.front().mount_R.x,
+      p2os ? "pioneer" : "roboteq",
+      (options.folder / "base").string(),
+      p2os ? 2.0 : options.watchdog,
+      p2os ? 11.0 : 22.0);
+  if (!p2os) {
+    text +=
+        "wheel_radius = 0.1\ngear = 20\nencoder_lines = 500\nfull_speed_rpm = 1000\n"
+        "bumper_inputs = [1]\n";
+  }
+  return text;
+}
+
+/// `point` of W as the robot's own dead reckoning, which begins at its start, has it.
+algo::Vec2 from_start(const algo::Pose2& start, const algo::Vec2& point) {
+  const algo::Vec2 d = point - start.position();
+  const double c = std::cos(start.heading);
+  const double s = std::sin(start.heading);
+  return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
+}
+
+}  // namespace
+
+Truth read_truth(const fs::path& record) {
+  Truth truth;
+  std::ifstream file(record);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string kind;
+    words >> kind;
+    if (kind == "scan") {
+      SentLine scan;
+      std::string device;
+      int part = 0;
+      words >> device >> scan.number >> scan.time >> scan.fate >> part;
+      for (std::uint16_t beam = 0; words >> beam;) scan.beams.push_back(beam);
+      truth.scans.push_back(std::move(scan));
+    } else if (kind == "wheels") {
+      WheelLine wheels;
+      words >> wheels.time >> wheels.left >> wheels.right;
+      truth.wheels.push_back(wheels);
+    } else if (kind == "pose") {
+      PoseLine pose;
+      words >> pose.time >> pose.pose_W.x >> pose.pose_W.y >> pose.pose_W.heading;
+      pose.pose_W.x /= 1000;
+      pose.pose_W.y /= 1000;
+      pose.pose_W.heading /= 1000;
+      truth.poses.push_back(pose);
+    }
+  }
+  return truth;
+}
+
+Bench::Bench(const BenchOptions& options) : options_(options) {
+  fs::create_directories(options_.folder);
+  const ScenarioLibrary library({}, {});
+  emulate::EmulationOptions emulation;
+  emulation.scenario = library.load(options_.scenario);
+  emulation.seed = options_.seed;
+  emulation.record = record();
+  emulation.scanner_links = {options_.folder / "scanner"};
+  emulation.base = options_.base;
+  emulation.base_link = options_.folder / "base";
+  emulation.near_wrap = true;
+  emulation.faults.damage = options_.damage;
+  spec_ = make_spec(emulation.scenario, {.seed = options_.seed});
+  if (spec_.scenario.goal) {
+    spec_.scenario.goal->position_W =
+        from_start(spec_.scenario.start, spec_.scenario.goal->position_W);
+  }
+  emulation_ = std::make_unique<emulate::Emulation>(emulation);
+  emulation_->start();
+  robot_ = drivers::open_robot(
+      drivers::parse_robot(robot_file(options_, emulation.scenario), "emulated.toml"));
+}
+
+Bench::~Bench() = default;
+
+bool Bench::wait_for(const std::function<bool()>& condition, double seconds) {
+  const double end = emulate::machine_time() + seconds;
+  while (!condition()) {
+    if (emulate::machine_time() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+bool Bench::arm(double seconds) {
+  return wait_for(
+      [this] { return robot_->report().halt == algo::Halt::Disarmed && !robot_->arm(); }, seconds);
+}
+
+HeadlessResult Bench::drive(const std::stop_token& stop) {
+  Recorder recorder(database().string(), recorder_options());
+  HeadlessOptions headless;
+  headless.pace = 1;
+  headless.record = recorder.open(new_run(spec_, robot_->spec()));
+  const std::jthread arming([this](const std::stop_token& done) {
+    std::string said;
+    bool moved = false;
+    while (!done.stop_requested()) {
+      // Until it moves for the first time; whoever disarms it then has a reason.
+      moved = moved || robot_->report().halt == algo::Halt::None;
+      if (!moved) arm(0.1);
+      // What holds the robot, as it changes: whoever reads the trial's figures wants to know.
+      const drivers::HardwareReport report = robot_->report();
+      if (report.trouble != said) fmt::print(stderr, "{}: {}\n", options_.scenario, report.trouble);
+      said = report.trouble;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  });
+  HeadlessResult result = run_headless(spec_, *robot_, headless, stop);
+  robot_->disarm();
+  recorder.flush();
+  return result;
+}
+
+}  // namespace server::hardware
