@@ -18,16 +18,15 @@ constexpr reproduce::Marks kWorlds{"<!-- worlds: made by tautline compare -->\n"
                                    "<!-- end of the worlds -->\n"};
 
 std::string seeds_text(const Options& options, std::size_t seeds) {
+  if (seeds == 1) return fmt::format("seed {}", options.first_seed);
   return fmt::format("seeds {} to {}", options.first_seed, options.first_seed + seeds - 1);
 }
 
 std::string worlds_text(const Options& options) {
   return fmt::format(
-      "Bullet vehicle, rolling LMS200, the scenarios' own settings, {} run{} each, {}; by sonar a "
+      "Bullet vehicle, rolling LMS200, the scenarios' own settings, {} of each row; by sonar a "
       "ring of 24 in place of the scanner. Mean seconds / least clearance of the hull in metres "
       "where every run reached the goal, else how the runs ended.",
-      options.seeds,
-      options.seeds == 1 ? "" : "s",
       seeds_text(options, options.seeds));
 }
 
@@ -39,19 +38,18 @@ constexpr const char* kDetails =
 std::string bottlenecks_text(const Options& options) {
   return fmt::format(
       "A closed hall, 10 m by 8 m, parted by a wall with one gap in the middle of the straight "
-      "way of 6 m to the goal; hull 0.7 m, at most 0.3 m/s, K_r 0.6, {} runs a gap, {}. Walls "
+      "way of 6 m to the goal; hull 0.7 m, at most 0.3 m/s, K_r 0.6, {} of each row. Walls "
       "rather than posts: past posts there are other ways, so that reaching the goal would say "
       "nothing about the gap. r reached, s stuck, t out of time, C collided; one letter when every "
       "run ends so. *Passes from*: the narrowest gap such that it and every wider one is passed in "
       "every run. The line to the goal is free, so that go_to_goal shows what seeing costs here.",
-      options.seeds,
       seeds_text(options, options.seeds));
 }
 
 std::string layouts_text(const Options& options) {
   return fmt::format(
       "Layouts with free gaps of {:g} m and more between surfaces and {:g} m round start and goal; "
-      "{} layouts of each kind, {} runs each, {}. How they are drawn is ours: start, goal (5 m, 4 "
+      "{} layouts of each kind, {} of each. How they are drawn is ours: start, goal (5 m, 4 "
       "m) and 0.1 m/s of case 3; cylinders of 0.25 to 0.4 m radius and boxes of 0.5 to 0.8 m at "
       "any heading, as likely, with centres up to 2 m beside the line; one at least stands in the "
       "robot's straight way. Paper conditions as in the reproduction, and `strip` in the full "
@@ -59,7 +57,6 @@ std::string layouts_text(const Options& options) {
       kFreeGap,
       kFreeRoom,
       options.layouts,
-      options.layout_seeds,
       seeds_text(options, options.layout_seeds));
 }
 
@@ -160,6 +157,9 @@ std::string to_markdown(const Comparison& comparison) {
                         to_markdown(details_table(comparison)));
   }
   while (text.ends_with("\n\n")) text.pop_back();
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) {
+    text.erase(at, 1);  // a table brings its blank line, and so does the heading after it
+  }
   return text;
 }
 

@@ -10,7 +10,7 @@ import { launch, open } from "../web/page.mjs";
 import { json, repository, scratch, serve, until } from "../web/program.mjs";
 
 const kScene = "demo";
-const kTime = 11; // [s] into the run: among the obstacles
+const kTime = 11; // [s] into the run: among the obstacles, for who gets so far
 const kPeriod = 0.026; // [s]
 const kShown = 25; // single steps at the end, slow enough that the page gets every frame of them
 const kMost = 120_000; // bytes of a picture
@@ -18,9 +18,9 @@ const folder = join(repository, "docs/pictures/controllers");
 
 const control = (base, body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
 
-/** The newest run is paused at tick `wanted` or later. */
+/** The run is paused at tick `wanted`, or over before: the blind one collides. */
 const at_tick = (base, wanted) =>
-  until(`tick ${wanted}`, 120, () => json(base, "/session"), (s) => s.tick >= wanted);
+  until(`tick ${wanted}`, 120, () => json(base, "/session"), (s) => s.tick >= wanted || s.run.outcome !== "running");
 
 async function take(p, base, controller) {
   await control(base, { action: "load", scenario: kScene, controller });
