@@ -189,15 +189,23 @@ void PioneerMachine::open(double now) {
 
 void PioneerMachine::take_state(double now, ByteView body) {
   if (!decode_state(body, packet_, setup_.units)) return;
+  if (!odometer_.update(packet_)) ++jumps_;
+  const algo::Pose2& at = odometer_.pose();
   if (!state_.running) {
+    found_at_ = at;
+    lost_at_ = state_.pose;
     state_.running = true;
     ++state_.set_ups;
     trouble_.clear();
   }
   deadline_ = now + kSilent;
-  if (!odometer_.update(packet_)) ++jumps_;
   state_.stamp = now;
-  state_.pose = odometer_.pose();
+  const algo::Vec2 way = at.position() - found_at_.position();
+  const algo::Vec2 ahead = algo::direction(found_at_.heading);
+  state_.pose = algo::compose(lost_at_,
+                              {ahead.dot(way),
+                               ahead.x() * way.y() - ahead.y() * way.x(),
+                               algo::wrap_angle(at.heading - found_at_.heading)});
   const double difference = packet_.right_speed - packet_.left_speed;
   const double track = 2 * setup_.half_track;
   state_.twist = {(packet_.left_speed + packet_.right_speed) / 2,

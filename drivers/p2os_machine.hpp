@@ -70,6 +70,8 @@ class PioneerMachine final : public BaseMachine {
   Identity identity_{};
   State packet_{};
   Odometer odometer_{};
+  algo::Pose2 found_at_{};  // its dead reckoning when it was found,
+  algo::Pose2 lost_at_{};   // and ours then: where it was lost, as far as anybody knows
   BaseState state_{};
   algo::Twist2 sent_{};      // the command in force
   double sent_at_ = 0;       // [s]

@@ -238,7 +238,8 @@ void RoboteqMachine::run(double now) {
   step_ = Step::Running;
   deadline_ = now + kSilent;
   inputs_at_ = now;
-  state_ = {.set_ups = state_.set_ups};
+  const algo::Pose2 pose = state_.pose;  // where it was lost, as far as anybody knows
+  state_ = {.set_ups = state_.set_ups, .pose = pose};
   trouble_ = "The motor controller is being set up.";
 }
 

@@ -124,14 +124,14 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
     set_up = armed_set_up_;
   }
   if (armed && base.running && base.set_ups != set_up) {
-    disarm("The base was lost and found again.");
+    disarm("The base was lost and found again. Arm it again when all is well.");
     armed = false;
   }
   if (halt == Halt::None && !armed) halt = Halt::Disarmed;
   if (halt == Halt::None && !base.motors_on) {
     halt = Halt::MotorsOff;
     if (now - armed_at > kMotorsTime) {
-      disarm("The motors did not stay on.");
+      disarm("The motors did not stay on. Look at the base, then arm it again.");
       halt = Halt::Disarmed;
     }
   }
@@ -150,7 +150,8 @@ void SerialRobot::latch(Halt halt, double now) {
     too_long = lasts(halt != Halt::None && halt != Halt::MotorsOff, now, kRearm, halted_since_);
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
-  disarm(algo::explain(halt).why);
+  const char* advice = halt == Halt::StopButton ? "" : " Arm it again when all is well.";
+  disarm(algo::explain(halt).why + advice);
 }
 
 /// `command`, or as much of it as may be carried out.
@@ -309,9 +310,7 @@ HardwareReport SerialRobot::report() {
 /// The device's own words where one is to blame.
 std::string SerialRobot::words(Halt halt, const std::vector<DeviceReport>& devices) const {
   if (halt == Halt::None) return "";
-  if (halt == Halt::Disarmed && !disarmed_because_.empty()) {
-    return disarmed_because_ + " Arm it again when all is well.";
-  }
+  if (halt == Halt::Disarmed && !disarmed_because_.empty()) return disarmed_because_;
   const bool of_base = halt == Halt::BaseLost || halt == Halt::StopButton ||
                        halt == Halt::BaseFault || halt == Halt::OverCurrent;
   const bool of_scanner =

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include "tests/server/net_client.hpp"
 #include <gtest/gtest.h>
@@ -23,7 +24,8 @@ using nlohmann::json;
 
 class AppTest : public ::testing::Test {
  protected:
-  AppTest() {
+  AppTest() : AppTest(kinematic_case1()) {}
+  explicit AppTest(RunSpec first) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               ("tautline_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
@@ -33,9 +35,7 @@ class AppTest : public ::testing::Test {
     options.net.port = 0;
     options.database = folder_ / "runs.db";
     options.scenarios = folder_ / "scenarios";
-    RunOverrides kinematic;
-    kinematic.vehicle = "kinematic";
-    options.first = make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
+    options.first = std::move(first);
     app_.emplace(std::move(options));
     const std::string url = app_->url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
@@ -91,6 +91,12 @@ class AppTest : public ::testing::Test {
                 std::chrono::milliseconds patience = std::chrono::seconds(60)) const {
     const std::string path = "/runs/" + std::to_string(id);
     return net::test::eventually([&] { return get(path).value("status", "") == status; }, patience);
+  }
+
+  static RunSpec kinematic_case1() {
+    RunOverrides kinematic;
+    kinematic.vehicle = "kinematic";
+    return make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
   }
 
   std::filesystem::path folder_{};

@@ -1,0 +1,356 @@
+// tests/drivers/with_emulators_test.cpp: the drivers' machines against the strict emulators, which
+// were written from the manuals by themselves; the line takes its time, and nothing is waited for.
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/drivers/line_bench.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "drivers/emulators/lms200_emulator.hpp"
+#include "drivers/emulators/p2os_emulator.hpp"
+#include "drivers/emulators/roboteq_emulator.hpp"
+#include "drivers/lms200_machine.hpp"
+#include "drivers/p2os_machine.hpp"
+#include "drivers/roboteq_machine.hpp"
+
+namespace drivers {
+namespace {
+
+using emulators::misread;
+
+/// An emulated device as the bench wants one.
+class Emulated : public LineDevice {
+ public:
+  explicit Emulated(emulators::Device& device) : device_(device) {}
+
+  void hear(double now, ByteView bytes, unsigned baud) override {
+    if (baud == device_.baud()) {
+      device_.receive(bytes, now);
+    } else {
+      const Bytes garbled = misread(bytes, baud, device_.baud());
+      device_.receive(ByteView(garbled), now);
+    }
+  }
+  Bytes say(double now, unsigned host_baud) override {
+    device_.advance(now);
+    live(now);
+    Bytes all;
+    for (;;) {
+      Bytes bytes;
+      const unsigned baud = device_.send(now, bytes);
+      if (bytes.empty()) return all;
+      append(all, baud == host_baud ? bytes : misread(ByteView(bytes), baud, host_baud));
+    }
+  }
+
+ protected:
+  /// What the world does to it meanwhile.
+  virtual void live(double /*now*/) {}
+
+ private:
+  emulators::Device& device_;
+};
+
+/// A room in which every beam of a sweep meets something else.
+class EmulatedLaser final : public Emulated {
+ public:
+  explicit EmulatedLaser(lms200::Emulator& emulator) : Emulated(emulator), emulator_(emulator) {}
+
+  static double range_at(double bearing) { return std::round(3000 + 1000 * bearing) / 1000; }
+
+ protected:
+  void live(double now) override {
+    const lms200::Sweep& sweep = emulator_.sweep();
+    const bool parts = !sweep.parts.empty();
+    const double period = lms200::kTurnPeriod * (parts ? 1 : sweep.variant.turns());
+    if (now < next_) return;
+    next_ = std::max(next_ + period, now);
+    algo::LaserScan scan;
+    scan.range_max = 8.191;
+    scan.angle_increment = 0.25 * std::numbers::pi / 180;
+    scan.angle_min = -std::numbers::pi / 2;
+    scan.resize(721);
+    for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, range_at(scan.angle(i)));
+    if (parts) {
+      emulator_.offer(scan, now, sweep.parts[turn_++ % sweep.parts.size()]);
+    } else {
+      emulator_.offer(scan, now);
+    }
+  }
+
+ private:
+  lms200::Emulator& emulator_;
+  double next_ = 0;
+  std::size_t turn_ = 0;
+};
+
+struct Laser {
+  explicit Laser(const lms200::EmulatorOptions& options, const lms200::LaserSetup& setup = {})
+      : emulator(options), device(emulator), machine(setup), bench(machine, device) {
+    emulator.on_scan = [this](const lms200::SentScan& sent) {
+      using Fate = lms200::SentScan::Fate;
+      if (sent.fate == Fate::Sent) ++intact;
+      if (sent.fate == Fate::Damaged) ++damaged;
+    };
+    bench.open();
+  }
+  Laser(const Laser&) = delete;
+  Laser& operator=(const Laser&) = delete;
+
+  bool running(double seconds) {
+    return bench.run_until(seconds, [&] { return machine.stage() == lms200::Stage::Running; });
+  }
+  /// Every beam of the next scan as the world has it, to the millimetre.
+  void expect_room(std::size_t beams) {
+    algo::LaserScan scan;
+    ASSERT_TRUE(bench.run_until(5, [&] { return machine.take(scan); }));
+    ASSERT_EQ(scan.size(), beams);
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      ASSERT_NEAR(scan.ranges[i], EmulatedLaser::range_at(scan.angle(i)), 1e-9) << i;
+    }
+  }
+  std::uint64_t intact = 0;
+  std::uint64_t damaged = 0;
+  lms200::Emulator emulator;
+  EmulatedLaser device;
+  lms200::LaserMachine machine;
+  LineBench bench;
+};
+
+lms200::LaserSetup setup(unsigned baud, lms200::Variant variant = {180, 50}) {
+  lms200::LaserSetup out;
+  out.baud = baud;
+  out.variant = variant;
+  return out;
+}
+
+TEST(WithEmulators, ScansArriveToTheMillimetreInEveryVariant) {
+  for (const lms200::Variant variant :
+       {lms200::Variant{180, 100}, {180, 50}, {100, 100}, {100, 50}, {100, 25}}) {
+    Laser laser({}, setup(500'000, variant));
+    ASSERT_TRUE(laser.running(15)) << laser.machine.report().trouble;
+    laser.expect_room(variant.beams());
+    EXPECT_THAT(laser.machine.report().remarks, ::testing::IsEmpty());
+  }
+}
+
+TEST(WithEmulators, EveryRateWorks) {
+  for (const unsigned baud : {9600U, 19200U, 38400U, 500'000U}) {
+    Laser laser({}, setup(baud));
+    ASSERT_TRUE(laser.running(20)) << baud << laser.machine.report().trouble;
+    laser.expect_room(361);
+    EXPECT_EQ(laser.emulator.baud(), baud);
+  }
+}
+
+TEST(WithEmulators, QuartersOfADegreeComeInterlaced) {
+  lms200::EmulatorOptions options;
+  options.interlaced = true;
+  Laser laser(options, setup(500'000, {180, 25}));
+  ASSERT_TRUE(laser.running(15)) << laser.machine.report().trouble;
+  laser.expect_room(721);
+}
+
+TEST(WithEmulators, AddressOneSlowBootAndAStoredRateAreNoObstacles) {
+  lms200::EmulatorOptions options;
+  options.address = 1;
+  options.powered = false;
+  options.boot_time = 9;
+  Laser laser(options);
+  ASSERT_TRUE(laser.running(40)) << laser.machine.report().trouble;
+  EXPECT_EQ(laser.machine.report().address, 1);
+  laser.expect_room(361);
+
+  lms200::EmulatorOptions stored;
+  stored.start_rate = 500'000;
+  stored.start_up = lms200::StartUpRate::KeepPresent;
+  Laser fast(stored);
+  EXPECT_TRUE(fast.running(5));
+}
+
+TEST(WithEmulators, MemoryIsWrittenOnceInALifeAndNotAgain) {
+  Laser laser({});
+  ASSERT_TRUE(laser.running(15));
+  const unsigned writes = laser.emulator.memory_writes();
+  EXPECT_LE(writes, 2U);
+  laser.emulator.restart(laser.bench.now(), 3);
+  ASSERT_TRUE(laser.bench.run_until(30, [&] { return laser.machine.report().set_ups == 2; }));
+  EXPECT_EQ(laser.machine.report().written, laser.machine.report().written > 0 ? 1U : 0U);
+}
+
+TEST(WithEmulators, DamagedTelegramsCostOnlyThemselves) {
+  Laser laser({});
+  ASSERT_TRUE(laser.running(15));
+  laser.bench.run(0.5);
+  const std::uint64_t before = laser.machine.report().scans;
+  const std::uint64_t intact = laser.intact;
+  laser.emulator.set_faults({.damage = 0.05});
+  laser.bench.run(20);
+  laser.emulator.set_faults({});
+  laser.bench.run(0.5);
+  EXPECT_GT(laser.damaged, 10U);
+  const std::uint64_t came = laser.machine.report().scans - before;
+  const std::uint64_t sent = laser.intact - intact;
+  EXPECT_LE(sent - came, 2U) << "of " << sent << " intact ones, beside " << laser.damaged;
+  EXPECT_EQ(laser.machine.report().set_ups, 1U);
+}
+
+TEST(WithEmulators, NoisyLineIsSetUpAllTheSame) {
+  lms200::EmulatorOptions options;
+  options.seed = 7;
+  Laser laser(options);
+  laser.emulator.set_faults({.damage = 0.1});
+  EXPECT_TRUE(laser.running(60)) << laser.machine.report().trouble;
+}
+
+TEST(WithEmulators, LaserIsLeftAtItsFirstRate) {
+  Laser laser({});
+  ASSERT_TRUE(laser.running(15));
+  laser.machine.leave(laser.bench.now());
+  laser.bench.settle();
+  ASSERT_TRUE(laser.bench.run_until(3, [&] { return laser.machine.left(); }));
+  laser.bench.run(0.2);
+  EXPECT_EQ(laser.emulator.baud(), 9600U);
+  EXPECT_EQ(laser.emulator.mode(), lms200::Mode::OnRequest);
+}
+
+// ---- bases -----------------------------------------------------------------------------------
+
+/// Wheels that turn as the motors want.
+class EmulatedBase final : public Emulated {
+ public:
+  explicit EmulatedBase(emulators::Base& base) : Emulated(base), base_(base) {}
+
+  emulators::BaseSenses senses{};
+  emulators::WheelMotion motion{};
+
+ protected:
+  void live(double now) override {
+    const double dt = last_ > 0 ? now - last_ : 0;
+    last_ = now;
+    motion = base_.drive(now);
+    senses.left_travel += motion.left * dt;
+    senses.right_travel += motion.right * dt;
+    senses.motion = motion;
+    base_.feel(senses, now);
+  }
+
+ private:
+  emulators::Base& base_;
+  double last_ = 0;
+};
+
+BaseLimits limits() {
+  return {.speed = 0.3, .turn = 1.0, .acceleration = 1, .turn_acceleration = 2};
+}
+p2os::PioneerSetup pioneer() {
+  p2os::PioneerSetup out;
+  out.limits = limits();
+  return out;
+}
+roboteq::RoboteqSetup roboteq_setup() {
+  roboteq::RoboteqSetup out;
+  out.wheel = {.radius = 0.1, .gear = 20, .encoder_lines = 500, .full_speed_rpm = 1000};
+  out.half_track = 0.165;
+  out.limits = limits();
+  return out;
+}
+
+template <class Emulator, class Machine>
+struct Driven {
+  template <class Setup>
+  Driven(const typename std::type_identity<Setup>::type& setup, std::type_identity<Setup> /*tag*/)
+      : device(emulator), machine(setup), bench(machine, device) {
+    bench.open();
+  }
+  Driven(const Driven&) = delete;
+  Driven& operator=(const Driven&) = delete;
+
+  bool ready(double seconds = 20) {
+    return bench.run_until(seconds, [&] { return machine.state().running; });
+  }
+  bool arm() {
+    machine.enable(bench.now(), true);
+    return bench.run_until(2, [&] { return machine.state().motors_on; });
+  }
+  void drive(const algo::Twist2& twist, double seconds) {
+    for (const double until = bench.now() + seconds; bench.now() < until;) {
+      machine.drive(bench.now(), twist);
+      bench.settle();
+      bench.run(0.05);
+    }
+  }
+  double travel() const { return (device.senses.left_travel + device.senses.right_travel) / 2; }
+
+  Emulator emulator{};
+  EmulatedBase device;
+  Machine machine;
+  LineBench bench;
+};
+
+/// What every base has to do.
+template <class Rig>
+void check_base(Rig& rig) {
+  ASSERT_TRUE(rig.ready()) << rig.machine.report(rig.bench.now()).sentence;
+  // Not enabled: nothing moves.
+  rig.drive({0.2, 0}, 1);
+  EXPECT_NEAR(rig.travel(), 0, 1e-9);
+
+  ASSERT_TRUE(rig.arm());
+  rig.drive({0.2, 0}, 3);
+  EXPECT_NEAR(rig.device.motion.left, 0.2, 0.01);
+  EXPECT_NEAR(rig.machine.state().pose.x, rig.travel(), 0.03);
+  EXPECT_NEAR(rig.machine.state().twist.v, 0.2, 0.01);
+
+  // GIVEN no further command WHEN the watchdog's time is over THEN the base stands.
+  rig.bench.run(rig.machine.watchdog() + 1);
+  EXPECT_NEAR(rig.device.motion.left, 0, 1e-9);
+
+  // Speeds as slow as the thesis drove.
+  rig.drive({0.04, 0}, 2);
+  EXPECT_NEAR(rig.device.motion.left, 0.04, 0.004);
+
+  // Turning left.
+  const double heading = rig.machine.state().pose.heading;
+  rig.drive({0, 0.5}, 2);
+  rig.drive({}, 1);
+  const double turned = (rig.device.senses.right_travel - rig.device.senses.left_travel) / 0.33;
+  EXPECT_GT(turned, 0.5);
+  EXPECT_NEAR(algo::wrap_angle(rig.machine.state().pose.heading - heading), turned, 0.05);
+
+  // The stop button.
+  rig.drive({0.2, 0}, 1);
+  rig.emulator.press_stop_button(true);
+  rig.bench.run(0.3);
+  EXPECT_TRUE(rig.machine.state().stop_button);
+  EXPECT_FALSE(rig.machine.state().motors_on);
+  EXPECT_NEAR(rig.device.motion.left, 0, 1e-9);
+  rig.emulator.press_stop_button(false);
+  rig.machine.enable(rig.bench.now(), false);
+  rig.bench.settle();
+  rig.bench.run(0.3);
+  EXPECT_FALSE(rig.machine.state().stop_button);
+  ASSERT_TRUE(rig.arm());
+
+  // A restart forgets everything; the base is found and set up again, its motors off.
+  rig.emulator.restart(rig.bench.now(), 2);
+  ASSERT_TRUE(rig.bench.run_until(30, [&] { return rig.machine.state().set_ups == 2; }));
+  EXPECT_FALSE(rig.machine.state().motors_on);
+}
+
+TEST(WithEmulators, PioneerIsDrivenAndStops) {
+  Driven<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
+                                                   std::type_identity<p2os::PioneerSetup>());
+  check_base(rig);
+}
+
+TEST(WithEmulators, RoboteqIsDrivenAndStops) {
+  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
+      roboteq_setup(), std::type_identity<roboteq::RoboteqSetup>());
+  check_base(rig);
+}
+
+}  // namespace
+}  // namespace drivers

@@ -1,0 +1,74 @@
+// tests/server/doctor_test.cpp: what the doctor makes of ports that are not there, and of spikes; a
+// scan as a line of a log.
+#include "server/doctor.hpp"
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/carmen_line.hpp"
+#include "sim/replay.hpp"
+
+namespace server {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Doctor, PortsThatAreNotThereAreBadAndComeWithAdvice) {
+  const drivers::RobotFile file = drivers::parse_robot(R"(name = "none"
+hull = { radius = 0.3 }
+[[laser]]
+port = "/dev/no_such_laser"
+[base]
+type = "pioneer"
+port = "/dev/no_such_base"
+track = 0.33
+)",
+                                                       "none.toml");
+  std::vector<Finding> findings;
+  EXPECT_FALSE(examine(file, {}, [&](const Finding& f) { findings.push_back(f); }));
+  std::vector<Finding> bad;
+  for (const Finding& f : findings) {
+    if (f.verdict == Verdict::Bad) bad.push_back(f);
+  }
+  ASSERT_EQ(bad.size(), 2U);
+  EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
+  EXPECT_EQ(bad[1].device, "base");
+  for (const Finding& f : bad) EXPECT_NE(f.advice, "");
+}
+
+TEST(Doctor, SpikesStandAloneAgainstBothNeighbours) {
+  EXPECT_EQ(count_spikes({2, 2, 2, 2}), 0U);
+  EXPECT_EQ(count_spikes({2, 1, 2, 2}), 1U);
+  EXPECT_EQ(count_spikes({2, 2, 4, 4}), 0U);  // an edge
+  EXPECT_EQ(count_spikes({}), 0U);
+}
+
+/// A scan written, and read by those who replay logs.
+TEST(CarmenLine, IsReadBack) {
+  for (const double field : {180.0, 100.0}) {
+    algo::LaserScan scan;
+    scan.resize(101);
+    scan.range_max = 8.191;
+    scan.angle_min = -field / 2 * std::numbers::pi / 180;
+    scan.angle_increment = field / 100 * std::numbers::pi / 180;
+    for (std::size_t i = 0; i < 101; ++i) scan.set_ok(i, 1.0 + 0.001 * static_cast<double>(i));
+    scan.set_free(7);
+    std::istringstream log(carmen_line(scan, "lab", 1000.5, 0.5) + "\n");
+    sim::Replay replay(log, "test");
+    algo::Observation seen;
+    replay.reset(seen);
+    ASSERT_EQ(seen.scans.size(), 1U);
+    const algo::LaserScan& back = seen.scans[0];
+    EXPECT_NEAR(back.angle_min, scan.angle_min, 1e-5);
+    EXPECT_NEAR(back.angle_increment, scan.angle_increment, 1e-5);
+    EXPECT_DOUBLE_EQ(back.ranges[100], 1.1);
+    EXPECT_NE(back.status[7], algo::Beam::Ok);
+  }
+}
+
+}  // namespace
+}  // namespace server

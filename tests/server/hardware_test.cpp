@@ -1,0 +1,188 @@
+// tests/server/hardware_test.cpp: the program on devices that are made up: armed, driven, stopped.
+#include "server/hardware.hpp"
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/server/app_fixture.hpp"
+#include <gtest/gtest.h>
+
+#include "algo/diff_drive.hpp"
+
+namespace server {
+namespace {
+
+using net::test::eventually;
+
+/// Nothing within range, 40 times a second.
+class OpenField final : public drivers::Scanner {
+ public:
+  bool take(algo::LaserScan& scan) override {
+    const double now = drivers::steady_now();
+    if (now - last_ < 0.025) return false;
+    last_ = now;
+    scan.stamp = now - 0.01;
+    scan.range_max = 8.191;
+    scan.angle_min = -std::numbers::pi / 2;
+    scan.angle_increment = std::numbers::pi / 360;
+    scan.resize(361);
+    for (std::size_t i = 0; i < scan.size(); ++i) scan.set_free(i);
+    return true;
+  }
+  drivers::ScannerState state() override {
+    return {.running = true, .last_scan = drivers::steady_now(), .period = 0.0266};
+  }
+  drivers::DeviceReport report() override {
+    return {.name = "front laser", .port = "none", .well = true, .sentence = "Well."};
+  }
+
+ private:
+  double last_ = 0;
+};
+
+/// Goes exactly as told.
+class GoodBase final : public drivers::Base {
+ public:
+  explicit GoodBase(std::atomic<bool>& button) : button_(button) {}
+
+  void enable(bool on) override {
+    const std::lock_guard lock(mutex_);
+    state_.motors_on = on && !button_;
+  }
+  void drive(const algo::Twist2& twist) override {
+    const std::lock_guard lock(mutex_);
+    const double now = drivers::steady_now();
+    if (state_.motors_on && state_.stamp > 0) {
+      state_.pose = algo::integrate_arc(state_.pose, state_.twist, now - state_.stamp);
+    }
+    state_.stamp = now;
+    state_.twist = twist;
+  }
+  void stop() noexcept override {
+    const std::lock_guard lock(mutex_);
+    state_.twist = {};
+  }
+  drivers::BaseState state() override {
+    const std::lock_guard lock(mutex_);
+    drivers::BaseState out = state_;
+    out.running = true;
+    out.set_ups = 1;
+    out.stamp = drivers::steady_now();
+    out.stop_button = button_;
+    return out;
+  }
+  double watchdog() const override { return 0.5; }
+  drivers::DeviceReport report() override {
+    return {.name = "base",
+            .port = "none",
+            .well = !button_,
+            .sentence = button_ ? "Its stop button is pressed." : "Well."};
+  }
+
+ private:
+  std::atomic<bool>& button_;
+  std::mutex mutex_{};
+  drivers::BaseState state_{};
+};
+
+class HardwareAppTest : public AppTest {
+ protected:
+  HardwareAppTest() : HardwareAppTest(std::make_shared<std::atomic<bool>>(false)) {}
+
+  json hardware() const { return get("/session").at("hardware"); }
+  bool comes_to_halt(const std::string& halt) const {
+    return eventually([&] {
+      const json h = hardware();
+      return h.is_object() && h.at("halt") == halt;
+    });
+  }
+  net::test::Answer control(const char* action) const {
+    return ask("POST", "/session/control", json({{"action", action}}).dump());
+  }
+
+  std::shared_ptr<std::atomic<bool>> button_;
+
+ private:
+  explicit HardwareAppTest(std::shared_ptr<std::atomic<bool>> button)
+      : AppTest(spec(*button)), button_(std::move(button)) {}
+
+  static RunSpec spec(std::atomic<bool>& button) {
+    drivers::RobotFile file;
+    file.spec.name = "made-up";
+    file.spec.period = 0.05;
+    file.spec.radius = 0.3;
+    file.spec.half_track = 0.25;
+    file.spec.drives = true;
+    file.spec.max_v = file.limits.speed = 0.3;
+    file.spec.max_omega = file.limits.turn = 1;
+    file.spec.max_acceleration = file.spec.max_angular_acceleration = 1;
+    file.lasers.push_back({.name = "front laser", .port = "none"});
+    std::vector<std::unique_ptr<drivers::Scanner>> scanners;
+    scanners.push_back(std::make_unique<OpenField>());
+    return hardware_spec(
+        std::make_shared<drivers::SerialRobot>(std::move(file),
+                                               std::move(scanners),
+                                               std::make_unique<GoodBase>(button),
+                                               std::make_unique<drivers::SteadyClock>()),
+        {});
+  }
+};
+
+TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
+  const json state = get("/session");
+  EXPECT_EQ(state.at("source"), "hardware");
+  EXPECT_EQ(state.at("vehicle"), "hardware");
+  EXPECT_FALSE(state.at("robot").at("paceable"));
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":5,"y":0})").status, 200);
+  ASSERT_TRUE(eventually([&] { return get("/session").at("hold") == "halted"; }));
+  EXPECT_NEAR(get("/session").at("pose").at("x").get<double>(), 0, 1e-9);
+
+  ASSERT_EQ(control("arm").status, 200);
+  EXPECT_TRUE(eventually([&] { return get("/session").at("pose").at("x") > 0.1; }));
+
+  *button_ = true;
+  ASSERT_TRUE(comes_to_halt("stop_button"));
+  EXPECT_FALSE(hardware().at("armed"));
+  expect_problem(control("arm"), 409, "stop button");
+  *button_ = false;
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  ASSERT_EQ(control("arm").status, 200);
+  ASSERT_TRUE(comes_to_halt("none"));
+  EXPECT_EQ(control("disarm").status, 200);
+  EXPECT_FALSE(hardware().at("armed"));
+}
+
+TEST_F(HardwareAppTest, AResetDisarmsAndNoSimulationTakesItsPlace) {
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  ASSERT_EQ(control("arm").status, 200);
+  EXPECT_EQ(control("reset").status, 200);
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  EXPECT_FALSE(hardware().at("armed"));
+  expect_problem(ask("POST", "/session/control", R"({"action":"load","scenario":"case1"})"),
+                 422,
+                 "real hardware");
+  EXPECT_EQ(ask("POST", "/session/control", R"({"action":"load","controller":"original"})").status,
+            200);
+  EXPECT_EQ(get("/session").at("controller"), "original");
+  EXPECT_EQ(get("/session").at("source"), "hardware");
+}
+
+TEST_F(HardwareAppTest, ObstaclesAreNotPlaced) {
+  expect_problem(
+      ask("POST", "/session/obstacles", R"({"type":"cylinder","x":1,"y":1,"radius":0.2})"),
+      409,
+      "by hand");
+}
+
+TEST_F(AppTest, ASimulatedRobotCannotBeArmed) {
+  expect_problem(ask("POST", "/session/control", R"({"action":"arm"})"), 409, "simulated");
+  EXPECT_TRUE(get("/session").at("hardware").is_null());
+}
+
+}  // namespace
+}  // namespace server
