@@ -10,6 +10,7 @@
 namespace algo {
 namespace {
 
+constexpr double kJustCome = 0.05;     // [s] a scan this old that does not count is a blinded one
 constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence
 
 template <typename... Args>
@@ -48,6 +49,9 @@ Explanation explain_hold(const Telemetry& t) {
       const double age = t.observation.stamp - t.scene.scan.stamp;
       if (t.scene.scan.size() == 0) {
         return {"Waiting for the laser", "No scan has come yet. The robot waits."};
+      }
+      if (age < kJustCome) {
+        return {"Waiting for the laser", "It is blinded: most beams ahead tell nothing."};
       }
       return {"Waiting for the laser", format("Scan is %.1f s old. The robot waits.", age)};
     }

@@ -2,6 +2,7 @@
 #include "algo/perceive.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "algo/geometry.hpp"
 
@@ -53,6 +54,18 @@ void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene
 void perceive(const Pose2& pose_W, Scene& scene) {
   scene.right = nearest(pose_W, scene.scan, right_beams(scene.scan));
   scene.left = nearest(pose_W, scene.scan, left_beams(scene.scan));
+}
+
+bool blinded(const LaserScan& scan) {
+  constexpr double kAhead = std::numbers::pi / 4;  // [rad] either side
+  std::size_t ahead = 0;
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (std::abs(wrap_angle(scan.mount_R.heading + scan.angle(i))) > kAhead) continue;
+    ++ahead;
+    told += scan.status[i] != Beam::Invalid ? 1U : 0U;
+  }
+  return 2 * told < ahead;
 }
 
 }  // namespace algo

@@ -15,4 +15,8 @@ void perceive(const Pose2& pose_W, Scene& scene);
 /// of the used field either side.
 void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene);
 
+/// Whether a scan is too blind to drive by: fewer than half of its beams within 45 degrees of
+/// straight ahead measured anything, be it that nothing is there. Sun or another scanner does that.
+bool blinded(const LaserScan& scan);
+
 }  // namespace algo

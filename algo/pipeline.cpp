@@ -141,7 +141,7 @@ void Pipeline::sense(Telemetry& t) {
   if (front != nullptr) {
     const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
     filter_.apply(filter_kind_, half_width, *front, scene_.scan);
-    scan_stamp_ = front->stamp;
+    if (!blinded(*front)) scan_stamp_ = front->stamp;
     merge_.enter(t.observation.odometry.pose, t.observation.stamp, scene_.scan);
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;

@@ -7,6 +7,8 @@
 #include "tests/algo/allocations.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/explain.hpp"
+
 namespace algo {
 namespace {
 
@@ -25,7 +27,7 @@ RobotSpec disc() {
 struct PipelineTest : ::testing::Test {
   PipelineTest() { pipeline.reset({}); }
   /// One tick with a scan of free beams, but for `obstacle` straight ahead [m] when it is given.
-  const Telemetry& tick(double obstacle = 0, bool with_scan = true) {
+  const Telemetry& tick(double obstacle = 0, bool with_scan = true, bool dazzled = false) {
     t.observation.clear_sensors();
     t.observation.stamp = 0.025 * static_cast<double>(ticks++);
     t.observation.odometry.stamp = t.observation.stamp;
@@ -37,6 +39,7 @@ struct PipelineTest : ::testing::Test {
       scan.range_max = 8.191;
       scan.resize(361);
       for (std::size_t i = 0; i < 361; ++i) scan.set_free(i);
+      for (std::size_t i = 0; dazzled && i < 361; ++i) scan.set_invalid(i, algo::BeamCode::Dazzled);
       for (std::size_t i = 170; obstacle > 0 && i <= 190; ++i) scan.set_ok(i, obstacle);
     }
     pipeline.tick(t);
@@ -68,6 +71,16 @@ TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
   EXPECT_EQ(t.mission, Mission::Held);
   EXPECT_EQ(tick().hold, Hold::None);
   EXPECT_GT(t.command.base.v, 0);
+}
+
+TEST_F(PipelineTest, ABlindedScanIsNone) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  for (int i = 0; i < 8; ++i) tick(0, true, true);
+  EXPECT_EQ(tick(0, true, true).hold, Hold::StaleScan);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_NE(algo::explain(t).why.find("blinded"), std::string::npos);
+  EXPECT_EQ(tick().hold, Hold::None);
 }
 
 TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
