@@ -75,8 +75,9 @@ const std::map<std::string, Rule>& rules() {
         .others = R"(Eigen/.*|bt[A-Za-z]+\.h|(LinearMath|BulletCollision|BulletDynamics)/.*)"}},
       {"drivers",
        {.folders = {"drivers", "algo"},
-        .others = R"(Eigen/.*|(fcntl|grp|netdb|poll|pthread|pty|sched|termios|unistd)\.h|sys/[a-z]+\.h|)"
-                  R"(asm/termbits\.h|linux/serial\.h|toml\+\+/toml\.h)"}},
+        .others =
+            R"(Eigen/.*|(fcntl|grp|netdb|poll|pthread|pty|sched|termios|unistd)\.h|sys/[a-z]+\.h|)"
+            R"(asm/termbits\.h|linux/serial\.h|toml\+\+/toml\.h)"}},
       {"db", {.folders = {"db"}, .others = R"((sqlite3|zstd|fcntl|unistd)\.h|sys/(file|stat)\.h)"}},
       {"server", {.folders = {"server", "db", "drivers", "sim", "algo"}, .others = ".*"}},
   };

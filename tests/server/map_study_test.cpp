@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace server::mapping {
 namespace {
@@ -78,7 +79,8 @@ class MapStudyOfALog : public testing::Test {
     std::ofstream(folder_ / "corridor.log") << corridor_log(80);
   }
   void TearDown() override { fs::remove_all(folder_); }
-  fs::path folder_ = fs::temp_directory_path() / "tautline_map_study_test";
+  fs::path folder_ =
+      fs::temp_directory_path() / ("tautline_map_study_" + std::to_string(::getpid()));
 };
 
 TEST_F(MapStudyOfALog, WithoutErrorsThePathIsTheLogs) {
