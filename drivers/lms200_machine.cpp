@@ -440,11 +440,9 @@ void LaserMachine::unanswered(double now) {
 // ---- setting it up ---------------------------------------------------------------------------
 
 void LaserMachine::identified(double now) {
-  if (setup_.as_it_is) {
-    begin(Step::Installation, now);
-  } else if (!fixed_rate_ && baud_ != wanted_) {
+  if (!setup_.as_it_is && !fixed_rate_ && baud_ != wanted_) {
     begin(Step::Rate, now);
-  } else if (variant_ != set_variant()) {
+  } else if (!setup_.as_it_is && variant_ != set_variant()) {
     begin(Step::Variant, now);
   } else {
     begin(Step::Installation, now);

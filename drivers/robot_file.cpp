@@ -205,6 +205,7 @@ std::vector<algo::Pose2> pioneer_sonars() {
                                            {-203, 119, 130},
                                            {-157, 136, 90}}};
   std::vector<algo::Pose2> out;
+  out.reserve(kPlaces.size());
   for (const Place& p : kPlaces) {
     out.push_back({p.x_mm / 1000, p.y_mm / 1000, p.heading_deg * kRadiansPerDegree});
   }

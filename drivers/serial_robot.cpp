@@ -327,6 +327,7 @@ std::string SerialRobot::words(Halt halt, const std::vector<DeviceReport>& devic
 
 std::shared_ptr<SerialRobot> open_robot(const RobotFile& file) {
   std::vector<std::unique_ptr<Scanner>> scanners;
+  scanners.reserve(file.lasers.size());
   for (const LaserEntry& laser : file.lasers) {
     scanners.push_back(std::make_unique<lms200::Lms200Device>(laser.name, laser.port, laser.setup));
   }

@@ -188,7 +188,8 @@ void Emulator::work(double now) {
 }
 
 double Emulator::next_duty() const {
-  double next = jobs_.empty() ? emulators::kNever : jobs_.front().due;
+  double next = emulators::kNever;
+  if (!jobs_.empty()) next = jobs_.front().due;
   if (!greeted_) next = std::min(next, boot_end_);
   return next;
 }

@@ -19,8 +19,8 @@ constexpr std::size_t kLongestLine = 128;
 constexpr int kFullCommand = 1000;
 constexpr int kRestartKey = 321654987;
 
-enum Fault : unsigned { kUndervoltage = 4, kEmergencyStop = 16 };
-enum Status : unsigned { kSerial = 1, kStageOff = 8, kStalled = 16 };
+enum Fault : unsigned { Undervoltage = 4, EmergencyStop = 16 };
+enum Status : unsigned { Serial = 1, StageOff = 8, Stalled = 16 };
 constexpr double kLowestVolts = 20;
 
 std::size_t index_of(int channel) {
@@ -163,7 +163,7 @@ bool Emulator::drive_command(const Order& order, double at) {
     return false;
   }
   commanded_ = at;
-  if (emergency_ || (fault_bits() & kUndervoltage) != 0) wanted = {};
+  if (emergency_ || (fault_bits() & Undervoltage) != 0) wanted = {};
   wanted_rpm_ = wanted;
   report(at, {.left = wheel_speed(0, wanted[0]), .right = wheel_speed(1, wanted[1])});
   return true;
@@ -287,17 +287,17 @@ std::int32_t Emulator::counter(std::size_t channel) const {
 
 unsigned Emulator::fault_bits() const {
   unsigned bits = faults_;
-  if (emergency_) bits |= kEmergencyStop;
-  if (volts_ < kLowestVolts) bits |= kUndervoltage;
+  if (emergency_) bits |= EmergencyStop;
+  if (volts_ < kLowestVolts) bits |= Undervoltage;
   return bits;
 }
 
 unsigned Emulator::status_bits() const {
-  unsigned bits = kSerial;
-  if (fault_bits() != 0) bits |= kStageOff;
+  unsigned bits = Serial;
+  if (fault_bits() != 0) bits |= StageOff;
   const double told = std::max(std::abs(rpm_[0]), std::abs(rpm_[1]));
   const double motion = std::max(std::abs(senses_.motion.left), std::abs(senses_.motion.right));
-  if (wheel_speed(0, told) > 0.02 && motion < 0.1 * wheel_speed(0, told)) bits |= kStalled;
+  if (wheel_speed(0, told) > 0.02 && motion < 0.1 * wheel_speed(0, told)) bits |= Stalled;
   return bits;
 }
 
