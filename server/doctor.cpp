@@ -250,7 +250,7 @@ bool look_at_base(const drivers::RobotFile& file,
   }
   std::string facts;
   for (const auto& [name, value] : report.facts) {
-    facts += (facts.empty() ? "" : ", ") + name + " " + value;
+    facts.append(facts.empty() ? "" : ", ").append(name).append(" ").append(value);
   }
   notes.well("Found: " + facts + ".");
   for (const std::string& remark : report.remarks) notes.note(remark);

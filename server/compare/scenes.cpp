@@ -68,6 +68,7 @@ std::vector<sim::Scenario> canonical_scenes() {
 
 std::vector<double> bottleneck_gaps() {
   std::vector<double> gaps;
+  gaps.reserve(kGaps);
   for (int i = 0; i < kGaps; ++i) gaps.push_back(kNarrowest + kStep * i);
   return gaps;
 }
