@@ -47,11 +47,11 @@ class OpenField final : public drivers::Scanner {
 /// Goes exactly as told.
 class GoodBase final : public drivers::Base {
  public:
-  explicit GoodBase(std::atomic<bool>& button) : button_(button) {}
+  explicit GoodBase(std::shared_ptr<std::atomic<bool>> button) : button_(std::move(button)) {}
 
   void enable(bool on) override {
     const std::lock_guard lock(mutex_);
-    state_.motors_on = on && !button_;
+    state_.motors_on = on && !*button_;
   }
   void drive(const algo::Twist2& twist) override {
     const std::lock_guard lock(mutex_);
@@ -72,19 +72,19 @@ class GoodBase final : public drivers::Base {
     out.running = true;
     out.set_ups = 1;
     out.stamp = drivers::steady_now();
-    out.stop_button = button_;
+    out.stop_button = *button_;
     return out;
   }
   double watchdog() const override { return 0.5; }
   drivers::DeviceReport report() override {
     return {.name = "base",
             .port = "none",
-            .well = !button_,
-            .sentence = button_ ? "Its stop button is pressed." : "Well."};
+            .well = !*button_,
+            .sentence = *button_ ? "Its stop button is pressed." : "Well."};
   }
 
  private:
-  std::atomic<bool>& button_;
+  std::shared_ptr<std::atomic<bool>> button_;  // the server outlives the test's own part
   std::mutex mutex_{};
   drivers::BaseState state_{};
 };
@@ -108,9 +108,9 @@ class HardwareAppTest : public AppTest {
 
  private:
   explicit HardwareAppTest(std::shared_ptr<std::atomic<bool>> button)
-      : AppTest(spec(*button)), button_(std::move(button)) {}
+      : AppTest(spec(button)), button_(std::move(button)) {}
 
-  static RunSpec spec(std::atomic<bool>& button) {
+  static RunSpec spec(const std::shared_ptr<std::atomic<bool>>& button) {
     drivers::RobotFile file;
     file.spec.name = "made-up";
     file.spec.period = 0.05;
