@@ -183,35 +183,6 @@ LaserEntry read_laser(Section& in, std::size_t number) {
   return laser;
 }
 
-std::vector<algo::Pose2> pioneer_sonars() {
-  struct Place {
-    double x_mm = 0, y_mm = 0, heading_deg = 0;
-  };
-  // The P3-DX's rings, front then rear (AriaCoda's parameter file).
-  constexpr std::array<Place, 16> kPlaces{{{69, 136, 90},
-                                           {114, 119, 50},
-                                           {148, 78, 30},
-                                           {166, 27, 10},
-                                           {166, -27, -10},
-                                           {148, -78, -30},
-                                           {114, -119, -50},
-                                           {69, -136, -90},
-                                           {-157, -136, -90},
-                                           {-203, -119, -130},
-                                           {-237, -78, -150},
-                                           {-255, -27, -170},
-                                           {-255, 27, 170},
-                                           {-237, 78, 150},
-                                           {-203, 119, 130},
-                                           {-157, 136, 90}}};
-  std::vector<algo::Pose2> out;
-  out.reserve(kPlaces.size());
-  for (const Place& p : kPlaces) {
-    out.push_back({p.x_mm / 1000, p.y_mm / 1000, p.heading_deg * kRadiansPerDegree});
-  }
-  return out;
-}
-
 p2os::PioneerSetup read_pioneer(Section& in) {
   p2os::PioneerSetup setup;
   setup.baud =
@@ -364,6 +335,35 @@ RobotFile read(const toml::table& table, const std::string& name) {
 }
 
 }  // namespace
+
+std::vector<algo::Pose2> pioneer_sonars() {
+  struct Place {
+    double x_mm = 0, y_mm = 0, heading_deg = 0;
+  };
+  // The P3-DX's rings, front then rear (AriaCoda's parameter file).
+  constexpr std::array<Place, 16> kPlaces{{{69, 136, 90},
+                                           {114, 119, 50},
+                                           {148, 78, 30},
+                                           {166, 27, 10},
+                                           {166, -27, -10},
+                                           {148, -78, -30},
+                                           {114, -119, -50},
+                                           {69, -136, -90},
+                                           {-157, -136, -90},
+                                           {-203, -119, -130},
+                                           {-237, -78, -150},
+                                           {-255, -27, -170},
+                                           {-255, 27, 170},
+                                           {-237, 78, 150},
+                                           {-203, 119, 130},
+                                           {-157, 136, 90}}};
+  std::vector<algo::Pose2> out;
+  out.reserve(kPlaces.size());
+  for (const Place& p : kPlaces) {
+    out.push_back({p.x_mm / 1000, p.y_mm / 1000, p.heading_deg * kRadiansPerDegree});
+  }
+  return out;
+}
 
 RobotFile parse_robot(std::string_view text, const std::string& name) {
   try {

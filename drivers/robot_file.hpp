@@ -48,6 +48,9 @@ struct RobotFile {
   std::vector<std::string> warnings{};  // allowed, and to be known
 };
 
+/// Where the sixteen sonars of a Pioneer 3-DX sit, front array then rear, by their numbers.
+std::vector<algo::Pose2> pioneer_sonars();
+
 /// Throws RobotFileError.
 RobotFile read_robot_file(const std::filesystem::path& path);
 /// The same from a text; `name` stands for the file in messages.

@@ -2,9 +2,9 @@
 #include "server/emulate/sonar_ring.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "algo/units.hpp"
+#include "drivers/robot_file.hpp"
 
 namespace server::emulate {
 namespace {
@@ -17,37 +17,16 @@ constexpr std::size_t kRays = 31;  // of a cone
 constexpr double kCone = 30 * algo::units::kRadiansPerDegree;
 constexpr std::uint8_t kPerArray = 8;
 
-/// x, y [mm], heading [deg] in R, as the maker's parameter file has them.
-constexpr std::array<std::array<int, 3>, 16> kMounts{{
-    {69, 136, 90},
-    {114, 119, 50},
-    {148, 78, 30},
-    {166, 27, 10},
-    {166, -27, -10},
-    {148, -78, -30},
-    {114, -119, -50},
-    {69, -136, -90},
-    {-157, -136, -90},
-    {-203, -119, -130},
-    {-237, -78, -150},
-    {-255, -27, -170},
-    {-255, 27, 170},
-    {-237, 78, 150},
-    {-203, 119, 130},
-    {-157, 136, 90},
-}};
-
 }  // namespace
 
-SonarRing::SonarRing(const sim::Scenario& scenario) : caster_(kHeight), ranges_(kRays) {
+SonarRing::SonarRing(const sim::Scenario& scenario)
+    : mounts_R_(drivers::pioneer_sonars()), caster_(kHeight), ranges_(kRays) {
   for (const algo::Obstacle& obstacle : scenario.obstacles) caster_.add(obstacle);
 }
 
 double SonarRing::range(std::uint8_t index, const algo::Pose2& robot_W) {
-  const auto& [x, y, heading] = kMounts[index];
-  const algo::Pose2 mount_R{x / 1000.0, y / 1000.0, heading * algo::units::kRadiansPerDegree};
   const sim::BeamPattern cone{-kCone / 2, kCone / (kRays - 1), kRays};
-  caster_.cast(algo::compose(robot_W, mount_R), cone, kNothing, ranges_);
+  caster_.cast(algo::compose(robot_W, mounts_R_[index]), cone, kNothing, ranges_);
   return std::max(kNearest, *std::ranges::min_element(ranges_));
 }
 
