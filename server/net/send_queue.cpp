@@ -39,7 +39,7 @@ void SendQueue::pop(Slot& from, Outgoing& out) {
 
 bool SendQueue::push_latest(std::uint32_t key,
                             std::span<const std::byte> header,
-                            Payload payload,
+                            const Payload& payload,
                             std::size_t keep) {
   Slot& to = slot(key);
   if (header.size() > Outgoing{}.header.size()) {
@@ -62,7 +62,7 @@ bool SendQueue::push_latest(std::uint32_t key,
   message.kind = FrameKind::Binary;
   std::copy(header.begin(), header.end(), message.header.begin());
   message.header_size = header.size();
-  message.payload = std::move(payload);
+  message.payload = payload;
   ++to.count;
   ++slot_messages_;
   slot_bytes_ += message.size();

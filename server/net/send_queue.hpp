@@ -40,7 +40,7 @@ class SendQueue {
   /// @return false when one was dropped
   bool push_latest(std::uint32_t key,
                    std::span<const std::byte> header,
-                   Payload payload,
+                   const Payload& payload,
                    std::size_t keep);
   void forget(std::uint32_t key);
   void clear();

@@ -48,7 +48,7 @@ class WsClient {
   /// @return false when an older unsent message of this key was dropped for it
   virtual bool send_latest(std::uint32_t key,
                            std::span<const std::byte> header,
-                           Payload payload,
+                           const Payload& payload,
                            std::size_t keep = 1) = 0;
   /// Drops what is still queued under `key`.
   virtual void forget(std::uint32_t key) = 0;

@@ -12,6 +12,7 @@
 #include <sys/socket.h>
 
 #include "server/net/core.hpp"
+#include "server/net/frame_socket.hpp"
 #include "server/net/send_queue.hpp"
 #include "server/net/upgrade.hpp"
 
@@ -21,12 +22,12 @@ namespace {
 namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
-using Stream =
-    websocket::stream<Socket, false>;  // false: no permessage-deflate, it costs and saves nothing
+using Stream = websocket::stream<FrameSocket, false>;  // false: no permessage-deflate, it costs and
+                                                       // saves nothing
 
-/// Never more than one write in flight; what comes meanwhile waits in the bounded queue. Beast's
-/// own timers are off, check() does their work: they would take a client that reads slowly for
-/// dead.
+/// A message goes straight to the kernel when nothing is in its way. Else there is one write in
+/// flight, never more, and what comes meanwhile waits in the bounded queue. Beast's own timers are
+/// off, check() does their work: they would take a client that reads slowly for dead.
 class WsConnection final : public Connection,
                            public WsClient,
                            public std::enable_shared_from_this<WsConnection> {
@@ -52,7 +53,7 @@ class WsConnection final : public Connection,
   void send_control(FrameKind kind, Payload payload) override;
   bool send_latest(std::uint32_t key,
                    std::span<const std::byte> header,
-                   Payload payload,
+                   const Payload& payload,
                    std::size_t keep) override;
   void forget(std::uint32_t key) override { queue_.forget(key); }
   void close(std::uint16_t code, std::string_view reason) override;
@@ -65,8 +66,11 @@ class WsConnection final : public Connection,
   void read();
   void on_read(const error_code& error);
   void deliver();
+  bool send_now(FrameKind kind, std::span<const std::byte> header, const Payload& payload);
   void pump();
+  void write();
   void on_written(const error_code& error, std::size_t bytes);
+  void count(std::size_t bytes);
   void ping();
   void finish();
   void limit_kernel_queue();
@@ -100,7 +104,7 @@ WsConnection::WsConnection(Core& core,
                            std::string peer)
     : core_(core),
       endpoint_(endpoint),
-      stream_(std::in_place, std::move(socket)),
+      stream_(std::in_place, FrameSocket(std::move(socket))),
       subprotocol_(std::move(subprotocol)),
       peer_(std::move(peer)),
       id_(core.next_client++),
@@ -110,7 +114,7 @@ WsConnection::WsConnection(Core& core,
 /// arrive. With this option it takes only so many unsent bytes and the newest frame waits here.
 void WsConnection::limit_kernel_queue() {
   const int bytes = static_cast<int>(core_.options.limits.unsent_kernel_bytes);
-  if (::setsockopt(stream_->next_layer().native_handle(),
+  if (::setsockopt(stream_->next_layer().socket().native_handle(),
                    IPPROTO_TCP,
                    TCP_NOTSENT_LOWAT,
                    &bytes,
@@ -220,16 +224,47 @@ void WsConnection::send_control(FrameKind kind, Payload payload) {
 
 bool WsConnection::send_latest(std::uint32_t key,
                                std::span<const std::byte> header,
-                               Payload payload,
+                               const Payload& payload,
                                std::size_t keep) {
   if (state_ != State::Open) return true;
-  const bool kept = queue_.push_latest(key, header, std::move(payload), keep);
+  if (!writing_ && queue_.messages() == 0 && send_now(FrameKind::Binary, header, payload)) {
+    return true;
+  }
+  const bool kept = queue_.push_latest(key, header, payload, keep);
   pump();
   return kept;
 }
 
+/// @return whether the message was taken; its rest, if any, is then on its way
+bool WsConnection::send_now(FrameKind kind,
+                            std::span<const std::byte> header,
+                            const Payload& payload) {
+  const std::string_view body = payload ? std::string_view(*payload) : std::string_view();
+  const FrameSocket::Sent sent = stream_->next_layer().send(kind, header, body);
+  if (sent == FrameSocket::Sent::Nothing) return false;
+  const std::size_t bytes = header.size() + body.size();
+  if (sent == FrameSocket::Sent::Whole) {
+    count(bytes);
+    return true;
+  }
+  writing_ = true;
+  write_started_ = Clock::now();
+  stream_->next_layer().flush([self = shared_from_this(), bytes](const error_code& error) {
+    self->on_written(error, bytes);
+  });
+  return true;
+}
+
 void WsConnection::pump() {
-  if (state_ != State::Open || writing_ || !queue_.next(current_)) return;
+  while (state_ == State::Open && !writing_ && queue_.next(current_)) {
+    const auto header = std::span(current_.header).first(current_.header_size);
+    if (!send_now(current_.kind, header, current_.payload)) write();
+  }
+  if (!writing_) current_.payload = nullptr;
+}
+
+/// Through Beast, which waits for its own frames to end and for room in the kernel.
+void WsConnection::write() {
   writing_ = true;
   write_started_ = Clock::now();
   stream_->binary(current_.kind == FrameKind::Binary);
@@ -250,11 +285,15 @@ void WsConnection::on_written(const error_code& error, std::size_t bytes) {
     if (state_ == State::Open) finish();
     return;
   }
-  ++counters_.sent_messages;
-  counters_.sent_bytes += bytes;
+  count(bytes);
   // A client that was stuck gets the full silence again to answer the ping it could not see.
   heard_ = std::max(heard_, Clock::now() - core_.options.timeouts.ws_silence / 2);
   pump();
+}
+
+void WsConnection::count(std::size_t bytes) {
+  ++counters_.sent_messages;
+  counters_.sent_bytes += bytes;
 }
 
 void WsConnection::ping() {
@@ -308,8 +347,7 @@ void WsConnection::abort() noexcept {
   if (state_ == State::Ended) return;
   state_ = State::Ended;
   queue_.clear();
-  error_code ignored;
-  stream_->next_layer().close(ignored);
+  beast_close_socket(stream_->next_layer());
   // Destroying the stream lets a handle outlive the io_context; pending operations hold only weak
   // references to it.
   stream_.reset();

@@ -19,7 +19,7 @@ class SilentClient final : public server::net::WsClient {
   void send_control(server::net::FrameKind, server::net::Payload) override {}
   bool send_latest(std::uint32_t,
                    std::span<const std::byte> header,
-                   server::net::Payload,
+                   const server::net::Payload&,
                    std::size_t) override {
     if (header.size() > 16) std::abort();
     return true;

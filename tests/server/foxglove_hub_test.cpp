@@ -31,7 +31,7 @@ class FakeSocket final : public net::WsClient {
   }
   bool send_latest(std::uint32_t key,
                    std::span<const std::byte> header,
-                   Payload payload,
+                   const Payload& payload,
                    std::size_t keep) override {
     std::string bytes(reinterpret_cast<const char*>(header.data()), header.size());
     data.push_back({key, bytes + (payload ? *payload : ""), keep});
