@@ -54,6 +54,7 @@ void match_run(const Recording& log, MapRun& run) {
   }
   run.scan_time = (cpu_seconds() - begin) / static_cast<double>(log.scans.size());
   run.matched = path_error(log.path_W, run.matched_W);
+  run.matched_cells = wall_cells(log.scans, run.matched_W, log.path_W);
 }
 
 nlohmann::json to_json(const PathError& error) {
@@ -80,6 +81,9 @@ Recording read_recording(const std::filesystem::path& file) {
 MapStudy study_map(Recording log, const MapOptions& options) {
   if (const auto problem = sim::defect(options.errors)) throw std::invalid_argument(*problem);
   MapStudy study{std::move(log), options, std::vector<MapRun>(options.seeds)};
+  if (options.match) {
+    study.log_cells = wall_cells(study.log.scans, study.log.path_W, study.log.path_W);
+  }
   std::atomic<std::size_t> done{0};
   in_parallel(options.seeds, options.threads, [&](std::size_t i) {
     MapRun& run = study.runs[i];
@@ -107,10 +111,12 @@ nlohmann::json to_json(const MapStudy& study) {
                         {"yaw_slip", study.options.errors.odometry_slip},
                         {"odometry_noise", study.options.errors.odometry_noise},
                         {"runs", nlohmann::json::array()}};
+  if (study.options.match) out["log_wall_cells"] = study.log_cells;
   for (const MapRun& run : study.runs) {
     nlohmann::json row = {{"seed", run.seed}, {"odometry", to_json(run.odometry)}};
     if (study.options.match) {
       row["matched"] = to_json(run.matched);
+      row["wall_cells"] = run.matched_cells;
       row["scan_ms"] = 1e3 * run.scan_time;
     }
     out["runs"].push_back(std::move(row));

@@ -12,6 +12,7 @@
 
 #include "algo/mapping/mapper.hpp"
 #include "server/mapping/path_error.hpp"
+#include "server/mapping/sharpness.hpp"
 #include "sim/scenario.hpp"
 
 namespace server::mapping {
@@ -42,13 +43,15 @@ struct MapRun {
   std::vector<algo::Pose2> matched_W{};  // empty when matching was not asked for
   PathError odometry{};
   PathError matched{};
-  double scan_time = 0;  // [s] CPU, mean of placing a scan and entering it
+  std::vector<std::size_t> matched_cells{};  // see wall_cells(), as with the log's own
+  double scan_time = 0;                      // [s] CPU, mean of placing a scan and entering it
 };
 
 struct MapStudy {
   Recording log{};
   MapOptions options{};
-  std::vector<MapRun> runs{};  // one a seed
+  std::vector<MapRun> runs{};            // one a seed
+  std::vector<std::size_t> log_cells{};  // of the log's own poses; only with matching
 };
 
 /// Throws std::invalid_argument when the errors make no sense.

@@ -51,6 +51,33 @@ TEST(PathError, OfAShortPathHasNoPieces) {
   EXPECT_THROW(path_error(straight(5), straight(4)), std::invalid_argument);
 }
 
+/// Scans of a wall 2 m ahead, taken on the way along it.
+std::vector<algo::LaserScan> scans_of_a_wall(std::size_t count) {
+  algo::LaserScan scan;
+  scan.angle_min = std::numbers::pi / 2 - 0.5;
+  scan.angle_increment = 0.01;
+  for (int i = 0; i <= 100; ++i) {
+    scan.ranges.push_back(2 / std::cos(0.01 * i - 0.5));
+    scan.status.push_back(algo::Beam::Ok);
+  }
+  return std::vector<algo::LaserScan>(count, scan);
+}
+
+TEST(WallCells, AreFewerAlongTheTruerPath) {
+  std::vector<Pose2> truth;
+  std::vector<Pose2> shaky;
+  for (int k = 0; k < 250; ++k) {
+    truth.push_back({0.1 * k, 0.02, 0});
+    shaky.push_back({0.1 * k, 0.02, k % 2 == 0 ? 0.02 : -0.02});
+  }
+  const auto scans = scans_of_a_wall(truth.size());
+  const auto sharp = wall_cells(scans, truth, truth);
+  const auto blunt = wall_cells(scans, shaky, truth);
+  ASSERT_EQ(sharp.size(), 3U);  // of 10, 10 and 5 m
+  ASSERT_EQ(blunt.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(blunt[i], sharp[i] + sharp[i] / 2);
+}
+
 /// A robot that drives along a corridor with doors, 180 readings a scan.
 std::string corridor_log(int scans) {
   std::ostringstream log;
