@@ -89,7 +89,11 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (const auto* set = std::get_if<SetParameter>(&request)) {
     return algo::refusal(parameters_, set->parameter, set->value);
   }
-  if (const auto* goal = std::get_if<SetGoal>(&request)) {
+  const auto* add = std::get_if<AddGoal>(&request);
+  if (add != nullptr && sequencer_.goals_ahead().size() >= kMostGoalsAhead) {
+    return "There are " + std::to_string(kMostGoalsAhead) + " goals ahead; more are not kept.";
+  }
+  if (const auto* goal = add != nullptr ? &add->goal : std::get_if<SetGoal>(&request)) {
     const bool finite = goal->position_W.allFinite() && std::isfinite(goal->heading.value_or(0));
     if (!finite) return "The goal must be finite numbers.";
     if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
@@ -116,6 +120,7 @@ void Pipeline::tick(Telemetry& t) {
 
 void Pipeline::apply(const Request& request) {
   std::visit(Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
+                        [&](const AddGoal& add) { sequencer_.add_goal(add.goal); },
                         [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
                         [&](const Joystick& stick) {
                           // Whoever takes the stick takes over: a silent driver must leave a robot
@@ -185,8 +190,10 @@ bool Pipeline::manual() const {
 }
 
 void Pipeline::control(Telemetry& t) {
-  t.goal = sequencer_.goal();
   t.mission = sequencer_.update(t.observation.odometry.pose, parameters_);
+  t.goal = sequencer_.goal();
+  t.goals_ahead.clear();
+  for (const SetGoal& goal : sequencer_.goals_ahead()) t.goals_ahead.push_back(goal);
 
   Resource resource;
   resource.dt = spec_.period;

@@ -17,6 +17,11 @@ struct SetGoal {
   std::optional<double> heading{};  // [rad] wanted on arrival; any when absent
   bool operator==(const SetGoal&) const = default;
 };
+/// A goal for when those before it are reached; the first when there is none.
+struct AddGoal {
+  SetGoal goal{};
+  bool operator==(const AddGoal&) const = default;
+};
 struct ClearGoal {
   bool operator==(const ClearGoal&) const = default;
 };
@@ -57,6 +62,7 @@ using Request = std::variant<SetGoal,
                              RemoveObstacle,
                              Joystick,
                              Stop,
-                             SetParameter>;
+                             SetParameter,
+                             AddGoal>;
 
 }  // namespace algo

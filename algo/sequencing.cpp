@@ -52,20 +52,40 @@ bool StuckDetector::update(const Vec2& position_W, double v_max) {
 
 void Sequencer::reset(double period) {
   goal_.reset();
+  ahead_.clear();
+  ahead_.reserve(kMostGoalsAhead);
   mission_ = Mission::Idle;
   stuck_.reset(period);
 }
 
 void Sequencer::set_goal(const std::optional<SetGoal>& goal) {
   goal_ = goal;
+  ahead_.clear();
   mission_ = goal ? Mission::Driving : Mission::Idle;
   stuck_.restart();
 }
 
+void Sequencer::add_goal(const SetGoal& goal) {
+  if (!goal_) {
+    set_goal(goal);
+  } else {
+    ahead_.push_back(goal);
+  }
+}
+
+void Sequencer::go_on() {
+  goal_ = ahead_.front();
+  ahead_.erase(ahead_.begin());
+  mission_ = Mission::Driving;
+  stuck_.restart();
+}
+
 Mission Sequencer::update(const Pose2& pose_W, const Parameters& parameters) {
+  if (mission_ == Mission::Arrived && !ahead_.empty()) go_on();
   if (!goal_ || mission_ == Mission::Arrived) return mission_;
-  if (at_goal(*goal_, pose_W, parameters[Parameter::GoalReach])) {
-    return mission_ = Mission::Arrived;
+  while (at_goal(*goal_, pose_W, parameters[Parameter::GoalReach])) {
+    if (ahead_.empty()) return mission_ = Mission::Arrived;
+    go_on();
   }
 
   const Vec2 position_W = pose_W.position();

@@ -164,6 +164,7 @@ struct Telemetry {
   std::optional<GroundTruth> ground_truth{};
   Scene scene{};
   std::optional<SetGoal> goal{};
+  Recycled<SetGoal> goals_ahead{};  // after that one, in order
   ControlOutput output{};
   Command command{};
   Hold hold = Hold::None;

@@ -119,15 +119,32 @@ algo::PipelineConfig pipeline_config(const RunSpec& spec) {
 
 std::vector<algo::Request> first_requests(const RunSpec& spec) {
   if (!spec.scenario.goal || !spec.scenario.log.empty()) return {};
-  return {*spec.scenario.goal};
+  std::vector<algo::Request> requests;
+  const auto then = [&](const algo::SetGoal& goal) {
+    if (requests.empty()) {
+      requests.emplace_back(goal);
+    } else {
+      requests.emplace_back(algo::AddGoal{goal});
+    }
+  };
+  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) then(waypoint);
+  then(*spec.scenario.goal);
+  return requests;
 }
 
 double time_limit(const RunSpec& spec) {
   if (!spec.scenario.log.empty()) return 0;
   if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
   if (!spec.scenario.goal) return 60.0;
-  const double straight = (spec.scenario.goal->position_W - spec.scenario.start.position()).norm();
-  return std::max(1.0, 5.0 * straight / spec.parameters[algo::Parameter::MaxSpeed]);
+  double way = 0;
+  algo::Vec2 from_W = spec.scenario.start.position();
+  const auto on_to = [&](const algo::SetGoal& goal) {
+    way += (goal.position_W - from_W).norm();
+    from_W = goal.position_W;
+  };
+  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) on_to(waypoint);
+  on_to(*spec.scenario.goal);
+  return std::max(1.0, 5.0 * way / spec.parameters[algo::Parameter::MaxSpeed]);
 }
 
 json to_json(const algo::RobotSpec& robot) {

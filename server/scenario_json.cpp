@@ -12,6 +12,7 @@
 
 #include "algo/controller.hpp"
 #include "algo/filter.hpp"
+#include "algo/sequencing.hpp"
 #include "algo/units.hpp"
 #include "server/json_reader.hpp"
 #include "server/motion_json.hpp"
@@ -353,6 +354,10 @@ algo::Request request_from_json(const json& value) {
     in.only({"type", "x", "y", "heading"});
     return goal_from_json(in);
   }
+  if (type == "add_goal") {
+    in.only({"type", "x", "y", "heading"});
+    return algo::AddGoal{goal_from_json(in)};
+  }
   if (type == "clear_goal") {
     in.only({"type"});
     return algo::ClearGoal{};
@@ -386,8 +391,8 @@ algo::Request request_from_json(const json& value) {
     return algo::SetParameter{*parameter, in.number("value")};
   }
   in.fail("type",
-          fmt::format("'{}' is unknown; known are set_goal, clear_goal, add_obstacle, "
-                      "move_obstacle, remove_obstacle, joystick, stop, set_parameter",
+          fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "
+                      "add_obstacle, move_obstacle, remove_obstacle, joystick, stop, set_parameter",
                       type));
 }
 
@@ -425,12 +430,22 @@ algo::Parameters parameters_of(const sim::Scenario& scenario) {
   return out;
 }
 
+void read_waypoints(const JsonReader& in, sim::Scenario& s) {
+  const json& list = in.array("waypoints", algo::kMostGoalsAhead);
+  if (!s.goal && !list.empty()) in.fail("waypoints", "lead nowhere: there is no goal");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const JsonReader waypoint(list[i], fmt::format("waypoints/{}", i));
+    waypoint.only({"x", "y", "heading"});
+    s.waypoints.push_back(goal_from_json(waypoint));
+  }
+}
+
 sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
   in.only({"name",     "title",      "description", "robot",     "vehicle",      "period",
            "start",    "goal",       "drive",       "obstacles", "lasers",       "sonar",
            "infrared", "gyro",       "bumpers",     "encoders",  "localization", "controller",
-           "filter",   "parameters", "time_limit"});
+           "filter",   "parameters", "time_limit",  "waypoints"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_scenario_name(s.name)) {
@@ -444,7 +459,8 @@ sim::Scenario scenario_from_json(const json& document) {
     in.object("goal").only({"x", "y", "heading"});
     s.goal = goal_from_json(in.object("goal"));
   }
-  s.start = start_from_json(in, s.goal);
+  if (in.has("waypoints")) read_waypoints(in, s);
+  s.start = start_from_json(in, s.waypoints.empty() ? s.goal : s.waypoints.front());
   if (in.has("drive")) s.drive = drive_from_json(in.object("drive"));
   if (in.has("obstacles")) read_obstacles(in, s);
   if (in.has("lasers")) {
@@ -475,6 +491,7 @@ json to_json(const sim::Scenario& s) {
               {"lasers", json::array()},
               {"obstacles", json::array()}};
   if (s.goal) out["goal"] = to_json(*s.goal);
+  for (const algo::SetGoal& waypoint : s.waypoints) out["waypoints"].push_back(to_json(waypoint));
   for (const auto& [parameter, value] : s.parameters) {
     out["parameters"][std::string(algo::info(parameter).name)] = value;
   }

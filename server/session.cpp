@@ -76,7 +76,7 @@ void Session::load(RunSpec spec) {
   end();
 
   state_.robot = robot->spec();
-  state_.goal.reset();
+  set_goals(std::nullopt);
   state_.obstacles = spec.scenario.obstacles;
   state_.parameters = spec.parameters;
   state_.outcome = algo::Outcome::Running;
@@ -272,9 +272,15 @@ void Session::adopt(const algo::Request& request) {
       [&](const auto& r) {
         using R = std::decay_t<decltype(r)>;
         if constexpr (std::is_same_v<R, algo::SetGoal>) {
-          state_.goal = r;
+          set_goals(r);
+        } else if constexpr (std::is_same_v<R, algo::AddGoal>) {
+          if (state_.goal) {
+            state_.goals_ahead.push_back(r.goal);
+          } else {
+            set_goals(r.goal);
+          }
         } else if constexpr (std::is_same_v<R, algo::ClearGoal>) {
-          state_.goal.reset();
+          set_goals(std::nullopt);
         } else if constexpr (std::is_same_v<R, algo::AddObstacle>) {
           state_.obstacles.push_back(r.obstacle);
         } else if constexpr (std::is_same_v<R, algo::MoveObstacle>) {
@@ -288,12 +294,29 @@ void Session::adopt(const algo::Request& request) {
         } else {
           static_assert(std::is_same_v<R, algo::Joystick>);
           if (r != algo::Joystick{} && state_.goal) {  // taking the stick cancels the goal
-            state_.goal.reset();
+            set_goals(std::nullopt);
             changed();
           }
         }
       },
       request);
+}
+
+void Session::set_goals(const std::optional<algo::SetGoal>& goal) {
+  state_.goal = goal;
+  state_.goals_ahead.clear();
+}
+
+/// Moves on in the mirror when the robot has: a frame may be older than what was asked for since.
+void Session::follow_goal(const algo::Telemetry& t) {
+  if (t.goal == state_.goal) return;
+  auto& ahead = state_.goals_ahead;
+  const auto found = std::find(ahead.begin(), ahead.end(), t.goal);
+  if (found == ahead.end()) return;
+  state_.goal = *found;
+  ahead.erase(ahead.begin(), found + 1);
+  log(LogLevel::Info, "A waypoint is reached; the next goal is set.");
+  changed();
 }
 
 void Session::drain_frames() {
@@ -305,6 +328,7 @@ void Session::drain_frames() {
       path_.push_back(pose);
     }
     narrate(t);
+    follow_goal(t);
     latest = frame;
   });
   if (path_.size() > kPathPoints) {
@@ -364,6 +388,13 @@ sim::Scenario Session::as_scenario(const std::string& name, const std::string& t
   out.name = name;
   out.title = title;
   out.goal = state_.goal;
+  out.waypoints.clear();
+  if (!state_.goals_ahead.empty()) {
+    out.waypoints.push_back(*state_.goal);
+    out.waypoints.insert(
+        out.waypoints.end(), state_.goals_ahead.begin(), state_.goals_ahead.end() - 1);
+    out.goal = state_.goals_ahead.back();
+  }
   out.obstacles = state_.obstacles;
   out.parameters.clear();
   for (const algo::ParameterInfo& p : algo::parameter_table()) {

@@ -30,6 +30,7 @@ struct SessionState {
   algo::Pace pace{};
   bool stop = false;
   std::optional<algo::SetGoal> goal{};
+  std::vector<algo::SetGoal> goals_ahead{};  // after that one, in order
   std::vector<algo::Obstacle> obstacles{};
   algo::Parameters parameters{};
   algo::Outcome outcome = algo::Outcome::Running;
@@ -127,6 +128,7 @@ class Session {
     Answer answer{};
   };
 
+  void set_goals(const std::optional<algo::SetGoal>& goal);
   void adopt(const algo::Request& request);
   std::uint32_t free_obstacle_id();
   void drain_replies();
@@ -135,6 +137,7 @@ class Session {
   void watch_run();
   void watch_hardware();
   void narrate(const algo::Telemetry& t);
+  void follow_goal(const algo::Telemetry& t);
   void apply_pace();
   void changed() const;
   void log(LogLevel level, const std::string& text) const;

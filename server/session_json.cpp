@@ -30,6 +30,7 @@ json state_json(const Session& session) {
       {"pace", {{"paused", s.pace.paused}, {"speed", s.pace.speed}}},
       {"stop", s.stop},
       {"goal", nullptr},
+      {"goals_ahead", json::array()},
       {"obstacles", std::move(obstacles)},
       {"parameters", to_json(s.parameters)},
       {"lost_ticks", s.lost_ticks},
@@ -38,6 +39,7 @@ json state_json(const Session& session) {
       {"hardware", nullptr},
   };
   if (s.goal) out["goal"] = to_json(*s.goal);
+  for (const algo::SetGoal& goal : s.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
   if (s.problem) out["problem"] = *s.problem;
   if (s.hardware) out["hardware"] = to_json(*s.hardware);
   return out;

@@ -127,6 +127,7 @@ struct Scenario {
   double period = 0.026;  // [s] one tick
   algo::Pose2 start{};
   std::optional<algo::SetGoal> goal{};
+  std::vector<algo::SetGoal> waypoints{};  // on the way to the goal, in order
   DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
   std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves

@@ -181,6 +181,14 @@ void add_session_routes(net::Router& router, ApiContext& context) {
                body["type"] = "set_goal";
                submit_and_reply(context, request_from_json(body), respond);
              }));
+  router.add("POST",
+             "/api/v1/session/goal",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               json body = body_json(request);
+               JsonReader(body, "").only({"x", "y", "heading"});
+               body["type"] = "add_goal";
+               submit_and_reply(context, request_from_json(body), respond);
+             }));
   router.add("DELETE",
              "/api/v1/session/goal",
              guarded([&context](const net::Request&, const net::Responder& respond) {

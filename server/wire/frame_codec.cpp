@@ -44,6 +44,9 @@ fb::Bumper to_wire(const algo::BumperReading& b) {
 fb::Nearest to_wire(const algo::Nearest& n) {
   return {to_float(n.point_W), static_cast<float>(n.distance), n.beam};
 }
+fb::Vec2f to_wire(const algo::SetGoal& goal) {
+  return to_float(goal.position_W);
+}
 fb::Vec2f to_wire(const algo::Node& n) {
   return to_float(n.position_W);
 }
@@ -174,6 +177,9 @@ struct RequestWriter {
   Written operator()(const algo::SetGoal& r) const {
     return {fb::Request_SetGoal, write_goal(b, r).Union()};
   }
+  Written operator()(const algo::AddGoal& r) const {
+    return {fb::Request_AddGoal, fb::CreateAddGoal(b, write_goal(b, r.goal)).Union()};
+  }
   Written operator()(const algo::ClearGoal&) const {
     return {fb::Request_ClearGoal, fb::CreateClearGoal(b).Union()};
   }
@@ -213,6 +219,11 @@ algo::Request read_request(const fb::RequestBox& box) {
   switch (box.request_type()) {
     case fb::Request_SetGoal:
       return read_goal(*box.request_as_SetGoal());
+    case fb::Request_AddGoal: {
+      const auto* add = box.request_as_AddGoal();
+      if (add->goal() == nullptr) throw WireError("A further goal in the frame is empty.");
+      return algo::AddGoal{read_goal(*add->goal())};
+    }
     case fb::Request_ClearGoal:
       return algo::ClearGoal{};
     case fb::Request_AddObstacle:
@@ -526,6 +537,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
   const auto requests = write_requests(b, t.requests);
   const auto strip = write_structs<fb::Vec2f>(b, t.output.strip);
+  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto plan = write_path(b, t.output.plan_W);
   const auto candidates = write_structs<fb::Candidate>(b, t.output.candidates);
   const auto histogram = t.output.histogram.empty() ? 0 : b.CreateVector(t.output.histogram);
@@ -554,6 +566,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
     frame.add_what(what);
     frame.add_why(why);
   }
+  if (!t.goals_ahead.empty()) frame.add_goals_ahead(goals_ahead);
   if (!t.output.plan_W.empty()) frame.add_plan(plan);
   if (!t.output.candidates.empty()) frame.add_candidates(candidates);
   if (!t.output.histogram.empty()) {
@@ -629,6 +642,10 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   if (const auto* goal = f.goal()) {
     t.goal = algo::SetGoal{from_wire(*goal), std::nullopt};
     if (const auto heading = f.goal_heading()) t.goal->heading = *heading;
+  }
+  t.goals_ahead.clear();
+  if (f.goals_ahead() != nullptr) {
+    for (const fb::Vec2f* p : *f.goals_ahead()) t.goals_ahead.push_back({from_wire(*p), {}});
   }
   read_output(f, t);
   t.command = {from_wire(*f.command())};

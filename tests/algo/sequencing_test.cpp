@@ -55,6 +55,34 @@ TEST_F(SequencerTest, AWantedHeadingMustBeReachedToo) {
   EXPECT_EQ(sequencer.update({1, 0, 0.96}, parameters), Mission::Arrived);
 }
 
+TEST_F(SequencerTest, GoesOnFromGoalToGoalAndArrivesAtTheLast) {
+  sequencer.add_goal({.position_W = {1, 0}});  // the first, as there is none
+  sequencer.add_goal({.position_W = {2, 0}, .heading = 1.0});
+  sequencer.add_goal({.position_W = {2, 0.05}});
+  EXPECT_EQ(sequencer.update({0.5, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goals_ahead().size(), 2U);
+  EXPECT_EQ(sequencer.update({0.95, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goal(), (SetGoal{.position_W = {2, 0}, .heading = 1.0}));
+  EXPECT_EQ(sequencer.update({2, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goals_ahead().size(), 1U);
+  // Within reach of both that are left.
+  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Arrived);
+  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(2, 0.05)});
+  sequencer.add_goal({.position_W = {3, 0}});
+  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(3, 0)});
+}
+
+TEST_F(SequencerTest, ANewGoalTakesThePlaceOfAllThereAre) {
+  sequencer.add_goal({.position_W = {1, 0}});
+  sequencer.add_goal({.position_W = {2, 0}});
+  sequencer.set_goal(SetGoal{.position_W = {0, 5}});
+  EXPECT_TRUE(sequencer.goals_ahead().empty());
+  sequencer.add_goal({.position_W = {2, 0}});
+  sequencer.set_goal(std::nullopt);
+  EXPECT_EQ(sequencer.update({}, parameters), Mission::Idle);
+}
+
 TEST_F(SequencerTest, StuckUntilItGetsAway) {
   sequencer.set_goal(SetGoal{.position_W = {5, 0}});
   Mission mission = Mission::Driving;

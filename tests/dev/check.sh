@@ -105,7 +105,7 @@ verb_fmt() {
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
-    asan) targets=(test_algo test_sim test_db test_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
+    asan) targets=(test_algo test_sim test_drivers test_db test_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
     tsan) targets=(test_server test_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac

@@ -157,6 +157,18 @@ TEST_F(AppTest, AGoodScenarioIsKeptReadRunAndDeleted) {
   expect_problem(ask("DELETE", "/scenarios/case1"), 409, "case1");
 }
 
+TEST_F(AppTest, AScenarioWithWaypointsDrivesThroughThem) {
+  const std::string body = R"({"name":"round","vehicle":"kinematic","goal":{"x":0.6,"y":1},)"
+                           R"("waypoints":[{"x":0.6,"y":0},{"x":1.2,"y":0.5}],"time_limit":90})";
+  const Answer accepted = ask("POST", "/runs", R"({"scenario":)" + body + "}");
+  ASSERT_EQ(accepted.status, 202) << accepted.body;
+  const std::int64_t run = json::parse(accepted.body)["runs"][0];
+  ASSERT_TRUE(comes_to(run, "finished"));
+  const json row = get("/runs/" + std::to_string(run));
+  EXPECT_EQ(row["outcome"], "reached");
+  EXPECT_GT(row["metrics"]["path_length"], 1.7);  // 0.6 + 0.78 + 0.78, less the reach of each
+}
+
 TEST_F(AppTest, ATwofoldExperimentReachesAndItsRecordsAgree) {
   const Answer accepted =
       ask("POST", "/runs", R"({"scenario":"case1","vehicle":"kinematic","repeats":2,"seed":7})");

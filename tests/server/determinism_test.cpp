@@ -144,6 +144,7 @@ TEST_F(RecordedRun, FedBackWithEditsStickAndStopItGivesTheSameCommands) {
       {360, algo::SetGoal{{3.5, 5.0}, 0.9}},
       {420, algo::ClearGoal{}},
       {430, algo::SetGoal{{3.0, 5.0}, std::nullopt}},
+      {431, algo::AddGoal{{{0.0, 4.0}, std::nullopt}}},
   };
   for (const char* vehicle : {"bullet", "kinematic"}) {
     SCOPED_TRACE(vehicle);

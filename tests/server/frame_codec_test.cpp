@@ -40,6 +40,7 @@ algo::Telemetry full_telemetry() {
   o.encoders = algo::Encoders{12.3, 4294967290U, 17};
   t.requests.push_back(algo::SetGoal{{3.5, 5.0}, 0.25});
   t.requests.push_back(algo::SetGoal{{0, 0}, std::nullopt});
+  t.requests.push_back(algo::AddGoal{{{1, 2}, -0.5}});
   t.requests.push_back(algo::ClearGoal{});
   for (const algo::Shape& shape : {algo::Shape{algo::Cylinder{0.3}},
                                    algo::Shape{algo::Box{0.5, 0.25}},
@@ -54,6 +55,8 @@ algo::Telemetry full_telemetry() {
   t.requests.push_back(algo::SetParameter{algo::Parameter::RepulsionGain, 0.45});
   t.ground_truth = algo::GroundTruth{{1, 2, 3}, 0.75, 0.5, true};
   t.goal = algo::SetGoal{{3.5, 5.0}, std::nullopt};
+  t.goals_ahead.push_back({{1, 2}, std::nullopt});
+  t.goals_ahead.push_back({{-3, 0.5}, std::nullopt});
   t.command = {{0.1234567890123456, -0.9876543210987654}};
   t.hold = algo::Hold::Bumper;
   t.mission = algo::Mission::Held;
@@ -103,6 +106,8 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   EXPECT_EQ(back.command, t.command);
   EXPECT_EQ(back.ground_truth, t.ground_truth);
   EXPECT_EQ(back.goal, t.goal);
+  ASSERT_EQ(back.goals_ahead.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(back.goals_ahead[i], t.goals_ahead[i]);
   EXPECT_EQ(back.hold, t.hold);
   EXPECT_EQ(back.mission, t.mission);
   EXPECT_EQ(back.behaviour, t.behaviour);

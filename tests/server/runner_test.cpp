@@ -96,6 +96,13 @@ TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
   EXPECT_TRUE(robot.stopped);
 }
 
+TEST_F(RunnerTest, IsOverAtTheLastOfSeveralGoals) {
+  const algo::AddGoal then{{{2.0, 0.0}, std::nullopt}};
+  const RunResult result = go({kGoal, then}, {.until_outcome = true, .time_limit = 100});
+  EXPECT_EQ(result.outcome, algo::Outcome::Reached);
+  EXPECT_NEAR(result.metrics.path_length, 1.9, 0.03);
+}
+
 TEST_F(RunnerTest, RunsOutOfTime) {
   const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 0.5});
   EXPECT_EQ(result.outcome, algo::Outcome::OutOfTime);

@@ -59,6 +59,7 @@ TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
        R"({"resolution_deg":1,"ideal":true,"mount":{"x":0.1,"y":0}}]})",
        R"({"name":"e","vehicle":"kinematic","controller":"original","filter":"lulu",)"
        R"("parameters":{"k_r":0.3,"v_max":0.1},"time_limit":12.5,"period":0.05})",
+       R"({"name":"c","goal":{"x":3,"y":0},"waypoints":[{"x":0,"y":2,"heading":0.5},{"x":1,"y":1}]})",
        R"({"name":"f","lasers":[]})",
        R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
        R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
@@ -125,6 +126,14 @@ TEST(ScenarioJson, WithoutAStartHeadingTheRobotFacesItsGoal) {
             0.5);
 }
 
+TEST(ScenarioJson, WithWaypointsTheRobotFacesTheFirst) {
+  const sim::Scenario s =
+      read(R"({"name":"w","goal":{"x":3,"y":0},"waypoints":[{"x":0,"y":2},{"x":1,"y":2}]})");
+  EXPECT_NEAR(s.start.heading, std::numbers::pi / 2, 1e-12);
+  ASSERT_EQ(s.waypoints.size(), 2U);
+  EXPECT_EQ(s.waypoints[1].position_W, algo::Vec2(1, 2));
+}
+
 TEST(ScenarioJson, SaysWhereAndWhat) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {R"([])", "document: must be an object, not array"},
@@ -180,7 +189,7 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
 
 TEST(ScenarioJson, RequestsSayWhereAndWhat) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {R"({"type":"fly"})", "type: 'fly' is unknown; known are set_goal, clear_goal"},
+      {R"({"type":"fly"})", "type: 'fly' is unknown; known are set_goal, add_goal, clear_goal"},
       {R"({"type":"set_goal","x":1})", "y: is missing"},
       {R"({"type":"joystick","forward":2,"turn":0})", "forward: is 2, must lie in -1 to 1"},
       {R"({"type":"remove_obstacle","id":1.5})", "id: must be a whole number of at least 0"},

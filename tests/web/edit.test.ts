@@ -24,6 +24,7 @@ function hands(tool: Tool, allowed = true) {
   const target: GestureTarget = {
     scene, view, tool: () => tool, can_edit: () => allowed, can_drive: () => allowed,
     set_goal: (g) => done.push(`goal ${g.x} ${g.y} ${g.heading === null ? "any" : g.heading.toFixed(3)}`),
+    add_goal: (g) => done.push(`then ${g.x} ${g.y}`),
     add: (o) => done.push(`add ${o.kind} ${o.pose.x} ${o.pose.y} ${o.radius || `${o.length}x${o.width}`}`),
     move: (id, pose, _, last) => done.push(`${last ? "moved" : "moving"} ${id} ${pose.x} ${pose.y}`),
     select: (s) => done.push(`select ${s?.kind ?? "nothing"}`), draft: () => undefined, hover: () => undefined,
@@ -43,6 +44,14 @@ test("a goal: pressed where, dragged for the heading; a click leaves the heading
   drag([500, 200], [500, 150]); // (1, 1) m, dragged up: pi / 2
   drag([500, 200], [502, 201]);
   assert.deepEqual(done, ["select goal", "goal 1 1 1.571", "select goal", "goal 1 1 any"]);
+});
+
+test("with Shift a goal is added, also where one is already", () => {
+  const { done, gestures, scene } = hands("goal");
+  scene.goal = { x: 1, y: 1, heading: null };
+  gestures.down(1, { x: 500, y: 200 }, 0, true);
+  gestures.up(1, { x: 500, y: 200 });
+  assert.deepEqual(done, ["then 1 1"]);
 });
 
 test("a cylinder: a click makes one of usual size, a drag one as large as drawn", () => {

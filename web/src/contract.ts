@@ -68,6 +68,7 @@ export interface SessionState {
   pace: { paused: boolean; speed: number };
   stop: boolean;
   goal: GoalJson | null;
+  goals_ahead?: GoalJson[];
   obstacles: ObstacleJson[];
   parameters: Record<string, number>;
   lost_ticks: number;
@@ -78,6 +79,7 @@ export interface SessionState {
 
 export type RequestJson =
   | { type: "set_goal"; x: number; y: number; heading?: number }
+  | { type: "add_goal"; x: number; y: number; heading?: number }
   | { type: "clear_goal" }
   | { type: "add_obstacle"; obstacle: ObstacleJson }
   | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }

@@ -1,5 +1,5 @@
-// web/src/draw/robot.ts: the robot, its safety circle, and its goal.
-import { Pose } from "../geometry";
+// web/src/draw/robot.ts: the robot, its safety circle, and its goals.
+import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
 import { Palette } from "./palette";
 import { arrow } from "./strip";
@@ -91,4 +91,34 @@ export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, 
     arrow(g, view, goal, { x: length * Math.cos(goal.heading), y: length * Math.sin(goal.heading) },
       1, palette.ok, 2.6);
   }
+}
+
+/** The goals after `goal`, numbered, and the way through them. */
+export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal: Point,
+  ahead: Point[]): void {
+  if (ahead.length === 0) return;
+  g.strokeStyle = palette.ok;
+  g.fillStyle = palette.ok;
+  g.lineWidth = 1.4;
+  g.setLineDash([3, 5]);
+  g.beginPath();
+  g.moveTo(view.sx(goal.x), view.sy(goal.y));
+  for (const next of ahead) g.lineTo(view.sx(next.x), view.sy(next.y));
+  g.stroke();
+  g.setLineDash([]);
+  const radius = 9;
+  g.font = `600 11px ${palette.font}`;
+  g.textAlign = "center";
+  g.textBaseline = "middle";
+  ahead.forEach((next, i) => {
+    const x = view.sx(next.x);
+    const y = view.sy(next.y);
+    g.fillStyle = palette.bg;
+    g.beginPath();
+    g.arc(x, y, radius, 0, 2 * Math.PI);
+    g.fill();
+    g.stroke();
+    g.fillStyle = palette.ok;
+    g.fillText(String(i + 2), x, y + 0.5);
+  });
 }

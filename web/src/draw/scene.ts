@@ -6,7 +6,7 @@ import { Columns } from "../state/columns";
 import { SceneState, robot_pose } from "../state/scene";
 import { Palette } from "./palette";
 import { draw_bumpers, draw_ranging } from "./ranging";
-import { draw_goal, draw_robot, draw_safety, draw_truth } from "./robot";
+import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
 import { draw_fan, draw_nearest, draw_returns } from "./sensing";
 import { draw_forces, draw_path, draw_strip } from "./strip";
 import { Insets, View } from "./view";
@@ -64,6 +64,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   if (pose && scene.world) draw_safety(g, view, palette, pose, scene.safety_distance);
   const goal = overlay.draft.goal ?? scene.goal;
   if (goal) {
+    draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
     draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal", !!overlay.draft.goal);
   }
   if (f) draw_nearest(g, view, palette, f);

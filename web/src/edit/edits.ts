@@ -5,10 +5,12 @@ import { Goal } from "../link/frame";
 import { Obstacle, obstacle_to_json } from "../obstacle";
 import { Edit } from "./history";
 
+function goal_json({ x, y, heading }: Goal): { x: number; y: number; heading?: number } {
+  return heading === null ? { x, y } : { x, y, heading };
+}
+
 function goal_request(goal: Goal | null): RequestJson {
-  if (!goal) return { type: "clear_goal" };
-  return goal.heading === null ? { type: "set_goal", x: goal.x, y: goal.y }
-    : { type: "set_goal", x: goal.x, y: goal.y, heading: goal.heading };
+  return goal ? { type: "set_goal", ...goal_json(goal) } : { type: "clear_goal" };
 }
 
 export function set_goal_edit(from: Goal | null, to: Goal | null): Edit {
@@ -16,6 +18,14 @@ export function set_goal_edit(from: Goal | null, to: Goal | null): Edit {
     label: to ? "Set goal" : "Clear goal",
     forward: goal_request(to),
     backward: goal_request(from),
+  };
+}
+
+export function add_goal_edit(goal: Goal): Edit {
+  return {
+    label: "Add waypoint",
+    forward: { type: "add_goal", ...goal_json(goal) },
+    backward: null, // the robot may be on its way to it already
   };
 }
 

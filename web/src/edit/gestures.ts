@@ -19,6 +19,7 @@ export interface GestureTarget {
   can_edit(): boolean;  // obstacles
   can_drive(): boolean; // goals
   set_goal(goal: Goal): void;
+  add_goal(goal: Goal): void; // for when those before it are reached
   add(obstacle: Obstacle): void;
   /** Called along a drag; `done` at its end, with where it began. */
   move(id: number, pose: Pose, from: Pose, done: boolean): void;
@@ -36,7 +37,7 @@ const kDefaultRadius = 0.3;
 const kDefaultSide = 0.6;
 
 type Active =
-  | { kind: "goal"; at: Point; px: Point }
+  | { kind: "goal" | "further_goal"; at: Point; px: Point }
   | { kind: "move_goal"; from: Goal; offset: Point; px: Point }
   | { kind: "cylinder" | "box"; at: Point; px: Point }
   | { kind: "measure"; at: Point }
@@ -55,8 +56,11 @@ export class Gestures {
     return this.active_ !== null;
   }
 
-  /** `button` 0 left or touch, 1 middle, 2 right. Pixels from the canvas' corner. */
-  down(id: number, px: Point, button: number): void {
+  /**
+   * `button` 0 left or touch, 1 middle, 2 right. Pixels from the canvas' corner. With `shift` a goal
+   * is added to those there are.
+   */
+  down(id: number, px: Point, button: number, shift = false): void {
     this.pointers_.set(id, px);
     if (this.pointers_.size === 2) {
       const [a, b] = [...this.pointers_.keys()];
@@ -65,7 +69,7 @@ export class Gestures {
       return;
     }
     if (this.pointers_.size > 2) return;
-    this.active_ = button === 0 ? this.begin(px) : { kind: "pan", px };
+    this.active_ = button === 0 ? this.begin(px, shift) : { kind: "pan", px };
     this.update(px);
   }
 
@@ -104,13 +108,14 @@ export class Gestures {
     this.t_.changed();
   }
 
-  private begin(px: Point): Active | null {
+  private begin(px: Point, shift: boolean): Active | null {
     const { scene, view } = this.t_;
     const at = view.to_world(px.x, px.y);
     const tool = this.t_.tool();
     if (tool === "measure") return { kind: "measure", at };
     if (tool === "pan") return { kind: "pan", px };
     this.measure_ = undefined;
+    if (tool === "goal" && shift && this.t_.can_drive()) return { kind: "further_goal", at, px };
     const obstacle = this.obstacle_at(px);
     if (obstacle) {
       this.t_.select({ kind: "obstacle", id: obstacle.id });
@@ -144,6 +149,7 @@ export class Gestures {
         active.px = px;
         break;
       case "goal":
+      case "further_goal":
         this.t_.draft({ goal: dragged_goal(active.at, to, far(active.px, px)) });
         break;
       case "move_goal":
@@ -178,6 +184,9 @@ export class Gestures {
       case "goal":
         this.t_.select({ kind: "goal" });
         this.t_.set_goal(dragged_goal(active.at, to, far(active.px, px)));
+        break;
+      case "further_goal":
+        this.t_.add_goal(dragged_goal(active.at, to, far(active.px, px)));
         break;
       case "move_goal":
         if (far(active.px, px)) this.t_.set_goal({ ...active.from, ...shifted(to, active.offset) });

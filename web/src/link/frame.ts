@@ -34,6 +34,7 @@ export interface GridLayer { corner: Point; cell: number; columns: number; cells
 
 export type FrameRequest =
   | { type: "set_goal"; goal: Goal }
+  | { type: "add_goal"; goal: Goal }
   | { type: "clear_goal" }
   | { type: "add_obstacle"; obstacle: Obstacle }
   | { type: "move_obstacle"; id: number; pose: Pose }
@@ -72,6 +73,7 @@ export interface Frame {
   command: { v: number; omega: number };
   truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
   goal: Goal | null;
+  goals_ahead: Point[]; // after that one, in order
   hold: Hold;
   halt: Halt;
   mission: Mission;
@@ -145,6 +147,7 @@ export function decode_frame(bytes: Uint8Array): Frame {
       obstacle_distance: truth.obstacleDistance(),
       collided: f.collided(),
     },
+    goals_ahead: list(f.goalsAheadLength(), (i) => point(f.goalsAhead(i))),
     goal: goal && { ...point(goal), heading: f.goalHeading() },
     hold: kHolds[decision?.hold() ?? 0] ?? "none",
     halt: kHalts[f.halt()] ?? "none",
@@ -246,6 +249,10 @@ function one_request(box: wire.RequestBox): FrameRequest | null {
   switch (box.requestType()) {
     case wire.Request.SetGoal:
       return { type: "set_goal", goal: set_goal(box.request(new wire.SetGoal())) };
+    case wire.Request.AddGoal: {
+      const goal = (box.request(new wire.AddGoal()) as wire.AddGoal).goal();
+      return goal && { type: "add_goal", goal: set_goal(goal) };
+    }
     case wire.Request.ClearGoal:
       return { type: "clear_goal" };
     case wire.Request.AddObstacle: {

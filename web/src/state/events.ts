@@ -49,6 +49,7 @@ export class EventLog {
     for (const r of f.requests) {
       switch (r.type) {
         case "set_goal": this.add(f.stamp, "goal", "Goal set"); break;
+        case "add_goal": this.add(f.stamp, "goal", "Waypoint added"); break;
         case "clear_goal": this.add(f.stamp, "goal", "Goal cleared"); break;
         case "add_obstacle": this.add(f.stamp, "edit", "Obstacle added"); break;
         case "move_obstacle": this.add(f.stamp, "edit", "Obstacle moved"); break;

@@ -3,7 +3,7 @@
 import { moved_along, ObstaclePath, paths_of } from "./paths";
 import { SessionState } from "../contract";
 import { FilterName, apply_filter, samples_of } from "../filter";
-import { Bounds, Pose, compose, empty_bounds, include } from "../geometry";
+import { Bounds, Point, Pose, compose, empty_bounds, include } from "../geometry";
 import { Frame, FrameRequest, Goal, GridLayer, Sweep, kMaxRange } from "../link/frame";
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
@@ -33,6 +33,7 @@ export interface SceneState {
   paths: ObstaclePath[];  // of those that move by themselves
   start: Pose | null;
   goal: Goal | null;
+  goals_ahead: Point[]; // after that one, in order
   radius: number;         // [m] hull
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
@@ -48,7 +49,7 @@ export interface SceneState {
 export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], readings: new Map(), grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
-    goal: null, radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
+    goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
     events: new EventLog(), run: null, world: true,
   };
 }
@@ -72,6 +73,7 @@ export function fold_session(scene: SceneState, s: SessionState): void {
   scene.paths = paths_of(s.scenario?.obstacles ?? []);
   scene.start = s.scenario?.start ?? null;
   scene.goal = s.goal ? { x: s.goal.x, y: s.goal.y, heading: s.goal.heading ?? null } : null;
+  scene.goals_ahead = s.goals_ahead ?? [];
   scene.radius = s.robot?.radius ?? scene.radius;
   const { half_length = 0, half_width = 0 } = s.robot ?? {};
   scene.hull = half_length > 0 ? { half_length, half_width } : null;
@@ -99,6 +101,7 @@ export function fold_frame(scene: SceneState, f: Frame): void {
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
+  scene.goals_ahead = f.goals_ahead;
   scene.grid = f.grid ?? scene.grid;
   if (scene.paths.length > 0) scene.obstacles = moved_along(scene.obstacles, scene.paths, f.stamp);
   place_sweeps(scene, f);
@@ -183,6 +186,7 @@ export function scene_bounds(scene: SceneState): Bounds {
   const pose = robot_pose(scene);
   if (scene.start && scene.world) include(b, scene.start.x, scene.start.y, scene.radius + 0.25);
   if (scene.goal) include(b, scene.goal.x, scene.goal.y, 0.7);
+  for (const goal of scene.goals_ahead) include(b, goal.x, goal.y, 0.7);
   for (const o of scene.obstacles) include_obstacle(b, o);
   if (pose) include(b, pose.x, pose.y, scene.world ? scene.radius + 0.25 : 5);
   if (b.min_x > b.max_x) include(b, 0, 0, 3);

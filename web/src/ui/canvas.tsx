@@ -86,7 +86,7 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
     const down = (e: PointerEvent) => {
       canvas.focus({ preventScroll: true });
       canvas.setPointerCapture(e.pointerId);
-      latest.current.gestures.down(e.pointerId, at(e), e.button);
+      latest.current.gestures.down(e.pointerId, at(e), e.button, e.shiftKey);
       e.preventDefault();
       request();
     };

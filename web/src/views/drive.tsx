@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import { App, use_app } from "../app";
 import { Draft } from "../draw/scene";
 import { Insets } from "../draw/view";
-import { add_edit, set_goal_edit } from "../edit/edits";
+import { add_edit, add_goal_edit, set_goal_edit } from "../edit/edits";
 import { Gestures, Tool } from "../edit/gestures";
 import { scene_bounds } from "../state/scene";
 import { use_store } from "../state/store";
@@ -90,6 +90,7 @@ function make_hand(app: App): Hand {
     can_edit,
     can_drive,
     set_goal: (goal) => void app.edit(set_goal_edit(app.scene.goal, goal)),
+    add_goal: (goal) => void app.edit(add_goal_edit(goal)),
     add: (obstacle) => void app.edit(add_edit(obstacle)).then((answer) => {
       if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
     }),

@@ -285,7 +285,7 @@ function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
   const nothing = () => undefined;
   return new Gestures({
     scene: run.scene, view, tool: () => "pan", can_edit: () => false, can_drive: () => false,
-    set_goal: nothing, add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing,
+    set_goal: nothing, add_goal: nothing, add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing,
     refuse: nothing, changed: redraw,
   });
 }

@@ -8,6 +8,7 @@ export const kShortcuts: [string[], string][] = [
   [["P"], "Play or pause"],
   [["."], "One tick on"],
   [["G"], "Goal tool: press where, drag for the heading"],
+  [["Shift+click"], "Goal tool: a further goal, for when those before it are reached"],
   [["C"], "Cylinder tool"],
   [["B"], "Box tool"],
   [["M"], "Measure"],
