@@ -21,6 +21,8 @@ constexpr double kInputsAge = 0.5;    // [s] bumpers that were not read count as
 constexpr double kReleaseTime = 0.5;  // [s] the stop may still be reported after its release
 constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it starts
 constexpr std::uint16_t kStopFault = 16;
+// What contradicts all before has to come so often in a row: lines carry no check value.
+constexpr int kBelieved = 5;
 
 template <typename... Args>
 std::string format(const char* pattern, Args... args) {
@@ -60,6 +62,8 @@ void RoboteqMachine::greet(double now) {
   remarks_.clear();
   values_ = {};
   counts_.reset();
+  jumps_ = 0;
+  singles_ = 0;
   enabled_ = false;
   state_.running = false;
   state_.motors_on = false;
@@ -278,11 +282,15 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
     return;
   }
   if (!update(values_, reply)) {
-    if (values_.one_channel) {
+    // A line that has lost a colon looks like one of a controller with one channel.
+    singles_ += values_.one_channel ? 1 : 0;
+    values_.one_channel = false;
+    if (singles_ == kBelieved) {
       refuse("This controller has one channel: no base can be driven with it.", now);
     }
     return;
   }
+  if (reply.name == "C" || reply.name == "S") singles_ = 0;
   if (reply.name == "C") take_counts(now);
   judge(now);
 }
@@ -291,7 +299,6 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
 /// the line spoilt looks like a place far away. Counters that stay there were set anew.
 bool RoboteqMachine::jumped(double now, const std::array<std::int32_t, 2>& counts) {
   constexpr double kSlack = 0.01;  // [m] answers come in bursts
-  constexpr int kBelieved = 5;     // times in a row
   const double fastest = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
   const double furthest = 2 * fastest * (now - state_.stamp) + kSlack;
   const auto too_far = [&](std::size_t i) {

@@ -98,6 +98,7 @@ class RoboteqMachine final : public BaseMachine {
   State values_{};
   std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest
   int jumps_ = 0;                                        // of the counts, one after the other
+  int singles_ = 0;                                      // answers of one channel, likewise
   bool enabled_ = false;
   double enabled_at_ = 0;     // [s]
   double current_since_ = 0;  // [s] that it has been too high; 0: it is not

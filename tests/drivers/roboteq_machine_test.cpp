@@ -217,6 +217,21 @@ TEST(RoboteqMachine, CountsAddUpToAPoseOverTheWrap) {
   EXPECT_NEAR(f.machine.state().pose.heading, 0, 1e-12);
 }
 
+TEST(RoboteqMachine, LineThatLostItsColonIsNoControllerOfOneChannel) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.device.counts = "100100";
+  f.bench.run(0.04);
+  f.device.counts = "0:0";
+  f.bench.run(0.3);
+  EXPECT_TRUE(f.machine.state().running);
+  EXPECT_EQ(f.machine.state().set_ups, 1U);
+  f.device.counts = "100";
+  f.device.rpm = "0";
+  f.bench.run(0.5);
+  EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("one channel"));
+}
+
 TEST(RoboteqMachine, SpoiltDigitIsNoPlaceFarAway) {
   Fixture f;
   f.device.counts = "100:100";
