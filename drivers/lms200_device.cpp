@@ -8,8 +8,6 @@
 namespace drivers::lms200 {
 namespace {
 
-constexpr double kStorm = 0.5;  // share of telegrams that come after damaged ones
-
 template <typename... Args>
 std::string format(const char* pattern, Args... args) {
   std::array<char, 240> text{};
@@ -34,7 +32,7 @@ ScannerState Lms200Device::state() {
     out.running = machine_.stage() == Stage::Running;
     out.last_scan = machine_.last_scan();
     out.period = machine_.scan_period();
-    out.bad_line = machine_.damaged() > kStorm;
+    out.bad_line = machine_.storm();
     out.faulty = out.running && !machine_.health().usable();
   });
   return out;
@@ -57,14 +55,14 @@ DeviceReport describe(const LaserReport& report, double now) {
   DeviceReport out;
   const std::string health = health_text(report.health);
   const bool running = report.stage == Stage::Running;
-  const bool storm = report.damaged > kStorm;
+  const bool storm = report.storm;
   out.well = running && report.health.usable() && !storm;
   out.sentence = report.trouble;
   if (running) out.sentence = format("Well, %.1f scans a second.", 1.0 / report.scan_period);
   if (running && !health.empty()) out.sentence = health;
   if (running && storm) {
     out.sentence = format(
-        "%.0f %% of its telegrams come after damaged ones: look at the cable, its "
+        "%.0f %% of its telegrams come damaged: look at the cable, its "
         "shield, and what else the port's computer does.",
         100 * report.damaged);
   }
@@ -85,6 +83,7 @@ DeviceReport describe(const LaserReport& report, double now) {
     }
   }
   out.facts.emplace_back("scans", std::to_string(report.scans));
+  out.facts.emplace_back("scans nobody took", std::to_string(report.replaced));
   out.facts.emplace_back("damaged telegrams",
                          std::to_string(report.line.bad_checks + report.line.given_up));
   return out;

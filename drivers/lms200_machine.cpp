@@ -26,6 +26,9 @@ constexpr double kSilent = 1.0;        // [s] without a telegram: the device is 
 constexpr int kTries = 3;
 constexpr std::uint64_t kMostWrites = 2;  // of the configuration in one life of this program
 constexpr double kDamageWeight = 1.0 / 16;
+constexpr std::uint64_t kMostAtOnce = 4;
+constexpr double kStorm = 0.5;  // share of telegrams that come damaged,
+constexpr double kCalm = 0.1;   // and what it has to fall to again: a bad cable comes and goes
 
 double answer_time(std::size_t bytes, unsigned baud) {
   return kAnswer + transfer_time(bytes, baud > 0 ? baud : kStartRate);
@@ -294,8 +297,13 @@ void LaserMachine::take_telegram(double now, ByteView frame) {
   address_ = static_cast<std::uint8_t>(telegram.address - kAnswerAddress);
   const LineCounters& line = reader_.counters();
   const std::uint64_t bad = line.bad_checks + line.given_up;
-  damaged_ += ((bad != bad_before_ ? 1.0 : 0.0) - damaged_) * kDamageWeight;
+  // Noise between two telegrams may look like many.
+  for (auto n = std::min(bad - bad_before_, kMostAtOnce); n > 0; --n) {
+    damaged_ += (1 - damaged_) * kDamageWeight;
+  }
+  damaged_ -= damaged_ * kDamageWeight;
   bad_before_ = bad;
+  storm_ = damaged_ > (storm_ ? kCalm : kStorm);
 
   switch (static_cast<Answer>(telegram.code())) {
     case Answer::Values:
@@ -521,6 +529,12 @@ void LaserMachine::configuration_written(double now, const Telegram& telegram) {
   begin(Step::Start, now);
 }
 
+/// [s] between two scans, by the manual.
+double LaserMachine::nominal_period() const {
+  const double turns = interlaced() ? setup_.variant.turns() : decoder_.variant().turns();
+  return (1 + lost_scans(baud_)) * turns * kTurnPeriod;
+}
+
 void LaserMachine::start_streaming(double now) {
   const std::optional<WordFormat> format = word_format(measuring_mode_);
   if (!format) {
@@ -531,10 +545,8 @@ void LaserMachine::start_streaming(double now) {
   fresh_ = false;
   decoder_ = ScanDecoder(variant_.value_or(set_variant()), *format);
   parts_ = PartialScans(setup_.variant, *format);
-  const double turns = interlaced() ? setup_.variant.turns() : decoder_.variant().turns();
-  period_ = (1 + lost_scans(baud_)) * turns * kTurnPeriod;
+  period_ = nominal_period();
   last_arrival_ = 0;
-  damaged_ = 0;
   last_heard_ = now;
   trouble_.clear();
   ++set_ups_;
@@ -569,6 +581,7 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
     std::reverse(filling_.codes.begin(), filling_.codes.end());
   }
   last_scan_ = now;
+  if (fresh_) ++replaced_;
   std::swap(filling_, ready_);
   fresh_ = true;
 }
@@ -623,9 +636,12 @@ LaserReport LaserMachine::report() const {
   out.line = reader_.counters();
   out.scans = scans_;
   out.unusable = unusable_;
+  out.replaced = replaced_;
   out.set_ups = set_ups_;
   out.written = written_;
   out.damaged = damaged_;
+  out.storm = storm_;
+  out.nominal_period = nominal_period();
   out.scan_period = period_;
   out.last_scan = last_scan_;
   out.last_heard = last_heard_;

@@ -50,10 +50,13 @@ struct LaserReport {
   LineCounters line{};
   std::uint64_t scans = 0;
   std::uint64_t unusable = 0;  // came whole, and the device said not to rely on them
+  std::uint64_t replaced = 0;  // scans by a newer one, before anybody took them
   std::uint64_t set_ups = 0;   // times it was found and set up
   std::uint64_t written = 0;   // times its configuration was written
-  double damaged = 0;          // share of late, 0..1, of telegrams that came after damaged ones
+  double damaged = 0;          // share of late, 0..1, of telegrams that came damaged
+  bool storm = false;          // too many of them, until far fewer are
   double scan_period = 0;      // [s] measured, or what its rate allows
+  double nominal_period = 0;   // [s] what its rate allows
   double last_scan = 0;        // [s] steady clock, when it arrived; 0: none yet
   double last_heard = 0;       // [s] of the last whole telegram
 };
@@ -83,6 +86,8 @@ class LaserMachine final : public Machine {
   double scan_period() const { return period_; }
   double last_scan() const { return last_scan_; }
   double damaged() const { return damaged_; }
+  /// More telegrams came damaged than whole, and the line has not been good again since.
+  bool storm() const { return storm_; }
   Health health() const { return health_; }
 
  private:
@@ -125,6 +130,7 @@ class LaserMachine final : public Machine {
   void configuration_written(double now, const Telegram& telegram);
   void adopt(const Configuration& configuration);
   Configuration wanted_configuration(const Configuration& now) const;
+  double nominal_period() const;
   void start_streaming(double now);
   void take_values(double now, const Telegram& telegram, std::size_t bytes);
   void deliver(double now, std::size_t bytes, Health health);
@@ -173,9 +179,11 @@ class LaserMachine final : public Machine {
   double last_scan_ = 0;     // [s]
   double last_heard_ = 0;    // [s]
   double damaged_ = 0;
+  bool storm_ = false;
   std::uint64_t bad_before_ = 0;
   std::uint64_t scans_ = 0;
   std::uint64_t unusable_ = 0;
+  std::uint64_t replaced_ = 0;
   std::uint64_t set_ups_ = 0;
   std::uint64_t written_ = 0;
 };

@@ -187,6 +187,13 @@ void PioneerMachine::open(double now) {
 
 // ---- what it says ----------------------------------------------------------------------------
 
+/// [s] from the first byte of a packet to its last, when the base has long moved on.
+double PioneerMachine::transfer_time(std::size_t body) const {
+  constexpr std::size_t kAround = 5;  // head, count and sum
+  constexpr double kBits = 10;        // of a byte on the line
+  return fixed_rate_ ? 0 : kBits * static_cast<double>(body + kAround) / port_baud_;
+}
+
 void PioneerMachine::take_state(double now, ByteView body) {
   if (!decode_state(body, packet_, setup_.units)) return;
   if (!odometer_.update(packet_)) ++jumps_;
@@ -199,7 +206,7 @@ void PioneerMachine::take_state(double now, ByteView body) {
     trouble_.clear();
   }
   deadline_ = now + kSilent;
-  state_.stamp = now;
+  state_.stamp = now - transfer_time(body.size());
   const algo::Vec2 way = at.position() - found_at_.position();
   const algo::Vec2 ahead = algo::direction(found_at_.heading);
   state_.pose = algo::compose(lost_at_,

@@ -49,6 +49,7 @@ class PioneerMachine final : public BaseMachine {
   void request(double now);
   void open(double now);
   void take_packet(double now, ByteView body);
+  double transfer_time(std::size_t body) const;
   void take_state(double now, ByteView body);
   void send(const Packet& packet);
   void send_twist(double now, const algo::Twist2& twist);

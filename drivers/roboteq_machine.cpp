@@ -21,6 +21,8 @@ constexpr double kInputsAge = 0.5;    // [s] bumpers that were not read count as
 constexpr double kReleaseTime = 0.5;  // [s] the stop may still be reported after its release
 constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it starts
 constexpr std::uint16_t kStopFault = 16;
+// What contradicts all before has to come so often in a row: lines carry no check value.
+constexpr int kBelieved = 5;
 
 template <typename... Args>
 std::string format(const char* pattern, Args... args) {
@@ -36,7 +38,17 @@ RoboteqMachine::RoboteqMachine(RoboteqSetup setup) : setup_(std::move(setup)) {
   wanted_ = {{"RWD", whole(setup_.watchdog * 1000), false},
              {"MMOD", static_cast<int>(LoopMode::ClosedLoopSpeed), true},
              {"MXRPM", whole(setup_.wheel.full_speed_rpm), true},
-             {"EPPR", whole(setup_.wheel.encoder_lines), true}};
+             {"EPPR", whole(setup_.wheel.encoder_lines), true},
+             {"MAC", wheel_ramp(), true},
+             {"MDEC", wheel_ramp(), true}};
+}
+
+/// [0.1 rpm/s] of a motor when its wheel takes part in the largest acceleration ahead and in the
+/// largest of the turn at once: no ramp of the controller's own is slower than the file allows.
+int RoboteqMachine::wheel_ramp() const {
+  const BaseLimits& limits = setup_.limits;
+  const double wheel = limits.acceleration + limits.turn_acceleration * setup_.half_track;
+  return std::max(1, static_cast<int>(std::lround(10 * setup_.wheel.rpm(wheel))));
 }
 
 void RoboteqMachine::opened(double now, unsigned /*baud*/) {
@@ -50,6 +62,8 @@ void RoboteqMachine::greet(double now) {
   remarks_.clear();
   values_ = {};
   counts_.reset();
+  jumps_ = 0;
+  singles_ = 0;
   enabled_ = false;
   state_.running = false;
   state_.motors_on = false;
@@ -229,8 +243,10 @@ void RoboteqMachine::next_parameter(double now) {
 
 /// The power stage stays off until somebody asks for it.
 void RoboteqMachine::run(double now) {
-  constexpr std::array<std::string_view, 7> kQueries{"C", "S", "FF", "FS", "V", "A", "DI"};
-  const std::size_t count = setup_.bumper_inputs.empty() ? kQueries.size() - 1 : kQueries.size();
+  // Where it is and how fast it goes, each time: what else there is to know changes less often.
+  constexpr std::array<std::string_view, 12> kQueries{
+      "C", "S", "FF", "C", "S", "V", "C", "S", "A", "C", "S", "DI"};
+  const std::size_t count = setup_.bumper_inputs.empty() ? kQueries.size() - 3 : kQueries.size();
   send(emergency_stop());
   send(set_counter(1, 0));
   send(set_counter(2, 0));
@@ -266,18 +282,40 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
     return;
   }
   if (!update(values_, reply)) {
-    if (values_.one_channel) {
+    // A line that has lost a colon looks like one of a controller with one channel.
+    singles_ += values_.one_channel ? 1 : 0;
+    values_.one_channel = false;
+    if (singles_ == kBelieved) {
       refuse("This controller has one channel: no base can be driven with it.", now);
     }
     return;
   }
+  if (reply.name == "C" || reply.name == "S") singles_ = 0;
   if (reply.name == "C") take_counts(now);
   judge(now);
+}
+
+/// Whether a wheel would have gone further than it can. Lines carry no check value: a digit that
+/// the line spoilt looks like a place far away. Counters that stay there were set anew.
+bool RoboteqMachine::jumped(double now, const std::array<std::int32_t, 2>& counts) {
+  constexpr double kSlack = 0.01;  // [m] answers come in bursts
+  const double fastest = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
+  const double furthest = 2 * fastest * (now - state_.stamp) + kSlack;
+  const auto too_far = [&](std::size_t i) {
+    const std::int64_t moved = algo::count_difference(static_cast<std::uint32_t>(counts[i]),
+                                                      static_cast<std::uint32_t>((*counts_)[i]));
+    return std::abs(setup_.wheel.metres(moved)) > furthest;
+  };
+  if (!too_far(0) && !too_far(1)) return false;
+  if (++jumps_ == kBelieved) counts_.reset();
+  return jumps_ < kBelieved;
 }
 
 void RoboteqMachine::take_counts(double now) {
   deadline_ = now + kSilent;
   const std::array<std::int32_t, 2>& counts = *values_.counts;
+  if (counts_ && jumped(now, counts)) return;
+  jumps_ = 0;
   if (counts_) {
     const auto difference = [&](std::size_t i) {
       return algo::count_difference(static_cast<std::uint32_t>(counts[i]),

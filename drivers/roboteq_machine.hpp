@@ -62,6 +62,7 @@ class RoboteqMachine final : public BaseMachine {
     bool per_channel = false;
   };
 
+  int wheel_ramp() const;
   void greet(double now);
   void begin(Step step, double now);
   void request(double now);
@@ -71,6 +72,7 @@ class RoboteqMachine final : public BaseMachine {
   void refuse(const std::string& why, double now);
   void run(double now);
   void take_values(double now, const Reply& reply);
+  bool jumped(double now, const std::array<std::int32_t, 2>& counts);
   void take_counts(double now);
   void judge(double now);
   void send(const Line& line) { orders_.send(line.view()); }
@@ -95,6 +97,8 @@ class RoboteqMachine final : public BaseMachine {
 
   State values_{};
   std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest
+  int jumps_ = 0;                                        // of the counts, one after the other
+  int singles_ = 0;                                      // answers of one channel, likewise
   bool enabled_ = false;
   double enabled_at_ = 0;     // [s]
   double current_since_ = 0;  // [s] that it has been too high; 0: it is not

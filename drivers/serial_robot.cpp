@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "algo/diff_drive.hpp"
 #include "algo/explain.hpp"
 #include "drivers/lms200_device.hpp"
 #include "drivers/serial_base.hpp"
@@ -205,7 +206,7 @@ void SerialRobot::observe(algo::Observation& observation) {
   observation.stamp = now - epoch_;
   const BaseState base = base_->state();
   observation.halt = judge(base, now);
-  observe_base(base, observation);
+  observe_base(base, now, observation);
   for (std::size_t i = 0; i < scanners_.size(); ++i) {
     algo::LaserScan& scan = observation.scans.append();
     if (!scanners_[i]->take(scan)) {
@@ -218,9 +219,15 @@ void SerialRobot::observe(algo::Observation& observation) {
   }
 }
 
-void SerialRobot::observe_base(const BaseState& base, algo::Observation& observation) const {
+void SerialRobot::observe_base(const BaseState& base,
+                               double now,
+                               algo::Observation& observation) const {
   const double stamp = base.stamp - epoch_;
-  observation.odometry = {stamp, seen_from(origin_, base.pose), base.twist};
+  // Where the robot is now, not where it was when the base last said so: a tenth of a second in a
+  // turn is as far as the nearest obstacle's bearing moves while a controller makes up its mind.
+  const double age = base.running ? std::clamp(now - base.stamp, 0.0, kBaseTimeout) : 0.0;
+  const algo::Pose2 pose = algo::integrate_arc(base.pose, base.twist, age);
+  observation.odometry = {stamp + age, seen_from(origin_, pose), base.twist};
   if (base.counts) {
     observation.encoders = algo::Encoders{stamp, (*base.counts)[0], (*base.counts)[1]};
   }

@@ -80,7 +80,7 @@ class SerialRobot final : public algo::Robot {
                          algo::Halt halt) const;
   void wait_for_deadline(double now);
   void observe(algo::Observation& observation);
-  void observe_base(const BaseState& base, algo::Observation& observation) const;
+  void observe_base(const BaseState& base, double now, algo::Observation& observation) const;
   std::string words(algo::Halt halt, const std::vector<DeviceReport>& devices) const;
 
   RobotFile file_;

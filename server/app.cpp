@@ -18,6 +18,8 @@ namespace {
 // Frames are looked for this often: a good part of a tick sooner than any display shows them.
 constexpr std::chrono::milliseconds kPollPeriod{4};
 
+constexpr std::chrono::milliseconds kWatchPeriod{100};
+
 volatile std::sig_atomic_t g_terminated = 0;  // NOLINT: the one thing a signal may touch
 
 std::string prepared(const std::filesystem::path& database) {
@@ -56,6 +58,9 @@ struct App::Impl {
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
     session.load(std::move(options.first));
     if (options.armed) session.arm_when_ready();
+    if (session.state().spec.hardware && !options.unattended) {
+      server->every(kWatchPeriod, [this] { look_for_operator(); });
+    }
     server->every(kPollPeriod, [this] {
       session.poll();
       if (g_terminated != 0) server->stop();
@@ -74,6 +79,16 @@ struct App::Impl {
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
+
+  /// A real robot that is on its way stops when nobody is left who could stop it.
+  void look_for_operator() {
+    const SessionState& state = session.state();
+    const bool on_its_way = state.hardware && state.hardware->armed && state.goal;
+    context.watch.seen(bridge.hub().heard());
+    if (on_its_way && context.watch.nobody(OperatorWatch::Clock::now())) {
+      state.spec.hardware->disarm(OperatorWatch::kWords);
+    }
+  }
 
   Recorder recorder;
   db::RunReader reader;

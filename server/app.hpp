@@ -16,8 +16,9 @@ struct AppOptions {
   std::filesystem::path scenarios{};  // the user's own
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
   std::uint64_t keep_bytes = std::uint64_t{2} << 30;
-  RunSpec first{};     // loaded at the start
-  bool armed = false;  // hardware: its motors on as soon as its devices are well
+  RunSpec first{};          // loaded at the start
+  bool armed = false;       // hardware: its motors on as soon as its devices are well
+  bool unattended = false;  // hardware: drives on though nobody is there to stop it
 };
 
 class App {

@@ -11,6 +11,7 @@
 #include "server/app.hpp"
 #include "server/cli.hpp"
 #include "server/hardware.hpp"
+#include "server/operator_watch.hpp"
 #include "server/paths.hpp"
 #include "server/scenario_library.hpp"
 
@@ -57,6 +58,7 @@ void serve(Options& options) {
   const std::string database = app.database.string();
   const bool armed = app.armed;
   const bool hardware = app.first.hardware != nullptr;
+  if (hardware) app.net.timeouts.ws_ping = OperatorWatch::kPing;
   // Moved: the devices are to be left in order when the program ends, not later.
   App program(std::move(app));
   fmt::print("Tautline is at {}\n", program.url());
@@ -124,6 +126,9 @@ void add_serve_command(CLI::App& app, int& status) {
   command->add_flag("--armed",
                     options->app.armed,
                     "Switch the motors of real hardware on as soon as its devices are well");
+  command->add_flag("--unattended",
+                    options->app.unattended,
+                    "Real hardware drives on though no page is open and nobody asks over REST");
   options->flags.add_to(*command);
   command->callback([options, &status] {
     serve(*options);

@@ -79,7 +79,6 @@ bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
 
 void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& notes) {
   const drivers::lms200::LaserReport before = laser.details();
-  const double nominal = before.scan_period;
   algo::LaserScan scan;
   std::size_t scans = 0;
   std::size_t spikes = 0;
@@ -101,9 +100,10 @@ void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& 
     spikes += count_spikes(ranges);
   }
   const drivers::lms200::LaserReport after = laser.details();
-  const double rate = static_cast<double>(after.scans - before.scans) / seconds;
-  if (rate < 0.8 / nominal) {
-    notes.bad(fmt::format("{:.1f} scans a second come, {:.1f} should.", rate, 1 / nominal),
+  const double rate = static_cast<double>(after.scans - before.scans) / (steady_now() - begun);
+  const double wanted = 1 / after.nominal_period;
+  if (rate < 0.95 * wanted) {
+    notes.bad(fmt::format("{:.1f} scans a second come, {:.1f} should.", rate, wanted),
               "Look at the cable and its shield, and what else this computer does.");
   } else {
     notes.well(fmt::format("{:.1f} scans a second.", rate));
@@ -184,22 +184,41 @@ std::unique_ptr<drivers::BaseMachine> machine_for(const drivers::BaseEntry& entr
       std::get<drivers::roboteq::RoboteqSetup>(entry.setup));
 }
 
-/// [m] the base says it moved, driven at `speed` for a second.
-double drive_for_a_second(drivers::Base& base, double speed) {
+/// What the base was told and what it says of it, each [m] ahead, and how far it turned [rad].
+struct Drive {
+  double told = 0;
+  double came = 0;
+  double turned = 0;
+};
+
+Drive drive_for_a_second(drivers::Base& base, double speed) {
   const algo::Pose2 before = base.state().pose;
-  const double until = steady_now() + 1.0;
-  while (steady_now() < until) {
+  const double begun = steady_now();
+  while (steady_now() < begun + 1.0) {
     const drivers::BaseState state = base.state();
     if (state.stop_button || state.bumper_front || state.bumper_rear || !state.running) break;
     base.drive({speed, 0});
     pause();
   }
   base.stop();
+  const double told = speed * (steady_now() - begun);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   const algo::Pose2 after = base.state().pose;
   const algo::Vec2 way = after.position() - before.position();
-  return way.dot(algo::direction(before.heading));
+  return {.told = told,
+          .came = way.dot(algo::direction(before.heading)),
+          .turned = algo::wrap_angle(after.heading - before.heading)};
 }
+
+}  // namespace
+
+/// What a ramp takes at the start it gives back at the end.
+bool drove_as_told(double told, double came) {
+  constexpr double kTolerance = 0.2;  // of the way; a gear or a wheel is off by more
+  return std::abs(came - told) <= kTolerance * std::abs(told);
+}
+
+namespace {
 
 void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& notes) {
   base.enable(true);
@@ -211,24 +230,28 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
     return;
   }
   const double speed = std::min(0.05, file.limits.speed);
-  const double ahead = drive_for_a_second(base, speed);
-  const double back = drive_for_a_second(base, -speed);
+  const Drive ahead = drive_for_a_second(base, speed);
+  const Drive back = drive_for_a_second(base, -speed);
   base.enable(false);
-  const auto agrees = [&](double way, double wanted) {
-    return way * wanted > 0 && std::abs(way) > 0.3 * std::abs(wanted) &&
-           std::abs(way) < 2 * std::abs(wanted);
-  };
   const std::string ways =
-      fmt::format("Told to go {:.0f} mm ahead and back, the encoders say {:.0f} and {:.0f} mm.",
-                  1000 * speed,
-                  1000 * ahead,
-                  1000 * back);
-  if (agrees(ahead, speed) && agrees(back, -speed)) {
+      fmt::format("Told to go {:.0f} mm ahead and {:.0f} back, it says {:.0f} and {:.0f} mm.",
+                  1000 * ahead.told,
+                  -1000 * back.told,
+                  1000 * ahead.came,
+                  -1000 * back.came);
+  if (drove_as_told(ahead.told, ahead.came) && drove_as_told(back.told, back.came)) {
     notes.well(ways);
   } else {
     notes.bad(ways,
               "The wrong sign: reverse_left, reverse_right. The wrong size: wheel_radius, gear, "
               "encoder_lines. Nothing: the encoders' plugs.");
+  }
+  constexpr double kStraight = 0.05;  // [rad]
+  if (std::max(std::abs(ahead.turned), std::abs(back.turned)) > kStraight) {
+    notes.bad(
+        fmt::format(
+            "Told to go straight, it turned by {:.2f} and {:.2f} rad.", ahead.turned, back.turned),
+        "One wheel does not turn, or is counted otherwise than the other.");
   }
 }
 

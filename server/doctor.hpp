@@ -34,4 +34,8 @@ bool examine(const drivers::RobotFile& file,
 /// Beams that stand alone against both neighbours, which agree: dust, rain, a damaged mirror.
 std::size_t count_spikes(const std::vector<double>& ranges);
 
+/// Whether wheels that were told to go `told` [m] and say that they went `came` are as the file has
+/// them.
+bool drove_as_told(double told, double came);
+
 }  // namespace server

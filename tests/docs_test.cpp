@@ -1,5 +1,6 @@
-// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, and the
-// coverage page claims nothing built without a file and a test.
+// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, the
+// coverage page claims nothing built without a file and a test, and the page on hardware has what
+// became of every fault that the trials inject.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/hardware/fault_table.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -121,6 +123,23 @@ TEST(Docs, CoverageClaimsNothingBuiltWithoutAFileAndATest) {
     for (const std::string& test : links_of(cells[2])) EXPECT_TRUE(test.starts_with("../tests/"));
   }
   EXPECT_GT(built, 10);
+}
+
+/// Rows of six cells, which `hardware_trial faults` prints, begin with fault and base.
+TEST(Docs, HardwareHasARowForEveryFaultOnBothBases) {
+  std::istringstream lines(text_of(root() / "docs/hardware.md"));
+  std::set<std::string> rows;
+  for (std::string line; std::getline(lines, line);) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.size() == 6) rows.insert(cells[0] + ", " + cells[1]);
+  }
+  std::set<std::string> wanted{"fault, base"};
+  for (const server::hardware::Fault& fault : server::hardware::kFaults) {
+    for (const char* base : {"roboteq", "p2os"}) {
+      wanted.insert(std::string(fault.name).append(", ").append(base));
+    }
+  }
+  EXPECT_EQ(rows, wanted);
 }
 
 }  // namespace

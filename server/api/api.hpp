@@ -8,6 +8,7 @@
 #include "db/run_reader.hpp"
 #include "server/experiments.hpp"
 #include "server/net/router.hpp"
+#include "server/operator_watch.hpp"
 #include "server/recorder.hpp"
 #include "server/scenario_library.hpp"
 #include "server/session.hpp"
@@ -23,6 +24,7 @@ struct ApiContext {
   Recorder& recorder;
   db::RunReader& reader;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
+  OperatorWatch watch{};
 };
 
 /// Registers every route of the API. `context` must outlive the router.

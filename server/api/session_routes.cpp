@@ -1,5 +1,6 @@
 // server/api/session_routes.cpp: the live session: goal, obstacles, parameters, control.
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -165,87 +166,97 @@ void load_from_json(ApiContext& context, const json& body) {
 }
 
 void add_session_routes(net::Router& router, ApiContext& context) {
-  router.add("GET", "/api/v1/session", immediate([&context](const net::Request&) {
-               return json_response(200, session_json(context.session));
-             }));
-  router.add("POST",
-             "/api/v1/session/requests",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               submit_and_reply(context, request_from_json(body_json(request)), respond);
-             }));
-  router.add("PUT",
-             "/api/v1/session/goal",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               json body = body_json(request);
-               JsonReader(body, "").only({"x", "y", "heading"});
-               body["type"] = "set_goal";
-               submit_and_reply(context, request_from_json(body), respond);
-             }));
-  router.add("POST",
-             "/api/v1/session/goal",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               json body = body_json(request);
-               JsonReader(body, "").only({"x", "y", "heading"});
-               body["type"] = "add_goal";
-               submit_and_reply(context, request_from_json(body), respond);
-             }));
-  router.add("DELETE",
-             "/api/v1/session/goal",
-             guarded([&context](const net::Request&, const net::Responder& respond) {
-               submit_and_reply(context, algo::ClearGoal{}, respond);
-             }));
-  router.add("GET", "/api/v1/session/obstacles", immediate([&context](const net::Request&) {
-               return json_response(200, obstacle_list(context.session));
-             }));
-  router.add("POST",
-             "/api/v1/session/obstacles",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
-               submit_and_reply(context, std::move(add), respond, 201);
-             }));
-  router.add("PUT",
-             "/api/v1/session/obstacles/{id}",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               json body = body_json(request);
-               JsonReader(body, "").only({"x", "y", "heading"});
-               body["type"] = "move_obstacle";
-               body["id"] = obstacle_id(request);
-               submit_and_reply(context, request_from_json(body), respond);
-             }));
-  router.add("DELETE",
-             "/api/v1/session/obstacles/{id}",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               submit_and_reply(context, algo::RemoveObstacle{obstacle_id(request)}, respond);
-             }));
-  router.add("GET", "/api/v1/session/parameters", immediate([&context](const net::Request&) {
-               return json_response(200, to_json(context.session.state().parameters));
-             }));
-  router.add("PATCH",
-             "/api/v1/session/parameters",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               patch_parameters(context, body_json(request), respond);
-             }));
-  router.add("POST",
-             "/api/v1/session/control",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               control(context, body_json(request), respond);
-             }));
-  router.add("POST", "/api/v1/session/scenario", immediate([&context](const net::Request& request) {
-               const json body = body_json(request);
-               const JsonReader in(body, "");
-               in.only({"name", "title"});
-               const std::string name = in.text("name", 64);
-               if (!context.session.state().spec.scenario.log.empty()) {
-                 return net::problem(
-                     409, "Refused", "A recorded log is playing: there is no world to save.");
-               }
-               const sim::Scenario scenario =
-                   context.session.as_scenario(name, in.text_or("title", name));
-               keep_scenario(context, scenario);
-               net::Response response = json_response(201, to_json(scenario));
-               response.headers.push_back({"Location", "/api/v1/scenarios/" + name});
-               return response;
-             }));
+  // Whoever asks for any of these is there.
+  const auto route = [&](const char* method, const char* pattern, net::Handler handler) {
+    router.add(method,
+               pattern,
+               [&context, handler = std::move(handler)](const net::Request& request,
+                                                        const net::Responder& respond) {
+                 context.watch.seen(OperatorWatch::Clock::now());
+                 handler(request, respond);
+               });
+  };
+  route("GET", "/api/v1/session", immediate([&context](const net::Request&) {
+          return json_response(200, session_json(context.session));
+        }));
+  route("POST",
+        "/api/v1/session/requests",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          submit_and_reply(context, request_from_json(body_json(request)), respond);
+        }));
+  route("PUT",
+        "/api/v1/session/goal",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          json body = body_json(request);
+          JsonReader(body, "").only({"x", "y", "heading"});
+          body["type"] = "set_goal";
+          submit_and_reply(context, request_from_json(body), respond);
+        }));
+  route("POST",
+        "/api/v1/session/goal",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          json body = body_json(request);
+          JsonReader(body, "").only({"x", "y", "heading"});
+          body["type"] = "add_goal";
+          submit_and_reply(context, request_from_json(body), respond);
+        }));
+  route("DELETE",
+        "/api/v1/session/goal",
+        guarded([&context](const net::Request&, const net::Responder& respond) {
+          submit_and_reply(context, algo::ClearGoal{}, respond);
+        }));
+  route("GET", "/api/v1/session/obstacles", immediate([&context](const net::Request&) {
+          return json_response(200, obstacle_list(context.session));
+        }));
+  route("POST",
+        "/api/v1/session/obstacles",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
+          submit_and_reply(context, std::move(add), respond, 201);
+        }));
+  route("PUT",
+        "/api/v1/session/obstacles/{id}",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          json body = body_json(request);
+          JsonReader(body, "").only({"x", "y", "heading"});
+          body["type"] = "move_obstacle";
+          body["id"] = obstacle_id(request);
+          submit_and_reply(context, request_from_json(body), respond);
+        }));
+  route("DELETE",
+        "/api/v1/session/obstacles/{id}",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          submit_and_reply(context, algo::RemoveObstacle{obstacle_id(request)}, respond);
+        }));
+  route("GET", "/api/v1/session/parameters", immediate([&context](const net::Request&) {
+          return json_response(200, to_json(context.session.state().parameters));
+        }));
+  route("PATCH",
+        "/api/v1/session/parameters",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          patch_parameters(context, body_json(request), respond);
+        }));
+  route("POST",
+        "/api/v1/session/control",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          control(context, body_json(request), respond);
+        }));
+  route("POST", "/api/v1/session/scenario", immediate([&context](const net::Request& request) {
+          const json body = body_json(request);
+          const JsonReader in(body, "");
+          in.only({"name", "title"});
+          const std::string name = in.text("name", 64);
+          if (!context.session.state().spec.scenario.log.empty()) {
+            return net::problem(
+                409, "Refused", "A recorded log is playing: there is no world to save.");
+          }
+          const sim::Scenario scenario =
+              context.session.as_scenario(name, in.text_or("title", name));
+          keep_scenario(context, scenario);
+          net::Response response = json_response(201, to_json(scenario));
+          response.headers.push_back({"Location", "/api/v1/scenarios/" + name});
+          return response;
+        }));
 }
 
 }  // namespace server

@@ -151,6 +151,14 @@ void Hub::parameters_changed(std::span<const std::string> names) {
   }
 }
 
+std::chrono::steady_clock::time_point Hub::heard() const {
+  std::chrono::steady_clock::time_point newest{};
+  for (const auto& [id, client] : clients_) {
+    newest = std::max(newest, client.socket->counters().heard);
+  }
+  return newest;
+}
+
 void Hub::warn(ClientId id, std::string_view sentence) {
   const auto found = clients_.find(id);
   if (found != clients_.end()) complain(found->second, StatusLevel::Warning, sentence);

@@ -117,6 +117,8 @@ class Hub {
 
   const std::vector<Channel>& channels() const { return channels_; }
   std::size_t clients() const { return clients_.size(); }
+  /// When any of them last gave a sign of life; the clock's epoch without one.
+  std::chrono::steady_clock::time_point heard() const;
 
  private:
   struct Client {

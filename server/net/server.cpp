@@ -133,7 +133,8 @@ void Server::Impl::welcome(Socket socket) {
 
 void Server::Impl::sweep() {
   const Timeouts& t = core.options.timeouts;
-  const auto shortest = std::min({t.header, t.body, t.idle, t.ws_silence, t.ws_stalled, t.closing});
+  const auto shortest =
+      std::min({t.header, t.body, t.idle, t.ws_silence, t.ws_ping, t.ws_stalled, t.closing});
   sweep_timer.expires_after(
       std::clamp(shortest / 4, std::chrono::milliseconds(10), std::chrono::milliseconds(1000)));
   sweep_timer.async_wait([this](boost::system::error_code cancelled) {

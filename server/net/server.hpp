@@ -31,7 +31,8 @@ struct Timeouts {
   std::chrono::milliseconds header{10'000};       // from first byte (or connect) to complete header
   std::chrono::milliseconds body{30'000};         // complete body; also a response, plus its size
   std::chrono::milliseconds idle{60'000};         // between two requests
-  std::chrono::milliseconds ws_silence{30'000};   // WebSocket: pinged after half, dropped after all
+  std::chrono::milliseconds ws_silence{30'000};   // WebSocket: without a sign of life, dropped
+  std::chrono::milliseconds ws_ping{15'000};      // pinged whenever nothing was heard for so long
   std::chrono::milliseconds ws_stalled{300'000};  // one write that does not move, peer alive
   std::chrono::milliseconds closing{2'000};       // closing handshakes and lingering closes
 };

@@ -1,6 +1,7 @@
 // server/net/websocket.hpp: a WebSocket client as the rest of the server sees it.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,6 +23,7 @@ struct WsCounters {
   std::uint64_t dropped_messages = 0;  // replaced by newer ones before they were sent
   std::size_t buffered_messages = 0;   // waiting here, besides the one being written
   std::size_t buffered_bytes = 0;
+  std::chrono::steady_clock::time_point heard{};  // the last sign of life from the other end
 };
 
 /// One connected client. All calls on the io thread. A handle may be kept after the client has

@@ -92,7 +92,7 @@ class WsConnection final : public Connection,
   bool writing_ = false;
   bool pinging_ = false;
   Clock::time_point deadline_{};  // of the handshake or the closing
-  Clock::time_point heard_{};     // last sign of life
+  Clock::time_point heard_{};     // last sign of life, with some grace
   Clock::time_point write_started_{};
   WsCounters counters_{};
 };
@@ -125,7 +125,7 @@ void WsConnection::limit_kernel_queue() {
 
 void WsConnection::start(const UpgradeRequest& request) {
   number_ = core_.add(shared_from_this());
-  heard_ = Clock::now();
+  heard_ = counters_.heard = Clock::now();
   deadline_ = heard_ + core_.options.timeouts.header;
   limit_kernel_queue();
   websocket::stream_base::timeout timeouts{};
@@ -140,8 +140,9 @@ void WsConnection::start(const UpgradeRequest& request) {
       }));
   stream_->read_message_max(core_.options.limits.frame_bytes);
   stream_->auto_fragment(false);  // one message, one frame, one write
-  stream_->control_callback(
-      [this](websocket::frame_type, beast::string_view) { heard_ = Clock::now(); });
+  stream_->control_callback([this](websocket::frame_type, beast::string_view) {
+    heard_ = counters_.heard = Clock::now();
+  });
   stream_->async_accept(
       request, [self = shared_from_this()](const error_code& error) { self->on_accepted(error); });
 }
@@ -174,7 +175,7 @@ void WsConnection::on_read(const error_code& error) {
     finish();
     return;
   }
-  heard_ = Clock::now();
+  heard_ = counters_.heard = Clock::now();
   if (state_ == State::Open) deliver();
   if (state_ == State::Ended) return;
   input_.clear();
@@ -310,16 +311,14 @@ void WsConnection::check(Clock::time_point now) {
     if (now >= deadline_) finish();
     return;
   }
+  // While frames go out as well: they reach the kernel long after the network is gone.
+  const auto due = std::min(timeouts.ws_ping, timeouts.ws_silence / 2);
+  if (now - counters_.heard > due && !pinging_) ping();
   if (writing_) {
     if (now - write_started_ > timeouts.ws_stalled) finish();
     return;
   }
-  const auto silent = now - heard_;
-  if (silent > timeouts.ws_silence) {
-    finish();
-  } else if (silent > timeouts.ws_silence / 2 && !pinging_) {
-    ping();
-  }
+  if (now - heard_ > timeouts.ws_silence) finish();
 }
 
 void WsConnection::close(std::uint16_t code, std::string_view reason) {

@@ -256,9 +256,28 @@ TEST(Lms200Machine, StormOfDamagedTelegramsShows) {
   f.device.damages = true;  // three of four
   f.bench.run(4);
   EXPECT_GT(f.machine.damaged(), 0.5);
+  EXPECT_TRUE(f.machine.storm());
   f.device.damages = false;
   f.bench.run(2);
   EXPECT_LT(f.machine.damaged(), 0.1);
+  EXPECT_FALSE(f.machine.storm());
+}
+
+TEST(Lms200Machine, StormThatAbatesIsNotOverBeforeTheLineIsGood) {
+  Fixture f;
+  f.bench.open();
+  ASSERT_TRUE(f.running(10));
+  f.device.damages = true;
+  ASSERT_TRUE(f.bench.run_until(10, [&] { return f.machine.storm(); }));
+  f.device.damages = false;
+  ASSERT_TRUE(f.bench.run_until(5, [&] { return f.machine.damaged() < 0.4; }));
+  EXPECT_TRUE(f.machine.storm());
+  f.bench.unplug();
+  f.bench.open();
+  ASSERT_TRUE(f.running(10));
+  EXPECT_TRUE(f.machine.storm() ||
+              f.machine.damaged() < 0.1);  // set up anew is not yet a good line
+  EXPECT_TRUE(f.bench.run_until(10, [&] { return !f.machine.storm(); }));
 }
 
 TEST(Lms200Machine, LeftAsTheNextProgramExpectsIt) {

@@ -20,8 +20,12 @@ using ::testing::HasSubstr;
 /// Answers line by line; repeats its queries in turn.
 class FakeRoboteq final : public LineDevice {
  public:
-  std::map<std::string, std::string> parameters{
-      {"RWD", "1000"}, {"MMOD", "0:0"}, {"MXRPM", "1000:1000"}, {"EPPR", "500:500"}};
+  std::map<std::string, std::string> parameters{{"RWD", "1000"},
+                                                {"MMOD", "0:0"},
+                                                {"MXRPM", "1000:1000"},
+                                                {"EPPR", "500:500"},
+                                                {"MAC", "20000:20000"},
+                                                {"MDEC", "20000:20000"}};
   std::string counts = "0:0";
   std::string rpm = "0:0";
   std::string amperes = "0:0";
@@ -206,12 +210,45 @@ TEST(RoboteqMachine, CountsAddUpToAPoseOverTheWrap) {
   f.device.counts = "2147483647:2147483647";
   ASSERT_TRUE(f.running());
   f.bench.run(0.2);
-  // One turn of the wheel is 40000 counts and 0.628 m.
-  f.device.counts =
-      std::to_string(-2147483648LL + 39999) + ":" + std::to_string(-2147483648LL + 39999);
+  // One turn of the wheel is 40000 counts and 0.628 m: a fortieth of it is 1000.
+  f.device.counts = std::to_string(-2147483648LL + 999) + ":" + std::to_string(-2147483648LL + 999);
   f.bench.run(0.3);
-  EXPECT_NEAR(f.machine.state().pose.x, 0.2 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(f.machine.state().pose.x, 0.005 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(f.machine.state().pose.heading, 0, 1e-12);
+}
+
+TEST(RoboteqMachine, LineThatLostItsColonIsNoControllerOfOneChannel) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.device.counts = "100100";
+  f.bench.run(0.04);
+  f.device.counts = "0:0";
+  f.bench.run(0.3);
+  EXPECT_TRUE(f.machine.state().running);
+  EXPECT_EQ(f.machine.state().set_ups, 1U);
+  f.device.counts = "100";
+  f.device.rpm = "0";
+  f.bench.run(0.5);
+  EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("one channel"));
+}
+
+TEST(RoboteqMachine, SpoiltDigitIsNoPlaceFarAway) {
+  Fixture f;
+  f.device.counts = "100:100";
+  ASSERT_TRUE(f.running());
+  f.bench.run(0.2);
+  f.device.counts = "900100:100";
+  f.bench.run(0.04);
+  f.device.counts = "1100:1100";
+  f.bench.run(0.2);
+  EXPECT_NEAR(f.machine.state().pose.x, 0.005 * std::numbers::pi, 1e-9);
+  EXPECT_NEAR(f.machine.state().pose.heading, 0, 1e-12);
+  // WHEN the counters stay elsewhere THEN somebody has set them, and the robot has not moved.
+  f.device.counts = "500000:500000";
+  f.bench.run(0.5);
+  f.device.counts = "501000:501000";
+  f.bench.run(0.2);
+  EXPECT_NEAR(f.machine.state().pose.x, 0.01 * std::numbers::pi, 1e-9);
 }
 
 TEST(RoboteqMachine, StopButtonFaultsAndCurrentAreReported) {

@@ -188,6 +188,21 @@ TEST(SerialRobot, ObservationIsOnTheRunClockAndFromTheStart) {
   EXPECT_EQ(f.seen.scans[0].mount_R, (algo::Pose2{0.2, 0, 0}));
 }
 
+TEST(SerialRobot, PoseIsOfTheTickThoughTheReportIsOlder) {
+  Fixture f;
+  f.base->now.twist = {0.1, 0.5};
+  f.step();
+  EXPECT_EQ(f.seen.odometry.pose, algo::Pose2{});
+  f.base->silent = true;  // two ticks old: 0.1 s
+  f.step();
+  f.step();
+  EXPECT_NEAR(f.seen.odometry.pose.x, 0.01, 1e-4);
+  EXPECT_NEAR(f.seen.odometry.pose.heading, 0.05, 1e-9);
+  EXPECT_NEAR(f.seen.odometry.stamp, f.seen.stamp, 1e-9);
+  f.steps(2);  // no further than its reports are believed
+  EXPECT_NEAR(f.seen.odometry.pose.heading, 0.5 * SerialRobot::kBaseTimeout, 1e-9);
+}
+
 TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
   Fixture f;
   f.arm();

@@ -23,6 +23,7 @@ std::string robot_file(const BenchOptions& options, const sim::Scenario& scenari
   const bool p2os = options.base == emulate::BaseKind::P2os;
   std::string text = fmt::format(
       "name = \"emulated\"\nperiod = {}\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\nturn = 1.0\n"
+      "acceleration = 2.0\nturn_acceleration = 20.0\n"
       "[[laser]]\nname = \"front laser\"\nport = \"{}\"\nrate = 500000\nstep_deg = 0.5\nx = {}\n"
       "[base]\ntype = \"{}\"\nport = \"{}\"\ntrack = 0.5\nwatchdog = {}\nbattery_low = {}\n",
       scenario.period,
@@ -85,6 +86,7 @@ Bench::Bench(const BenchOptions& options) : options_(options) {
   const ScenarioLibrary library({}, {});
   emulate::EmulationOptions emulation;
   emulation.scenario = library.load(options_.scenario);
+  if (options_.goal_W) emulation.scenario.goal = algo::SetGoal{.position_W = *options_.goal_W};
   emulation.seed = options_.seed;
   emulation.record = record();
   emulation.scanner_links = {options_.folder / "scanner"};

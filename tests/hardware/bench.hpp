@@ -23,7 +23,8 @@ struct BenchOptions {
   emulate::BaseKind base = emulate::BaseKind::Roboteq;
   std::uint64_t seed = 1;
   std::filesystem::path folder{};
-  double damage = 0;  // of telegrams
+  double damage = 0;                   // of telegrams
+  std::optional<algo::Vec2> goal_W{};  // instead of the scenario's
   double watchdog = 0.5;
 };
 

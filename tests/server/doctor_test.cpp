@@ -47,6 +47,15 @@ TEST(Doctor, SpikesStandAloneAgainstBothNeighbours) {
   EXPECT_EQ(count_spikes({}), 0U);
 }
 
+TEST(Doctor, WheelsThatGoAnotherWayThanToldAreNotWell) {
+  EXPECT_TRUE(drove_as_told(0.05, 0.05));
+  EXPECT_TRUE(drove_as_told(-0.05, -0.045));
+  EXPECT_FALSE(drove_as_told(0.05, -0.05));  // reversed
+  EXPECT_FALSE(drove_as_told(0.05, 0.1));    // four counts a line taken for two
+  EXPECT_FALSE(drove_as_told(0.05, 0.037));  // a gear of 26 taken for one of 19
+  EXPECT_FALSE(drove_as_told(0.05, 0));
+}
+
 /// A scan written, and read by those who replay logs.
 TEST(CarmenLine, IsReadBack) {
   for (const double field : {180.0, 100.0}) {

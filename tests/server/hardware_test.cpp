@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/diff_drive.hpp"
+#include "server/operator_watch.hpp"
 
 namespace server {
 namespace {
@@ -155,6 +157,20 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   ASSERT_TRUE(comes_to_halt("none"));
   EXPECT_EQ(control("disarm").status, 200);
   EXPECT_FALSE(hardware().at("armed"));
+}
+
+TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  ASSERT_EQ(control("arm").status, 200);
+  // WHEN it stands and nobody asks THEN it stays armed.
+  std::this_thread::sleep_for(OperatorWatch::kPatience + std::chrono::milliseconds(500));
+  EXPECT_TRUE(hardware().at("armed"));
+  // WHEN it is on its way and nobody asks THEN it is not.
+  EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":50,"y":0})").status, 200);
+  ASSERT_TRUE(eventually([&] { return get("/session").at("pose").at("x") > 0.1; }));
+  std::this_thread::sleep_for(OperatorWatch::kPatience + std::chrono::milliseconds(500));
+  EXPECT_TRUE(eventually([&] { return !hardware().at("armed").get<bool>(); }));
+  EXPECT_TRUE(eventually([&] { return hardware().at("trouble") == OperatorWatch::kWords; }));
 }
 
 TEST_F(HardwareAppTest, AResetDisarmsAndNoSimulationTakesItsPlace) {

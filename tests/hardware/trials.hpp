@@ -1,0 +1,23 @@
+// tests/hardware/trials.hpp: the trials, each of which prints a table; true when all of it held.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "server/emulate/emulation.hpp"
+
+namespace server::hardware {
+
+/// Thesis experiments 1 to 4 over both bases, beside pure simulation. `only`: one, as
+/// "exp1-roboteq".
+bool experiments(const std::filesystem::path& folder, const std::string& only);
+/// Every fault of fault_table.hpp. `only`: one base.
+bool faults(const std::filesystem::path& folder, const std::string& only);
+/// One telegram in a hundred damaged for so long [s]: memory, and where each scan went.
+bool soak(const std::filesystem::path& folder, double seconds);
+
+inline const char* name_of(emulate::BaseKind base) {
+  return base == emulate::BaseKind::P2os ? "p2os" : "roboteq";
+}
+
+}  // namespace server::hardware
