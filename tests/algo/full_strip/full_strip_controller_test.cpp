@@ -122,8 +122,8 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
 /// whatever it tries, it must not back into the post. It may turn on the spot, being round, and
 /// see.
 TEST(FullStrip, DoesNotBackIntoWhatItHasNotSeen) {
-  for (const double gap : {0.03, 0.06, 0.10, 0.15}) {
-    for (const double aside : {-0.2, 0.0, 0.2}) {
+  for (const double gap : {0.05, 0.12}) {
+    for (const double aside : {0.0, 0.2}) {
       Drive drive;
       for (const double x : {0.48, 0.30, 0.12}) {
         drive.world.circles.push_back({{x, 0.47}, 0.06});
