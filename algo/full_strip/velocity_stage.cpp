@@ -18,8 +18,7 @@ constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kFollowMargin = 0.025;  // [m] along the strip, which keeps to the middle
-constexpr double kFloor = 0.018;  // [m] nearer only an escape is tried: more than a scanner is off
+constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
 constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
@@ -111,7 +110,7 @@ bool VelocityStage::admissible(const StageInput& in,
   // How far the robot has come along the strip by the time its command acts.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
   // Too close already: no step may lead closer until there is room again.
-  double margin = std::min(kFollowMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
+  double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   for (int k = 0; k < ticks; ++k) {
@@ -126,7 +125,7 @@ bool VelocityStage::admissible(const StageInput& in,
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
-    margin = std::max(margin, std::min(kFollowMargin, room - kSlack));
+    margin = std::max(margin, std::min(kMargin, room - kSlack));
     if (state.twist == Twist2{} && command == Twist2{}) return true;
   }
   return rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
