@@ -93,6 +93,7 @@ void FullStripController::reset(const Pose2& start_W) {
   next_drawing_ = 0;
   manner_ = Manner::None;
   back_until_ = -1;
+  placed_ = false;
   under_way_.clear();
   trail_.clear();
   path_W_.clear();
@@ -103,7 +104,7 @@ double FullStripController::least_clearance() const {
 }
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
-  stage_.set_hull(HullCheck(*in.spec));
+  if (!stage_.hull().is_of(*in.spec)) stage_.set_hull(HullCheck(*in.spec));
   limits_ = {std::min(parameters[Parameter::MaxSpeed], in.spec->max_v),
              std::min(parameters[Parameter::MaxTurnRate], in.spec->max_omega),
              in.spec->max_acceleration,
@@ -132,7 +133,10 @@ void FullStripController::sense(const ControlInput& in) {
   trail_.push_back(in.odometry);
   trail_.back().stamp = in.stamp;
   if (trail_.size() > kTrail) trail_.erase(trail_.begin());
-  map_.follow(in.odometry.pose.position());
+  map_.follow(in.odometry.pose.position(), in.stamp);
+  if (!placed_) stage_.hull().take_place(map_.seen(), in.odometry.pose);
+  placed_ = true;
+  stage_.hull().stand_on(map_.seen(), in.odometry.pose);
   tracker_.predict(in.stamp);
   const LaserScan& scan = in.scene->scan;
   if (!in.scene->fresh || scan.size() == 0) return;

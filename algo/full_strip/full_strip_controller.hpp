@@ -54,6 +54,7 @@ class FullStripController final : public Controller {
   void report(const ControlInput& in, ControlOutput& out);
 
   bool among_moving_ = false;
+  bool placed_ = false;  // the place of the start is entered into the map
   LocalMap map_{};
   Tracker tracker_{};
   SpaceTimeSearch space_time_{};

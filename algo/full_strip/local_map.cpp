@@ -20,6 +20,7 @@ constexpr double kBeyond = 0.15;         // [m] a beam must go on behind a cell 
 constexpr double kClearRange = 8.0;      // [m] cells farther than this are left as they are
 constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells' ages
 constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cell fades
+constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
 
 constexpr int kTile = 32;  // cells along a tile's edge
 constexpr int kTiles = kSize / kTile;
@@ -81,6 +82,7 @@ void LocalMap::reset(const Vec2& centre_W) {
   tiles_.clear();
   occupied_ = 0;
   scans_ = 0;
+  space_.reset(centre_W);
   const double half = kSize * kCell / 2;
   corner_W_ = {std::floor((centre_W.x() - half) / kCell) * kCell,
                std::floor((centre_W.y() - half) / kCell) * kCell};
@@ -92,7 +94,8 @@ bool LocalMap::inside(const Vec2& p_W) const {
   return p.x() >= 0 && p.y() >= 0 && p.x() < edge && p.y() < edge;
 }
 
-bool LocalMap::follow(const Vec2& position_W) {
+bool LocalMap::follow(const Vec2& position_W, double stamp) {
+  space_.follow(position_W, stamp);
   const double half = kSize * kCell / 2;
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
@@ -137,6 +140,7 @@ void LocalMap::insert(const LaserScan& scan,
     if (scan.status[i] == Beam::Ok && !tracker.on_moving(i)) hit(points_W[i]);
   }
   look_through(scan, sensor_W);
+  space_.look(scan, sensor_W);
   if (scans_ % kAgeEvery == 0) age();
   rebuild_soiled();
 }
@@ -234,6 +238,7 @@ void LocalMap::age() {
       ++i;
       continue;
     }
+    space_.forget(mean_W(cell), kFaded);
     active_[i] = active_.back();
     active_.pop_back();
   }

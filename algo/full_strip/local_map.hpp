@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algo/full_strip/seen_space.hpp"
 #include "algo/full_strip/tracker.hpp"
 #include "algo/laser_scan.hpp"
 #include "algo/telemetry.hpp"
@@ -17,7 +18,8 @@ namespace algo {
 /// A square window of the odometry frame W that moves along with the robot in whole cells.
 ///
 /// A cell is occupied after two hits and free again after the scanner has looked through it
-/// several times; where nobody looks it ages. Everything is allocated in the constructor.
+/// several times; where nobody looks it ages, and then counts as never seen. Everything is
+/// allocated in the constructor.
 class LocalMap {
  public:
   static constexpr double kCell = 0.05;         // [m]
@@ -30,8 +32,9 @@ class LocalMap {
   /// Forgets everything; the window is centred on `centre_W`.
   void reset(const Vec2& centre_W);
 
-  /// Moves the window when the robot has left its middle. True when it moved.
-  bool follow(const Vec2& position_W);
+  /// Moves the window when the robot has left its middle; true when it moved. `stamp` is the run
+  /// clock [s].
+  bool follow(const Vec2& position_W, double stamp);
 
   /// Enters the hits of `scan` as points of W, but for those on something that moves, and clears
   /// what it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
@@ -84,6 +87,9 @@ class LocalMap {
   /// [mm] Distance of the cell (column, row), which must be inside.
   std::int16_t cell_distance(int column, int row) const { return field_[index(column, row)]; }
   std::size_t occupied() const { return occupied_; }
+  /// Where it has looked at all: what is neither occupied nor seen is anyone's guess.
+  const SeenSpace& seen() const { return space_; }
+  SeenSpace& seen() { return space_; }
 
   /// The part that people look at: `side` x `side` cells about the robot.
   void draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const;
@@ -131,6 +137,7 @@ class LocalMap {
   std::vector<std::int16_t> kernel_;   // [mm]
   std::vector<std::uint8_t> soiled_;   // tiles whose distances are too short: a cell was cleared
   std::vector<std::uint16_t> tiles_;   // those, in the order they became so
+  SeenSpace space_{};
   std::size_t occupied_ = 0;
   std::uint32_t scans_ = 0;
 };

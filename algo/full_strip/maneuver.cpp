@@ -67,8 +67,11 @@ bool ManeuverSearch::free(const LocalMap& map,
                           const HullCheck& hull,
                           const Pose2& from,
                           const Piece& piece) const {
-  return hull.clearance(map, along(from, piece.length, piece.turn, 0.5)) >= margin_ &&
-         hull.clearance(map, piece.end_W) >= margin_;
+  const Pose2 middle_W = along(from, piece.length, piece.turn, 0.5);
+  const Twist2 way{piece.length, piece.turn};
+  return !hull.enters_unseen(map.seen(), middle_W, way) &&
+         !hull.enters_unseen(map.seen(), piece.end_W, way) &&
+         hull.clearance(map, middle_W) >= margin_ && hull.clearance(map, piece.end_W) >= margin_;
 }
 
 void ManeuverSearch::push(std::uint32_t node, float g, const Pose2& pose_W) {

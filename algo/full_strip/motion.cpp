@@ -3,12 +3,48 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace algo {
 
+namespace {
+
+constexpr double kBeside = 0.04;   // [m] outside the hull that must have been seen
+constexpr double kStill = 0.01;    // [m/s] of the outline: it moves nowhere
+constexpr double kRimApart = 0.8;  // of a cell between two places looked at
+
+}  // namespace
+
 HullCheck::HullCheck(const RobotSpec& spec)
     : disc_(spec.radius), radius_(spec.radius), half_width_(spec.radius) {
-  if (spec.half_length <= 0 || spec.half_width <= 0) return;
+  // Places along `length` [m] of outline; a big hull's lie farther apart.
+  const auto places = [](double length, std::size_t most) {
+    const double count = std::ceil(length / (kRimApart * SeenSpace::kCell));
+    return std::min(most, static_cast<std::size_t>(std::max(1.0, count)));
+  };
+  if (spec.half_length <= 0 || spec.half_width <= 0) {
+    const double radius = spec.radius + kBeside;
+    const std::size_t count = places(std::numbers::pi * radius, kRims - 1);
+    for (std::size_t i = 0; i <= count; ++i) {
+      const double turn = std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+      const Vec2 outwards = direction(std::numbers::pi / 2 + turn);
+      add_rim(radius * outwards, outwards);
+    }
+    return;
+  }
+  const Vec2 corner(spec.half_length + kBeside, spec.half_width + kBeside);
+  const std::size_t across = places(2 * corner.y(), kRims / 2 - 1);
+  for (std::size_t i = 0; i <= across; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(across);
+    add_rim({-corner.x(), (2 * share - 1) * corner.y()}, {-1, 0});
+  }
+  const std::size_t aside = places(corner.x(), kRims / 4 - 1);
+  for (std::size_t i = 0; i <= aside; ++i) {
+    const double share = static_cast<double>(i) / static_cast<double>(aside);
+    for (const double side : {1.0, -1.0}) {
+      add_rim({-share * corner.x(), side * corner.y()}, {0, side});
+    }
+  }
   half_length_ = spec.half_length;
   half_width_ = spec.half_width;
   // The more discs the closer they follow the long side; one more than twice its length is enough.
@@ -19,6 +55,45 @@ HullCheck::HullCheck(const RobotSpec& spec)
   for (std::size_t i = 0; i < count_; ++i) {
     along_[i] = -spec.half_length + piece * (2 * static_cast<double>(i) + 1);
   }
+}
+
+bool HullCheck::is_of(const RobotSpec& spec) const {
+  const bool disc = spec.half_length <= 0 || spec.half_width <= 0;
+  return radius_ == spec.radius && half_length_ == (disc ? 0 : spec.half_length) &&
+         half_width_ == (disc ? spec.radius : spec.half_width);
+}
+
+void HullCheck::add_rim(const Vec2& point_R, const Vec2& normal_R) {
+  rims_.at(rim_count_++) = {point_R, normal_R};
+}
+
+bool HullCheck::enters_unseen(const SeenSpace& seen,
+                              const Pose2& pose_W,
+                              const Twist2& twist) const {
+  if (half_length_ <= 0 && twist.v > -kStill) return false;  // a disc that does not back
+  const Vec2 ahead = direction(pose_W.heading);
+  const Vec2 left(-ahead.y(), ahead.x());
+  for (std::size_t i = 0; i < rim_count_; ++i) {
+    const Rim& rim = rims_[i];
+    const Vec2 velocity_R(twist.v - twist.omega * rim.point_R.y(), twist.omega * rim.point_R.x());
+    if (velocity_R.dot(rim.normal_R) < kStill) continue;
+    const Vec2 at_W = pose_W.position() + rim.point_R.x() * ahead + rim.point_R.y() * left;
+    if (!seen.seen(at_W)) return true;
+  }
+  return false;
+}
+
+void HullCheck::stand_on(SeenSpace& seen, const Pose2& pose_W) const {
+  const Vec2 ahead = direction(pose_W.heading);
+  for (std::size_t i = 0; i < count_; ++i) {
+    seen.mark(pose_W.position() + along_[i] * ahead, half_width_);
+  }
+}
+
+void HullCheck::take_place(SeenSpace& seen, const Pose2& pose_W) const {
+  stand_on(seen, pose_W);
+  if (half_length_ <= 0) return;  // a disc needs no room but its own
+  seen.mark(pose_W.position(), radius_ + kBeside + SeenSpace::kCell);
 }
 
 double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
@@ -82,6 +157,7 @@ bool rests_clear(const LocalMap& map,
   for (int k = 0; k < kMost; ++k) {
     if (state.twist == Twist2{}) return true;
     state = advanced(state, {}, limits, dt);
+    if (hull.enters_unseen(map.seen(), state.pose_W, state.twist)) return false;
     if (hull.clearance(map, state.pose_W) < margin) return false;
   }
   return false;

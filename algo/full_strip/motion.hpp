@@ -18,14 +18,29 @@ namespace algo {
 class HullCheck {
  public:
   explicit HullCheck(const RobotSpec& spec = {});
+  bool is_of(const RobotSpec& spec) const;
   double half_width() const { return half_width_; }  // [m] of the hull, or the radius of a disc
   /// [m] Free room around the hull at `pose_W`; exact where it is less than kExact, there negative
   /// when something is inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;
   /// Whether the hull at `pose_W` stands on `point_W`, by more than what a hit may be off.
   bool covers(const Pose2& pose_W, const Vec2& point_W) const;
+  /// Whether a part of the hull that looks back moves under `twist` into what nobody has seen. What
+  /// looks ahead moves into what the scanner looks at.
+  bool enters_unseen(const SeenSpace& seen, const Pose2& pose_W, const Twist2& twist) const;
+  /// Marks as seen where the hull stands.
+  void stand_on(SeenSpace& seen, const Pose2& pose_W) const;
+  /// Marks as seen the room to turn in at the start, which nobody could look for otherwise.
+  void take_place(SeenSpace& seen, const Pose2& pose_W) const;
 
  private:
+  /// A place on the outline, a little outside it, and which way it faces.
+  struct Rim {
+    Vec2 point_R{0, 0};
+    Vec2 normal_R{0, 0};
+  };
+  static constexpr std::size_t kRims = 48;
+  void add_rim(const Vec2& point_R, const Vec2& normal_R);
   static constexpr double kExact = 0.12;  // [m]
   static constexpr std::size_t kMost = 7;
   double exact(const LocalMap& map, const Pose2& pose_W) const;
@@ -37,6 +52,8 @@ class HullCheck {
   double radius_ = 0;       // [m] of the circle about the hull
   double half_length_ = 0;  // [m] 0: the hull is a disc
   double half_width_ = 0;
+  std::array<Rim, kRims> rims_{};  // of the half that looks back
+  std::size_t rim_count_ = 0;
 };
 
 struct MotionLimits {
@@ -55,7 +72,8 @@ MotionState advanced(const MotionState& state,
                      const MotionLimits& limits,
                      double dt);
 
-/// Whether `state` braked to rest, both parts at once, keeps `margin` [m] of room all the way.
+/// Whether `state` braked to rest, both parts at once, keeps `margin` [m] of room all the way and
+/// backs into nothing unseen.
 bool rests_clear(const LocalMap& map,
                  const HullCheck& hull,
                  MotionState state,

@@ -20,8 +20,9 @@ constexpr double kMargin = 0.08;           // [m] from what moves, now
 constexpr double kMarginPerSecond = 0.12;  // they may turn
 constexpr double kStaticMargin = 0.03;     // [m] from what stands
 constexpr double kTimePerMetre = 0.6;      // [s/m] to the goal
-constexpr double kRiskReach = 0.6;         // [m] room beyond the margin that is worth something
-constexpr double kRisk = 0.8;              // [s/s] at no room at all
+constexpr double kRiskReach = 0.25;        // [m] room beyond the margin that is worth something,
+constexpr double kRiskTime = 0.5;          // [s] and what both drive in this time
+constexpr double kRisk = 1.5;              // [s/s] at no room at all
 constexpr double kRiskFades = 2.5;         // [s] prediction time after which it counts 1/e
 constexpr double kReverse = 0.15;          // [s/s] for driving into where the scanner does not look
 constexpr double kReach = 6.0;   // [m] tracks farther than this from the motion do not count
@@ -50,6 +51,7 @@ SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
   next_.reserve(kBeam * kCommands);
   order_.reserve(kBeam * kCommands);
   near_tracks_.reserve(64);
+  near_speeds_.reserve(64);
 }
 
 bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
@@ -76,19 +78,27 @@ bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
   return false;
 }
 
-/// [m] Room at `pose_W`, `time` [s] after the start, beyond the margin to what moves.
-double SpaceTimeSearch::room(const SpaceTimeInput& in, double time, const Pose2& pose_W) const {
-  const Vec2 ahead = direction(pose_W.heading);
-  double least = kRiskReach;
-  for (const Track& track : near_tracks_) {
-    const Vec2 d = track.position_W + track.velocity_W * (in.lead + time) - pose_W.position();
-    const double most = least + track.radius + in.spec->radius + 1;
+/// At `time` [s] after the start. What moves may turn towards the robot at any moment: the faster
+/// the two are, the more room there must be to see it and to give way.
+SpaceTimeSearch::Nearness SpaceTimeSearch::nearness(const SpaceTimeInput& in,
+                                                    double time,
+                                                    const MotionState& at) const {
+  const Vec2 ahead = direction(at.pose_W.heading);
+  const double margin = margin_share_ * (kMargin + kMarginPerSecond * time);
+  Nearness out{kReach, 0};
+  for (std::size_t i = 0; i < near_tracks_.size(); ++i) {
+    const Track& track = near_tracks_[i];
+    const double reach = kRiskReach + kRiskTime * (near_speeds_[i] + std::abs(at.twist.v));
+    const Vec2 d = track.position_W + track.velocity_W * (in.lead + time) - at.pose_W.position();
+    const double most = reach + track.radius + in.spec->radius + margin;
     if (d.squaredNorm() > most * most) continue;
     const Vec2 p{ahead.dot(d), ahead.x() * d.y() - ahead.y() * d.x()};
-    const double margin = margin_share_ * (kMargin + kMarginPerSecond * time);
-    least = std::min(least, to_hull(*in.spec, p) - track.radius - margin);
+    const double room = to_hull(*in.spec, p) - track.radius - margin;
+    out.room = std::min(out.room, room);
+    const double lacking = std::max(0.0, 1 - room / reach);
+    out.risk = std::max(out.risk, lacking * lacking);
   }
-  return least;
+  return out;
 }
 
 /// Drives `s` on for a level. False when something is hit.
@@ -98,14 +108,13 @@ bool SpaceTimeSearch::step(
   for (int k = 1; k <= substeps; ++k) {
     s.motion = advanced(s.motion, command, in.limits, kSubstep);
     const double now = time + k * kSubstep;
-    const double room_now = room(in, now, s.motion.pose_W);
-    if (room_now < 0) return false;
+    const Nearness near = nearness(in, now, s.motion);
+    if (near.room < 0) return false;
     if (in.map->distance(s.motion.pose_W.position()) < in.spec->radius + kStaticMargin &&
         in.hull->clearance(*in.map, s.motion.pose_W) < static_margin_) {
       return false;
     }
-    const double lacking = 1 - room_now / kRiskReach;
-    s.risk += kSubstep * kRisk * lacking * lacking * std::exp(-now / kRiskFades);
+    s.risk += kSubstep * kRisk * near.risk * std::exp(-now / kRiskFades);
     if (s.motion.twist.v < -0.05) s.risk += kSubstep * kReverse;
   }
   return true;
@@ -141,10 +150,13 @@ void SpaceTimeSearch::keep_best() {
 
 Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
   near_tracks_.clear();
+  near_speeds_.clear();
   const Vec2 here = in.state.pose_W.position();
   for (const Track& track : *in.tracks) {
     const double reach = kReach + 4 * track.velocity_W.norm();
-    if ((track.position_W - here).norm() < reach) near_tracks_.push_back(track);
+    if ((track.position_W - here).norm() >= reach) continue;
+    near_tracks_.push_back(track);
+    near_speeds_.push_back(track.velocity_W.norm());
   }
   // Too close to something that stands already: no closer.
   static_margin_ =
@@ -208,7 +220,7 @@ Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
       const double standing = in.hull->clearance(*in.map, state.pose_W);
       // What comes later may still be helped.
       least =
-          std::min(least, std::min(standing, room(in, k * kSubstep, state.pose_W)) + kLater * k);
+          std::min(least, std::min(standing, nearness(in, k * kSubstep, state).room) + kLater * k);
     }
     if (least <= most) continue;
     most = least;

@@ -52,7 +52,12 @@ class SpaceTimeSearch {
   Twist2 least_bad(const SpaceTimeInput& in) const;
   bool step(
       const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const;
-  double room(const SpaceTimeInput& in, double time, const Pose2& pose_W) const;
+  /// How near what moves will be.
+  struct Nearness {
+    double room = 0;  // [m] beyond the margin
+    double risk = 0;  // 0: it could not come here soon if it turned; 1: it is here
+  };
+  Nearness nearness(const SpaceTimeInput& in, double time, const MotionState& at) const;
   void keep_best();
 
   std::vector<State> states_, next_;
@@ -60,8 +65,9 @@ class SpaceTimeSearch {
   std::vector<std::uint32_t> order_;
   std::uint32_t round_ = 0;
   std::vector<Track> near_tracks_;
-  double static_margin_ = 0;  // [m] of this search
-  double margin_share_ = 1;   // of the margins from what moves
+  std::vector<double> near_speeds_;  // [m/s] theirs
+  double static_margin_ = 0;         // [m] of this search
+  double margin_share_ = 1;          // of the margins from what moves
   bool clear_ = false;
 };
 

@@ -18,8 +18,8 @@ constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kFloor = 0.01;         // [m] nearer only an escape is tried
-constexpr double kSlack = 0.002;        // [m] a position may be nearer than the one before
+constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
+constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
 /// [m] Ahead of the robot that it aims at, at speed `v`.
@@ -122,6 +122,7 @@ bool VelocityStage::admissible(const StageInput& in,
     const Vec2 before = state.pose_W.position();
     state = advanced(state, command, in.limits, in.dt);
     s += (state.pose_W.position() - before).norm();
+    if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
     margin = std::max(margin, std::min(kMargin, room - kSlack));
@@ -156,7 +157,8 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
   bool allowed = margin >= kFloor;
   for (int k = 0; allowed && k < 2; ++k) {
     state = advanced(state, wanted, in.limits, in.dt);
-    allowed = hull_.clearance(*in.map, state.pose_W) >= margin;
+    allowed = !hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist) &&
+              hull_.clearance(*in.map, state.pose_W) >= margin;
   }
   allowed = allowed && rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
   out.candidates.push_back({wanted, 2 * in.dt, 0, allowed, allowed});
@@ -175,6 +177,7 @@ bool VelocityStage::holds(const StageInput& in,
   const int ticks = std::max(1, static_cast<int>(std::lround(horizon / in.dt)));
   for (int k = 0; k < ticks + 400; ++k) {
     state = advanced(state, k < ticks ? twist : Twist2{}, in.limits, in.dt);
+    if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     // Too close already: every step must lead away.
     const double floor = std::min(least, kMargin) - 1e-3;

@@ -20,12 +20,13 @@ struct StageInput {
 };
 
 /// Drives along the strip by pure pursuit. A command is admissible when the robot, following the
-/// strip for kHorizon and then braking to rest, keeps kMargin of room all the way: the next tick
-/// then has an admissible command too, the rest of that same motion.
+/// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and backs into
+/// nothing that nobody has seen: the next tick then has an admissible command too, the rest of that
+/// same motion.
 class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]
-  static constexpr double kMargin = 0.02;  // [m]
+  static constexpr double kMargin = 0.03;  // [m] the scanner itself may be off by half of it
 
   void set_hull(const HullCheck& hull) { hull_ = hull; }
   const HullCheck& hull() const { return hull_; }

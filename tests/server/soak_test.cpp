@@ -42,5 +42,13 @@ TEST(Soak, NothingThatMustNotHappenDoes) {
   }
 }
 
+/// It backed, in these, into what its scanner had never looked at.
+TEST(Soak, WorldsWhereTheRobotOnceBackedIntoTheUnseen) {
+  for (const std::uint64_t seed : {227U, 350U, 509U}) {
+    const Outcome o = run_world(seed, "strip");
+    EXPECT_EQ(o.ending, Ending::Reached) << seed << ": " << o.why;
+  }
+}
+
 }  // namespace
 }  // namespace server::soak

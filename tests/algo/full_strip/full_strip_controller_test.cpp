@@ -2,6 +2,7 @@
 #include "algo/full_strip/full_strip_controller.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
@@ -115,6 +116,43 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
       EXPECT_GT(from_it, 0.5);
     }
   }
+}
+
+/// In a niche, with the goal behind it and a post close behind its back that no beam shows:
+/// whatever it tries, it must not back into the post. It may turn on the spot, being round, and
+/// see.
+TEST(FullStrip, DoesNotBackIntoWhatItHasNotSeen) {
+  for (const double gap : {0.05, 0.12}) {
+    for (const double aside : {0.0, 0.2}) {
+      Drive drive;
+      for (const double x : {0.48, 0.30, 0.12}) {
+        drive.world.circles.push_back({{x, 0.47}, 0.06});
+        drive.world.circles.push_back({{x, -0.47}, 0.06});
+      }
+      drive.world.circles.push_back({{0.48, 0}, 0.06});
+      const Vec2 behind = algo::direction(std::numbers::pi + aside);
+      drive.world.circles.push_back({(0.35 + gap + 0.2) * behind, 0.2});
+      drive.controller.reset({});
+      for (int k = 0; k < 600; ++k) {
+        drive.tick({-4, 0.5});
+        ASSERT_GT(worlds::surface_distance(drive.pose.position(), drive.world), 0.35)
+            << "gap " << gap << ", aside " << aside << ", tick " << k;
+      }
+    }
+  }
+}
+
+/// As above, but with nothing behind it: it turns round or backs out.
+TEST(FullStrip, GetsOutOfANicheItStartsIn) {
+  Drive drive;
+  for (const double x : {0.48, 0.30, 0.12}) {
+    drive.world.circles.push_back({{x, 0.47}, 0.06});
+    drive.world.circles.push_back({{x, -0.47}, 0.06});
+  }
+  drive.world.circles.push_back({{0.48, 0}, 0.06});
+  drive.controller.reset({});
+  for (int k = 0; k < 800; ++k) drive.tick({-4, 0.5});
+  EXPECT_LT((drive.pose.position() - Vec2(-4, 0.5)).norm(), 0.2);
 }
 
 TEST(FullStrip, PassesAPostOnItsLine) {

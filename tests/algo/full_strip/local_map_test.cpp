@@ -68,11 +68,11 @@ TEST(LocalMap, AMovedWindowKeepsWhatItHolds) {
   see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
   const std::size_t before = map.occupied();
   const double near = map.distance({1.5, 0.05});
-  ASSERT_TRUE(map.follow({4.1, -4.3}));
+  ASSERT_TRUE(map.follow({4.1, -4.3}, 0));
   EXPECT_EQ(map.occupied(), before);
   EXPECT_DOUBLE_EQ(map.distance({1.5, 0.05}), near);
-  EXPECT_FALSE(map.follow({4.1, -4.3}));
-  ASSERT_TRUE(map.follow({40, 0}));
+  EXPECT_FALSE(map.follow({4.1, -4.3}, 0));
+  ASSERT_TRUE(map.follow({40, 0}, 0));
   EXPECT_EQ(map.occupied(), 0U);
 }
 

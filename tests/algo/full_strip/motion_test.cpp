@@ -86,6 +86,7 @@ TEST(Maneuver, BacksOutOfAPocketAndTurns) {
   const HullCheck hull(rectangle());
   LocalMap map;
   occupy(map, pocket());
+  map.seen().mark({0, 0}, 3);
   algo::ManeuverSearch search;
   search.start({0, 0, 0}, {-1.2, 0}, 0.02);
   const auto facing_out = [](const Pose2& pose) {
@@ -118,12 +119,28 @@ TEST(Maneuver, BacksOutOfAPocketAndTurns) {
   EXPECT_LT(robot.pose_W.x, -0.7);
 }
 
+TEST(Maneuver, BacksIntoNothingUnseen) {
+  const HullCheck hull(rectangle());
+  LocalMap map;
+  occupy(map, pocket());
+  hull.take_place(map.seen(), {0, 0, 0});
+  algo::ManeuverSearch search;
+  search.start({0, 0, 0}, {-1.2, 0}, 0.02);
+  auto state = search.state();
+  for (int k = 0; k < 2000 && state == algo::ManeuverSearch::State::Searching; ++k) {
+    state = search.search(
+        map, hull, [](const Pose2& pose) { return pose.x < -0.3; }, 50);
+  }
+  EXPECT_EQ(state, algo::ManeuverSearch::State::NoWay);
+}
+
 TEST(Maneuver, SaysWhenThereIsNone) {
   const HullCheck hull(rectangle());
   LocalMap map;
   std::vector<Vec2> box = pocket();
   for (double y = -0.31; y <= 0.31; y += 0.04) box.emplace_back(-0.45, y);
   occupy(map, box);
+  map.seen().mark({0, 0}, 3);
   algo::ManeuverSearch search;
   search.start({0, 0, 0}, {-1.2, 0}, 0.02);
   auto state = search.state();

@@ -1,0 +1,87 @@
+// algo/full_strip/seen_space.cpp: beams drawn into a rolling window.
+#include "algo/full_strip/seen_space.hpp"
+
+#include <algorithm>
+
+namespace algo {
+namespace {
+
+constexpr double kLook = 2.0;    // [m] along a beam; beyond it nothing is asked soon
+constexpr double kBehind = 0.1;  // [m] of a surface that nobody reaches but through it
+
+}  // namespace
+
+void SeenSpace::reset(const Vec2& centre_W) {
+  std::ranges::fill(seen_at_, kNever);
+  left_ = cell_of(centre_W.x()) - kSize / 2;
+  bottom_ = cell_of(centre_W.y()) - kSize / 2;
+  now_ = 0;
+  looks_ = 0;
+}
+
+void SeenSpace::follow(const Vec2& position_W, double stamp) {
+  now_ = stamp;
+  const int left = cell_of(position_W.x()) - kSize / 2;
+  const int bottom = cell_of(position_W.y()) - kSize / 2;
+  if (std::abs(left - left_) >= kSize || std::abs(bottom - bottom_) >= kSize) {
+    reset(position_W);
+    now_ = stamp;
+    return;
+  }
+  // What comes in on one side takes the cells of what leaves on the other.
+  for (; left_ != left; left_ += left > left_ ? 1 : -1) {
+    const int column = left > left_ ? left_ : left_ - 1;
+    for (int row = 0; row < kSize; ++row) seen_at_[index(column, row)] = kNever;
+  }
+  for (; bottom_ != bottom; bottom_ += bottom > bottom_ ? 1 : -1) {
+    const int row = bottom > bottom_ ? bottom_ : bottom_ - 1;
+    std::fill_n(&seen_at_[index(0, row)], kSize, kNever);
+  }
+}
+
+void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
+  const Vec2 middle_W = Vec2(left_ + kSize / 2, bottom_ + kSize / 2) * kCell;
+  const bool near = (sensor_W.position() - middle_W).norm() < kSize * kCell / 2 - kLook - 2 * kCell;
+  if (!near || !(scan.angle_increment > 0)) return;
+  // Beams so close that at kLook they pass no cell by; other ones each time.
+  const double apart = kCell / (kLook * scan.angle_increment);
+  const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
+  const auto stamp = static_cast<float>(now_);
+  const Vec2 from = sensor_W.position() / kCell;
+  for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
+    if (scan.status[i] == Beam::Invalid) continue;
+    const bool hit = scan.status[i] == Beam::Ok;
+    const double length = std::min(kLook, hit ? scan.ranges[i] + kBehind : scan.ranges[i]);
+    const Vec2 way = direction(sensor_W.heading + scan.angle(i));
+    const int steps = static_cast<int>(length / kCell);
+    for (int k = 0; k <= steps; ++k) {
+      const Vec2 p = from + k * way;
+      const int column = static_cast<int>(std::floor(p.x()));
+      const int row = static_cast<int>(std::floor(p.y()));
+      seen_at_[index(column, row)] = stamp;
+    }
+  }
+}
+
+void SeenSpace::set_disc(const Vec2& centre_W, double radius, float stamp) {
+  const int reach = static_cast<int>(radius / kCell) + 1;
+  const int column = cell_of(centre_W.x());
+  const int row = cell_of(centre_W.y());
+  for (int y = row - reach; y <= row + reach; ++y) {
+    for (int x = column - reach; x <= column + reach; ++x) {
+      const Vec2 middle_W = Vec2(x + 0.5, y + 0.5) * kCell;
+      const bool inside = (middle_W - centre_W).squaredNorm() <= radius * radius;
+      if (inside && holds(x, y)) seen_at_[index(x, y)] = stamp;
+    }
+  }
+}
+
+void SeenSpace::mark(const Vec2& centre_W, double radius) {
+  set_disc(centre_W, radius, static_cast<float>(now_));
+}
+
+void SeenSpace::forget(const Vec2& centre_W, double radius) {
+  set_disc(centre_W, radius, kNever);
+}
+
+}  // namespace algo

@@ -1,0 +1,67 @@
+// algo/full_strip/seen_space.hpp: where the scanner has looked, around the robot: a robot may back
+// only into what it has seen.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A square window of the odometry frame W that rolls along with the robot. A cell counts as seen
+/// when a beam went through it or ended in or just before it: whether something stands there is
+/// then the map's to say. Everything is allocated in the constructor.
+class SeenSpace {
+ public:
+  static constexpr double kCell = 0.05;  // [m]
+  static constexpr int kSize = 256;      // cells along an edge, a power of two: 12.8 m
+
+  SeenSpace() : seen_at_(static_cast<std::size_t>(kSize) * kSize) { reset({0, 0}); }
+
+  /// Forgets everything; the window is centred on `centre_W`.
+  void reset(const Vec2& centre_W);
+  /// [s] For which a look is believed. Where nothing moves, for ever.
+  void remember_for(double memory) { memory_ = memory; }
+  /// The window follows the robot and the run clock.
+  void follow(const Vec2& position_W, double stamp);
+
+  /// Enters the beams of `scan`, taken at `sensor_W`, up to kLook.
+  void look(const LaserScan& scan, const Pose2& sensor_W);
+  /// Takes the disc about `centre_W` for seen: the robot stands there, or has room to turn there.
+  void mark(const Vec2& centre_W, double radius);
+  /// The disc about `centre_W` counts as never seen.
+  void forget(const Vec2& centre_W, double radius);
+
+  bool seen(const Vec2& p_W) const {
+    const int column = cell_of(p_W.x());
+    const int row = cell_of(p_W.y());
+    if (!holds(column, row)) return false;
+    return static_cast<double>(seen_at_[index(column, row)]) > now_ - memory_;
+  }
+
+ private:
+  static constexpr float kNever = -std::numeric_limits<float>::infinity();
+  static int cell_of(double metres) { return static_cast<int>(std::floor(metres / kCell)); }
+  /// The cells of the plane share those of the window, like a chart rolled both ways.
+  static std::size_t index(int column, int row) {
+    constexpr auto kMask = static_cast<unsigned>(kSize - 1);
+    return (static_cast<unsigned>(row) & kMask) * static_cast<std::size_t>(kSize) +
+           (static_cast<unsigned>(column) & kMask);
+  }
+  bool holds(int column, int row) const {
+    return column >= left_ && column < left_ + kSize && row >= bottom_ && row < bottom_ + kSize;
+  }
+  void set_disc(const Vec2& centre_W, double radius, float stamp);
+
+  std::vector<float> seen_at_;  // [s] run clock
+  int left_ = 0, bottom_ = 0;   // of the window, in cells of W
+  double now_ = 0;              // [s]
+  double memory_ = std::numeric_limits<double>::infinity();
+  std::size_t looks_ = 0;
+};
+
+}  // namespace algo

@@ -1,0 +1,101 @@
+// tests/algo/full_strip/seen_space_test.cpp: what counts as seen, and for how long.
+#include "algo/full_strip/seen_space.hpp"
+
+#include "tests/algo/worlds.hpp"
+#include <gtest/gtest.h>
+
+#include "algo/full_strip/motion.hpp"
+
+namespace {
+
+using algo::Pose2;
+using algo::SeenSpace;
+using algo::Vec2;
+
+void look(SeenSpace& seen, const worlds::World& world, const Pose2& pose, double stamp = 0) {
+  algo::LaserScan scan;
+  worlds::scan_world(pose, world, 8, scan);
+  seen.follow(pose.position(), stamp);
+  for (int k = 0; k < 4; ++k) seen.look(scan, pose);
+}
+
+TEST(SeenSpace, IsWhatTheBeamsWentThrough) {
+  SeenSpace seen;
+  EXPECT_FALSE(seen.seen({0.5, 0}));
+  look(seen, {{{{1, 0}, 0.2}}, {}}, {0, 0, 0});
+  EXPECT_TRUE(seen.seen({0.5, 0}));
+  EXPECT_TRUE(seen.seen({0.82, 0}));   // the surface and what is just behind it
+  EXPECT_FALSE(seen.seen({1.0, 0}));   // in the post
+  EXPECT_FALSE(seen.seen({1.5, 0}));   // in its shadow
+  EXPECT_FALSE(seen.seen({-0.2, 0}));  // behind the scanner
+  for (double y = -1.5; y < 1.6; y += 0.1) EXPECT_TRUE(seen.seen({0.2, y})) << y;
+}
+
+TEST(SeenSpace, RollsAlong) {
+  SeenSpace seen;
+  const Pose2 start{0.31, -0.2, 0};
+  look(seen, {}, start);
+  EXPECT_TRUE(seen.seen({1.3, -0.2}));
+  seen.follow({5, 3}, 0);
+  EXPECT_TRUE(seen.seen({1.3, -0.2}));
+  seen.follow({7.8, 3}, 0);
+  EXPECT_FALSE(seen.seen({1.3, -0.2}));
+  // What came in again has never been seen, nor what shares its cells.
+  seen.follow({1, 0}, 0);
+  EXPECT_FALSE(seen.seen({1.3, -0.2}));
+  EXPECT_FALSE(seen.seen({1.3 + SeenSpace::kSize * SeenSpace::kCell, -0.2}));
+  seen.follow({500, 0}, 0);
+  EXPECT_FALSE(seen.seen({500, 0}));
+}
+
+TEST(SeenSpace, IsForgottenWithTimeWhereThingsMove) {
+  SeenSpace seen;
+  look(seen, {}, {0, 0, 0}, 10);
+  seen.follow({0, 0}, 1000);
+  EXPECT_TRUE(seen.seen({1, 0}));
+  seen.remember_for(2);
+  EXPECT_FALSE(seen.seen({1, 0}));
+  seen.follow({0, 0}, 11.9);
+  EXPECT_TRUE(seen.seen({1, 0}));
+}
+
+algo::RobotSpec rectangle() {
+  algo::RobotSpec spec;
+  spec.half_length = 0.254;
+  spec.half_width = 0.215;
+  spec.radius = std::hypot(spec.half_length, spec.half_width);
+  return spec;
+}
+
+TEST(SeenSpace, ARoundRobotMayAlwaysTurnAndBacksOnlyWhereItHasBeen) {
+  algo::RobotSpec spec;
+  spec.radius = 0.35;
+  const algo::HullCheck hull(spec);
+  SeenSpace seen;
+  hull.take_place(seen, {0, 0, 0});
+  EXPECT_FALSE(hull.enters_unseen(seen, {0, 0, 0}, {0, 1}));
+  EXPECT_FALSE(hull.enters_unseen(seen, {0, 0, 0}, {0.5, 1}));
+  EXPECT_TRUE(hull.enters_unseen(seen, {0, 0, 0}, {-0.2, 0}));
+  // A metre on it may back, but not to where it began.
+  look(seen, {}, {0, 0, 0});
+  for (double x = 0; x < 1; x += 0.05) {
+    look(seen, {}, {x, 0, 0});
+    hull.stand_on(seen, {x, 0, 0});
+  }
+  EXPECT_FALSE(hull.enters_unseen(seen, {1, 0, 0}, {-0.2, 0}));
+  EXPECT_FALSE(hull.enters_unseen(seen, {0.2, 0, 0}, {-0.2, 0.1}));
+  EXPECT_TRUE(hull.enters_unseen(seen, {-0.1, 0, 0}, {-0.2, 0}));
+}
+
+TEST(SeenSpace, ARectangleHasRoomToTurnInWhereItWasPutAndThenWhereItHasLooked) {
+  const algo::HullCheck hull(rectangle());
+  SeenSpace seen;
+  hull.take_place(seen, {0, 0, 0});
+  for (double heading = -3; heading < 3; heading += 0.1) {
+    EXPECT_FALSE(hull.enters_unseen(seen, {0, 0, heading}, {0, 1})) << heading;
+  }
+  EXPECT_TRUE(hull.enters_unseen(seen, {-0.2, 0, 0}, {-0.3, 0}));
+  EXPECT_TRUE(hull.enters_unseen(seen, {0.5, 0, 0}, {0, 1}));
+}
+
+}  // namespace

@@ -1,0 +1,65 @@
+// tests/algo/full_strip/space_time_test.cpp: giving way to what moves, and to what turns.
+#include "algo/full_strip/space_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::Vec2;
+
+constexpr double kStep = 0.1;  // [s]
+
+struct Meeting {
+  algo::LocalMap map{};
+  algo::RobotSpec spec{.radius = 0.3};
+  algo::Recycled<algo::Track> tracks{};
+  algo::MotionState robot{};
+  algo::SpaceTimeSearch search{};
+  algo::ControlOutput out{};
+
+  /// Drives to (8, 0) past a body that comes towards it beside its way and at `turn_at`
+  /// [s] turns across. The least room between them.
+  double drive(double turn_at) {
+    const algo::HullCheck hull(spec);
+    Vec2 at_W(6, 1.3);
+    Vec2 velocity_W(-1.2, 0);
+    double least = 10;
+    for (int k = 0; k < 45; ++k) {
+      const double stamp = k * kStep;
+      if (stamp >= turn_at) velocity_W = {0, -1.2};
+      tracks.clear();
+      tracks.push_back({at_W, velocity_W, 0.4, stamp, 0});
+      algo::SpaceTimeInput in;
+      in.map = &map;
+      in.hull = &hull;
+      in.spec = &spec;
+      in.tracks = &tracks;
+      in.state = robot;
+      in.limits = {2, 2.5, 3, 8};
+      in.carrot_W = {8, 0};
+      const algo::Twist2 twist = search.search(in, out);
+      robot = advanced(robot, twist, in.limits, kStep);
+      at_W += kStep * velocity_W;
+      least = std::min(least, (at_W - robot.pose_W.position()).norm() - 0.7);
+    }
+    return least;
+  }
+};
+
+TEST(SpaceTime, PassesWhatComesTowardsIt) {
+  Meeting meeting;
+  EXPECT_GT(meeting.drive(100), 0.1);
+  EXPECT_GT(meeting.robot.pose_W.x, 5);
+}
+
+TEST(SpaceTime, KeepsRoomEnoughForWhatTurnsAcross) {
+  for (const double turn_at : {0.6, 1.0, 1.2, 1.4}) {
+    Meeting meeting;
+    EXPECT_GT(meeting.drive(turn_at), 0) << "turned after " << turn_at << " s";
+  }
+}
+
+}  // namespace
