@@ -26,8 +26,7 @@ enum class RunStatus : std::uint8_t {
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> find_status(std::string_view name);
 
-/// The columns kept in plain sight for queries, to 0.1 ms, 10 um and 10 urad; the frame beside them
-/// holds everything exactly. What is not finite is kept as NaN.
+/// The columns kept in plain sight for queries; the frame beside them holds everything.
 struct TickRow {
   std::uint64_t tick = 0;
   double t = 0;          // [s] run clock
@@ -41,11 +40,6 @@ struct TickRow {
   std::uint8_t behaviour = 0;
   bool operator==(const TickRow&) const = default;
 };
-
-/// In the columns' whole numbers: units of 0.1 ms, 10 um, 10 urad.
-TickRow scaled(const TickRow& row);
-/// As a reader will see it.
-TickRow rounded(const TickRow& row);
 
 /// All that is known of a run before its first tick; enough to run it again.
 struct NewRun {

@@ -95,7 +95,7 @@ struct RunStore::Statements {
         start_run(c.prepare(
             "UPDATE run SET status = 'recording', started = ? WHERE id = ? AND status = 'queued'"
             " RETURNING id")),
-        insert_tick(c.prepare("INSERT INTO tick_row VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
+        insert_tick(c.prepare("INSERT INTO tick VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         write_block(
             c.prepare("INSERT INTO block (run, first_tick, last_tick, frames) VALUES (?, ?, ?, ?)"
                       " ON CONFLICT (run, first_tick) DO UPDATE"
@@ -112,9 +112,8 @@ struct RunStore::Statements {
             "SELECT id, status, scenario, started, ticks, bytes FROM run"
             " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1")),
         deleted(c.prepare("SELECT id FROM run WHERE status = 'deleted' ORDER BY id LIMIT 1")),
-        slice_end(
-            c.prepare("SELECT tick FROM tick_row WHERE run = ? ORDER BY tick LIMIT 1 OFFSET ?")),
-        delete_ticks(c.prepare("DELETE FROM tick_row WHERE run = ? AND tick < ?")),
+        slice_end(c.prepare("SELECT tick FROM tick WHERE run = ? ORDER BY tick LIMIT 1 OFFSET ?")),
+        delete_ticks(c.prepare("DELETE FROM tick WHERE run = ? AND tick < ?")),
         delete_blocks(c.prepare("DELETE FROM block WHERE run = ? AND first_tick < ?")),
         delete_document(c.prepare("DELETE FROM document WHERE run = ?")),
         delete_run(c.prepare("DELETE FROM run WHERE id = ?")),
@@ -162,7 +161,7 @@ void RunStore::interrupt_unfinished() {
         " reason = iif(status = 'queued', 'The program stopped before this run began.',"
         "              'The program stopped in the middle of this run.'),"
         " status = 'interrupted', outcome = iif(outcome = 'running', 'stopped', outcome),"
-        " ticks = (SELECT count(*) FROM tick_row WHERE run = run.id),"
+        " ticks = (SELECT count(*) FROM tick WHERE run = run.id),"
         " time = coalesce((SELECT t FROM tick WHERE run = run.id ORDER BY tick DESC LIMIT 1), 0),"
         " bytes = coalesce((SELECT sum(length(frames)) FROM block WHERE run = run.id), 0)"
         " WHERE status IN ('queued', 'recording') RETURNING id");
@@ -242,10 +241,8 @@ void RunStore::append_tick(RunId run,
       throw StoreError(name_of(run) + ", tick " + std::to_string(row.tick) + ": " + error.what());
     }
     Statement& insert = sql_->insert_tick.reset();
-    // Whole numbers: the columns' affinity makes SQLite store them in as few bytes as they need.
-    const TickRow whole = scaled(row);
-    insert << run << static_cast<std::int64_t>(row.tick) << whole.t << whole.x << whole.y
-           << whole.heading << whole.v << whole.omega << whole.clearance << std::int64_t{row.hold}
+    insert << run << static_cast<std::int64_t>(row.tick) << row.t << row.x << row.y << row.heading
+           << row.v << row.omega << row.clearance << std::int64_t{row.hold}
            << std::int64_t{row.behaviour};
     insert.run();
     recording.last = row;

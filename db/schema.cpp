@@ -57,28 +57,6 @@ constexpr std::array kSteps = {
     CREATE INDEX run_by_scenario ON run (scenario, id);
     CREATE INDEX run_by_status ON run (status, id);
     )",
-    // 3: the plain columns as whole numbers, which take half the room: t in 0.1 ms, lengths in
-    // 10 um, angles in 10 urad. `tick` is a view of them in SI units.
-    R"(
-    CREATE TABLE tick_row (
-      run INTEGER NOT NULL,
-      tick INTEGER NOT NULL,
-      t INTEGER, x INTEGER, y INTEGER, heading INTEGER, v INTEGER, omega INTEGER,
-      clearance INTEGER,
-      hold INTEGER NOT NULL,
-      behaviour INTEGER NOT NULL,
-      PRIMARY KEY (run, tick)
-    ) WITHOUT ROWID;
-    INSERT INTO tick_row SELECT run, tick,
-      CAST(round(t * 1e4) AS INTEGER), CAST(round(x * 1e5) AS INTEGER),
-      CAST(round(y * 1e5) AS INTEGER), CAST(round(heading * 1e5) AS INTEGER),
-      CAST(round(v * 1e5) AS INTEGER), CAST(round(omega * 1e5) AS INTEGER),
-      CAST(round(clearance * 1e5) AS INTEGER), hold, behaviour FROM tick ORDER BY run, tick;
-    DROP TABLE tick;
-    CREATE VIEW tick AS SELECT run, tick, t / 1e4 AS t, x / 1e5 AS x, y / 1e5 AS y,
-      heading / 1e5 AS heading, v / 1e5 AS v, omega / 1e5 AS omega, clearance / 1e5 AS clearance,
-      hold, behaviour FROM tick_row;
-    )",
 };
 
 std::int64_t version_of(const Connection& connection) {

@@ -128,7 +128,7 @@ void check_read_back(const std::string& path, const std::vector<Stored>& ticks) 
   for (std::optional<std::uint64_t> from = 0; from;) {
     const db::TickPage page = reader.ticks(1, *from, 1000);
     for (const db::TickRow& found : page.ticks) {
-      require(row < ticks.size() && found == db::rounded(ticks[row].row),
+      require(row < ticks.size() && found == ticks[row].row,
               fmt::format("P20: row {} differs", row));
       ++row;
     }

@@ -103,7 +103,7 @@ TEST_F(RunReaderTest, FramesStartAnywhere) {
   EXPECT_EQ(reader.frames(run, 5, 0, none), 5U);
 }
 
-TEST_F(RunReaderTest, CsvShowsTheColumnsInPieces) {
+TEST_F(RunReaderTest, CsvIsExactAndInPieces) {
   RunStore store(path);
   const db::RunId run = store.begin_run(what());
   db::TickRow odd = row(1);
@@ -123,10 +123,10 @@ TEST_F(RunReaderTest, CsvShowsTheColumnsInPieces) {
   EXPECT_EQ(reader.csv(run, 0, 1, out, names), 2U);
   EXPECT_EQ(out,
             "tick,t,x,y,heading,v,omega,clearance,hold,behaviour\n"
-            "1,0.1,0,-3,0.001,0.33333,0.33333,,stopped,1\n");
+            "1,0.1,1e-09,-3,0.001,0.3333333333333333,0.3333333333333333,,stopped,1\n");
   EXPECT_EQ(reader.csv(run, 2, 1, out, names), std::nullopt);
   // 0.052 = 2 * 0.026; hold 2 has no name here.
-  EXPECT_THAT(out, testing::EndsWith("\n2,0.052,0.2,-0.4,0.002,0.5,0.33333,0.65,2,1\n"));
+  EXPECT_THAT(out, testing::EndsWith("\n2,0.052,0.2,-0.4,0.002,0.5,0.3333333333333333,0.65,2,1\n"));
 }
 
 TEST_F(RunReaderTest, ADamagedBlockIsNamed) {

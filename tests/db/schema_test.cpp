@@ -65,7 +65,6 @@ TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
                              .behaviour = 2};
   ASSERT_EQ(reader.ticks(7, 0, 9).ticks.size(), 1U);
   EXPECT_EQ(reader.ticks(7, 0, 9).ticks[0], expected);
-  EXPECT_EQ(ask("SELECT count(*) FROM tick WHERE t = 0.026 AND x = 1.0 AND clearance = 6.0"), 1);
   EXPECT_EQ(record(store, 3), 8);
 }
 

@@ -97,9 +97,9 @@ TEST_F(AppTest, BadHeadsAreRefusedBeforeAnyHandlerSeesThem) {
   const std::string goal = R"({"x":1,"y":1})";
   expect_problem(ask("PUT", "/session/goal", goal, "Content-Type: text/plain\r\n"), 415, "json");
   expect_problem(ask("PUT", "/session/goal", goal, ""), 415, "json");
-  const Answer method = ask("POST", "/session/goal", goal);
-  expect_problem(method, 405, "POST");
-  EXPECT_EQ(method.headers.at("Allow"), "PUT, DELETE");
+  const Answer method = ask("PATCH", "/session/goal", goal);
+  expect_problem(method, 405, "PATCH");
+  EXPECT_EQ(method.headers.at("Allow"), "PUT, POST, DELETE");
   expect_problem(ask("GET", "/healthz", "", "", "evil.example"), 421, "evil.example");
   expect_problem(ask("PUT",
                      "/session/goal",

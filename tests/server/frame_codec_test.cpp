@@ -228,6 +228,7 @@ TEST(FrameCodec, ATickOfDrivingStaysSmall) {
   t.requests.clear();
   t.observation.sonar.clear();
   t.observation.infrared.clear();
+  t.goals_ahead.clear();
   FrameEncoder encoder;
   EXPECT_LE(encoder.encode(t).size(), 1200u);
 }
