@@ -24,14 +24,20 @@ void ranges_to_wire(const double* ranges, std::size_t count, std::uint16_t* out)
 
 void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out) {
   ranges_to_wire(scan.ranges.data(), scan.size(), out.data());
-  // Few beams carry none: eight are looked at together.
+  // Beams without a distance come in stretches: eight are looked at together.
   constexpr std::size_t kTogether = sizeof(std::uint64_t);
   for (std::size_t first = 0; first < scan.size(); first += kTogether) {
     const std::size_t last = std::min(first + kTogether, scan.size());
     std::uint64_t together = 0;
     std::memcpy(&together, scan.status.data() + first, last - first);
     static_assert(static_cast<int>(Beam::Ok) == 0);
-    for (std::size_t i = first; together != 0 && i < last; ++i) out[i] = beam_to_wire(scan, i);
+    static_assert(static_cast<int>(Beam::Free) == 1);
+    constexpr std::uint64_t kAllFree = 0x0101010101010101;
+    if (together == kAllFree) {
+      std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(first), kTogether, kWireFree);
+    } else if (together != 0) {
+      for (std::size_t i = first; i < last; ++i) out[i] = beam_to_wire(scan, i);
+    }
   }
 }
 
