@@ -145,6 +145,16 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
   respond(json_response(200, state_json(session)));
 }
 
+/// A goal as the body, to be taken as a request of `type`.
+net::Handler goal_route(ApiContext& context, const char* type) {
+  return guarded([&context, type](const net::Request& request, const net::Responder& respond) {
+    json body = body_json(request);
+    JsonReader(body, "").only({"x", "y", "heading"});
+    body["type"] = type;
+    submit_and_reply(context, request_from_json(body), respond);
+  });
+}
+
 }  // namespace
 
 void load_from_json(ApiContext& context, const json& body) {
@@ -184,22 +194,8 @@ void add_session_routes(net::Router& router, ApiContext& context) {
         guarded([&context](const net::Request& request, const net::Responder& respond) {
           submit_and_reply(context, request_from_json(body_json(request)), respond);
         }));
-  route("PUT",
-        "/api/v1/session/goal",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          json body = body_json(request);
-          JsonReader(body, "").only({"x", "y", "heading"});
-          body["type"] = "set_goal";
-          submit_and_reply(context, request_from_json(body), respond);
-        }));
-  route("POST",
-        "/api/v1/session/goal",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          json body = body_json(request);
-          JsonReader(body, "").only({"x", "y", "heading"});
-          body["type"] = "add_goal";
-          submit_and_reply(context, request_from_json(body), respond);
-        }));
+  route("PUT", "/api/v1/session/goal", goal_route(context, "set_goal"));
+  route("POST", "/api/v1/session/goal", goal_route(context, "add_goal"));
   route("DELETE",
         "/api/v1/session/goal",
         guarded([&context](const net::Request&, const net::Responder& respond) {
