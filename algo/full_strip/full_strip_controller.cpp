@@ -28,7 +28,7 @@ constexpr double kTrace = 0.25;       // [m] about something found moving, what 
 constexpr double kPatience = 1.2;     // [s] without way until a manoeuvre is looked for
 constexpr double kSearchEvery = 1.0;  // [s] after a search that found nothing
 constexpr int kManeuverExpansions = 150;   // a tick
-constexpr double kManeuverMargin = 0.025;  // [m] of room on the way
+constexpr double kManeuverMargin = 0.031;  // [m] of room on the way
 constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
 constexpr std::size_t kFarthest = 11;
 constexpr std::size_t kAim = 7;       // and where it is looked for
@@ -93,6 +93,7 @@ void FullStripController::reset(const Pose2& start_W) {
   next_drawing_ = 0;
   manner_ = Manner::None;
   back_until_ = -1;
+  escape_until_ = -1;
   placed_ = false;
   under_way_.clear();
   trail_.clear();
@@ -336,11 +337,23 @@ Twist2 FullStripController::recover(const StageInput& stage,
       return *twist;
     }
   }
+  // An escape is held to its end: begun and given up each tick it would lead nowhere.
+  if (in.stamp < escape_until_) {
+    if (stage_.still_escapes(stage, escape_, escape_until_ - in.stamp, out)) {
+      manner_ = Manner::Escaping;
+      return escape_;
+    }
+    escape_until_ = -1;
+  }
   const bool still = std::abs(in.odometry.twist.v) < 0.05;
   if (still) {
     if (const auto twist = stage_.escape(stage, out)) {
+      escape_ = *twist;
+      escape_until_ = in.stamp + VelocityStage::kEscape;
+      maneuver_.reset();
+      search_.reset();
       manner_ = Manner::Escaping;
-      return *twist;
+      return escape_;
     }
   }
   manner_ = no_way_ ? Manner::NoWay : Manner::Blocked;
@@ -418,7 +431,9 @@ Twist2 FullStripController::drive(const ControlInput& in,
     return stage_.proven(stage, {}, out).value_or(Twist2{});
   }
   watch_progress(in);
-  if (in.stamp < back_until_ || strip_.empty()) return recover(stage, in, out);
+  if (std::max(back_until_, escape_until_) > in.stamp || strip_.empty()) {
+    return recover(stage, in, out);
+  }
   if (maneuver_.active()) {
     if (const auto twist = carry_on(stage, in, out)) return *twist;
   }
@@ -429,6 +444,14 @@ Twist2 FullStripController::drive(const ControlInput& in,
     if (*twist != Twist2{} || broken_at_ < 0) return *twist;
   } else {
     look_for_maneuver(in);
+    if (maneuver_.active()) {
+      if (const auto way = carry_on(stage, in, out)) return *way;
+    }
+    const bool searching = search_.state() == ManeuverSearch::State::Searching;
+    if (searching && in.stamp < next_search_) {
+      manner_ = Manner::Blocked;
+      return {};
+    }
   }
   return recover(stage, in, out);
 }

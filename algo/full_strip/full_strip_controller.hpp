@@ -77,9 +77,11 @@ class FullStripController final : public Controller {
   double broken_at_ = -1;  // [m] along the strip; negative: whole
   double next_plan_ = 0;   // [s] run clock
   Manner manner_ = Manner::None;
-  Vec2 progress_W_{0, 0};   // where the robot last made way
-  double progress_at_ = 0;  // [s]
-  double back_until_ = -1;  // [s]
+  Vec2 progress_W_{0, 0};     // where the robot last made way
+  double progress_at_ = 0;    // [s]
+  double back_until_ = -1;    // [s]
+  Twist2 escape_{};           // the one under way
+  double escape_until_ = -1;  // [s]
 
   std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
   std::vector<Vec2> beams_{};              // directions in the scanner's frame

@@ -33,6 +33,7 @@ constexpr std::size_t kLongest = 256;  // pieces there is room for from the star
 constexpr float kShift = 0.10F;        // [m] cost of changing between forward, back and turning
 constexpr double kSpeed = 0.3;         // [m/s] of a piece
 constexpr double kTurnSpeed = 0.8;     // [rad/s]
+constexpr double kTurnSlowly = 0.4;    // [rad/s] near the end of a turn
 constexpr double kAim = 0.20;          // [m] ahead on the piece that the robot steers for
 
 /// The pose after `share` of an arc.
@@ -173,8 +174,9 @@ std::optional<Twist2> ManeuverDrive::next(const Pose2& pose_W, const MotionLimit
         next_ = last;
         continue;
       }
-      const double w = std::min(kTurnSpeed, limits.max_omega);
-      return Twist2{0, std::clamp(2.5 * error, -w, w)};
+      const double most = std::min(kTurnSpeed, limits.max_omega);
+      const double w = std::clamp(2.5 * std::abs(error), std::min(kTurnSlowly, most), most);
+      return Twist2{0, error > 0 ? w : -w};
     }
     const Vec2 ahead = direction(piece.end_W.heading) * way;
     if ((pose_W.position() - piece.end_W.position()).dot(ahead) > -0.02) continue;

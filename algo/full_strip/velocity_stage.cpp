@@ -192,9 +192,8 @@ bool VelocityStage::holds(const StageInput& in,
 }
 
 std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput& out) const {
-  constexpr double kTime = 0.6;  // [s]
-  constexpr double kV = 0.25;    // [m/s]
-  constexpr double kW = 1.0;     // [rad/s]
+  constexpr double kV = 0.25;  // [m/s]
+  constexpr double kW = 1.0;   // [rad/s]
   constexpr std::array<Twist2, 8> kPrimitives{
       {{kV, 0}, {-kV, 0}, {kV, kW}, {kV, -kW}, {-kV, kW}, {-kV, -kW}, {0, kW}, {0, -kW}}};
   std::optional<Twist2> best;
@@ -202,13 +201,23 @@ std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput&
   for (const Twist2& primitive : kPrimitives) {
     const Twist2 twist = within(primitive, in.limits);
     double gain = 0;
-    const bool allowed = holds(in, twist, kTime, gain);
-    out.candidates.push_back({twist, kTime, -gain, allowed, false});
+    const bool allowed = holds(in, twist, kEscape, gain);
+    out.candidates.push_back({twist, kEscape, -gain, allowed, false});
     if (!allowed || gain <= most) continue;
     most = gain;
     best = twist;
   }
   return best;
+}
+
+bool VelocityStage::still_escapes(const StageInput& in,
+                                  const Twist2& twist,
+                                  double horizon,
+                                  ControlOutput& out) const {
+  double gain = 0;
+  const bool allowed = holds(in, twist, horizon, gain);
+  out.candidates.push_back({twist, horizon, -gain, allowed, allowed});
+  return allowed;
 }
 
 std::optional<Twist2> VelocityStage::back_off(const StageInput& in, ControlOutput& out) const {

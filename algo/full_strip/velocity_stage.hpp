@@ -27,6 +27,7 @@ class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]
   static constexpr double kMargin = 0.03;  // [m] the scanner itself may be off by half of it
+  static constexpr double kEscape = 0.6;   // [s]
 
   void set_hull(const HullCheck& hull) { hull_ = hull; }
   const HullCheck& hull() const { return hull_; }
@@ -40,8 +41,14 @@ class VelocityStage {
                                const Twist2& wanted,
                                ControlOutput& out) const;
 
-  /// A way out of too narrow a place: the primitive whose clearance grows most and never falls.
+  /// A way out of too narrow a place, to be held for kEscape: the primitive whose clearance grows
+  /// most and never falls.
   std::optional<Twist2> escape(const StageInput& in, ControlOutput& out) const;
+  /// Whether an escape under way may be held for `horizon` [s] more.
+  bool still_escapes(const StageInput& in,
+                     const Twist2& twist,
+                     double horizon,
+                     ControlOutput& out) const;
   /// Straight back, as far as it is free.
   std::optional<Twist2> back_off(const StageInput& in, ControlOutput& out) const;
 

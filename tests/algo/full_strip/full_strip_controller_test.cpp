@@ -155,6 +155,32 @@ TEST(FullStrip, GetsOutOfANicheItStartsIn) {
   EXPECT_LT((drive.pose.position() - Vec2(-4, 0.5)).norm(), 0.2);
 }
 
+/// A long robot with something close before its nose has to back before it can turn. It once gave
+/// the escape up after each tick and went nowhere.
+TEST(FullStrip, HoldsAnEscapeToItsEnd) {
+  Drive drive;
+  drive.spec.half_length = 0.35;
+  drive.spec.half_width = 0.22;
+  drive.spec.radius = std::hypot(0.35, 0.22);
+  drive.parameters.set(Parameter::MaxSpeed, 0.4);
+  drive.controller.reset({});
+  for (int k = 0; k < 100; ++k) drive.tick({1.5, 0});
+  ASSERT_EQ(drive.twist, algo::Twist2{});
+  const double nose = drive.pose.x + 0.35;
+  drive.world.circles = {{{nose + 0.055, 0.2}, 0.02}, {{nose + 0.055, -0.2}, 0.02}};
+  drive.world.circles.push_back({{nose + 0.055, 0}, 0.02});
+  double run = 0;
+  double longest = 0;
+  for (int k = 0; k < 200; ++k) {
+    drive.tick({4, 0});
+    run = drive.out.manner == Manner::Escaping ? run + drive.spec.period : 0;
+    longest = std::max(longest, run);
+  }
+  EXPECT_GE(longest, 0.5);
+  for (int k = 0; k < 400; ++k) drive.tick({4, 0});
+  EXPECT_LT((drive.pose.position() - Vec2(4, 0)).norm(), 0.2);
+}
+
 TEST(FullStrip, PassesAPostOnItsLine) {
   Drive drive;
   drive.world.circles = {{{2, 0.02}, 0.3}};
