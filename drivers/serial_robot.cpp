@@ -152,7 +152,8 @@ void SerialRobot::latch(Halt halt, double now) {
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
   const char* advice = halt == Halt::StopButton ? "" : " Arm it again when all is well.";
-  disarm(algo::explain(halt).why + advice);
+  // It stands there until somebody arms, and by then the trouble may be over.
+  disarm("Motors off. What happened: " + algo::explain(halt).why + advice);
 }
 
 /// `command`, or as much of it as may be carried out.

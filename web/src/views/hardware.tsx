@@ -6,7 +6,7 @@ import { DeviceInfo, HardwareInfo } from "../contract";
 import { use_store } from "../state/store";
 import { titled } from "../words";
 
-/** A bar under the top bar. Says what keeps the wheels still, or that they may turn. */
+/** A bar under the top bar. Says what keeps the wheels still, or that they may turn; arms the motors. */
 export function HardwareBar(): JSX.Element | null {
   const app = use_app();
   const session = use_store(app.ui, (u) => u.session);
@@ -16,8 +16,19 @@ export function HardwareBar(): JSX.Element | null {
   const words = hardware?.trouble || (armed ? "Armed: the robot may move." : "Not armed.");
   return (
     <div class={`hardware-bar ${armed ? "armed" : ""}`} role="status" data-testid="hardware-bar">
-      <b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span>
+      <p><b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span></p>
+      {hardware && <ArmButton armed={armed} />}
     </div>
+  );
+}
+
+/** Nothing moves before somebody has pressed it. */
+function ArmButton({ armed }: { armed: boolean }): JSX.Element {
+  const app = use_app();
+  return (
+    <button class={`arm ${armed ? "armed" : ""}`} data-testid="arm" aria-pressed={armed}
+      title={armed ? "Switches the motors off" : "Switches the motors on: the robot may then move"}
+      onClick={() => void app.arm(!armed)}>{armed ? "Disarm" : "Arm motors"}</button>
   );
 }
 

@@ -24,7 +24,6 @@ export function TopBar(): JSX.Element {
       <LinkWords />
       <button class="icon wide" aria-label={`Use the ${next} theme`} title={`${titled(next)} theme`}
         data-testid="theme" onClick={() => app.set_theme(next)}>{icons.theme}</button>
-      <ArmButton />
       <StopButtons />
     </header>
   );
@@ -40,19 +39,6 @@ function LinkWords(): JSX.Element {
       {link.phase === "lost" &&
         <button class="text wide" onClick={() => app.link.retry_now()}>Try now</button>}
     </span>
-  );
-}
-
-/** Of real hardware alone: nothing moves before somebody has pressed it. */
-function ArmButton(): JSX.Element | null {
-  const app = use_app();
-  const hardware = use_store(app.ui, (u) => u.session?.hardware ?? null);
-  if (!hardware) return null;
-  const { armed } = hardware;
-  return (
-    <button class={`arm ${armed ? "armed" : ""}`} data-testid="arm" aria-pressed={armed}
-      title={armed ? "Switches the motors off" : "Switches the motors on: the robot may then move"}
-      onClick={() => void app.arm(!armed)}>{armed ? "Disarm" : "Arm motors"}</button>
   );
 }
 
