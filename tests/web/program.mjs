@@ -8,7 +8,7 @@ import { fileURLToPath } from "node:url";
 
 export const repository = dirname(dirname(dirname(fileURLToPath(import.meta.url))));
 export const require = createRequire(join(repository, "web/package.json"));
-const binary = process.env.TAUTLINE_BIN ?? join(repository, "build/release/server/tautline");
+export const binary = process.env.TAUTLINE_BIN ?? join(repository, "build/release/server/tautline");
 
 export const near = (a, b, tolerance) => Math.abs(a - b) <= tolerance;
 
@@ -18,9 +18,10 @@ export function scratch() {
   return { folder, database: join(folder, "runs.db"), remove: () => rmSync(folder, { recursive: true, force: true }) };
 }
 
-/** `tautline serve` on a free port (or `port`), once it has said its address. */
+/** `tautline serve` on a free port (or `port`), once it has said its address; `scenario` null: none. */
 export async function serve({ database, scenario = "case1", port = 0, more = [] }) {
-  const args = ["serve", "--port", String(port), "--db", database, "--scenario", scenario, ...more];
+  const args = ["serve", "--port", String(port), "--db", database, ...more];
+  if (scenario) args.push("--scenario", scenario);
   const child = spawn(binary, args, { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {

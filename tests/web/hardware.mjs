@@ -1,0 +1,103 @@
+// tests/web/hardware.mjs: the page on a robot whose scanner and base are emulated: arming, trouble in
+// words, Stop, and all of it within reach on a phone.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { existsSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { test } from "node:test";
+import { desktop, launch, open, phone } from "./page.mjs";
+import { binary, json, scratch, serve, until } from "./program.mjs";
+
+/** The devices on pseudo-terminals in `folder`, and the robot's file beside them. */
+async function devices(folder) {
+  const emulator = spawn(binary, ["emulate", "robot", "--scenario", "demo", "--links", folder],
+    { stdio: ["pipe", "ignore", "inherit"] });
+  const there = () => existsSync(join(folder, "scanner")) && existsSync(join(folder, "base"));
+  await until("the emulated devices", 20, async () => there(), (yes) => yes);
+  const file = join(folder, "robot.toml");
+  writeFileSync(file, `name = "emulated"
+period = 0.026
+[hull]
+radius = 0.35
+[limits]
+speed = 0.1
+[[laser]]
+name = "front laser"
+port = "${folder}/scanner"
+rate = 500000
+[base]
+type = "roboteq"
+port = "${folder}/base"
+track = 0.5
+watchdog = 0.5
+wheel_radius = 0.1
+gear = 20
+encoder_lines = 500
+full_speed_rpm = 1000
+`);
+  return { file, tell: (line) => emulator.stdin.write(`${line}\n`), end: () => emulator.kill() };
+}
+
+/** Every button of the header and the hardware bar lies within the window. */
+async function within_reach(p, size) {
+  for (const button of await p.page.locator(".topbar button:visible, .hardware-bar button").all()) {
+    const box = await button.boundingBox();
+    const words = await button.textContent();
+    assert.ok(box.x >= 0 && box.x + box.width <= size.width, `${words}: ${box.x} to ${box.x + box.width}`);
+  }
+}
+
+test("emulated hardware: arm, drive, a silent scanner, the stop button, Stop", { timeout: 180_000 }, async () => {
+  const place = scratch();
+  const robot = await devices(place.folder);
+  const server = await serve({ database: place.database, scenario: null, more: ["--robot", robot.file] });
+  const browser = await launch();
+  const session = () => json(server.base, "/session");
+  /** [m] In half a second. */
+  const way = async () => {
+    const from = (await session()).pose;
+    await new Promise((resolve) => setTimeout(resolve, 500));
+    const to = (await session()).pose;
+    return Math.hypot(to.x - from.x, to.y - from.y);
+  };
+  try {
+    for (const [name, size] of [["desktop", desktop], ["phone", phone]]) {
+      const p = await open(browser, server.base, { size });
+      const words = (about, pattern) =>
+        until(about, 20, () => p.get("hardware-words").textContent(), (text) => pattern.test(text));
+      await until("devices that are well", 30, session, (s) => s.hardware.devices.every((d) => d.well));
+      await p.shot(`hardware-${name}-disarmed`);
+      await within_reach(p, size);
+
+      await p.get("arm").click();
+      await words("armed", /may move/);
+      await json(server.base, "/session/goal", { method: "PUT", headers: { "Content-Type": "application/json" },
+        body: JSON.stringify({ x: 3, y: -1 }) });
+      await until("wheels that turn", 20, way, (metres) => metres > 0.01);
+
+      robot.tell("scanner silence 2");
+      await words("a silent scanner", /front laser|scanner is silent/);
+      await until("rest", 10, way, (metres) => metres < 1e-4);
+      await p.shot(`hardware-${name}-silent`);
+      await until("a scanner that is back", 30, session, (s) => s.hardware.devices.every((d) => d.well));
+      if (await p.get("arm").textContent() === "Arm motors") await p.get("arm").click();
+      await until("armed again", 20, session, (s) => s.hardware.armed);
+
+      robot.tell("stop on");
+      await words("the stop button", /stop button/i);
+      robot.tell("stop off");
+      await p.get("stop").click();
+      await p.get("release").waitFor();
+      await p.shot(`hardware-${name}-stopped`);
+      await within_reach(p, size);
+      await p.get("release").click();
+      await until("disarmed by the stop button", 20, session, (s) => !s.hardware.armed);
+      await p.close();
+    }
+  } finally {
+    await browser.close();
+    await server.stop();
+    robot.end();
+    place.remove();
+  }
+});
