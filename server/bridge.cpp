@@ -9,6 +9,7 @@
 
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/request_json.hpp"
 #include "server/scenario_json.hpp"
 #include "server/session_json.hpp"
 #include "server/wire/scene_json.hpp"

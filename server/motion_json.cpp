@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "server/pose_json.hpp"
+
 namespace server {
 namespace {
 
 using nlohmann::json;
 constexpr std::size_t kMaxKeys = 10'000;
 constexpr double kMaxTime = 1e6;  // [s]
-constexpr NumberRange kCoordinate{-1e5, 1e5};
 
 }  // namespace
 

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <optional>
 #include <set>
-#include <type_traits>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -16,44 +14,14 @@
 #include "algo/units.hpp"
 #include "server/json_reader.hpp"
 #include "server/motion_json.hpp"
+#include "server/pose_json.hpp"
 #include "server/sensor_json.hpp"
 
 namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr double kMaxCoordinate = 1e5;  // [m]
-constexpr NumberRange kCoordinate{-kMaxCoordinate, kMaxCoordinate};
-constexpr std::size_t kMaxPolygonPoints = 256;
 constexpr std::uint64_t kMaxBeams = 4096;
-
-algo::Vec2 point_from_json(const json& value, const std::string& path) {
-  if (!value.is_array() || value.size() != 2) {
-    throw DocumentError(path, "must be a point [x, y] in metres");
-  }
-  return {finite_number(value[0], path + "/0", kCoordinate),
-          finite_number(value[1], path + "/1", kCoordinate)};
-}
-
-double angle_or(const JsonReader& in, std::string_view key, double fallback) {
-  return algo::wrap_angle(in.number_or(key, fallback, {-1e6, 1e6}));
-}
-
-algo::Pose2 pose_from_json(const JsonReader& in, double heading) {
-  return {
-      in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
-}
-
-algo::SetGoal goal_from_json(const JsonReader& in) {
-  algo::SetGoal goal;
-  goal.position_W = {in.number("x", kCoordinate), in.number("y", kCoordinate)};
-  if (in.has("heading")) goal.heading = angle_or(in, "heading", 0);
-  return goal;
-}
-
-json to_json(const algo::Pose2& pose) {
-  return {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
-}
 
 /// As in the paper: without a start heading the robot faces its goal.
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {
@@ -70,62 +38,6 @@ algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetG
     start.heading = std::atan2(to_goal.y(), to_goal.x());
   }
   return start;
-}
-
-void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
-  in.only({"id",
-           "type",
-           "from",
-           "to",
-           "x",
-           "y",
-           "heading",
-           "length",
-           "thickness",
-           "height",
-           "reflectivity",
-           "specular"});
-  algo::Wall wall{in.number_or("length", 0), in.number_or("thickness", 0.1)};
-  if (in.has("from") || in.has("to")) {
-    const algo::Vec2 from = point_from_json(in.array("from", 2), in.at("from"));
-    const algo::Vec2 to = point_from_json(in.array("to", 2), in.at("to"));
-    const algo::Vec2 along = to - from;
-    const algo::Vec2 middle = (from + to) / 2;
-    wall.length = along.norm();
-    obstacle.pose_W = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
-  } else {
-    obstacle.pose_W = pose_from_json(in, 0);
-  }
-  obstacle.shape = wall;
-}
-
-/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its
-/// middle.
-void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
-  in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
-  algo::Polygon polygon;
-  const json& points = in.array("points", kMaxPolygonPoints);
-  algo::Vec2 sum{0, 0};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    polygon.points.push_back(point_from_json(points[i], fmt::format("{}/{}", in.at("points"), i)));
-    sum += polygon.points.back();
-  }
-  if (in.has("x") || in.has("y") || in.has("heading")) {
-    obstacle.pose_W = pose_from_json(in, 0);  // the points are in the obstacle's own frame
-  } else if (!points.empty()) {
-    const algo::Vec2 middle = sum / static_cast<double>(points.size());
-    for (algo::Vec2& p : polygon.points) p -= middle;
-    obstacle.pose_W = {middle.x(), middle.y(), 0};
-  }
-  // A clockwise outline means the same shape: turn it round rather than turn it down.
-  double twice_area = 0;
-  for (std::size_t i = 0; i < polygon.points.size(); ++i) {
-    const algo::Vec2& a = polygon.points[i];
-    const algo::Vec2& b = polygon.points[(i + 1) % polygon.points.size()];
-    twice_area += a.x() * b.y() - a.y() * b.x();
-  }
-  if (twice_area < 0) std::reverse(polygon.points.begin(), polygon.points.end());
-  obstacle.shape = std::move(polygon);
 }
 
 sim::LaserConfig laser_from_json(const JsonReader& in) {
@@ -192,7 +104,7 @@ bool lms200_mode(double degrees) {
   return is(0.25) || is(0.5) || is(1.0);
 }
 
-json to_json(const sim::LaserConfig& laser) {
+json laser_to_json(const sim::LaserConfig& laser) {
   json out = {
       {"mount", to_json(laser.mount_R)},
       {"height", laser.height},
@@ -277,129 +189,6 @@ void read_choices(const JsonReader& in, sim::Scenario& scenario) {
 bool valid_scenario_name(std::string_view name) {
   return !name.empty() && name.size() <= 64 &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string_view::npos;
-}
-
-algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
-  const JsonReader in(value, path);
-  algo::Obstacle obstacle;
-  obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, kMaxObstacleId));
-  const std::string type = in.text("type");
-  if (type == "cylinder") {
-    in.only({"id", "type", "x", "y", "heading", "radius", "height", "reflectivity", "specular"});
-    obstacle.pose_W = pose_from_json(in, 0);
-    obstacle.shape = algo::Cylinder{in.number("radius")};
-  } else if (type == "box") {
-    in.only({"id",
-             "type",
-             "x",
-             "y",
-             "heading",
-             "length",
-             "width",
-             "height",
-             "reflectivity",
-             "specular"});
-    obstacle.pose_W = pose_from_json(in, 0);
-    obstacle.shape = algo::Box{in.number("length"), in.number("width")};
-  } else if (type == "polygon") {
-    read_polygon(in, obstacle);
-  } else if (type == "wall") {
-    read_wall(in, obstacle);
-  } else {
-    in.fail("type", fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
-  }
-  obstacle.height = in.number_or("height", obstacle.height);
-  obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
-  obstacle.specular = in.flag_or("specular", false);
-  if (const auto complaint = algo::defect(obstacle)) throw DocumentError(path, *complaint);
-  return obstacle;
-}
-
-json to_json(const algo::Obstacle& o) {
-  json out = {{"id", o.id},
-              {"x", o.pose_W.x},
-              {"y", o.pose_W.y},
-              {"heading", o.pose_W.heading},
-              {"height", o.height},
-              {"reflectivity", o.reflectivity},
-              {"specular", o.specular}};
-  std::visit(
-      [&](const auto& shape) {
-        using S = std::decay_t<decltype(shape)>;
-        if constexpr (std::is_same_v<S, algo::Cylinder>) {
-          out["type"] = "cylinder";
-          out["radius"] = shape.radius;
-        } else if constexpr (std::is_same_v<S, algo::Box>) {
-          out["type"] = "box";
-          out["length"] = shape.length;
-          out["width"] = shape.width;
-        } else if constexpr (std::is_same_v<S, algo::Polygon>) {
-          out["type"] = "polygon";
-          out["points"] = json::array();
-          for (const algo::Vec2& p : shape.points) out["points"].push_back({p.x(), p.y()});
-        } else {
-          out["type"] = "wall";
-          out["length"] = shape.length;
-          out["thickness"] = shape.thickness;
-        }
-      },
-      o.shape);
-  return out;
-}
-
-algo::Request request_from_json(const json& value) {
-  const JsonReader in(value, "");
-  const std::string type = in.text("type");
-  if (type == "set_goal") {
-    in.only({"type", "x", "y", "heading"});
-    return goal_from_json(in);
-  }
-  if (type == "add_goal") {
-    in.only({"type", "x", "y", "heading"});
-    return algo::AddGoal{goal_from_json(in)};
-  }
-  if (type == "clear_goal") {
-    in.only({"type"});
-    return algo::ClearGoal{};
-  }
-  if (type == "add_obstacle") {
-    in.only({"type", "obstacle"});
-    return algo::AddObstacle{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
-  }
-  if (type == "move_obstacle") {
-    in.only({"type", "id", "x", "y", "heading"});
-    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId)),
-                              pose_from_json(in, 0)};
-  }
-  if (type == "remove_obstacle") {
-    in.only({"type", "id"});
-    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId))};
-  }
-  if (type == "joystick") {
-    in.only({"type", "forward", "turn"});
-    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1})};
-  }
-  if (type == "stop") {
-    in.only({"type", "engaged"});
-    return algo::Stop{in.flag_or("engaged", true)};
-  }
-  if (type == "set_parameter") {
-    in.only({"type", "name", "value"});
-    const std::string name = in.text("name");
-    const auto parameter = algo::find_parameter(name);
-    if (!parameter) in.fail("name", fmt::format("there is no parameter '{}'", name));
-    return algo::SetParameter{*parameter, in.number("value")};
-  }
-  in.fail("type",
-          fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "
-                      "add_obstacle, move_obstacle, remove_obstacle, joystick, stop, set_parameter",
-                      type));
-}
-
-json to_json(const algo::SetGoal& goal) {
-  json out = {{"x", goal.position_W.x()}, {"y", goal.position_W.y()}};
-  out["heading"] = goal.heading ? json(*goal.heading) : json(nullptr);
-  return out;
 }
 
 json to_json(const algo::Parameters& parameters) {
@@ -495,7 +284,7 @@ json to_json(const sim::Scenario& s) {
   for (const auto& [parameter, value] : s.parameters) {
     out["parameters"][std::string(algo::info(parameter).name)] = value;
   }
-  for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
+  for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(laser_to_json(laser));
   write_sensors(s, out);
   for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));
   for (const sim::ObstaclePath& path : s.paths) {

@@ -1,36 +1,24 @@
-// server/scenario_json.hpp: scenarios, obstacles and requests as JSON documents
-// (docs/interfaces.md).
+// server/scenario_json.hpp: scenarios and their parameters as JSON documents (docs/interfaces.md).
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
-#include "algo/obstacle.hpp"
 #include "algo/parameters.hpp"
-#include "algo/request.hpp"
+#include "server/obstacle_json.hpp"
 #include "sim/scenario.hpp"
 
 namespace server {
 
 constexpr std::size_t kMaxObstacles = 2000;
-constexpr std::uint32_t kMaxObstacleId = 999'999'999;
 
 /// Reads a whole scenario; throws DocumentError saying which field is wrong and how. Names of
 /// controllers and filters are checked, overlaps with the robot are not (the world does that).
 sim::Scenario scenario_from_json(const nlohmann::json& document);
 nlohmann::json to_json(const sim::Scenario& scenario);
 
-/// An obstacle without an "id" gets id 0. Throws DocumentError.
-algo::Obstacle obstacle_from_json(const nlohmann::json& value, const std::string& path);
-nlohmann::json to_json(const algo::Obstacle& obstacle);
-
-/// Throws DocumentError.
-algo::Request request_from_json(const nlohmann::json& value);
-
-nlohmann::json to_json(const algo::SetGoal& goal);
 nlohmann::json to_json(const algo::Parameters& parameters);
 
 /// `{"k_r":0.6}` on top of `base`; throws DocumentError on an unknown name, a value out of limits

@@ -5,6 +5,7 @@
 #include "algo/explain.hpp"
 #include "algo/filter.hpp"
 #include "server/hardware.hpp"
+#include "server/pose_json.hpp"
 #include "server/scenario_json.hpp"
 
 namespace server {

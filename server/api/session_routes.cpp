@@ -9,6 +9,9 @@
 #include "server/api/reply.hpp"
 #include "server/hardware.hpp"
 #include "server/json_reader.hpp"
+#include "server/obstacle_json.hpp"
+#include "server/pose_json.hpp"
+#include "server/request_json.hpp"
 #include "server/scenario_json.hpp"
 #include "server/session_json.hpp"
 

@@ -16,6 +16,7 @@
 #include "server/embedded_documents.hpp"
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/obstacle_json.hpp"
 #include "server/reproduce/figures.hpp"
 #include "server/reproduce/triangulate.hpp"
 #include "server/scenario_json.hpp"

@@ -6,6 +6,7 @@
 
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/request_json.hpp"
 #include "server/scenario_json.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "server/json_reader.hpp"
+#include "server/request_json.hpp"
 #include "server/scenario_library.hpp"
 
 namespace server {
