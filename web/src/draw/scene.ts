@@ -10,7 +10,7 @@ import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from
 import { draw_fan, draw_nearest, draw_returns } from "./sensing";
 import { draw_forces, draw_path, draw_strip } from "./strip";
 import { Insets, View } from "./view";
-import { draw_candidates, draw_cells, draw_histogram, draw_plan } from "./weighing";
+import { draw_candidates, draw_cells, draw_histogram, draw_plan, draw_tracks } from "./weighing";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
 export type Selection = { kind: "goal" } | { kind: "obstacle"; id: number } | null;
@@ -67,6 +67,7 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
     draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
     draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal", !!overlay.draft.goal);
   }
+  if (f) draw_tracks(g, view, palette, f);
   if (f) draw_nearest(g, view, palette, f);
   if (f) draw_plan(g, view, palette, f);
   if (f) draw_histogram(g, view, palette, f);

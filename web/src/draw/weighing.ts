@@ -3,6 +3,7 @@
 import { Pose } from "../geometry";
 import { Candidate, Frame, GridLayer, kUnknownCell } from "../link/frame";
 import { Palette } from "./palette";
+import { arrow } from "./strip";
 import { View } from "./view";
 
 type Context = CanvasRenderingContext2D;
@@ -94,6 +95,20 @@ export function draw_candidates(g: Context, view: View, palette: Palette, f: Fra
       });
     }
     g.stroke();
+  }
+  g.globalAlpha = 1;
+}
+
+/** What was seen moving, and its way in the next second; faint while it is out of sight. */
+export function draw_tracks(g: Context, view: View, palette: Palette, f: Frame): void {
+  for (const t of f.tracks) {
+    g.globalAlpha = t.unseen > 0.2 ? 0.4 : 1;
+    g.strokeStyle = palette.warn;
+    g.lineWidth = 2;
+    g.beginPath();
+    g.arc(view.sx(t.position.x), view.sy(t.position.y), t.radius * view.scale, 0, 2 * Math.PI);
+    g.stroke();
+    arrow(g, view, t.position, t.velocity, 1, palette.warn, 2);
   }
   g.globalAlpha = 1;
 }

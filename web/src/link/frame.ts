@@ -58,6 +58,9 @@ const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
 const kBehaviours: Behaviour[] = ["rest", "avoid", "manual"];
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
 
+/** Something seen moving. */
+export interface TrackView { position: Point; velocity: Point; radius: number; unseen: number } // [m], [m/s], [s]
+
 /** One tick of a run; positions in W, metres, radians, seconds. */
 export interface Frame {
   tick: number;
@@ -93,6 +96,7 @@ export interface Frame {
   why: string;
   plan: Point[];
   candidates: Candidate[];
+  tracks: TrackView[];
   histogram: Float32Array;  // density by bearing in W, ccw from 0
   histogram_threshold: number;
   grid: GridLayer | null;   // null: none, or as in the frames before
@@ -168,6 +172,10 @@ export function decode_frame(bytes: Uint8Array): Frame {
     why: f.why() ?? "",
     plan: list(f.planLength(), (i) => point(f.plan(i))),
     candidates: list(f.candidatesLength(), (i) => candidate(f.candidates(i)!)),
+    tracks: list(f.tracksLength(), (i) => {
+      const t = f.tracks(i)!;
+      return { position: point(t.position()), velocity: point(t.velocity()), radius: t.radius(), unseen: t.unseen() };
+    }),
     histogram: f.histogramArray()?.slice() ?? new Float32Array(0),
     histogram_threshold: f.histogramThreshold(),
     grid: grid(f.grid()),
