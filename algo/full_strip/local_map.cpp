@@ -61,6 +61,7 @@ LocalMap::LocalMap()
       means_(hits_.size()),
       field_(hits_.size(), kFar),
       kernel_(static_cast<std::size_t>(kWidth) * kWidth),
+      reaches_(kRadius + 1, -1),
       soiled_(static_cast<std::size_t>(kTiles) * kTiles) {
   active_.reserve(hits_.size());
   tiles_.reserve(soiled_.size() + 1);
@@ -69,6 +70,8 @@ LocalMap::LocalMap()
       const double mm = std::hypot(x, y) * kCell * 1000;
       kernel_[kernel_index(x, y)] =
           static_cast<std::int16_t>(std::min<double>(std::nearbyint(mm), kFar));
+      // Rows far from the middle are short: beyond kReach there is nothing to lower.
+      if (y >= 0 && kernel_[kernel_index(x, y)] < kFar) reaches_[static_cast<std::size_t>(y)] = x;
     }
   }
   reset({0, 0});
@@ -169,11 +172,13 @@ void LocalMap::hit(const Vec2& point_W) {
 
 /// Lowers the field around an occupied cell, inside the given part of the window.
 void LocalMap::stamp(int column, int row, int left, int bottom, int right, int top) {
-  const int x0 = std::max(left, column - kRadius);
-  const int x1 = std::min(right, column + kRadius + 1);
   const int y0 = std::max(bottom, row - kRadius);
   const int y1 = std::min(top, row + kRadius + 1);
   for (int y = y0; y < y1; ++y) {
+    const int reach = reaches_[static_cast<std::size_t>(std::abs(y - row))];
+    const int x0 = std::max(left, column - reach);
+    const int x1 = std::min(right, column + reach + 1);
+    if (x0 >= x1) continue;
     const std::int16_t* from = &kernel_[kernel_index(x0 - column, y - row)];
     std::int16_t* to = &field_[index(x0, y)];
     for (int x = 0; x < x1 - x0; ++x) to[x] = std::min(to[x], from[x]);

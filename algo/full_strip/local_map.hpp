@@ -135,8 +135,9 @@ class LocalMap {
   std::vector<std::int16_t> field_;    // [mm]
   std::vector<std::uint32_t> active_;  // cells with hits
   std::vector<std::int16_t> kernel_;   // [mm]
-  std::vector<std::uint8_t> soiled_;   // tiles whose distances are too short: a cell was cleared
-  std::vector<std::uint16_t> tiles_;   // those, in the order they became so
+  std::vector<int> reaches_;          // cells to either side that a row of it lowers, by its offset
+  std::vector<std::uint8_t> soiled_;  // tiles whose distances are too short: a cell was cleared
+  std::vector<std::uint16_t> tiles_;  // those, in the order they became so
   SeenSpace space_{};
   std::size_t occupied_ = 0;
   std::uint32_t scans_ = 0;

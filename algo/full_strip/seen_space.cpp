@@ -8,6 +8,10 @@ namespace {
 
 constexpr double kLook = 2.0;    // [m] along a beam; beyond it nothing is asked soon
 constexpr double kBehind = 0.1;  // [m] of a surface that nobody reaches but through it
+// Cells added so that all are positive and a cast is their floor; index() does not see whole
+// windows.
+constexpr double kPositive = 1 << 22;
+static_assert((1 << 22) % SeenSpace::kSize == 0);
 
 }  // namespace
 
@@ -47,7 +51,7 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
   const double apart = kCell / (kLook * scan.angle_increment);
   const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
   const auto stamp = static_cast<float>(now_);
-  const Vec2 from = sensor_W.position() / kCell;
+  const Vec2 from = sensor_W.position() / kCell + Vec2(kPositive, kPositive);
   for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
     if (scan.status[i] == Beam::Invalid) continue;
     const bool hit = scan.status[i] == Beam::Ok;
@@ -56,9 +60,7 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
     const int steps = static_cast<int>(length / kCell);
     for (int k = 0; k <= steps; ++k) {
       const Vec2 p = from + k * way;
-      const int column = static_cast<int>(std::floor(p.x()));
-      const int row = static_cast<int>(std::floor(p.y()));
-      seen_at_[index(column, row)] = stamp;
+      seen_at_[index(static_cast<int>(p.x()), static_cast<int>(p.y()))] = stamp;
     }
   }
 }
