@@ -1,6 +1,8 @@
 // server/pose_json.cpp: one reader and one writer each.
 #include "server/pose_json.hpp"
 
+#include <string_view>
+
 namespace server {
 namespace {
 

@@ -34,47 +34,18 @@ constexpr std::size_t kFarthest = 11;
 constexpr std::size_t kAim = 7;       // and where it is looked for
 constexpr double kOnStrip = 0.10;     // [m]
 constexpr double kAlongStrip = 0.35;  // [rad]
-constexpr std::size_t kTrail = 64;    // odometries remembered
 constexpr std::size_t kMostWeighed = 32;
 constexpr double kDrawEvery = 0.5;     // [s]
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
-
-/// The pose at `stamp`, between the odometries around it.
-Pose2 pose_at(const std::vector<Odometry>& trail, double stamp) {
-  for (std::size_t i = trail.size(); i-- > 1;) {
-    const Odometry& a = trail[i - 1];
-    const Odometry& b = trail[i];
-    if (stamp < a.stamp && i > 1) continue;
-    const double span = b.stamp - a.stamp;
-    const double t = span > 0 ? std::clamp((stamp - a.stamp) / span, 0.0, 1.0) : 1;
-    return {a.pose.x + t * (b.pose.x - a.pose.x),
-            a.pose.y + t * (b.pose.y - a.pose.y),
-            wrap_angle(a.pose.heading + t * wrap_angle(b.pose.heading - a.pose.heading))};
-  }
-  return trail.back().pose;
-}
 
 /// Whether a return lies in the robot's very centre: what drives it there is past saving.
 bool stands_on_a_return(const Scene& scene) {
   return (scene.left && scene.left->distance <= 0) || (scene.right && scene.right->distance <= 0);
 }
 
-/// A frame ready to map many points.
-struct Frame {
-  Vec2 origin{0, 0};
-  Vec2 ahead{1, 0};
-  Vec2 left{0, 1};
-};
-Frame frame_of(const Pose2& pose) {
-  const Vec2 ahead = direction(pose.heading);
-  return {pose.position(), ahead, {-ahead.y(), ahead.x()}};
-}
-
 }  // namespace
 
-FullStripController::FullStripController(bool among_moving) : among_moving_(among_moving) {
-  trail_.reserve(kTrail + 1);
-}
+FullStripController::FullStripController(bool among_moving) : among_moving_(among_moving) {}
 
 void FullStripController::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
@@ -96,7 +67,7 @@ void FullStripController::reset(const Pose2& start_W) {
   escape_until_ = -1;
   placed_ = false;
   under_way_.clear();
-  trail_.clear();
+  points_.reset();
   path_W_.clear();
 }
 
@@ -117,44 +88,20 @@ void FullStripController::prepare(const ControlInput& in, const Parameters& para
   settings_.least_clearance = least_clearance() - kBreak;
 }
 
-/// The beams' directions in the scanner's frame, kept while the scanner stays the same.
-void FullStripController::aim_beams(const LaserScan& scan) {
-  if (beams_.size() == scan.size() && beams_min_ == scan.angle_min &&
-      beams_step_ == scan.angle_increment) {
-    return;
-  }
-  beams_.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) beams_[i] = direction(scan.angle(i));
-  beams_min_ = scan.angle_min;
-  beams_step_ = scan.angle_increment;
-}
-
 /// Enters a new scan into the map, each beam from where the robot was when it was fired.
 void FullStripController::sense(const ControlInput& in) {
-  trail_.push_back(in.odometry);
-  trail_.back().stamp = in.stamp;
-  if (trail_.size() > kTrail) trail_.erase(trail_.begin());
-  map_.follow(in.odometry.pose.position(), in.stamp);
-  if (!placed_) stage_.hull().take_place(map_.seen(), in.odometry.pose);
+  const Pose2& here = in.odometry.pose;
+  points_.follow(here, in.stamp);
+  map_.follow(here.position(), in.stamp);
+  if (!placed_) stage_.hull().take_place(map_.seen(), here);
   placed_ = true;
-  stage_.hull().stand_on(map_.seen(), in.odometry.pose);
+  stage_.hull().stand_on(map_.seen(), here);
   tracker_.predict(in.stamp);
   const LaserScan& scan = in.scene->scan;
   if (!in.scene->fresh || scan.size() == 0) return;
-  points_W_.resize(scan.size());
-  aim_beams(scan);
-  const bool rolling = scan.turn_period > 0;
-  const Pose2 middle = pose_at(trail_, scan.stamp - scan.sweep_time() / 2);
-  Frame at = frame_of(compose(middle, scan.mount_R));
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok) continue;
-    if (rolling) at = frame_of(compose(pose_at(trail_, scan.beam_time(i)), scan.mount_R));
-    points_W_[i] =
-        at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
-  }
-  const Pose2 sensor_W = compose(middle, scan.mount_R);
-  if (among_moving_) tracker_.update(scan, sensor_W, points_W_, scan.stamp);
-  map_.insert(scan, sensor_W, points_W_, tracker_);
+  const Pose2 sensor_W = points_.map(scan);
+  if (among_moving_) tracker_.update(scan, sensor_W, points_.points_W(), scan.stamp);
+  map_.insert(scan, sensor_W, points_.points_W(), tracker_);
   forget_traces(in);
 }
 

@@ -13,6 +13,7 @@
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
 #include "algo/full_strip/planner.hpp"
+#include "algo/full_strip/scan_points.hpp"
 #include "algo/full_strip/space_time.hpp"
 #include "algo/full_strip/tracker.hpp"
 #include "algo/full_strip/velocity_stage.hpp"
@@ -29,7 +30,6 @@ class FullStripController final : public Controller {
 
  private:
   void prepare(const ControlInput& in, const Parameters& parameters);
-  void aim_beams(const LaserScan& scan);
   void sense(const ControlInput& in);
   void forget_traces(const ControlInput& in);
   void plan(const ControlInput& in);
@@ -55,6 +55,7 @@ class FullStripController final : public Controller {
 
   bool among_moving_ = false;
   bool placed_ = false;  // the place of the start is entered into the map
+  ScanPoints points_{};
   LocalMap map_{};
   Tracker tracker_{};
   SpaceTimeSearch space_time_{};
@@ -83,13 +84,9 @@ class FullStripController final : public Controller {
   Twist2 escape_{};           // the one under way
   double escape_until_ = -1;  // [s]
 
-  std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
-  std::vector<Vec2> beams_{};              // directions in the scanner's frame
-  double beams_min_ = 0, beams_step_ = 0;  // [rad] of the scanner they are of
-  double next_drawing_ = 0;                // [s] run clock
-  std::vector<Vec2> points_W_{};           // of the scan's beams
-  std::vector<Odometry> trail_{};          // newest last: where the robot was when a beam was fired
-  Recycled<Vec2> path_W_{};                // the planner's, last found
+  std::vector<Twist2> under_way_{};  // commands given that do not act yet, oldest first
+  double next_drawing_ = 0;          // [s] run clock
+  Recycled<Vec2> path_W_{};          // the planner's, last found
 };
 
 }  // namespace algo

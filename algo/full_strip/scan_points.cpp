@@ -1,0 +1,76 @@
+// algo/full_strip/scan_points.cpp: one frame a beam where the scanner turns, one a scan where not.
+#include "algo/full_strip/scan_points.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace algo {
+namespace {
+
+constexpr std::size_t kTrail = 64;  // places remembered
+
+/// A frame ready to map many points.
+struct Frame {
+  Vec2 origin{0, 0};
+  Vec2 ahead{1, 0};
+  Vec2 left{0, 1};
+};
+Frame frame_of(const Pose2& pose) {
+  const Vec2 ahead = direction(pose.heading);
+  return {pose.position(), ahead, {-ahead.y(), ahead.x()}};
+}
+
+}  // namespace
+
+ScanPoints::ScanPoints() {
+  trail_.reserve(kTrail + 1);
+}
+
+void ScanPoints::follow(const Pose2& pose_W, double stamp) {
+  trail_.push_back({stamp, pose_W});
+  if (trail_.size() > kTrail) trail_.erase(trail_.begin());
+}
+
+/// Between the places around `stamp`.
+Pose2 ScanPoints::pose_at(double stamp) const {
+  for (std::size_t i = trail_.size(); i-- > 1;) {
+    const Place& a = trail_[i - 1];
+    const Place& b = trail_[i];
+    if (stamp < a.stamp && i > 1) continue;
+    const double span = b.stamp - a.stamp;
+    const double t = span > 0 ? std::clamp((stamp - a.stamp) / span, 0.0, 1.0) : 1;
+    return {a.pose_W.x + t * (b.pose_W.x - a.pose_W.x),
+            a.pose_W.y + t * (b.pose_W.y - a.pose_W.y),
+            wrap_angle(a.pose_W.heading + t * wrap_angle(b.pose_W.heading - a.pose_W.heading))};
+  }
+  return trail_.back().pose_W;
+}
+
+/// The beams' directions, kept while the scanner stays the same.
+void ScanPoints::aim_beams(const LaserScan& scan) {
+  if (beams_.size() == scan.size() && beams_min_ == scan.angle_min &&
+      beams_step_ == scan.angle_increment) {
+    return;
+  }
+  beams_.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) beams_[i] = direction(scan.angle(i));
+  beams_min_ = scan.angle_min;
+  beams_step_ = scan.angle_increment;
+}
+
+Pose2 ScanPoints::map(const LaserScan& scan) {
+  points_W_.resize(scan.size());
+  aim_beams(scan);
+  const bool rolling = scan.turn_period > 0;
+  const Pose2 sensor_W = compose(pose_at(scan.stamp - scan.sweep_time() / 2), scan.mount_R);
+  Frame at = frame_of(sensor_W);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok) continue;
+    if (rolling) at = frame_of(compose(pose_at(scan.beam_time(i)), scan.mount_R));
+    points_W_[i] =
+        at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
+  }
+  return sensor_W;
+}
+
+}  // namespace algo
