@@ -155,6 +155,7 @@ void FullStripController::plan(const ControlInput& in) {
 void FullStripController::take_plan(const ControlInput& in) {
   no_way_ = false;
   planner_.path(path_W_);
+  straighten(map_, settings_.rest_distance, path_W_);
   rival_.lay(path_W_);
   rival_.follow(in.odometry.pose.position());
   StripSettings settings = settings_;

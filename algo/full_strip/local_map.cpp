@@ -9,9 +9,9 @@ namespace algo {
 namespace {
 
 constexpr int kSize = LocalMap::kSize;
-constexpr int kRadius = 20;  // cells: kReach
+constexpr int kRadius = 21;  // cells: kReach
 constexpr int kWidth = 2 * kRadius + 1;
-constexpr std::int16_t kFar = 1000;  // [mm] kReach
+constexpr std::int16_t kFar = 1020;  // [mm] kReach
 
 constexpr std::uint8_t kHit = 2;         // a hit counts this much,
 constexpr std::uint8_t kMost = 8;        // up to here;

@@ -24,7 +24,7 @@ class LocalMap {
  public:
   static constexpr double kCell = 0.05;         // [m]
   static constexpr int kSize = 512;             // cells along an edge: 25.6 m
-  static constexpr double kReach = 1.0;         // [m] distances are known up to here
+  static constexpr double kReach = 1.02;        // [m] distances are known up to here
   static constexpr std::uint8_t kOccupied = 3;  // hits from which on a cell is occupied: two
 
   LocalMap();

@@ -225,4 +225,18 @@ void Planner::path(Recycled<Vec2>& out) const {
   }
 }
 
+void straighten(const LocalMap& map, double room, Recycled<Vec2>& path) {
+  const std::size_t size = path.size();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < size;) {
+    path[kept++] = path[i];
+    std::size_t next = i + 1;
+    if (map.distance(path[i]) >= room) {
+      while (next + 1 < size && map.sees(path[i], path[next + 1], room)) ++next;
+    }
+    i = next;
+  }
+  while (path.size() > kept) path.pop_back();
+}
+
 }  // namespace algo

@@ -81,4 +81,8 @@ class Planner {
   std::size_t bucket_ = 0;
 };
 
+/// Leaves out points of `path` wherever the straight line past them keeps `room` [m], so that no
+/// corner of the lattice is left where nothing stands near.
+void straighten(const LocalMap& map, double room, Recycled<Vec2>& path);
+
 }  // namespace algo

@@ -17,6 +17,7 @@ constexpr double kTurnShare = 0.8;     // of the turn rate that the profile plan
 constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
+constexpr double kArc = 0.4;           // [rad] heading error that an arc takes away by itself
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
 constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
 constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
@@ -93,7 +94,9 @@ Twist2 VelocityStage::pursue(const StageInput& in,
   }
   double v = speed_at(s) * share;
   const double curvature = 2 * aim.y() / (length * length);
-  double omega = curvature * v;
+  // A slow robot turns first what its arc would take metres to turn.
+  const double least = kTurnGain * (std::abs(error) - kArc);
+  double omega = std::copysign(std::max(std::abs(curvature) * v, least), error);
   if (std::abs(omega) > w_max) {
     v *= w_max / std::abs(omega);
     omega = std::clamp(omega, -w_max, w_max);

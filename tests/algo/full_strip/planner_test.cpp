@@ -102,6 +102,45 @@ TEST(Planner, DoesNoMoreThanItsBudget) {
   EXPECT_EQ(finish(planner, map), Planner::State::Found);
 }
 
+algo::Recycled<Vec2> path_of(std::initializer_list<Vec2> points) {
+  algo::Recycled<Vec2> path;
+  for (const Vec2& point : points) path.push_back(point);
+  return path;
+}
+
+TEST(Straighten, LeavesNoCornerOfTheLatticeWhereNothingStands) {
+  const LocalMap map;
+  algo::Recycled<Vec2> path = path_of({{0, 0}, {1, 1}, {2, 2}, {3, 2}, {4, 2}});
+  algo::straighten(map, 0.75, path);
+  ASSERT_EQ(path.size(), 2u);
+  EXPECT_EQ(path[0], Vec2(0, 0));
+  EXPECT_EQ(path[1], Vec2(4, 2));
+}
+
+/// Around the end of a wall no line may come nearer than the way itself does.
+TEST(Straighten, KeepsItsRoomBesideWhatStands) {
+  LocalMap map;
+  wall(map, {2, -3}, {2, 0});
+  algo::Recycled<Vec2> path = path_of({{0, 0}, {0.5, 0.5}, {1, 1}, {2, 1}, {3, 1}, {3.5, 0.5}, {4, 0}});
+  algo::straighten(map, 0.75, path);
+  EXPECT_LT(path.size(), 7u);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    for (int k = 0; k <= 20; ++k) {
+      EXPECT_GT(map.distance(path[i - 1] + 0.05 * k * (path[i] - path[i - 1])), 0.7);
+    }
+  }
+}
+
+/// Where there is less room than that, the way stays as it was found.
+TEST(Straighten, TouchesNothingInANarrowPlace) {
+  LocalMap map;
+  wall(map, {-1, 0.6}, {6, 0.6});
+  wall(map, {-1, -0.6}, {6, -0.6});
+  algo::Recycled<Vec2> path = path_of({{0, 0}, {1, 0.1}, {2, 0}});
+  algo::straighten(map, 0.75, path);
+  EXPECT_EQ(path.size(), 3u);
+}
+
 TEST(NodeStrip, RelaxesToTheMiddleOfACorridor) {
   LocalMap map;
   wall(map, {-1, 0.6}, {6, 0.6});

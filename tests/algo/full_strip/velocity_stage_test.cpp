@@ -66,4 +66,18 @@ TEST(VelocityStage, DoesNotBackIntoWhatTheMapHasForgotten) {
   EXPECT_FALSE(s.stage.back_off(s.in, s.out));
 }
 
+/// At 40 mm/s an arc would take half a metre to turn by so much, and lead past the strip meanwhile.
+TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
+  Stage s;
+  algo::Recycled<Vec2> path;
+  path.push_back({0, 0});
+  path.push_back({1, 1});
+  s.strip.lay(path);
+  s.in.limits.max_v = 0.04;
+  const auto slow = s.stage.follow(s.in, s.out);
+  ASSERT_TRUE(slow);
+  EXPECT_GT(slow->omega, 0.5);
+  EXPECT_GT(slow->v, 0);
+}
+
 }  // namespace
