@@ -1,6 +1,7 @@
 // server/reproduce/full_strip.cpp: the comparison row by row.
 #include "server/reproduce/full_strip.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,12 +36,38 @@ std::string part(const char* words, const std::vector<std::string>& against, std
 
 }  // namespace
 
-StripBeside strip_beside(std::span<const Row> strip, std::span<const Row> readings) {
+Depths least_depths(const PaperFile& file) {
+  Depths depths;
+  for (const Layout& layout : file.layouts) {
+    double room = file.common.safety_distance;
+    for (const algo::Obstacle& obstacle : layout.obstacles) {
+      room = std::min({room,
+                       signed_distance(obstacle, file.common.start.position()),
+                       signed_distance(obstacle, layout.goal_W) + file.common.arrival_radius});
+    }
+    depths[layout.name] = (file.common.safety_distance - room) * 1000;
+  }
+  return depths;
+}
+
+StripBeside strip_beside(std::span<const Row> strip,
+                         std::span<const Row> readings,
+                         const Depths& least) {
   StripBeside out;
   for (const Row& row : strip) {
     if (!reaches(row)) out.not_reached.push_back(row.layout);
     const double depth = value(row, "safety_depth_mm");
-    if (depth > 0) out.entered.push_back(fmt::format("{} by {:.0f} mm", row.layout, depth));
+    if (depth > 0) {
+      const auto asked = least.find(row.layout);
+      const bool must = asked != least.end() && asked->second > 0;
+      out.entered.push_back(fmt::format("{} by {:.0f} mm{}",
+                                        row.layout,
+                                        depth,
+                                        must ? fmt::format(" ({:.0f} mm at least, its goal being "
+                                                           "that near)",
+                                                           asked->second)
+                                             : ""));
+    }
   }
   for (const Row& row : readings) {
     const Row* own = find_row(strip, row.layout, kFullStrip);

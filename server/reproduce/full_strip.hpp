@@ -2,17 +2,24 @@
 // smoother, is it faster?
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "server/reproduce/figures.hpp"
+#include "server/reproduce/paper_file.hpp"
 #include "server/reproduce/table.hpp"
 
 namespace server::reproduce {
 
 constexpr std::string_view kFullStrip = "strip";
+
+/// How deep [mm] a run must come into the safety circle, by layout, because of where it begins and
+/// ends: within the arrival radius of a goal that stands nearer to an obstacle than d_safe.
+using Depths = std::map<std::string, double, std::less<>>;
+Depths least_depths(const PaperFile& file);
 
 /// The full strip against the rows of the readings that reach in every run.
 struct StripBeside {
@@ -22,9 +29,12 @@ struct StripBeside {
   std::vector<std::string> bends_less{};
   std::vector<std::string> faster{};
   std::vector<std::string> not_reached{};  // layouts that the strip did not reach in every run
-  std::vector<std::string> entered{};      // "exp1 by 170 mm": into the safety circle
+  // "exp1 by 159 mm (127 mm at least)": into the safety circle
+  std::vector<std::string> entered{};
 };
-StripBeside strip_beside(std::span<const Row> strip, std::span<const Row> readings);
+StripBeside strip_beside(std::span<const Row> strip,
+                         std::span<const Row> readings,
+                         const Depths& least = {});
 
 /// A layout a line, a controller a column: turning [rad] / bending [1e-3 rad2/mm] / time [s].
 Table strip_table(std::span<const Row> strip, std::span<const Row> readings);

@@ -72,11 +72,11 @@ std::string strip_text(const Study& study) {
       "top speeds. Cells: turning [rad] / bending [1e-3 rad2/mm] / time [s], means, or how the "
       "runs ended.\n\n";
   text += fmt::format("**A, paper conditions.** {}\n\n{}",
-                      strip_sentences(strip_beside(study.strip, study.paper)),
+                      strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_markdown(strip_table(study.strip, study.paper)));
   if (study.full.empty()) return text;
   return text + fmt::format("**B, full simulator.** {}\n\n{}",
-                            strip_sentences(strip_beside(study.strip_full, study.full)),
+                            strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
                             to_markdown(strip_table(study.strip_full, study.full)));
 }
 

@@ -155,11 +155,11 @@ std::string to_text(const Study& study) {
     }
   }
   text += fmt::format("\nThe full strip beside the readings, paper conditions. {}\n\n{}",
-                      strip_sentences(strip_beside(study.strip, study.paper)),
+                      strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_text(strip_table(study.strip, study.paper)));
   if (!study.full.empty()) {
     text += fmt::format("\nThe same in the full simulator. {}\n\n{}",
-                        strip_sentences(strip_beside(study.strip_full, study.full)),
+                        strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
                         to_text(strip_table(study.strip_full, study.full)));
   }
   if (!study.claims.empty()) {

@@ -1,8 +1,6 @@
 // server/reproduce/study.cpp: which runs are made.
 #include "server/reproduce/study.hpp"
 
-#include "server/reproduce/full_strip.hpp"
-
 namespace server::reproduce {
 
 std::vector<RowJob> row_jobs(const PaperFile& file,
@@ -42,6 +40,7 @@ Study run_study(const PaperFile& file, const StudyOptions& options) {
       run_rows(row_jobs(file, kPaper, options.seeds, options.first_seed, std::span(&kFullStrip, 1)),
                options.threads,
                progress("the full strip"));
+  study.least_depths = least_depths(file);
   study.checks = evaluate(file, study.paper, study.noise_free);
   study.claims = judge_claims(study.paper);
   if (options.full_simulator) {

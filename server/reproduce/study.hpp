@@ -11,6 +11,7 @@
 #include "server/reproduce/accept.hpp"
 #include "server/reproduce/claims.hpp"
 #include "server/reproduce/differences.hpp"
+#include "server/reproduce/full_strip.hpp"
 
 namespace server::reproduce {
 
@@ -31,6 +32,7 @@ struct Study {
   std::vector<Row> full{};        // table B
   std::vector<Row> strip{};       // our full strip under the conditions of table A
   std::vector<Row> strip_full{};  // and of table B
+  Depths least_depths{};
   std::vector<Check> checks{};
   std::vector<Claim> claims{};       // by table A
   std::vector<Claim> full_claims{};  // the same by table B

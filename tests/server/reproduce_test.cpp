@@ -352,6 +352,16 @@ TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
   EXPECT_EQ(judge_claims(rows)[0].verdict, Verdict::NotReproduced);
 }
 
+/// exp1's goal is 773 mm from the cylinder, and a run may end 100 mm beyond it.
+TEST(FullStrip, IsNotBlamedForWhereAGoalLies) {
+  const Depths least = least_depths(embedded_paper_file());
+  EXPECT_NEAR(least.at("exp1"), 127, 1);
+  EXPECT_EQ(least.at("case1"), 0);
+  const Row row{"exp1", "strip", {run_of(Outcome::Reached, 1, 1, 1, 0.159)}};
+  EXPECT_THAT(strip_sentences(strip_beside({&row, 1}, {}, least)),
+              HasSubstr("exp1 by 159 mm (127 mm at least"));
+}
+
 TEST(FullStrip, IsHeldAgainstTheReadingsThatReach) {
   const auto row = [](const char* reading, Outcome outcome, double turning, double time) {
     Row made{"case1", reading, {run_of(outcome, time, 1, 1, 0)}};
