@@ -1,4 +1,4 @@
-// algo/full_strip/local_map.cpp: hits, looks through, stamped distances.
+// algo/full_strip/local_map.cpp: hits, looks through, the distances between cells.
 #include "algo/full_strip/local_map.hpp"
 
 #include <algorithm>
@@ -7,11 +7,6 @@
 
 namespace algo {
 namespace {
-
-constexpr int kSize = LocalMap::kSize;
-constexpr int kRadius = 21;  // cells: kReach
-constexpr int kWidth = 2 * kRadius + 1;
-constexpr std::int16_t kFar = 1020;  // [mm] kReach
 
 constexpr std::uint8_t kHit = 2;         // a hit counts this much,
 constexpr std::uint8_t kMost = 8;        // up to here;
@@ -22,67 +17,20 @@ constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells
 constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cell fades
 constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
 
-constexpr int kTile = 32;  // cells along a tile's edge
-constexpr int kTiles = kSize / kTile;
-constexpr std::size_t kTilesATick = 8;  // more wait: distances too short are safe meanwhile
-constexpr double kMiddle = 4.0;         // [m] the robot may be from the window's middle
-
-/// Where the kernel holds the distance to (x, y) cells from its middle.
-std::size_t kernel_index(int x, int y) {
-  return static_cast<std::size_t>(y + kRadius) * kWidth + static_cast<std::size_t>(x + kRadius);
-}
-
-/// A square of `size` x `size` moved by (columns, rows) down and left; what comes in is `fresh`.
-template <typename T>
-void move_rows(std::vector<T>& cells, int size, int columns, int rows, T fresh) {
-  const int x0 = std::max(0, -columns);
-  const int x1 = std::min(size, size - columns);
-  // In the order in which no row is overwritten before it has been moved.
-  for (int k = 0; k < size; ++k) {
-    const int y = rows >= 0 ? k : size - 1 - k;
-    T* const to = &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(size)];
-    const int from = y + rows;
-    if (from < 0 || from >= size || x1 <= x0) {
-      std::fill_n(to, size, fresh);
-      continue;
-    }
-    const T* const row = &cells[static_cast<std::size_t>(from) * static_cast<std::size_t>(size)];
-    std::memmove(to + x0, row + x0 + columns, static_cast<std::size_t>(x1 - x0) * sizeof(T));
-    std::fill(to, to + x0, fresh);
-    std::fill(to + x1, to + size, fresh);
-  }
-}
+constexpr double kMiddle = 4.0;  // [m] the robot may be from the window's middle
 
 }  // namespace
 
 LocalMap::LocalMap()
-    : hits_(static_cast<std::size_t>(kSize) * kSize),
-      seen_(hits_.size()),
-      means_(hits_.size()),
-      field_(hits_.size(), kFar),
-      kernel_(static_cast<std::size_t>(kWidth) * kWidth),
-      reaches_(kRadius + 1, -1),
-      soiled_(static_cast<std::size_t>(kTiles) * kTiles) {
+    : hits_(static_cast<std::size_t>(kSize) * kSize), seen_(hits_.size()), means_(hits_.size()) {
   active_.reserve(hits_.size());
-  tiles_.reserve(soiled_.size() + 1);
-  for (int y = -kRadius; y <= kRadius; ++y) {
-    for (int x = -kRadius; x <= kRadius; ++x) {
-      const double mm = std::hypot(x, y) * kCell * 1000;
-      kernel_[kernel_index(x, y)] =
-          static_cast<std::int16_t>(std::min<double>(std::nearbyint(mm), kFar));
-      // Rows far from the middle are short: beyond kReach there is nothing to lower.
-      if (y >= 0 && kernel_[kernel_index(x, y)] < kFar) reaches_[static_cast<std::size_t>(y)] = x;
-    }
-  }
   reset({0, 0});
 }
 
 void LocalMap::reset(const Vec2& centre_W) {
   std::ranges::fill(hits_, std::uint8_t{0});
-  std::ranges::fill(field_, kFar);
-  std::ranges::fill(soiled_, std::uint8_t{0});
+  field_.reset();
   active_.clear();
-  tiles_.clear();
   occupied_ = 0;
   scans_ = 0;
   space_.reset(centre_W);
@@ -103,29 +51,26 @@ bool LocalMap::follow(const Vec2& position_W, double stamp) {
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
   const auto tiles = [](double metres) {
-    return static_cast<int>(std::lround(metres / (LocalMap::kCell * kTile)));
+    return static_cast<int>(std::lround(metres / (LocalMap::kCell * DistanceField::kTile)));
   };
   shift(tiles(off.x()), tiles(off.y()));
   return true;
 }
 
 /// Copies what stays inside; what leaves is forgotten, what comes in is free.
-void LocalMap::shift(int columns, int rows) {
-  corner_W_ += Vec2(columns * kTile * kCell, rows * kTile * kCell);
-  move_rows(hits_, kSize, columns * kTile, rows * kTile, std::uint8_t{0});
-  move_rows(seen_, kSize, columns * kTile, rows * kTile, std::uint16_t{0});
-  move_rows(means_, kSize, columns * kTile, rows * kTile, Offset{});
-  move_rows(field_, kSize, columns * kTile, rows * kTile, kFar);
-  move_rows(soiled_, kTiles, columns, rows, std::uint8_t{0});
-  tiles_.clear();
-  for (std::size_t tile = 0; tile < soiled_.size(); ++tile) {
-    if (soiled_[tile] != 0) tiles_.push_back(static_cast<std::uint16_t>(tile));
-  }
+void LocalMap::shift(int tile_columns, int tile_rows) {
+  const int columns = tile_columns * DistanceField::kTile;
+  const int rows = tile_rows * DistanceField::kTile;
+  corner_W_ += Vec2(columns * kCell, rows * kCell);
+  move_cells(hits_, kSize, columns, rows, std::uint8_t{0});
+  move_cells(seen_, kSize, columns, rows, std::uint16_t{0});
+  move_cells(means_, kSize, columns, rows, Offset{});
+  field_.shift(tile_columns, tile_rows);
   occupied_ = 0;
   std::size_t kept = 0;
   for (const std::uint32_t old : active_) {
-    const int column = static_cast<int>(old) % kSize - columns * kTile;
-    const int row = static_cast<int>(old) / kSize - rows * kTile;
+    const int column = static_cast<int>(old) % kSize - columns;
+    const int row = static_cast<int>(old) / kSize - rows;
     if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
     const std::size_t cell = index(column, row);
     active_[kept++] = static_cast<std::uint32_t>(cell);
@@ -145,7 +90,7 @@ void LocalMap::insert(const LaserScan& scan,
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);
   if (scans_ % kAgeEvery == 0) age();
-  rebuild_soiled();
+  field_.rebuild(hits_, kOccupied);
 }
 
 void LocalMap::hit(const Vec2& point_W) {
@@ -167,22 +112,7 @@ void LocalMap::hit(const Vec2& point_W) {
   mean.y += share * (static_cast<float>(off.y()) - mean.y);
   if (before >= kOccupied || hits_[cell] < kOccupied) return;
   ++occupied_;
-  stamp(column, row, 0, 0, kSize, kSize);
-}
-
-/// Lowers the field around an occupied cell, inside the given part of the window.
-void LocalMap::stamp(int column, int row, int left, int bottom, int right, int top) {
-  const int y0 = std::max(bottom, row - kRadius);
-  const int y1 = std::min(top, row + kRadius + 1);
-  for (int y = y0; y < y1; ++y) {
-    const int reach = reaches_[static_cast<std::size_t>(std::abs(y - row))];
-    const int x0 = std::max(left, column - reach);
-    const int x1 = std::min(right, column + reach + 1);
-    if (x0 >= x1) continue;
-    const std::int16_t* from = &kernel_[kernel_index(x0 - column, y - row)];
-    std::int16_t* to = &field_[index(x0, y)];
-    for (int x = 0; x < x1 - x0; ++x) to[x] = std::min(to[x], from[x]);
-  }
+  field_.occupy(column, row);
 }
 
 /// Takes hits from a cell. False when it has none left.
@@ -191,7 +121,7 @@ bool LocalMap::weaken(std::size_t cell, int by) {
   hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
   if (before >= kOccupied && hits_[cell] < kOccupied) {
     --occupied_;
-    soil(cell);
+    field_.free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
   }
   return hits_[cell] > 0;
 }
@@ -249,49 +179,6 @@ void LocalMap::age() {
   }
 }
 
-/// The field around a cleared cell is too low now.
-void LocalMap::soil(std::size_t cell) {
-  const int column = static_cast<int>(cell) % kSize;
-  const int row = static_cast<int>(cell) / kSize;
-  const int x0 = std::max(0, column - kRadius) / kTile;
-  const int x1 = std::min(kSize - 1, column + kRadius) / kTile;
-  const int y0 = std::max(0, row - kRadius) / kTile;
-  const int y1 = std::min(kSize - 1, row + kRadius) / kTile;
-  for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) {
-      const auto tile = static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x);
-      if (soiled_[tile] != 0) continue;
-      soiled_[tile] = 1;
-      tiles_.push_back(static_cast<std::uint16_t>(tile));
-    }
-  }
-}
-
-void LocalMap::rebuild_soiled() {
-  const std::size_t now = std::min(kTilesATick, tiles_.size());
-  for (std::size_t k = 0; k < now; ++k) {
-    soiled_[tiles_[k]] = 0;
-    rebuild(tiles_[k]);
-  }
-  tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(now));
-}
-
-void LocalMap::rebuild(int tile) {
-  const int left = tile % kTiles * kTile;
-  const int bottom = tile / kTiles * kTile;
-  for (int y = bottom; y < bottom + kTile; ++y) {
-    std::fill_n(&field_[index(left, y)], kTile, kFar);
-  }
-  const int x0 = std::max(0, left - kRadius);
-  const int x1 = std::min(kSize, left + kTile + kRadius);
-  for (int y = std::max(0, bottom - kRadius); y < std::min(kSize, bottom + kTile + kRadius); ++y) {
-    for (int x = x0; x < x1; ++x) {
-      if (hits_[index(x, y)] < kOccupied) continue;
-      stamp(x, y, left, bottom, left + kTile, bottom + kTile);
-    }
-  }
-}
-
 double LocalMap::distance(const Vec2& p_W) const {
   // Between the four cell centres around.
   const double x = (p_W.x() - corner_W_.x()) / kCell - 0.5;
@@ -301,7 +188,7 @@ double LocalMap::distance(const Vec2& p_W) const {
   const int row = static_cast<int>(y);
   const double u = x - column;
   const double v = y - row;
-  const std::int16_t* low = &field_[index(column, row)];
+  const std::int16_t* low = field_.from(column, row);
   const std::int16_t* high = low + kSize;
   const double below = low[0] + u * (low[1] - low[0]);
   const double above = high[0] + u * (high[1] - high[0]);

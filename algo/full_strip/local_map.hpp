@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "algo/full_strip/distance_field.hpp"
 #include "algo/full_strip/seen_space.hpp"
 #include "algo/full_strip/tracker.hpp"
 #include "algo/laser_scan.hpp"
@@ -22,9 +23,9 @@ namespace algo {
 /// allocated in the constructor.
 class LocalMap {
  public:
-  static constexpr double kCell = 0.05;         // [m]
-  static constexpr int kSize = 512;             // cells along an edge: 25.6 m
-  static constexpr double kReach = 1.02;        // [m] distances are known up to here
+  static constexpr double kCell = DistanceField::kCell;    // [m]
+  static constexpr int kSize = DistanceField::kSize;       // cells along an edge: 25.6 m
+  static constexpr double kReach = DistanceField::kReach;  // [m] distances are known up to here
   static constexpr std::uint8_t kOccupied = 3;  // hits from which on a cell is occupied: two
 
   LocalMap();
@@ -85,7 +86,7 @@ class LocalMap {
   bool inside(const Vec2& p_W) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.
-  std::int16_t cell_distance(int column, int row) const { return field_[index(column, row)]; }
+  std::int16_t cell_distance(int column, int row) const { return field_.at(column, row); }
   std::size_t occupied() const { return occupied_; }
   /// Where it has looked at all: what is neither occupied nor seen is anyone's guess.
   const SeenSpace& seen() const { return space_; }
@@ -122,22 +123,14 @@ class LocalMap {
   void age();
   bool weaken(std::size_t cell, int by);
   void clear(std::size_t cell);
-  void stamp(int column, int row, int left, int bottom, int right, int top);
-  void soil(std::size_t cell);
-  void rebuild_soiled();
-  void rebuild(int tile);
-  void shift(int columns, int rows);
+  void shift(int tile_columns, int tile_rows);
 
   Vec2 corner_W_{0, 0};
   std::vector<std::uint8_t> hits_;
   std::vector<std::uint16_t> seen_;    // scan number of the last hit
   std::vector<Offset> means_;          // of the hits
-  std::vector<std::int16_t> field_;    // [mm]
   std::vector<std::uint32_t> active_;  // cells with hits
-  std::vector<std::int16_t> kernel_;   // [mm]
-  std::vector<int> reaches_;          // cells to either side that a row of it lowers, by its offset
-  std::vector<std::uint8_t> soiled_;  // tiles whose distances are too short: a cell was cleared
-  std::vector<std::uint16_t> tiles_;  // those, in the order they became so
+  DistanceField field_{};
   SeenSpace space_{};
   std::size_t occupied_ = 0;
   std::uint32_t scans_ = 0;

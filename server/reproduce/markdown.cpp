@@ -75,9 +75,10 @@ std::string strip_text(const Study& study) {
                       strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_markdown(strip_table(study.strip, study.paper)));
   if (study.full.empty()) return text;
-  return text + fmt::format("**B, full simulator.** {}\n\n{}",
-                            strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
-                            to_markdown(strip_table(study.strip_full, study.full)));
+  return text + fmt::format(
+                    "**B, full simulator.** {}\n\n{}",
+                    strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
+                    to_markdown(strip_table(study.strip_full, study.full)));
 }
 
 std::string pictures_text(const PaperFile& file, const std::string& folder) {

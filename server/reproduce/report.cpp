@@ -158,9 +158,10 @@ std::string to_text(const Study& study) {
                       strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_text(strip_table(study.strip, study.paper)));
   if (!study.full.empty()) {
-    text += fmt::format("\nThe same in the full simulator. {}\n\n{}",
-                        strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
-                        to_text(strip_table(study.strip_full, study.full)));
+    text +=
+        fmt::format("\nThe same in the full simulator. {}\n\n{}",
+                    strip_sentences(strip_beside(study.strip_full, study.full, study.least_depths)),
+                    to_text(strip_table(study.strip_full, study.full)));
   }
   if (!study.claims.empty()) {
     text += "\nWhat the sources claim, and for which readings it holds\n\n";

@@ -121,7 +121,8 @@ TEST(Straighten, LeavesNoCornerOfTheLatticeWhereNothingStands) {
 TEST(Straighten, KeepsItsRoomBesideWhatStands) {
   LocalMap map;
   wall(map, {2, -3}, {2, 0});
-  algo::Recycled<Vec2> path = path_of({{0, 0}, {0.5, 0.5}, {1, 1}, {2, 1}, {3, 1}, {3.5, 0.5}, {4, 0}});
+  algo::Recycled<Vec2> path =
+      path_of({{0, 0}, {0.5, 0.5}, {1, 1}, {2, 1}, {3, 1}, {3.5, 0.5}, {4, 0}});
   algo::straighten(map, 0.75, path);
   EXPECT_LT(path.size(), 7u);
   for (std::size_t i = 1; i < path.size(); ++i) {

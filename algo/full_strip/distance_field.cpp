@@ -1,0 +1,158 @@
+// algo/full_strip/distance_field.cpp: stamps for what becomes occupied, a distance transform of a
+// tile for what becomes free.
+#include "algo/full_strip/distance_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace algo {
+namespace {
+
+constexpr auto kFar = static_cast<std::int16_t>(DistanceField::kReach * 1000);  // [mm]
+constexpr std::size_t kTilesATick = 8;
+constexpr std::int16_t kNoSquare = 10'000;  // of a distance beyond kReach
+
+}  // namespace
+
+DistanceField::DistanceField()
+    : field_(static_cast<std::size_t>(kSize) * kSize, kFar),
+      kernel_(kWidth * kWidth),
+      reaches_(kRadius + 1, -1),
+      metric_(2 * kRadius * kRadius + 1),
+      soiled_(static_cast<std::size_t>(kTiles) * kTiles) {
+  tiles_.reserve(soiled_.size() + 1);
+  for (std::size_t square = 0; square < metric_.size(); ++square) {
+    const double mm = std::sqrt(static_cast<double>(square)) * kCell * 1000;
+    metric_[square] = static_cast<std::int16_t>(std::min<double>(std::nearbyint(mm), kFar));
+  }
+  std::size_t cell = 0;
+  for (int y = -kRadius; y <= kRadius; ++y) {
+    for (int x = -kRadius; x <= kRadius; ++x, ++cell) {
+      kernel_[cell] = metric_[static_cast<std::size_t>(x * x + y * y)];
+      // Rows far from the middle are short: beyond kReach there is nothing to lower.
+      if (y >= 0 && kernel_[cell] < kFar) reaches_[static_cast<std::size_t>(y)] = x;
+    }
+  }
+}
+
+void DistanceField::reset() {
+  std::ranges::fill(field_, kFar);
+  std::ranges::fill(soiled_, std::uint8_t{0});
+  tiles_.clear();
+}
+
+void DistanceField::occupy(int column, int row) {
+  const int y0 = std::max(0, row - kRadius);
+  const int y1 = std::min(kSize, row + kRadius + 1);
+  for (int y = y0; y < y1; ++y) {
+    const int reach = reaches_[static_cast<std::size_t>(std::abs(y - row))];
+    const int x0 = std::max(0, column - reach);
+    const int x1 = std::min(kSize, column + reach + 1);
+    const int middle = (y - row + kRadius) * static_cast<int>(kWidth) + kRadius;
+    const std::int16_t* const near = &kernel_[static_cast<std::size_t>(middle + x0 - column)];
+    std::int16_t* const to = &field_[index(x0, y)];
+    for (int x = 0; x < x1 - x0; ++x) to[x] = std::min(to[x], near[x]);
+  }
+}
+
+void DistanceField::free(int column, int row) {
+  const int x0 = std::max(0, column - kRadius) / kTile;
+  const int x1 = std::min(kSize - 1, column + kRadius) / kTile;
+  const int y0 = std::max(0, row - kRadius) / kTile;
+  const int y1 = std::min(kSize - 1, row + kRadius) / kTile;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const auto tile = static_cast<std::size_t>(y) * kTiles + static_cast<std::size_t>(x);
+      if (soiled_[tile] != 0) continue;
+      soiled_[tile] = 1;
+      tiles_.push_back(static_cast<std::uint16_t>(tile));
+    }
+  }
+}
+
+void DistanceField::rebuild(const std::vector<std::uint8_t>& hits, std::uint8_t occupied) {
+  const std::size_t now = std::min(kTilesATick, tiles_.size());
+  for (std::size_t k = 0; k < now; ++k) {
+    soiled_[tiles_[k]] = 0;
+    const int left = tiles_[k] % kTiles * kTile;
+    const int bottom = tiles_[k] / kTiles * kTile;
+    measure_gaps(hits, occupied, left, bottom);
+    rebuild_tile(left, bottom);
+  }
+  tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(now));
+}
+
+/// The first half of a distance transform: along the columns, once upwards and once downwards.
+void DistanceField::measure_gaps(const std::vector<std::uint8_t>& hits,
+                                 std::uint8_t occupied,
+                                 int left,
+                                 int bottom) {
+  constexpr std::uint8_t kNone = kRadius + 1;
+  const int first = std::max(0, left - kRadius);
+  const int columns = std::min(kSize, left + kTile + kRadius) - first;
+  const auto skipped = static_cast<std::size_t>(first - (left - kRadius));
+  std::array<std::uint8_t, kSpan> gap;
+  const auto pass = [&](int row) {
+    const std::uint8_t* const from = &hits[index(first, row)];
+    std::uint8_t* const to = &gap[skipped];
+    for (int x = 0; x < columns; ++x) {
+      const auto further = static_cast<std::uint8_t>(std::min<int>(to[x] + 1, kNone));
+      to[x] = from[x] >= occupied ? std::uint8_t{0} : further;
+    }
+  };
+  gap.fill(kNone);
+  for (int y = std::max(0, bottom - kRadius); y < bottom + kTile; ++y) {
+    pass(y);
+    if (y >= bottom) gaps_[static_cast<std::size_t>(y - bottom)] = gap;
+  }
+  gap.fill(kNone);
+  for (int y = std::min(kSize, bottom + kTile + kRadius) - 1; y >= bottom; --y) {
+    pass(y);
+    if (y >= bottom + kTile) continue;
+    auto& best = gaps_[static_cast<std::size_t>(y - bottom)];
+    for (std::size_t x = 0; x < kSpan; ++x) best[x] = std::min(best[x], gap[x]);
+  }
+}
+
+/// The second half: along the rows, over all that may be nearest.
+void DistanceField::rebuild_tile(int left, int bottom) {
+  for (int y = 0; y < kTile; ++y) {
+    const auto& gaps = gaps_[static_cast<std::size_t>(y)];
+    std::array<std::int16_t, kSpan> squares;
+    bool nothing = true;
+    for (std::size_t x = 0; x < kSpan; ++x) {
+      const int gap = gaps[x];
+      squares[x] = gap > kRadius ? kNoSquare : static_cast<std::int16_t>(gap * gap);
+      nothing = nothing && gap > kRadius;
+    }
+    std::int16_t* const to = &field_[index(left, bottom + y)];
+    if (nothing) {
+      std::fill_n(to, kTile, kFar);
+      continue;
+    }
+    std::array<std::int16_t, kTile> best;
+    best.fill(kNoSquare);
+    for (int k = 0; k <= 2 * kRadius; ++k) {
+      const auto aside = static_cast<std::int16_t>((k - kRadius) * (k - kRadius));
+      const std::int16_t* const from = &squares[static_cast<std::size_t>(k)];
+      for (std::size_t x = 0; x < kTile; ++x) {
+        best[x] = std::min(best[x], static_cast<std::int16_t>(from[x] + aside));
+      }
+    }
+    for (std::size_t x = 0; x < kTile; ++x) {
+      const auto square = static_cast<std::size_t>(best[x]);
+      to[x] = square < metric_.size() ? metric_[square] : kFar;
+    }
+  }
+}
+
+void DistanceField::shift(int tile_columns, int tile_rows) {
+  move_cells(field_, kSize, tile_columns * kTile, tile_rows * kTile, kFar);
+  move_cells(soiled_, kTiles, tile_columns, tile_rows, std::uint8_t{0});
+  tiles_.clear();
+  for (std::size_t tile = 0; tile < soiled_.size(); ++tile) {
+    if (soiled_[tile] != 0) tiles_.push_back(static_cast<std::uint16_t>(tile));
+  }
+}
+
+}  // namespace algo
