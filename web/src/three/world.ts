@@ -5,8 +5,8 @@ import { Palette } from "../draw/palette";
 import { Selection } from "../draw/scene";
 import { force_arrows } from "../draw/strip";
 import { Point } from "../geometry";
-import { Obstacle, outline } from "../obstacle";
 import { SceneState, robot_pose, scene_bounds, sweep_points } from "../state/scene";
+import { body, clear, dot, goal, goals_ahead, grid, points, push_arrow, ribbon, ring, solid, sun, track } from "./shapes";
 
 export interface Options { selection: Selection; force_scale: number; follow: boolean }
 
@@ -29,6 +29,7 @@ export class World3 {
   private readonly filtered_ = points(3.5);
   private pending_ = 0;
   private built_: unknown[] = [];
+  private hull_: SceneState["hull"] = null; // that the robot was built with
   private placed_ = false;
   private last_robot_: Point | null = null;
 
@@ -142,8 +143,13 @@ export class World3 {
     if (pose && scene.world) {
       this.moving_.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
     }
+    if (scene.goal && scene.goals_ahead.length > 0) {
+      this.moving_.add(...goals_ahead(scene.goal, scene.goals_ahead, p));
+    }
     const f = scene.frame;
     if (!f) return;
+    if (f.plan.length > 1) this.moving_.add(ribbon(f.plan, 0.02, 0.01, p.accent));
+    for (const t of f.tracks) track(this.moving_, t, p, kScanHeight);
     if (f.strip.length > 1) {
       const nodes = f.strip.map((n) => n.position);
       const line = nodes.length === 3 ? nodes.slice(0, 2) : nodes; // the third is before the forces
@@ -165,7 +171,11 @@ export class World3 {
   private place_robot(scene: SceneState, follow: boolean): void {
     const pose = robot_pose(scene);
     if (!pose) return;
-    if (this.robot_.children.length === 0) this.robot_.add(...body(scene, this.palette_));
+    if (this.robot_.children.length === 0 || this.hull_ !== scene.hull) {
+      clear(this.robot_);
+      this.robot_.add(...body(scene, this.palette_));
+      this.hull_ = scene.hull;
+    }
     this.robot_.position.set(pose.x, pose.y, 0);
     this.robot_.rotation.z = pose.heading;
     const last = this.last_robot_;
@@ -195,149 +205,3 @@ export class World3 {
     }
   }
 }
-
-function clear(group: THREE.Group): void {
-  for (const child of [...group.children]) {
-    group.remove(child);
-    child.traverse((o) => {
-      const mesh = o as THREE.Mesh;
-      mesh.geometry?.dispose();
-      for (const m of [mesh.material].flat()) m?.dispose();
-    });
-  }
-}
-
-/** Points `size` pixels across, however far away. */
-function points(size: number): THREE.Points {
-  const p = new THREE.Points(new THREE.BufferGeometry(),
-    new THREE.PointsMaterial({ size: size * Math.min(2, devicePixelRatio || 1), sizeAttenuation: false }));
-  p.frustumCulled = false;
-  return p;
-}
-
-function sun(): THREE.DirectionalLight {
-  const light = new THREE.DirectionalLight(0xffffff, 1.6);
-  light.position.set(-4, -6, 10);
-  return light;
-}
-
-function flat(colour: string): THREE.MeshBasicMaterial {
-  return new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide });
-}
-
-/** A line a metre, stronger every fifth, in pieces of a metre: some drivers drop a line that
- * passes behind the camera. */
-function grid(p: Palette): THREE.Group {
-  const group = new THREE.Group();
-  const half = 25;
-  for (const strong of [false, true]) {
-    const xyz: number[] = [];
-    for (let k = -half; k <= half; ++k) {
-      if ((k % 5 === 0) !== strong) continue;
-      for (let i = -half; i < half; ++i) xyz.push(i, k, 0, i + 1, k, 0, k, i, 0, k, i + 1, 0);
-    }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-    group.add(new THREE.LineSegments(geometry,
-      new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 })));
-  }
-  return group;
-}
-
-function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D {
-  const material = new THREE.MeshStandardMaterial({ color: p.obstline, roughness: 0.85 });
-  const mesh = shape_of(o, material);
-  const edges = new THREE.LineSegments(new THREE.EdgesGeometry(mesh.geometry, 30),
-    new THREE.LineBasicMaterial({ color: chosen ? p.accent : p.muted }));
-  mesh.add(edges);
-  return mesh;
-}
-
-function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
-  if (o.kind === "cylinder") {
-    const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
-    const mesh = new THREE.Mesh(geometry, material);
-    mesh.rotation.x = Math.PI / 2;
-    mesh.position.set(o.pose.x, o.pose.y, o.height / 2);
-    return mesh;
-  }
-  const shape = new THREE.Shape(outline(o).map((c) => new THREE.Vector2(c.x, c.y)));
-  return new THREE.Mesh(new THREE.ExtrudeGeometry(shape, { depth: o.height, bevelEnabled: false }),
-    material);
-}
-
-function goal(at: { x: number; y: number; heading: number | null }, p: Palette): THREE.Group {
-  const group = new THREE.Group();
-  group.add(ring(at, 0.18, 0.22, 0.02, p.ok));
-  if (at.heading !== null) {
-    push_arrow(group, at, { x: 0.5 * Math.cos(at.heading), y: 0.5 * Math.sin(at.heading) }, 1, p.ok);
-  }
-  return group;
-}
-
-function ring(at: Point, inner: number, outer: number, z: number, colour: string): THREE.Mesh {
-  const mesh = new THREE.Mesh(new THREE.RingGeometry(inner, outer, 72), flat(colour));
-  mesh.position.set(at.x, at.y, z);
-  return mesh;
-}
-
-function dot(at: Point, radius: number, z: number, colour: string): THREE.Mesh {
-  const mesh = new THREE.Mesh(new THREE.SphereGeometry(radius, 14, 10), flat(colour));
-  mesh.position.set(at.x, at.y, z);
-  return mesh;
-}
-
-/** A flat band `width` wide along `line`, at height `z`. */
-function ribbon(line: Point[], width: number, z: number, colour: string): THREE.Mesh {
-  const xyz: number[] = [];
-  const faces: number[] = [];
-  for (let i = 0; i < line.length; ++i) {
-    const a = line[Math.max(0, i - 1)];
-    const b = line[Math.min(line.length - 1, i + 1)];
-    const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
-    const nx = (-(b.y - a.y) / length) * (width / 2);
-    const ny = ((b.x - a.x) / length) * (width / 2);
-    xyz.push(line[i].x + nx, line[i].y + ny, z, line[i].x - nx, line[i].y - ny, z);
-    if (i > 0) faces.push(2 * i - 2, 2 * i - 1, 2 * i, 2 * i, 2 * i - 1, 2 * i + 1);
-  }
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-  geometry.setIndex(faces);
-  return new THREE.Mesh(geometry, flat(colour));
-}
-
-/** A lying arrow of `v` metres, `times` enlarged; too short ones are left out. */
-function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string,
-  z = 0.08): void {
-  const length = Math.min(2, Math.hypot(v.x, v.y) * times);
-  if (length < 0.03) return;
-  const head = Math.min(0.12, length * 0.5);
-  const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, 0).normalize(),
-    new THREE.Vector3(at.x, at.y, z), length, colour, head, head * 0.7);
-  group.add(arrow);
-}
-
-/** A disc with wheels, a scanner and a pointer ahead, in R. */
-function body(scene: SceneState, p: Palette): THREE.Object3D[] {
-  const r = scene.radius;
-  const paint = (colour: string) => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 });
-  const upright = (geometry: THREE.BufferGeometry, colour: string, z: number) => {
-    const mesh = new THREE.Mesh(geometry, paint(colour));
-    mesh.rotation.x = Math.PI / 2;
-    mesh.position.z = z;
-    return mesh;
-  };
-  const hull = upright(new THREE.CylinderGeometry(r, r, 0.18, 48), p.robot, 0.15);
-  const scanner = upright(new THREE.CylinderGeometry(0.06, 0.07, 0.1, 24), p.filtered, 0.29);
-  const wheels = [-1, 1].map((side) => {
-    const wheel = new THREE.Mesh(new THREE.CylinderGeometry(0.09, 0.09, 0.05, 24), paint(p.obstline));
-    wheel.position.set(0, side * Math.min(scene.half_track, r - 0.03), 0.09);
-    return wheel;
-  });
-  const head = new THREE.Shape([[0.86, 0], [0.36, 0.34], [0.36, -0.34]].map(([x, y]) =>
-    new THREE.Vector2(x * r, y * r)));
-  const nose = new THREE.Mesh(new THREE.ShapeGeometry(head), flat(p.bg));
-  nose.position.z = 0.245;
-  return [hull, scanner, ...wheels, nose];
-}
-
