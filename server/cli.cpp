@@ -50,6 +50,14 @@ sim::Scenario find_scenario(const std::string& name) {
   return ScenarioLibrary(state_folder() / "scenarios", state_folder() / "logs").load(name);
 }
 
+CLI::Validator file_to_write() {
+  const auto check = [](const std::string& path) -> std::string {
+    if (!std::filesystem::is_directory(path)) return {};
+    return path + " is a folder: name the file to write";
+  };
+  return {check, ""};
+}
+
 ProgressLine::ProgressLine() : interactive_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressLine::~ProgressLine() {

@@ -81,10 +81,12 @@ void add_map_command(CLI::App& app, int& status) {
   map->add_option("--threads", options.threads, "0 (default): one a core")
       ->check(CLI::Range(0, 256));
   map->add_option("--out", command->out, "A picture of the first seed's map, as SVG")
+      ->check(file_to_write())
       ->type_name("FILE");
   map->add_option("--markdown",
                   command->markdown,
                   "Also write tables there, and pictures into pictures/mapping/ beside it")
+      ->check(file_to_write())
       ->type_name("FILE");
   map->add_flag("--json", command->as_json, "Print JSON");
   map->callback([command, &status] { status = execute(*command); });

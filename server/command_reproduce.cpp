@@ -103,6 +103,7 @@ void add_reproduce_command(CLI::App& app, int& status) {
       ->add_option("--markdown",
                    options->markdown,
                    "Also write the report there, and pictures/reproduction/ beside it")
+      ->check(file_to_write())
       ->type_name("FILE");
   CLI::Option* filter = command->add_flag(
       "--filter", options->filter, "The filter chapter instead: scenes, recordings, verdicts");
