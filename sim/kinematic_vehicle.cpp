@@ -30,8 +30,10 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   // A robot that overlaps something already may still leave it: a rectangle any way, since how deep
   // it overlaps is not known.
   const double clearance = obstacles.clearance(hull_, to);
-  const bool was_clear = obstacles.clearance(hull_, from) > (vehicle_.round ? clearance : 0);
-  if (clearance < 0 && was_clear) {
+  const auto was_clear = [&] {
+    return obstacles.clearance(hull_, from) > (vehicle_.round ? clearance : 0);
+  };
+  if (clearance < 0 && was_clear()) {
     state_.contact = true;
     twist.v = 0;
     target_.v = 0;
