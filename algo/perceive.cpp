@@ -58,14 +58,19 @@ void perceive(const Pose2& pose_W, Scene& scene) {
 
 bool blinded(const LaserScan& scan) {
   constexpr double kAhead = std::numbers::pi / 4;  // [rad] either side
-  std::size_t ahead = 0;
-  std::size_t told = 0;
+  const auto ahead = [&scan](std::size_t i) {
+    return std::abs(wrap_angle(scan.mount_R.heading + scan.angle(i))) <= kAhead;
+  };
+  std::size_t silent = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (std::abs(wrap_angle(scan.mount_R.heading + scan.angle(i))) > kAhead) continue;
-    ++ahead;
-    told += scan.status[i] != Beam::Invalid ? 1U : 0U;
+    if (scan.status[i] == Beam::Invalid && ahead(i)) ++silent;
   }
-  return 2 * told < ahead;
+  // Few are, so that a few beams that look ahead settle it; those are most often in the middle.
+  std::size_t looking = 0;
+  for (std::size_t k = 0; k < scan.size() && looking < 2 * silent; ++k) {
+    if (ahead((scan.size() / 2 + k) % scan.size())) ++looking;
+  }
+  return looking < 2 * silent;
 }
 
 }  // namespace algo
