@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace algo {
 namespace {
@@ -17,16 +18,24 @@ bool finite(const std::optional<Nearest>& nearest) {
   return !nearest || (nearest->point_W.allFinite() && std::isfinite(nearest->distance));
 }
 
+/// x - x is 0 for a finite number and otherwise none; Eigen adds that up in vectors.
+bool all_finite(const std::vector<double>& numbers) {
+  const Eigen::Map<const Eigen::ArrayXd> x(numbers.data(),
+                                           static_cast<Eigen::Index>(numbers.size()));
+  return (x - x).sum() == 0;
+}
+
 bool finite(const LaserScan& scan) {
   if (!finite(scan.mount_R) || !std::isfinite(scan.angle_min) ||
       !std::isfinite(scan.angle_increment) || !std::isfinite(scan.range_max)) {
     return false;
   }
-  unsigned wrong = 0;
+  // Usually all ranges are, also those that nobody reads.
+  if (all_finite(scan.ranges)) return true;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    wrong |= static_cast<unsigned>(scan.status[i] == Beam::Ok && !std::isfinite(scan.ranges[i]));
+    if (scan.status[i] == Beam::Ok && !std::isfinite(scan.ranges[i])) return false;
   }
-  return wrong == 0;
+  return true;
 }
 
 }  // namespace
