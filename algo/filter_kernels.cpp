@@ -258,6 +258,24 @@ void slide_median(const std::vector<double>& padded,
   }
 }
 
+constexpr std::size_t kOnePassLimit = 2;
+
+/// N = 1 or 2; `padded` by N on either side.
+void pseudomedian_in_one_pass(const double* padded, std::size_t N, std::span<double> out) {
+  if (N == 1) {
+    pseudomedian_3(padded, out.data(), out.size());
+  } else {
+    pseudomedian_5(padded, out.data(), out.size());
+  }
+}
+
+/// Index of the first 0 in [from, count), or `count`.
+std::size_t find_zero(const std::uint8_t* marks, std::size_t from, std::size_t count) {
+  const void* const found = from < count ? std::memchr(marks + from, 0, count - from) : nullptr;
+  if (found == nullptr) return count;
+  return static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - marks);
+}
+
 /// Marks in s.trusted and `out_valid` which samples have a valid window, and counts them by a
 /// running sum.
 void judge_windows(std::span<const std::uint8_t> valid,
@@ -312,6 +330,54 @@ void keep_invalid(std::span<const double> in,
   }
 }
 
+/// The pseudomedian of the window of 2N+1 samples from `p`, by its definition. The middle one is
+/// trusted, so that no group is empty.
+double pseudomedian_of_trusted(const double* p, const std::uint8_t* trusted, std::size_t N) {
+  double open = kNoneForMax;
+  double close = kNoneForMin;
+  for (std::size_t first = 0; first <= N; ++first) {
+    double least = kNoneForMin;
+    double most = kNoneForMax;
+    for (std::size_t k = first; k <= first + N; ++k) {
+      least = trusted[k] != 0 ? smaller(least, p[k]) : least;
+      most = trusted[k] != 0 ? larger(most, p[k]) : most;
+    }
+    open = larger(open, least);
+    close = smaller(close, most);
+  }
+  return (open + close) / 2;
+}
+
+/// Where few samples are not valid: all are filtered in one pass as if they were, and then once
+/// more those whose window has one that is not.
+void pseudomedian_mended(std::span<const double> in,
+                         std::span<const std::uint8_t> valid,
+                         std::size_t N,
+                         FilterScratch& s,
+                         std::span<double> out,
+                         std::span<std::uint8_t> out_valid) {
+  pad(in, N, Border::Replicate, s.padded);
+  pad(valid, N, Border::Replicate, s.trusted);
+  const double* const padded = s.padded.data();
+  const std::uint8_t* const trusted = s.trusted.data();
+  pseudomedian_in_one_pass(padded, N, out);
+  std::memset(out_valid.data(), 1, out_valid.size());
+  std::size_t mended = 0;  // windows before this one
+  const std::size_t samples = s.trusted.size();
+  for (std::size_t bad = find_zero(trusted, 0, samples); bad < samples;
+       bad = find_zero(trusted, bad + 1, samples)) {
+    const std::size_t end = std::min(bad + 1, out.size());
+    for (std::size_t i = std::max(mended, bad - std::min(bad, 2 * N)); i < end; ++i) {
+      std::size_t count = 0;
+      for (std::size_t k = i; k <= i + 2 * N; ++k) count += trusted[k];
+      const bool sound = trusted[i + N] != 0 && count > N;
+      out[i] = sound ? pseudomedian_of_trusted(padded + i, trusted + i, N) : padded[i + N];
+      out_valid[i] = sound ? 1 : 0;
+    }
+    mended = end;
+  }
+}
+
 }  // namespace
 
 void pseudomedian(std::span<const double> in,
@@ -323,8 +389,7 @@ void pseudomedian(std::span<const double> in,
   const auto N = static_cast<std::size_t>(half_width);
   pad(in, N, border, scratch.padded);
   const std::vector<double>& padded = scratch.padded;
-  if (N == 1) return pseudomedian_3(padded.data(), out.data(), out.size());
-  if (N == 2) return pseudomedian_5(padded.data(), out.data(), out.size());
+  if (N <= kOnePassLimit) return pseudomedian_in_one_pass(padded.data(), N, out);
   scratch.low = padded;
   scratch.high = padded;
   opening(scratch.low, padded.size(), N + 1, false, scratch);
@@ -371,6 +436,7 @@ void pseudomedian(std::span<const double> in,
                   std::span<std::uint8_t> out_valid) {
   if (trivial(in, valid, half_width, out, out_valid)) return;
   const auto N = static_cast<std::size_t>(half_width);
+  if (N <= kOnePassLimit) return pseudomedian_mended(in, valid, N, scratch, out, out_valid);
   mask_samples(in, valid, N, scratch);
   judge_windows(valid, N, scratch, out_valid);
   scratch.low = scratch.mask;
