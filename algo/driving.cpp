@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace algo {
 namespace {
@@ -16,13 +15,6 @@ bool finite(const Pose2& pose) {
 
 bool finite(const std::optional<Nearest>& nearest) {
   return !nearest || (nearest->point_W.allFinite() && std::isfinite(nearest->distance));
-}
-
-/// x - x is 0 for a finite number and otherwise none; Eigen adds that up in vectors.
-bool all_finite(const std::vector<double>& numbers) {
-  const Eigen::Map<const Eigen::ArrayXd> x(numbers.data(),
-                                           static_cast<Eigen::Index>(numbers.size()));
-  return (x - x).sum() == 0;
 }
 
 bool finite(const LaserScan& scan) {

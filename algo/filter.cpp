@@ -29,6 +29,23 @@ constexpr std::array<FilterInfo, 4> kTable{{
     {"none", "None", "The scan as the scanner gave it.", FilterKind::None},
 }};
 
+/// Ranges and states as set_ok() and set_free() make them, in two passes that vectorise. `filtered`
+/// may be the ranges of `out`.
+void set_states(std::span<const double> filtered, LaserScan& out) {
+  const double range_max = out.range_max;
+  double* const ranges = out.ranges.data();
+  for (std::size_t i = 0; i < filtered.size(); ++i) {
+    ranges[i] = filtered[i] < range_max ? filtered[i] : range_max;
+  }
+  Beam* const __restrict status = out.status.data();
+  BeamCode* const __restrict codes = out.codes.data();
+  for (std::size_t i = 0; i < filtered.size(); ++i) {
+    const bool ok = ranges[i] < range_max;
+    status[i] = ok ? Beam::Ok : Beam::Free;
+    codes[i] = ok ? BeamCode::None : BeamCode::BeyondRange;
+  }
+}
+
 }  // namespace
 
 std::span<const FilterInfo> filter_table() {
@@ -54,7 +71,7 @@ void ScanFilter::apply(FilterKind kind, int half_width, const LaserScan& in, Las
   if (believe(in)) {
     filter_all(half_width == 0 ? FilterKind::None : kind, half_width, out);
   } else {
-    filter_believed(half_width == 0 ? FilterKind::None : kind, half_width, out);
+    filter_believed(half_width == 0 ? FilterKind::None : kind, half_width, in, out);
   }
 }
 
@@ -65,21 +82,27 @@ bool ScanFilter::believe(const LaserScan& in) {
   values_.resize(n);
   believed_.resize(n);
   const double range_max = in.range_max;
-  const unsigned sound = std::isfinite(range_max) ? 1 : 0;
   // Restricted: bytes may be part of anything, so that each store would make all be read again.
   const double* const ranges = in.ranges.data();
   const Beam* const status = in.status.data();
   double* const __restrict values = values_.data();
   std::uint8_t* const __restrict believed = believed_.data();
   for (std::size_t i = 0; i < n; ++i) {
-    const double value = status[i] == Beam::Ok ? ranges[i] : range_max;
-    // A comparison that a NaN fails as well; an infinite range is no reading either.
-    const bool finite = std::abs(value) <= std::numeric_limits<double>::max();
-    values[i] = finite ? value : 0.0;
-    believed[i] = static_cast<std::uint8_t>(sound & static_cast<unsigned>(finite) &
-                                            static_cast<unsigned>(status[i] != Beam::Invalid));
+    const double range = ranges[i];
+    values[i] = status[i] == Beam::Ok ? range : range_max;
   }
+  for (std::size_t i = 0; i < n; ++i) believed[i] = status[i] != Beam::Invalid ? 1 : 0;
+  if (!std::isfinite(range_max) || !all_finite(values_)) disbelieve(range_max);
   return n == 0 || std::memchr(believed, 0, n) == nullptr;
+}
+
+/// Takes the belief from beams that are no finite number; without a finite range_max, from all.
+void ScanFilter::disbelieve(double range_max) {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    const bool finite = std::isfinite(values_[i]);
+    if (!finite) values_[i] = 0;
+    if (!finite || !std::isfinite(range_max)) believed_[i] = 0;
+  }
 }
 
 /// The usual case: every beam is believed.
@@ -99,17 +122,13 @@ void ScanFilter::filter_all(FilterKind kind, int half_width, LaserScan& out) {
       lulu(values_, half_width, Border::Replicate, scratch_, ranges);
       break;
   }
-  // As set_ok() and set_free() do, without a branch.
-  const double range_max = out.range_max;
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const bool ok = ranges[i] < range_max;
-    ranges[i] = ok ? ranges[i] : range_max;
-    out.status[i] = ok ? Beam::Ok : Beam::Free;
-    out.codes[i] = ok ? BeamCode::None : BeamCode::BeyondRange;
-  }
+  set_states(ranges, out);
 }
 
-void ScanFilter::filter_believed(FilterKind kind, int half_width, LaserScan& out) {
+void ScanFilter::filter_believed(FilterKind kind,
+                                 int half_width,
+                                 const LaserScan& in,
+                                 LaserScan& out) {
   const std::span<double> filtered(values_);
   out_believed_.assign(believed_.begin(), believed_.end());
   switch (kind) {
@@ -125,23 +144,14 @@ void ScanFilter::filter_believed(FilterKind kind, int half_width, LaserScan& out
       lulu(values_, believed_, half_width, scratch_, filtered, out_believed_);
       break;
   }
-  // Nearly all are believed: first those as set_ok() and set_free() do, without a branch.
-  const double range_max = out.range_max;
+  // Nearly all are believed: first as if all were.
+  set_states(filtered, out);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const bool believed = out_believed_[i] != 0;
-    const bool ok = filtered[i] < range_max;
-    const double range = ok ? filtered[i] : range_max;
-    const Beam state = ok ? Beam::Ok : Beam::Free;
-    const BeamCode code = ok ? BeamCode::None : BeamCode::BeyondRange;
-    out.ranges[i] = believed ? range : out.ranges[i];
-    out.status[i] = believed ? state : out.status[i];
-    out.codes[i] = believed ? code : out.codes[i];
-  }
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (out_believed_[i] != 0 || out.status[i] == Beam::Invalid) continue;
-    const double kept = out.ranges[i];
-    out.set_invalid(i, BeamCode::Unknown);
-    if (std::isfinite(kept)) out.ranges[i] = kept;
+    if (out_believed_[i] != 0) continue;
+    const double kept = in.ranges[i];
+    const bool told = in.status[i] != Beam::Invalid;
+    out.set_invalid(i, told ? BeamCode::Unknown : in.codes[i]);
+    if (!told || std::isfinite(kept)) out.ranges[i] = kept;
   }
 }
 

@@ -43,8 +43,9 @@ class ScanFilter {
 
  private:
   bool believe(const LaserScan& in);
+  void disbelieve(double range_max);
   void filter_all(FilterKind kind, int half_width, LaserScan& out);
-  void filter_believed(FilterKind kind, int half_width, LaserScan& out);
+  void filter_believed(FilterKind kind, int half_width, const LaserScan& in, LaserScan& out);
 
   FilterScratch scratch_{};
   std::vector<double> values_{};

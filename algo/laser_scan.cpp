@@ -1,4 +1,4 @@
-// algo/laser_scan.cpp: a whole scan as its wire values, written so that it vectorises.
+// algo/laser_scan.cpp: a whole scan at once, written so that it vectorises.
 #include "algo/laser_scan.hpp"
 
 #include <algorithm>
@@ -21,6 +21,13 @@ void ranges_to_wire(const double* ranges, std::size_t count, std::uint16_t* out)
 }
 
 }  // namespace
+
+/// x - x is 0 for a finite number and otherwise none; Eigen adds that up in vectors.
+bool all_finite(std::span<const double> numbers) {
+  const Eigen::Map<const Eigen::ArrayXd> x(numbers.data(),
+                                           static_cast<Eigen::Index>(numbers.size()));
+  return (x - x).sum() == 0;
+}
 
 void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out) {
   ranges_to_wire(scan.ranges.data(), scan.size(), out.data());

@@ -73,6 +73,9 @@ struct LaserScan {
   }
 };
 
+/// No infinity and no NaN among them; quick, for all ranges of a scan.
+bool all_finite(std::span<const double> numbers);
+
 // A beam on the wire and in the record: one uint16. Measured values are clipped below the codes.
 constexpr std::uint16_t kWireFree = 65535;
 constexpr std::uint16_t kWireCodeBase = 65519;  // + BeamCode (1..15) = 65520..65534
