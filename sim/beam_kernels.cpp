@@ -1,18 +1,10 @@
 // sim/beam_kernels.cpp: straight loops without branches, which g++ 12 vectorises at -O3.
-//
-// Where the loader can choose, each is compiled for plain x86-64 and for wider vectors. Both give
-// the same bits: no operation is fused (-ffp-contract=off) and none depends on the width.
 #include "sim/beam_kernels.hpp"
 
 #include <cmath>
 #include <limits>
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define TAUTLINE_WIDE __attribute__((target_clones("default", "arch=x86-64-v3")))
-#else
-#define TAUTLINE_WIDE
-#endif
+#include "sim/wide.hpp"
 
 namespace sim {
 namespace {

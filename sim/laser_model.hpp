@@ -60,7 +60,7 @@ class LaserModel {
                       std::span<std::uint32_t> hits) const;
   void mix_pixels();
   void mark_edges();
-  void mix(std::size_t beam, std::size_t first_more);
+  void judge();
   void report(algo::LaserScan& scan);
   void spoil(algo::LaserScan& scan);
 
@@ -97,6 +97,8 @@ class LaserModel {
   std::vector<std::uint32_t> first_{};
   std::vector<double> more_ranges_{};
   std::vector<std::uint32_t> more_hits_{};
+  std::vector<double> spot_ranges_{};  // kSpotRays rows, as judge_spots() has them
+  std::vector<std::uint32_t> spot_hits_{};
 };
 
 }  // namespace sim

@@ -6,6 +6,7 @@
 
 #include "algo/units.hpp"
 #include "sim/laser_model.hpp"
+#include "sim/spot_kernel.hpp"
 
 namespace sim {
 namespace {
@@ -15,7 +16,8 @@ using namespace algo::units;
 // The spot: 8 mm wide at the window, spreading by half a degree. Sub-rays lie evenly across it.
 constexpr double kSpotHalfWidth = 4_mm;
 constexpr double kSpotHalfAngle = 0.25_deg;
-constexpr std::array<double, 4> kSubRays{-1, -0.5, 0.5, 1};  // besides the one in the centre
+constexpr std::array<double, kSpotRays - 1> kSubRays{
+    -1, -0.5, 0.5, 1};  // besides the one in the centre
 
 constexpr double kJump = 20_mm;          // between neighbours that may share an edge
 constexpr double kMixedGap = 1.2;        // [m] surfaces farther apart are not mixed
@@ -117,69 +119,35 @@ void LaserModel::mix_pixels() {
 
   caster_.cast_more(more_, first_, config_.range_max, more_ranges_, more_hits_);
   if (config_.reflectivity && !plain_) apply_surfaces(more_, more_ranges_, more_hits_);
-  for (std::size_t k = 0; k < edges_.size(); ++k) mix(edges_[k], k * kSubRays.size());
+  judge();
 }
 
-/// One reading from the sub-rays of `beam`: split at the widest gap into a near and a far surface
-/// with the shares f and 1 - f. Surfaces closer together than 1.2 m give f near + (1 - f) far, a
-/// value in mid-air; else the nearer one is reported if it has 0.3 of the spot.
-void LaserModel::mix(std::size_t beam, std::size_t first_more) {
-  struct Echo {
-    double range = 0;
-    std::uint32_t hit = 0;
-  };
-  constexpr std::size_t kRays = kSubRays.size() + 1;
-  std::array<Echo, kRays> rays{};
-  for (std::size_t k = 0; k < kSubRays.size(); ++k) {
-    rays[k] = {more_ranges_[first_more + k], more_hits_[first_more + k]};
-  }
-  rays.back() = {ranges_[beam], hits_[beam]};
-  const auto [nearest, farthest] =
-      std::minmax({rays[0].range, rays[1].range, rays[2].range, rays[3].range, rays[4].range});
-  static_assert(kRays == 5);
-  if (!(farthest - nearest > kJump)) return;  // no gap can be wider
-  // Sorted by counting who is farther: which one is, is not predictable. Equals keep their order.
-  std::array<std::size_t, kRays> place{};
-  for (std::size_t a = 0; a < kRays; ++a) {
-    for (std::size_t b = a + 1; b < kRays; ++b) {
-      const std::size_t swapped = rays[b].range < rays[a].range ? 1 : 0;
-      place[a] += swapped;
-      place[b] += 1 - swapped;
+/// Replaces the ranges of the beams at edges by what their whole spots give.
+void LaserModel::judge() {
+  const std::size_t spots = edges_.size();
+  spot_ranges_.resize(spots * kSpotRays);
+  spot_hits_.resize(spots * kSpotRays);
+  double* const own = spot_ranges_.data() + kSubRays.size() * spots;
+  std::uint32_t* const own_hits = spot_hits_.data() + kSubRays.size() * spots;
+  for (std::size_t i = 0; i < spots; ++i) {
+    for (std::size_t k = 0; k < kSubRays.size(); ++k) {
+      spot_ranges_[k * spots + i] = more_ranges_[i * kSubRays.size() + k];
+      spot_hits_[k * spots + i] = more_hits_[i * kSubRays.size() + k];
     }
+    own[i] = ranges_[edges_[i]];
+    own_hits[i] = hits_[edges_[i]];
   }
-  std::array<Echo, kRays> echoes{};
-  for (std::size_t k = 0; k < kRays; ++k) echoes[place[k]] = rays[k];
-  std::size_t near_count = 0;
-  double widest = kJump;
-  for (std::size_t k = 1; k < kRays; ++k) {
-    const double gap = echoes[k].range - echoes[k - 1].range;
-    if (gap > widest) {
-      widest = gap;
-      near_count = k;
-    }
-  }
-  if (near_count == 0) return;  // one surface fills the spot
-  // A spot may reach over a third surface still farther away; it does not enter the mean.
-  const auto mean = [&echoes](std::size_t from, std::size_t to) {
-    double sum = 0;
-    double count = 0;
-    for (std::size_t k = from; k < to && echoes[k].range < echoes[from].range + kMixedGap; ++k) {
-      sum += echoes[k].range;
-      count += 1;
-    }
-    return sum / count;
-  };
-  const double near = mean(0, near_count);
-  const double far = mean(near_count, kRays);
-  const double share = static_cast<double>(near_count) / kRays;
-  const bool far_returns = echoes[near_count].hit < kNoEcho;
-  if (far_returns && far - near < kMixedGap) {
-    ranges_[beam] = share * near + (1 - share) * far;
-    hits_[beam] = echoes.front().hit;
-  } else {
-    const bool near_wins = share >= kNearShareToWin;
-    ranges_[beam] = near_wins ? near : far_returns ? far : config_.range_max;
-    hits_[beam] = near_wins ? echoes.front().hit : echoes[near_count].hit;
+  judge_spots({.jump = kJump,
+               .mixed_gap = kMixedGap,
+               .near_share_to_win = kNearShareToWin,
+               .range_max = config_.range_max,
+               .no_echo = kNoEcho},
+              spots,
+              spot_ranges_.data(),
+              spot_hits_.data());
+  for (std::size_t i = 0; i < spots; ++i) {
+    ranges_[edges_[i]] = own[i];
+    hits_[edges_[i]] = own_hits[i];
   }
 }
 

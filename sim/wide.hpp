@@ -1,0 +1,12 @@
+// sim/wide.hpp: marks a loop to be compiled for plain x86-64 and for wider vectors.
+//
+// The loader chooses, where it can. Both give the same bits: no operation is fused
+// (-ffp-contract=off) and none depends on the width.
+#pragma once
+
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define TAUTLINE_WIDE __attribute__((target_clones("default", "arch=x86-64-v3")))
+#else
+#define TAUTLINE_WIDE
+#endif
