@@ -70,8 +70,8 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
   draws_.resize(beams);
   turns_.resize(beams);
   first_.resize(beams + 1);
-  edge_flags_.resize(beams + sizeof(std::uint64_t));  // read in words
-  edges_.reserve(beams);
+  edge_flags_.resize(beams);  // the last stays 0
+  edges_.resize(beams);
 }
 
 double LaserModel::memory() const {

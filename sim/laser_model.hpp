@@ -77,6 +77,8 @@ class LaserModel {
   double phase_ = 0;             // [s] run-clock time at which the first turn begins
   std::uint64_t delivered_ = 0;  // sweeps
 
+  std::size_t spots_ = 0;
+
   // Tables and workspace, one entry a beam unless said otherwise.
   std::vector<double> fired_{};  // [s] after the sweep's start, one mirror turn after another
   std::vector<double> at_{};     // the same in physics steps since the oldest of motion_
@@ -92,9 +94,9 @@ class LaserModel {
   std::vector<double> draws_{};
   std::vector<double> turns_{};  // [rad] of the scanner off the reference when a beam leaves
   std::vector<std::uint8_t> edge_flags_{};  // between a beam and the next
-  std::vector<std::uint32_t> edges_{};      // beams whose spot may lie on an edge
+  std::vector<std::uint32_t> edges_{};      // beams whose spot may lie on an edge, spots_ of them
   Rays more_{};                             // kSubRays - 1 rays for each of them
-  std::vector<std::uint32_t> first_{};
+  std::vector<std::uint32_t> first_{};      // of those rays, for each beam
   std::vector<double> more_ranges_{};
   std::vector<std::uint32_t> more_hits_{};
   std::vector<double> spot_ranges_{};  // kSpotRays rows, as judge_spots() has them

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
+#include <span>
 
 #include "algo/units.hpp"
 #include "sim/laser_model.hpp"
@@ -73,28 +73,30 @@ void LaserModel::apply_surfaces(const Rays& rays,
 }
 
 /// Notes the beams at an edge: next to one that met something else at another distance. Two beams
-/// on one (convex) obstacle have no edge between them, however steeply it recedes.
+/// on one (convex) obstacle have no edge between them, however steeply it recedes. Every beam is
+/// written down and only those at an edge are counted, as which are is not predictable.
 void LaserModel::mark_edges() {
-  edges_.clear();
   flag_edges(ranges_.data(), hits_.data(), ranges_.size(), kJump, edge_flags_.data());
-  // Few are: eight are looked at together.
-  constexpr std::uint32_t kTogether = sizeof(std::uint64_t);
-  for (std::uint32_t first = 0; first + 1 < ranges_.size(); first += kTogether) {
-    std::uint64_t together = 0;
-    std::memcpy(&together, edge_flags_.data() + first, kTogether);
-    if (together == 0) continue;
-    for (std::uint32_t i = first; i < first + kTogether && i + 1 < ranges_.size(); ++i) {
-      if (edge_flags_[i] == 0) continue;
-      if (edges_.empty() || edges_.back() != i) edges_.push_back(i);
-      edges_.push_back(i + 1);
-    }
+  std::uint32_t* const edges = edges_.data();
+  std::uint32_t* const first = first_.data();
+  const std::uint8_t* const flags = edge_flags_.data();
+  const auto beams = static_cast<std::uint32_t>(ranges_.size());
+  std::uint32_t count = 0;
+  unsigned before = 0;
+  for (std::uint32_t i = 0; i < beams; ++i) {
+    edges[count] = i;
+    first[i] = count * kSubRays.size();
+    count += before | flags[i];
+    before = flags[i];
   }
+  first[beams] = count * kSubRays.size();
+  spots_ = count;
 }
 
 /// Casts the sub-rays of the beams at edges and replaces their ranges by what the whole spot gives.
 void LaserModel::mix_pixels() {
-  if (edges_.empty()) return;
-  more_.resize(edges_.size() * kSubRays.size());
+  if (spots_ == 0) return;
+  more_.resize(spots_ * kSubRays.size());
   more_ranges_.resize(more_.size());
   more_hits_.resize(more_.size());
   std::array<algo::Vec2, kSubRays.size()> turn{};
@@ -102,9 +104,7 @@ void LaserModel::mix_pixels() {
     turn[k] = algo::direction(kSubRays[k] * kSpotHalfAngle);
   }
   std::size_t ray = 0;
-  std::size_t beam = 0;
-  for (const std::uint32_t edge : edges_) {
-    while (beam <= edge) first_[beam++] = static_cast<std::uint32_t>(ray);
+  for (const std::uint32_t edge : std::span(edges_).first(spots_)) {
     const double ux = rays_.ux[edge];
     const double uy = rays_.uy[edge];
     for (std::size_t k = 0; k < turn.size(); ++k, ++ray) {
@@ -115,7 +115,6 @@ void LaserModel::mix_pixels() {
       more_.uy[ray] = turn[k].y() * ux + turn[k].x() * uy;
     }
   }
-  while (beam < first_.size()) first_[beam++] = static_cast<std::uint32_t>(ray);
 
   caster_.cast_more(more_, first_, config_.range_max, more_ranges_, more_hits_);
   if (config_.reflectivity && !plain_) apply_surfaces(more_, more_ranges_, more_hits_);
@@ -124,7 +123,7 @@ void LaserModel::mix_pixels() {
 
 /// Replaces the ranges of the beams at edges by what their whole spots give.
 void LaserModel::judge() {
-  const std::size_t spots = edges_.size();
+  const std::size_t spots = spots_;
   spot_ranges_.resize(spots * kSpotRays);
   spot_hits_.resize(spots * kSpotRays);
   double* const own = spot_ranges_.data() + kSubRays.size() * spots;
