@@ -28,7 +28,8 @@ constexpr double kLayerArea = 9.91256303526217e-3;
 
 struct Layers {
   std::array<double, kLayers + 1> edge{};
-  std::array<double, kLayers> safe{};  // edge[i + 1] / edge[i]
+  std::array<double, kLayers> safe{};        // edge[i + 1] / edge[i]
+  std::array<double, kLayers + 1> height{};  // of the density at each edge
 };
 
 double density(double x) {
@@ -45,6 +46,7 @@ Layers make_layers() {
   }
   t.edge[kLayers] = 0;
   for (std::size_t i = 0; i < kLayers; ++i) t.safe[i] = t.edge[i + 1] / t.edge[i];
+  for (std::size_t i = 0; i <= kLayers; ++i) t.height[i] = density(t.edge[i]);
   return t;
 }
 
@@ -89,8 +91,8 @@ inline double Random::normal() {
       }
     }
     const double x = u * kTable.edge[layer];
-    const double low = density(kTable.edge[layer]);
-    const double high = density(kTable.edge[layer + 1]);
+    const double low = kTable.height[layer];
+    const double high = kTable.height[layer + 1];
     if (low + uniform() * (high - low) < density(x)) return x;
   }
 }
