@@ -25,6 +25,13 @@ const LaserConfig& checked(const LaserConfig& config, std::uint32_t index) {
   return config;
 }
 
+/// The scanner at `mount_R` when the robot is at `robot_W`; right over its centre no sine is
+/// needed.
+algo::Pose2 scanner_W(const algo::Pose2& robot_W, const algo::Pose2& mount_R) {
+  if (mount_R.x != 0 || mount_R.y != 0) return algo::compose(robot_W, mount_R);
+  return {robot_W.x, robot_W.y, algo::wrap_angle(robot_W.heading + mount_R.heading)};
+}
+
 }  // namespace
 
 LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index)
@@ -149,7 +156,7 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
   motion_.clear();
   RaySpread spread;
   for (std::size_t age = oldest; age + 1 > youngest; --age) {
-    const algo::Pose2 pose_W = algo::compose(trail.back(age), config_.mount_R);
+    const algo::Pose2 pose_W = scanner_W(trail.back(age), config_.mount_R);
     const double dx = pose_W.x - reference_W_.x;
     const double dy = pose_W.y - reference_W_.y;
     motion_.push_back({c * dx + s * dy,
