@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 #include <string>
 
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
-#include "db/turned_scan.hpp"
+#include "db/sweeps.hpp"
 
 namespace db {
 
@@ -26,12 +25,6 @@ std::span<const std::byte> part(std::span<const std::byte> frame, const Window& 
   return frame.subspan(window.offset, window.count * width_of(window));
 }
 
-std::uint16_t folded_difference(std::span<const std::byte> window,
-                                std::size_t i,
-                                std::uint16_t expected) {
-  return fold16(static_cast<std::uint16_t>(load<std::uint16_t>(window, i) - expected));
-}
-
 /// Bits left by predicting floats so: the size they will have, near enough to choose by.
 std::size_t cost(std::span<const std::byte> window,
                  std::span<const std::byte> reference,
@@ -44,37 +37,6 @@ std::size_t cost(std::span<const std::byte> window,
     bits += static_cast<std::size_t>(std::bit_width(fold32(difference)));
   }
   return bits;
-}
-
-/// Samples from their left neighbours or from the reference, turned as fits best.
-void write_samples(std::span<const std::byte> window,
-                   std::span<const std::byte> reference,
-                   std::size_t count,
-                   TurnedScan& turned,
-                   Streams& streams) {
-  std::optional<Turn> turn{};
-  std::span<const std::uint16_t> expected{};
-  if (!reference.empty()) {
-    turned.set_reference(reference);
-    turn = turned.find(window);
-  }
-  const Choice choice = turn ? Choice::Reference : Choice::Within;
-  streams[kLayout].push_back(static_cast<std::uint8_t>(choice));
-  if (turn) {
-    append_bytes(streams[kLayout], std::as_bytes(std::span(*turn)));
-    expected = turned.expect(*turn);
-  }
-  auto& low = streams[kLow];
-  auto& high = streams[kHigh];
-  const std::size_t start = low.size();
-  low.resize(start + count);
-  high.resize(start + count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t folded =
-        folded_difference(window, i, turn ? expected[i] : left_of(window, i));
-    low[start + i] = static_cast<std::uint8_t>(folded & 0xFFU);
-    high[start + i] = static_cast<std::uint8_t>(folded >> 8U);
-  }
 }
 
 void write_floats(std::span<const std::byte> window,
@@ -101,10 +63,15 @@ void write_floats(std::span<const std::byte> window,
 
 }  // namespace
 
-BlockEncoder::BlockEncoder() : turned_(new TurnedScan), compressor_(new Compressor) {}
+BlockEncoder::BlockEncoder() : sweeps_(new Sweeps), compressor_(new Compressor) {}
 
 void BlockEncoder::clear() {
   table_.clear();
+  for (auto& stream : streams_) stream.clear();
+  references_.clear();
+  rest_.clear();
+  rest_starts_.assign(1, 0);
+  sweeps_->clear();
 }
 
 bool BlockEncoder::fits(std::size_t bytes) const {
@@ -165,8 +132,8 @@ void BlockEncoder::encode_frame(std::size_t i) {
     for (const Window& window : windows) put_window(layout, window);
   }
 
-  rest_starts_.push_back(rest_.size());
   std::size_t done = 0;
+  std::size_t sweep = 0;
   for (std::size_t k = 0; k < windows.size(); ++k) {
     const Window& window = windows[k];
     append_bytes(rest_, frame.subspan(done, window.offset - done));
@@ -175,49 +142,35 @@ void BlockEncoder::encode_frame(std::size_t i) {
     const auto there =
         distance == 0 ? std::span<const std::byte>{} : part(reference, reference_windows[k]);
     if (window.kind == Window::Kind::Samples) {
-      write_samples(here, there, window.count, *turned_, streams_);
+      sweeps_->write(sweep++, here, window.per_half_turn, streams_);
     } else {
       write_floats(here, there, window, streams_);
     }
   }
   append_bytes(rest_, frame.subspan(done));
+  rest_starts_.push_back(rest_.size());
 }
 
 void BlockEncoder::write_rest() {
-  const auto start = [&](std::size_t i) { return rest_starts_[i]; };
-  const auto size = [&](std::size_t i) { return rest_starts_[i + 1] - rest_starts_[i]; };
-  std::size_t longest = 0;
-  // Last frame first: a reference is earlier, so it still holds its bytes when it is taken away.
-  for (std::size_t i = frames(); i-- > 0;) {
-    longest = std::max(longest, size(i));
-    if (references_[i] == 0) continue;
-    const std::size_t from = i - references_[i];
-    const std::size_t common = std::min(size(i), size(from));
-    for (std::size_t k = 0; k < common; ++k) {
-      rest_[start(i) + k] = static_cast<std::uint8_t>(rest_[start(i) + k] - rest_[start(from) + k]);
-    }
-  }
   auto& out = streams_[kRest];
+  out.clear();
   out.reserve(rest_.size());
-  for (std::size_t k = 0; k < longest; ++k) {
-    for (std::size_t i = 0; i < frames(); ++i) {
-      if (k < size(i)) out.push_back(rest_[start(i) + k]);
-    }
-  }
+  rest_order_.set(rest_starts_, kFormatVersion);
+  rest_order_.walk([&](std::size_t i, std::size_t k) {
+    const std::size_t from = i - references_[i];
+    const bool predicted = references_[i] != 0 && k < rest_starts_[from + 1] - rest_starts_[from];
+    const unsigned before = predicted ? rest_[rest_starts_[from] + k] : 0U;
+    out.push_back(static_cast<std::uint8_t>(rest_[rest_starts_[i] + k] - before));
+  });
 }
 
 std::span<const std::byte> BlockEncoder::encode() {
   if (frames() == 0) throw CodecError("a block without frames cannot be packed");
-  for (auto& stream : streams_) stream.clear();
-  references_.clear();
-  rest_.clear();
-  rest_starts_.clear();
-  for (std::size_t i = 0; i < frames(); ++i) encode_frame(i);
-  rest_starts_.push_back(rest_.size());
+  for (std::size_t i = references_.size(); i < frames(); ++i) encode_frame(i);
   write_rest();
 
   packed_.clear();
-  put_header(packed_, {frames(), bytes(), check_of(table_)});
+  put_header(packed_, {.frames = frames(), .bytes = bytes(), .check = check_of(table_)});
   for (const auto& stream : streams_) compressor_->append(packed_, stream);
   return packed_;
 }

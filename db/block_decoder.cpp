@@ -6,6 +6,7 @@
 #include "db/block_codec.hpp"
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
+#include "db/sweeps.hpp"
 #include "db/turned_scan.hpp"
 
 namespace db {
@@ -18,40 +19,40 @@ std::size_t bytes_of(const Window& window) {
   return std::size_t{window.count} * (window.kind == Window::Kind::Samples ? 2U : 4U);
 }
 
-/// Positions in the window streams, moved on as windows are read.
-struct Position {
-  std::size_t sample = 0;
-  std::size_t number = 0;
-};
+/// Samples as format 2 has them: from their left neighbours, or from the reference as it was
+/// turned.
+void read_old_samples(std::span<std::byte> window,
+                      std::span<const std::byte> reference,
+                      const std::array<std::uint8_t, 3>& how,
+                      TurnedScan& turned,
+                      const Streams& streams,
+                      std::size_t& at) {
+  const bool from_reference = how[0] == static_cast<std::uint8_t>(Choice::Reference);
+  std::span<const std::uint16_t> expected{};
+  if (from_reference) {
+    turned.set_reference(reference);
+    expected = turned.expect({how[1], how[2]});
+  }
+  for (std::size_t i = 0; i < window.size() / sizeof(std::uint16_t); ++i, ++at) {
+    const unsigned folded = streams[kLow[0]][at] | (streams[kHigh[0]][at] * 256U);
+    const unsigned before = from_reference ? expected[i] : left_of(window, i);
+    store(window,
+          i,
+          static_cast<std::uint16_t>(unfold16(static_cast<std::uint16_t>(folded)) + before));
+  }
+}
 
-void read_window(std::span<std::byte> window,
+void read_floats(std::span<std::byte> window,
                  std::span<const std::byte> reference,
                  const Window& shape,
-                 const std::array<std::uint8_t, 3>& how,
-                 TurnedScan& turned,
+                 Choice choice,
                  const Streams& streams,
-                 Position& at) {
-  const auto choice = static_cast<Choice>(how[0]);
-  if (shape.kind == Window::Kind::Samples) {
-    std::span<const std::uint16_t> expected{};
-    if (choice == Choice::Reference) {
-      turned.set_reference(reference);
-      expected = turned.expect({how[1], how[2]});
-    }
-    for (std::size_t i = 0; i < shape.count; ++i, ++at.sample) {
-      const unsigned folded = streams[kLow][at.sample] | (streams[kHigh][at.sample] * 256U);
-      const unsigned before = choice == Choice::Reference ? expected[i] : left_of(window, i);
-      store(window,
-            i,
-            static_cast<std::uint16_t>(unfold16(static_cast<std::uint16_t>(folded)) + before));
-    }
-    return;
-  }
+                 std::size_t& at) {
   for (std::size_t field = 0; field < shape.stride; ++field) {
-    for (std::size_t i = field; i < shape.count; i += shape.stride, ++at.number) {
+    for (std::size_t i = field; i < shape.count; i += shape.stride, ++at) {
       std::uint32_t folded = 0;
       for (std::size_t byte = 0; byte < 4; ++byte) {
-        folded |= std::uint32_t{streams[kFloat0 + byte][at.number]} << (8U * byte);
+        folded |= std::uint32_t{streams[kFloat0 + byte][at]} << (8U * byte);
       }
       store(
           window, i, unfold32(folded) + expected_float(window, reference, i, shape.stride, choice));
@@ -61,14 +62,18 @@ void read_window(std::span<std::byte> window,
 
 }  // namespace
 
-BlockDecoder::BlockDecoder() : turned_(new TurnedScan), decompressor_(new Decompressor) {}
+BlockDecoder::BlockDecoder()
+    : sweeps_(new Sweeps), turned_(new TurnedScan), decompressor_(new Decompressor) {}
 
 void BlockDecoder::decode(std::span<const std::byte> block) {
   table_.clear();
   try {
     Cursor cursor(block);
     const Header header = read_header(cursor);
-    for (auto& stream : streams_) read_stream(cursor, *decompressor_, stream);
+    format_ = header.version;
+    const std::size_t streams = format_ == kOldFormatVersion ? kOldStreams : kStreams;
+    for (std::size_t k = 0; k < streams; ++k) read_stream(cursor, *decompressor_, streams_[k]);
+    for (std::size_t k = streams; k < kStreams; ++k) streams_[k].clear();
     if (!cursor.at_end()) throw CodecError("the block is followed by other bytes");
     read_layout(header.frames, header.bytes);
     check_sizes();
@@ -115,7 +120,7 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   } else {
     count = listed - 1;
     if (count > kMaxFrameWindows) throw CodecError("a frame of the block has too many windows");
-    for (std::size_t k = 0; k < count; ++k) windows[k] = layout.window();
+    for (std::size_t k = 0; k < count; ++k) windows[k] = layout.window(format_);
   }
   const std::span<const Window> used(windows.data(), count);
   if (const char* wrong = window_defect(used, size)) {
@@ -123,23 +128,28 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   }
   std::size_t in_windows = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const std::uint8_t choice = layout.byte();
-    if (choice > static_cast<std::uint8_t>(Choice::Reference) || (choice != 0 && distance == 0)) {
-      throw CodecError("a window of the block is predicted in an unknown way");
-    }
-    choices_.push_back({choice, kNotTurned, kNotTurned});
-    if (choice != 0 && used[k].kind == Window::Kind::Samples) {
-      for (std::size_t parity = 1; parity <= 2; ++parity) {
-        choices_.back()[parity] = layout.byte();
-        if (choices_.back()[parity] > kMostTurned) {
-          throw CodecError("a window of the block is turned too far");
-        }
-      }
-    }
+    read_choice(layout, used[k], distance != 0);
     in_windows += bytes_of(used[k]);
   }
   rest_starts_.push_back(rest_starts_.back() + size - in_windows);
   table_.append(size, used);
+}
+
+/// How a window is predicted; samples tell it in a stream of their own since format 3.
+void BlockDecoder::read_choice(Cursor& layout, const Window& window, bool has_reference) {
+  choices_.push_back({0, kNotTurned, kNotTurned});
+  const bool samples = window.kind == Window::Kind::Samples;
+  if (samples && format_ != kOldFormatVersion) return;
+  auto& how = choices_.back();
+  how[0] = layout.byte();
+  if (how[0] > static_cast<std::uint8_t>(Choice::Reference) || (how[0] != 0 && !has_reference)) {
+    throw CodecError("a window of the block is predicted in an unknown way");
+  }
+  if (how[0] == 0 || !samples) return;
+  for (std::size_t parity = 1; parity <= 2; ++parity) {
+    how[parity] = layout.byte();
+    if (how[parity] > kMostTurned) throw CodecError("a window of the block is turned too far");
+  }
 }
 
 void BlockDecoder::check_sizes() const {
@@ -151,7 +161,13 @@ void BlockDecoder::check_sizes() const {
   const bool floats_fit = std::all_of(streams_.begin() + kFloat0,
                                       streams_.begin() + kFloat0 + 4,
                                       [&](const auto& s) { return s.size() == numbers; });
-  if (streams_[kLow].size() != samples || streams_[kHigh].size() != samples || !floats_fit ||
+  std::size_t residuals = 0;
+  bool samples_fit = true;
+  for (std::size_t kind = 0; kind < kClasses; ++kind) {
+    residuals += streams_[kLow[kind]].size();
+    samples_fit = samples_fit && streams_[kLow[kind]].size() == streams_[kHigh[kind]].size();
+  }
+  if (residuals != samples || !samples_fit || !floats_fit ||
       streams_[kRest].size() != rest_starts_.back()) {
     throw CodecError("the block's streams do not match its layout");
   }
@@ -171,27 +187,32 @@ void BlockDecoder::check_sizes() const {
 }
 
 void BlockDecoder::read_rest() {
-  const auto start = [&](std::size_t i) { return rest_starts_[i]; };
-  const auto size = [&](std::size_t i) { return rest_starts_[i + 1] - rest_starts_[i]; };
-  const std::size_t frames = table_.entries.size();
-  std::size_t longest = 0;
-  for (std::size_t i = 0; i < frames; ++i) longest = std::max(longest, size(i));
   rest_.resize(rest_starts_.back());
+  rest_order_.set(rest_starts_, format_);
   const std::uint8_t* next = streams_[kRest].data();
-  for (std::size_t k = 0; k < longest; ++k) {
-    for (std::size_t i = 0; i < frames; ++i) {
-      if (k >= size(i)) continue;
-      const std::size_t from = i - references_[i];
-      const bool predicted = references_[i] != 0 && k < size(from);
-      const unsigned before = predicted ? rest_[start(from) + k] : 0U;
-      rest_[start(i) + k] = static_cast<std::uint8_t>(*next++ + before);
+  std::uint8_t* const bytes = rest_.data();
+  const std::size_t* const starts = rest_starts_.data();
+  rest_order_.walk([&](std::size_t i, std::size_t k) { bytes[starts[i] + k] = *next++; });
+  // A reference is earlier, so it is complete when it is added.
+  const auto bytes_of_frame = [&](std::size_t i) {
+    return std::span(rest_).subspan(rest_starts_[i], rest_starts_[i + 1] - rest_starts_[i]);
+  };
+  for (std::size_t i = 0; i < references_.size(); ++i) {
+    if (references_[i] == 0) continue;
+    const auto here = bytes_of_frame(i);
+    const auto there = bytes_of_frame(i - references_[i]);
+    for (std::size_t k = 0; k < std::min(here.size(), there.size()); ++k) {
+      here[k] = static_cast<std::uint8_t>(here[k] + there[k]);
     }
   }
 }
 
 void BlockDecoder::fill_frames() {
-  Position at{};
+  std::size_t number = 0;  // of the floats
+  std::size_t sample = 0;  // in format 2
   std::size_t choice = 0;
+  sweeps_->clear();
+  Cursor motions(std::as_bytes(std::span(streams_[kMotion])));
   for (std::size_t i = 0; i < table_.entries.size(); ++i) {
     const auto frame = table_.frame(i);
     const auto windows = table_.windows_of(i);
@@ -200,6 +221,7 @@ void BlockDecoder::fill_frames() {
     const auto rest = std::as_bytes(std::span(rest_)).subspan(rest_starts_[i]);
     std::size_t done = 0;
     std::size_t taken = 0;
+    std::size_t sweep = 0;
     const auto copy_rest = [&](std::size_t until) {
       std::ranges::copy(rest.subspan(taken, until - done),
                         frame.begin() + static_cast<std::ptrdiff_t>(done));
@@ -212,11 +234,20 @@ void BlockDecoder::fill_frames() {
       const auto there = how[0] == static_cast<std::uint8_t>(Choice::Reference)
                              ? reference.subspan(reference_windows[k].offset, here.size())
                              : std::span<const std::byte>{};
-      read_window(here, there, windows[k], how, *turned_, streams_, at);
+      if (windows[k].kind == Window::Kind::Floats) {
+        read_floats(here, there, windows[k], static_cast<Choice>(how[0]), streams_, number);
+      } else if (format_ == kOldFormatVersion) {
+        read_old_samples(here, there, how, *turned_, streams_, sample);
+      } else {
+        sweeps_->read(sweep++, here, windows[k].per_half_turn, streams_, motions);
+      }
       done = windows[k].offset + here.size();
     }
     copy_rest(frame.size());
   }
+  const bool all_used =
+      motions.at_end() && (format_ == kOldFormatVersion || sweeps_->at_end(streams_));
+  if (!all_used) throw CodecError("the block's streams do not match its layout");
 }
 
 }  // namespace db

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 
 // Where the loader can choose, each is compiled for plain x86-64 and for wider vectors.
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_ADDRESS__) && \
@@ -44,30 +43,6 @@ TAUTLINE_WIDE void move_on(const std::uint16_t* samples,
   }
 }
 
-/// How much samples differ, each by 255 at most, those of even and of odd number.
-TAUTLINE_WIDE void compare(const std::uint16_t* a,
-                           const std::uint16_t* b,
-                           std::size_t count,
-                           std::uint8_t* scratch,
-                           std::uint32_t* sums) {
-  std::uint8_t* __restrict differences = scratch;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t more = a[i] > b[i] ? a[i] : b[i];
-    const std::uint16_t less = a[i] > b[i] ? b[i] : a[i];
-    const auto size = static_cast<std::uint16_t>(more - less);
-    differences[i] = static_cast<std::uint8_t>(size < 255 ? size : 255);
-  }
-  std::uint32_t even = 0;
-  std::uint32_t odd = 0;
-  for (std::size_t i = 0; i + 1 < count; i += 2) {
-    even += differences[i];
-    odd += differences[i + 1];
-  }
-  if (count % 2 == 1) even += differences[count - 1];
-  sums[0] = even;
-  sums[1] = odd;
-}
-
 }  // namespace
 
 void TurnedScan::set_reference(std::span<const std::byte> samples) {
@@ -96,45 +71,6 @@ std::span<const std::uint16_t> TurnedScan::expect(const Turn& turn) {
   move_reference(turn[1], moved_);
   for (std::size_t i = 1; i < count_; i += 2) expected_[i] = moved_[i];
   return expected_;
-}
-
-void TurnedScan::try_turn(int turn) {
-  if (turn < 0 || turn > kMostTurned) return;
-  std::array<std::uint32_t, 2> sums{};
-  move_reference(static_cast<std::uint8_t>(turn), moved_);
-  compare(scan_.data(), moved_.data(), count_, differences_.data(), sums.data());
-  for (std::size_t parity = 0; parity < 2; ++parity) {
-    if (sums[parity] >= least_[parity]) continue;
-    least_[parity] = sums[parity];
-    best_[parity] = static_cast<std::uint8_t>(turn);
-  }
-}
-
-/// Tries turns `off` quarters to either side of the best of each parity.
-void TurnedScan::refine(int off) {
-  const Turn about = best_;
-  for (std::size_t parity = 0; parity < (about[0] == about[1] ? 1U : 2U); ++parity) {
-    try_turn(about[parity] - off);
-    try_turn(about[parity] + off);
-  }
-}
-
-std::optional<Turn> TurnedScan::find(std::span<const std::byte> samples) {
-  scan_.resize(count_);
-  differences_.resize(count_);
-  if (count_ > 0) std::memcpy(scan_.data(), samples.data(), count_ * sizeof(std::uint16_t));
-  best_ = {kNotTurned, kNotTurned};
-  least_.fill(std::numeric_limits<std::uint32_t>::max());
-  try_turn(kNotTurned);  // first: it wins where others are as good
-  for (int turn = 0; turn <= kMostTurned; turn += kQuarters) try_turn(turn);
-  refine(2);
-  refine(1);
-  std::array<std::uint32_t, 2> sums{};
-  if (count_ > 1) {
-    compare(scan_.data(), scan_.data() + 1, count_ - 1, differences_.data(), sums.data());
-  }
-  if (sums[0] + sums[1] <= least_[0] + least_[1]) return std::nullopt;
-  return best_;
 }
 
 }  // namespace db::detail

@@ -1,4 +1,5 @@
-// db/turned_scan.hpp: a scan predicted from an earlier one of a robot that has turned since.
+// db/turned_scan.hpp: a scan predicted from an earlier one of a robot that has turned since, as in
+// blocks of format 2, which are read but no longer written.
 //
 // Turning moves what is seen along the beams. A scanner with two interlaced mirror turns fires its
 // even and odd beams half a sweep apart, so the two move by different amounts. Where an amount is
@@ -8,7 +9,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,23 +29,14 @@ class TurnedScan {
   /// What is expected after `turn`, valid until the next call; beyond the reference's ends its last
   /// samples count. Both parts of `turn` are at most kMostTurned.
   std::span<const std::uint16_t> expect(const Turn& turn);
-  /// The turn after which the reference is most like `samples`, which are as many; near enough.
-  /// Nothing where every sample is more like its left neighbour.
-  std::optional<Turn> find(std::span<const std::byte> samples);
 
  private:
   void move_reference(std::uint8_t turn, std::vector<std::uint16_t>& out) const;
-  void try_turn(int turn);
-  void refine(int off);
 
   std::size_t count_ = 0;
   std::vector<std::uint16_t> reference_{};  // with margins of kFarthest + 1
   std::vector<std::uint16_t> expected_{};
   std::vector<std::uint16_t> moved_{};
-  std::vector<std::uint16_t> scan_{};
-  std::vector<std::uint8_t> differences_{};
-  std::array<std::uint32_t, 2> least_{};  // differences, of even and odd samples
-  Turn best_{};
 };
 
 }  // namespace db::detail

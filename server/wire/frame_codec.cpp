@@ -2,6 +2,8 @@
 #include "server/wire/frame_codec.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -521,6 +523,13 @@ void FrameWriter::stamps() {
   }
 }
 
+/// Beams in 180 degrees, 0 where they do not go ccw or do not tell.
+std::uint32_t half_turn(const fb::LaserScan& scan) {
+  constexpr double kFinest = 1e-4;  // [rad]
+  if (!(scan.angle_increment() >= kFinest)) return 0;
+  return static_cast<std::uint32_t>(std::lround(std::numbers::pi / scan.angle_increment()));
+}
+
 }  // namespace
 
 std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
@@ -588,17 +597,23 @@ void FrameEncoder::find_windows() {
   const auto add = [&](const std::uint8_t* data,
                        std::uint32_t count,
                        db::Window::Kind kind,
-                       std::uint32_t stride) {
-    windows_.push_back({static_cast<std::uint32_t>(data - bytes), count, kind, stride});
+                       std::uint32_t stride,
+                       std::uint32_t per_half_turn) {
+    windows_.push_back(
+        {static_cast<std::uint32_t>(data - bytes), count, kind, stride, per_half_turn});
   };
   if (const auto* scans = frame->scans()) {
     for (const fb::LaserScan* scan : *scans) {
-      add(scan->ranges()->Data(), scan->ranges()->size(), db::Window::Kind::Samples, 1);
+      add(scan->ranges()->Data(),
+          scan->ranges()->size(),
+          db::Window::Kind::Samples,
+          1,
+          half_turn(*scan));
     }
   }
   if (const auto* strip = frame->strip()) {
     constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Vec2f) / sizeof(float));
-    add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats);
+    add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats, 0);
   }
   std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
     return a.offset < c.offset;

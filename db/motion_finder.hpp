@@ -1,0 +1,57 @@
+// db/motion_finder.hpp: where in the map of earlier scans the next one lies.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "db/range_map.hpp"
+
+namespace db::detail {
+
+/// Only packing needs it: what it finds is stored, so its own arithmetic may be anybody's.
+/// Keeps its buffers.
+class MotionFinder {
+ public:
+  /// The motion after which the map foretells `samples` best, near enough; they are of its shape.
+  /// Nothing where every sample is more like its left neighbour.
+  std::optional<Motion> find(const RangeMap& map, std::span<const std::byte> samples);
+
+ private:
+  static constexpr std::size_t kUnknowns = 2 * kKnots + 2;
+  using Vector = std::array<double, kUnknowns>;
+
+  /// What a cell tells of the motion.
+  struct Cell {
+    double range = 0;               // [mm]
+    double step = 0;                // [mm] to the next cell
+    double slope = 0;               // [mm] a beam, over more cells
+    std::array<double, 2> shift{};  // [mm] by which a shift of 1 mm ahead, or left, changes it
+    bool usable = false;
+  };
+  /// Where a sample lies on its broken line: which knot is before it, and how far the next is.
+  struct OnLine {
+    std::size_t knot = 0;
+    double part = 0;
+  };
+
+  void take_samples(std::span<const std::byte> samples);
+  void take_cells(const RangeMap& map);
+  std::size_t index(std::int32_t cell) const;
+  void turn_whole_beams(std::size_t parity);
+  void refine(double most_error);
+  Motion rounded() const;
+
+  std::int32_t first_cell_ = 0;
+  std::vector<Cell> cells_{};
+  std::vector<std::int32_t> ranges_{};   // [mm] of the cells
+  std::vector<std::int32_t> samples_{};  // [mm]
+  std::vector<OnLine> lines_{};          // of the samples
+  Vector found_{};        // the turns [beams] of even and odd samples, then the shift [mm]
+  double left_over_ = 0;  // [mm] by which the samples differed at the last fit
+};
+
+}  // namespace db::detail
