@@ -92,13 +92,20 @@ const kKey: Key[] = [
 /** What a log can show: it has a scan and a path, but no strip of its own. */
 const kSeen = ["Raw scan", "Filtered scan", "Travelled path"];
 
+/** What the strips of many nodes show besides. */
+const kPlan: Key = { colour: "accent", label: "Plan", shape: "dashed" };
+const kBesides: Record<string, Key[]> = {
+  strip: [kPlan],
+  strip_moving: [kPlan, { colour: "warn", label: "Seen moving, its next second", shape: "arrow" }],
+};
+
 /** What a controller without a strip shows instead of it and its forces. */
 const kCells: Key = { colour: "external", label: "Occupied cells", shape: "line" };
 const kInstead: Record<string, Key[]> = {
   go_to_goal: [],
   edge_detection: [],
   potential_field: [],
-  certainty_grid: [kCells, { colour: "accent", label: "Plan", shape: "dashed" }],
+  certainty_grid: [kCells, kPlan],
   vff: [kCells],
   vfh: [{ ...kCells, label: "Occupied cells, blocked sectors" }],
   dwa: [
@@ -111,7 +118,7 @@ function keys_of(controller: string | undefined, drives: boolean): Key[] {
   const seen = kKey.filter((k) => kSeen.includes(k.label));
   if (!drives) return seen;
   const instead = kInstead[controller ?? ""];
-  return instead ? [...seen, kKey.at(-1)!, ...instead] : kKey;
+  return instead ? [...seen, kKey.at(-1)!, ...instead] : [...kKey, ...(kBesides[controller ?? ""] ?? [])];
 }
 
 /** What the colours mean, and how much the forces are enlarged. */
