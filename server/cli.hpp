@@ -47,7 +47,8 @@ struct RunFlags {
 /// `name` as a path when there is such a file or it looks like one, else a name of the library.
 sim::Scenario find_scenario(const std::string& name);
 
-/// Refuses the path of a folder at once, not after the minutes of work whose result was to go there.
+/// Refuses the path of a folder at once, not after the minutes of work whose result was to go
+/// there.
 CLI::Validator file_to_write();
 
 /// Progress on standard error, only when somebody looks at it.

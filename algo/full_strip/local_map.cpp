@@ -17,13 +17,15 @@ constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells
 constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cell fades
 constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
 
-constexpr double kMiddle = 4.0;  // [m] the robot may be from the window's middle
+constexpr std::size_t kMostBeams = 4096;  // of a scan, for which there is room from the start
+constexpr double kMiddle = 4.0;           // [m] the robot may be from the window's middle
 
 }  // namespace
 
 LocalMap::LocalMap()
     : hits_(static_cast<std::size_t>(kSize) * kSize), seen_(hits_.size()), means_(hits_.size()) {
   active_.reserve(hits_.size());
+  suspects_.reserve(kMostBeams);
   reset({0, 0});
 }
 
@@ -84,11 +86,13 @@ void LocalMap::insert(const LaserScan& scan,
                       const std::vector<Vec2>& points_W,
                       const Tracker& tracker) {
   ++scans_;
+  suspects_.clear();
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] == Beam::Ok && !tracker.on_moving(i)) hit(points_W[i]);
   }
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);
+  doubt_suspects();
   if (scans_ % kAgeEvery == 0) age();
   field_.rebuild(hits_, kOccupied);
 }
@@ -110,6 +114,7 @@ void LocalMap::hit(const Vec2& point_W) {
   const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kHit);
   mean.x += share * (static_cast<float>(off.x()) - mean.x);
   mean.y += share * (static_cast<float>(off.y()) - mean.y);
+  if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
   if (before >= kOccupied || hits_[cell] < kOccupied) return;
   ++occupied_;
   field_.occupy(column, row);
@@ -156,6 +161,13 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   }
 }
 
+/// Where something may stand has not been seen to be free.
+void LocalMap::doubt_suspects() {
+  for (const std::uint32_t cell : suspects_) {
+    if (hits_[cell] < kOccupied) space_.forget(centre_W(cell), kCell / 2);
+  }
+}
+
 void LocalMap::clear(std::size_t cell) {
   weaken(cell, kMost);
   const auto listed = std::ranges::find(active_, static_cast<std::uint32_t>(cell));
@@ -169,10 +181,17 @@ void LocalMap::age() {
   for (std::size_t i = 0; i < active_.size();) {
     const std::size_t cell = active_[i];
     const auto since = static_cast<std::uint16_t>(now - seen_[cell]);
-    if (since < kAgeAfter || weaken(cell, 1)) {
+    if (since < kAgeAfter) {
       ++i;
       continue;
     }
+    weaken(cell, 1);
+    if (hits_[cell] >= kOccupied) {
+      ++i;
+      continue;
+    }
+    // From now on it is not occupied: so it must not be taken for seen and free either.
+    hits_[cell] = 0;
     space_.forget(mean_W(cell), kFaded);
     active_[i] = active_.back();
     active_.pop_back();

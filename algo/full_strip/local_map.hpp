@@ -120,6 +120,7 @@ class LocalMap {
   }
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
+  void doubt_suspects();
   void age();
   bool weaken(std::size_t cell, int by);
   void clear(std::size_t cell);
@@ -127,9 +128,10 @@ class LocalMap {
 
   Vec2 corner_W_{0, 0};
   std::vector<std::uint8_t> hits_;
-  std::vector<std::uint16_t> seen_;    // scan number of the last hit
-  std::vector<Offset> means_;          // of the hits
-  std::vector<std::uint32_t> active_;  // cells with hits
+  std::vector<std::uint16_t> seen_;      // scan number of the last hit
+  std::vector<Offset> means_;            // of the hits
+  std::vector<std::uint32_t> active_;    // cells with hits
+  std::vector<std::uint32_t> suspects_;  // cells that the last scan hit for the first time
   DistanceField field_{};
   SeenSpace space_{};
   std::size_t occupied_ = 0;

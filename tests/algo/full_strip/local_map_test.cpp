@@ -2,6 +2,7 @@
 #include "algo/full_strip/local_map.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "tests/algo/worlds.hpp"
@@ -90,6 +91,43 @@ TEST(LocalMap, TheDistancesAreThoseOfAllCellsWhateverTheOrderOfEvents) {
     double least = LocalMap::kReach;
     map.each_near(p, 1.1, [&](const Vec2& q) { least = std::min(least, (q - p).norm()); });
     EXPECT_NEAR(map.distance(p), least, 0.05) << p.transpose();
+  }
+}
+
+/// What nobody looks at fades, and then counts as never seen. In between there was once a time in
+/// which it was neither occupied nor unseen, and a robot backed into it.
+TEST(LocalMap, WhatFadesIsNeverTakenForFree) {
+  LocalMap map;
+  see(map, post(1.5, 0, 0.3), {0, 0, 0}, 6);
+  const Vec2 front{1.2, 0};
+  ASSERT_TRUE(map.seen().seen(front));
+  bool faded = false;
+  for (int k = 0; k < 1500; ++k) {
+    see(map, {}, {0, 0, std::numbers::pi});
+    const bool occupied = map.distance(front) < 0.08;
+    ASSERT_TRUE(occupied || !map.seen().seen(front)) << "after " << k << " scans";
+    faded = faded || !occupied;
+  }
+  EXPECT_TRUE(faded);
+}
+
+/// One return may be a stray; nor is it a proof that nothing stands there.
+TEST(LocalMap, ASuspicionIsNotTakenForFree) {
+  LocalMap map;
+  LaserScan scan;
+  scan.angle_increment = 0.01;
+  scan.range_max = 8;
+  scan.resize(3);
+  for (std::size_t i = 0; i < 3; ++i) scan.set_ok(i, 1.02 + 0.1 * static_cast<double>(i));
+  std::vector<Vec2> points(scan.size(), Vec2(0, 0));
+  for (std::size_t i = 0; i < 3; ++i) {
+    points[i] = scan.ranges[i] * algo::direction(scan.angle(i));
+  }
+  for (int k = 0; k < 2; ++k) {
+    map.insert(scan, {}, points, {});
+    EXPECT_EQ(map.occupied(), k == 0 ? 0U : 3U);
+    for (const Vec2& point : points) EXPECT_EQ(map.seen().seen(point), k == 1);
+    EXPECT_TRUE(map.seen().seen({0.9, 0.01}));
   }
 }
 
