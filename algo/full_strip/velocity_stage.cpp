@@ -129,6 +129,8 @@ bool VelocityStage::admissible(const StageInput& in,
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
     margin = std::max(margin, std::min(kMargin, room - kSlack));
+    // The strip may look another way at the next tick, or somebody press Stop.
+    if (k == 0 && !rests_clear(*in.map, hull_, state, in.limits, in.dt, margin)) return false;
     if (state.twist == Twist2{} && command == Twist2{}) return true;
   }
   return rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);

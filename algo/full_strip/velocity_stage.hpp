@@ -22,7 +22,8 @@ struct StageInput {
 /// Drives along the strip by pure pursuit. A command is admissible when the robot, following the
 /// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and backs into
 /// nothing that nobody has seen: the next tick then has an admissible command too, the rest of that
-/// same motion.
+/// same motion. It must do so as well when it is braked after the one tick, as that is what happens
+/// when the strip changes or somebody presses Stop.
 class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]

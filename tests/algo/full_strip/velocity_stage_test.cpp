@@ -80,4 +80,40 @@ TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   EXPECT_GT(slow->v, 0);
 }
 
+/// A strip that bends away in front of a wall is no reason to be unable to stop before it: what was
+/// once a contact, when the strip changed in mid-curve.
+TEST(VelocityStage, CanAlwaysBrakeToRestAtOnce) {
+  int given = 0;
+  for (int cm = 5; cm < 50; cm += 2) {
+    worlds::World world;
+    for (int k = -40; k <= 40; ++k) {
+      world.circles.push_back({{0.35 + 0.01 * cm + 0.1, 0.05 * k}, 0.1});
+    }
+    algo::LaserScan scan;
+    worlds::scan_world({}, world, 8, scan);
+    std::vector<Vec2> points(scan.size(), Vec2(0, 0));
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      points[i] = scan.ranges[i] * algo::direction(scan.angle(i));
+    }
+    Stage s;
+    for (int k = 0; k < 4; ++k) s.map.insert(scan, {}, points, {});
+    for (int bend = -3; bend < 12; ++bend) {
+      for (int speed = 1; speed < 6; ++speed) {
+        algo::Recycled<Vec2> path;
+        const double x = 0.04 * bend;
+        for (const Vec2& point : {Vec2(0, 0), Vec2(x, 0.1), Vec2(x, 1.5)}) path.push_back(point);
+        s.strip.lay(path);
+        s.in.state.twist = {0.1 * speed, 0.5};
+        const auto twist = s.stage.follow(s.in, s.out);
+        if (!twist) continue;
+        ++given;
+        const auto next = algo::advanced(s.in.state, *twist, s.in.limits, s.in.dt);
+        EXPECT_TRUE(algo::rests_clear(s.map, s.stage.hull(), next, s.in.limits, s.in.dt, 0.02))
+            << cm << " cm before the wall, strip " << x << ", " << speed;
+      }
+    }
+  }
+  EXPECT_GT(given, 100);
+}
+
 }  // namespace
