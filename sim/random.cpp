@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "sim/wide.hpp"
+
 namespace sim {
 namespace {
 
@@ -18,6 +20,11 @@ std::uint64_t split_mix(std::uint64_t& x) {
 
 double to_unit(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53;
+}
+
+/// In [-1, 1): 2 to_unit(bits) - 1 with a step less, exact to the bit.
+double to_both_sides(std::uint64_t bits) {
+  return static_cast<double>(bits >> 11) * 0x1.0p-52 - 1.0;
 }
 
 // Ziggurat for the normal density (Marsaglia and Tsang 2000) with 128 layers of equal area: layer i
@@ -81,7 +88,7 @@ inline double Random::normal() {
   for (;;) {
     const std::uint64_t draw = bits();  // low 7 bits choose the layer, high 53 the place in it
     const std::size_t layer = draw % kLayers;
-    const double u = 2.0 * to_unit(draw) - 1.0;
+    const double u = to_both_sides(draw);
     if (std::abs(u) < kTable.safe[layer]) return u * kTable.edge[layer];
     if (layer == 0) {  // beyond the outermost edge: Marsaglia's tail method
       for (;;) {
@@ -97,14 +104,14 @@ inline double Random::normal() {
   }
 }
 
-void Random::fill_normal(std::span<double> out) {
+TAUTLINE_WIDE void Random::fill_normal(std::span<double> out) {
   Random drawn = *this;
   for (double& value : out) value = drawn.normal();
   *this = drawn;
 }
 
 void Random::fill_uniform(std::span<double> out) {
-  for (double& value : out) value = 2.0 * to_unit(bits()) - 1.0;
+  for (double& value : out) value = to_both_sides(bits());
 }
 
 RareEvents::RareEvents(const Random& random, double probability)

@@ -2,6 +2,7 @@
 #include "sim/random.hpp"
 
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -47,6 +48,24 @@ TEST(Random, NormalNumbersHaveTheMomentsAndTailsOfTheBellCurve) {
   EXPECT_NEAR(within_one / kCount, 0.682689, 0.0025);
   EXPECT_NEAR(beyond_two / kCount, 0.045500, 0.0011);
   EXPECT_NEAR(beyond_tail / kCount, std::erfc(3.442619855899 / std::sqrt(2.0)), 1.2e-4);
+}
+
+TEST(Random, ARowHasTheNumbersDrawnOneByOne) {
+  std::vector<double> row(1000);
+  Random(4).fill_normal(row);
+  Random alone(4);
+  for (const double expected : row) {
+    double value = 0;
+    alone.fill_normal(std::span(&value, 1));
+    EXPECT_EQ(value, expected);
+  }
+}
+
+TEST(Random, NumbersToBothSidesAreTheUniformOnesStretchedToTheBit) {
+  std::vector<double> row(1000);
+  Random(6).fill_uniform(row);
+  Random alone(6);
+  for (const double value : row) EXPECT_EQ(value, 2.0 * alone.uniform() - 1.0);
 }
 
 TEST(RareEvents, PicksTheShareAskedForWhateverTheLengthOfARow) {
