@@ -103,7 +103,8 @@ export class World3 {
   private place_camera(scene: SceneState): void {
     const b = scene_bounds(scene);
     const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
-    const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y);
+    // On a phone held upright the view is narrower than high.
+    const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y) / Math.min(1, this.camera_.aspect);
     this.controls_.target.copy(middle);
     this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
     this.placed_ = true;
