@@ -28,7 +28,8 @@ DistanceField::DistanceField()
   std::size_t cell = 0;
   for (int y = -kRadius; y <= kRadius; ++y) {
     for (int x = -kRadius; x <= kRadius; ++x, ++cell) {
-      kernel_[cell] = metric_[static_cast<std::size_t>(x * x + y * y)];
+      const int square = x * x + y * y;
+      kernel_[cell] = metric_[static_cast<std::size_t>(square)];
       // Rows far from the middle are short: beyond kReach there is nothing to lower.
       if (y >= 0 && kernel_[cell] < kFar) reaches_[static_cast<std::size_t>(y)] = x;
     }
