@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,7 +24,12 @@ using Spot = std::array<Echo, sim::kSpotRays>;
 /// As the words of judge_spots() have it.
 Echo judged(Spot spot) {
   const Echo own = spot.back();
-  std::ranges::stable_sort(spot, {}, &Echo::range);
+  // Equals keep their order. std::stable_sort would take memory past the counted operator new.
+  for (std::size_t k = 1; k < spot.size(); ++k) {
+    for (std::size_t i = k; i > 0 && spot[i].range < spot[i - 1].range; --i) {
+      std::swap(spot[i], spot[i - 1]);
+    }
+  }
   std::size_t split = 0;
   double widest = kRule.jump;
   for (std::size_t k = 1; k < spot.size(); ++k) {
