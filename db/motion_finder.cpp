@@ -15,8 +15,9 @@ constexpr std::int32_t kReach = 6;             // [beams] tried to either side o
 constexpr std::int32_t kMargin = 4 * kReach;   // [cells] looked at beyond the view
 constexpr std::size_t kTried = 8;              // every eighth sample is enough for whole beams
 constexpr std::int32_t kMostDifference = 255;  // [mm] that one sample counts
-constexpr std::array kErrors{150.0,
-                             60.0};    // [mm] beyond, a sample is left out of the first, second fit
+// [mm] Beyond, a sample is left out of the first, second, third fit. The first must reach as far as
+// a jagged wall changes in the beams by which a scanner may turn between even and odd ones.
+constexpr std::array kErrors{300.0, 150.0, 60.0};
 constexpr double kStiffness = 1000;    // holds a turn that nothing tells of
 constexpr double kShiftStiffness = 5;  // the same for a shift
 constexpr double kMostStep = 1.5;      // [beams] of one fit

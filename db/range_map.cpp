@@ -89,10 +89,10 @@ void RangeMap::restart(std::span<const std::byte> samples, std::size_t per_half_
     seen_[i] = 1;
   }
   // How far the scanner turned between even and odd samples is not known yet, so that the odd ones
-  // are filled in from the even ones wherever those are of one surface.
+  // are filled in from the even ones wherever those, two beams apart, are of one surface.
   for (std::size_t i = 1; i + 1 < count; i += 2) {
     const std::int32_t step = ranges_[i + 1] - ranges_[i - 1];
-    if (step <= kEdge && step >= -kEdge) ranges_[i] = ranges_[i - 1] + step / 2;
+    if (step <= 2 * kEdge && step >= -2 * kEdge) ranges_[i] = ranges_[i - 1] + step / 2;
   }
 }
 

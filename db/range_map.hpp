@@ -68,7 +68,7 @@ class MappedScan {
   const std::int32_t* places_;
 };
 
-constexpr std::int32_t kEdge = 200 * kFine;  // [1/16 mm] between two surfaces
+constexpr std::int32_t kEdge = 400 * kFine;  // [1/16 mm] between two surfaces
 
 /// Foretells scans of one shape. Keeps its buffers.
 class RangeMap {

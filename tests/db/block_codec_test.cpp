@@ -151,7 +151,7 @@ std::vector<Frame> turning(std::size_t count, double per_scan) {
     for (std::size_t i = 0; i < 361; ++i) {
       const double scans = static_cast<double>(k) + (i % 2 == 0 ? 0.0 : 0.5);
       const double beam = static_cast<double>(i) + per_scan * scans;
-      const double mm = 4000 + 1500 * std::sin(0.05 * beam) + 150 * std::sin(0.31 * beam);
+      const double mm = 4000 + 1500 * std::sin(0.05 * beam) + 700 * std::sin(0.31 * beam);
       const auto sample = static_cast<std::uint16_t>(mm);
       std::memcpy(frames[k].bytes.data() + 2 * i, &sample, 2);
     }
