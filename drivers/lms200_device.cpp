@@ -1,21 +1,11 @@
 // drivers/lms200_device.cpp: a scanner's machine and its thread, and its report in words.
 #include "drivers/lms200_device.hpp"
 
-#include <array>
-#include <cstdio>
 #include <utility>
 
+#include "drivers/text.hpp"
+
 namespace drivers::lms200 {
-namespace {
-
-template <typename... Args>
-std::string format(const char* pattern, Args... args) {
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(), pattern, args...);
-  return text.data();
-}
-
-}  // namespace
 
 Lms200Device::Lms200Device(std::string name, const std::string& port, const LaserSetup& setup)
     : name_(std::move(name)), machine_(setup), line_(port, machine_) {}

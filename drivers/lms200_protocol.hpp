@@ -40,6 +40,7 @@ bool exists(const Variant& variant);
 enum class Rate : std::uint8_t { Baud38400 = 0x40, Baud19200, Baud9600, Baud500000 = 0x48 };
 /// [bit/s]
 unsigned baud_of(Rate rate);
+constexpr unsigned kStartRate = 9600;  // [bit/s] at which a device that starts says so
 
 enum class Mode : std::uint8_t {
   Installation = 0x00,  // takes the password

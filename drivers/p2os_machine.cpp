@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "algo/units.hpp"
+#include "drivers/text.hpp"
 
 namespace drivers::p2os {
 namespace {
@@ -24,13 +24,6 @@ constexpr double kCommandPause = 0.005;  // [s] between two packets
 constexpr double kRepeat = 0.9 * kCommandPeriod;  // [s] a tick early rather than one too late
 constexpr double kFastest = 0.04;                 // [s] between two commands that differ
 constexpr int kMost = 0x7FFF;
-
-template <typename... Args>
-std::string format(const char* pattern, Args... args) {
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(), pattern, args...);
-  return text.data();
-}
 
 int millimetres(double metres) {
   return rounded(metres * 1000.0, kMost);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -13,6 +12,7 @@
 #include <toml++/toml.h>
 
 #include "algo/units.hpp"
+#include "drivers/text.hpp"
 
 namespace drivers {
 namespace {
@@ -20,13 +20,6 @@ namespace {
 using algo::units::kRadiansPerDegree;
 
 constexpr double kLongestCoast = 0.2;  // [m] a robot may go on when this program dies
-
-template <typename... Args>
-std::string format(const char* pattern, Args... args) {
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(), pattern, args...);
-  return text.data();
-}
 
 struct Limits {
   double min = 0;

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "algo/diff_drive.hpp"
+#include "drivers/text.hpp"
 
 namespace drivers::roboteq {
 namespace {
@@ -23,13 +23,6 @@ constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it start
 constexpr std::uint16_t kStopFault = 16;
 // What contradicts all before has to come so often in a row: lines carry no check value.
 constexpr int kBelieved = 5;
-
-template <typename... Args>
-std::string format(const char* pattern, Args... args) {
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(), pattern, args...);
-  return text.data();
-}
 
 }  // namespace
 

@@ -2,10 +2,9 @@
 #include "drivers/emulators/lms200_emulator.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <span>
 #include <utility>
+
+#include "drivers/emulators/lms200_words.hpp"
 
 namespace drivers::lms200 {
 namespace {
@@ -86,49 +85,6 @@ std::optional<unsigned> rate_of_mode(std::uint8_t mode) {
     default:
       return std::nullopt;
   }
-}
-
-/// What is above the distance in a value word, and where the codes lie.
-struct WordLayout {
-  std::uint16_t top = 0x1FFF;  // the code for no echo
-  std::uint16_t field_a = 0;   // flag
-  std::uint16_t dazzle = 0;    // flag
-};
-
-std::optional<WordLayout> layout_of(std::uint8_t measuring_mode) {
-  switch (measuring_mode) {
-    case 0x00:
-      return WordLayout{.top = 0x1FFF, .field_a = 0x2000, .dazzle = 0x8000};
-    case 0x01:
-      return WordLayout{.top = 0x1FFF};
-    case 0x02:
-      return WordLayout{.top = 0x1FFF, .field_a = 0x2000};
-    case 0x03:
-      return WordLayout{.top = 0x3FFF};
-    case 0x04:
-      return WordLayout{.top = 0x3FFF, .field_a = 0x4000};
-    case 0x05:
-    case 0x0F:  // its codes are not in the manual: those of the other modes of 32 m
-      return WordLayout{.top = 0x7FFF};
-    case 0x06:
-      return WordLayout{.top = 0x7FFF, .field_a = 0x8000};
-    default:
-      return std::nullopt;
-  }
-}
-
-constexpr unsigned kCodes = 8;  // below the top there are codes, no distances
-
-/// Word `word` as a receiver is to keep it.
-std::uint16_t beam_of(std::uint16_t word, const WordLayout& layout, bool millimetres) {
-  const unsigned value = word & layout.top;
-  if (value + kCodes < layout.top) {
-    return static_cast<std::uint16_t>(
-        std::min<unsigned>(millimetres ? value : 10 * value, algo::kWireMaxRange));
-  }
-  const unsigned digit = value & 0xFU;
-  if (digit == static_cast<unsigned>(algo::BeamCode::BeyondRange)) return algo::kWireFree;
-  return static_cast<std::uint16_t>(algo::kWireCodeBase + digit);
 }
 
 }  // namespace
@@ -536,153 +492,6 @@ void Emulator::restart(double now, double boot_time) {
   enter(Mode::OnRequest, {});
   boot_end_ = now + boot_time;
   greeted_ = false;
-}
-
-void Emulator::dazzle(bool on) {
-  dazzled_ = on;
-  was_dazzled_ = was_dazzled_ || on;
-}
-
-// ---- measured values ---------------------------------------------------------------------------
-
-void Emulator::note_sweep() {
-  sweep_ = {.variant = variant_};
-  if (!stream_.parts) return;
-  const bool quarters = options_.interlaced && variant_.angle_degrees == 180;
-  const unsigned step = quarters ? 1 : variant_.step_centidegrees / 25U;
-  for (unsigned part = 0; part < 4; part += step) {
-    sweep_.parts.push_back(static_cast<std::uint8_t>(part));
-  }
-}
-
-std::uint16_t Emulator::word_of(const algo::LaserScan& scan, std::size_t beam) const {
-  constexpr std::uint16_t kEnergy = 100;  // a value in the middle, in no unit
-  const auto layout = layout_of(configuration_.measuring_mode());
-  if (!layout) return scan.status[beam] == algo::Beam::Ok ? kEnergy : 0;
-  const auto code = [&layout](algo::BeamCode digit) {
-    return static_cast<std::uint16_t>((layout->top & ~0xFU) | static_cast<unsigned>(digit));
-  };
-  if (dazzled_) {
-    return static_cast<std::uint16_t>(code(algo::BeamCode::Dazzled) | layout->dazzle);
-  }
-  if (scan.status[beam] == algo::Beam::Free) return code(algo::BeamCode::BeyondRange);
-  if (scan.status[beam] == algo::Beam::Invalid) {
-    const bool known = scan.codes[beam] > algo::BeamCode::Unknown;
-    return code(known ? scan.codes[beam] : algo::BeamCode::NoEcho);
-  }
-  const double per_metre = configuration_.in_millimetres() ? 1000 : 100;
-  const int value = rounded(scan.ranges[beam] * per_metre, 0xFFFF);
-  if (value < 0 || static_cast<unsigned>(value) + kCodes >= layout->top) {
-    return code(algo::BeamCode::BeyondRange);
-  }
-  const bool in_field = scan.ranges[beam] < options_.field_a;
-  return static_cast<std::uint16_t>(static_cast<unsigned>(value) |
-                                    (in_field ? layout->field_a : 0U));
-}
-
-void Emulator::convert(const algo::LaserScan& scan, std::optional<std::uint8_t> part) {
-  constexpr double kDegree = std::numbers::pi / 180;
-  const std::size_t values =
-      part ? variant_.angle_degrees + (*part == 0 ? 1U : 0U) : variant_.beams();
-  const double step = (part ? 100 : variant_.step_centidegrees) / 100.0 * kDegree;
-  const double first =
-      -variant_.angle_degrees / 2.0 * kDegree + (part ? *part * 0.25 * kDegree : 0.0);
-  const auto layout = layout_of(configuration_.measuring_mode());
-  words_.assign(values, layout ? layout->top : std::uint16_t{0});
-  for (std::size_t i = 0; i < values; ++i) {
-    const double bearing = first + static_cast<double>(i) * step;
-    const double beam = (bearing - scan.angle_min) / scan.angle_increment;
-    if (!(beam > -0.5) || beam > static_cast<double>(scan.size()) - 0.5) continue;
-    words_[i] = word_of(scan, static_cast<std::size_t>(std::lround(std::max(beam, 0.0))));
-  }
-}
-
-/// Adds words_ to the sums, flags and codes left out.
-void Emulator::average() {
-  if (summed_ == 0 || sums_.size() != words_.size()) {
-    sums_.assign(words_.size(), 0);
-    summands_.assign(words_.size(), 0);
-    summed_ = 0;
-  }
-  const auto layout = layout_of(configuration_.measuring_mode()).value_or(WordLayout{});
-  for (std::size_t i = 0; i < words_.size(); ++i) {
-    const unsigned value = words_[i] & layout.top;
-    if (value + kCodes >= layout.top) continue;
-    sums_[i] += value;
-    ++summands_[i];
-  }
-  ++summed_;
-}
-
-void Emulator::offer(const algo::LaserScan& scan, double now, std::optional<std::uint8_t> part) {
-  advance(now);
-  if (!started(now)) return;
-  ++sweeps_;
-  turn_index_ = static_cast<std::uint8_t>(turn_index_ + (part ? 1U : variant_.turns()));
-  const bool once = once_.code != 0;
-  const Taking taking = once ? once_ : stream_;
-  if (taking.code == 0 || taking.parts != part.has_value()) return;
-  convert(scan, part);
-  if (taking.means > 1) {
-    average();
-    if (summed_ < taking.means) return;
-    summed_ = 0;
-    for (std::size_t i = 0; i < words_.size(); ++i) {
-      if (summands_[i] > 0) {
-        words_[i] = static_cast<std::uint16_t>(std::lround(sums_[i] / summands_[i]));
-      }
-    }
-  }
-  send_values(taking, now, part);
-  if (once) once_ = {};
-}
-
-void Emulator::send_values(const Taking& taking, double now, std::optional<std::uint8_t> part) {
-  constexpr unsigned kPartial = 0x2000;
-  constexpr unsigned kMillimetres = 0x4000;
-  SentScan scan{.number = sweeps_, .part = part};
-  std::span<const std::uint16_t> words(words_);
-  if (taking.range) {
-    words = words.subspan(taking.range->first - 1U, taking.range->last - taking.range->first + 1U);
-  }
-  const auto layout = layout_of(configuration_.measuring_mode());
-  for (const std::uint16_t word : words) {
-    scan.beams.push_back(layout ? beam_of(word, *layout, configuration_.in_millimetres()) : word);
-  }
-  // The line carries one telegram at a time, and there is no room for a second.
-  if (line().free_at() > now || !jobs_.empty()) {
-    scan.fate = SentScan::Fate::Lost;
-    scan.end = now;
-    if (on_scan) on_scan(scan);
-    return;
-  }
-  FixedBytes<kLongestLength> data;
-  if (taking.means > 1) data.push_back(static_cast<std::uint8_t>(taking.means));
-  if (taking.range) {
-    data.append_word(taking.range->first);
-    data.append_word(taking.range->last);
-  }
-  auto count = static_cast<unsigned>(words.size());
-  if (part) count |= kPartial | (unsigned{*part} << 11U);
-  if (configuration_.in_millimetres()) count |= kMillimetres;
-  data.append_word(static_cast<std::uint16_t>(count));
-  for (const std::uint16_t word : words) data.append_word(word);
-  if (configuration_.sends_indices()) {
-    data.push_back(turn_index_);
-    data.push_back(telegram_index_);
-  }
-  ++telegram_index_;
-  const emulators::Sending sending = say(taking.code, data.view(), now);
-  scan.fate = sending.intact ? SentScan::Fate::Sent : SentScan::Fate::Damaged;
-  scan.end = sending.end;
-  leaving_ = std::move(scan);
-}
-
-void Emulator::close_scan(SentScan::Fate fate) {
-  SentScan scan = std::move(*leaving_);
-  leaving_.reset();
-  scan.fate = fate;
-  if (on_scan) on_scan(scan);
 }
 
 }  // namespace drivers::lms200

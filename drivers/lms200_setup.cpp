@@ -1,0 +1,198 @@
+// drivers/lms200_setup.cpp: what an LMS2xx is asked, and how it is brought to the settings wanted.
+#include <optional>
+#include <string>
+
+#include "drivers/lms200_machine.hpp"
+#include "drivers/text.hpp"
+
+namespace drivers::lms200 {
+namespace {
+
+constexpr double kAnswer = 0.06;              // [s] an ordinary one, without its transfer
+constexpr double kProbeWait = 0.2;            // [s] may have to let a cut scan run out first
+constexpr double kModeSwitch = 3.0;           // [s] at most
+constexpr double kConfigurationWrite = 15.0;  // [s] at most
+constexpr double kRateSettle = 0.3;           // [s] after a change of the rate
+constexpr int kTries = 3;
+constexpr std::uint64_t kMostWrites = 2;  // of the configuration in one life of this program
+
+double answer_time(std::size_t bytes, unsigned baud) {
+  return kAnswer + transfer_time(bytes, baud > 0 ? baud : kStartRate);
+}
+
+std::optional<Rate> rate_of(unsigned baud) {
+  for (const Rate rate : {Rate::Baud9600, Rate::Baud19200, Rate::Baud38400, Rate::Baud500000}) {
+    if (baud_of(rate) == baud) return rate;
+  }
+  return std::nullopt;
+}
+
+std::string variant_text(const Variant& variant) {
+  return format(
+      "%u degrees in steps of %.2f", variant.angle_degrees, variant.step_centidegrees / 100.0);
+}
+
+}  // namespace
+
+// ---- asking ----------------------------------------------------------------------------------
+
+void LaserMachine::begin(Step step, double now) {
+  step_ = step;
+  tries_left_ = tries_for(step);
+  request(now);
+}
+
+void LaserMachine::request(double now) {
+  --tries_left_;
+  orders_.send_slowly(command_for(step_).view());
+  deadline_ = now + limit_for(step_);
+}
+
+Command LaserMachine::command_for(Step step) const {
+  switch (step) {
+    case Step::Probe:
+    case Step::Stopping:
+      return mode_command(Mode::OnRequest);
+    case Step::Type:
+    case Step::RateConfirmed:
+      return type_command();
+    case Step::Status:
+      return status_command();
+    case Step::Rate:
+      return rate_command(rate_of(wanted_).value_or(Rate::Baud9600));
+    case Step::Variant:
+      return variant_command(set_variant());
+    case Step::Installation:
+      return installation_command(setup_.password);
+    case Step::ReadConfiguration:
+      return read_configuration_command();
+    case Step::WriteConfiguration:
+      return write_configuration_command(written_block_);
+    case Step::Start:
+      return mode_command(interlaced() ? Mode::PartialScans : Mode::Continuous);
+    case Step::Restoring:
+      return rate_command(Rate::Baud9600);
+    default:
+      return {};
+  }
+}
+
+double LaserMachine::limit_for(Step step) const {
+  constexpr std::size_t kStatusBytes = 160;
+  constexpr std::size_t kShortBytes = 60;
+  switch (step) {
+    case Step::Probe:
+    case Step::Stopping:
+    case Step::Restoring:
+      return kProbeWait + transfer_time(kShortBytes, port_baud_);
+    case Step::Status:
+      return 2 * answer_time(kStatusBytes, port_baud_);
+    case Step::Rate:
+    case Step::Variant:
+    case Step::Installation:
+    case Step::Start:
+      return kModeSwitch;
+    case Step::WriteConfiguration:
+      return kConfigurationWrite;
+    default:
+      return 2 * answer_time(kShortBytes, port_baud_);
+  }
+}
+
+int LaserMachine::tries_for(Step step) const {
+  switch (step) {
+    case Step::WriteConfiguration:
+      return 1;  // asked again it would wear the memory again
+    case Step::Stopping:
+    case Step::Restoring:
+      return 2;
+    default:
+      return kTries;
+  }
+}
+
+// ---- setting it up ---------------------------------------------------------------------------
+
+void LaserMachine::identified(double now) {
+  if (!setup_.as_it_is && !fixed_rate_ && baud_ != wanted_) {
+    begin(Step::Rate, now);
+  } else if (!setup_.as_it_is && variant_ != set_variant()) {
+    begin(Step::Variant, now);
+  } else {
+    begin(Step::Installation, now);
+  }
+}
+
+/// The answer comes at the old rate; then the device switches.
+void LaserMachine::rate_answered(double now, const Telegram& telegram) {
+  if (const std::string why = refusal_text(telegram); !why.empty()) {
+    remark(format("It stays at %u bit/s: ", baud_) + why);
+    begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
+    return;
+  }
+  orders_.set_baud(wanted_);
+  port_baud_ = wanted_;
+  step_ = Step::RateSettles;
+  deadline_ = now + kRateSettle;
+}
+
+void LaserMachine::variant_answered(double now, const Telegram& telegram) {
+  if (const auto answer = variant_answer(telegram)) variant_ = answer->now;
+  if (variant_ != set_variant()) {
+    remark("It does not take " + variant_text(set_variant()) + "; it has " +
+           variant_text(variant_.value_or(Variant{})) + ".");
+  }
+  begin(Step::Installation, now);
+}
+
+/// Nothing but what has to be different is.
+Configuration LaserMachine::wanted_configuration(const Configuration& now) const {
+  // Each range has three modes that differ in what the upper bits say; all are masked alike.
+  const auto mode = [&]() -> std::uint8_t {
+    const std::uint16_t top = setup_.range == 16 ? 0x3FFF : setup_.range == 32 ? 0x7FFF : 0x1FFF;
+    const auto format = word_format(now.measuring_mode());
+    if (format && format->mask == top) return now.measuring_mode();
+    return setup_.range == 16 ? 0x04 : setup_.range == 32 ? 0x06 : 0x00;
+  };
+  Configuration wanted = now;
+  wanted.set_measuring_mode(mode());
+  wanted.set_millimetres(setup_.range != 80);
+  return wanted;
+}
+
+void LaserMachine::adopt(const Configuration& configuration) {
+  configuration_ = configuration;
+  measuring_mode_ = configuration.measuring_mode();
+  in_millimetres_ = configuration.in_millimetres();
+}
+
+void LaserMachine::configuration_read(double now, const Telegram& telegram) {
+  const auto answer = configuration_answer(telegram);
+  if (!answer) {
+    remark("Its configuration cannot be read: " + refusal_text(telegram));
+    begin(Step::Start, now);
+    return;
+  }
+  adopt(answer->now);
+  written_block_ = wanted_configuration(answer->now);
+  if (written_block_ == configuration_ || setup_.as_it_is) {
+    begin(Step::Start, now);
+  } else if (written_ >= kMostWrites) {
+    remark("Its configuration is not as wanted and is not written again, to spare its memory.");
+    begin(Step::Start, now);
+  } else {
+    ++written_;
+    begin(Step::WriteConfiguration, now);
+  }
+}
+
+void LaserMachine::configuration_written(double now, const Telegram& telegram) {
+  const auto answer = configuration_answer(telegram);
+  if (answer) adopt(answer->now);
+  if (!answer || !answer->done || !(configuration_ == written_block_)) {
+    remark("It did not take its configuration; the one in force is used.");
+  }
+  begin(Step::Start, now);
+}
+
+}  // namespace drivers::lms200
