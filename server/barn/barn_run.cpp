@@ -135,23 +135,24 @@ Summary summarise(const Result& result) {
   Summary sum;
   sum.worlds = result.worlds;
   sum.runs = result.runs.size();
-  const double share = 1.0 / static_cast<double>(std::max<std::size_t>(1, sum.runs));
   double times = 0;
-  double successes = 0;
   for (const Run& run : result.runs) {
-    sum.success += run.ending == Ending::Success ? share : 0;
-    sum.collisions += run.ending == Ending::Collision ? share : 0;
-    sum.timeouts += run.ending == Ending::Timeout ? share : 0;
+    sum.success += run.ending == Ending::Success ? 1 : 0;
+    sum.collisions += run.ending == Ending::Collision ? 1 : 0;
+    sum.timeouts += run.ending == Ending::Timeout ? 1 : 0;
     sum.avoidable += run.contact == Contact::Avoidable ? 1U : 0U;
     sum.unavoidable += run.contact == Contact::Unavoidable ? 1U : 0U;
     sum.jumped += run.contact == Contact::Jumped ? 1U : 0U;
-    sum.score += run.score * share;
-    sum.score_quarter += run.score_quarter * share;
-    if (run.ending != Ending::Success) continue;
-    times += run.time;
-    successes += 1;
+    sum.score += run.score;
+    sum.score_quarter += run.score_quarter;
+    if (run.ending == Ending::Success) times += run.time;
   }
-  sum.mean_time = successes > 0 ? times / successes : 0;
+  sum.mean_time = sum.success > 0 ? times / sum.success : 0;
+  const auto runs = static_cast<double>(std::max<std::size_t>(1, sum.runs));
+  for (double* mean :
+       {&sum.success, &sum.collisions, &sum.timeouts, &sum.score, &sum.score_quarter}) {
+    *mean /= runs;
+  }
   sum.tick_us_p50 = quantile(result.tick_us, 0.5);
   sum.tick_us_p99 = quantile(result.tick_us, 0.99);
   return sum;

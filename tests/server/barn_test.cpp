@@ -107,6 +107,14 @@ TEST(BarnRun, ScoresByTheOfficialFormula) {
   EXPECT_GT(sum.tick_us_p99, 0);
 }
 
+/// 600 successes summed up as sixhundredths once came to more than 1.
+TEST(BarnRun, RatesAreFractionsOfOne) {
+  Result result;
+  result.runs.resize(600);
+  for (auto& run : result.runs) run.ending = Ending::Success;
+  EXPECT_EQ(summarise(result).success, 1);
+}
+
 TEST(BarnRun, ACollisionScoresNothing) {
   json document = lane();
   document["worlds"][0]["obstacles"] = {{0, 3}};
