@@ -25,9 +25,10 @@ struct SoakCommand {
 void print_worlds(const std::vector<soak::Outcome>& outcomes, bool all) {
   for (const soak::Outcome& o : outcomes) {
     if (!is_fault(o.ending) && (!all || o.ending == soak::Ending::Reached)) continue;
-    fmt::print("world {}: {} after {:.1f} s at ({:.2f}, {:.2f}): {}\n",
+    fmt::print("world {}: {}{} after {:.1f} s at ({:.2f}, {:.2f}): {}\n",
                o.seed,
                name(o.ending),
+               o.has_way ? ", though there is a way," : "",
                o.time,
                o.end.x,
                o.end.y,
