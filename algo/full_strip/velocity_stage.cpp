@@ -17,7 +17,7 @@ constexpr double kTurnShare = 0.8;     // of the turn rate that the profile plan
 constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
-constexpr double kArc = 0.4;           // [rad] heading error that an arc takes away by itself
+constexpr double kArc = 0.1;           // [rad] heading error that an arc takes away by itself
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
 constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
 constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
