@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "algo/driving.hpp"
 
@@ -16,7 +17,8 @@ constexpr double kPlanEvery = 0.25;   // [s]
 constexpr int kExpansions = 400;      // of the planner a tick
 constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
 constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below,
-constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal
+constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal,
+constexpr double kNearerTaken = 0.1;  // or so much where something stands on that
 constexpr int kSweepsNew = 15;        // of a strip just laid
 constexpr int kSweeps = 5;            // a tick
 constexpr double kAtEnd = 0.15;       // [m] from the end of a strip that leads beside its goal
@@ -25,6 +27,7 @@ constexpr double kStuckTime = 2.5;    // [s] without way: the strip is dropped
 constexpr double kStuckWay = 0.15;    // [m]
 constexpr double kBackTime = 1.0;     // [s]
 constexpr double kTrace = 0.25;       // [m] about something found moving, what it left in the map
+constexpr double kTryTight = 4.0;     // [s] a goal without room is tried for, once near
 constexpr double kPatience = 1.2;     // [s] without way until a manoeuvre is looked for
 constexpr double kSearchEvery = 1.0;  // [s] after a search that found nothing
 constexpr int kManeuverExpansions = 150;   // a tick
@@ -35,6 +38,8 @@ constexpr std::size_t kAim = 7;       // and where it is looked for
 constexpr double kOnStrip = 0.10;     // [m]
 constexpr double kAlongStrip = 0.35;  // [rad]
 constexpr std::size_t kMostWeighed = 32;
+constexpr double kLastLeg = 2 * LocalMap::kReach;  // [m] to the goal
+constexpr double kGives = 0.08;        // [m] by which the strip stays inside its rest distance
 constexpr double kDrawEvery = 0.5;     // [s]
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
 
@@ -59,6 +64,7 @@ void FullStripController::reset(const Pose2& start_W) {
   level_ = 0;
   no_way_ = false;
   goal_taken_ = false;
+  tight_since_.reset();
   broken_at_ = -1;
   next_plan_ = 0;
   next_drawing_ = 0;
@@ -124,11 +130,26 @@ void FullStripController::forget_traces(const ControlInput& in) {
   });
 }
 
+/// A goal nearer to something than the strip would keep tells how near one may come: on the last
+/// leg it keeps that, instead of swinging out only to swing in again.
+void FullStripController::ease_last_leg(const Vec2& here_W) {
+  if ((*goal_W_ - here_W).norm() > kLastLeg) return;
+  const double room = std::max(map_.distance(*goal_W_) + kGives, least_clearance());
+  settings_.rest_distance = std::min(settings_.rest_distance, room);
+}
+
 /// The deliberative layer: one piece of a search each tick, a new search every kPlanEvery.
 void FullStripController::plan(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
   if (planner_.state() != Planner::State::Searching && in.stamp >= next_plan_) {
-    planner_.start(map_, here, *goal_W_, least_clearance());
+    // A goal with less room than one would like is not a goal that something stands on.
+    while (level_ + 1 < kRoom.size() && map_.distance(*goal_W_) < least_clearance() &&
+           map_.seen().seen(*goal_W_)) {
+      ++level_;
+    }
+    const bool try_tight = !tight_since_ || in.stamp - *tight_since_ < time_for(kTryTight);
+    planner_.start(map_, here, *goal_W_, least_clearance(), try_tight);
+    if (planner_.goal_tight() && !tight_since_) tight_since_ = in.stamp;
     next_plan_ = in.stamp + kPlanEvery;
   }
   if (planner_.state() != Planner::State::Searching) return;
@@ -166,9 +187,11 @@ void FullStripController::take_plan(const ControlInput& in) {
     rival_.lay(path_W_);
     rival_.follow(in.odometry.pose.position());
   }
-  goal_taken_ = planner_.goal_taken();
-  // A strip laid when the goal lay beyond the map ends short of it, so its cost says little.
-  const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - kNearer ||
+  // A strip that ends short of the goal, as that lay beyond the map or something stands on it, may
+  // well cost less than one that ends nearer.
+  const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
+  const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
+  const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - nearer ||
                       rival_.cost(map_) < kRivalShare * strip_.cost(map_);
   if (better) {
     std::swap(strip_, rival_);
@@ -443,12 +466,14 @@ void FullStripController::update(const ControlInput& in,
     progress_at_ = in.stamp;
     no_way_ = false;
     goal_taken_ = false;
+    tight_since_.reset();
     level_ = 0;
     search_.reset();
     maneuver_.reset();
     way_W_ = progress_W_;
     way_since_ = in.stamp;
   }
+  ease_last_leg(in.odometry.pose.position());
   stretch(in);
   plan(in);
   out.twist = drive(in, parameters, out);

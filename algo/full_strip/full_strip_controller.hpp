@@ -32,6 +32,7 @@ class FullStripController final : public Controller {
   void prepare(const ControlInput& in, const Parameters& parameters);
   void sense(const ControlInput& in);
   void forget_traces(const ControlInput& in);
+  void ease_last_leg(const Vec2& here_W);
   void plan(const ControlInput& in);
   void take_plan(const ControlInput& in);
   void stretch(const ControlInput& in);
@@ -75,8 +76,9 @@ class FullStripController final : public Controller {
   std::size_t level_ = 0;  // of the planner's clearance, 0 the widest
   bool no_way_ = false;    // not even at the narrowest
   bool goal_taken_ = false;
-  double broken_at_ = -1;  // [m] along the strip; negative: whole
-  double next_plan_ = 0;   // [s] run clock
+  std::optional<double> tight_since_{};  // [s] the goal is tried for without room
+  double broken_at_ = -1;                // [m] along the strip; negative: whole
+  double next_plan_ = 0;                 // [s] run clock
   Manner manner_ = Manner::None;
   Vec2 progress_W_{0, 0};     // where the robot last made way
   double progress_at_ = 0;    // [s]

@@ -114,9 +114,12 @@ float Planner::cost_of(const LocalMap& map, std::uint32_t point) {
   return cost_[point] = static_cast<float>(cost);
 }
 
-/// The nearest point with room to stand.
+/// The nearest point with room to stand: of those that have been seen, if there is one. What no
+/// beam went through may be the inside of the very thing that stands on the goal, and the robot
+/// would go all the way round it to find that out.
 std::uint32_t Planner::free_point(const LocalMap& map, std::uint32_t wanted) const {
   std::uint32_t best = wanted;
+  bool best_seen = false;
   double least = std::numeric_limits<double>::infinity();
   const int column = static_cast<int>(wanted % kSize);
   const int row = static_cast<int>(wanted / kSize);
@@ -124,10 +127,13 @@ std::uint32_t Planner::free_point(const LocalMap& map, std::uint32_t wanted) con
     for (int x = std::max(1, column - kSearchFree); x <= std::min(kSize - 2, column + kSearchFree);
          ++x) {
       const auto point = static_cast<std::uint32_t>(y * kSize + x);
+      const bool seen = map.seen().seen(position_W(point));
       const double far = std::hypot(x - column, y - row);
-      if (far >= least || clearance(map, point) < least_clearance_) continue;
+      const bool nearer = seen == best_seen ? far < least : seen;
+      if (!nearer || clearance(map, point) < least_clearance_) continue;
       least = far;
       best = point;
+      best_seen = seen;
     }
   }
   return best;
@@ -136,7 +142,8 @@ std::uint32_t Planner::free_point(const LocalMap& map, std::uint32_t wanted) con
 void Planner::start(const LocalMap& map,
                     const Vec2& robot_W,
                     const Vec2& goal_W,
-                    double least_clearance) {
+                    double least_clearance,
+                    bool try_tight) {
   corner_W_ = map.corner_W();
   least_clearance_ = least_clearance;
   robot_W_ = robot_W;
@@ -155,7 +162,9 @@ void Planner::start(const LocalMap& map,
   goal_taken_ = false;
   goal_W_ = robot_W + share * (goal_W - robot_W);
   root_ = point_at(goal_W_);
-  if (clearance(map, root_) < least_clearance_ && !near_robot(root_)) {
+  const bool room = clearance(map, root_) >= least_clearance_;
+  goal_tight_ = !room && try_tight && near_robot(root_);
+  if (!room && !goal_tight_) {
     root_ = free_point(map, root_);
     goal_taken_ = !goal_replaced_;
     goal_replaced_ = true;

@@ -23,8 +23,13 @@ class Planner {
   void reset() { state_ = State::Idle; }
 
   /// Begins a search. A goal without room is replaced by the nearest place that has it; one outside
-  /// the map by a place on its border.
-  void start(const LocalMap& map, const Vec2& robot_W, const Vec2& goal_W, double least_clearance);
+  /// the map by a place on its border. One right before the robot is kept if `try_tight`: the map
+  /// may be off by what is missing.
+  void start(const LocalMap& map,
+             const Vec2& robot_W,
+             const Vec2& goal_W,
+             double least_clearance,
+             bool try_tight);
   /// Expands up to `budget` lattice points.
   State search(const LocalMap& map, int budget);
 
@@ -33,6 +38,8 @@ class Planner {
   bool goal_replaced() const { return goal_replaced_; }
   /// Whether that is so because something stands there.
   bool goal_taken() const { return goal_taken_; }
+  /// Whether it was kept although it has no room.
+  bool goal_tight() const { return goal_tight_; }
   /// Cost [m] of the way found.
   double cost() const;
   /// The way found, robot first. At most one point a lattice step.
@@ -63,6 +70,7 @@ class Planner {
   State state_ = State::Idle;
   bool goal_replaced_ = false;
   bool goal_taken_ = false;
+  bool goal_tight_ = false;
   double least_clearance_ = 0;
   Vec2 corner_W_{0, 0};
   Vec2 robot_W_{0, 0};

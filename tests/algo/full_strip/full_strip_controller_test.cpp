@@ -105,8 +105,7 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
     drive.parameters.set(Parameter::NearestGoal, near);
     drive.world.circles = {{{4, 0.05}, 0.4}};
     drive.controller.reset({});
-    // Its back shows only from behind, so it may go all the way round.
-    for (int k = 0; k < 900; ++k) drive.tick({4, 0});
+    for (int k = 0; k < 600; ++k) drive.tick({4, 0});
     EXPECT_EQ(drive.out.manner, Manner::GoalTaken);
     EXPECT_EQ(drive.out.twist, algo::Twist2{});
     const double from_it = (drive.pose.position() - Vec2(4, 0.05)).norm() - 0.75;
@@ -117,6 +116,51 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
       EXPECT_GT(from_it, 0.5);
     }
   }
+}
+
+/// Room of 2 to 6 cm beside the hull is less than one would like, and is enough.
+TEST(FullStrip, ReachesAGoalWithLessRoomThanWished) {
+  for (const double room : {0.02, 0.04, 0.06}) {
+    Drive drive;
+    drive.world.circles = {{{3, 0.35 + room + 0.4}, 0.4}};
+    drive.controller.reset({});
+    for (int k = 0; k < 600; ++k) drive.tick({3, 0});
+    EXPECT_LT((drive.pose.position() - Vec2(3, 0)).norm(), 0.1) << "room " << room;
+  }
+}
+
+/// It says so to the end instead of trying again and again.
+TEST(FullStrip, AGoalWithoutRoomStaysRefused) {
+  Drive drive;
+  drive.world.circles = {{{3, 0.6}, 0.4}};
+  drive.controller.reset({});
+  int others = 0;
+  for (int k = 0; k < 1200; ++k) {
+    drive.tick({3, 0});
+    if (k >= 800 && drive.out.manner != Manner::GoalTaken) ++others;
+  }
+  EXPECT_EQ(others, 0);
+  EXPECT_LT((drive.pose.position() - Vec2(3, 0)).norm(), 0.3);
+}
+
+/// Where the goal itself lies nearer to a post than the strip would keep, it keeps what the goal
+/// has, and no more.
+TEST(FullStrip, GoesNoNearerToAPostThanTheGoalLies) {
+  Drive drive;
+  drive.parameters.set(Parameter::SafetyDistance, 1.0);
+  drive.parameters.set(Parameter::MaxSpeed, 0.2);
+  drive.world.circles = {{{1.2, 0.35}, 0.1}};
+  const Vec2 goal(2, 0);
+  const double lies = worlds::surface_distance(goal, drive.world);
+  drive.controller.reset({});
+  double least = 10;
+  for (int k = 0; k < 600 && (drive.pose.position() - goal).norm() > 0.1; ++k) {
+    drive.tick(goal);
+    least = std::min(least, worlds::surface_distance(drive.pose.position(), drive.world));
+  }
+  EXPECT_LT((drive.pose.position() - goal).norm(), 0.1);
+  EXPECT_GT(least, lies - 0.02);
+  EXPECT_LT(least, lies + 0.1);
 }
 
 /// In a niche, with the goal behind it and a post close behind its back that no beam shows:

@@ -45,7 +45,7 @@ double length(const algo::Recycled<Vec2>& path) {
 TEST(Planner, GoesStraightWhereNothingStands) {
   LocalMap map;
   Planner planner;
-  planner.start(map, {0, 0}, {5, 0}, 0.3);
+  planner.start(map, {0, 0}, {5, 0}, 0.3, true);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   algo::Recycled<Vec2> path;
   planner.path(path);
@@ -59,7 +59,7 @@ TEST(Planner, TakesTheGapAndKeepsItsClearance) {
   wall(map, {2, -4}, {2, 1.0});
   wall(map, {2, 2.0}, {2, 4});
   Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   algo::Recycled<Vec2> path;
   planner.path(path);
@@ -71,7 +71,7 @@ TEST(Planner, SaysWhenThereIsNoWay) {
   for (const double y : {-1.5, 1.5}) wall(map, {2.5, y}, {5.5, y});
   for (const double x : {2.5, 5.5}) wall(map, {x, -1.5}, {x, 1.5});
   Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
   EXPECT_EQ(finish(planner, map), Planner::State::NoWay);
 }
 
@@ -79,16 +79,41 @@ TEST(Planner, AGoalInAnObstacleIsReplacedByThePlaceBesideIt) {
   LocalMap map;
   wall(map, {4, -0.1}, {4, 0.1});
   Planner planner;
-  planner.start(map, {0, 0}, {4, 0}, 0.3);
+  planner.start(map, {0, 0}, {4, 0}, 0.3, true);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   EXPECT_TRUE(planner.goal_replaced());
   EXPECT_TRUE(planner.goal_taken());
 }
 
+TEST(Planner, AReplacedGoalLiesWhereOneHasSeen) {
+  LocalMap map;
+  wall(map, {4, -0.5}, {4, 0.5});
+  map.seen().follow({0, 0}, 0);
+  map.seen().mark({3.2, 0}, 0.6);
+  Planner planner;
+  planner.start(map, {0, 0}, {4.05, 0}, 0.3, true);  // nearer to the wall's back
+  ASSERT_EQ(finish(planner, map), Planner::State::Found);
+  EXPECT_TRUE(planner.goal_taken());
+  algo::Recycled<Vec2> path;
+  planner.path(path);
+  EXPECT_LT(path.back().x(), 4);
+}
+
+TEST(Planner, AGoalRightBeforeTheRobotIsTriedWithoutRoomIfWished) {
+  LocalMap map;
+  wall(map, {0.5, -0.1}, {0.5, 0.1});
+  Planner planner;
+  for (const bool try_tight : {true, false}) {
+    planner.start(map, {0, 0}, {0.25, 0}, 0.3, try_tight);
+    EXPECT_EQ(planner.goal_tight(), try_tight);
+    EXPECT_EQ(planner.goal_taken(), !try_tight);
+  }
+}
+
 TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
   LocalMap map;
   Planner planner;
-  planner.start(map, {0, 0}, {400, 0}, 0.3);
+  planner.start(map, {0, 0}, {400, 0}, 0.3, true);
   ASSERT_EQ(finish(planner, map), Planner::State::Found);
   EXPECT_TRUE(planner.goal_replaced());
   EXPECT_FALSE(planner.goal_taken());
@@ -97,7 +122,7 @@ TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
 TEST(Planner, DoesNoMoreThanItsBudget) {
   LocalMap map;
   Planner planner;
-  planner.start(map, {-5, -5}, {5, 4}, 0.3);
+  planner.start(map, {-5, -5}, {5, 4}, 0.3, true);
   EXPECT_EQ(planner.search(map, 10), Planner::State::Searching);
   EXPECT_EQ(finish(planner, map), Planner::State::Found);
 }
