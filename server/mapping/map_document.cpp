@@ -27,19 +27,25 @@ std::string share(double part, double whole) {
 }
 
 Table run_table(const MapStudy& study) {
-  Table out{.header = {"seed", "odometry: end m", "RMS m per 10 m"}};
+  Table out{.header = {"seed", "odometry: end m", "RMS m", "step of 10 m"}};
   if (study.options.match) {
-    for (const char* title : {"matched: end m", "RMS m per 10 m", "end left", "RMS left"}) {
+    for (const char* title :
+         {"matched: end m", "RMS m", "step of 10 m", "end left", "RMS left", "step left"}) {
       out.header.emplace_back(title);
     }
   }
   for (const MapRun& run : study.runs) {
     std::vector<std::string>& row = out.rows.emplace_back();
-    row = {fmt::format("{}", run.seed), metres(run.odometry.end), metres(run.odometry.rms_10m)};
+    row = {fmt::format("{}", run.seed),
+           metres(run.odometry.end),
+           metres(run.odometry.rms),
+           metres(run.odometry.rms_10m)};
     if (!study.options.match) continue;
     row.push_back(metres(run.matched.end));
+    row.push_back(metres(run.matched.rms));
     row.push_back(metres(run.matched.rms_10m));
     row.push_back(share(run.matched.end, run.odometry.end));
+    row.push_back(share(run.matched.rms, run.odometry.rms));
     row.push_back(share(run.matched.rms_10m, run.odometry.rms_10m));
   }
   return out;

@@ -58,7 +58,10 @@ void match_run(const Recording& log, MapRun& run) {
 }
 
 nlohmann::json to_json(const PathError& error) {
-  return {{"end_m", error.end}, {"rms_10m_m", error.rms_10m}, {"turn_10m_rad", error.turn_10m}};
+  return {{"end_m", error.end},
+          {"rms_m", error.rms},
+          {"rms_10m_m", error.rms_10m},
+          {"turn_10m_rad", error.turn_10m}};
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ PathError path_error(std::span<const algo::Pose2> true_W, std::span<const algo::
   PathError error;
   if (true_W.empty()) return error;
   error.end = way(true_W.back(), estimate_W.back());
+  for (std::size_t i = 0; i < true_W.size(); ++i) {
+    const double off = way(true_W[i], estimate_W[i]);
+    error.rms += off * off / static_cast<double>(true_W.size());
+  }
+  error.rms = std::sqrt(error.rms);
   double square = 0;
   double turn_square = 0;
   double length = 0;  // of the true way from i to j

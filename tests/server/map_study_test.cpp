@@ -31,6 +31,8 @@ TEST(PathError, OfAScaleIsThatShareOfThePiece) {
   EXPECT_EQ(error.pieces, 11U);
   EXPECT_NEAR(error.rms_10m, 0.2, 1e-12);
   EXPECT_NEAR(error.end, 0.4, 1e-12);
+  // 0.02 k off at pose k: the mean square of 0 to 20 is 20 * 41 / 6.
+  EXPECT_NEAR(error.rms, 0.02 * std::sqrt(20 * 41 / 6.0), 1e-12);
   EXPECT_NEAR(error.turn_10m, 0, 1e-12);
 }
 

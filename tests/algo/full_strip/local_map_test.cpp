@@ -41,12 +41,17 @@ TEST(LocalMap, DistancesAreThoseToTheSurfaceSeen) {
   EXPECT_EQ(map.distance({1000, 0}), LocalMap::kReach);
 }
 
-TEST(LocalMap, OneStrayHitIsNoObstacle) {
-  LocalMap map;
+LaserScan three_beams() {
   LaserScan scan;
   scan.angle_increment = 0.01;
   scan.range_max = 8;
   scan.resize(3);
+  return scan;
+}
+
+TEST(LocalMap, OneStrayHitIsNoObstacle) {
+  LocalMap map;
+  LaserScan scan = three_beams();
   for (std::size_t i = 0; i < 3; ++i) scan.set_free(i);
   scan.set_ok(1, 1.0);
   const std::vector<Vec2> points{{0, 0}, {1, 0}, {0, 0}};
@@ -114,10 +119,7 @@ TEST(LocalMap, WhatFadesIsNeverTakenForFree) {
 /// One return may be a stray; nor is it a proof that nothing stands there.
 TEST(LocalMap, ASuspicionIsNotTakenForFree) {
   LocalMap map;
-  LaserScan scan;
-  scan.angle_increment = 0.01;
-  scan.range_max = 8;
-  scan.resize(3);
+  LaserScan scan = three_beams();
   for (std::size_t i = 0; i < 3; ++i) scan.set_ok(i, 1.02 + 0.1 * static_cast<double>(i));
   std::vector<Vec2> points(scan.size(), Vec2(0, 0));
   for (std::size_t i = 0; i < 3; ++i) {
