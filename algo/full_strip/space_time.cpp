@@ -18,17 +18,20 @@ constexpr std::array<double, 5> kTurns{0, 0.4, -0.4, 1, -1};   // of the top tur
 constexpr std::size_t kCommands = kSpeeds.size() * kTurns.size();
 constexpr double kMargin = 0.08;           // [m] from what moves, now
 constexpr double kMarginPerSecond = 0.12;  // they may turn
-constexpr double kStaticMargin = 0.03;     // [m] from what stands
+constexpr double kStaticMargin = 0.03;     // [m] from what stands,
+constexpr double kStaticFloor = 0.02;      // [m] and from where on only a way out counts
 constexpr double kTimePerMetre = 0.6;      // [s/m] to the goal
 constexpr double kRiskReach = 0.25;        // [m] room beyond the margin that is worth something,
 constexpr double kRiskTime = 0.5;          // [s] and what both drive in this time
 constexpr double kRisk = 1.5;              // [s/s] at no room at all
 constexpr double kRiskFades = 2.5;         // [s] prediction time after which it counts 1/e
 constexpr double kReverse = 0.15;          // [s/s] for driving into where the scanner does not look
-constexpr double kReach = 6.0;   // [m] tracks farther than this from the motion do not count
-constexpr double kCloser = 0.3;  // of the margins, where nothing else is clear
-constexpr double kHeld = 1.5;    // [s] of the motions weighed when nothing is
-constexpr double kLater = 0.02;  // [m] that room counts more for every substep
+constexpr double kReach = 6.0;    // [m] tracks farther than this from the motion do not count
+constexpr double kCloser = 0.3;   // of the margins, where nothing else is clear
+constexpr double kHeld = 1.5;     // [s] of the motions weighed when nothing is
+constexpr double kLater = 0.02;   // [m] that room counts more for every substep
+constexpr double kSlack = 0.002;  // [m] a position may be nearer to what stands than the one before
+constexpr int kMostSubsteps = 40;  // of a brake
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
@@ -47,6 +50,7 @@ double to_hull(const RobotSpec& spec, const Vec2& p) {
 }  // namespace
 
 SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
+  stops_.resize(kCommands);
   states_.reserve(kBeam * kCommands);
   next_.reserve(kBeam * kCommands);
   order_.reserve(kBeam * kCommands);
@@ -159,8 +163,12 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
     near_speeds_.push_back(track.velocity_W.norm());
   }
   // Too close to something that stands already: no closer.
-  static_margin_ =
-      std::clamp(in.hull->clearance(*in.map, in.state.pose_W) - 0.002, 0.0, kStaticMargin);
+  const double standing = in.hull->clearance(*in.map, in.state.pose_W) - kSlack;
+  static_margin_ = std::clamp(standing, kStaticFloor, kStaticMargin);
+  for (std::size_t c = 0; c < kCommands; ++c) {
+    const double room = std::min(kStaticFloor, standing);
+    stops_[c] = stops_clear(in, command(c, in.limits), room) ? 1 : 0;
+  }
   const Twist2 wanted = attempt(in, 1, out);
   if (clear_) return wanted;
   const Twist2 closer = attempt(in, kCloser, out);
@@ -178,6 +186,7 @@ Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, C
     next_.clear();
     for (const State& from : states_) {
       for (std::size_t c = 0; c < kCommands; ++c) {
+        if (level == 0 && stops_[c] == 0) continue;
         State s = from;
         if (level == 0) s.first = static_cast<std::uint32_t>(c);
         if (!step(in, time, kLevels[level], command(c, in.limits), s)) continue;
@@ -207,12 +216,28 @@ Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, C
   return best;
 }
 
-/// Held for a while, the command that keeps most room.
+/// Whether `twist` for one step and a brake keep `room` [m] from what stands.
+bool SpaceTimeSearch::stops_clear(const SpaceTimeInput& in,
+                                  const Twist2& twist,
+                                  double room) const {
+  MotionState state = in.state;
+  for (int k = 1; k <= kMostSubsteps; ++k) {
+    state = advanced(state, k * kSubstep <= kLevels[0] ? twist : Twist2{}, in.limits, kSubstep);
+    if (in.hull->clearance(*in.map, state.pose_W) < room) return false;
+    if (state.twist == Twist2{}) return true;
+  }
+  return true;
+}
+
+/// Held for a while, the command that keeps most room; but no guess of what moves is worth driving
+/// into what stands.
 Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
   Twist2 best{};
   double most = -std::numeric_limits<double>::infinity();
+  const double room = std::min(kStaticFloor, in.hull->clearance(*in.map, in.state.pose_W) - kSlack);
   for (std::size_t c = 0; c < kCommands; ++c) {
     const Twist2 twist = command(c, in.limits);
+    if (!stops_clear(in, twist, room)) continue;
     MotionState state = in.state;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 1; k * kSubstep <= kHeld; ++k) {

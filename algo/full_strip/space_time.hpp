@@ -49,6 +49,7 @@ class SpaceTimeSearch {
     std::uint32_t first = 0;  // index of the first command
   };
   Twist2 attempt(const SpaceTimeInput& in, double margin_share, ControlOutput& out);
+  bool stops_clear(const SpaceTimeInput& in, const Twist2& twist, double room) const;
   Twist2 least_bad(const SpaceTimeInput& in) const;
   bool step(
       const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const;
@@ -68,6 +69,7 @@ class SpaceTimeSearch {
   std::vector<double> near_speeds_;  // [m/s] theirs
   double static_margin_ = 0;         // [m] of this search
   double margin_share_ = 1;          // of the margins from what moves
+  std::vector<char> stops_;  // whether a brake after that command keeps clear of what stands
   bool clear_ = false;
 };
 

@@ -17,7 +17,8 @@ constexpr double kTurnShare = 0.8;     // of the turn rate that the profile plan
 constexpr double kBrakeShare = 0.7;    // of the deceleration
 constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
-constexpr double kArc = 0.1;           // [rad] heading error that an arc takes away by itself
+constexpr double kArc = 0.1;           // [rad] heading error that an arc takes away by itself,
+constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and the more the faster
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
 constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
 constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
@@ -95,7 +96,7 @@ Twist2 VelocityStage::pursue(const StageInput& in,
   double v = speed_at(s) * share;
   const double curvature = 2 * aim.y() / (length * length);
   // A slow robot turns first what its arc would take metres to turn.
-  const double least = kTurnGain * (std::abs(error) - kArc);
+  const double least = kTurnGain * (std::abs(error) - kArc - kArcPerSpeed * v);
   double omega = std::copysign(std::max(std::abs(curvature) * v, least), error);
   if (std::abs(omega) > w_max) {
     v *= w_max / std::abs(omega);

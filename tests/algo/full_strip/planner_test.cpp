@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/algo/full_strip/walls.hpp"
 #include <gtest/gtest.h>
 
 #include "algo/full_strip/node_strip.hpp"
@@ -12,21 +13,7 @@ namespace {
 using algo::LocalMap;
 using algo::Planner;
 using algo::Vec2;
-
-/// Occupies the straight line from `a` to `b`.
-void wall(LocalMap& map, const Vec2& a, const Vec2& b) {
-  algo::LaserScan scan;
-  scan.angle_increment = 0.01;
-  scan.range_max = 8;
-  const auto count = static_cast<std::size_t>((b - a).norm() / 0.02) + 1;
-  scan.resize(count);
-  std::vector<Vec2> points;
-  for (std::size_t i = 0; i < count; ++i) {
-    scan.set_ok(i, 0.01);  // looks through nothing
-    points.push_back(a + (b - a) * (static_cast<double>(i) / static_cast<double>(count)));
-  }
-  map.insert(scan, {-1000, -1000, 0}, points, {});
-}
+using walls::wall;
 
 Planner::State finish(Planner& planner, const LocalMap& map) {
   Planner::State state = planner.state();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/algo/full_strip/walls.hpp"
 #include <gtest/gtest.h>
 
 namespace {
@@ -17,13 +18,24 @@ struct Meeting {
   algo::RobotSpec spec{.radius = 0.3};
   algo::Recycled<algo::Track> tracks{};
   algo::MotionState robot{};
+  algo::HullCheck hull{spec};
   algo::SpaceTimeSearch search{};
   algo::ControlOutput out{};
+
+  algo::SpaceTimeInput input() const {
+    algo::SpaceTimeInput in;
+    in.map = &map;
+    in.hull = &hull;
+    in.spec = &spec;
+    in.tracks = &tracks;
+    in.state = robot;
+    in.limits = {2, 2.5, 3, 8};
+    return in;
+  }
 
   /// Drives to (8, 0) past a body that comes towards it beside its way and at `turn_at`
   /// [s] turns across. The least room between them.
   double drive(double turn_at) {
-    const algo::HullCheck hull(spec);
     Vec2 at_W(6, 1.3);
     Vec2 velocity_W(-1.2, 0);
     double least = 10;
@@ -32,13 +44,7 @@ struct Meeting {
       if (stamp >= turn_at) velocity_W = {0, -1.2};
       tracks.clear();
       tracks.push_back({at_W, velocity_W, 0.4, stamp, 0});
-      algo::SpaceTimeInput in;
-      in.map = &map;
-      in.hull = &hull;
-      in.spec = &spec;
-      in.tracks = &tracks;
-      in.state = robot;
-      in.limits = {2, 2.5, 3, 8};
+      algo::SpaceTimeInput in = input();
       in.carrot_W = {8, 0};
       const algo::Twist2 twist = search.search(in, out);
       robot = advanced(robot, twist, in.limits, kStep);
@@ -48,6 +54,29 @@ struct Meeting {
     return least;
   }
 };
+
+/// A jamb of a gap may look as if it moved. Whatever comes from where, it never drives into what
+/// stands.
+TEST(SpaceTime, DoesNotFleeIntoAWall) {
+  for (int from = -6; from <= 6; ++from) {
+    const double bearing = 0.5 * from;
+    Meeting meeting;
+    walls::wall(meeting.map, {-1, 0.4}, {2, 0.4});
+    walls::wall(meeting.map, {-1, -0.4}, {2, -0.4});
+    for (int k = 0; k < 20; ++k) {
+      const Vec2 here = meeting.robot.pose_W.position();
+      meeting.tracks.clear();
+      meeting.tracks.push_back(
+          {here + 0.7 * algo::direction(bearing), -0.5 * algo::direction(bearing), 0.24, 0.5, 0});
+      algo::SpaceTimeInput in = meeting.input();
+      in.carrot_W = {6, 0};
+      const algo::Twist2 twist = meeting.search.search(in, meeting.out);
+      meeting.robot = advanced(meeting.robot, twist, in.limits, kStep);
+      ASSERT_GT(meeting.hull.clearance(meeting.map, meeting.robot.pose_W), 0.01)
+          << "from " << bearing << " rad, step " << k;
+    }
+  }
+}
 
 TEST(SpaceTime, PassesWhatComesTowardsIt) {
   Meeting meeting;
