@@ -31,7 +31,6 @@ constexpr double kCloser = 0.3;   // of the margins, where nothing else is clear
 constexpr double kHeld = 1.5;     // [s] of the motions weighed when nothing is
 constexpr double kLater = 0.02;   // [m] that room counts more for every substep
 constexpr double kSlack = 0.002;  // [m] a position may be nearer to what stands than the one before
-constexpr int kMostSubsteps = 40;  // of a brake
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
@@ -165,8 +164,8 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
   // Too close to something that stands already: no closer.
   const double standing = in.hull->clearance(*in.map, in.state.pose_W) - kSlack;
   static_margin_ = std::clamp(standing, kStaticFloor, kStaticMargin);
+  const double room = std::min(kStaticFloor, standing);
   for (std::size_t c = 0; c < kCommands; ++c) {
-    const double room = std::min(kStaticFloor, standing);
     stops_[c] = stops_clear(in, command(c, in.limits), room) ? 1 : 0;
   }
   const Twist2 wanted = attempt(in, 1, out);
@@ -221,12 +220,11 @@ bool SpaceTimeSearch::stops_clear(const SpaceTimeInput& in,
                                   const Twist2& twist,
                                   double room) const {
   MotionState state = in.state;
-  for (int k = 1; k <= kMostSubsteps; ++k) {
-    state = advanced(state, k * kSubstep <= kLevels[0] ? twist : Twist2{}, in.limits, kSubstep);
+  for (int k = 1; k * kSubstep <= kLevels[0]; ++k) {
+    state = advanced(state, twist, in.limits, kSubstep);
     if (in.hull->clearance(*in.map, state.pose_W) < room) return false;
-    if (state.twist == Twist2{}) return true;
   }
-  return true;
+  return rests_clear(*in.map, *in.hull, state, in.limits, kSubstep, room);
 }
 
 /// Held for a while, the command that keeps most room; but no guess of what moves is worth driving
@@ -234,10 +232,9 @@ bool SpaceTimeSearch::stops_clear(const SpaceTimeInput& in,
 Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
   Twist2 best{};
   double most = -std::numeric_limits<double>::infinity();
-  const double room = std::min(kStaticFloor, in.hull->clearance(*in.map, in.state.pose_W) - kSlack);
   for (std::size_t c = 0; c < kCommands; ++c) {
+    if (stops_[c] == 0) continue;
     const Twist2 twist = command(c, in.limits);
-    if (!stops_clear(in, twist, room)) continue;
     MotionState state = in.state;
     double least = std::numeric_limits<double>::infinity();
     for (int k = 1; k * kSubstep <= kHeld; ++k) {
