@@ -140,17 +140,19 @@ TAUTLINE_WIDE void write_hits(const double* tag, std::span<std::uint32_t> hits) 
 }
 
 TAUTLINE_WIDE void follow(const MotionStep& step,
-                          const double* at,
+                          const StepClock& clock,
+                          const double* times,
                           BeamRange which,
                           double* x,
                           double* y,
                           double* heading) {
   const MotionStep s = step;
+  const StepClock when = clock;
   double* __restrict out_x = x;
   double* __restrict out_y = y;
   double* __restrict out_heading = heading;
   for (std::size_t i = which.begin; i < which.end; ++i) {
-    const double part = at[i] - s.number;
+    const double part = when.offset + times[i] * when.per_step - s.number;
     out_x[i] = s.x + part * s.way_x;
     out_y[i] = s.y + part * s.way_y;
     out_heading[i] = s.heading + part * s.way_heading;

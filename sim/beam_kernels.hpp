@@ -75,15 +75,24 @@ void write_ranges(const double* inverse, double range_max, std::span<double> ran
 /// Tags to obstacle indices; -1 becomes the largest number there is.
 void write_hits(const double* tag, std::span<std::uint32_t> hits);
 
-/// A straight stretch of a sensor's motion: at `at` in [number, number + 1) it has come from the
-/// pose (x, y, heading) by that part of the way.
+/// When something happens in steps since the first one, from when it does in seconds.
+struct StepClock {
+  double offset = 0;    // [steps]
+  double per_step = 0;  // [steps/s]
+  double at(double time) const { return offset + time * per_step; }
+};
+
+/// A straight stretch of a sensor's motion: at step `at` in [number, number + 1) it has come from
+/// the pose (x, y, heading) by that part of the way.
 struct MotionStep {
   double number = 0;
   double x = 0, y = 0, heading = 0;              // [m, m, rad] at its start
   double way_x = 0, way_y = 0, way_heading = 0;  // to its end
 };
+/// Where the sensor is at `times` [s], all of which lie within the stretch.
 void follow(const MotionStep& step,
-            const double* at,
+            const StepClock& clock,
+            const double* times,
             BeamRange which,
             double* x,
             double* y,

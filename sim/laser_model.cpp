@@ -54,7 +54,6 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
 
   const std::size_t beams = pattern_.beams;
   fired_.reserve(beams);
-  at_.resize(beams);
   way_.resize(beams);
   way_turns_.resize(beams);
   ux_.resize(beams);
@@ -155,6 +154,7 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
   const auto youngest = static_cast<std::size_t>(std::max(0.0, (trail.newest() - end) / step));
   motion_.clear();
   RaySpread spread;
+  double farthest = 0;  // [m^2] from the reference
   for (std::size_t age = oldest; age + 1 > youngest; --age) {
     const algo::Pose2 pose_W = scanner_W(trail.back(age), config_.mount_R);
     const double dx = pose_W.x - reference_W_.x;
@@ -162,37 +162,41 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
     motion_.push_back({c * dx + s * dy,
                        c * dy - s * dx,
                        algo::wrap_angle(pose_W.heading - reference_W_.heading)});
-    spread.shift = std::max(spread.shift, std::sqrt(dx * dx + dy * dy));
+    farthest = std::max(farthest, dx * dx + dy * dy);
     spread.turn = std::max(spread.turn, std::abs(motion_.back().heading));
     if (age == 0) break;
   }
+  spread.shift = std::sqrt(farthest);
   motion_.push_back(motion_.back());  // the last instant has a successor to interpolate to
   spread_ = spread;
   allow_for_spot();
 
+  const std::size_t beams = fired_.size();
   const double per_step = 1 / step;
-  const double offset = (begin - trail.newest()) * per_step + static_cast<double>(oldest);
-  for (std::size_t i = 0; i < at_.size(); ++i) at_[i] = offset + fired_[i] * per_step;
-  for (std::size_t i = 0; i < at_.size();) i = follow_motion(i);
-  interlace(way_.x.data(), at_.size(), config_.turns, rays_.x.data());
-  interlace(way_.y.data(), at_.size(), config_.turns, rays_.y.data());
-  interlace(way_turns_.data(), at_.size(), config_.turns, turns_.data());
+  const StepClock clock{(begin - trail.newest()) * per_step + static_cast<double>(oldest),
+                        per_step};
+  for (std::size_t i = 0; i < beams;) i = follow_motion(clock, i);
+  interlace(way_.x.data(), beams, config_.turns, rays_.x.data());
+  interlace(way_.y.data(), beams, config_.turns, rays_.y.data());
+  interlace(way_turns_.data(), beams, config_.turns, turns_.data());
   turn_directions(
       ux_.data(), uy_.data(), turns_.data(), turns_.size(), rays_.ux.data(), rays_.uy.data());
 }
 
-/// Where the scanner is when the beams from at_[first] on are fired, as many as lie within one
-/// physics step; at_ ascends. @return the first beam after them
-std::size_t LaserModel::follow_motion(std::size_t first) {
-  const auto k = static_cast<std::size_t>(at_[first]);
+/// Where the scanner is when the beams from fired_[first] on leave, as many as lie within one
+/// physics step; fired_ ascends. @return the first beam after them
+std::size_t LaserModel::follow_motion(const StepClock& clock, std::size_t first) {
+  const auto k = static_cast<std::size_t>(clock.at(fired_[first]));
   const auto number = static_cast<double>(k);
   const algo::Pose2& a = motion_[k];
   const algo::Pose2& b = motion_[k + 1];
-  const double* const at = at_.data();
-  const double* const next = std::lower_bound(at + first + 1, at + at_.size(), number + 1);
-  const auto end = static_cast<std::size_t>(next - at);
+  const auto from = fired_.begin() + static_cast<std::ptrdiff_t>(first);
+  const auto next = std::partition_point(
+      from + 1, fired_.end(), [&](double fired) { return clock.at(fired) < number + 1; });
+  const auto end = static_cast<std::size_t>(next - fired_.begin());
   follow({number, a.x, a.y, a.heading, b.x - a.x, b.y - a.y, b.heading - a.heading},
-         at,
+         clock,
+         fired_.data(),
          {first, end},
          way_.x.data(),
          way_.y.data(),

@@ -52,7 +52,7 @@ class LaserModel {
 
   void note_surfaces();
   void aim(double end, const PoseTrail& trail);
-  std::size_t follow_motion(std::size_t first);
+  std::size_t follow_motion(const StepClock& clock, std::size_t first);
   void aim_still();
   void allow_for_spot();
   void apply_surfaces(const Rays& rays,
@@ -81,7 +81,6 @@ class LaserModel {
 
   // Tables and workspace, one entry a beam unless said otherwise.
   std::vector<double> fired_{};  // [s] after the sweep's start, one mirror turn after another
-  std::vector<double> at_{};     // the same in physics steps since the oldest of motion_
   Rays way_{};                   // x and y, one mirror turn after another
   std::vector<double> way_turns_{};
   std::vector<double> ux_{}, uy_{};    // directions in the scanner's frame

@@ -23,11 +23,13 @@ class PoseTrail {
     std::fill(poses_.begin(), poses_.end(), pose);
     start_ = time;
     pushed_ = 0;
+    last_ = 0;
   }
   /// The pose one step after the newest.
   void push(const algo::Pose2& pose) {
     ++pushed_;
-    poses_[pushed_ % poses_.size()] = pose;
+    if (++last_ == poses_.size()) last_ = 0;
+    poses_[last_] = pose;
   }
 
   double step() const { return step_; }
@@ -36,7 +38,7 @@ class PoseTrail {
   /// The pose `age` steps before the newest; the oldest one kept when that is too far back.
   const algo::Pose2& back(std::size_t age) const {
     const std::size_t kept = std::min(age, poses_.size() - 1);
-    return poses_[(pushed_ + poses_.size() - kept) % poses_.size()];
+    return poses_[kept <= last_ ? last_ - kept : last_ + poses_.size() - kept];
   }
   /// The pose at `time`, interpolated.
   algo::Pose2 at(double time) const {
@@ -55,6 +57,7 @@ class PoseTrail {
   double step_ = 0;   // [s]
   double start_ = 0;  // [s]
   std::size_t pushed_ = 0;
+  std::size_t last_ = 0;  // where the newest is; counted, as a remainder costs a division a pose
   std::vector<algo::Pose2> poses_{};
 };
 
