@@ -20,6 +20,10 @@ constexpr std::int32_t kMostDifference = 255;  // [mm] that one sample counts
 constexpr std::array kErrors{300.0, 150.0, 60.0};
 constexpr double kStiffness = 1000;    // holds a turn that nothing tells of
 constexpr double kShiftStiffness = 5;  // the same for a shift
+constexpr double kSettledTurn = 1;     // [beams] a fit that changed no more need not be repeated
+constexpr double kSettledShift = 40;   // [mm] the same
+constexpr std::size_t kEvery = 2;      // step to a sample's successor of the same parity
+constexpr std::size_t kRough = 8;      // every fourth one will do for a first fit
 constexpr double kMostStep = 1.5;      // [beams] of one fit
 constexpr double kMostShiftStep = 60;  // [mm]
 constexpr double kLeastShift = 5;      // [mm] shorter ones wait: moving the map blurs it
@@ -32,18 +36,30 @@ std::int32_t below(double value) {
 
 }  // namespace
 
-void MotionFinder::take_samples(std::span<const std::byte> samples) {
-  const std::size_t count = samples.size() / sizeof(std::uint16_t);
-  if (lines_.size() != count) {
-    lines_.resize(count);
-    const double spacing =
-        static_cast<double>(kKnots - 1) / static_cast<double>(std::max<std::size_t>(count - 1, 1));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double knots = static_cast<double>(i) * spacing;
-      const std::size_t knot = std::min(static_cast<std::size_t>(knots), kKnots - 2);
-      lines_[i] = {(i % 2) * kKnots + knot, knots - static_cast<double>(knot)};
+/// Where samples lie on their broken lines.
+void MotionFinder::lay_lines(std::size_t count) {
+  parts_.resize(count);
+  const double spacing =
+      static_cast<double>(kKnots - 1) / static_cast<double>(std::max<std::size_t>(count - 1, 1));
+  for (std::size_t parity = 0; parity < 2; ++parity) {
+    std::size_t begin = parity;
+    for (std::size_t knot = 0; knot + 1 < kKnots; ++knot) {
+      const bool is_last = knot + 2 == kKnots;
+      std::size_t i = begin;
+      for (; i < count; i += 2) {
+        const double part = static_cast<double>(i) * spacing - static_cast<double>(knot);
+        if (part >= 1 && !is_last) break;
+        parts_[i] = part;
+      }
+      stretches_[parity * (kKnots - 1) + knot] = {parity * kKnots + knot, begin, i};
+      begin = i;
     }
   }
+}
+
+void MotionFinder::take_samples(std::span<const std::byte> samples) {
+  const std::size_t count = samples.size() / sizeof(std::uint16_t);
+  if (parts_.size() != count) lay_lines(count);
   samples_.resize(count);
   for (std::size_t i = 0; i < count; ++i) samples_[i] = load<std::uint16_t>(samples, i);
 }
@@ -99,7 +115,7 @@ void MotionFinder::turn_whole_beams(std::size_t parity) {
   for (std::int32_t k = 0; k <= 2 * kReach; ++k) {
     const std::int32_t turn = k % 2 == 0 ? k / 2 : -(k + 1) / 2;
     std::int64_t sum = 0;
-    for (std::size_t i = parity; i < samples_.size(); i += kTried) {
+    for (std::size_t i = parity; i < samples_.size() && sum < least; i += kTried) {
       const std::int32_t there = ranges_[index(static_cast<std::int32_t>(i) + about + turn)];
       sum += std::min(std::abs(samples_[i] - there), kMostDifference);
     }
@@ -110,27 +126,68 @@ void MotionFinder::turn_whole_beams(std::size_t parity) {
   for (std::size_t k = 0; k < kKnots; ++k) found_[parity * kKnots + k] += best;
 }
 
-/// One step of Gauss and Newton, without samples that are off by more than `most_error` [mm].
-void MotionFinder::refine(double most_error) {
-  std::array<Vector, kUnknowns> normal{};
-  Vector right{};
-  left_over_ = 0;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const auto [knot, part] = lines_[i];
-    const double at = static_cast<double>(i) + found_[knot] * (1 - part) + found_[knot + 1] * part;
+/// What the samples of one stretch tell of the turns at its two knots and of the shift.
+MotionFinder::Sums MotionFinder::fit(const Stretch& stretch, double most_error, std::size_t by) {
+  const double turn = found_[stretch.knot];
+  const double turn_change = found_[stretch.knot + 1] - turn;
+  const double ahead = found_[kUnknowns - 2];
+  const double left = found_[kUnknowns - 1];
+  double here_here = 0, here_next = 0, here_x = 0, here_y = 0, next_next = 0, next_x = 0,
+         next_y = 0, x_x = 0, x_y = 0, y_y = 0;
+  double here_error = 0, next_error = 0, x_error = 0, y_error = 0, left_over = 0;
+  for (std::size_t i = stretch.begin; i < stretch.end; i += by) {
+    const double part = parts_[i];
+    const double at = static_cast<double>(i) + turn + turn_change * part;
     const std::int32_t number = below(at);
     const Cell& there = cells_[index(number)];
     const double error = samples_[i] - there.range - there.step * (at - number) * there.usable -
-                         there.shift[0] * found_[kUnknowns - 2] -
-                         there.shift[1] * found_[kUnknowns - 1];
-    left_over_ += std::min<double>(std::abs(error), kMostDifference);
-    if (!there.usable || std::abs(error) > most_error) continue;
-    const std::array<double, 4> by{
-        there.slope * (1 - part), there.slope * part, there.shift[0], there.shift[1]};
-    const std::array<std::size_t, 4> of{knot, knot + 1, kUnknowns - 2, kUnknowns - 1};
+                         there.shift[0] * ahead - there.shift[1] * left;
+    left_over += std::min<double>(std::abs(error), kMostDifference);
+    const bool counts = there.usable && std::abs(error) <= most_error;
+    const double weight = counts ? 1 : 0;
+    // What one beam more at either knot, and one millimetre of shift, would change: each by name,
+    // since an array of four costs g++ a stall a sample.
+    const double here = there.slope * (1 - part) * weight;
+    const double next = there.slope * part * weight;
+    const double x = there.shift[0] * weight;
+    const double y = there.shift[1] * weight;
+    here_here += here * here;
+    here_next += here * next;
+    here_x += here * x;
+    here_y += here * y;
+    next_next += next * next;
+    next_x += next * x;
+    next_y += next * y;
+    x_x += x * x;
+    x_y += x * y;
+    y_y += y * y;
+    here_error += here * error;
+    next_error += next * error;
+    x_error += x * error;
+    y_error += y * error;
+  }
+  return {{{{here_here, here_next, here_x, here_y},
+            {0, next_next, next_x, next_y},
+            {0, 0, x_x, x_y},
+            {0, 0, 0, y_y}}},
+          {here_error, next_error, x_error, y_error},
+          left_over};
+}
+
+/// One step of Gauss and Newton, without samples that are off by more than `most_error` [mm]; of
+/// the samples every `by`-th alone. @return false when it changed next to nothing
+bool MotionFinder::refine(double most_error, std::size_t by) {
+  std::array<Vector, kUnknowns> normal{};
+  Vector right{};
+  left_over_ = 0;
+  for (const Stretch& stretch : stretches_) {
+    const Sums sums = fit(stretch, most_error, by);
+    const std::array<std::size_t, 4> of{
+        stretch.knot, stretch.knot + 1, kUnknowns - 2, kUnknowns - 1};
+    left_over_ += sums.left_over;
     for (std::size_t a = 0; a < 4; ++a) {
-      right[of[a]] += by[a] * error;
-      for (std::size_t b = a; b < 4; ++b) normal[of[a]][of[b]] += by[a] * by[b];
+      right[of[a]] += sums.right[a];
+      for (std::size_t b = a; b < 4; ++b) normal[of[a]][of[b]] += sums.normal[a][b];
     }
   }
   for (std::size_t a = 0; a < kUnknowns; ++a) {
@@ -138,18 +195,23 @@ void MotionFinder::refine(double most_error) {
   }
   // Symmetric and positive: eliminated without pivots, in the upper triangle alone.
   for (std::size_t a = 0; a < kUnknowns; ++a) {
+    const double per_pivot = 1 / normal[a][a];
     for (std::size_t b = a + 1; b < kUnknowns; ++b) {
-      const double factor = normal[a][b] / normal[a][a];
+      const double factor = normal[a][b] * per_pivot;
       for (std::size_t k = b; k < kUnknowns; ++k) normal[b][k] -= factor * normal[a][k];
       right[b] -= factor * right[a];
     }
   }
+  bool changed = false;
   for (std::size_t a = kUnknowns; a-- > 0;) {
     for (std::size_t k = a + 1; k < kUnknowns; ++k) right[a] -= normal[a][k] * right[k];
     right[a] /= normal[a][a];
-    const double most = a < 2 * kKnots ? kMostStep : kMostShiftStep;
+    const bool is_turn = a < 2 * kKnots;
+    const double most = is_turn ? kMostStep : kMostShiftStep;
     found_[a] += std::clamp(right[a], -most, most);
+    changed = changed || std::abs(right[a]) > (is_turn ? kSettledTurn : kSettledShift);
   }
+  return changed;
 }
 
 Motion MotionFinder::rounded() const {
@@ -167,6 +229,17 @@ Motion MotionFinder::rounded() const {
   return motion;
 }
 
+/// A few samples bring the line close, all of them lay it. Where that moves it far, what is off by
+/// much must have a say first.
+void MotionFinder::fit_line() {
+  const Vector start = found_;
+  if (refine(kErrors.back(), kRough)) {
+    found_ = start;
+    for (const double most : {kErrors[0], kErrors[1]}) refine(most, kRough);
+  }
+  refine(kErrors.back(), kEvery);
+}
+
 std::optional<Motion> MotionFinder::find(const RangeMap& map, std::span<const std::byte> samples) {
   take_samples(samples);
   take_cells(map);
@@ -175,7 +248,7 @@ std::optional<Motion> MotionFinder::find(const RangeMap& map, std::span<const st
   }
   found_[kUnknowns - 2] = found_[kUnknowns - 1] = 0;
   for (std::size_t parity = 0; parity < 2; ++parity) turn_whole_beams(parity);
-  for (const double most : kErrors) refine(most);
+  fit_line();
   const Motion motion = rounded();
   std::int64_t neighbours = 0;
   for (std::size_t i = 1; i < samples_.size(); ++i) {

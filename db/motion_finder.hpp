@@ -32,24 +32,35 @@ class MotionFinder {
     std::array<double, 2> shift{};  // [mm] by which a shift of 1 mm ahead, or left, changes it
     bool usable = false;
   };
-  /// Where a sample lies on its broken line: which knot is before it, and how far the next is.
-  struct OnLine {
-    std::size_t knot = 0;
-    double part = 0;
+  /// Every second sample of [begin, end): those between two knots of their broken line.
+  struct Stretch {
+    std::size_t knot = 0;  // the first of the two, of all unknowns
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+  /// The normal equations of a stretch: of the turns at its knots and of the shift.
+  struct Sums {
+    std::array<std::array<double, 4>, 4> normal{};  // the upper triangle
+    std::array<double, 4> right{};
+    double left_over = 0;  // [mm]
   };
 
+  void lay_lines(std::size_t count);
   void take_samples(std::span<const std::byte> samples);
   void take_cells(const RangeMap& map);
   std::size_t index(std::int32_t cell) const;
   void turn_whole_beams(std::size_t parity);
-  void refine(double most_error);
+  Sums fit(const Stretch& stretch, double most_error, std::size_t by);
+  bool refine(double most_error, std::size_t by);
+  void fit_line();
   Motion rounded() const;
 
   std::int32_t first_cell_ = 0;
   std::vector<Cell> cells_{};
   std::vector<std::int32_t> ranges_{};   // [mm] of the cells
   std::vector<std::int32_t> samples_{};  // [mm]
-  std::vector<OnLine> lines_{};          // of the samples
+  std::vector<double> parts_{};          // of the way from a sample's knot to the next, of each
+  std::array<Stretch, 2 * (kKnots - 1)> stretches_{};
   Vector found_{};        // the turns [beams] of even and odd samples, then the shift [mm]
   double left_over_ = 0;  // [mm] by which the samples differed at the last fit
 };

@@ -122,12 +122,6 @@ void RangeMap::set_directions() {
   }
 }
 
-bool RangeMap::is_joined(std::int32_t cell) const {
-  const std::size_t left = wrapped(cell);
-  const std::size_t right = wrapped(cell + 1);
-  return seen_[left] != 0 && seen_[right] != 0 && std::abs(ranges_[left] - ranges_[right]) <= kEdge;
-}
-
 MappedScan RangeMap::move(const Motion& motion) {
   if (motion.shift[0] != 0 || motion.shift[1] != 0) shift(motion.shift, middle(motion));
   aim(motion);

@@ -12,6 +12,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -91,7 +92,13 @@ class RangeMap {
   // For finding a motion: cells by number, which may be any.
   std::size_t count() const { return count_; }
   std::int32_t range(std::int32_t cell) const { return ranges_[wrapped(cell)]; }
-  bool is_joined(std::int32_t cell) const;  // with the next one
+  /// On one surface with the next one.
+  bool is_joined(std::int32_t cell) const {
+    const std::size_t left = wrapped(cell);
+    const std::size_t right = wrapped(cell + 1);
+    return seen_[left] != 0 && seen_[right] != 0 &&
+           std::abs(ranges_[left] - ranges_[right]) <= kEdge;
+  }
   /// Cosine and sine of the bearing of `beam`, at most kMargin outside the scan; zeros where
   /// bearings are unknown.
   std::array<double, 2> direction(std::int32_t beam) const {
