@@ -2,21 +2,26 @@
 #include "algo/laser_scan.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
+
+#include "algo/wide.hpp"
 
 namespace algo {
 namespace {
 
-/// Ranges as if all were distances. The sum leaves no room for a fraction and has the integer in
-/// its low bits; the clamps turn a NaN into 0.
-void ranges_to_wire(const double* ranges, std::size_t count, std::uint16_t* out) {
+/// Ranges as if all were distances. The sum leaves no room for a fraction; the clamps turn a NaN
+/// into 0. By way of 32 bits, since that conversion exists for vectors.
+TAUTLINE_WIDE void ranges_to_wire(const double* ranges,
+                                  std::size_t count,
+                                  std::uint16_t* __restrict out) {
+  constexpr double kNoFraction = 0x1p52;
   constexpr double kMax = kWireMaxRange;
   for (std::size_t i = 0; i < count; ++i) {
     const double mm = ranges[i] * 1000.0;
     const double positive = mm > 0 ? mm : 0;
     const double clipped = positive < kMax ? positive : kMax;
-    out[i] = static_cast<std::uint16_t>(std::bit_cast<std::uint64_t>(clipped + 0x1p52));
+    const auto whole = static_cast<std::int32_t>((clipped + kNoFraction) - kNoFraction);
+    out[i] = static_cast<std::uint16_t>(whole);
   }
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/wide.hpp"
+#include "algo/wide.hpp"
 
 namespace sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "sim/wide.hpp"
+#include "algo/wide.hpp"
 
 namespace sim {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "sim/wide.hpp"
+#include "algo/wide.hpp"
 
 namespace sim {
 namespace {

@@ -1,4 +1,4 @@
-// sim/wide.hpp: marks a loop to be compiled for plain x86-64, for AVX2 and for AVX-512.
+// algo/wide.hpp: marks a loop to be compiled for plain x86-64, for AVX2 and for AVX-512.
 //
 // The loader chooses, where it can. All give the same bits: no operation is fused
 // (-ffp-contract=off) and none depends on the width. The widest one pays by its masks and by twice
