@@ -84,7 +84,8 @@ try_without_root() {
 
 # ./dev run until its URL answers; prints how long that took.
 try_run() {
-  local log=$bare.log start=$SECONDS url=
+  local log start=$SECONDS url=
+  log=$(mktemp)
   (inside /root/tautline/dev run --port "$port" </dev/null) >"$log" 2>&1 &
   server=$!
   until url=$(grep -om1 'http://[^ ]*' "$log") && curl -fsS "${url%/}/api/v1/healthz"; do
