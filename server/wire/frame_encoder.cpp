@@ -190,6 +190,20 @@ Offset<fb::Grid> write_grid(Builder& b, const algo::GridLayer& grid) {
   return fb::CreateGrid(b, &corner, static_cast<float>(grid.cell), grid.columns, cells);
 }
 
+/// What the side choice adds to the forces: what is left of the elastic force without them. Less
+/// than a float resolves of them is the rounding of their sum, which would come and go each time
+/// that a frame is read and written.
+algo::Vec2 side_push_of(const algo::ControlOutput& out) {
+  constexpr double kResolution = 0x1p-24;
+  const algo::Vec2 others =
+      out.internal_W.cwiseAbs() + out.external_left_W.cwiseAbs() + out.external_right_W.cwiseAbs();
+  algo::Vec2 push = out.elastic_W - out.internal_W - out.external_left_W - out.external_right_W;
+  for (const Eigen::Index axis : {0, 1}) {
+    if (std::abs(push[axis]) <= kResolution * others[axis]) push[axis] = 0;
+  }
+  return push;
+}
+
 struct FrameWriter {
   fb::FrameBuilder frame;
   const algo::Telemetry& t;
@@ -245,8 +259,7 @@ void FrameWriter::decision() {
     const fb::Forces forces(
         to_float(out.internal_W), to_float(out.external_left_W), to_float(out.external_right_W));
     frame.add_forces(&forces);
-    const algo::Vec2 push =
-        out.elastic_W - out.internal_W - out.external_left_W - out.external_right_W;
+    const algo::Vec2 push = side_push_of(out);
     const fb::Vec2f side_push = to_float(push);
     if (push != algo::Vec2{0, 0}) frame.add_side_push(&side_push);
   }

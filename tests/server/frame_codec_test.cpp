@@ -2,6 +2,7 @@
 // not.
 #include "server/wire/frame_codec.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 #include <string>
@@ -184,6 +185,29 @@ TEST(FrameCodec, WhatAControllerWeighsComesBack) {
   decode_frame(encoder.encode(full_telemetry()), back);  // nothing of it stays
   EXPECT_TRUE(back.output.plan_W.empty() && back.output.candidates.empty());
   EXPECT_TRUE(back.output.histogram.empty() && back.output.grid.cells.empty());
+}
+
+// By the fuzzer: forces of 1e-27 m beside others left a push of 1e-43 m that grew with every
+// reading.
+TEST(FrameCodec, TheRoundingOfForcesIsNoPushToASide) {
+  for (const double tiny : {1.64078e-27, 1e-9, 0.0}) {
+    algo::Telemetry t = full_telemetry();
+    t.output.internal_W = {tiny, 0.1};
+    t.output.external_left_W = {3.57331e-43, 35.751};
+    t.output.external_right_W = {3.54487e-38, 0.3};
+    t.output.elastic_W = t.output.internal_W + t.output.external_left_W + t.output.external_right_W;
+    t.output.elastic_W.x() += 0x1p-53 * tiny;
+    FrameEncoder encoder;
+    const auto first = encoder.encode(t);
+    const std::vector<std::byte> kept(first.begin(), first.end());
+    algo::Telemetry back;
+    decode_frame(kept, back);
+    const algo::Vec2 sum =
+        back.output.internal_W + back.output.external_left_W + back.output.external_right_W;
+    EXPECT_EQ(back.output.elastic_W, sum) << tiny;
+    const auto second = encoder.encode(back);
+    EXPECT_TRUE(std::ranges::equal(kept, second)) << tiny;
+  }
 }
 
 TEST(FrameCodec, AFrameReadsWhereverItLies) {
