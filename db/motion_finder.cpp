@@ -16,14 +16,11 @@ constexpr std::int32_t kMargin = 4 * kReach;   // [cells] looked at beyond the v
 constexpr std::size_t kTried = 8;              // every eighth sample is enough for whole beams
 constexpr std::int32_t kMostDifference = 255;  // [mm] that one sample counts
 // [mm] Beyond, a sample is left out of the first, second, third fit. The first must reach as far as
-// a jagged wall changes in the beams by which a scanner may turn between even and odd ones.
-constexpr std::array kErrors{300.0, 150.0, 60.0};
+// a jagged wall changes in the beams by which a scanner may turn between even and odd ones. Until
+// the last, a few samples will do.
+constexpr std::array<MotionFinder::Fit, 3> kFits{{{300, 8}, {150, 8}, {60, 2}}};
 constexpr double kStiffness = 1000;    // holds a turn that nothing tells of
 constexpr double kShiftStiffness = 5;  // the same for a shift
-constexpr double kSettledTurn = 1;     // [beams] a fit that changed no more need not be repeated
-constexpr double kSettledShift = 40;   // [mm] the same
-constexpr std::size_t kEvery = 2;      // step to a sample's successor of the same parity
-constexpr std::size_t kRough = 8;      // every fourth one will do for a first fit
 constexpr double kMostStep = 1.5;      // [beams] of one fit
 constexpr double kMostShiftStep = 60;  // [mm]
 constexpr double kLeastShift = 5;      // [mm] shorter ones wait: moving the map blurs it
@@ -127,7 +124,7 @@ void MotionFinder::turn_whole_beams(std::size_t parity) {
 }
 
 /// What the samples of one stretch tell of the turns at its two knots and of the shift.
-MotionFinder::Sums MotionFinder::fit(const Stretch& stretch, double most_error, std::size_t by) {
+MotionFinder::Sums MotionFinder::sum_up(const Stretch& stretch, const Fit& fit) const {
   const double turn = found_[stretch.knot];
   const double turn_change = found_[stretch.knot + 1] - turn;
   const double ahead = found_[kUnknowns - 2];
@@ -135,7 +132,7 @@ MotionFinder::Sums MotionFinder::fit(const Stretch& stretch, double most_error, 
   double here_here = 0, here_next = 0, here_x = 0, here_y = 0, next_next = 0, next_x = 0,
          next_y = 0, x_x = 0, x_y = 0, y_y = 0;
   double here_error = 0, next_error = 0, x_error = 0, y_error = 0, left_over = 0;
-  for (std::size_t i = stretch.begin; i < stretch.end; i += by) {
+  for (std::size_t i = stretch.begin; i < stretch.end; i += fit.step) {
     const double part = parts_[i];
     const double at = static_cast<double>(i) + turn + turn_change * part;
     const std::int32_t number = below(at);
@@ -143,7 +140,7 @@ MotionFinder::Sums MotionFinder::fit(const Stretch& stretch, double most_error, 
     const double error = samples_[i] - there.range - there.step * (at - number) * there.usable -
                          there.shift[0] * ahead - there.shift[1] * left;
     left_over += std::min<double>(std::abs(error), kMostDifference);
-    const bool counts = there.usable && std::abs(error) <= most_error;
+    const bool counts = there.usable && std::abs(error) <= fit.most_error;
     const double weight = counts ? 1 : 0;
     // What one beam more at either knot, and one millimetre of shift, would change: each by name,
     // since an array of four costs g++ a stall a sample.
@@ -174,14 +171,13 @@ MotionFinder::Sums MotionFinder::fit(const Stretch& stretch, double most_error, 
           left_over};
 }
 
-/// One step of Gauss and Newton, without samples that are off by more than `most_error` [mm]; of
-/// the samples every `by`-th alone. @return false when it changed next to nothing
-bool MotionFinder::refine(double most_error, std::size_t by) {
+/// One step of Gauss and Newton.
+void MotionFinder::refine(const Fit& fit) {
   std::array<Vector, kUnknowns> normal{};
   Vector right{};
   left_over_ = 0;
   for (const Stretch& stretch : stretches_) {
-    const Sums sums = fit(stretch, most_error, by);
+    const Sums sums = sum_up(stretch, fit);
     const std::array<std::size_t, 4> of{
         stretch.knot, stretch.knot + 1, kUnknowns - 2, kUnknowns - 1};
     left_over_ += sums.left_over;
@@ -202,16 +198,12 @@ bool MotionFinder::refine(double most_error, std::size_t by) {
       right[b] -= factor * right[a];
     }
   }
-  bool changed = false;
   for (std::size_t a = kUnknowns; a-- > 0;) {
     for (std::size_t k = a + 1; k < kUnknowns; ++k) right[a] -= normal[a][k] * right[k];
     right[a] /= normal[a][a];
-    const bool is_turn = a < 2 * kKnots;
-    const double most = is_turn ? kMostStep : kMostShiftStep;
+    const double most = a < 2 * kKnots ? kMostStep : kMostShiftStep;
     found_[a] += std::clamp(right[a], -most, most);
-    changed = changed || std::abs(right[a]) > (is_turn ? kSettledTurn : kSettledShift);
   }
-  return changed;
 }
 
 Motion MotionFinder::rounded() const {
@@ -229,17 +221,6 @@ Motion MotionFinder::rounded() const {
   return motion;
 }
 
-/// A few samples bring the line close, all of them lay it. Where that moves it far, what is off by
-/// much must have a say first.
-void MotionFinder::fit_line() {
-  const Vector start = found_;
-  if (refine(kErrors.back(), kRough)) {
-    found_ = start;
-    for (const double most : {kErrors[0], kErrors[1]}) refine(most, kRough);
-  }
-  refine(kErrors.back(), kEvery);
-}
-
 std::optional<Motion> MotionFinder::find(const RangeMap& map, std::span<const std::byte> samples) {
   take_samples(samples);
   take_cells(map);
@@ -248,7 +229,7 @@ std::optional<Motion> MotionFinder::find(const RangeMap& map, std::span<const st
   }
   found_[kUnknowns - 2] = found_[kUnknowns - 1] = 0;
   for (std::size_t parity = 0; parity < 2; ++parity) turn_whole_beams(parity);
-  fit_line();
+  for (const Fit& fit : kFits) refine(fit);
   const Motion motion = rounded();
   std::int64_t neighbours = 0;
   for (std::size_t i = 1; i < samples_.size(); ++i) {

@@ -16,6 +16,11 @@ namespace db::detail {
 /// Keeps its buffers.
 class MotionFinder {
  public:
+  /// What takes part in a step of fitting.
+  struct Fit {
+    double most_error = 0;  // [mm] by which a sample may be off
+    std::size_t step = 2;   // to the next sample, even: of the same mirror turn
+  };
   /// The motion after which the map foretells `samples` best, near enough; they are of its shape.
   /// Nothing where every sample is more like its left neighbour.
   std::optional<Motion> find(const RangeMap& map, std::span<const std::byte> samples);
@@ -50,9 +55,8 @@ class MotionFinder {
   void take_cells(const RangeMap& map);
   std::size_t index(std::int32_t cell) const;
   void turn_whole_beams(std::size_t parity);
-  Sums fit(const Stretch& stretch, double most_error, std::size_t by);
-  bool refine(double most_error, std::size_t by);
-  void fit_line();
+  Sums sum_up(const Stretch& stretch, const Fit& fit) const;
+  void refine(const Fit& fit);
   Motion rounded() const;
 
   std::int32_t first_cell_ = 0;
