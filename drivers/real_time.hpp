@@ -14,6 +14,9 @@ constexpr int kReaderPriority = 45;
 
 /// SCHED_FIFO at `priority` for the calling thread. False when the system does not permit it.
 bool request_real_time(int priority);
+/// Timers of the calling thread without the slack of 50 us that the kernel takes to save power;
+/// with a real-time priority it has none anyway.
+void ask_for_punctual_timers();
 /// Keeps all memory of the program in place. False when the system does not permit it.
 bool lock_memory();
 /// At most 15 characters, for those who look with top or gdb.

@@ -64,6 +64,7 @@ SerialRobot::~SerialRobot() {
 
 void SerialRobot::become_real_time() {
   name_this_thread("control");
+  ask_for_punctual_timers();
   const bool priority = request_real_time(kControlPriority);
   const std::lock_guard lock(mutex_);
   real_time_ = priority;

@@ -4,20 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sys/prctl.h>
-
 namespace sim {
 namespace {
 
 constexpr double kLongestPeriod = 3600;  // [s] of wall time; keeps the conversion in range
-
-/// Without it the kernel may wake a thread of no real-time priority 50 us late, to save power.
-/// Where it is refused, that is all that is lost.
-void ask_for_punctual_timers() {
-  constexpr unsigned long kLeastSlack = 1;  // [ns]; 0 would restore the default
-  thread_local const int asked = ::prctl(PR_SET_TIMERSLACK, kLeastSlack, 0, 0, 0);
-  static_cast<void>(asked);
-}
 
 }  // namespace
 
@@ -63,7 +53,6 @@ std::uint64_t Pacer::missed() const {
 }
 
 bool Pacer::wait(double seconds) {
-  ask_for_punctual_timers();
   std::unique_lock lock(mutex_);
   for (;;) {
     const std::uint64_t seen = changes_;

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include <gtest/gtest.h>
-#include <sys/prctl.h>
 
 namespace sim {
 namespace {
@@ -83,15 +82,6 @@ TEST(Pacer, RealTimeTakesRealTime) {
   const auto start = Clock::now();
   for (int i = 0; i < 10; ++i) EXPECT_TRUE(pacer.wait(0.01));
   EXPECT_GE(seconds_since(start), 0.1);
-}
-
-TEST(Pacer, AsksTheKernelForTimersWithoutSlack) {
-  std::thread([] {
-    Pacer pacer;
-    ASSERT_EQ(::prctl(PR_SET_TIMERSLACK, 50'000, 0, 0, 0), 0);
-    pacer.wait(1e-3);
-    EXPECT_EQ(::prctl(PR_GET_TIMERSLACK, 0, 0, 0, 0), 1);
-  }).join();
 }
 
 TEST(Pacer, CountsWhatACallerSleptThrough) {
