@@ -18,7 +18,7 @@ constexpr std::array<ParameterInfo, kParameterCount> kTable{{
      0.05,
      0.8,
      "How strongly the strip pulls a via point onto the straight line. It moves the robot only "
-     "with the controller that keeps its via point."},
+     "with the controller that keeps its via point, which needs it below 1."},
     {Parameter::RepulsionGain,
      "k_r",
      "Repulsion K_r",

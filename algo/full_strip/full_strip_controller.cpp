@@ -18,7 +18,8 @@ constexpr int kExpansions = 400;      // of the planner a tick
 constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
 constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below,
 constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal,
-constexpr double kNearerTaken = 0.1;  // or so much where something stands on that
+constexpr double kNearerTaken = 0.1;  // or so much where something stands on that,
+constexpr double kAtGoal = 1e-6;      // or at the goal itself where the present one does not
 constexpr int kSweepsNew = 15;        // of a strip just laid
 constexpr int kSweeps = 5;            // a tick
 constexpr double kAtEnd = 0.15;       // [m] from the end of a strip that leads beside its goal
@@ -102,13 +103,14 @@ void FullStripController::sense(const ControlInput& in) {
   if (!placed_) stage_.hull().take_place(map_.seen(), here);
   placed_ = true;
   stage_.hull().stand_on(map_.seen(), here);
-  tracker_.predict(in.stamp);
   const LaserScan& scan = in.scene->scan;
-  if (!in.scene->fresh || scan.size() == 0) return;
-  const Pose2 sensor_W = points_.map(scan);
-  if (among_moving_) tracker_.update(scan, sensor_W, points_.points_W(), scan.stamp);
-  map_.insert(scan, sensor_W, points_.points_W(), tracker_);
-  forget_traces(in);
+  if (in.scene->fresh && scan.size() > 0) {
+    const Pose2 sensor_W = points_.map(scan);
+    if (among_moving_) tracker_.update(scan, sensor_W, points_.points_W());
+    map_.insert(scan, sensor_W, points_.points_W(), tracker_);
+    forget_traces(in);
+  }
+  tracker_.predict(in.stamp);
 }
 
 /// Frees the map of what cannot stand there: on the way of something found moving, and inside the
@@ -192,6 +194,7 @@ void FullStripController::take_plan(const ControlInput& in) {
   const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
   const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
   const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - nearer ||
+                      (left(rival_) < kAtGoal && left(strip_) >= kAtGoal) ||
                       rival_.cost(map_) < kRivalShare * strip_.cost(map_);
   if (better) {
     std::swap(strip_, rival_);

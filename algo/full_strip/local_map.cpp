@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <numbers>
 
 namespace algo {
 namespace {
@@ -14,7 +14,6 @@ constexpr int kLook = 2;                 // a look through takes this much
 constexpr double kBeyond = 0.15;         // [m] a beam must go on behind a cell to have seen through
 constexpr double kClearRange = 8.0;      // [m] cells farther than this are left as they are
 constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells' ages
-constexpr std::uint16_t kAgeAfter = 20 * 30;  // scans without a hit until a cell fades
 constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
 
 constexpr std::size_t kMostBeams = 4096;  // of a scan, for which there is room from the start
@@ -35,6 +34,7 @@ void LocalMap::reset(const Vec2& centre_W) {
   active_.clear();
   occupied_ = 0;
   scans_ = 0;
+  looks_ = {};
   space_.reset(centre_W);
   const double half = kSize * kCell / 2;
   corner_W_ = {std::floor((centre_W.x() - half) / kCell) * kCell,
@@ -132,12 +132,15 @@ bool LocalMap::weaken(std::size_t cell, int by) {
 }
 
 /// Every second cell a scan: of those that the scanner looked beyond with three beams side by side.
+/// A scanner that looks back, and whose scans take turns with the other one's, counts for itself,
+/// or each would only ever look at one half of the cells.
 void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   if (scan.size() < 3) return;
   const Vec2 ahead = direction(sensor_W.heading);
   const double per_radian = 1 / scan.angle_increment;
   const auto last = static_cast<double>(scan.size() - 2);
-  for (std::size_t i = scans_ % 2; i < active_.size(); i += 2) {
+  const bool back = std::abs(scan.mount_R.heading) > std::numbers::pi / 2;
+  for (std::size_t i = ++looks_[back ? 1 : 0] % 2; i < active_.size(); i += 2) {
     const std::size_t cell = active_[i];
     const Vec2 d = centre_W(cell) - sensor_W.position();
     const double far = d.squaredNorm();
@@ -181,7 +184,7 @@ void LocalMap::age() {
   for (std::size_t i = 0; i < active_.size();) {
     const std::size_t cell = active_[i];
     const auto since = static_cast<std::uint16_t>(now - seen_[cell]);
-    if (since < kAgeAfter) {
+    if (since < age_after_) {
       ++i;
       continue;
     }

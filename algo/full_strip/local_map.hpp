@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -32,6 +33,9 @@ class LocalMap {
 
   /// Forgets everything; the window is centred on `centre_W`.
   void reset(const Vec2& centre_W);
+
+  /// Scans without a hit after which a cell begins to fade.
+  void remember_for(std::uint16_t scans) { age_after_ = scans; }
 
   /// Moves the window when the robot has left its middle; true when it moved. `stamp` is the run
   /// clock [s].
@@ -135,7 +139,9 @@ class LocalMap {
   DistanceField field_{};
   SeenSpace space_{};
   std::size_t occupied_ = 0;
+  std::uint16_t age_after_ = 20 * 30;
   std::uint32_t scans_ = 0;
+  std::array<std::uint32_t, 2> looks_{};  // of scanners that look ahead, and back
 };
 
 }  // namespace algo

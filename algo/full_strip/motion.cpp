@@ -129,9 +129,13 @@ double HullCheck::exact(const LocalMap& map, const Pose2& pose_W) const {
   return least;
 }
 
+double HullCheck::distance(const Pose2& pose_W, const Vec2& point_W) const {
+  return outside(point_W - pose_W.position(), direction(pose_W.heading));
+}
+
 bool HullCheck::covers(const Pose2& pose_W, const Vec2& point_W) const {
   constexpr double kDepth = 0.04;  // [m]
-  return outside(point_W - pose_W.position(), direction(pose_W.heading)) < -kDepth;
+  return distance(pose_W, point_W) < -kDepth;
 }
 
 MotionState advanced(const MotionState& state,
@@ -149,18 +153,14 @@ MotionState advanced(const MotionState& state,
 
 bool rests_clear(const LocalMap& map,
                  const HullCheck& hull,
-                 MotionState state,
+                 const MotionState& state,
                  const MotionLimits& limits,
                  double dt,
                  double margin) {
-  constexpr int kMost = 400;  // a base that cannot brake is not proven safe
-  for (int k = 0; k < kMost; ++k) {
-    if (state.twist == Twist2{}) return true;
-    state = advanced(state, {}, limits, dt);
-    if (hull.enters_unseen(map.seen(), state.pose_W, state.twist)) return false;
-    if (hull.clearance(map, state.pose_W) < margin) return false;
-  }
-  return false;
+  return rests(state, limits, dt, [&](const MotionState& next) {
+    return !hull.enters_unseen(map.seen(), next.pose_W, next.twist) &&
+           hull.clearance(map, next.pose_W) >= margin;
+  });
 }
 
 }  // namespace algo

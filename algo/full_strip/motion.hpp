@@ -23,6 +23,8 @@ class HullCheck {
   /// [m] Free room around the hull at `pose_W`; exact where it is less than kExact, there negative
   /// when something is inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;
+  /// [m] From the hull at `pose_W` to one point, negative inside.
+  double distance(const Pose2& pose_W, const Vec2& point_W) const;
   /// Whether the hull at `pose_W` stands on `point_W`, by more than what a hit may be off.
   bool covers(const Pose2& pose_W, const Vec2& point_W) const;
   /// Whether a part of the hull that looks back moves under `twist` into what nobody has seen. What
@@ -72,11 +74,24 @@ MotionState advanced(const MotionState& state,
                      const MotionLimits& limits,
                      double dt);
 
-/// Whether `state` braked to rest, both parts at once, keeps `margin` [m] of room all the way and
-/// backs into nothing unseen.
+/// Whether `state` braked to rest, both parts at once, passes only states for which `free(state)`
+/// holds.
+template <typename Free>
+bool rests(MotionState state, const MotionLimits& limits, double dt, Free&& free) {
+  constexpr int kMost = 400;  // a base that cannot brake is not proven safe
+  for (int k = 0; k < kMost; ++k) {
+    if (state.twist == Twist2{}) return true;
+    state = advanced(state, {}, limits, dt);
+    if (!free(state)) return false;
+  }
+  return false;
+}
+
+/// Whether `state` braked to rest keeps `margin` [m] of room all the way and backs into nothing
+/// unseen.
 bool rests_clear(const LocalMap& map,
                  const HullCheck& hull,
-                 MotionState state,
+                 const MotionState& state,
                  const MotionLimits& limits,
                  double dt,
                  double margin);

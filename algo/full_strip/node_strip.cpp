@@ -10,7 +10,8 @@
 namespace algo {
 namespace {
 
-constexpr double kShare = 0.5;      // of a force that one sweep moves a node by
+constexpr double kShare = 0.15;  // of a force that one sweep moves a node by: at 0.5 it overshoots,
+                                 // and the robot sways with the strip
 constexpr double kMostPush = 0.06;  // [m] of one sweep
 constexpr double kNearReach = 4.5;  // [m] of the strip that every sweep moves
 constexpr double kHit = 0.05;       // [m] a march ends this close to a surface

@@ -74,6 +74,16 @@ double radius_spread(int hits) {
   return std::max(kTrackSpread, kRadiusSpread / (hits + 1));
 }
 
+/// [s] Run-clock time at which the beams first..last were fired, in the middle: neighbours belong
+/// to the sweep's turns by turns.
+double middle_time(const LaserScan& scan, std::size_t first, std::size_t last) {
+  const auto turns = std::clamp<std::size_t>(scan.turns, 1, scan.size());
+  const std::size_t from = std::min((first + last) / 2, scan.size() - turns);
+  double sum = 0;
+  for (std::size_t i = from; i < from + turns; ++i) sum += scan.beam_time(i);
+  return sum / static_cast<double>(turns);
+}
+
 /// The deepest dent of the outline first..last, seen from `eye_W`.
 std::optional<std::size_t> cusp(const std::vector<Vec2>& points_W,
                                 std::size_t first,
@@ -205,10 +215,12 @@ void Tracker::fit(Cluster& c,
   c.body = c.round && c.radius > kBody && bend(points_W, c.first, c.last, stride) > kBodyBend;
 }
 
-void Tracker::predict(double stamp) {
+/// Moves the filters on to the time of a scan. Never to the run clock: the next scan would be
+/// older.
+void Tracker::advance(double stamp) {
   const double dt = stamp - now_;
-  now_ = stamp;
   if (!(dt > 0)) return;
+  now_ = stamp;
   const double q = kAcceleration * kAcceleration;
   for (Filter& f : filters_) {
     f.position_W += f.velocity_W * dt;
@@ -216,11 +228,11 @@ void Tracker::predict(double stamp) {
     f.pv += dt * f.vv + q * dt * dt / 2;
     f.vv += q * dt;
   }
-  publish(stamp);
 }
 
-void Tracker::correct(Filter& f, const Cluster& c, double stamp) {
-  const Vec2 off = c.centre_W - f.position_W;
+void Tracker::correct(Filter& f, const Cluster& c) {
+  // What the beams met was where the filter takes it to have been when they were fired.
+  const Vec2 off = c.centre_W + f.velocity_W * (now_ - c.stamp) - f.position_W;
   const double r = kCentreNoise * kCentreNoise;
   if (off.squaredNorm() / (2 * (f.pp + r)) > kSurprise) f.vv += 1;
   const double gain_p = f.pp / (f.pp + r);
@@ -232,7 +244,7 @@ void Tracker::correct(Filter& f, const Cluster& c, double stamp) {
   f.pp -= gain_p * f.pp;
   f.radius += (c.radius - f.radius) / std::min(10, f.hits + 1);
   ++f.hits;
-  f.seen = stamp;
+  f.seen = now_;
   f.empty = 0;
 }
 
@@ -259,7 +271,7 @@ void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W
     if (!c.round && c.residual > 2 * kRound) continue;
     f.matched = true;
     c.taken = true;
-    correct(f, c, stamp);
+    correct(f, c);
     judge(f, c, points_W, stamp);
     if (f.of_map()) continue;
     for (std::size_t i = c.first; i <= c.last; ++i) moving_beam_[i] = 1;
@@ -386,13 +398,14 @@ bool Tracker::looked_through(const Filter& f, const LaserScan& scan, const Pose2
 
 void Tracker::update(const LaserScan& scan,
                      const Pose2& sensor_W,
-                     const std::vector<Vec2>& points_W,
-                     double stamp) {
-  predict(stamp);
+                     const std::vector<Vec2>& points_W) {
+  const double stamp = scan.stamp;
+  advance(stamp);
   just_found_.clear();
   moving_beam_.assign(scan.size(), 0);
   memorise(scan, sensor_W, stamp);
   cluster(scan, sensor_W, points_W);
+  for (Cluster& c : clusters_) c.stamp = middle_time(scan, c.first, c.last);
   associate(sensor_W, points_W, stamp);
   for (Filter& f : filters_) {
     if (f.seen < stamp && looked_through(f, scan, sensor_W)) ++f.empty;
@@ -416,7 +429,8 @@ void Tracker::publish(double stamp) {
   moving_.clear();
   for (const Filter& f : filters_) {
     if (f.of_map()) continue;
-    moving_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen});
+    const Vec2 at_W = f.position_W + f.velocity_W * (stamp - now_);
+    moving_.push_back({at_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen});
   }
 }
 

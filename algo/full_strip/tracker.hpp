@@ -21,14 +21,12 @@ class Tracker {
   Tracker();
   void reset();
 
-  /// Follows the clusters of a new scan. `points_W` B points (only those of Ok beams count),
-  /// `sensor_W` the scanner at the middle of its sweep.
-  void update(const LaserScan& scan,
-              const Pose2& sensor_W,
-              const std::vector<Vec2>& points_W,
-              double stamp);
-  /// Moves every track on to `stamp` [s, run clock] without a scan.
-  void predict(double stamp);
+  /// Follows the clusters of a new scan, each as of the time when its own beams were fired.
+  /// `points_W` B points (only those of Ok beams count), `sensor_W` the scanner at the middle of
+  /// its sweep. Scans must come in order; they are always older than the run clock says.
+  void update(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
+  /// Tells moving() as of `stamp` [s, run clock], which the last scan did not know.
+  void predict(double stamp) { publish(stamp); }
 
   /// Whether beam `i` of the last scan hit something that moves or may.
   bool on_moving(std::size_t i) const { return i < moving_beam_.size() && moving_beam_[i] != 0; }
@@ -40,6 +38,7 @@ class Tracker {
  private:
   struct Cluster {
     std::size_t first = 0, last = 0;  // beams
+    double stamp = 0;                 // [s] at which they were fired, in the middle
     Vec2 centre_W{0, 0};
     double radius = 0;    // [m]
     double residual = 0;  // [m] root mean square off the circle
@@ -73,7 +72,8 @@ class Tracker {
            const std::vector<Vec2>& points_W,
            double radius,
            double spread) const;
-  void correct(Filter& f, const Cluster& c, double stamp);
+  void advance(double stamp);
+  void correct(Filter& f, const Cluster& c);
   void associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp);
   /// A track and a cluster that may be its.
   struct Pair {
@@ -101,7 +101,7 @@ class Tracker {
   std::vector<std::uint8_t> moving_beam_{};
   Recycled<Track> moving_{};
   Recycled<Track> just_found_{};
-  double now_ = 0;  // [s] of the filters' states
+  double now_ = 0;  // [s] of the filters' states: of the last scan
   static constexpr std::size_t kMemories = 12;
   std::array<Memory, kMemories> memories_{};
   std::size_t newest_ = 0;

@@ -99,6 +99,19 @@ TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
   EXPECT_EQ(drive.out.manner, Manner::Following);
 }
 
+/// Where the map ends, half a metre of it is no goal: a strip laid to there ended beside a goal
+/// just beyond and was never laid anew.
+TEST(FullStrip, ReachesAGoalAtTheEdgeOfItsMap) {
+  for (const double far : {12.2, 12.4, 12.5, 12.6, 12.7, 12.8, 13.0}) {
+    Drive drive;
+    drive.parameters.set(Parameter::MaxSpeed, 0.5);
+    drive.controller.reset({});
+    const Vec2 goal(far, 0);
+    for (int k = 0; k < 900 && (drive.pose.position() - goal).norm() > 0.09; ++k) drive.tick(goal);
+    EXPECT_LT((drive.pose.position() - goal).norm(), 0.1) << far;
+  }
+}
+
 TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
   for (const double near : {1.0, 0.0}) {
     Drive drive;
@@ -224,6 +237,31 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
   EXPECT_GE(longest, 0.5);
   for (int k = 0; k < 400; ++k) drive.tick({4, 0});
   EXPECT_LT((drive.pose.position() - Vec2(4, 0)).norm(), 0.2);
+}
+
+/// Between things that stand about, the strip must come to rest instead of swinging, and the robot
+/// with it.
+TEST(FullStrip, DoesNotSway) {
+  Drive drive;
+  drive.parameters.set(Parameter::MaxSpeed, 0.5);
+  drive.parameters.set(Parameter::SafetyDistance, 0.75);
+  for (int i = 0; i < 6; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    drive.world.circles.push_back({{1.5 + 1.4 * i, 0.75 * side}, 0.2});
+  }
+  drive.controller.reset({});
+  int changes = 0;
+  double before = 0;
+  const Vec2 goal(10, 0);
+  for (int k = 0; k < 800 && (drive.pose.position() - goal).norm() > 0.1; ++k) {
+    drive.tick(goal);
+    const double turn = drive.out.twist.omega;
+    if (std::abs(turn) < 0.02) continue;  // straight
+    if (turn * before < 0) ++changes;
+    before = turn;
+  }
+  EXPECT_LT((drive.pose.position() - goal).norm(), 0.12);
+  EXPECT_LT(changes / drive.stamp, 1);
 }
 
 TEST(FullStrip, PassesAPostOnItsLine) {

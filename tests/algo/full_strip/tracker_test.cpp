@@ -29,7 +29,8 @@ struct Watch {
     for (std::size_t i = 0; i < scan.size(); ++i) {
       points_W[i] = scan.ranges[i] * algo::direction(scan.angle(i));
     }
-    tracker.update(scan, {}, points_W, stamp);
+    scan.stamp = stamp;
+    tracker.update(scan, {}, points_W);
     stamp += kPeriod;
   }
   void run(double seconds, const std::function<void(double)>& move) {
@@ -112,6 +113,44 @@ TEST(Tracker, BodiesSideBySideAreTwo) {
   watch.tick();
   EXPECT_NE(watch.near({3, 0.45}), nullptr);
   EXPECT_NE(watch.near({3, -0.45}), nullptr);
+}
+
+/// An LMS200 fires its beams one by one, and a sweep is up to a tick old when it is read. Its
+/// tracks must be no slower for that, and be where the walker is when they are asked for.
+TEST(Tracker, ASweepingScanReadsTheSameSpeedAsAFlatOne) {
+  constexpr double kTick = 0.026;
+  constexpr double kSpeed = 1.2;
+  const auto walker_at = [](double t) { return Vec2(3, -2 + kSpeed * t); };
+  algo::Tracker tracker;
+  algo::LaserScan scan;
+  std::vector<Vec2> points_W;
+  double stamp = 0;  // of the next sweep's end
+  double now = 0;
+  for (; now < 2.5; now += kTick) {
+    const bool fresh = stamp <= now;
+    if (fresh) {
+      worlds::scan_world({}, {}, 8, scan);
+      scan.stamp = stamp;
+      scan.turn_period = 1.0 / 75;
+      scan.turns = 2;
+      points_W.resize(scan.size());
+      for (std::size_t i = 0; i < scan.size(); ++i) {
+        const worlds::World world{{{walker_at(scan.beam_time(i)), 0.3}}, {}};
+        const double range = worlds::cast({0, 0}, algo::direction(scan.angle(i)), world);
+        if (range < 8) scan.set_ok(i, range);
+        points_W[i] = scan.ranges[i] * algo::direction(scan.angle(i));
+      }
+      tracker.update(scan, {}, points_W);
+      stamp += scan.sweep_time();
+    }
+    tracker.predict(now);
+  }
+  now -= kTick;
+  ASSERT_EQ(tracker.moving().size(), 1U);
+  const Track& track = tracker.moving()[0];
+  EXPECT_NEAR(track.velocity_W.y(), kSpeed, 0.1);
+  EXPECT_NEAR(track.velocity_W.x(), 0, 0.1);
+  EXPECT_NEAR(track.position_W.y(), walker_at(now).y(), 0.06);
 }
 
 TEST(Tracker, WhatIsNoLongerThereIsForgotten) {
