@@ -133,6 +133,14 @@ std::span<const ControllerInfo> controller_table() {
   return kTable;
 }
 
+/// A via point that is kept follows pass' = end + F_ext + K_c (chord - pass): its error changes
+/// sign at each tick and shrinks by the factor K_c, with K_c = 1 never.
+std::optional<std::string> refusal(std::string_view name, const Parameters& parameters) {
+  if (name != "via_kept" || parameters[Parameter::ContractionGain] < 1) return std::nullopt;
+  return "k_c must be below 1 with the controller via_kept: at 1 its via point swings from side to "
+         "side and never settles";
+}
+
 std::unique_ptr<Controller> make_controller(std::string_view name) {
   for (const Entry& entry : kEntries) {
     if (entry.about.name == name) return entry.make();

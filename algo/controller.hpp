@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "algo/observation.hpp"
@@ -47,6 +48,9 @@ struct ControllerInfo {
 };
 
 std::span<const ControllerInfo> controller_table();
+
+/// Why the controller `name` cannot run with `parameters`, as a sentence; nothing when it can.
+std::optional<std::string> refusal(std::string_view name, const Parameters& parameters);
 
 /// Throws std::invalid_argument naming the known ones.
 std::unique_ptr<Controller> make_controller(std::string_view name);

@@ -10,7 +10,7 @@
 namespace algo {
 namespace {
 
-constexpr double kJustCome = 0.05;     // [s] a scan this old that does not count is a blinded one
+constexpr double kJustCome = 0.2;      // [s] a younger scan that does not count is a blinded one
 constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence
 
 template <typename... Args>
@@ -51,7 +51,7 @@ Explanation explain_hold(const Telemetry& t) {
         return {"Waiting for the laser", "No scan has come yet. The robot waits."};
       }
       if (age < kJustCome) {
-        return {"Waiting for the laser", "It is blinded: most beams ahead tell nothing."};
+        return {"Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
       }
       return {"Waiting for the laser", format("Scan is %.1f s old. The robot waits.", age)};
     }
@@ -229,7 +229,7 @@ Explanation explain(Halt halt) {
       return {"Holding still",
               "More of what the scanner sends comes damaged than whole: look at its cable."};
     case Halt::ScannerFault:
-      return {"Holding still", "The scanner reports a fault of its own."};
+      return {"Holding still", "The scanner reports a fault of its own, or is blinded."};
     case Halt::StopButton:
       return {"Stop button pressed",
               "The stop button on the robot is pressed. Release it, then arm again."};

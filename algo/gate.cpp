@@ -28,7 +28,7 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   if (observation.bumper_pressed() && !in.reversing_by_hand) return Hold::Bumper;
   // Written so that a stamp that is not a number counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
-  return fresh ? Hold::None : Hold::StaleScan;
+  return fresh && !in.hidden ? Hold::None : Hold::StaleScan;
 }
 
 }  // namespace algo

@@ -10,6 +10,7 @@ struct GateInput {
   bool link_lost = false;
   double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
+  bool hidden = false;                 // the command leads where a dazzled scanner saw nothing
   bool reversing_by_hand = false;      // the one motion allowed with a front bumper pressed
 };
 

@@ -56,6 +56,13 @@ void perceive(const Pose2& pose_W, Scene& scene) {
   scene.left = nearest(pose_W, scene.scan, left_beams(scene.scan));
 }
 
+const LaserScan* front_scan(const Observation& observation) {
+  for (const LaserScan& scan : observation.scans) {
+    if (std::abs(scan.mount_R.heading) <= std::numbers::pi / 2) return &scan;
+  }
+  return nullptr;
+}
+
 bool blinded(const LaserScan& scan) {
   constexpr double kAhead = std::numbers::pi / 4;  // [rad] either side
   const auto ahead = [&scan](std::size_t i) {

@@ -15,6 +15,10 @@ void perceive(const Pose2& pose_W, Scene& scene);
 /// of the used field either side.
 void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene);
 
+/// The scan of this tick that looks ahead, null without a new one: a scanner that looks back says
+/// nothing about the way ahead.
+const LaserScan* front_scan(const Observation& observation);
+
 /// Whether a scan is too blind to drive by: fewer than half of its beams within 45 degrees of
 /// straight ahead measured anything, be it that nothing is there. Sun or another scanner does that.
 bool blinded(const LaserScan& scan);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "algo/dazzle.hpp"
 #include "algo/gate.hpp"
 #include "algo/geometry.hpp"
 #include "algo/perceive.hpp"
@@ -61,12 +62,17 @@ bool within_unit(double axis) {
 }  // namespace
 
 Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
-    : spec_(spec), filter_kind_(config.filter), initial_parameters_(config.parameters) {
-  coordinator_.add(std::make_unique<ManualBehaviour>());
+    : spec_(spec),
+      controller_(config.controller),
+      filter_kind_(config.filter),
+      initial_parameters_(config.parameters) {
+  if (spec.drives) coordinator_.add(std::make_unique<ManualBehaviour>());
   coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
   by_sonar_ = !spec.has_laser && std::ranges::any_of(controller_table(), [&](const auto& about) {
     return about.by_sonar && about.name == config.controller;
   });
+  const double delay = spec.period > 0 ? std::round(spec.command_delay / spec.period) : 0;
+  under_way_.resize(static_cast<std::size_t>(delay));
   reset({});
 }
 
@@ -80,6 +86,7 @@ void Pipeline::reset(const Pose2& start_W) {
   clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
+  std::ranges::fill(under_way_, Twist2{});
   grid_shown_at_.reset();
   stopped_ = false;
   tick_ = 0;
@@ -87,7 +94,7 @@ void Pipeline::reset(const Pose2& start_W) {
 
 std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (const auto* set = std::get_if<SetParameter>(&request)) {
-    return algo::refusal(parameters_, set->parameter, set->value);
+    return refusal(parameters_, *set);
   }
   const auto* add = std::get_if<AddGoal>(&request);
   if (add != nullptr && sequencer_.goals_ahead().size() >= kMostGoalsAhead) {
@@ -107,6 +114,13 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
   return std::nullopt;
 }
 
+std::optional<std::string> Pipeline::refusal(const Parameters& now, const SetParameter& set) const {
+  if (auto reason = algo::refusal(now, set.parameter, set.value)) return reason;
+  Parameters then = now;
+  then.set(set.parameter, set.value);
+  return algo::refusal(controller_, then);
+}
+
 void Pipeline::tick(Telemetry& t) {
   t.tick = tick_++;
   if (joystick_ticks_ > 0) --joystick_ticks_;
@@ -115,6 +129,7 @@ void Pipeline::tick(Telemetry& t) {
   sense(t);    // filter the newest scan, find the nearest return of each side
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
+  remember(t.command.base);
   thin_grid(t);
 }
 
@@ -137,10 +152,7 @@ void Pipeline::apply(const Request& request) {
 }
 
 void Pipeline::sense(Telemetry& t) {
-  const LaserScan* front = nullptr;  // a scanner that looks back says nothing about the way ahead
-  for (const LaserScan& scan : t.observation.scans) {
-    if (front == nullptr && std::abs(scan.mount_R.heading) <= std::numbers::pi / 2) front = &scan;
-  }
+  const LaserScan* front = front_scan(t.observation);
   merge_.take(t.observation);
   scene_.fresh = front != nullptr;
   if (front != nullptr) {
@@ -199,6 +211,8 @@ void Pipeline::control(Telemetry& t) {
   resource.dt = spec_.period;
   resource.observation = &t.observation;
   resource.scene = &scene_;
+  resource.merge = &merge_;
+  resource.under_way = under_way_;
   resource.parameters = &parameters_;
   resource.spec = &spec_;
   resource.goal = t.goal;
@@ -215,12 +229,20 @@ void Pipeline::hold(Telemetry& t) {
   in.stopped = stopped_;
   in.scan_timeout = parameters_[Parameter::ScanTimeout];
   in.scan_stamp = scan_stamp_;
+  in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
   in.reversing_by_hand = t.behaviour == BehaviourId::Manual && t.command.base.v < 0;
   t.hold = gate(in, t.observation, t.command);
   if (t.hold == Hold::None) return;
   t.command = {};
   sequencer_.interrupt();
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
+}
+
+/// A command acts after the robot's delay.
+void Pipeline::remember(const Twist2& command) {
+  if (under_way_.empty()) return;
+  std::ranges::rotate(under_way_, under_way_.begin() + 1);
+  under_way_.back() = command;
 }
 
 /// People need a grid twice a second, and only when it is another.

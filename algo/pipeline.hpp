@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "algo/filter.hpp"
 #include "algo/reactive.hpp"
@@ -30,6 +31,9 @@ class Pipeline {
 
   /// Why `request` cannot be applied now, as a sentence. Obstacle edits are the robot's business.
   std::optional<std::string> refusal(const Request& request) const;
+  /// The same of a parameter, when the others are as in `now`: some accepted before it may be on
+  /// their way still.
+  std::optional<std::string> refusal(const Parameters& now, const SetParameter& set) const;
 
   /// Fills the rest of `t`, whose observation and requests are given. Allocates nothing once its
   /// buffers have grown.
@@ -43,10 +47,12 @@ class Pipeline {
   void sense_sonar(Telemetry& t);
   void control(Telemetry& t);
   void hold(Telemetry& t);
+  void remember(const Twist2& command);
   void thin_grid(Telemetry& t);
   bool manual() const;
 
   RobotSpec spec_{};
+  std::string controller_{};
   FilterKind filter_kind_{};
   Parameters initial_parameters_{};
   Parameters parameters_{};
@@ -60,6 +66,7 @@ class Pipeline {
   double clearance_ = 0;                // [m] of the newest scan
   Joystick joystick_{};
   std::uint64_t joystick_ticks_ = 0;       // ticks the stick's value still counts
+  std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
   GridLayer shown_grid_{};                 // the newest that telemetry brought
   std::optional<double> grid_shown_at_{};  // [s] run clock
   bool stopped_ = false;

@@ -8,21 +8,9 @@
 namespace algo {
 namespace {
 
-constexpr double kManualMargin = 0.05;  // [m] a hand-driven robot keeps from the nearest return
-
 TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
   return {
       std::max(a.v_min, b.v_min), std::min(a.v_max, b.v_max), std::min(a.omega_max, b.omega_max)};
-}
-
-/// [m/s] from which the robot still stops kManualMargin short of the nearest return ahead.
-double stopping_speed(const Resource& in) {
-  double nearest = std::numeric_limits<double>::infinity();
-  if (in.scene->left) nearest = std::min(nearest, in.scene->left->distance);
-  if (in.scene->right) nearest = std::min(nearest, in.scene->right->distance);
-  if (std::isinf(nearest)) return nearest;
-  const double room = std::max(0.0, nearest - in.spec->radius - kManualMargin);
-  return std::sqrt(2.0 * in.spec->max_acceleration * room);
 }
 
 }  // namespace
@@ -47,15 +35,15 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
 }
 
-void ManualBehaviour::reset(const Pose2& /*start_W*/) {}
+void ManualBehaviour::reset(const Pose2& start_W) {
+  guard_.reset(start_W);
+}
 
 Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
-  Proposal proposal;
-  if (!in.manual) return proposal;
-  proposal.active = true;
-  proposal.twist = {in.joystick.forward * in.spec->max_v, in.joystick.turn * in.spec->max_omega};
-  proposal.limits.v_max = stopping_speed(in);
-  return proposal;
+  guard_.sense(in);
+  if (!in.manual) return {};
+  const Twist2 wanted{in.joystick.forward * in.spec->max_v, in.joystick.turn * in.spec->max_omega};
+  return {.active = true, .twist = guard_.limit(in, wanted), .limits = {}};
 }
 
 void BehaviourCoordinator::add(std::unique_ptr<Behaviour> behaviour) {

@@ -14,6 +14,8 @@
 #include <vector>
 
 #include "algo/controller.hpp"
+#include "algo/sensor_merge.hpp"
+#include "algo/stick_guard.hpp"
 #include "algo/telemetry.hpp"
 
 namespace algo {
@@ -23,6 +25,8 @@ struct Resource {
   double dt = 0;  // [s]
   const Observation* observation = nullptr;
   const Scene* scene = nullptr;
+  const SensorMerge* merge = nullptr;   // what sonar and infrared returned of late
+  std::span<const Twist2> under_way{};  // commands given that do not act yet, oldest first
   const Parameters* parameters = nullptr;
   const RobotSpec* spec = nullptr;
   std::optional<SetGoal> goal{};
@@ -66,12 +70,15 @@ class AvoidBehaviour final : public Behaviour {
   std::unique_ptr<Controller> controller_;
 };
 
-/// Follows the driver's stick, no faster ahead than the robot can stop before the nearest return.
+/// Follows the driver's stick as far as its guard lets it.
 class ManualBehaviour final : public Behaviour {
  public:
   BehaviourId id() const override { return BehaviourId::Manual; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
+
+ private:
+  StickGuard guard_{};
 };
 
 struct Decision {

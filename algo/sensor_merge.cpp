@@ -32,7 +32,9 @@ void SensorMerge::take(const Recycled<RangeReading>& readings,
     Kept& kept = place_of(reading.mount_R, half_width);
     kept.stamp = reading.stamp;
     kept.hit = reading.status == Beam::Ok && std::isfinite(reading.range);
-    if (kept.hit) kept.point_W = beam_point_W(pose_W, reading.mount_R, 0, reading.range);
+    if (!kept.hit) continue;
+    kept.from_W = to_parent(pose_W, reading.mount_R.position());
+    kept.point_W = beam_point_W(pose_W, reading.mount_R, 0, reading.range);
   }
 }
 
@@ -41,13 +43,36 @@ void SensorMerge::take(const Observation& observation) {
   take(observation.infrared, observation.odometry.pose, kHalfBeam);
 }
 
+bool SensorMerge::holds(const Kept& kept, double now) {
+  // Written so that what is not a number does not hold.
+  return kept.hit && now - kept.stamp <= kMemory;
+}
+
+/// Whether `scan` has a beam where `kept` returned from.
+bool SensorMerge::within(const Kept& kept, const Pose2& pose_W, const LaserScan& scan) {
+  const Pose2 sensor_W = compose(pose_W, scan.mount_R);
+  const Vec2 p = pose_step(sensor_W, {kept.point_W.x(), kept.point_W.y(), 0}).position();
+  const double bearing = std::atan2(p.y(), p.x());
+  const BeamSpan beams = beams_between(scan, bearing - kHalfBeam, bearing + kHalfBeam);
+  return beams.begin < beams.end;
+}
+
+/// The `k`th of `points`, evenly over the cone and as far from the sensor as its echo.
+Vec2 SensorMerge::arc_point(const Kept& kept, std::size_t k, std::size_t points) {
+  if (points < 2) return kept.point_W;
+  const double share = static_cast<double>(k) / static_cast<double>(points - 1);
+  const Vec2 turn = direction((2 * share - 1) * kept.half_width);
+  const Vec2 way = kept.point_W - kept.from_W;
+  return kept.from_W +
+         Vec2(turn.x() * way.x() - turn.y() * way.y(), turn.y() * way.x() + turn.x() * way.y());
+}
+
 void SensorMerge::enter(const Pose2& pose_W, double now, LaserScan& scan) {
   const Pose2 sensor_W = compose(pose_W, scan.mount_R);
   // First all questions to the laser alone, then all answers: none explains another.
   for (Kept& kept : kept_) {
     kept.missed = false;
-    // Written so that what is not a number is not entered.
-    if (!kept.hit || !(now - kept.stamp <= kMemory)) continue;
+    if (!holds(kept, now)) continue;
     const Vec2 p = pose_step(sensor_W, {kept.point_W.x(), kept.point_W.y(), 0}).position();
     kept.range = p.norm();
     kept.bearing = std::atan2(p.y(), p.x());

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/algo/worlds.hpp"
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -25,7 +26,7 @@ using namespace algo::units;
 
 const Json& paper() {
   static const Json loaded = [] {
-    std::ifstream file(std::string(TAUTLINE_TESTS) + "/../server/reproduce/paper.json");
+    std::ifstream file(tests::folder().parent_path() / "server/reproduce/paper.json");
     return Json::parse(file);
   }();
   return loaded;

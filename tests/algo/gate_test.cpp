@@ -58,6 +58,11 @@ TEST_F(GateTest, ABumperHoldsUnlessTheDriverBacksAway) {
   EXPECT_EQ(gate(input, observation, command), Hold::None);
 }
 
+TEST_F(GateTest, NothingDrivesWhereADazzledScannerSeesNothing) {
+  input.hidden = true;
+  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+}
+
 TEST_F(GateTest, StopComesFirst) {
   input.stopped = true;
   input.scan_stamp.reset();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -22,7 +23,7 @@ inline constexpr double kMm = 1e-3;  // the vectors' millimetres in metres
 /// File `name` of tests/golden, or of the folder TAUTLINE_GOLDEN_DIR names.
 inline Json load(const std::string& name) {
   const char* const other = std::getenv("TAUTLINE_GOLDEN_DIR");
-  const std::string folder = other != nullptr ? other : std::string(TAUTLINE_TESTS) + "/golden";
+  const std::string folder = other != nullptr ? other : (tests::folder() / "golden").string();
   std::ifstream file(folder + "/" + name);
   if (!file) throw std::runtime_error("cannot read " + folder + "/" + name);
   return Json::parse(file);

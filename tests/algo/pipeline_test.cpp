@@ -27,7 +27,10 @@ RobotSpec disc() {
 struct PipelineTest : ::testing::Test {
   PipelineTest() { pipeline.reset({}); }
   /// One tick with a scan of free beams, but for `obstacle` straight ahead [m] when it is given.
-  const Telemetry& tick(double obstacle = 0, bool with_scan = true, bool dazzled = false) {
+  const Telemetry& tick(double obstacle = 0,
+                        bool with_scan = true,
+                        bool dazzled = false,
+                        std::size_t cone = 0) {
     t.observation.clear_sensors();
     t.observation.stamp = 0.025 * static_cast<double>(ticks++);
     t.observation.odometry.stamp = t.observation.stamp;
@@ -40,6 +43,9 @@ struct PipelineTest : ::testing::Test {
       scan.resize(361);
       for (std::size_t i = 0; i < 361; ++i) scan.set_free(i);
       for (std::size_t i = 0; dazzled && i < 361; ++i) scan.set_invalid(i, algo::BeamCode::Dazzled);
+      for (std::size_t i = 0; i < cone; ++i) {
+        scan.set_invalid(180 - cone / 2 + i, algo::BeamCode::Dazzled);
+      }
       for (std::size_t i = 170; obstacle > 0 && i <= 190; ++i) scan.set_ok(i, obstacle);
     }
     pipeline.tick(t);
@@ -81,6 +87,17 @@ TEST_F(PipelineTest, ABlindedScanIsNone) {
   EXPECT_EQ(t.command, Command{});
   EXPECT_NE(algo::explain(t).why.find("blinded"), std::string::npos);
   EXPECT_EQ(tick().hold, Hold::None);
+}
+
+TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_EQ(tick(0, true, false, 20).hold, Hold::StaleScan);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_EQ(t.mission, Mission::Held);
+  EXPECT_NE(algo::explain(t).why.find("dazzled"), std::string::npos);
+  EXPECT_EQ(tick(0, false).hold, Hold::StaleScan);  // no newer scan
+  EXPECT_EQ(tick(0, true, false, 2).hold, Hold::None);
 }
 
 TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
@@ -231,6 +248,17 @@ TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
   RobotSpec log = disc();
   log.drives = false;
   EXPECT_TRUE((Pipeline{{}, log}.refusal(SetGoal{{1, 0}, {}})));
+}
+
+/// With K_c = 1 the via point that is kept never settles.
+TEST_F(PipelineTest, RefusesFullContractionOfAViaThatIsKept) {
+  const SetParameter full{Parameter::ContractionGain, 1.0};
+  EXPECT_FALSE(pipeline.refusal(full));
+  const Pipeline kept({.controller = "via_kept"}, disc());
+  const auto reason = kept.refusal(full);
+  ASSERT_TRUE(reason);
+  EXPECT_NE(reason->find("k_c must be below 1"), std::string::npos) << *reason;
+  EXPECT_FALSE(kept.refusal(SetParameter{Parameter::ContractionGain, 0.95}));
 }
 
 TEST_F(PipelineTest, ASteadyTickAllocatesNothing) {

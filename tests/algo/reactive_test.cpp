@@ -35,6 +35,7 @@ struct CoordinatorTest : ::testing::Test {
     resource.scene = &scene;
     resource.parameters = &parameters;
     resource.spec = &spec;
+    resource.merge = &merge;
   }
   Scripted* add(BehaviourId id, Proposal proposal, double period = 0) {
     auto behaviour = std::make_unique<Scripted>(id, proposal, period);
@@ -44,6 +45,7 @@ struct CoordinatorTest : ::testing::Test {
   }
   Observation observation{};
   Scene scene{};
+  SensorMerge merge{};
   Parameters parameters{};
   RobotSpec spec{};
   Resource resource{};
@@ -88,27 +90,6 @@ TEST_F(CoordinatorTest, ASlowBehaviourIsHeldBetweenItsSamples) {
     EXPECT_DOUBLE_EQ(coordinator.decide(resource, output).twist.v, 0.2);
   }
   EXPECT_EQ(slow->samples, 2);  // 8 ticks of 25 ms = 0.2 s = two samples at 0.1 s
-}
-
-TEST_F(CoordinatorTest, AHandDrivenRobotCanStopBeforeTheNearestReturn) {
-  spec.max_v = 0.5;
-  spec.max_omega = 1.0;
-  spec.max_acceleration = 0.5;
-  spec.radius = 0.35;
-  resource.manual = true;
-  resource.joystick = {.forward = 1, .turn = 0.5};
-  coordinator.add(std::make_unique<ManualBehaviour>());
-
-  EXPECT_DOUBLE_EQ(coordinator.decide(resource, output).twist.v, 0.5);
-  // 0.44 - 0.35 - 0.05 = 0.04 m of room: v = sqrt(2 * 0.5 * 0.04) = 0.2 m/s
-  scene.right = Nearest{.beam = 0, .point_W = {0.44, 0}, .distance = 0.44};
-  const Decision near = coordinator.decide(resource, output);
-  EXPECT_NEAR(near.twist.v, 0.2, 1e-12);
-  EXPECT_DOUBLE_EQ(near.twist.omega, 0.5);
-  scene.right->distance = 0.38;
-  EXPECT_DOUBLE_EQ(coordinator.decide(resource, output).twist.v, 0.0);
-  resource.joystick.forward = -1;  // backing away is always possible
-  EXPECT_DOUBLE_EQ(coordinator.decide(resource, output).twist.v, -0.5);
 }
 
 TEST(Actuate, KeepsWithinTheRobotsOwnLimits) {
