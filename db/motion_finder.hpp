@@ -21,7 +21,7 @@ class MotionFinder {
     double most_error = 0;  // [mm] by which a sample may be off
     std::size_t step = 2;   // to the next sample, even: of the same mirror turn
   };
-  /// The motion after which the map foretells `samples` best, near enough; they are of its shape.
+  /// The motion after which the map predicts `samples` best, near enough; they are of its shape.
   /// Nothing where every sample is more like its left neighbour.
   std::optional<Motion> find(const RangeMap& map, std::span<const std::byte> samples);
 

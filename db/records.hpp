@@ -1,6 +1,7 @@
 // db/records.hpp: what the run store takes and gives: numbers, bytes and text.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,8 +11,23 @@
 
 namespace db {
 
-/// Row number of a run. Never given out twice in one database, not even after a deletion.
+/// Row number of a run, from 1. Never given out twice in one database, not even after a deletion.
 using RunId = std::int64_t;
+
+/// Hands out run numbers, also before the rows that bear them are written. Any thread.
+class RunNumbers {
+ public:
+  RunId take() { return next_.fetch_add(1); }
+  /// Those up to `used` are taken.
+  void beyond(RunId used) {
+    RunId next = next_.load();
+    while (next <= used && !next_.compare_exchange_weak(next, used + 1)) {
+    }
+  }
+
+ private:
+  std::atomic<RunId> next_{1};
+};
 
 enum class RunStatus : std::uint8_t {
   Queued,
@@ -62,6 +78,26 @@ struct RunEnd {
   std::uint64_t lost_ticks = 0;
 };
 
+/// Why ticks of a run are not in its record.
+enum class GapCause : std::uint8_t {
+  Pause,    // nothing happened, and so nothing was recorded
+  Behind,   // the store took them too slowly
+  Failed,   // the store could not be written
+  Full,     // the store was full of finished runs
+  Dropped,  // a live run gave its oldest ticks up for newer ones
+};
+std::string_view to_string(GapCause cause);
+std::optional<GapCause> find_cause(std::string_view name);
+
+/// A stretch of ticks that are not in the record, both ends included.
+struct Gap {
+  std::uint64_t first_tick = 0;
+  std::uint64_t last_tick = 0;
+  GapCause cause = GapCause::Behind;
+  std::string sentence{};
+  bool operator==(const Gap&) const = default;
+};
+
 struct RunRow {
   RunId id = 0;
   RunStatus status = RunStatus::Queued;
@@ -73,6 +109,7 @@ struct RunRow {
   std::uint64_t lost_ticks = 0;
   std::uint64_t bytes = 0;  // of its packed frames
   std::string metrics{};    // JSON text; empty when there are none
+  std::vector<Gap> gaps{};  // filled by RunReader::get only
 };
 
 /// Unset fields match everything.

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include <unistd.h>
 
@@ -72,14 +73,14 @@ std::int64_t signed_limit(std::size_t limit) {
 Connection open_for_reading(const std::string& path) {
   Connection connection(path, Connection::Mode::Read);
   try {
-    detail::require_current(connection);
+    detail::require_readable(connection);
     return connection;
   } catch (const DatabaseError&) {
     // In a folder that may not be written, SQLite cannot set up the memory it shares with a
     // writer. When no log lies beside the file there is no writer and the file is all there is.
     if (::access((path + "-wal").c_str(), F_OK) == 0 || ::access(path.c_str(), R_OK) != 0) throw;
     Connection immutable(path, Connection::Mode::ReadImmutable);
-    detail::require_current(immutable);
+    detail::require_readable(immutable);
     return immutable;
   }
 }
@@ -114,38 +115,68 @@ void put_line(std::string& out, const TickRow& row, const CsvNames& names) {
 
 }  // namespace
 
-RunReader::RunReader(const std::string& path) : connection_(open_for_reading(path)) {
-  get_ = connection_.prepare("SELECT " + std::string(kRunColumns) +
-                             ", (SELECT text FROM document WHERE run = run.id)"
-                             " FROM run WHERE id = ? AND status <> 'deleted'");
-  // A deleted run is gone at once, though its ticks may take a while to be swept away.
-  ticks_ = connection_.prepare(
-      "SELECT tick, t, x, y, heading, v, omega, clearance, hold, behaviour FROM tick"
-      " WHERE run = ?1 AND tick >= ?2"
-      " AND EXISTS (SELECT 1 FROM run WHERE id = ?1 AND status <> 'deleted')"
-      " ORDER BY tick LIMIT ?3");
-  exists_ = connection_.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
-  block_ = connection_.prepare(
-      "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
-      " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
-      " ORDER BY first_tick LIMIT 1");
+struct RunReader::Tables {
+  explicit Tables(const std::string& path) : connection(open_for_reading(path)) {
+    const std::string of =
+        detail::shares_documents(connection) ? "coalesce(run.document, run.id)" : "run.id";
+    get = connection.prepare("SELECT " + std::string(kRunColumns) +
+                             ", (SELECT text FROM document WHERE run = " + of +
+                             ") FROM run WHERE id = ? AND status <> 'deleted'");
+    // A deleted run is gone at once, though its ticks may take a while to be swept away.
+    ticks = connection.prepare(
+        "SELECT tick, t, x, y, heading, v, omega, clearance, hold, behaviour FROM tick"
+        " WHERE run = ?1 AND tick >= ?2"
+        " AND EXISTS (SELECT 1 FROM run WHERE id = ?1 AND status <> 'deleted')"
+        " ORDER BY tick LIMIT ?3");
+    exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
+    block = connection.prepare(
+        "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
+        " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
+        " ORDER BY first_tick LIMIT 1");
+    if (detail::has_gaps(connection)) {
+      gaps = connection.prepare(
+          "SELECT first_tick, last_tick, cause, sentence FROM gap"
+          " WHERE run = ? ORDER BY first_tick");
+    }
+  }
+
+  Statement& listing(const RunFilter& filter, bool counting) {
+    const unsigned key = (filter.scenario ? 1U : 0U) | (filter.controller ? 2U : 0U) |
+                         (filter.outcome ? 4U : 0U) | (filter.status ? 8U : 0U) |
+                         (counting ? 16U : 0U);
+    if (!listings.contains(key)) {
+      std::string sql = "SELECT " + std::string(counting ? "count(*)" : kRunColumns) +
+                        " FROM run WHERE id < ? AND status <> 'deleted'";
+      if (filter.scenario) sql += " AND scenario = ?";
+      if (filter.controller) sql += " AND controller = ?";
+      if (filter.outcome) sql += " AND outcome = ?";
+      if (filter.status) sql += " AND status = ?";
+      if (!counting) sql += " ORDER BY id DESC LIMIT ?";
+      listings.emplace(key, connection.prepare(sql));
+    }
+    return listings.at(key).reset();
+  }
+
+  Connection connection;
+  Statement get{}, ticks{}, exists{}, block{};
+  std::optional<Statement> gaps{};           // databases of older versions have none
+  std::map<unsigned, Statement> listings{};  // by which filters are set
+};
+
+RunReader::RunReader(const std::string& path) : path_(path) {
+  tables();
 }
 
-Statement& RunReader::listing(const RunFilter& filter, bool counting) {
-  const unsigned key = (filter.scenario ? 1U : 0U) | (filter.controller ? 2U : 0U) |
-                       (filter.outcome ? 4U : 0U) | (filter.status ? 8U : 0U) |
-                       (counting ? 16U : 0U);
-  if (!listings_.contains(key)) {
-    std::string sql = "SELECT " + std::string(counting ? "count(*)" : kRunColumns) +
-                      " FROM run WHERE id < ? AND status <> 'deleted'";
-    if (filter.scenario) sql += " AND scenario = ?";
-    if (filter.controller) sql += " AND controller = ?";
-    if (filter.outcome) sql += " AND outcome = ?";
-    if (filter.status) sql += " AND status = ?";
-    if (!counting) sql += " ORDER BY id DESC LIMIT ?";
-    listings_.emplace(key, connection_.prepare(sql));
+/// Those of the file that is at the path now.
+RunReader::Tables& RunReader::tables() {
+  const auto there = identity_of(path_);
+  if (!tables_ || there != opened_) {
+    tables_.reset();
+    block_run_ = 0;
+    tables_ = std::make_shared<Tables>(path_);
+    opened_ = there;
   }
-  return listings_.at(key).reset();
+  return *tables_;
 }
 
 namespace {
@@ -158,7 +189,7 @@ void bind_filter(Statement& statement, const RunFilter& filter) {
 }  // namespace
 
 RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor) {
-  Statement& found = listing(filter, false);
+  Statement& found = tables().listing(filter, false);
   const ResetLater reset(found);
   found << cursor.value_or(std::numeric_limits<RunId>::max());
   bind_filter(found, filter);
@@ -176,7 +207,7 @@ RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optiona
 }
 
 std::uint64_t RunReader::count(const RunFilter& filter) {
-  Statement& found = listing(filter, true);
+  Statement& found = tables().listing(filter, true);
   const ResetLater reset(found);
   found << std::numeric_limits<RunId>::max();
   bind_filter(found, filter);
@@ -184,11 +215,20 @@ std::uint64_t RunReader::count(const RunFilter& filter) {
 }
 
 std::optional<RunRow> RunReader::get(RunId run) {
-  get_.reset() << run;
-  const ResetLater reset(get_);
-  if (!get_.step()) return std::nullopt;
-  RunRow row = row_of(get_);
-  row.what.document = get_.text(17);
+  Tables& from = tables();
+  from.get.reset() << run;
+  const ResetLater reset(from.get);
+  if (!from.get.step()) return std::nullopt;
+  RunRow row = row_of(from.get);
+  row.what.document = from.get.text(17);
+  if (!from.gaps) return row;
+  const ResetLater reset_gaps(from.gaps->reset() << run);
+  while (from.gaps->step()) {
+    row.gaps.push_back({.first_tick = static_cast<std::uint64_t>(from.gaps->integer(0)),
+                        .last_tick = static_cast<std::uint64_t>(from.gaps->integer(1)),
+                        .cause = find_cause(from.gaps->text(2)).value_or(GapCause::Failed),
+                        .sentence = from.gaps->text(3)});
+  }
   return row;
 }
 
@@ -197,10 +237,11 @@ std::optional<std::uint64_t> RunReader::each_tick(RunId run,
                                                   std::uint64_t from,
                                                   std::size_t limit,
                                                   const Each& each) {
-  ticks_.reset() << run << signed_tick(from) << signed_limit(limit == SIZE_MAX ? limit : limit + 1);
-  const ResetLater reset(ticks_);
-  for (std::size_t done = 0; ticks_.step(); ++done) {
-    const TickRow row = tick_of(ticks_);
+  Statement& ticks = tables().ticks;
+  ticks.reset() << run << signed_tick(from) << signed_limit(limit == SIZE_MAX ? limit : limit + 1);
+  const ResetLater reset(ticks);
+  for (std::size_t done = 0; ticks.step(); ++done) {
+    const TickRow row = tick_of(ticks);
     if (done == limit) return row.tick;
     each(row);
   }
@@ -223,22 +264,22 @@ std::optional<std::uint64_t> RunReader::csv(
 }
 
 bool RunReader::exists(RunId run) {
-  exists_.reset() << run;
-  const ResetLater reset(exists_);
-  return exists_.step();
+  Statement& found = tables().exists.reset() << run;
+  const ResetLater reset(found);
+  return found.step();
 }
 
 /// Unpacks the block that holds `tick`, or the first one after it, and returns the tick to begin
 /// with; nothing when there is none. Without `unpack` it only looks.
 std::optional<std::uint64_t> RunReader::seek(RunId run, std::uint64_t tick, bool unpack) {
-  block_.reset() << run << signed_tick(tick);
-  const ResetLater reset(block_);
-  if (!block_.step()) return std::nullopt;
-  const auto first = static_cast<std::uint64_t>(block_.integer(0));
+  Statement& block = tables().block.reset() << run << signed_tick(tick);
+  const ResetLater reset(block);
+  if (!block.step()) return std::nullopt;
+  const auto first = static_cast<std::uint64_t>(block.integer(0));
   if (!unpack) return std::max(first, tick);
   block_run_ = 0;
   try {
-    decoder_.decode(block_.blob(1));
+    decoder_.decode(block.blob(1));
   } catch (const CodecError& error) {
     throw StoreError("Run " + std::to_string(run) + " is damaged at tick " + std::to_string(first) +
                      ": " + error.what() + ".");

@@ -4,14 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "db/block_codec.hpp"
+#include "db/file_lock.hpp"
 #include "db/records.hpp"
 #include "db/sqlite.hpp"
 
@@ -25,16 +27,21 @@ struct CsvNames {
 
 /// Reads a run store over its own read-only connection. One thread at a time owns it, any thread
 /// and any program; it never waits for the writer and the writer never for it. A call sees what
-/// was committed when it began. All of them throw StoreError when the database fails.
+/// was committed when it began, in the file that is then at the path: one that was set aside or
+/// deleted is let go. All of them throw StoreError when the database fails.
 class RunReader {
  public:
   /// Throws StoreError when there is no run store at `path`.
   explicit RunReader(const std::string& path);
+  struct Later {};
+  /// One whose first call looks for the store, and the next when there is none yet.
+  RunReader(std::string path, Later /*tag*/) : path_(std::move(path)) {}
 
   /// Newest first: up to `limit` runs older than `cursor`. Their documents are left out.
   RunPage list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor = {});
   std::uint64_t count(const RunFilter& filter);
-  /// With its document; nothing when there is no such run.
+  bool exists(RunId run);
+  /// With its document and gaps; nothing when there is no such run.
   std::optional<RunRow> get(RunId run);
 
   /// Up to `limit` ticks of a run from tick `from` on. Empty for a run that does not exist.
@@ -60,8 +67,9 @@ class RunReader {
                                    const CsvNames& names = {});
 
  private:
-  detail::Statement& listing(const RunFilter& filter, bool counting);
-  bool exists(RunId run);
+  struct Tables;  // a connection and its statements
+
+  Tables& tables();
   std::optional<std::uint64_t> seek(RunId run, std::uint64_t tick, bool unpack);
   template <typename Each>
   std::optional<std::uint64_t> each_tick(RunId run,
@@ -69,12 +77,9 @@ class RunReader {
                                          std::size_t limit,
                                          const Each& each);
 
-  detail::Connection connection_;
-  std::map<unsigned, detail::Statement> listings_{};  // by which filters are set
-  detail::Statement get_{};
-  detail::Statement ticks_{};
-  detail::Statement block_{};
-  detail::Statement exists_{};
+  std::string path_;
+  std::optional<FileIdentity> opened_{};
+  std::shared_ptr<Tables> tables_{};  // as in a unique_ptr, whose type need not be known here
   BlockDecoder decoder_{};
   RunId block_run_ = 0;  // whose block the decoder holds; 0: none
   std::uint64_t block_first_ = 0;

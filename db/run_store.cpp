@@ -1,13 +1,12 @@
 // db/run_store.cpp: the one writer of recorded runs.
 #include "db/run_store.hpp"
 
-#include <cerrno>
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
+#include "db/run_store_parts.hpp"
 #include "db/schema.hpp"
 
 namespace db {
@@ -33,6 +32,10 @@ Connection open_for_writing(const std::string& path, const StoreOptions& options
   connection.execute("PRAGMA page_size = " + std::to_string(kPageBytes));
   connection.execute("PRAGMA journal_mode = WAL");
   connection.execute("PRAGMA synchronous = FULL");
+  connection.execute("PRAGMA wal_autocheckpoint = " + std::to_string(options.log_pages));
+  // A log that a slow reader let grow shrinks again at its next beginning.
+  connection.execute("PRAGMA journal_size_limit = " +
+                     std::to_string(std::uint64_t{options.log_pages} * kPageBytes));
   // [KiB] A writer that appends seldom comes back to a page: a larger cache would not help it, and
   // fill up over the first half hour of a run.
   connection.execute("PRAGMA cache_size = -1024");
@@ -49,121 +52,94 @@ std::string name_of(RunId run) {
 
 }  // namespace
 
-/// Held for as long as the store is open; the system gives it back when the program dies.
-struct RunStore::FileLock {
-  explicit FileLock(const std::string& path)
-      : descriptor(::open((path + ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
-    if (descriptor < 0) {
-      throw DatabaseError("Cannot open the run store " + path +
-                          ": its folder is missing or may not be written.");
-    }
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-      const bool held = errno == EWOULDBLOCK;
-      ::close(descriptor);
-      throw DatabaseError(held ? "The run store " + path +
-                                     " is being written by another server; stop it or choose "
-                                     "another file."
-                               : "The run store " + path + " cannot be locked.");
-    }
-  }
-  ~FileLock() { ::close(descriptor); }
-  FileLock(const FileLock&) = delete;
-  FileLock& operator=(const FileLock&) = delete;
-
-  int descriptor = -1;
-};
-
-struct RunStore::Recording {
-  BlockEncoder pending{};          // frames of the newest block, which may still grow
-  std::uint64_t first_tick = 0;    // of that block
-  std::size_t written_frames = 0;  // of pending, those already in the block row
-  std::uint64_t sealed_bytes = 0;  // of the blocks before it
-  std::uint64_t block_bytes = 0;   // of that block's row
-  std::uint64_t ticks = 0;
-  TickRow last{};
-  bool dirty = false;  // the run row does not show the newest tick
-};
-
-struct RunStore::Statements {
-  explicit Statements(const Connection& c)
-      : begin(c.prepare("BEGIN IMMEDIATE")),
-        commit(c.prepare("COMMIT")),
-        insert_run(c.prepare(
-            "INSERT INTO run (status, scenario, controller, filter, vehicle, seed, parameters,"
-            " version, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        insert_document(c.prepare("INSERT INTO document (run, text) VALUES (?, ?)")),
-        start_run(c.prepare(
-            "UPDATE run SET status = 'recording', started = ? WHERE id = ? AND status = 'queued'"
-            " RETURNING id")),
-        insert_tick(c.prepare("INSERT INTO tick VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        write_block(
-            c.prepare("INSERT INTO block (run, first_tick, last_tick, frames) VALUES (?, ?, ?, ?)"
-                      " ON CONFLICT (run, first_tick) DO UPDATE"
-                      " SET last_tick = excluded.last_tick, frames = excluded.frames")),
-        progress(c.prepare("UPDATE run SET ticks = ?, time = ?, bytes = ? WHERE id = ?")),
-        set_result(c.prepare("UPDATE run SET outcome = ?, reason = ?, metrics = ? WHERE id = ?"
-                             " AND status <> 'deleted' RETURNING id")),
-        end_run(c.prepare(
-            "UPDATE run SET status = ?, outcome = ?, reason = ?, metrics = ?, lost_ticks = ?"
-            " WHERE id = ?")),
-        status(c.prepare("SELECT status FROM run WHERE id = ?")),
-        mark_deleted(c.prepare("UPDATE run SET status = 'deleted' WHERE id = ?")),
-        oldest_ended(c.prepare(
-            "SELECT id, status, scenario, started, ticks, bytes FROM run"
-            " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1")),
-        deleted(c.prepare("SELECT id FROM run WHERE status = 'deleted' ORDER BY id LIMIT 1")),
-        slice_end(c.prepare("SELECT tick FROM tick WHERE run = ? ORDER BY tick LIMIT 1 OFFSET ?")),
-        delete_ticks(c.prepare("DELETE FROM tick WHERE run = ? AND tick < ?")),
-        delete_blocks(c.prepare("DELETE FROM block WHERE run = ? AND first_tick < ?")),
-        delete_document(c.prepare("DELETE FROM document WHERE run = ?")),
-        delete_run(c.prepare("DELETE FROM run WHERE id = ?")),
-        page_count(c.prepare("PRAGMA page_count")),
-        free_pages(c.prepare("PRAGMA freelist_count")),
-        page_bytes(c.query_integer("PRAGMA page_size")) {}
-
-  Statement begin, commit, insert_run, insert_document, start_run, insert_tick, write_block;
-  Statement progress, set_result, end_run, status, mark_deleted, oldest_ended, deleted, slice_end;
-  Statement delete_ticks, delete_blocks, delete_document, delete_run, page_count, free_pages;
-  std::int64_t page_bytes = 0;
-};
+RunStore::RunStore(const std::string& path, const StoreOptions& options, Closed /*tag*/)
+    : path_(path), options_(options) {
+  if (!options_.numbers) options_.numbers = std::make_shared<RunNumbers>();
+}
 
 RunStore::RunStore(const std::string& path, const StoreOptions& options)
-    : lock_(std::make_unique<FileLock>(path)), connection_(open_for_writing(path, options)) {
-  sql_ = std::make_unique<Statements>(connection_);
-  interrupt_unfinished();
+    : RunStore(path, options, Closed{}) {
+  open();
 }
 
 RunStore::~RunStore() {
-  connection_.roll_back();
+  close();
 }
 
-/// Runs `action`; when the database fails under it, nothing since the last commit remains.
-template <typename Action>
-auto RunStore::guarded(const Action& action) {
+void RunStore::open() {
+  sql_.reset();
+  connection_.reset();
+  open_.clear();
+  // The lock is kept while the file is the same, so that nobody comes between.
+  if (!in_place()) {
+    lock_.reset();
+    lock_ = std::make_unique<FileLock>(path_);
+  }
   try {
-    return action();
-  } catch (const DatabaseError&) {
-    connection_.roll_back();
-    open_.clear();
+    connection_.emplace(open_for_writing(path_, options_));
+    sql_ = std::make_unique<Statements>(*connection_);
+    options_.numbers->beyond(
+        connection_->query_integer("SELECT seq FROM sqlite_sequence WHERE name = 'run'"));
+    const auto file = identity_of(path_);
+    if (file != known_) interrupt_unfinished();
+    known_ = file;
+  } catch (...) {
+    sql_.reset();
+    connection_.reset();
     throw;
   }
 }
 
+void RunStore::close() noexcept {
+  if (connection_) connection_->roll_back();
+  open_.clear();
+  sql_.reset();
+  connection_.reset();
+  lock_.reset();
+}
+
+std::string RunStore::set_aside(std::string_view stamp) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(path_, error);  // where a symbolic link leads
+  fs::path aside = file;
+  aside.replace_extension(".damaged-" + std::string(stamp) + file.extension().string());
+  // Renamed under the lock, and before the connection closes, which would fold its log in.
+  fs::rename(file, aside, error);
+  if (error) {
+    throw DatabaseError("The damaged run store " + path_ + " could not be set aside (" +
+                        error.message() + ").");
+  }
+  for (const char* beside : {"-wal", "-shm"}) {
+    fs::rename(file.string() + beside, aside.string() + beside, error);  // there may be none
+  }
+  close();
+  known_.reset();
+  return aside.string();
+}
+
+std::optional<DatabaseError> RunStore::take_failure() {
+  return std::exchange(failure_, std::nullopt);
+}
+
+void RunStore::require_open() const {
+  if (!connection_) throw DatabaseError("The run store " + path_ + " is not open just now.");
+}
+
 void RunStore::begin() {
-  if (!connection_.in_transaction()) sql_->begin.reset().run();
+  require_open();
+  if (!connection_->in_transaction()) sql_->begin.reset().run();
 }
 
 void RunStore::interrupt_unfinished() {
+  interrupted_.clear();
   guarded([&] {
     begin();
-    Statement found = connection_.prepare(
+    Statement found = connection_->prepare(
         "UPDATE run SET"
         " reason = iif(status = 'queued', 'The program stopped before this run began.',"
         "              'The program stopped in the middle of this run.'),"
-        " status = 'interrupted', outcome = iif(outcome = 'running', 'stopped', outcome),"
-        " ticks = (SELECT count(*) FROM tick WHERE run = run.id),"
-        " time = coalesce((SELECT t FROM tick WHERE run = run.id ORDER BY tick DESC LIMIT 1), 0),"
-        " bytes = coalesce((SELECT sum(length(frames)) FROM block WHERE run = run.id), 0)"
+        " status = 'interrupted', outcome = iif(outcome = 'running', 'stopped', outcome)"
         " WHERE status IN ('queued', 'recording') RETURNING id");
     while (found.step()) interrupted_.push_back(found.integer(0));
     found.reset();
@@ -171,27 +147,84 @@ void RunStore::interrupt_unfinished() {
   });
 }
 
-RunId RunStore::insert(const NewRun& what, RunStatus status) {
+std::optional<RunStatus> RunStore::status_of(RunId run) {
+  return guarded([&]() -> std::optional<RunStatus> {
+    sql_->status.reset() << run;
+    const ResetLater reset(sql_->status);
+    return sql_->status.step() ? find_status(sql_->status.text(0)) : std::nullopt;
+  });
+}
+
+RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId> wanted) {
   begin();
-  sql_->insert_run.reset() << to_string(status) << what.scenario << what.controller << what.filter
-                           << what.vehicle << static_cast<std::int64_t>(what.seed)
+  const auto taken = [&](RunId run) {
+    const ResetLater reset(sql_->status.reset());
+    sql_->status << run;
+    return sql_->status.step();
+  };
+  RunId run = wanted.value_or(0);
+  while (run <= 0 || taken(run)) run = options_.numbers->take();
+  sql_->insert_run.reset() << run << to_string(status) << what.scenario << what.controller
+                           << what.filter << what.vehicle << static_cast<std::int64_t>(what.seed)
                            << what.parameters << what.version << what.started;
   sql_->insert_run.run();
-  const RunId run = connection_.last_insert_id();
-  (sql_->insert_document.reset() << run << what.document).run();
+  // The runs of a batch, and resets, have the document of the run before.
+  const ResetLater reset(sql_->same_document.reset() << sql_->newest_document << what.document);
+  if (sql_->same_document.step()) {
+    (sql_->share_document.reset() << sql_->newest_document << run).run();
+  } else {
+    (sql_->insert_document.reset() << run << what.document).run();
+    sql_->newest_document = run;
+  }
   return run;
 }
 
-RunId RunStore::begin_run(const NewRun& what) {
+RunId RunStore::begin_run(const NewRun& what, std::optional<RunId> wanted) {
   return guarded([&] {
-    const RunId run = insert(what, RunStatus::Recording);
+    const RunId run = insert(what, RunStatus::Recording, wanted);
     open_.emplace(run, std::make_unique<Recording>());
     return run;
   });
 }
 
-RunId RunStore::queue_run(const NewRun& what) {
-  return guarded([&] { return insert(what, RunStatus::Queued); });
+RunId RunStore::queue_run(const NewRun& what, std::optional<RunId> wanted) {
+  return guarded([&] { return insert(what, RunStatus::Queued, wanted); });
+}
+
+std::optional<std::uint64_t> RunStore::resume_run(RunId run) {
+  return guarded([&]() -> std::optional<std::uint64_t> {
+    begin();
+    auto recording = std::make_unique<Recording>();
+    {
+      Statement& found = sql_->resume_run.reset() << run;
+      const ResetLater reset(found);
+      if (!found.step()) return std::nullopt;
+      recording->ticks = static_cast<std::uint64_t>(found.integer(0));
+      recording->last.t = found.number(1);
+      recording->sealed_bytes = static_cast<std::uint64_t>(found.integer(2));
+    }
+    std::uint64_t next = 0;
+    if (recording->ticks > 0) {
+      const ResetLater reset(sql_->newest_tick.reset() << run);
+      if (!sql_->newest_tick.step()) return std::nullopt;
+      recording->last.tick = static_cast<std::uint64_t>(sql_->newest_tick.integer(0));
+      next = recording->last.tick + 1;
+      const ResetLater reset_time(sql_->tick_time.reset() << run << std::int64_t{0});
+      if (sql_->tick_time.step()) recording->kept_from = sql_->tick_time.number(1);
+    }
+    open_.insert_or_assign(run, std::move(recording));
+    return next;
+  });
+}
+
+void RunStore::note_gap(RunId run, const Gap& gap) {
+  guarded([&] {
+    begin();
+    (sql_->insert_gap.reset() << run << static_cast<std::int64_t>(gap.first_tick)
+                              << static_cast<std::int64_t>(gap.last_tick) << to_string(gap.cause)
+                              << std::string_view(gap.sentence))
+        .run();
+  });
 }
 
 void RunStore::start_run(RunId run, std::string_view started) {
@@ -215,6 +248,7 @@ void RunStore::append_tick(RunId run,
                            const TickRow& row,
                            std::span<const std::byte> frame,
                            std::span<const Window> windows) {
+  require_open();
   Recording& recording = recording_of(run);
   if (recording.ticks > 0 && row.tick <= recording.last.tick) {
     throw StoreError(name_of(run) + ": tick " + std::to_string(row.tick) +
@@ -245,6 +279,7 @@ void RunStore::append_tick(RunId run,
            << row.v << row.omega << row.clearance << std::int64_t{row.hold}
            << std::int64_t{row.behaviour};
     insert.run();
+    if (recording.ticks == 0) recording.kept_from = row.t;
     recording.last = row;
     ++recording.ticks;
     recording.dirty = true;
@@ -260,6 +295,14 @@ void RunStore::write_block(RunId run, Recording& recording) {
       .run();
   recording.written_frames = recording.pending.frames();
   recording.block_bytes = packed.size();
+}
+
+void RunStore::write_progress(RunId run, const Recording& recording) {
+  (sql_->progress.reset() << static_cast<std::int64_t>(recording.ticks) << recording.last.t
+                          << static_cast<std::int64_t>(recording.sealed_bytes +
+                                                       recording.block_bytes)
+                          << run)
+      .run();
 }
 
 void RunStore::set_result(RunId run,
@@ -292,111 +335,32 @@ void RunStore::end_run(RunId run, const RunEnd& end) {
     if (const auto found = open_.find(run); found != open_.end()) {
       Recording& recording = *found->second;
       if (recording.pending.frames() > 0) write_block(run, recording);
-      (sql_->progress.reset() << static_cast<std::int64_t>(recording.ticks) << recording.last.t
-                              << static_cast<std::int64_t>(recording.sealed_bytes +
-                                                           recording.block_bytes)
-                              << run)
-          .run();
+      write_progress(run, recording);
       open_.erase(found);
     }
+    std::int64_t lost = static_cast<std::int64_t>(end.lost_ticks);
+    {
+      const ResetLater reset(sql_->lost_ticks.reset() << run);
+      if (sql_->lost_ticks.step()) lost = std::max(lost, sql_->lost_ticks.integer(0));
+    }
     (sql_->end_run.reset() << to_string(end.status) << end.outcome << end.reason << end.metrics
-                           << static_cast<std::int64_t>(end.lost_ticks) << run)
+                           << lost << run)
         .run();
   });
 }
 
 void RunStore::commit() {
-  if (!connection_.in_transaction()) return;
+  if (!connection_ || !connection_->in_transaction()) return;
   guarded([&] {
     for (auto& [run, recording] : open_) {
       if (!recording->dirty) continue;
       write_block(run, *recording);
-      (sql_->progress.reset() << static_cast<std::int64_t>(recording->ticks) << recording->last.t
-                              << static_cast<std::int64_t>(recording->sealed_bytes +
-                                                           recording->block_bytes)
-                              << run)
-          .run();
+      write_progress(run, *recording);
       recording->dirty = false;
       // A short block grows until it is worth its own row: frames pack better together.
       if (recording->pending.frames() >= kSealFrames) recording->pending.clear();
     }
     sql_->commit.reset().run();
-  });
-}
-
-RunStore::Deletion RunStore::delete_run(RunId run) {
-  return guarded([&] {
-    begin();
-    sql_->status.reset() << run;
-    const ResetLater reset(sql_->status);
-    if (!sql_->status.step()) return Deletion::NotFound;
-    const std::string status = sql_->status.text(0);
-    if (status == "deleted") return Deletion::NotFound;
-    if (status == "recording" || status == "queued") return Deletion::StillRecording;
-    (sql_->mark_deleted.reset() << run).run();
-    return Deletion::Deleted;
-  });
-}
-
-bool RunStore::sweep(std::size_t ticks) {
-  return guarded([&] {
-    std::int64_t run = 0;
-    {
-      const ResetLater reset(sql_->deleted.reset());
-      if (!sql_->deleted.step()) return false;
-      run = sql_->deleted.integer(0);
-    }
-    begin();
-    sql_->slice_end.reset() << run << static_cast<std::int64_t>(ticks);
-    const bool more = sql_->slice_end.step();
-    const std::int64_t end = more ? sql_->slice_end.integer(0) : INT64_MAX;
-    sql_->slice_end.reset();
-    (sql_->delete_ticks.reset() << run << end).run();
-    (sql_->delete_blocks.reset() << run << end).run();
-    if (!more) {
-      (sql_->delete_document.reset() << run).run();
-      (sql_->delete_run.reset() << run).run();
-    }
-    commit();
-    const ResetLater reset(sql_->deleted.reset());
-    return sql_->deleted.step();
-  });
-}
-
-std::optional<RunRow> RunStore::retire_oldest(std::uint64_t limit) {
-  return guarded([&]() -> std::optional<RunRow> {
-    if (used_bytes() <= limit) return std::nullopt;
-    {
-      const ResetLater reset(sql_->deleted.reset());
-      if (sql_->deleted.step()) return std::nullopt;
-    }
-    RunRow oldest{};
-    {
-      Statement& found = sql_->oldest_ended.reset();
-      const ResetLater reset(found);
-      if (!found.step()) return std::nullopt;
-      oldest.id = found.integer(0);
-      oldest.status = find_status(found.text(1)).value_or(RunStatus::Finished);
-      oldest.what.scenario = found.text(2);
-      oldest.what.started = found.text(3);
-      oldest.ticks = static_cast<std::uint64_t>(found.integer(4));
-      oldest.bytes = static_cast<std::uint64_t>(found.integer(5));
-    }
-    begin();
-    (sql_->mark_deleted.reset() << oldest.id).run();
-    commit();
-    return oldest;
-  });
-}
-
-std::uint64_t RunStore::used_bytes() {
-  return guarded([&] {
-    const auto value = [](Statement& statement) {
-      const ResetLater reset(statement.reset());
-      return statement.step() ? statement.integer(0) : std::int64_t{0};
-    };
-    const std::int64_t pages = value(sql_->page_count) - value(sql_->free_pages);
-    return static_cast<std::uint64_t>(pages * sql_->page_bytes);
   });
 }
 

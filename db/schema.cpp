@@ -57,7 +57,28 @@ constexpr std::array kSteps = {
     CREATE INDEX run_by_scenario ON run (scenario, id);
     CREATE INDEX run_by_status ON run (status, id);
     )",
+    // 3: which ticks a run lacks, and why.
+    R"(
+    CREATE TABLE gap (
+      run INTEGER NOT NULL,
+      first_tick INTEGER NOT NULL,
+      last_tick INTEGER NOT NULL,
+      cause TEXT NOT NULL,
+      sentence TEXT NOT NULL,
+      PRIMARY KEY (run, first_tick)
+    ) WITHOUT ROWID;
+    )",
+    // 4: a run with the same document as the one before it shares that one's, which stays as long
+    // as a run has it: ten thousand repeats of a world would fill the store with copies of it.
+    R"(
+    ALTER TABLE run ADD COLUMN document INTEGER;
+    CREATE INDEX run_by_document ON run (document) WHERE document IS NOT NULL;
+    )",
 };
+
+constexpr std::int64_t kOldestReadable = 2;
+constexpr std::int64_t kWithGaps = 3;
+constexpr std::int64_t kWithSharedDocuments = 4;
 
 std::int64_t version_of(const Connection& connection) {
   return connection.query_integer("PRAGMA user_version");
@@ -109,13 +130,21 @@ void migrate(Connection& connection) {
   }
 }
 
-void require_current(const Connection& connection) {
+void require_readable(const Connection& connection) {
   refuse_foreign(connection);
   refuse_newer(connection);
-  if (version_of(connection) < schema_version()) {
+  if (version_of(connection) < kOldestReadable) {
     throw StoreError("The run store " + connection.path() +
                      " is empty or of an older version; start the server on it once.");
   }
+}
+
+bool has_gaps(const Connection& connection) {
+  return version_of(connection) >= kWithGaps;
+}
+
+bool shares_documents(const Connection& connection) {
+  return version_of(connection) >= kWithSharedDocuments;
 }
 
 }  // namespace db::detail

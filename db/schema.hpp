@@ -13,6 +13,12 @@ int schema_version();
 void migrate(Connection& connection);
 
 /// Throws StoreError when the database is not one this program can read as it is.
-void require_current(const Connection& connection);
+void require_readable(const Connection& connection);
+
+/// Whether it has the table of gaps, which older ones lack.
+bool has_gaps(const Connection& connection);
+
+/// Whether runs may share a document, which those of older databases never do.
+bool shares_documents(const Connection& connection);
 
 }  // namespace db::detail

@@ -10,30 +10,34 @@ namespace db::detail {
 
 namespace {
 
-constexpr int kBusyTimeoutMs = 5000;
+// Short: the database thread has other things to do meanwhile, and the io thread reads.
+constexpr int kBusyTimeoutMs = 100;
 
 [[noreturn]] void fail(int code, sqlite3* connection, const std::string& path) {
   const std::string detail = connection == nullptr ? "out of memory" : sqlite3_errmsg(connection);
+  const std::string store = "The run store " + path;
   switch (code & 0xFF) {
     case SQLITE_FULL:
-      throw DatabaseError("The disk is full: the run store " + path + " could not grow.");
+      throw DatabaseError("The disk is full: the run store " + path + " could not grow.",
+                          Trouble::Full);
     case SQLITE_CANTOPEN:
-      throw DatabaseError("Cannot open the run store " + path +
-                          ": its folder is missing or may not be written.");
+      throw DatabaseError(
+          "Cannot open the run store " + path + ": its folder is missing or may not be written.",
+          Trouble::Refused);
     case SQLITE_READONLY:
     case SQLITE_PERM:
-      throw DatabaseError("The run store " + path + " may not be written.");
+      throw DatabaseError(store + " may not be written.", Trouble::Refused);
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      throw DatabaseError("The run store " + path + " is held by another program.");
+      throw DatabaseError(store + " is held by another program.", Trouble::Busy);
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
-      throw DatabaseError("The run store " + path + " is damaged or not a database (" + detail +
-                          ").");
+      throw DatabaseError(store + " is damaged or not a database (" + detail + ").",
+                          Trouble::Damaged);
     case SQLITE_IOERR:
       throw DatabaseError("The disk failed under the run store " + path + " (" + detail + ").");
     default:
-      throw DatabaseError("The run store " + path + " failed: " + detail + ".");
+      throw DatabaseError(store + " failed: " + detail + ".");
   }
 }
 
@@ -173,8 +177,8 @@ std::string Connection::query_text(std::string_view sql) const {
   return statement.step() ? statement.text(0) : std::string{};
 }
 
-std::int64_t Connection::last_insert_id() const {
-  return sqlite3_last_insert_rowid(connection_.get());
+std::uint64_t Connection::changes() const {
+  return static_cast<std::uint64_t>(sqlite3_changes64(connection_.get()));
 }
 bool Connection::in_transaction() const {
   return sqlite3_get_autocommit(connection_.get()) == 0;

@@ -21,10 +21,24 @@ class StoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What ails a database, as far as it decides what can be done about it.
+enum class Trouble : std::uint8_t {
+  Busy,     // another program holds it: nothing is lost, try again
+  Full,     // the disk is
+  Damaged,  // the file is, or it is no database
+  Refused,  // it may not be opened or written, or another server writes it
+  Failed,   // anything else, such as a disk that breaks
+};
+
 /// The database itself failed: disk full, not readable, locked by another program.
 class DatabaseError : public StoreError {
  public:
-  using StoreError::StoreError;
+  explicit DatabaseError(const std::string& sentence, Trouble trouble = Trouble::Failed)
+      : StoreError(sentence), trouble_(trouble) {}
+  Trouble trouble() const { return trouble_; }
+
+ private:
+  Trouble trouble_;
 };
 
 namespace detail {
@@ -86,7 +100,7 @@ class Connection {
   void execute(const std::string& sql) const;
   std::int64_t query_integer(std::string_view sql) const;
   std::string query_text(std::string_view sql) const;
-  std::int64_t last_insert_id() const;
+  std::uint64_t changes() const;  // rows the newest statement changed
   bool in_transaction() const;
   void roll_back() const noexcept;  // nothing when none is open
 

@@ -158,6 +158,38 @@ TEST_F(RunStoreTest, QueuedRunsStartLaterOrAreCancelled) {
   EXPECT_EQ(get(reader, second).status, RunStatus::Cancelled);
 }
 
+TEST_F(RunStoreTest, EqualDocumentsAreKeptOnceUntilTheLastRunWithThemIsGone) {
+  RunStore store(path);
+  db::NewRun big = what();
+  big.document = '"' + std::string(100'000, 'x') + '"';
+  const db::RunId first = store.queue_run(big);
+  const std::uint64_t one = [&] {
+    store.commit();
+    return store.used_bytes();
+  }();
+  const db::RunId second = store.queue_run(big);
+  const db::RunId third = store.queue_run(big);
+  store.commit();
+  EXPECT_LT(store.used_bytes(), one + 50'000);
+
+  const auto remove = [&](db::RunId run) {
+    store.end_run(run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});
+    EXPECT_EQ(store.delete_run(run), RunStore::Deletion::Deleted);
+    while (store.sweep()) {
+    }
+  };
+  RunReader reader(path);
+  EXPECT_EQ(reader.get(third)->what.document, big.document);
+  remove(first);
+  EXPECT_EQ(reader.get(second)->what.document, big.document);
+  EXPECT_EQ(reader.get(third)->what.document, big.document);
+  remove(third);
+  EXPECT_EQ(reader.get(second)->what.document, big.document);
+  remove(second);
+  store.commit();
+  EXPECT_LT(store.used_bytes(), one - 90'000);
+}
+
 TEST_F(RunStoreTest, UnfinishedRunsAreInterruptedAtTheNextStart) {
   db::RunId queued = 0;
   db::RunId recording = 0;
@@ -189,10 +221,90 @@ TEST_F(RunStoreTest, UnfinishedRunsAreInterruptedAtTheNextStart) {
   EXPECT_FALSE(store.recording(recording));
 }
 
-TEST_F(RunStoreTest, OneWriterOnly) {
-  const RunStore store(path);
+TEST_F(RunStoreTest, OneWriterOnlyByWhateverName) {
+  const std::string link = (folder / "link.db").string();
+  const std::string twin = (folder / "twin.db").string();
+  {
+    const RunStore store(path);
+    std::filesystem::create_symlink(path, link);
+    std::filesystem::create_hard_link(path, twin);
+    for (const std::string& name : {path, link, twin}) {
+      EXPECT_THAT(refusal([&] { const RunStore second(name); }),
+                  HasSubstr("written by another server"));
+    }
+  }
+  std::filesystem::remove(twin);
+  const RunStore store(link);
   EXPECT_THAT(refusal([&] { const RunStore second(path); }),
               HasSubstr("written by another server"));
+}
+
+TEST_F(RunStoreTest, ADroppedRunGoesOnInItsRow) {
+  RunStore store(path);
+  const auto made = frames(8);
+  const db::RunId run = store.begin_run(what());
+  for (std::size_t i = 0; i < 3; ++i) append(store, run, i, made[i]);
+  store.commit();
+  append(store, run, 3, made[3]);
+  store.open();  // as after a failure: what was not committed is gone
+  EXPECT_FALSE(store.recording(run));
+  EXPECT_EQ(store.resume_run(run), 3U);
+  EXPECT_EQ(store.resume_run(run + 1), std::nullopt);
+  const db::Gap gap{3, 5, db::GapCause::Failed, "The disk was full."};
+  store.note_gap(run, gap);
+  append(store, run, 6, made[6]);
+  append(store, run, 7, made[7]);
+  store.end_run(run, {});
+  store.commit();
+  RunReader reader(path);
+  const db::RunRow row_read = get(reader, run);
+  EXPECT_THAT(row_read.gaps, ElementsAre(gap));
+  EXPECT_EQ(row_read.status, RunStatus::Finished);
+  EXPECT_EQ(row_read.ticks, 5U);
+  EXPECT_EQ(row_read.lost_ticks, 3U);
+  const auto found = read_frames(reader, run);
+  ASSERT_EQ(found.size(), 5U);
+  EXPECT_EQ(found[3], made[6].bytes);
+}
+
+TEST_F(RunStoreTest, NumbersAreGivenOutBeforeTheirRowsAreWritten) {
+  const auto numbers = std::make_shared<db::RunNumbers>();
+  {
+    RunStore store(path, {.numbers = numbers});
+    const db::RunId promised = numbers->take();
+    const db::RunId other = record(store, 1);
+    EXPECT_GT(other, promised);
+    EXPECT_EQ(store.begin_run(what(), promised), promised);
+    // A number that the file has already is not given to another run.
+    EXPECT_GT(store.begin_run(what(), other), other);
+    store.commit();
+  }
+  RunStore store(path);
+  EXPECT_EQ(record(store, 1), 4);
+}
+
+TEST_F(RunStoreTest, ACutRunIsQueuedAgainFromItsStart) {
+  RunStore store(path);
+  const db::RunId run = store.queue_run(what());
+  store.start_run(run, "2026-11-21T11:00:00Z");
+  const auto made = frames(50);
+  for (std::size_t i = 0; i < 50; ++i) append(store, run, i, made[i]);
+  EXPECT_FALSE(store.requeue_run(run));  // it is at work
+  store.end_run(run, {.status = RunStatus::Interrupted, .outcome = "stopped"});
+  store.commit();
+  EXPECT_TRUE(store.requeue_run(run));
+  while (store.clear_run(run, 20)) {
+  }
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, run).status, RunStatus::Queued);
+  EXPECT_EQ(get(reader, run).ticks, 0U);
+  EXPECT_THAT(read_frames(reader, run), IsEmpty());
+  store.start_run(run, "2026-11-21T12:00:00Z");
+  append(store, run, 0, made[0]);
+  store.end_run(run, {.outcome = "reached"});
+  store.commit();
+  EXPECT_EQ(read_frames(reader, run).size(), 1U);
+  EXPECT_FALSE(store.requeue_run(run));  // it is finished
 }
 
 TEST_F(RunStoreTest, SaysWhyAFileCannotBeOpened) {

@@ -68,6 +68,18 @@ TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
   EXPECT_EQ(record(store, 3), 8);
 }
 
+TEST_F(SchemaTest, ADatabaseWithoutGapsIsReadAsItIs) {
+  {
+    RunStore store(path);
+    record(store, 3);
+  }
+  Connection(path, Connection::Mode::Write).execute("DROP TABLE gap; PRAGMA user_version = 2");
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, 1).ticks, 3U);
+  EXPECT_TRUE(get(reader, 1).gaps.empty());
+  EXPECT_EQ(ask("PRAGMA user_version"), 2);
+}
+
 TEST_F(SchemaTest, TheOlderTablesPlusTheStepsAreTodaysTables) {
   const auto tables = [](const std::string& file) {
     const Connection c(file, Connection::Mode::Write);
