@@ -23,6 +23,12 @@ void AnalogBase::enable(bool on) {
   card_.enable(on);
 }
 
+void AnalogBase::cut() noexcept {
+  const std::lock_guard lock(mutex_);
+  card_.write_volts({0, 0});
+  card_.enable(false);
+}
+
 void AnalogBase::drive(const algo::Twist2& twist) {
   const std::lock_guard lock(mutex_);
   measure();

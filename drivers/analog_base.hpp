@@ -49,7 +49,9 @@ class AnalogBase final : public Base {
   /// `card` outlives it. `now` gives the seconds of a steady clock.
   AnalogBase(AnalogCard& card, const AnalogSetup& setup, double (*now)());
 
+  /// Off at once: nobody but the control tick would see the wheels come to rest.
   void enable(bool on) override;
+  void cut() noexcept override;
   void drive(const algo::Twist2& twist) override;
   void stop() noexcept override;
   BaseState state() override;

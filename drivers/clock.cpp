@@ -1,25 +1,35 @@
-// drivers/clock.cpp: CLOCK_MONOTONIC, which std::chrono::steady_clock is too.
+// drivers/clock.cpp: CLOCK_BOOTTIME: unlike std::chrono::steady_clock it goes on while the machine
+// is suspended, so that what was sensed before is old afterwards.
 #include "drivers/clock.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <ctime>
+#include <thread>
 
 namespace drivers {
 
 double steady_now() {
   timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// Absolute, so that what happens between asking and sleeping makes nothing late.
+/// Absolute, so that what happens between asking and sleeping makes nothing late. Kernels that
+/// cannot sleep by this clock sleep by the other.
 void SteadyClock::sleep_until(double time) {
   const double whole = std::floor(time);
   timespec until{};
   until.tv_sec = static_cast<std::time_t>(whole);
   until.tv_nsec = static_cast<long>((time - whole) * 1e9);
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  int result = 0;
+  do {
+    result = ::clock_nanosleep(CLOCK_BOOTTIME, TIMER_ABSTIME, &until, nullptr);
+  } while (result == EINTR);
+  if (result == 0) return;
+  while (now() < time) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(time - now()));
   }
 }
 

@@ -3,7 +3,7 @@
 
 namespace drivers {
 
-/// [s] of the steady clock.
+/// [s] of a clock that never goes back and goes on while the machine is suspended.
 double steady_now();
 
 class Clock {

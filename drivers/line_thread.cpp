@@ -20,6 +20,9 @@ namespace {
 constexpr double kFirstRetry = 0.5;   // [s] until the port is tried again
 constexpr double kLastRetry = 4.0;    // [s]
 constexpr double kLongestWait = 0.1;  // [s] so that a stop is seen soon
+// Bytes that may have waited for longer are thrown away: who reads them late would take an old
+// report for a new one.
+constexpr double kLongestUnread = 0.25;  // [s]
 constexpr SerialPort::Milliseconds kWriteTimeout{200};
 // An LMS200 wants 55 us between two bytes, which lower rates give by themselves.
 constexpr unsigned kNeedsGaps = 100'000;  // [bit/s] from here on; a byte takes longer below
@@ -114,6 +117,7 @@ void LineThread::serve(const std::stop_token& stop) {
     machine_.opened(steady_now(), port.baud());
   }
   std::array<std::uint8_t, 4096> bytes{};
+  double unread_since = steady_now();
   for (;;) {
     double wake = 0;
     {
@@ -122,23 +126,39 @@ void LineThread::serve(const std::stop_token& stop) {
       wake = machine_.wake_time();
     }
     const bool over = leaving(stop);
-    carry_out_orders(port);
+    unread_since += carry_out_orders(port);
     if (over) return;
-    if (!wait(&port, wake - steady_now())) continue;
+    const bool waits = wait(&port, wake - steady_now());
+    const double unread = steady_now() - unread_since;
+    unread_since += unread;
+    if (!waits) continue;
+    if (unread > kLongestUnread) {
+      port.discard_input();
+      const std::lock_guard lock(mutex_);
+      machine_.lost_bytes();
+      continue;
+    }
     const std::size_t got = port.read(bytes, SerialPort::Milliseconds(0));
     const std::lock_guard lock(mutex_);
     machine_.receive(steady_now(), ByteView(bytes).first(got));
   }
 }
 
-void LineThread::carry_out_orders(SerialPort& port) {
+/// Returns the seconds that the orders ask for by themselves.
+double LineThread::carry_out_orders(SerialPort& port) {
+  constexpr double kBitsOfAByte = 10;
+  double asked = 0;
   for (;;) {
     std::optional<LineOrder> order;
     {
       const std::lock_guard lock(mutex_);
       order = machine_.next_order();
     }
-    if (!order) return;
+    if (!order) return asked;
+    if (steady_now() > order->expires) continue;
+    const unsigned baud = port.baud();
+    if (baud > 0) asked += kBitsOfAByte * static_cast<double>(order->bytes.size()) / baud;
+    asked += order->pause;
     if (order->baud) {
       port.set_baud(*order->baud);
       const std::lock_guard lock(mutex_);

@@ -25,7 +25,7 @@ class LineThread {
   LineThread(const LineThread&) = delete;
   LineThread& operator=(const LineThread&) = delete;
 
-  static constexpr double kLeaving = 3.0;  // [s]
+  static constexpr double kLeaving = 8.0;  // [s] two mode switches of an LMS200, each 3 s
 
   /// Calls `action`, which may give orders, with the machine locked. From any thread.
   template <class Action>
@@ -45,7 +45,7 @@ class LineThread {
   void wake() const;
   void run(const std::stop_token& stop);
   void serve(const std::stop_token& stop);
-  void carry_out_orders(SerialPort& port);
+  double carry_out_orders(SerialPort& port);
   void send(SerialPort& port, const LineOrder& order) const;
   bool wait(const SerialPort* port, double seconds) const;
   bool leaving(const std::stop_token& stop);

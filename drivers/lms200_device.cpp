@@ -1,11 +1,20 @@
 // drivers/lms200_device.cpp: a scanner's machine and its thread, and its report in words.
 #include "drivers/lms200_device.hpp"
 
+#include <chrono>
+#include <thread>
 #include <utility>
 
+#include "algo/units.hpp"
 #include "drivers/text.hpp"
 
 namespace drivers::lms200 {
+namespace {
+
+constexpr const char* kSight =
+    "keep the sun and other scanners out of its sight, and look at its window.";
+
+}  // namespace
 
 Lms200Device::Lms200Device(std::string name, const std::string& port, const LaserSetup& setup)
     : name_(std::move(name)), machine_(setup), line_(port, machine_) {}
@@ -24,6 +33,7 @@ ScannerState Lms200Device::state() {
     out.period = machine_.scan_period();
     out.bad_line = machine_.storm();
     out.faulty = out.running && !machine_.health().usable();
+    out.blinded = out.running && machine_.blinded();
   });
   return out;
 }
@@ -32,6 +42,19 @@ LaserReport Lms200Device::details() {
   LaserReport out;
   line_.look([&] { out = machine_.report(); });
   return out;
+}
+
+bool Lms200Device::comes_to_run(double patience, const std::function<bool()>& interrupted) {
+  constexpr double kLongestSetUp = 60;  // [s] six mode switches, and a memory that is written
+  const double begun = steady_now();
+  for (;;) {
+    Stage stage = Stage::NoLine;
+    line_.look([&] { stage = machine_.stage(); });
+    const double limit = patience + (stage == Stage::SettingUp ? kLongestSetUp : 0);
+    if (stage == Stage::Running) return true;
+    if (steady_now() > begun + limit || (interrupted && interrupted())) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
 }
 
 DeviceReport Lms200Device::report() {
@@ -46,10 +69,19 @@ DeviceReport describe(const LaserReport& report, double now) {
   const std::string health = health_text(report.health);
   const bool running = report.stage == Stage::Running;
   const bool storm = report.storm;
-  out.well = running && report.health.usable() && !storm;
+  out.well = running && report.health.usable() && !storm && !report.blinded && !report.dazzled;
   out.sentence = report.trouble;
   if (running) out.sentence = format("Well, %.1f scans a second.", 1.0 / report.scan_period);
   if (running && !health.empty()) out.sentence = health;
+  if (running && report.dazzled) {
+    out.sentence = format("It is dazzled from %.0f to %.0f degrees: ",
+                          report.dazzled->from / algo::units::kRadiansPerDegree,
+                          report.dazzled->to / algo::units::kRadiansPerDegree) +
+                   kSight;
+  }
+  if (running && report.blinded) {
+    out.sentence = std::string("It is blinded, most of its beams tell nothing: ") + kSight;
+  }
   if (running && storm) {
     out.sentence = format(
         "%.0f %% of its telegrams come damaged: look at the cable, its "

@@ -2,6 +2,7 @@
 // serves it.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "drivers/line_thread.hpp"
@@ -19,6 +20,9 @@ class Lms200Device final : public Scanner {
   DeviceReport report() override;
   /// The same with all its numbers.
   LaserReport details();
+  /// Waits until it runs: `patience` [s] until it is found, and as long as its set-up goes on after
+  /// that. False when it does not run then, or when `interrupted` says so.
+  bool comes_to_run(double patience, const std::function<bool()>& interrupted = {});
 
  private:
   std::string name_;

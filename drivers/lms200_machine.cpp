@@ -6,18 +6,20 @@
 #include <limits>
 #include <utility>
 
+#include "algo/dazzle.hpp"
+#include "algo/perceive.hpp"
 #include "drivers/text.hpp"
 
 namespace drivers::lms200 {
 namespace {
 
 constexpr std::array<unsigned, 4> kRates{9600, 19200, 38400, 500'000};
-constexpr unsigned kFallbackRate = 38400;
 
 constexpr double kByteSilence = 0.03;  // [s] no frame goes on after it: 14 ms and a USB chip's 16
 constexpr double kListen = 3.0;        // [s] for a greeting before all rates are tried again
 constexpr double kBootTime = 60.0;     // [s] at most from power to greeting
 constexpr double kSilent = 1.0;        // [s] without a telegram: the device is looked for again
+constexpr double kFirstScan = 3.5;     // [s] the first one may need so long
 constexpr double kDamageWeight = 1.0 / 16;
 constexpr std::uint64_t kMostAtOnce = 4;
 constexpr double kStorm = 0.5;  // share of telegrams that come damaged,
@@ -27,20 +29,6 @@ constexpr double kCalm = 0.1;   // and what it has to fall to again: a bad cable
 bool close_enough(unsigned wanted, unsigned is) {
   constexpr double kTolerance = 0.03;  // of what 8N1 takes
   return std::abs(static_cast<double>(is) - wanted) <= kTolerance * wanted;
-}
-
-/// Scans that are lost between two sent, best case, by the manual.
-double lost_scans(unsigned baud) {
-  switch (baud) {
-    case 9600:
-      return 29;
-    case 19200:
-      return 15;
-    case 38400:
-      return 8;
-    default:
-      return 0;
-  }
 }
 
 }  // namespace
@@ -54,7 +42,7 @@ void LaserMachine::opened(double now, unsigned baud) {
   remarks_.clear();
   fixed_rate_ = baud == 0;
   port_baud_ = wanted_;
-  baud_ = 0;
+  baud_ = told_baud_ = found_baud_ = 0;
   last_byte_ = now;
   if (!fixed_rate_ && !close_enough(wanted_, baud)) {
     fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
@@ -102,12 +90,15 @@ void LaserMachine::remark(const std::string& sentence) {
 void LaserMachine::receive(double now, ByteView bytes) {
   last_byte_ = now;
   reader_.feed(
-      bytes, [&](ByteView frame) { take_telegram(now, frame); }, [](std::uint8_t) {});
+      bytes,
+      [&](ByteView frame) { take_telegram(now, frame); },
+      [&](std::uint8_t byte) { take_stray(byte); });
 }
 
 void LaserMachine::advance(double now) {
   if (reader_.pending() > 0 && now - last_byte_ > kByteSilence) {
-    reader_.expire([&](ByteView frame) { take_telegram(now, frame); }, [](std::uint8_t) {});
+    reader_.expire([&](ByteView frame) { take_telegram(now, frame); },
+                   [&](std::uint8_t byte) { take_stray(byte); });
   }
   if (now < deadline_) return;
   switch (step_) {
@@ -129,7 +120,8 @@ void LaserMachine::advance(double now) {
       search(now);
       return;
     default:
-      if (tries_left_ > 0) {
+      if (waits_on(now)) return;
+      if (tries_left_ > 0 || asks_again(now)) {
         request(now);
       } else {
         unanswered(now);
@@ -151,7 +143,7 @@ void LaserMachine::search(double now) {
     if (rate != wanted_ && n < rates_.size()) rates_[n++] = rate;
   }
   rate_index_ = 0;
-  baud_ = 0;
+  baud_ = nak_baud_ = 0;
   probe(now);
 }
 
@@ -172,7 +164,8 @@ void LaserMachine::listen(double now) {
   step_ = Step::Listen;
   deadline_ = now + kListen;
   const double waited = now - searching_since_;
-  trouble_ = waited < kBootTime
+  trouble_ = nak_baud_ > 0 ? damaged_words()
+             : waited < kBootTime
                  ? format("No answer at any rate; waiting for power-on, %.0f s so far.", waited)
                  : format(
                        "No answer at any rate for %.0f s. Is it powered, are RX and TX the right "
@@ -250,6 +243,8 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       return;
     case Step::Type:
       if (const auto text = type_text(telegram)) type_ = *text;
+      // Another rate than it was told is its own again: it has restarted.
+      if (found_baud_ == 0 || port_baud_ != told_baud_) found_baud_ = port_baud_;
       baud_ = port_baud_;
       begin(Step::Status, now);
       return;
@@ -269,16 +264,14 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       rate_answered(now, telegram);
       return;
     case Step::RateConfirmed:
-      baud_ = port_baud_;
-      begin(Step::Variant, now);
-      if (variant_ == set_variant()) begin(Step::Installation, now);
+      choose_variant(now);
       return;
     case Step::Variant:
       variant_answered(now, telegram);
       return;
     case Step::Installation:
       if (const std::string why = refusal_text(telegram); !why.empty()) {
-        remark("Its configuration cannot be read: " + why);
+        remark("Its configuration cannot be read and stays as it is: " + why);
         begin(Step::Start, now);
       } else {
         begin(Step::ReadConfiguration, now);
@@ -299,11 +292,7 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       }
       return;
     case Step::Stopping:
-      if (fixed_rate_ || baud_ == kStartRate) {
-        step_ = Step::Left;
-      } else {
-        begin(Step::Restoring, now);
-      }
+      restore_rate(now);
       return;
     case Step::Restoring:
       step_ = Step::Left;
@@ -316,6 +305,7 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
 void LaserMachine::unanswered(double now) {
   switch (step_) {
     case Step::Probe:
+      if (takes_all_for_damaged()) nak_baud_ = port_baud_;
       ++rate_index_;
       probe(now);
       return;
@@ -331,11 +321,16 @@ void LaserMachine::unanswered(double now) {
       begin(Step::ReadConfiguration, now);
       return;
     case Step::Stopping:
+      restore_rate(now);
+      return;
     case Step::Restoring:
       step_ = Step::Left;
       return;
     default:
-      trouble_ = "The scanner stopped answering while it was being set up; it is looked for again.";
+      trouble_ = takes_all_for_damaged()
+                     ? damaged_words()
+                     : "The scanner stopped answering while it was being set up; it is looked for "
+                       "again.";
       search(now);
   }
 }
@@ -344,8 +339,8 @@ void LaserMachine::unanswered(double now) {
 
 /// [s] between two scans, by the manual.
 double LaserMachine::nominal_period() const {
-  const double turns = interlaced() ? setup_.variant.turns() : decoder_.variant().turns();
-  return (1 + lost_scans(baud_)) * turns * kTurnPeriod;
+  return lms200::scan_period(interlaced() ? setup_.variant : decoder_.variant(),
+                             baud_ > 0 ? baud_ : kStartRate);
 }
 
 void LaserMachine::start_streaming(double now) {
@@ -356,6 +351,8 @@ void LaserMachine::start_streaming(double now) {
     return;
   }
   fresh_ = false;
+  blinded_ = false;
+  dazzled_.reset();
   decoder_ = ScanDecoder(variant_.value_or(set_variant()), *format);
   parts_ = PartialScans(setup_.variant, *format);
   period_ = nominal_period();
@@ -364,7 +361,7 @@ void LaserMachine::start_streaming(double now) {
   trouble_.clear();
   ++set_ups_;
   step_ = Step::Streaming;
-  deadline_ = now + std::max(kSilent, 4 * period_);
+  deadline_ = now + std::max(kFirstScan, 4 * period_);
 }
 
 void LaserMachine::take_values(double now, const Telegram& telegram, std::size_t bytes) {
@@ -390,6 +387,12 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
     std::reverse(filling_.ranges.begin(), filling_.ranges.end());
     std::reverse(filling_.status.begin(), filling_.status.end());
     std::reverse(filling_.codes.begin(), filling_.codes.end());
+  }
+  filling_.mount_R = {};  // the recycled scan still has the mount of its last reader
+  blinded_ = algo::blinded(filling_);
+  dazzled_.reset();
+  if (const algo::BeamSpan cone = algo::widest_cone(filling_); cone.end > cone.begin) {
+    dazzled_ = Dazzled{filling_.angle(cone.begin), filling_.angle(cone.end - 1)};
   }
   last_scan_ = now;
   if (fresh_) ++replaced_;
@@ -452,6 +455,8 @@ LaserReport LaserMachine::report() const {
   out.written = written_;
   out.damaged = damaged_;
   out.storm = storm_;
+  out.blinded = blinded_;
+  out.dazzled = dazzled_;
   out.nominal_period = nominal_period();
   out.scan_period = period_;
   out.last_scan = last_scan_;
@@ -469,6 +474,14 @@ void LaserMachine::leave(double now) {
     return;
   }
   begin(Step::Stopping, now);
+}
+
+void LaserMachine::restore_rate(double now) {
+  if (fixed_rate_ || baud_ == found_baud_) {
+    step_ = Step::Left;
+  } else {
+    begin(Step::Restoring, now);
+  }
 }
 
 }  // namespace drivers::lms200

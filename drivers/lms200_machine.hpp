@@ -5,6 +5,8 @@
 //   NoLine > Probe (each rate) > Type > Status > Rate > Variant > Installation > configuration
 //          > Start > Streaming           nothing answers: Listen for a greeting, then Probe again
 //
+// A mode switch may take 3 s, and the device may be deaf and dumb for seconds after one or after
+// power-on: what it acknowledged is waited for, what it did not is asked again for as long.
 // Whatever falls silent or restarts on the way is looked for again from the beginning.
 #pragma once
 
@@ -12,6 +14,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
@@ -20,6 +23,8 @@
 #include "drivers/machine.hpp"
 
 namespace drivers::lms200 {
+
+constexpr unsigned kFallbackRate = 38400;  // [bit/s] that every port and plug can do
 
 /// What the device is to do.
 struct LaserSetup {
@@ -31,7 +36,18 @@ struct LaserSetup {
   std::string password{kFactoryPassword};
 };
 
+/// Eight characters that a keyboard has: what the device takes as one.
+bool good_password(std::string_view password);
+/// Why no device can do what `setup` says; empty when one can.
+std::string refusal(const LaserSetup& setup);
+
 enum class Stage : std::uint8_t { NoLine, Searching, SettingUp, Running };
+
+/// Bearings between which the newest scan was dazzled [rad, the scanner's own, left positive].
+struct Dazzled {
+  double from = 0;
+  double to = 0;
+};
 
 /// All that people may want to know about it.
 struct LaserReport {
@@ -55,10 +71,12 @@ struct LaserReport {
   std::uint64_t written = 0;   // times its configuration was written
   double damaged = 0;          // share of late, 0..1, of telegrams that came damaged
   bool storm = false;          // too many of them, until far fewer are
-  double scan_period = 0;      // [s] measured, or what its rate allows
-  double nominal_period = 0;   // [s] what its rate allows
-  double last_scan = 0;        // [s] steady clock, when it arrived; 0: none yet
-  double last_heard = 0;       // [s] of the last whole telegram
+  bool blinded = false;        // most beams of the newest scan measured nothing
+  std::optional<Dazzled> dazzled{};
+  double scan_period = 0;     // [s] measured, or what its rate allows
+  double nominal_period = 0;  // [s] what its rate allows
+  double last_scan = 0;       // [s] steady clock, when it arrived; 0: none yet
+  double last_heard = 0;      // [s] of the last whole telegram
 };
 
 class LaserMachine final : public Machine {
@@ -89,6 +107,8 @@ class LaserMachine final : public Machine {
   /// More telegrams came damaged than whole, and the line has not been good again since.
   bool storm() const { return storm_; }
   Health health() const { return health_; }
+  /// Most beams of the newest scan, within 45 degrees of its middle, measured nothing.
+  bool blinded() const { return blinded_; }
 
  private:
   enum class Step : std::uint8_t {
@@ -120,11 +140,18 @@ class LaserMachine final : public Machine {
   double limit_for(Step step) const;
   int tries_for(Step step) const;
   void take_telegram(double now, ByteView frame);
+  void take_stray(std::uint8_t byte);
+  bool waits_on(double now);
+  bool asks_again(double now) const;
+  bool takes_all_for_damaged() const;
+  std::string damaged_words() const;
   bool answers(const Telegram& telegram) const;
   void answered(double now, const Telegram& telegram);
   void unanswered(double now);
   void identified(double now);
   void rate_answered(double now, const Telegram& telegram);
+  void choose_variant(double now);
+  void restore_rate(double now);
   void variant_answered(double now, const Telegram& telegram);
   void configuration_read(double now, const Telegram& telegram);
   void configuration_written(double now, const Telegram& telegram);
@@ -147,7 +174,13 @@ class LaserMachine final : public Machine {
 
   Step step_ = Step::NoLine;
   int tries_left_ = 0;
-  double deadline_ = 0;              // [s] of the present step
+  double deadline_ = 0;              // [s] of the present request
+  double step_since_ = 0;            // [s]
+  double requested_at_ = 0;          // [s]
+  bool acknowledged_ = false;        // the request, and nothing else has come since
+  int naks_ = 0;                     // in this step,
+  int strays_ = 0;                   // and what was neither that nor an acknowledgement
+  unsigned nak_baud_ = 0;            // [bit/s] at which a device took all for damaged; 0: none did
   unsigned port_baud_ = 0;           // [bit/s] as last ordered
   bool fixed_rate_ = false;          // the line's rate is none of ours: a network box
   std::array<unsigned, 4> rates_{};  // in the order they are tried
@@ -160,7 +193,9 @@ class LaserMachine final : public Machine {
   std::string type_{};
   std::string software_{};
   std::uint8_t address_ = 0;
-  unsigned baud_ = 0;  // [bit/s] that the device is known to have; 0 when it is not
+  unsigned baud_ = 0;        // [bit/s] that the device is known to have; 0 when it is not
+  unsigned told_baud_ = 0;   // [bit/s] that it was told to have; 0: nothing
+  unsigned found_baud_ = 0;  // [bit/s] that it had by itself, and is left with
   std::optional<Variant> variant_{};
   Configuration configuration_{};
   Configuration written_block_{};
@@ -180,6 +215,8 @@ class LaserMachine final : public Machine {
   double last_heard_ = 0;    // [s]
   double damaged_ = 0;
   bool storm_ = false;
+  bool blinded_ = false;
+  std::optional<Dazzled> dazzled_{};
   std::uint64_t bad_before_ = 0;
   std::uint64_t scans_ = 0;
   std::uint64_t unusable_ = 0;

@@ -255,7 +255,8 @@ std::string refusal_text(const Telegram& telegram) {
     case 0:
       return "";
     case 1:
-      return "The scanner refuses the mode: the password is wrong.";
+      return "The scanner refuses the mode: the password is wrong (`password` in the robot's file, "
+             "--password on the command line).";
     case 2:
       return "The scanner refuses the mode: it has a fault.";
     default:

@@ -1,6 +1,8 @@
 // drivers/lms200_scan.cpp: words of an LMS2xx as beams.
 #include "drivers/lms200_scan.hpp"
 
+#include <cmath>
+
 #include "algo/units.hpp"
 
 namespace drivers::lms200 {
@@ -66,7 +68,28 @@ double metres_per_unit(bool in_millimetres) {
   return in_millimetres ? 0.001 : 0.01;
 }
 
+bool interlaced(const Variant& variant) {
+  return variant == Variant{180, 25};
+}
+
 }  // namespace
+
+std::size_t scan_bytes(const Variant& variant) {
+  constexpr std::size_t kAround = 4;  // code, count word, status
+  return 2 * variant.beams() + kAround + kFrameBytes;
+}
+
+bool carries(const Variant& variant, unsigned baud) {
+  const Variant part{180, 100};
+  return !interlaced(variant) || transfer_time(scan_bytes(part), baud) <= kTurnPeriod;
+}
+
+double scan_period(const Variant& variant, unsigned baud) {
+  const double sweep = variant.turns() * kTurnPeriod;
+  const double turns = transfer_time(scan_bytes(variant), baud) / sweep;
+  if (turns <= 1 || interlaced(variant)) return sweep;
+  return (std::ceil(turns) + 1) * sweep;
+}
 
 std::optional<MeasuredValues> measured_values(const Telegram& telegram) {
   constexpr std::size_t kAround = 2;  // code and status

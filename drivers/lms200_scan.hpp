@@ -18,6 +18,15 @@ namespace drivers::lms200 {
 
 constexpr double kTurnPeriod = 13.32e-3;  // [s] of the mirror
 
+/// Bytes of the telegram that brings a whole scan of `variant`.
+std::size_t scan_bytes(const Variant& variant);
+/// Whether a line of `baud` [bit/s] carries whole scans of `variant`. 180 degrees in steps of 0.25
+/// come as four partial scans, one each mirror turn, which a slow line cannot keep up with.
+bool carries(const Variant& variant, unsigned baud);
+/// [s] between two scans that are streamed at `baud`. A slow line loses those in between, and one
+/// more while the device gets ready: the manual's figures.
+double scan_period(const Variant& variant, unsigned baud);
+
 /// Counters of the device, modulo 256, sent when the configuration asks for them.
 struct Indices {
   std::uint8_t turn = 0;  // of the mirror

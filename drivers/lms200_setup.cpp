@@ -1,4 +1,5 @@
 // drivers/lms200_setup.cpp: what an LMS2xx is asked, and how it is brought to the settings wanted.
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -10,7 +11,8 @@ namespace {
 
 constexpr double kAnswer = 0.06;              // [s] an ordinary one, without its transfer
 constexpr double kProbeWait = 0.2;            // [s] may have to let a cut scan run out first
-constexpr double kModeSwitch = 3.0;           // [s] at most
+constexpr double kModeSwitch = 3.5;           // [s] at most 3, and its answer's way
+constexpr double kDeaf = 3.0;                 // [s] after a switch or power-on, at most
 constexpr double kConfigurationWrite = 15.0;  // [s] at most
 constexpr double kRateSettle = 0.3;           // [s] after a change of the rate
 constexpr int kTries = 3;
@@ -34,16 +36,33 @@ std::string variant_text(const Variant& variant) {
 
 }  // namespace
 
+bool good_password(std::string_view password) {
+  const auto plain = [](char c) { return c >= ' ' && c <= '~'; };
+  return password.size() == kFactoryPassword.size() && std::ranges::all_of(password, plain);
+}
+
+std::string refusal(const LaserSetup& setup) {
+  if (carries(setup.variant, setup.baud)) return "";
+  return format(
+      "180 degrees in steps of 0.25 come interlaced, which a line of %u bit/s does not "
+      "carry: take steps of 0.5, 100 degrees, or 500000 bit/s",
+      setup.baud);
+}
+
 // ---- asking ----------------------------------------------------------------------------------
 
 void LaserMachine::begin(Step step, double now) {
   step_ = step;
+  step_since_ = now;
+  naks_ = strays_ = 0;
   tries_left_ = tries_for(step);
   request(now);
 }
 
 void LaserMachine::request(double now) {
   --tries_left_;
+  requested_at_ = now;
+  acknowledged_ = false;
   orders_.send_slowly(command_for(step_).view());
   deadline_ = now + limit_for(step_);
 }
@@ -71,7 +90,7 @@ Command LaserMachine::command_for(Step step) const {
     case Step::Start:
       return mode_command(interlaced() ? Mode::PartialScans : Mode::Continuous);
     case Step::Restoring:
-      return rate_command(Rate::Baud9600);
+      return rate_command(rate_of(found_baud_).value_or(Rate::Baud9600));
     default:
       return {};
   }
@@ -111,27 +130,84 @@ int LaserMachine::tries_for(Step step) const {
   }
 }
 
+/// A byte outside of telegrams. At a wrong rate any may come, one after the other.
+void LaserMachine::take_stray(std::uint8_t byte) {
+  if (byte == kNak) ++naks_;
+  if (byte != kNak && byte != kAck) ++strays_;
+  acknowledged_ = byte == kAck;
+}
+
+/// A mode switch that was acknowledged takes its time; whether anybody is there shows sooner.
+bool LaserMachine::waits_on(double now) {
+  const bool switches = step_ == Step::Probe || step_ == Step::Stopping || step_ == Step::Restoring;
+  if (!switches || !acknowledged_ || now >= requested_at_ + kModeSwitch) return false;
+  deadline_ = std::min(now + limit_for(step_), requested_at_ + kModeSwitch);
+  return true;
+}
+
+/// A device that is known to be there may be deaf for a while, and then hears what it is asked.
+bool LaserMachine::asks_again(double now) const {
+  switch (step_) {
+    case Step::Probe:
+    case Step::Restoring:
+    case Step::WriteConfiguration:
+      return false;
+    case Step::Stopping:
+      return now - last_heard_ < kDeaf;
+    default:
+      return now - step_since_ < kDeaf;
+  }
+}
+
+bool LaserMachine::takes_all_for_damaged() const {
+  constexpr int kSurely = 2;
+  return naks_ >= kSurely && strays_ == 0;
+}
+
+std::string LaserMachine::damaged_words() const {
+  return format(
+      "A device answers at %u bit/s, but takes all it is told for damaged (NAK). Look at "
+      "the cable, its shield and its ground; another device would answer otherwise.",
+      nak_baud_ > 0 ? nak_baud_ : port_baud_);
+}
+
 // ---- setting it up ---------------------------------------------------------------------------
 
 void LaserMachine::identified(double now) {
   if (!setup_.as_it_is && !fixed_rate_ && baud_ != wanted_) {
+    told_baud_ = wanted_;
     begin(Step::Rate, now);
-  } else if (!setup_.as_it_is && variant_ != set_variant()) {
-    begin(Step::Variant, now);
+  } else if (!setup_.as_it_is) {
+    choose_variant(now);
   } else {
     begin(Step::Installation, now);
   }
 }
 
+/// Once the rate is settled, which decides on what the line carries.
+void LaserMachine::choose_variant(double now) {
+  if (!carries(setup_.variant, baud_)) {
+    setup_.variant = {180, 50};
+    remark(format("A line of %u bit/s does not carry quarters of a degree: half degrees come.",
+                  baud_));
+  }
+  begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
+}
+
 /// The answer comes at the old rate; then the device switches.
 void LaserMachine::rate_answered(double now, const Telegram& telegram) {
   if (const std::string why = refusal_text(telegram); !why.empty()) {
-    remark(format("It stays at %u bit/s: ", baud_) + why);
-    begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
+    if (wanted_ > kFallbackRate) {
+      fall_back(why);
+      identified(now);
+    } else {
+      remark(format("It stays at %u bit/s: ", baud_) + why);
+      choose_variant(now);
+    }
     return;
   }
   orders_.set_baud(wanted_);
-  port_baud_ = wanted_;
+  port_baud_ = baud_ = wanted_;
   step_ = Step::RateSettles;
   deadline_ = now + kRateSettle;
 }
@@ -169,7 +245,7 @@ void LaserMachine::adopt(const Configuration& configuration) {
 void LaserMachine::configuration_read(double now, const Telegram& telegram) {
   const auto answer = configuration_answer(telegram);
   if (!answer) {
-    remark("Its configuration cannot be read: " + refusal_text(telegram));
+    remark("Its configuration cannot be read and stays as it is: " + refusal_text(telegram));
     begin(Step::Start, now);
     return;
   }

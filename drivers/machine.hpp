@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,8 @@ struct LineOrder {
   std::optional<unsigned> baud{};  // [bit/s] to be set instead, once all before has been sent
   double pause = 0;                // [s] of silence the device needs afterwards
   bool gaps = false;               // the device wants a moment between two bytes
+  /// [s] when it is too late to send it: a motion that was ordered long ago is none.
+  double expires = std::numeric_limits<double>::infinity();
 };
 
 /// Times are seconds of a steady clock. Not for two threads at once; LineThread holds a lock.
@@ -37,6 +40,8 @@ class Machine {
   /// A change of the rate that was ordered is done; as in opened().
   virtual void rate_set(double now, unsigned baud) = 0;
   virtual void receive(double now, ByteView bytes) = 0;
+  /// Bytes were thrown away, because nobody knows how old they were: what had begun is void.
+  virtual void lost_bytes() {}
   /// Does what is due by `now`; call it after everything else and whenever wake_time() comes.
   virtual void advance(double now) = 0;
   /// [s] at the latest for the next advance().
@@ -58,6 +63,14 @@ class LineOrders {
     LineOrder order;
     order.bytes.append(bytes);
     order.pause = pause;
+    push(order);
+  }
+  /// Bytes that move something, not to be sent from `expires` [s] on.
+  void send_before(double expires, ByteView bytes, double pause = 0) {
+    LineOrder order;
+    order.bytes.append(bytes);
+    order.pause = pause;
+    order.expires = expires;
     push(order);
   }
   /// With a moment between two bytes where the line is so fast that it gives none itself.

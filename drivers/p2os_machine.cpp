@@ -24,6 +24,8 @@ constexpr double kCommandPause = 0.005;  // [s] between two packets
 constexpr double kRepeat = 0.9 * kCommandPeriod;  // [s] a tick early rather than one too late
 constexpr double kFastest = 0.04;                 // [s] between two commands that differ
 constexpr int kMost = 0x7FFF;
+constexpr int kWatchdogTries = 5;       // older bases do not answer
+constexpr double kWatchdogPause = 1.0;  // [s] between two
 
 int millimetres(double metres) {
   return rounded(metres * 1000.0, kMost);
@@ -56,6 +58,7 @@ void PioneerMachine::closed(double /*now*/, const std::string& why) {
   if (step_ != Step::Left) step_ = Step::NoLine;
   state_.running = false;
   state_.motors_on = false;
+  off_.cancel();
   trouble_ = why;
   deadline_ = std::numeric_limits<double>::infinity();
 }
@@ -70,8 +73,14 @@ void PioneerMachine::receive(double now, ByteView bytes) {
 }
 
 void PioneerMachine::advance(double now) {
+  if (off_.due(now, state_)) cut(now);
+  if (off_.pending()) halt(now);  // though nobody ticks any more
+  if (step_ == Step::Leaving && !off_.pending()) close();
   if (now < deadline_) return;
   switch (step_) {
+    case Step::Leaving:
+      close();  // nobody is there any more
+      return;
     case Step::NoLine:
     case Step::Left:
       deadline_ = std::numeric_limits<double>::infinity();
@@ -135,8 +144,9 @@ void PioneerMachine::request(double now) {
 }
 
 void PioneerMachine::take_packet(double now, ByteView body) {
-  if (step_ == Step::Running) {
+  if (reporting()) {
     if (is_state(body)) take_state(now, body);
+    if (const auto watchdog = configured_watchdog(body)) state_.watchdog = watchdog;
     return;
   }
   if (step_ != Step::Greeting) return;
@@ -173,9 +183,21 @@ void PioneerMachine::open(double now) {
   step_ = Step::Running;
   deadline_ = now + kSilent;
   trouble_ = "The base is being set up.";
+  state_.watchdog.reset();
+  watchdog_asked_ = 0;
+  ask_watchdog(now);
   odometer_ = Odometer(setup_.units);
   sent_ = {};
   sent_at_ = 0;
+  braking_ = false;
+  off_.cancel();
+}
+
+/// A packet that asks quiets the watchdog: so only while the motors are off.
+void PioneerMachine::ask_watchdog(double now) {
+  send(command(Code::Configuration));
+  ++watchdog_asked_;
+  watchdog_asked_at_ = now;
 }
 
 // ---- what it says ----------------------------------------------------------------------------
@@ -199,6 +221,10 @@ void PioneerMachine::take_state(double now, ByteView body) {
     trouble_.clear();
   }
   deadline_ = now + kSilent;
+  if (!state_.watchdog && !state_.motors_on && watchdog_asked_ < kWatchdogTries &&
+      now - watchdog_asked_at_ > kWatchdogPause) {
+    ask_watchdog(now);
+  }
   state_.stamp = now - transfer_time(body.size());
   const algo::Vec2 way = at.position() - found_at_.position();
   const algo::Vec2 ahead = algo::direction(found_at_.heading);
@@ -233,40 +259,82 @@ void PioneerMachine::send(const Packet& packet) {
 
 void PioneerMachine::send_twist(double now, const algo::Twist2& twist) {
   const VelocityPackets packets = velocity(twist, {setup_.limits.speed, setup_.limits.turn});
-  send(packets.velocity);
-  send(packets.turn_rate);
+  // Zero holds whenever it is sent.
+  const bool moves = twist != algo::Twist2{};
+  const double expires = moves ? now + kMotionExpires : std::numeric_limits<double>::infinity();
+  orders_.send_before(expires, packets.velocity.view(), kCommandPause);
+  orders_.send_before(expires, packets.turn_rate.view(), kCommandPause);
   sent_ = twist;
   sent_at_ = now;
 }
 
 void PioneerMachine::enable(double now, bool on) {
   if (step_ != Step::Running) return;
-  if (!on) halt(now);
-  send(command(Code::Enable, on ? 1 : 0));
+  if (on) {
+    off_.cancel();
+    send(command(Code::Enable, 1));
+    return;
+  }
+  halt(now);
+  if (state_.motors_on) {
+    off_.begin(now, braking_time(setup_.limits));
+  } else {
+    cut(now);
+  }
+}
+
+void PioneerMachine::cut(double now) {
+  if (!reporting()) return;
+  halt(now);
+  off_.cancel();
+  send(command(Code::Enable, 0));
 }
 
 /// A slow line cannot take two packets each tick: what changes goes out 25 times a second, what
 /// does not 10 times, a stop at once.
 void PioneerMachine::drive(double now, const algo::Twist2& twist) {
-  if (step_ != Step::Running) return;
+  if (step_ != Step::Running || off_.pending()) return;
   const algo::Twist2 wanted = limited(twist, setup_.limits);
+  if (braking_ && wanted == algo::Twist2{}) {
+    halt(now);  // no gentler than it has begun
+    return;
+  }
+  braking_ = false;
   const bool stopping = wanted == algo::Twist2{} && sent_ != algo::Twist2{};
   const double age = now - sent_at_;
   const bool due = wanted == sent_ ? age >= kRepeat : age >= kFastest;
   if (stopping || due) send_twist(now, wanted);
 }
 
+/// No packet is acknowledged, so the emergency stop is repeated while the wheels may still turn.
+/// A zero speed would do it along the driving ramp.
 void PioneerMachine::halt(double now) {
-  if (step_ == Step::Running) send_twist(now, {});
+  if (!reporting() || (braking_ && now - sent_at_ < kRepeat)) return;
+  if (!braking_) braking_since_ = now;
+  braking_ = true;
+  if (now - braking_since_ > braking_time(setup_.limits)) {
+    send_twist(now, {});
+    return;
+  }
+  send(command(Code::EmergencyStop));
+  sent_ = {};
+  sent_at_ = now;
 }
 
 void PioneerMachine::leave(double now) {
   orders_.clear();
-  if (step_ == Step::Running) {
-    send_twist(now, {});
-    send(command(Code::Enable, 0));
-    send(command(Code::Close));
+  if (step_ != Step::Running) {
+    step_ = Step::Left;
+    return;
   }
+  braking_ = false;  // what was ordered may not have been sent
+  enable(now, false);
+  step_ = Step::Leaving;
+  if (!off_.pending()) close();
+}
+
+void PioneerMachine::close() {
+  send(command(Code::Close));
   step_ = Step::Left;
 }
 
@@ -295,6 +363,7 @@ DeviceReport PioneerMachine::report(double now) const {
   }
   if (state_.running) {
     out.facts.emplace_back("battery", format("%.1f V", state_.volts.value_or(0)));
+    if (state_.watchdog) out.facts.emplace_back("watchdog", format("%.1f s", *state_.watchdog));
     out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
   }
   out.facts.emplace_back(

@@ -1,6 +1,7 @@
 // drivers/p2os_machine.hpp: how a Pioneer base is found, opened, driven and closed again.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -28,21 +29,28 @@ class PioneerMachine final : public BaseMachine {
   void closed(double now, const std::string& why) override;
   void rate_set(double now, unsigned baud) override;
   void receive(double now, ByteView bytes) override;
+  void lost_bytes() override { reader_.clear(); }
   void advance(double now) override;
-  double wake_time() const override { return deadline_; }
+  double wake_time() const override { return std::min(deadline_, off_.until()); }
   std::optional<LineOrder> next_order() override { return orders_.next(); }
   void leave(double now) override;
   bool left() const override { return step_ == Step::Left; }
 
   void enable(double now, bool on) override;
+  void cut(double now) override;
   void drive(double now, const algo::Twist2& twist) override;
   void halt(double now) override;
   const BaseState& state() const override { return state_; }
   double watchdog() const override { return setup_.watchdog; }
+  WheelDynamics dynamics() const override {
+    return {.ramp_of_wheels = false,
+            .ramps = {setup_.limits.acceleration, setup_.limits.turn_acceleration},
+            .checked = true};
+  }
   DeviceReport report(double now) const override;
 
  private:
-  enum class Step : std::uint8_t { NoLine, Greeting, ClosingOld, Waiting, Running, Left };
+  enum class Step : std::uint8_t { NoLine, Greeting, ClosingOld, Waiting, Running, Leaving, Left };
 
   void search(double now);
   void greet(double now);
@@ -51,8 +59,11 @@ class PioneerMachine final : public BaseMachine {
   void take_packet(double now, ByteView body);
   double transfer_time(std::size_t body) const;
   void take_state(double now, ByteView body);
+  bool reporting() const { return step_ == Step::Running || step_ == Step::Leaving; }
+  void close();
   void send(const Packet& packet);
   void send_twist(double now, const algo::Twist2& twist);
+  void ask_watchdog(double now);
 
   PioneerSetup setup_;
   LineOrders orders_{};
@@ -74,8 +85,13 @@ class PioneerMachine final : public BaseMachine {
   algo::Pose2 found_at_{};  // its dead reckoning when it was found,
   algo::Pose2 lost_at_{};   // and ours then: where it was lost, as far as anybody knows
   BaseState state_{};
-  algo::Twist2 sent_{};      // the command in force
-  double sent_at_ = 0;       // [s]
+  int watchdog_asked_ = 0;        // times
+  double watchdog_asked_at_ = 0;  // [s]
+  algo::Twist2 sent_{};           // the command in force
+  double sent_at_ = 0;            // [s]
+  bool braking_ = false;          // until it is told to move again
+  double braking_since_ = 0;      // [s]
+  SwitchingOff off_{};
   std::uint64_t jumps_ = 0;  // of the odometry, left out
 };
 

@@ -24,6 +24,7 @@ constexpr std::uint8_t kStopped = 0x32;
 constexpr std::uint8_t kMoving = 0x33;
 constexpr std::uint8_t kEncoderPacket = 0x90;
 constexpr std::uint8_t kGyroPacket = 0x98;
+constexpr std::uint8_t kConfigurationPacket = 0x20;
 
 Packet packed(ByteView body) {
   Packet packet;
@@ -195,6 +196,22 @@ bool decode_state(ByteView body, State& state, const Units& units) {
 std::optional<EncoderCounts> encoder_counts(ByteView body) {
   if (body.size() < 9 || body[0] != kEncoderPacket) return std::nullopt;
   return EncoderCounts{.left = signed_long_at(body, 1), .right = signed_long_at(body, 5)};
+}
+
+/// Kind, type, subtype, serial number, four motors, five limits, name; then cycle and rates
+/// (bytes), gripper and front sonar (words), rear sonar (byte), low battery, counts a turn,
+/// watchdog [ms].
+std::optional<double> configured_watchdog(ByteView body) {
+  if (body.empty() || body[0] != kConfigurationPacket) return std::nullopt;
+  constexpr std::size_t kLimits = 1 + 5 * 2;
+  constexpr std::size_t kUpToWatchdog = 3 + 2 * 2 + 1 + 2 * 2;
+  ByteView rest = body.subspan(1);
+  for (int text = 0; text < 3; ++text) take_text(rest);
+  if (rest.size() < kLimits) return std::nullopt;
+  rest = rest.subspan(kLimits);
+  take_text(rest);
+  if (rest.size() < kUpToWatchdog + 2) return std::nullopt;
+  return word_at(rest, kUpToWatchdog) / 1000.0;
 }
 
 std::optional<double> gyro_counts(ByteView body) {

@@ -187,6 +187,10 @@ struct EncoderCounts {
 };
 std::optional<EncoderCounts> encoder_counts(ByteView body);
 
+/// [s] after which the base stops by itself, from the packet that Code::Configuration brings; 0:
+/// never. Nothing when `body` is none or ends too early.
+std::optional<double> configured_watchdog(ByteView body);
+
 /// Mean of a gyro packet's readings above rest, ccw positive, in the sensor's own unit; its scale
 /// depends on the base.
 std::optional<double> gyro_counts(ByteView body);

@@ -5,145 +5,62 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <limits>
+#include <numbers>
 #include <set>
 #include <sstream>
 
 #include <toml++/toml.h>
 
+#include "algo/controller.hpp"
+#include "algo/filter.hpp"
 #include "algo/units.hpp"
-#include "drivers/text.hpp"
+#include "drivers/lms200_scan.hpp"
+#include "drivers/robot_section.hpp"
+#include "drivers/scanner.hpp"
 
 namespace drivers {
 namespace {
 
 using algo::units::kRadiansPerDegree;
 
-constexpr double kLongestCoast = 0.2;  // [m] a robot may go on when this program dies
+constexpr double kLongestWay = 2.0;     // [m] to a standstill, whatever the cause: then refused
+constexpr double kNotedBraking = 0.5;   // [m] from here on people are told
+constexpr double kNotedCoast = 0.2;     // [m] likewise, of a base that nobody tells anything
+constexpr double kNotedWatchdog = 1.0;  // [s]
 
-struct Limits {
-  double min = 0;
-  double max = 0;
-};
+/// Warns of `way` [m] where `noted`, and refuses the file where it is too long. `sentence` ends
+/// with what to do about it.
+void judge_way(const Section& in,
+               std::string_view key,
+               double way,
+               bool noted,
+               const std::string& sentence,
+               RobotFile& robot) {
+  if (way > kLongestWay) {
+    in.fail(key, "is refused: " + sentence + format(" At most %g m are allowed.", kLongestWay));
+  }
+  if (noted) {
+    robot.warnings.push_back(robot.path + ":" + std::to_string(in.line_of(key)) + ": " + sentence);
+  }
+}
 
-/// One table of the file. Every key has to be asked for; done() refuses those that were not.
-class Section {
- public:
-  Section(const toml::table& table, std::string name, const std::string& file)
-      : table_(table), name_(std::move(name)), file_(file) {}
+/// Whether `at` [m] lies on the hull or within it.
+bool on_hull(const algo::Pose2& at, const algo::RobotSpec& spec) {
+  constexpr double kRounding = 1e-9;  // [m]
+  if (spec.half_length == 0) return std::hypot(at.x, at.y) <= spec.radius + kRounding;
+  return std::abs(at.x) <= spec.half_length + kRounding &&
+         std::abs(at.y) <= spec.half_width + kRounding;
+}
 
-  [[noreturn]] void fail_at(std::size_t line, const std::string& sentence) const {
-    throw RobotFileError(file_ + ":" + std::to_string(line) + ": " + sentence);
+/// "tcp:HOST:PORT", or any path.
+std::string read_port(Section& in) {
+  std::string port = in.text("port");
+  const std::size_t colon = port.rfind(':');
+  if (port.starts_with("tcp:") && (colon <= 4 || colon + 1 == port.size())) {
+    in.fail("port", "is '" + port + "', which is not of the form tcp:HOST:PORT");
   }
-  [[noreturn]] void fail(std::string_view key, const std::string& sentence) const {
-    const toml::node* node = table_.get(key);
-    const toml::source_region& at = node != nullptr ? node->source() : table_.source();
-    const std::string where = name_.empty() ? std::string(key) : name_ + " " + std::string(key);
-    fail_at(at.begin.line, where + " " + sentence);
-  }
-  bool has(std::string_view key) const { return table_.contains(key); }
-
-  double number(std::string_view key, Limits limits) {
-    const toml::node* node = find(key);
-    if (node == nullptr) fail(key, "is missing");
-    const std::optional<double> value = node->value<double>();
-    if (!value || !node->is_number()) fail(key, "must be a number");
-    if (!(*value >= limits.min && *value <= limits.max)) {
-      fail(key, format("must be %g to %g, not %g", limits.min, limits.max, *value));
-    }
-    return *value;
-  }
-  double number_or(std::string_view key, double fallback, Limits limits) {
-    return has(key) ? number(key, limits) : fallback;
-  }
-  int whole_or(std::string_view key, int fallback, Limits limits) {
-    if (!has(key)) return fallback;
-    const double value = number(key, limits);
-    if (value != std::floor(value)) fail(key, "must be a whole number");
-    return static_cast<int>(value);
-  }
-  bool flag_or(std::string_view key, bool fallback) {
-    const toml::node* node = find(key);
-    if (node == nullptr) return fallback;
-    if (!node->is_boolean()) fail(key, "must be true or false");
-    return node->value<bool>().value_or(fallback);
-  }
-  std::string text(std::string_view key) {
-    const toml::node* node = find(key);
-    if (node == nullptr) fail(key, "is missing");
-    const std::optional<std::string> value = node->value<std::string>();
-    if (!value || !node->is_string()) fail(key, "must be a text in quotes");
-    if (value->empty()) fail(key, "must not be empty");
-    return *value;
-  }
-  std::string text_or(std::string_view key, std::string fallback) {
-    return has(key) ? text(key) : std::move(fallback);
-  }
-  /// One of the numbers in `allowed`.
-  template <std::size_t N>
-  double one_of(std::string_view key, double fallback, const std::array<double, N>& allowed) {
-    const double value = number_or(key, fallback, {-1e9, 1e9});
-    if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return value;
-    std::string known;
-    for (const double a : allowed) known += (known.empty() ? "" : ", ") + format("%g", a);
-    fail(key, format("is %g; it can be ", value) + known);
-  }
-  Section table(std::string_view key) {
-    const toml::node* node = find(key);
-    if (node == nullptr)
-      fail_at(std::max(1U, table_.source().begin.line), "there is no [" + std::string(key) + "]");
-    if (!node->is_table()) fail(key, "must be a table: [" + std::string(key) + "]");
-    return {*node->as_table(), "[" + std::string(key) + "]", file_};
-  }
-  std::vector<Section> tables(std::string_view key) {
-    std::vector<Section> out;
-    const toml::node* node = find(key);
-    if (node == nullptr) return out;
-    const std::string name = "[[" + std::string(key) + "]]";
-    const toml::array* list = node->as_array();
-    if (list == nullptr || list->empty()) fail(key, "must be tables: " + name);
-    for (const toml::node& item : *list) {
-      if (!item.is_table()) fail(key, "must be tables: " + name);
-      out.emplace_back(*item.as_table(), name, file_);
-    }
-    return out;
-  }
-  std::vector<int> whole_list(std::string_view key, Limits limits) {
-    std::vector<int> out;
-    const toml::node* node = find(key);
-    if (node == nullptr) return out;
-    const toml::array* list = node->as_array();
-    if (list == nullptr) fail(key, "must be a list of numbers");
-    for (const toml::node& item : *list) {
-      const auto value = item.value<std::int64_t>();
-      if (!value || !item.is_integer() || static_cast<double>(*value) < limits.min ||
-          static_cast<double>(*value) > limits.max) {
-        fail(key, format("must be whole numbers from %g to %g", limits.min, limits.max));
-      }
-      out.push_back(static_cast<int>(*value));
-    }
-    return out;
-  }
-  void done() const {
-    for (const auto& [key, node] : table_) {
-      const std::string name(key.str());
-      if (asked_.contains(name)) continue;
-      fail_at(node.source().begin.line,
-              (name_.empty() ? "" : name_ + " ") + "'" + name + "' is no key known here");
-    }
-  }
-
- private:
-  const toml::node* find(std::string_view key) {
-    asked_.emplace(key);
-    return table_.get(key);
-  }
-
-  const toml::table& table_;
-  std::string name_;
-  const std::string& file_;
-  std::set<std::string> asked_{};
-};
+  return port;
+}
 
 /// [m], and degrees at this edge alone.
 algo::Pose2 read_mount(Section& in) {
@@ -154,13 +71,39 @@ algo::Pose2 read_mount(Section& in) {
   return mount;
 }
 
-LaserEntry read_laser(Section& in, std::size_t number) {
+/// How far the robot goes before it notices that a slow scanner sees nothing any more.
+void judge_period(const Section& in, const lms200::LaserSetup& setup, RobotFile& robot) {
+  const double period = lms200::scan_period(setup.variant, setup.baud);
+  const double time = blind_time(period);
+  const double way = robot.limits.speed * time;
+  judge_way(in,
+            "rate",
+            way,
+            way > kNotedBraking,
+            format("the scanner brings a scan every %.2f s at this rate, so that the robot goes on "
+                   "blind for up to %.2f m (%.2f m/s for %.2f s): take a faster line or a lower "
+                   "speed.",
+                   period,
+                   way,
+                   robot.limits.speed,
+                   time),
+            robot);
+}
+
+LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   LaserEntry laser;
   const std::string type = in.text_or("type", "lms200");
   if (type != "lms200") in.fail("type", "is '" + type + "'; it can be lms200");
-  laser.port = in.text("port");
+  laser.port = read_port(in);
   laser.name = in.text_or("name", "laser " + std::to_string(number));
   laser.mount_R = read_mount(in);
+  if (!on_hull(laser.mount_R, robot.spec)) {
+    in.fail(in.has("x") ? "x" : "y",
+            format("puts the scanner at (%g, %g) m, outside of the hull: what is between could "
+                   "not be seen",
+                   laser.mount_R.x,
+                   laser.mount_R.y));
+  }
   lms200::LaserSetup& setup = laser.setup;
   setup.baud =
       static_cast<unsigned>(in.one_of<4>("rate", setup.baud, {9600, 19200, 38400, 500'000}));
@@ -171,12 +114,17 @@ LaserEntry read_laser(Section& in, std::size_t number) {
   setup.range = static_cast<unsigned>(in.one_of<4>("range", 8, {8, 16, 32, 80}));
   setup.upside_down = in.flag_or("upside_down", false);
   setup.password = in.text_or("password", setup.password);
-  if (setup.password.size() != 8) in.fail("password", "must have 8 characters");
+  if (!lms200::good_password(setup.password)) {
+    in.fail("password", "must have 8 characters of plain text");
+  }
+  if (const std::string why = lms200::refusal(setup); !why.empty())
+    in.fail("step_deg", "is refused: " + why);
   in.done();
+  judge_period(in, setup, robot);
   return laser;
 }
 
-p2os::PioneerSetup read_pioneer(Section& in) {
+p2os::PioneerSetup read_pioneer(Section& in, const BaseLimits& limits) {
   p2os::PioneerSetup setup;
   setup.baud =
       static_cast<unsigned>(in.one_of<5>("rate", setup.baud, {9600, 19200, 38400, 57600, 115'200}));
@@ -185,6 +133,14 @@ p2os::PioneerSetup read_pioneer(Section& in) {
   setup.units.metres_per_second = in.number_or("speed_unit", 1e-3, {1e-5, 1e-2});
   setup.units.position_bits = static_cast<unsigned>(in.one_of<2>("position_bits", 15, {12, 15}));
   setup.sonar = in.flag_or("sonar", true);
+  constexpr double kSlowest = kRadiansPerDegree;  // [rad/s] it is told whole degrees a second
+  if (limits.turn < kSlowest) {
+    in.fail("type",
+            format("is pioneer, which turns by whole degrees a second: [limits] turn must be at "
+                   "least %.4f, not %g",
+                   kSlowest,
+                   limits.turn));
+  }
   return setup;
 }
 
@@ -198,21 +154,85 @@ roboteq::RoboteqSetup read_roboteq(Section& in) {
   setup.wheel.encoder_lines = in.whole_or("encoder_lines", 0, {1, 5000});
   if (!in.has("encoder_lines")) in.fail("encoder_lines", "is missing");
   setup.wheel.full_speed_rpm = in.whole_or("full_speed_rpm", 1000, {10, 65'000});
-  setup.max_current = in.number_or("max_current", 0, {0, 1000});
+  setup.max_current = in.number_or("max_current", 0, {0, 500});
   setup.reversed = {in.flag_or("reverse_left", false), in.flag_or("reverse_right", false)};
   setup.swapped = in.flag_or("swap_channels", false);
   setup.bumper_inputs = in.whole_list("bumper_inputs", {1, 6});
   return setup;
 }
 
+/// What the controller and its encoders can do against what they are asked for.
+void check_roboteq(const Section& in, const roboteq::RoboteqSetup& setup) {
+  constexpr double kCommands = 1000;       // steps up to the full speed
+  constexpr double kLeastSteps = 5;        // up to the speed limit
+  constexpr double kCoarsestCount = 0.01;  // [m]
+  constexpr double kFastestRamp = 50'000;  // [rpm/s] it can be told
+  const roboteq::Wheel& wheel = setup.wheel;
+  const BaseLimits& limits = setup.limits;
+  const double fastest = wheel.speed(wheel.full_speed_rpm);
+  const double needed = limits.speed + limits.turn * setup.half_track;
+  if (fastest < needed) {
+    in.fail("full_speed_rpm",
+            format("is %.3f m/s at the wheel, and [limits] ask for %.3f", fastest, needed));
+  }
+  if (limits.speed < kLeastSteps * fastest / kCommands) {
+    in.fail("full_speed_rpm",
+            format("makes steps of %.3f m/s at the wheel, too coarse for a speed of %.3f m/s",
+                   fastest / kCommands,
+                   limits.speed));
+  }
+  if (wheel.metres(1) > kCoarsestCount) {
+    in.fail("encoder_lines",
+            format("makes one count %.3f m of the wheel's way; odometry needs %.2f m or less",
+                   wheel.metres(1),
+                   kCoarsestCount));
+  }
+  const double ramp = wheel.rpm(limits.acceleration + limits.turn_acceleration * setup.half_track);
+  if (ramp > kFastestRamp) {
+    in.fail("gear",
+            format("makes a ramp of %.0f rpm/s of [limits]; the controller takes %.0f at most",
+                   ramp,
+                   kFastestRamp));
+  }
+}
+
+/// How far the robot goes after this program has died.
+void judge_watchdog(const Section& in, RobotFile& robot) {
+  const double watchdog = robot.base.watchdog;
+  const double coast = robot.limits.speed * watchdog;
+  judge_way(in,
+            "watchdog",
+            coast,
+            coast > kNotedCoast || watchdog > kNotedWatchdog,
+            format("should this program die, the robot goes on for up to %.2f m before its own "
+                   "watchdog stops it (%.2f m/s for %.2f s): take a lower speed or a shorter "
+                   "watchdog.",
+                   coast,
+                   robot.limits.speed,
+                   watchdog),
+            robot);
+}
+
+void read_track(Section& in, algo::RobotSpec& spec) {
+  const double track = in.number("track", {0.05, 1.5});
+  const double width = 2 * (spec.half_length > 0 ? spec.half_width : spec.radius);
+  if (track > width) {
+    in.fail("track",
+            format("is %g m, and the hull is %g m wide: the wheels would stand outside of it",
+                   track,
+                   width));
+  }
+  spec.half_track = track / 2;
+}
+
 void read_base(Section& in, RobotFile& robot) {
   BaseEntry& base = robot.base;
   const std::string type = in.text("type");
-  base.port = in.text("port");
-  base.battery_low = in.number_or("battery_low", 0, {0, 100});
-  robot.spec.half_track = in.number("track", {0.05, 5}) / 2;
+  base.port = read_port(in);
+  base.battery_low = in.number_or("battery_low", 0, {0, 60});
+  read_track(in, robot.spec);
   if (type == "pioneer") {
-    p2os::PioneerSetup setup = read_pioneer(in);
+    p2os::PioneerSetup setup = read_pioneer(in, robot.limits);
     setup.half_track = robot.spec.half_track;
     setup.limits = robot.limits;
     base.watchdog = setup.watchdog;
@@ -223,27 +243,34 @@ void read_base(Section& in, RobotFile& robot) {
     setup.half_track = robot.spec.half_track;
     setup.limits = robot.limits;
     base.watchdog = setup.watchdog;
-    const double fastest = setup.wheel.speed(setup.wheel.full_speed_rpm);
-    const double needed = robot.limits.speed + robot.limits.turn * setup.half_track;
-    if (fastest < needed) {
-      in.fail("full_speed_rpm",
-              format("is %.3f m/s at the wheel, and [limits] ask for %.3f", fastest, needed));
-    }
+    check_roboteq(in, setup);
     base.setup = setup;
   } else {
     in.fail("type", "is '" + type + "'; it can be pioneer or roboteq");
   }
   in.done();
+  judge_watchdog(in, robot);
 }
 
 void read_limits(Section in, RobotFile& robot) {
   BaseLimits& limits = robot.limits;
-  limits.speed = in.number_or("speed", limits.speed, {0.001, 2});
+  limits.speed = in.number_or("speed", limits.speed, {0.01, 2});
   limits.turn = in.number_or("turn", limits.turn, {0.01, 5});
   limits.acceleration = in.number_or("acceleration", limits.acceleration, {0.01, 5});
   limits.turn_acceleration =
       in.number_or("turn_acceleration", limits.turn_acceleration, {0.01, 20});
   in.done();
+  const double braking = limits.speed * limits.speed / (2 * limits.acceleration);
+  judge_way(in,
+            "acceleration",
+            braking,
+            braking > kNotedBraking,
+            format("from %.2f m/s the robot needs %.2f m to brake (at %.2f m/s2): take a lower "
+                   "speed or a larger acceleration.",
+                   limits.speed,
+                   braking,
+                   limits.acceleration),
+            robot);
 }
 
 void read_hull(Section in, algo::RobotSpec& spec) {
@@ -257,17 +284,22 @@ void read_hull(Section in, algo::RobotSpec& spec) {
   in.done();
 }
 
-/// What needs the whole file.
-void check(const Section& top, RobotFile& robot) {
-  const double coast = robot.limits.speed * robot.base.watchdog;
-  if (coast > kLongestCoast) {
-    robot.warnings.push_back(format(
-        "Should this program die, the robot goes on for up to %.2f m before its own watchdog "
-        "stops it (%.2f m/s for %.2f s): take a lower speed or a shorter watchdog.",
-        coast,
-        robot.limits.speed,
-        robot.base.watchdog));
+/// Whether `table` has a row of this name.
+template <class Table>
+void check_known(const Section& in,
+                 std::string_view key,
+                 const std::string& name,
+                 const Table& table) {
+  std::string known;
+  for (const auto& row : table) {
+    if (row.name == name) return;
+    known.append(known.empty() ? "" : ", ").append(row.name);
   }
+  in.fail(key, "is '" + name + "'; it can be " + known);
+}
+
+/// What needs the whole file.
+void check(const Section& top, const RobotFile& robot) {
   if (robot.spec.period > robot.base.watchdog / 3) {
     top.fail(
         "period",
@@ -301,11 +333,13 @@ RobotFile read(const toml::table& table, const std::string& name) {
   }
   spec.period = top.number_or("period", 0.05, {0.01, 0.2});
   robot.controller = top.text_or("controller", robot.controller);
+  check_known(top, "controller", robot.controller, algo::controller_table());
   robot.filter = top.text_or("filter", robot.filter);
+  check_known(top, "filter", robot.filter, algo::filter_table());
   read_hull(top.table("hull"), spec);
   if (top.has("limits")) read_limits(top.table("limits"), robot);
   for (Section& laser : top.tables("laser")) {
-    robot.lasers.push_back(read_laser(laser, robot.lasers.size() + 1));
+    robot.lasers.push_back(read_laser(laser, robot.lasers.size() + 1, robot));
   }
   Section base = top.table("base");
   read_base(base, robot);

@@ -15,14 +15,15 @@ namespace {
 constexpr double kAnswer = 0.3;  // [s]
 constexpr int kTries = 4;
 constexpr double kPause = 2.0;        // [s] before all begins again
-constexpr double kSilent = 1.0;       // [s] without an answer: it is looked for again
-constexpr int kQueryPeriod_ms = 10;   // between two of the repeated queries
 constexpr double kInputsAge = 0.5;    // [s] bumpers that were not read count as hit
 constexpr double kReleaseTime = 0.5;  // [s] the stop may still be reported after its release
+constexpr double kRepeat = 0.1;       // [s] between two orders to brake
 constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it starts
 constexpr std::uint16_t kStopFault = 16;
+constexpr int kQuickLoopError = 1;  // of ^CLERD: after 0.25 s of an error of 100
 // What contradicts all before has to come so often in a row: lines carry no check value.
 constexpr int kBelieved = 5;
+constexpr int kAgreeing = 2;  // answers that say a wheel is blocked
 
 }  // namespace
 
@@ -33,7 +34,8 @@ RoboteqMachine::RoboteqMachine(RoboteqSetup setup) : setup_(std::move(setup)) {
              {"MXRPM", whole(setup_.wheel.full_speed_rpm), true},
              {"EPPR", whole(setup_.wheel.encoder_lines), true},
              {"MAC", wheel_ramp(), true},
-             {"MDEC", wheel_ramp(), true}};
+             {"MDEC", wheel_ramp(), true},
+             {"CLERD", kQuickLoopError, true, true}};
 }
 
 /// [0.1 rpm/s] of a motor when its wheel takes part in the largest acceleration ahead and in the
@@ -42,6 +44,12 @@ int RoboteqMachine::wheel_ramp() const {
   const BaseLimits& limits = setup_.limits;
   const double wheel = limits.acceleration + limits.turn_acceleration * setup_.half_track;
   return std::max(1, static_cast<int>(std::lround(10 * setup_.wheel.rpm(wheel))));
+}
+
+/// [0.1 rpm/s] likewise, when it brakes in an emergency.
+int RoboteqMachine::emergency_ramp() const {
+  const int ramp = static_cast<int>(std::lround(10 * setup_.wheel.rpm(kEmergencyDeceleration)));
+  return std::max(ramp, wheel_ramp());
 }
 
 void RoboteqMachine::opened(double now, unsigned /*baud*/) {
@@ -57,7 +65,10 @@ void RoboteqMachine::greet(double now) {
   counts_.reset();
   jumps_ = 0;
   singles_ = 0;
+  stalls_ = {};
   enabled_ = false;
+  braking_ = false;
+  off_.cancel();
   state_.running = false;
   state_.motors_on = false;
   send(command(""));  // ends a line that an earlier program began
@@ -70,6 +81,7 @@ void RoboteqMachine::closed(double /*now*/, const std::string& why) {
   if (step_ != Step::Left) step_ = Step::NoLine;
   state_.running = false;
   state_.motors_on = false;
+  off_.cancel();
   trouble_ = why;
   deadline_ = std::numeric_limits<double>::infinity();
 }
@@ -115,8 +127,14 @@ void RoboteqMachine::request(double now) {
 }
 
 void RoboteqMachine::advance(double now) {
+  if (off_.due(now, state_)) cut(now);
+  if (off_.pending() && now - braked_at_ > kRepeat) halt(now);  // though nobody ticks any more
+  if (step_ == Step::Leaving && !off_.pending()) close();
   if (now < deadline_) return;
   switch (step_) {
+    case Step::Leaving:
+      close();  // nobody is there any more
+      return;
     case Step::NoLine:
     case Step::Left:
       deadline_ = std::numeric_limits<double>::infinity();
@@ -138,6 +156,8 @@ void RoboteqMachine::advance(double now) {
   } else if (step_ == Step::Reading && !written_) {
     written_ = true;  // a controller that does not tell its parameter may still take it
     begin(Step::Writing, now);
+  } else if ((step_ == Step::Reading || step_ == Step::Writing) && wanted_[parameter_].optional) {
+    skip_parameter(now);
   } else if (step_ == Step::Greeting) {
     refuse(format("No motor controller answers, for %.0f s now. Is it powered, and is its serial "
                   "line at %u bit/s?",
@@ -153,103 +173,6 @@ void RoboteqMachine::refuse(const std::string& why, double now) {
   trouble_ = why;
   step_ = Step::Waiting;
   deadline_ = now + kPause;
-}
-
-// ---- setting it up ---------------------------------------------------------------------------
-
-void RoboteqMachine::take_line(double now, std::string_view line) {
-  const Reply reply = parse_reply(line);
-  using Kind = Reply::Kind;
-  switch (step_) {
-    case Step::Greeting:
-      if (reply.kind == Kind::Accepted) begin(Step::Identity, now);
-      return;
-    case Step::Identity:
-      if (reply.name != "FID") return;
-      firmware_ = reply.text;
-      parameter_ = 0;
-      written_ = false;
-      begin(Step::Reading, now);
-      return;
-    case Step::Reading:
-      if (reply.kind == Kind::Values && reply.name == wanted_[parameter_].name) {
-        parameter_read(now, reply);
-      }
-      return;
-    case Step::Writing:
-      if (reply.kind == Kind::Refused) {
-        refuse("The motor controller does not take its parameter ^" +
-                   std::string(wanted_[parameter_].name) + ".",
-               now);
-      } else if (reply.kind == Kind::Accepted && --confirmations_ <= 0) {
-        begin(Step::Reading, now);  // believed once it is read back
-      }
-      return;
-    case Step::Running:
-      if (reply.kind == Kind::Refused) ++refused_;
-      if (reply.kind == Kind::Values) take_values(now, reply);
-      return;
-    default:
-      return;
-  }
-}
-
-void RoboteqMachine::parameter_read(double now, const Reply& reply) {
-  const Wanted& wanted = wanted_[parameter_];
-  const std::size_t count = std::min(reply.count, reply.values.size());
-  if (wanted.per_channel && count < 2) {
-    refuse("This controller has one channel: no base can be driven with it.", now);
-    return;
-  }
-  const bool as_wanted =
-      count > 0 && std::all_of(reply.values.begin(),
-                               reply.values.begin() + static_cast<std::ptrdiff_t>(count),
-                               [&](int value) { return value == wanted.value; });
-  if (as_wanted) {
-    next_parameter(now);
-  } else if (!written_) {
-    written_ = true;
-    begin(Step::Writing, now);
-  } else {
-    refuse(format("The motor controller keeps ^%.*s at %d instead of %d.",
-                  static_cast<int>(wanted.name.size()),
-                  wanted.name.data(),
-                  reply.values[0],
-                  wanted.value),
-           now);
-  }
-}
-
-void RoboteqMachine::next_parameter(double now) {
-  if (written_) {
-    remarks_.push_back("Its parameter ^" + std::string(wanted_[parameter_].name) +
-                       " was set, until power-off.");
-  }
-  written_ = false;
-  ++parameter_;
-  if (parameter_ < wanted_.size()) {
-    begin(Step::Reading, now);
-  } else {
-    run(now);
-  }
-}
-
-/// The power stage stays off until somebody asks for it.
-void RoboteqMachine::run(double now) {
-  // Where it is and how fast it goes, each time: what else there is to know changes less often.
-  constexpr std::array<std::string_view, 12> kQueries{
-      "C", "S", "FF", "C", "S", "V", "C", "S", "A", "C", "S", "DI"};
-  const std::size_t count = setup_.bumper_inputs.empty() ? kQueries.size() - 3 : kQueries.size();
-  send(emergency_stop());
-  send(set_counter(1, 0));
-  send(set_counter(2, 0));
-  send(repeat_queries(std::span(kQueries).first(count), kQueryPeriod_ms));
-  step_ = Step::Running;
-  deadline_ = now + kSilent;
-  inputs_at_ = now;
-  const algo::Pose2 pose = state_.pose;  // where it was lost, as far as anybody knows
-  state_ = {.set_ups = state_.set_ups, .pose = pose};
-  trouble_ = "The motor controller is being set up.";
 }
 
 // ---- what it says ----------------------------------------------------------------------------
@@ -284,6 +207,10 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
     return;
   }
   if (reply.name == "C" || reply.name == "S") singles_ = 0;
+  if (reply.name == "FM" || reply.name == "FS") {
+    int& times = stalls_[reply.name == "FM" ? 0 : 1];
+    times = says_stalled(reply) ? times + 1 : 0;
+  }
   if (reply.name == "C") take_counts(now);
   judge(now);
 }
@@ -348,6 +275,7 @@ void RoboteqMachine::judge(double now) {
   state_.faulty = must_stop(faults & static_cast<std::uint16_t>(~kStopFault));
   state_.volts = values_.battery_volts;
   state_.bumper_front = !setup_.bumper_inputs.empty() && (bumper_ || now - inputs_at_ > kInputsAge);
+  state_.stalled = enabled_ && (stalls_[0] >= kAgreeing || stalls_[1] >= kAgreeing);
   if (values_.motor_amperes && setup_.max_current > 0) {
     const auto& amperes = *values_.motor_amperes;
     const bool high = std::max(std::abs(amperes[0]), std::abs(amperes[1])) > setup_.max_current;
@@ -361,16 +289,40 @@ void RoboteqMachine::judge(double now) {
 
 void RoboteqMachine::enable(double now, bool on) {
   if (step_ != Step::Running) return;
-  if (!on) halt(now);
-  enabled_ = on;
+  if (!on) {
+    halt(now);
+    if (enabled_) {
+      off_.begin(now, braking_time(setup_.limits));
+    } else {
+      cut(now);
+    }
+    return;
+  }
+  off_.cancel();
+  enabled_ = true;
   enabled_at_ = now;
-  send(on ? release_stop() : emergency_stop());
+  send(release_stop());
   judge(now);
 }
 
-void RoboteqMachine::drive(double /*now*/, const algo::Twist2& twist) {
-  if (step_ != Step::Running || !enabled_) return;
+void RoboteqMachine::cut(double now) {
+  if (!reporting()) return;
+  off_.cancel();
+  enabled_ = false;
+  send(roboteq::drive(0, 0));
+  send(emergency_stop());
+  judge(now);
+}
+
+void RoboteqMachine::drive(double now, const algo::Twist2& twist) {
+  if (step_ != Step::Running || !enabled_ || off_.pending()) return;
   const algo::Twist2 wanted = limited(twist, setup_.limits);
+  if (braking_ && wanted == algo::Twist2{}) {
+    halt(now);  // no gentler than it has begun
+    return;
+  }
+  if (braking_) set_deceleration(wheel_ramp());
+  braking_ = false;
   const double turn = wanted.omega * setup_.half_track;
   const double limit = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
   const std::array<int, 2> sides{setup_.wheel.command_for(wanted.v - turn, limit),
@@ -378,17 +330,39 @@ void RoboteqMachine::drive(double /*now*/, const algo::Twist2& twist) {
   std::array<int, 2> channels{setup_.reversed[0] ? -sides[0] : sides[0],
                               setup_.reversed[1] ? -sides[1] : sides[1]};
   if (setup_.swapped) std::swap(channels[0], channels[1]);
-  send(roboteq::drive(channels[0], channels[1]));
+  const bool moves = channels != std::array<int, 2>{};
+  const double expires = moves ? now + kMotionExpires : std::numeric_limits<double>::infinity();
+  orders_.send_before(expires, roboteq::drive(channels[0], channels[1]).view());
 }
 
-void RoboteqMachine::halt(double /*now*/) {
-  if (step_ == Step::Running) send(roboteq::drive(0, 0));
+/// In the closed loop, with its steepest ramp: without power, as after !EX, the wheels would roll
+/// out. Lines may be lost, so the ramp is told again while the wheels may still turn.
+void RoboteqMachine::halt(double now) {
+  if (!reporting()) return;
+  if (!braking_) braking_since_ = now;
+  braking_ = true;
+  braked_at_ = now;
+  if (now - braking_since_ <= braking_time(setup_.limits)) set_deceleration(emergency_ramp());
+  send(roboteq::drive(0, 0));
+}
+
+void RoboteqMachine::set_deceleration(int ramp) {
+  send(deceleration(1, ramp));
+  send(deceleration(2, ramp));
 }
 
 void RoboteqMachine::leave(double now) {
   orders_.clear();
-  halt(now);
-  if (step_ == Step::Running) send(emergency_stop());
+  if (step_ != Step::Running) {
+    close();
+    return;
+  }
+  enable(now, false);
+  step_ = Step::Leaving;
+  if (!off_.pending()) close();
+}
+
+void RoboteqMachine::close() {
   if (step_ != Step::NoLine) send(end_repetition());
   step_ = Step::Left;
 }
@@ -398,10 +372,11 @@ DeviceReport RoboteqMachine::report(double now) const {
   const std::uint16_t faults = values_.faults.value_or(0);
   const auto others = static_cast<std::uint16_t>(faults & ~kStopFault);
   out.well = state_.running && trouble_.empty() && others == 0 && !state_.stop_button &&
-             !state_.over_current;
+             !state_.over_current && !state_.stalled;
   out.sentence = trouble_;
   if (state_.running && others != 0)
     out.sentence = "The controller reports: " + fault_text(others) + ".";
+  if (state_.stalled) out.sentence = "A wheel is blocked: a motor cannot follow its command.";
   if (state_.over_current) out.sentence = "A motor takes more current than the file allows.";
   if (state_.stop_button) out.sentence = "Its stop input is active: release the button, then arm.";
   if (out.sentence.empty()) {
@@ -419,6 +394,10 @@ DeviceReport RoboteqMachine::report(double now) const {
       out.facts.emplace_back(
           "motors",
           format("%.1f A, %.1f A", (*values_.motor_amperes)[0], (*values_.motor_amperes)[1]));
+    }
+    if (values_.motor_flags) {
+      out.facts.emplace_back(
+          "motor flags", format("%u, %u", (*values_.motor_flags)[0], (*values_.motor_flags)[1]));
     }
     out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
   }

@@ -1,6 +1,7 @@
 // drivers/roboteq_machine.hpp: how a Roboteq controller is found, checked, driven and left.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -31,20 +32,33 @@ class RoboteqMachine final : public BaseMachine {
   void closed(double now, const std::string& why) override;
   void rate_set(double /*now*/, unsigned /*baud*/) override {}
   void receive(double now, ByteView bytes) override;
+  void lost_bytes() override { reader_.clear(); }
   void advance(double now) override;
-  double wake_time() const override { return deadline_; }
+  double wake_time() const override { return std::min(deadline_, off_.until()); }
   std::optional<LineOrder> next_order() override { return orders_.next(); }
   void leave(double now) override;
   bool left() const override { return step_ == Step::Left; }
 
   void enable(double now, bool on) override;
+  void cut(double now) override;
   void drive(double now, const algo::Twist2& twist) override;
   void halt(double now) override;
   const BaseState& state() const override { return state_; }
   double watchdog() const override { return setup_.watchdog; }
+  WheelDynamics dynamics() const override {
+    const double ramp =
+        setup_.limits.acceleration + setup_.limits.turn_acceleration * setup_.half_track;
+    const double step = setup_.wheel.full_speed_rpm / 1000;  // of a command; reports have whole rpm
+    return {.ramp_of_wheels = true,
+            .ramps = {ramp, ramp},
+            .resolution = setup_.wheel.speed(std::max(1.0, step)),
+            .checked = false};
+  }
   DeviceReport report(double now) const override;
 
  private:
+  static constexpr double kSilent = 1.0;  // [s] without an answer: it is looked for again
+
   enum class Step : std::uint8_t {
     NoLine,
     Greeting,  // echo off
@@ -53,6 +67,7 @@ class RoboteqMachine final : public BaseMachine {
     Writing,  // a parameter that was not as it should be
     Running,
     Waiting,  // before all begins again
+    Leaving,
     Left,
   };
   /// A parameter that has to have a value, of the controller or of each channel.
@@ -60,9 +75,14 @@ class RoboteqMachine final : public BaseMachine {
     std::string_view name{};
     int value = 0;
     bool per_channel = false;
+    bool optional = false;  // older controllers lack it
   };
 
   int wheel_ramp() const;
+  int emergency_ramp() const;
+  bool reporting() const { return step_ == Step::Running || step_ == Step::Leaving; }
+  void close();
+  void set_deceleration(int ramp);
   void greet(double now);
   void begin(Step step, double now);
   void request(double now);
@@ -70,6 +90,7 @@ class RoboteqMachine final : public BaseMachine {
   void parameter_read(double now, const Reply& reply);
   void next_parameter(double now);
   void refuse(const std::string& why, double now);
+  void skip_parameter(double now);
   void run(double now);
   void take_values(double now, const Reply& reply);
   bool jumped(double now, const std::array<std::int32_t, 2>& counts);
@@ -99,8 +120,13 @@ class RoboteqMachine final : public BaseMachine {
   std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest
   int jumps_ = 0;                                        // of the counts, one after the other
   int singles_ = 0;                                      // answers of one channel, likewise
+  std::array<int, 2> stalls_{};  // ?FM and ?FS that say so, one after the other
   bool enabled_ = false;
   double enabled_at_ = 0;     // [s]
+  bool braking_ = false;      // until it is told to move again
+  double braking_since_ = 0;  // [s]
+  double braked_at_ = 0;      // [s] the newest order to brake
+  SwitchingOff off_{};
   double current_since_ = 0;  // [s] that it has been too high; 0: it is not
   double inputs_at_ = 0;      // [s] when the bumpers were read
   bool bumper_ = false;

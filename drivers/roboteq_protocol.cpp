@@ -188,10 +188,26 @@ bool update(State& state, const Reply& reply) {
     state.faults = static_cast<std::uint16_t>(reply.values[0]);
   } else if (reply.name == "FS") {
     state.status = static_cast<std::uint16_t>(reply.values[0]);
+  } else if (reply.name == "FM" && pair) {
+    state.motor_flags = {static_cast<std::uint16_t>(reply.values[0]),
+                         static_cast<std::uint16_t>(reply.values[1])};
   } else {
     return false;
   }
   return true;
+}
+
+bool says_stalled(const Reply& reply) {
+  constexpr unsigned kMotorStalled = 2;
+  constexpr unsigned kLoopError = 4;
+  constexpr unsigned kStatusStalled = 16;
+  const unsigned bits = reply.name == "FM"   ? kMotorStalled | kLoopError
+                        : reply.name == "FS" ? kStatusStalled
+                                             : 0;
+  return std::any_of(
+      reply.values.begin(),
+      reply.values.begin() + static_cast<std::ptrdiff_t>(reply.count),
+      [bits](std::int32_t value) { return (static_cast<std::uint32_t>(value) & bits) != 0; });
 }
 
 std::string fault_text(std::uint16_t faults) {

@@ -166,6 +166,7 @@ struct State {
   std::optional<std::array<double, 2>> motor_amperes{};
   std::optional<std::uint16_t> faults{};
   std::optional<std::uint16_t> status{};
+  std::optional<std::array<std::uint16_t, 2>> motor_flags{};
   bool one_channel = false;  // speed or counter of one motor only: no base can be driven with it
 };
 
@@ -175,6 +176,8 @@ bool update(State& state, const Reply& reply);
 /// Each fault in words, separated by commas; empty when there is none.
 std::string fault_text(std::uint16_t faults);
 std::string status_text(std::uint16_t status);
+/// Of the answer to ?FM or ?FS: a motor does not turn although it should, or has lost its loop.
+bool says_stalled(const Reply& reply);
 /// Faults that stop the power stage or make its motion doubtful: the run has to end.
 bool must_stop(std::uint16_t faults);
 

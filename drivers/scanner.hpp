@@ -1,6 +1,8 @@
 // drivers/scanner.hpp: a laser scanner that measures by itself, as a robot sees it.
 #pragma once
 
+#include <algorithm>
+
 #include "algo/laser_scan.hpp"
 #include "drivers/device_report.hpp"
 
@@ -12,7 +14,15 @@ struct ScannerState {
   double period = 0;      // [s] between two scans
   bool bad_line = false;  // more telegrams come damaged than whole
   bool faulty = false;    // it says itself that its values must not be relied on
+  bool blinded = false;   // most beams of the newest scan measured nothing
 };
+
+/// [s] For how long a robot may drive on after the last scan of a scanner with `period` [s].
+constexpr double blind_time(double period) {
+  constexpr double kAtMost = 0.3;  // [s]
+  constexpr double kPeriods = 2;   // of a slow scanner, which needs one for each of its scans
+  return std::max(kAtMost, kPeriods * period);
+}
 
 class Scanner {
  public:

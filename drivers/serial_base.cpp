@@ -14,11 +14,20 @@ algo::Twist2 limited(const algo::Twist2& twist, const BaseLimits& limits) {
   return {within(twist.v, limits.speed), within(twist.omega, limits.turn)};
 }
 
+double braking_time(const BaseLimits& limits) {
+  constexpr double kUntilFelt = 0.5;  // [s] from the order to wheels that obey, and a report of it
+  return limits.speed / kEmergencyDeceleration + kUntilFelt;
+}
+
 SerialBase::SerialBase(std::string port, std::unique_ptr<BaseMachine> machine)
     : machine_(std::move(machine)), line_(std::move(port), *machine_) {}
 
 void SerialBase::enable(bool on) {
   line_.with([&] { machine_->enable(steady_now(), on); });
+}
+
+void SerialBase::cut() noexcept {
+  line_.with([&] { machine_->cut(steady_now()); });
 }
 
 void SerialBase::drive(const algo::Twist2& twist) {

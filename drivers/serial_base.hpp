@@ -14,10 +14,12 @@ class SerialBase final : public Base {
   SerialBase(std::string port, std::unique_ptr<BaseMachine> machine);
 
   void enable(bool on) override;
+  void cut() noexcept override;
   void drive(const algo::Twist2& twist) override;
   void stop() noexcept override;
   BaseState state() override;
   double watchdog() const override { return machine_->watchdog(); }
+  WheelDynamics dynamics() const override { return machine_->dynamics(); }
   DeviceReport report() override;
 
  private:

@@ -12,6 +12,7 @@
 #include <grp.h>
 #include <linux/serial.h>
 #include <netdb.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -153,7 +154,12 @@ void SerialPort::open_tcp(const std::string& host, const std::string& port) {
         ::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &error, &size);
       }
     }
-    if (error == 0) return;
+    if (error == 0) {
+      // Requests and wheel commands are short, and must not wait for one another.
+      constexpr int kOn = 1;
+      ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &kOn, sizeof kOn);
+      return;
+    }
   }
   fail("Nothing answers at " + path_ + ": " + system_text(error) + ".");
 }

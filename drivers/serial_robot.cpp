@@ -10,6 +10,7 @@
 #include "algo/explain.hpp"
 #include "drivers/lms200_device.hpp"
 #include "drivers/serial_base.hpp"
+#include "drivers/text.hpp"
 
 namespace drivers {
 namespace {
@@ -17,10 +18,12 @@ namespace {
 using algo::Halt;
 
 constexpr double kBatteryTime = 3.0;  // [s] a voltage may sag when the motors start
-constexpr double kStallTime = 0.5;    // [s]
 constexpr double kMotorsTime = 2.0;   // [s] from arming until they must be on
 constexpr double kLateHold = 1.0;     // [s] the robot stands after a late tick
 constexpr double kSonarMax = 5.0;     // [m] a Pioneer's, and its word for nothing
+constexpr double kBumperFree =
+    0.5;  // [s] after which a bumper that was known to be pressed is free
+constexpr double kLongestCoast = 2.0;  // [m] the robot may go on after the program has died
 
 /// Somebody has to look at these before the robot may go on.
 bool needs_a_person(Halt halt) {
@@ -54,8 +57,9 @@ SerialRobot::SerialRobot(RobotFile file,
     : file_(std::move(file)),
       scanners_(std::move(scanners)),
       base_(std::move(base)),
-      clock_(std::move(clock)) {
-  epoch_ = deadline_ = sensed_at_ = clock_->now();
+      clock_(std::move(clock)),
+      wheels_(base_->dynamics(), file_.spec.half_track) {
+  epoch_ = deadline_ = clock_->now();
 }
 
 SerialRobot::~SerialRobot() {
@@ -74,8 +78,9 @@ void SerialRobot::reset(algo::Observation& observation) {
   disarm();
   become_real_time();
   const double now = clock_->now();
-  epoch_ = deadline_ = sensed_at_ = now;
-  late_until_ = battery_low_since_ = stalled_since_ = 0;
+  epoch_ = deadline_ = now;
+  late_until_ = battery_low_since_ = 0;
+  wheels_.restart();
   missed_.store(0);
   origin_ = base_->state().pose;
   {
@@ -92,20 +97,50 @@ Halt SerialRobot::base_halt(const BaseState& base, double now) {
   if (!base.running || now - base.stamp > kBaseTimeout) return Halt::BaseLost;
   if (base.stop_button) return Halt::StopButton;
   if (base.faulty) return Halt::BaseFault;
-  if (base.over_current) return Halt::OverCurrent;
-  if (lasts(base.stalled, now, kStallTime, stalled_since_)) return Halt::OverCurrent;
+  if (base.over_current || base.stalled) return Halt::OverCurrent;
   const double least = file_.base.battery_low;
   const bool low = least > 0 && base.volts && *base.volts < least;
   if (lasts(low, now, kBatteryTime, battery_low_since_)) return Halt::BatteryLow;
   return Halt::None;
 }
 
+/// [s] between two scans of a scanner with `scan_period`: so long that the tick which finds it
+/// exceeded still stops the wheels in time. A scanner that is late by its jitter is never lost.
+double SerialRobot::longest_gap(double scan_period) const {
+  constexpr double kSending = 0.02;  // [s] the zero's own way to a Pioneer at 9600 bit/s
+  const double in_time = blind_time(scan_period) - file_.spec.period - kSending;
+  const double usual = kScanPeriods * scan_period + kArrivalJitter;
+  return std::max(std::min(usual, in_time), scan_period + kArrivalJitter);
+}
+
+/// Only with the motors on: a robot without power may be pushed.
+bool SerialRobot::wheels_obey(const BaseState& base) {
+  if (!base.motors_on) {
+    wheels_.restart();
+    return true;
+  }
+  return !wheels_.report(base.stamp, base.twist);
+}
+
+/// Whether an armed robot has touched something that its operator did not know of.
+bool SerialRobot::bumper_hit(const BaseState& base, double now) {
+  const std::array<bool, 2> pressed{base.bumper_front, base.bumper_rear};
+  const std::lock_guard lock(mutex_);
+  bool hit = false;
+  for (std::size_t i = 0; i < pressed.size(); ++i) {
+    if (lasts(!pressed[i], now, kBumperFree, bumpers_[i].free_since)) bumpers_[i].known = false;
+    hit = hit || (pressed[i] && !bumpers_[i].known);
+  }
+  return hit && armed_;
+}
+
 Halt SerialRobot::scanner_halt(double now) {
   for (const auto& scanner : scanners_) {
     const ScannerState state = scanner->state();
-    if (state.faulty) return Halt::ScannerFault;
-    const double limit = kScanPeriods * state.period + kArrivalJitter;
-    if (!state.running || now - state.last_scan > limit) return Halt::ScannerLost;
+    if (state.faulty || state.blinded) return Halt::ScannerFault;
+    if (!state.running || now - state.last_scan > longest_gap(state.period)) {
+      return Halt::ScannerLost;
+    }
     if (state.bad_line) return Halt::BadLine;
   }
   return Halt::None;
@@ -127,6 +162,20 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
   }
   if (armed && base.running && base.set_ups != set_up) {
     disarm("The base was lost and found again. Arm it again when all is well.");
+    armed = false;
+  }
+  // These are over when somebody comes to look, so the sentence stays.
+  if (bumper_hit(base, now)) {
+    disarm("The robot touched something: a bumper was hit. Look at it, then arm it again.");
+    armed = false;
+  }
+  if (!wheels_obey(base)) {
+    if (armed) {
+      disarm(
+          "A wheel does not turn as told: it runs away, is blocked, or its encoder is dead. Look "
+          "at it, then arm again.");
+    }
+    base_->cut();  // what does not obey does not brake either
     armed = false;
   }
   if (halt == Halt::None && !armed) halt = Halt::Disarmed;
@@ -158,10 +207,7 @@ void SerialRobot::latch(Halt halt, double now) {
 }
 
 /// `command`, or as much of it as may be carried out.
-algo::Twist2 SerialRobot::permitted(const algo::Command& command,
-                                    const BaseState& base,
-                                    Halt halt) const {
-  if (halt != Halt::None) return {};
+algo::Twist2 SerialRobot::permitted(const algo::Command& command, const BaseState& base) const {
   algo::Twist2 twist = limited(command.base, file_.limits);
   // Away from what was hit, straight, and no faster than a person walks slowly.
   constexpr double kBackingOff = 0.1;  // [m/s]
@@ -175,13 +221,40 @@ algo::Twist2 SerialRobot::permitted(const algo::Command& command,
 
 bool SerialRobot::step(const algo::Command& command, algo::Observation& observation) {
   const double now = clock_->now();
-  // A command that was decided on what was sensed long ago is none.
-  if (now - sensed_at_ > kOverrun * file_.spec.period) late_until_ = now + kLateHold;
+  came_late(now);
   const BaseState base = base_->state();
-  const Halt halt = judge(base, now);
-  base_->drive(permitted(command, base, halt));
+  const bool moves = judge(base, now) == Halt::None;
+  const algo::Twist2 twist = moves ? permitted(command, base) : algo::Twist2{};
+  if (moves) {
+    base_->drive(twist);
+  } else {
+    base_->stop();
+  }
+  wheels_.command(now, twist, !moves);
+  // It may have been kept from running since it looked at the clock.
+  if (came_late(clock_->now())) base_->stop();
   wait_for_deadline(now);
   observe(observation);
+  return true;
+}
+
+/// Rejects commands that come long after their tick's deadline: the loop woke late, the controller
+/// took long, or a line was slow. A program that was stopped or suspended must not drive on by
+/// itself.
+bool SerialRobot::came_late(double now) {
+  const double late = now - deadline_;
+  if (late <= kOverrun * file_.spec.period) return false;
+  late_until_ = now + kLateHold;
+  if (late > kSlept) {
+    bool armed = false;
+    {
+      const std::lock_guard lock(mutex_);
+      armed = armed_;
+    }
+    if (armed) {
+      disarm(format("The program stood still for %.1f s. Its motors are off: arm it again.", late));
+    }
+  }
   return true;
 }
 
@@ -203,7 +276,6 @@ void SerialRobot::wait_for_deadline(double now) {
 
 void SerialRobot::observe(algo::Observation& observation) {
   const double now = clock_->now();
-  sensed_at_ = now;
   observation.clear_sensors();
   observation.stamp = now - epoch_;
   const BaseState base = base_->state();
@@ -263,6 +335,44 @@ std::optional<std::string> SerialRobot::edit(const algo::Request& request) {
 
 // ---- arming ----------------------------------------------------------------------------------
 
+/// Why the base's own watchdog, as the base itself says, is no protection.
+std::optional<std::string> SerialRobot::watchdog_refusal(const BaseState& base) const {
+  if (!base.watchdog) return std::nullopt;
+  const double time = *base.watchdog;
+  if (time == 0) {
+    return "The base's own watchdog is off: should this program die, the robot would not stop. Set "
+           "one in the base's memory.";
+  }
+  if (time < 3 * file_.spec.period) {
+    return format(
+        "The base's own watchdog is %.2f s; commands must come three times within, and the "
+        "file's period is %.3f s.",
+        time,
+        file_.spec.period);
+  }
+  const double coast = file_.limits.speed * time;
+  if (coast > kLongestCoast) {
+    return format(
+        "The base's own watchdog is %.1f s: should this program die, the robot would go on "
+        "for %.1f m. Take a lower speed or set a shorter one.",
+        time,
+        coast);
+  }
+  return std::nullopt;
+}
+
+/// The base's own watchdog where it is another than the file says, in words.
+std::string SerialRobot::watchdog_warning(const BaseState& base) const {
+  constexpr double kRounding = 0.05;  // [s]
+  if (!base.watchdog || std::abs(*base.watchdog - file_.base.watchdog) < kRounding) return "";
+  return format(
+      "The base says that its watchdog is %.2f s, the file says %.2f s: should this program "
+      "die, the robot goes on for up to %.2f m.",
+      *base.watchdog,
+      file_.base.watchdog,
+      file_.limits.speed * *base.watchdog);
+}
+
 std::optional<std::string> SerialRobot::arm() {
   const BaseState base = base_->state();
   Halt halt = Halt::None;
@@ -274,12 +384,15 @@ std::optional<std::string> SerialRobot::arm() {
   if (halt != Halt::Disarmed && halt != Halt::None) {
     return "It cannot be armed now. " + report().trouble;
   }
+  if (auto refusal = watchdog_refusal(base)) return refusal;
   const double now = clock_->now();
   base_->enable(true);
   const std::lock_guard lock(mutex_);
   armed_ = true;
+  ++armings_;
   armed_at_ = now;
   armed_set_up_ = base.set_ups;
+  bumpers_ = {BumperWatch{.known = base.bumper_front}, BumperWatch{.known = base.bumper_rear}};
   halted_since_ = 0;
   disarmed_because_.clear();
   return std::nullopt;
@@ -295,6 +408,11 @@ void SerialRobot::disarm(const std::string& why) {
   base_->enable(false);
 }
 
+std::uint32_t SerialRobot::arming() const {
+  const std::lock_guard lock(mutex_);
+  return armed_ ? armings_ : 0;
+}
+
 void SerialRobot::note_memory_locked(bool locked) {
   const std::lock_guard lock(mutex_);
   memory_locked_ = locked;
@@ -305,6 +423,9 @@ HardwareReport SerialRobot::report() {
   for (const auto& scanner : scanners_) out.devices.push_back(scanner->report());
   out.devices.push_back(base_->report());
   out.warnings = file_.warnings;
+  if (std::string warning = watchdog_warning(base_->state()); !warning.empty()) {
+    out.warnings.push_back(std::move(warning));
+  }
   out.missed_periods = missed_periods();
   const std::lock_guard lock(mutex_);
   out.armed = armed_;
@@ -319,7 +440,8 @@ HardwareReport SerialRobot::report() {
 /// The device's own words where one is to blame.
 std::string SerialRobot::words(Halt halt, const std::vector<DeviceReport>& devices) const {
   if (halt == Halt::None) return "";
-  if (halt == Halt::Disarmed && !disarmed_because_.empty()) return disarmed_because_;
+  const bool waits_for_a_person = halt == Halt::Disarmed || (halt == Halt::LateTick && !armed_);
+  if (waits_for_a_person && !disarmed_because_.empty()) return disarmed_because_;
   const bool of_base = halt == Halt::BaseLost || halt == Halt::StopButton ||
                        halt == Halt::BaseFault || halt == Halt::OverCurrent;
   const bool of_scanner =

@@ -1,6 +1,7 @@
 // drivers/serial_robot.hpp: scanners and a base as one algo::Robot, and what stops its wheels.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <memory>
 #include <mutex>
@@ -39,9 +40,10 @@ struct HardwareReport {
 class SerialRobot final : public algo::Robot {
  public:
   static constexpr double kBaseTimeout = 0.3;     // [s] the age of the base's newest report
-  static constexpr double kScanPeriods = 3;       // without a scan
+  static constexpr double kScanPeriods = 3;       // without a scan, where that is not too long
   static constexpr double kArrivalJitter = 0.02;  // [s] a USB chip may keep bytes for 16 ms
-  static constexpr double kOverrun = 3;           // periods between sensing and the command
+  static constexpr double kOverrun = 3;           // periods from a tick's deadline to its command
+  static constexpr double kSlept = 0.5;           // [s] likewise: the program stood still
   static constexpr double kRearm = 3.0;           // [s]
 
   /// Scanners in the order of the file. They are already at work on their own.
@@ -63,21 +65,36 @@ class SerialRobot final : public algo::Robot {
 
   /// Switches the motors on, or says why not.
   std::optional<std::string> arm();
+  /// From now on nothing moves the robot until it is armed again: it brakes with the base's
+  /// emergency ramp, and its motors go off once the wheels stand. `why` is the sentence for people.
   void disarm(const std::string& why = "");
+  /// Which arming this is: another number each time the motors were switched on, 0 while they are
+  /// off.
+  std::uint32_t arming() const;
   HardwareReport report();
   /// For the report: whether lock_memory() succeeded.
   void note_memory_locked(bool locked);
   const RobotFile& file() const { return file_; }
 
  private:
+  /// A bumper, and whether the operator knew it to be pressed.
+  struct BumperWatch {
+    bool known = false;
+    double free_since = 0;  // [s]; 0: it is pressed
+  };
+
   void become_real_time();
   algo::Halt base_halt(const BaseState& base, double now);
   algo::Halt scanner_halt(double now);
+  double longest_gap(double scan_period) const;
   algo::Halt judge(const BaseState& base, double now);
+  bool wheels_obey(const BaseState& base);
+  bool bumper_hit(const BaseState& base, double now);
+  bool came_late(double now);
   void latch(algo::Halt halt, double now);
-  algo::Twist2 permitted(const algo::Command& command,
-                         const BaseState& base,
-                         algo::Halt halt) const;
+  algo::Twist2 permitted(const algo::Command& command, const BaseState& base) const;
+  std::optional<std::string> watchdog_refusal(const BaseState& base) const;
+  std::string watchdog_warning(const BaseState& base) const;
   void wait_for_deadline(double now);
   void observe(algo::Observation& observation);
   void observe_base(const BaseState& base, double now, algo::Observation& observation) const;
@@ -91,16 +108,17 @@ class SerialRobot final : public algo::Robot {
   double epoch_ = 0;              // [s] steady clock, of the run's time 0
   algo::Pose2 origin_{};          // of W in the base's own dead reckoning
   double deadline_ = 0;           // [s]
-  double sensed_at_ = 0;          // [s] of the newest observation
   double late_until_ = 0;         // [s]
   double battery_low_since_ = 0;  // [s]; 0: it is not
-  double stalled_since_ = 0;      // [s]; 0: it is not
+  WheelWatch wheels_;
   std::atomic<std::uint64_t> missed_{0};
 
   mutable std::mutex mutex_{};  // guards what follows
   bool armed_ = false;
-  double armed_at_ = 0;             // [s]
-  std::uint32_t armed_set_up_ = 0;  // of the base, when it was armed
+  std::uint32_t armings_ = 0;             // times it was
+  double armed_at_ = 0;                   // [s]
+  std::uint32_t armed_set_up_ = 0;        // of the base, when it was armed
+  std::array<BumperWatch, 2> bumpers_{};  // front, rear
   std::string disarmed_because_{};
   algo::Halt halt_ = algo::Halt::Disarmed;
   double halted_since_ = 0;  // [s]; 0: it is not

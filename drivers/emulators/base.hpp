@@ -37,8 +37,36 @@ struct BaseCommand {
   WheelMotion wanted{};  // of the wheels, before any ramp
 };
 
+/// What may befall the wheels themselves.
+struct WheelTrouble {
+  double runaway = 0;    // [m/s] both turn so fast while they have power, whatever they are told
+  double gain = 1;       // they turn so many times as fast as they are told
+  bool blocked = false;  // the left one does not turn
+  bool encoder_dead = false;  // of the left one: it turns, and is not seen to
+};
+
 class Base : public Device {
  public:
+  WheelTrouble trouble{};
+
+  /// drive(), as the trouble has it.
+  WheelMotion turn(double now) {
+    WheelMotion motion = drive(now);
+    if (trouble.runaway != 0 && powered()) motion = {trouble.runaway, trouble.runaway};
+    motion.left *= trouble.blocked ? 0 : trouble.gain;
+    motion.right *= trouble.gain;
+    return motion;
+  }
+  /// feel(), likewise: an encoder that is dead stands where it stood.
+  void sense(const BaseSenses& senses, double now) {
+    BaseSenses felt = senses;
+    unseen_ += trouble.encoder_dead ? senses.left_travel - sensed_travel_ : 0;
+    sensed_travel_ = senses.left_travel;
+    felt.left_travel -= unseen_;
+    if (trouble.encoder_dead) felt.motion.left = 0;
+    feel(felt, now);
+  }
+
   virtual void feel(const BaseSenses& senses, double now) = 0;
   /// What its motors make the wheels do at `now`.
   virtual WheelMotion drive(double now) = 0;
@@ -50,6 +78,8 @@ class Base : public Device {
   virtual void set_battery(double volts) = 0;
   /// Bits as the device reports them.
   virtual void set_faults_reported(std::uint16_t bits) = 0;
+  /// Its motors have power.
+  virtual bool powered() const = 0;
   /// Its controller starts anew: everything the host has set is forgotten.
   virtual void restart(double now, double boot_time) = 0;
 
@@ -63,6 +93,10 @@ class Base : public Device {
   void report(double time, const WheelMotion& wanted) const {
     if (on_command) on_command({.time = time, .wanted = wanted});
   }
+
+ private:
+  double sensed_travel_ = 0;  // [m] of the left wheel
+  double unseen_ = 0;         // [m] of it while its encoder was dead
 };
 
 }  // namespace drivers::emulators

@@ -96,14 +96,15 @@ Emulator::Emulator(const EmulatorOptions& options)
       variant_(options.variant),
       configuration_(factory_configuration()),
       stored_rate_(options.start_rate),
-      start_up_(options.start_up) {
+      start_up_(options.start_up),
+      refusals_(options.refusals) {
   note_sweep();
 }
 
 // ---- the line ----------------------------------------------------------------------------------
 
 void Emulator::on_byte(std::uint8_t byte, double at) {
-  if (!started(at)) return;
+  if (!started(at) || at < deaf_until_) return;
   if (request_.size() == 0 && byte != kStart) return;
   request_.push_back(byte);
   const ByteView so_far = request_.view();
@@ -131,7 +132,7 @@ void Emulator::work(double now) {
   if (!greeted_ && now >= boot_end_) {
     greeted_ = true;
     std::vector<std::uint8_t> text(options_.type.begin(), options_.type.end());
-    say(code_of(Answer::PowerOn), text, boot_end_);
+    go_deaf(say(code_of(Answer::PowerOn), text, boot_end_).end);
   }
   while (!jobs_.empty() && jobs_.front().due <= now) {
     const Job job = std::move(jobs_.front());
@@ -269,7 +270,9 @@ void Emulator::change_mode(ByteView data, double at) {
   if (data.empty()) return refuse(at);
   const ByteView parameters = data.subspan(1);
   const auto done = [&](std::uint8_t result) {
-    answer(code_of(Answer::Mode), {result}, options_.times.mode, at);
+    later(at + options_.times.mode, [this, result](double due) {
+      go_deaf(say(code_of(Answer::Mode), std::array{result}, due).end);
+    });
   };
   const auto enter_then = [&](Mode mode, const Taking& stream) {
     done(kDone);

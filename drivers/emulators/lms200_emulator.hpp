@@ -24,6 +24,7 @@ struct EmulatedTimes {
   double mode = 0.060;                // at most 3
   double variant = 0.200;             // the mirror is set anew
   double write_configuration = 0.48;  // measured; at most 15
+  double deaf = 0;                    // hears and says nothing after a mode switch and power-on
 };
 
 struct EmulatorOptions {
@@ -38,7 +39,8 @@ struct EmulatorOptions {
   Variant variant{.angle_degrees = 180, .step_centidegrees = 100};  // as stored
   /// Partial scans of 180 degrees come in quarters of a degree, whatever the variant's step.
   bool interlaced = false;
-  double field_a = 0;  // [m] what is nearer lies in field A, which raises a flag; 0: no field
+  unsigned refusals = 0;  // the first so many sound telegrams are taken for damaged
+  double field_a = 0;     // [m] what is nearer lies in field A, which raises a flag; 0: no field
   EmulatedTimes times{};
   std::uint64_t seed = 1;
 };
@@ -85,8 +87,8 @@ class Emulator final : public emulators::Device {
   void restart(double now, double boot_time);
   /// The next `telegrams` that are sound are taken for damaged.
   void refuse_next(unsigned telegrams) { refusals_ = telegrams; }
-  /// Light from elsewhere blinds it.
-  void dazzle(bool on);
+  /// Light from elsewhere blinds it, all of it or the beams within `cone` [rad] about its middle.
+  void dazzle(bool on, double cone = emulators::kNever);
   /// Bits 0-7 of the last byte of all answers but bits 3-4.
   void set_health(std::uint8_t byte) { health_ = static_cast<std::uint8_t>(byte | 0x10U); }
 
@@ -131,6 +133,7 @@ class Emulator final : public emulators::Device {
   void refuse(double at);
   emulators::Sending say(std::uint8_t code, ByteView data, double at);
   void later(double due, std::function<void(double)> run);
+  void go_deaf(double now) { deaf_until_ = now + options_.times.deaf; }
   std::vector<std::uint8_t> status() const;
   std::vector<std::uint8_t> errors() const;
 
@@ -144,8 +147,9 @@ class Emulator final : public emulators::Device {
   void close_scan(SentScan::Fate fate);
 
   EmulatorOptions options_;
-  FixedBytes<128> request_{};  // as far as it has come
-  double boot_end_ = 0;        // [s] up to here it starts up
+  FixedBytes<128> request_{};               // as far as it has come
+  double boot_end_ = 0;                     // [s] up to here it starts up
+  double deaf_until_ = -emulators::kNever;  // [s]
   bool greeted_ = true;
   bool begun_ = false;  // its clock is known
   std::vector<Job> jobs_{};
@@ -159,6 +163,7 @@ class Emulator final : public emulators::Device {
   unsigned memory_writes_ = 0;
   std::uint8_t health_ = 0x10;
   bool dazzled_ = false;
+  double cone_ = emulators::kNever;  // [rad] dazzled
   bool was_dazzled_ = false;
   unsigned refusals_ = 0;
   std::uint64_t bad_telegrams_ = 0;

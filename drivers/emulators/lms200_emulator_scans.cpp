@@ -10,8 +10,9 @@
 
 namespace drivers::lms200 {
 
-void Emulator::dazzle(bool on) {
+void Emulator::dazzle(bool on, double cone) {
   dazzled_ = on;
+  cone_ = cone;
   was_dazzled_ = was_dazzled_ || on;
 }
 
@@ -32,7 +33,7 @@ std::uint16_t Emulator::word_of(const algo::LaserScan& scan, std::size_t beam) c
   const auto code = [&layout](algo::BeamCode digit) {
     return static_cast<std::uint16_t>((layout->top & ~0xFU) | static_cast<unsigned>(digit));
   };
-  if (dazzled_) {
+  if (dazzled_ && std::abs(scan.angle(beam)) <= cone_ / 2) {
     return static_cast<std::uint16_t>(code(algo::BeamCode::Dazzled) | layout->dazzle);
   }
   if (scan.status[beam] == algo::Beam::Free) return code(algo::BeamCode::BeyondRange);
@@ -120,7 +121,7 @@ void Emulator::send_values(const Taking& taking, double now, std::optional<std::
     scan.beams.push_back(layout ? beam_of(word, *layout, configuration_.in_millimetres()) : word);
   }
   // The line carries one telegram at a time, and there is no room for a second.
-  if (line().free_at() > now || !jobs_.empty()) {
+  if (line().free_at() > now || !jobs_.empty() || now < deaf_until_) {
     scan.fate = SentScan::Fate::Lost;
     scan.end = now;
     if (on_scan) on_scan(scan);

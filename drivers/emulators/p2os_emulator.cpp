@@ -19,6 +19,7 @@ constexpr std::uint8_t kNegative = 0x1B;
 constexpr std::uint8_t kStopped = 0x32;  // kinds of packets
 constexpr std::uint8_t kMoving = 0x33;
 constexpr std::uint8_t kEncoders = 0x90;
+constexpr std::uint8_t kConfiguration = 0x20;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr double kTopSpeed = 2.2;                          // [m/s] whatever the host asks for
@@ -201,6 +202,9 @@ void Emulator::obey(const Order& order, double at) {
       x_ = y_ = heading_ = 0;
       options_.first_x_mm = options_.first_y_mm = 0;
       return;
+    case Code::Configuration:
+      say_configuration(at);
+      return;
     case Code::Encoders:
       if (order.argument) encoder_packets_ = argument;
       return;
@@ -251,13 +255,14 @@ void Emulator::move(const Order& order, double at) {
     default:
       return;
   }
+  braking_ = false;
   if (!motors_on_) wanted_ = {};  // ignored, not kept for later
   report(at, wheels(wanted_));
 }
 
 void Emulator::stop(double now, bool hard) {
   wanted_ = {};
-  if (hard) now_ = {};
+  braking_ = braking_ || hard;
   report(now, {});
 }
 
@@ -299,7 +304,7 @@ WheelMotion Emulator::drive(double now) {
   if ((bumped && wanted.v > 0) || (bumped_behind && wanted.v < 0) || rests) wanted = {};
   wanted.v = std::clamp(wanted.v, -speed_limit_, speed_limit_);
   wanted.omega = std::clamp(wanted.omega, -turn_limit_, turn_limit_);
-  if (!motors_on_) {  // the brakes do it
+  if (!motors_on_ || braking_) {  // the brakes do it
     now_.v = towards(now_.v, 0, kHardStop * dt);
     now_.omega = towards(now_.omega, 0, kHardTurnStop * dt);
     return wheels(now_);
@@ -385,6 +390,32 @@ void Emulator::say_state(double at) {
     body.append_word(word(std::lround(turn_rate / kRadiansPerDegree * 10)));
     body.append_word(faults_);
   }
+  say(body.view(), at);
+}
+
+/// What its memory holds, as far as its watchdog; the gains that follow are left out.
+void Emulator::say_configuration(double at) {
+  FixedBytes<200> body;
+  const auto text = [&body](std::string_view what) {
+    body.append(what);
+    body.push_back(0);
+  };
+  body.push_back(kConfiguration);
+  text(options_.type);
+  text(options_.subtype);
+  text("0001");
+  body.push_back(0);  // two motors
+  for (const int limit : {360, 2200, 600, 2000, 500}) {
+    body.append_word(static_cast<std::uint16_t>(limit));
+  }
+  text(options_.name);
+  for (const int byte : {100, 0, 0}) body.push_back(static_cast<std::uint8_t>(byte));
+  body.append_word(0);    // no gripper
+  body.append_word(1);    // sonar ahead
+  body.push_back(0);      // none behind
+  body.append_word(110);  // [0.1 V] low battery
+  body.append_word(500);  // counts a turn
+  body.append_word(word(std::lround(options_.watchdog * 1000)));
   say(body.view(), at);
 }
 

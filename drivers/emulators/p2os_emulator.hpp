@@ -27,8 +27,8 @@ struct EmulatorOptions {
   std::uint64_t seed = 1;
 };
 
-/// Position commands (MOVE, HEAD, DHEAD), packets of the gyro and of the configuration are left
-/// out: unanswered, as commands unknown to the base.
+/// Position commands (MOVE, HEAD, DHEAD) and packets of the gyro are left out: unanswered, as
+/// commands unknown to the base.
 class Emulator final : public emulators::Base {
  public:
   explicit Emulator(const EmulatorOptions& options = {});
@@ -39,6 +39,7 @@ class Emulator final : public emulators::Base {
   void press_bumper(bool pressed) override { bumper_pressed_ = pressed; }
   void set_battery(double volts) override { volts_ = volts; }
   void set_faults_reported(std::uint16_t bits) override { faults_ = bits; }
+  bool powered() const override { return motors_on_; }
   void restart(double now, double boot_time) override;
 
   // ---- for tests to look at ----
@@ -71,6 +72,7 @@ class Emulator final : public emulators::Base {
   void say(ByteView body, double at);
   void say_state(double at);
   void say_encoders(double at);
+  void say_configuration(double at);
   void forget();
   emulators::WheelMotion wheels(const Motion& motion) const;
 
@@ -93,6 +95,7 @@ class Emulator final : public emulators::Base {
 
   Motion wanted_{};
   Motion now_{};
+  bool braking_ = false;  // in an emergency, until the next command that moves
   double driven_until_ = -emulators::kNever;
   double acceleration_ = 0, deceleration_ = 0;            // [m/s2]
   double turn_acceleration_ = 0, turn_deceleration_ = 0;  // [rad/s2]

@@ -21,6 +21,7 @@ constexpr int kRestartKey = 321654987;
 
 enum Fault : unsigned { Undervoltage = 4, EmergencyStop = 16 };
 enum Status : unsigned { Serial = 1, StageOff = 8, Stalled = 16 };
+enum MotorFlag : unsigned { MotorStalled = 2, LoopError = 4 };
 constexpr double kLowestVolts = 20;
 
 std::size_t index_of(int channel) {
@@ -189,7 +190,7 @@ bool Emulator::channel_command(const Order& order, double at) {
 
 /// Both channels' values of a parameter.
 Emulator::Pair* Emulator::pair_of(std::string_view name) {
-  const std::array<std::pair<std::string_view, Pair*>, 10> table{{
+  const std::array<std::pair<std::string_view, Pair*>, 11> table{{
       {"MMOD", &parameters_.mode},
       {"MXRPM", &parameters_.full_rpm},
       {"EPPR", &parameters_.encoder_lines},
@@ -197,6 +198,7 @@ Emulator::Pair* Emulator::pair_of(std::string_view name) {
       {"MAC", &parameters_.acceleration},
       {"MDEC", &parameters_.deceleration},
       {"ALIM", &parameters_.amperes},
+      {"CLERD", &parameters_.loop_error},
       {"KP", &parameters_.p},
       {"KI", &parameters_.i},
       {"KD", &parameters_.d},
@@ -222,7 +224,8 @@ bool Emulator::set(const Order& order) {
   Pair* const pair = pair_of(order.name);
   if (pair == nullptr || order.count != 2 || !channel_fits(order.numbers[0])) return false;
   const int value = order.numbers[1];
-  const bool may_be_zero = order.name == "MMOD" || order.name == "EMOD" || order.name[0] == 'K';
+  const bool may_be_zero =
+      order.name == "MMOD" || order.name == "EMOD" || order.name == "CLERD" || order.name[0] == 'K';
   if (value < (may_be_zero ? 0 : 1)) return false;
   if (order.name == "MMOD" && value != 0 && value != 1 && value != 3) return false;
   (*pair)[index_of(order.numbers[0])] = value;
@@ -295,9 +298,7 @@ unsigned Emulator::fault_bits() const {
 unsigned Emulator::status_bits() const {
   unsigned bits = Serial;
   if (fault_bits() != 0) bits |= StageOff;
-  const double told = std::max(std::abs(rpm_[0]), std::abs(rpm_[1]));
-  const double motion = std::max(std::abs(senses_.motion.left), std::abs(senses_.motion.right));
-  if (wheel_speed(0, told) > 0.02 && motion < 0.1 * wheel_speed(0, told)) bits |= Stalled;
+  if (stalled_[0] || stalled_[1]) bits |= Stalled;
   return bits;
 }
 
@@ -368,6 +369,10 @@ bool Emulator::ask(const Order& order, double at) {
     values = {static_cast<long>(fault_bits())};
   } else if (order.name == "FS") {
     values = {static_cast<long>(status_bits())};
+  } else if (order.name == "FM") {
+    each([&](std::size_t channel) {
+      return stalled_[channel] ? long{MotorStalled | LoopError} : 0;
+    });
   } else if (order.name == "DI") {
     values = {
         senses_.front_bumper || senses_.rear_bumper || bumper_pressed_ ? 1 : 0, 0, 0, 0, 0, 0};
@@ -422,6 +427,20 @@ void Emulator::halt(double at) {
   report(at, {});
 }
 
+/// A motor that does not follow its command is switched off until it is told to stand.
+void Emulator::watch_loop(std::size_t channel, double dt) {
+  constexpr std::array<double, 4> kPatience{emulators::kNever, 0.25, 0.5, 1.0};  // [s] by ^CLERD
+  const double told = wheel_speed(channel, rpm_[channel]);
+  const double turns = channel == 0 ? senses_.motion.left : senses_.motion.right;
+  const bool lost = std::abs(told) > 0.02 && std::abs(turns) < 0.1 * std::abs(told);
+  lost_for_[channel] = lost ? lost_for_[channel] + dt : 0;
+  const auto chosen = static_cast<std::size_t>(parameters_.loop_error[channel]);
+  if (lost_for_[channel] > kPatience[std::min(chosen, kPatience.size() - 1)]) {
+    stalled_[channel] = true;
+  }
+  if (wanted_rpm_[channel] == 0) stalled_[channel] = false;
+}
+
 WheelMotion Emulator::drive(double now) {
   const double dt = driven_until_ > -emulators::kNever ? std::max(0.0, now - driven_until_) : 0;
   driven_until_ = now;
@@ -430,7 +449,8 @@ WheelMotion Emulator::drive(double now) {
       parameters_.watchdog_ms > 0 && now - commanded_ > parameters_.watchdog_ms / 1000.0;
   if (moves && (overdue || fault_bits() != 0)) halt(now);
   for (std::size_t channel = 0; channel < kChannels; ++channel) {
-    const double wanted = wanted_rpm_[channel];
+    watch_loop(channel, dt);
+    const double wanted = stalled_[channel] ? 0 : wanted_rpm_[channel];
     const bool slower = std::abs(wanted) < std::abs(rpm_[channel]) || wanted * rpm_[channel] < 0;
     const int rate = slower ? parameters_.deceleration[channel] : parameters_.acceleration[channel];
     rpm_[channel] = towards(rpm_[channel], wanted, rate / 10.0 * dt);

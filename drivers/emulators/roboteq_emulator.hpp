@@ -42,6 +42,7 @@ class Emulator final : public emulators::Base {
   void press_bumper(bool pressed) override { bumper_pressed_ = pressed; }
   void set_battery(double volts) override { volts_ = volts; }
   void set_faults_reported(std::uint16_t bits) override { faults_ = bits; }
+  bool powered() const override { return fault_bits() == 0; }
   void restart(double now, double boot_time) override;
 
   // ---- for tests to look at ----
@@ -63,6 +64,7 @@ class Emulator final : public emulators::Base {
     Pair deceleration{20000, 20000};
     Pair amperes{150, 150};  // [0.1 A] limit
     Pair p{10, 10}, i{10, 10}, d{0, 0};
+    Pair loop_error{2, 2};  // 0 off, 1: 0.25 s, 2: 0.5 s, 3: 1 s of it
   };
   /// A line taken apart.
   struct Order {
@@ -97,6 +99,7 @@ class Emulator final : public emulators::Base {
   void halt(double at);
   bool channel_fits(int channel) const;
   double wheel_speed(std::size_t channel, double rpm) const;
+  void watch_loop(std::size_t channel, double dt);
   unsigned fault_bits() const;
   unsigned status_bits() const;
   std::int32_t counter(std::size_t channel) const;
@@ -110,7 +113,9 @@ class Emulator final : public emulators::Base {
   unsigned memory_writes_ = 0;
 
   std::array<double, kChannels> wanted_rpm_{};
-  std::array<double, kChannels> rpm_{};  // as the ramp has it
+  std::array<double, kChannels> rpm_{};       // as the ramp has it
+  std::array<double, kChannels> lost_for_{};  // [s] its loop is open: told to turn, and does not
+  std::array<bool, kChannels> stalled_{};     // and was switched off for it, until told to stand
   double driven_until_ = -emulators::kNever;
   double commanded_ = -emulators::kNever;  // [s] the last motor command
   bool emergency_ = false;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tests/drivers/hex.hpp"
 #include <gtest/gtest.h>
@@ -25,7 +26,12 @@ class EchoMachine final : public Machine {
   void closed(double /*now*/, const std::string& why) override { reason = why; }
   void rate_set(double /*now*/, unsigned baud) override { rate = baud; }
   void receive(double /*now*/, ByteView bytes) override { orders.send(bytes); }
-  void advance(double /*now*/) override {}
+  void advance(double /*now*/) override {
+    if (sleeps == 0) return;
+    asleep = true;
+    std::this_thread::sleep_for(std::chrono::duration<double>(std::exchange(sleeps, 0)));
+  }
+  void lost_bytes() override { ++lost; }
   double wake_time() const override { return 1e300; }
   std::optional<LineOrder> next_order() override { return orders.next(); }
   void leave(double /*now*/) override {
@@ -40,6 +46,9 @@ class EchoMachine final : public Machine {
   unsigned rate = 0;
   std::string reason{};
   bool gone = false;
+  double sleeps = 0;  // [s] the thread stands still, once
+  std::atomic<bool> asleep{false};
+  int lost = 0;
 };
 
 class Terminal {
@@ -114,6 +123,35 @@ TEST(LineThread, CarriesBytesBothWaysAndLetsTheMachineLeave) {
     }));
   }
   EXPECT_EQ(terminal.receive(1), hex("FF"));
+}
+
+TEST(LineThread, WhatWaitedWhileTheProgramSleptIsThrownAway) {
+  const Terminal terminal;
+  EchoMachine machine;
+  LineThread line(terminal.path(), machine);
+  ASSERT_TRUE(wait_for([&] {
+    int openings = 0;
+    line.look([&] { openings = machine.openings; });
+    return openings == 1;
+  }));
+  terminal.send(hex("01"));
+  EXPECT_EQ(terminal.receive(1), hex("01"));
+  // GIVEN a thread that stands still for half a second WHEN bytes come meanwhile THEN nobody can
+  // say how old they are.
+  line.with([&] {
+    machine.sleeps = 0.5;
+    machine.orders.send_before(steady_now() + 0.1, ByteView(hex("EE")));
+  });
+  ASSERT_TRUE(wait_for([&] { return machine.asleep.load(); }));
+  terminal.send(hex("02 03"));
+  ASSERT_TRUE(wait_for([&] {
+    int lost = 0;
+    line.look([&] { lost = machine.lost; });
+    return lost == 1;
+  }));
+  terminal.send(hex("04"));
+  // Nor is a motion sent that was ordered before.
+  EXPECT_EQ(terminal.receive(1), hex("04"));
 }
 
 TEST(LineThread, PortThatIsNotThereIsASentenceAndWaitedFor) {

@@ -263,5 +263,32 @@ TEST_F(Lms200PartialScans, WholeScansAreNone) {
   EXPECT_FALSE(ScanDecoder({180, 100}, WordFormat{}).decode(values_of(part_frame(0, 1)), scan));
 }
 
+/// The manual's figures for scans lost between two sent: 29..30, 15 and 8, none at 500000.
+TEST(Lms200ScanPeriod, IsWhatTheLineCarries) {
+  struct Row {
+    Variant variant{};
+    unsigned baud = 0;
+    double turns = 0;
+  };
+  for (const Row& row : {Row{{180, 100}, 500'000, 1},
+                         {{180, 50}, 500'000, 2},
+                         {{180, 25}, 500'000, 4},
+                         {{100, 25}, 500'000, 4},
+                         {{180, 100}, 38400, 9},
+                         {{180, 50}, 38400, 18},
+                         {{180, 50}, 19200, 32},
+                         {{180, 100}, 9600, 31},
+                         {{180, 50}, 9600, 60}}) {
+    EXPECT_NEAR(scan_period(row.variant, row.baud), row.turns * kTurnPeriod, 1e-9) << row.baud;
+  }
+}
+
+TEST(Lms200ScanPeriod, QuartersOfADegreeNeedALineAsFastAsTheMirror) {
+  EXPECT_TRUE(carries({180, 25}, 500'000));
+  EXPECT_FALSE(carries({180, 25}, 38400));
+  EXPECT_TRUE(carries({100, 25}, 9600));
+  EXPECT_TRUE(carries({180, 50}, 9600));
+}
+
 }  // namespace
 }  // namespace drivers::lms200

@@ -26,6 +26,8 @@ class FakePioneer final : public LineDevice {
   bool motors = false;
   unsigned bumpers = 0;
   std::uint16_t x = 0;
+  std::uint8_t left_mm_s = 0;
+  std::uint8_t right_mm_s = 0;
   std::vector<Bytes> heard{};
 
   void hear(double now, ByteView bytes, unsigned at) override {
@@ -67,9 +69,9 @@ class FakePioneer final : public LineDevice {
                    0,
                    0,
                    0,
+                   left_mm_s,
                    0,
-                   0,
-                   0,
+                   right_mm_s,
                    0,
                    124,
                    static_cast<std::uint8_t>(bumpers & 0xFFU),
@@ -136,6 +138,9 @@ struct Fixture {
 
 const Bytes kVelocityZero{11, 0x3B, 0, 0};
 const Bytes kTurnZero{21, 0x3B, 0, 0};
+const Bytes kEmergencyStop{55};
+const Bytes kMotorsOff{4, 0x3B, 0, 0};
+const Bytes kClose{2};
 
 TEST(P2osMachine, IsGreetedAndOpenedWithItsMotorsOff) {
   Fixture f;
@@ -245,13 +250,91 @@ TEST(P2osMachine, SilenceIsSaidAndTheBaseFoundAgain) {
   EXPECT_EQ(f.machine.state().set_ups, 2U);
 }
 
+TEST(P2osMachine, BrakesWithTheEmergencyStopWhichIsRepeatedAsPacketsMayBeLost) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.machine.enable(f.bench.now(), true);
+  f.machine.drive(f.bench.now(), {0.05, 0});
+  f.bench.settle();
+  const auto at_once = f.told([&] { f.machine.halt(f.bench.now()); });
+  EXPECT_THAT(at_once, ::testing::ElementsAre(kEmergencyStop));
+  const auto later = f.told([&] {
+    for (int tick = 0; tick < 8; ++tick) {  // 0.4 s of ticks that are held
+      f.bench.run(0.05);
+      f.machine.halt(f.bench.now());
+      f.bench.settle();
+    }
+    // Zero from a controller is no gentler.
+    f.bench.run(0.1);
+    f.machine.drive(f.bench.now(), {});
+  });
+  EXPECT_THAT(later, ::testing::Each(kEmergencyStop));
+  EXPECT_GE(later.size(), 4U);
+  f.bench.run(0.05);
+  const auto on = f.told([&] { f.machine.drive(f.bench.now(), {0.05, 0}); });
+  ASSERT_FALSE(on.empty());
+  EXPECT_EQ(on[0], (Bytes{11, 0x3B, 50, 0}));
+}
+
+TEST(P2osMachine, MotorsGoOffOnceTheWheelsStand) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.machine.enable(f.bench.now(), true);
+  f.bench.settle();
+  f.device.left_mm_s = f.device.right_mm_s = 100;
+  f.bench.run(0.2);
+  auto told = f.told([&] { f.machine.enable(f.bench.now(), false); });
+  EXPECT_THAT(told, ::testing::ElementsAre(kEmergencyStop));
+  // Nothing moves it meanwhile.
+  told = f.told([&] { f.machine.drive(f.bench.now(), {0.1, 0}); });
+  EXPECT_THAT(told, ::testing::IsEmpty());
+  told = f.told([&] { f.bench.run(0.2); });
+  EXPECT_THAT(told, ::testing::Each(kEmergencyStop));
+  f.device.left_mm_s = f.device.right_mm_s = 0;
+  told = f.told([&] { f.bench.run(0.15); });
+  EXPECT_THAT(told, ::testing::Contains(kMotorsOff));
+  // GIVEN wheels that do not stand WHEN braking has taken too long THEN the motors go off as well.
+  f.machine.enable(f.bench.now(), true);
+  f.bench.settle();
+  f.device.left_mm_s = 100;
+  f.bench.run(0.2);
+  told = f.told([&] {
+    f.machine.enable(f.bench.now(), false);
+    f.bench.run(braking_time({}) + 0.01);
+  });
+  EXPECT_EQ(told.back(), kMotorsOff);
+  // A base that does not obey is cut off at once.
+  f.machine.enable(f.bench.now(), true);
+  f.bench.run(0.2);
+  told = f.told([&] { f.machine.cut(f.bench.now()); });
+  EXPECT_EQ(told.back(), kMotorsOff);
+}
+
 TEST(P2osMachine, LeavesItAtRestSwitchedOffAndClosed) {
   Fixture f;
   ASSERT_TRUE(f.running());
-  const auto told = f.told([&] { f.machine.leave(f.bench.now()); });
-  EXPECT_THAT(told,
-              ::testing::ElementsAre(kVelocityZero, kTurnZero, Bytes{4, 0x3B, 0, 0}, Bytes{2}));
+  auto told = f.told([&] { f.machine.leave(f.bench.now()); });
+  EXPECT_THAT(told, ::testing::ElementsAre(kEmergencyStop, kMotorsOff, kClose));
   EXPECT_TRUE(f.machine.left());
+  // One that drives has to come to rest first.
+  Fixture g;
+  ASSERT_TRUE(g.running());
+  g.machine.enable(g.bench.now(), true);
+  g.bench.settle();
+  g.device.left_mm_s = 100;
+  g.bench.run(0.2);
+  told = g.told([&] {
+    g.machine.leave(g.bench.now());
+    g.bench.run(0.15);
+  });
+  EXPECT_THAT(told, ::testing::ElementsAre(kEmergencyStop, kEmergencyStop));
+  EXPECT_FALSE(g.machine.left());
+  g.device.left_mm_s = 0;
+  told = g.told([&] { g.bench.run(0.2); });
+  ASSERT_GE(told.size(), 2U);
+  EXPECT_EQ(told[told.size() - 2], kMotorsOff);
+  EXPECT_EQ(told.back(), kClose);
+  EXPECT_TRUE(g.machine.left());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // tests/drivers/roboteq_machine_test.cpp: checking, driving and leaving a Roboteq controller.
 #include "drivers/roboteq_machine.hpp"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <string>
@@ -25,10 +26,13 @@ class FakeRoboteq final : public LineDevice {
                                                 {"MXRPM", "1000:1000"},
                                                 {"EPPR", "500:500"},
                                                 {"MAC", "20000:20000"},
-                                                {"MDEC", "20000:20000"}};
+                                                {"MDEC", "20000:20000"},
+                                                {"CLERD", "2:2"}};
   std::string counts = "0:0";
   std::string rpm = "0:0";
   std::string amperes = "0:0";
+  std::string motor_flags = "0:0";
+  bool knows_loop_error = true;
   std::string inputs = "0:0:0";
   int faults = 0;
   bool button = false;
@@ -68,6 +72,7 @@ class FakeRoboteq final : public LineDevice {
     if (name == "S") say_line("S=" + rpm);
     if (name == "FF") say_line("FF=" + std::to_string(shown));
     if (name == "FS") say_line("FS=1");
+    if (name == "FM") say_line("FM=" + motor_flags);
     if (name == "V") say_line("V=120:240:5010");
     if (name == "A") say_line("A=" + amperes);
     if (name == "DI") say_line("DI=" + inputs);
@@ -93,6 +98,9 @@ class FakeRoboteq final : public LineDevice {
       echo_ = false;
     } else if (line[0] == '^') {
       set(line);
+    } else if (!knows_loop_error && line.find("CLERD") != std::string::npos) {
+      say_line("-");
+      return;
     } else if (line[0] == '~') {
       say_line(line.substr(1) + "=" + parameters[line.substr(1)]);
       return;
@@ -266,10 +274,30 @@ TEST(RoboteqMachine, StopButtonFaultsAndCurrentAreReported) {
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("voltage too low"));
   f.device.faults = 0;
   f.device.amperes = "20:150";  // 2 A, 15 A
-  f.bench.run(0.1);
+  f.bench.run(0.15);
   EXPECT_FALSE(f.machine.state().over_current);  // a start may take that much
   f.bench.run(0.5);
   EXPECT_TRUE(f.machine.state().over_current);
+}
+
+TEST(RoboteqMachine, StalledMotorIsBelievedTheSecondTimeItIsSaid) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  EXPECT_EQ(f.device.parameters["CLERD"], "1:1");
+  f.arm();
+  f.device.motor_flags = "0:6";
+  f.bench.run(0.1);
+  EXPECT_FALSE(f.machine.state().stalled);
+  f.bench.run(0.1);
+  EXPECT_TRUE(f.machine.state().stalled);
+  EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("blocked"));
+}
+
+TEST(RoboteqMachine, ControllerWithoutLoopErrorsIsDrivenAllTheSame) {
+  Fixture f;
+  f.device.knows_loop_error = false;
+  ASSERT_TRUE(f.running());
+  EXPECT_THAT(f.machine.report(f.bench.now()).remarks, Contains(HasSubstr("^CLERD")));
 }
 
 TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
@@ -299,14 +327,58 @@ TEST(RoboteqMachine, SilenceIsSaidAndEverythingCheckedAgain) {
   EXPECT_EQ(f.device.parameters["RWD"], "500");
 }
 
+// 2 m/s2 are 20 * 60 / (2 pi 0.1) * 2 = 3819.7 rpm a second. The file's ramp: the wheel takes part
+// in 0.3 m/s2 ahead and in 1 rad/s2 of the turn, 0.55 m/s2 together.
+TEST(RoboteqMachine, BrakesWithTheSteepestRampAndDrivesWithTheFiles) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.arm();
+  f.machine.drive(f.bench.now(), {0.1, 0});
+  f.bench.settle();
+  f.device.heard.clear();
+  f.machine.halt(f.bench.now());
+  f.bench.settle();
+  EXPECT_THAT(f.device.heard, ElementsAre("!DC 1 38197", "!DC 2 38197", "!G 1 0", "!G 2 0"));
+  f.device.heard.clear();
+  f.machine.drive(f.bench.now(), {0.1, 0});
+  f.bench.settle();
+  EXPECT_THAT(f.device.heard, ElementsAre("!DC 1 10504", "!DC 2 10504", "!G 1 191", "!G 2 191"));
+}
+
+TEST(RoboteqMachine, PowerGoesOffOnceTheWheelsStand) {
+  Fixture f;
+  ASSERT_TRUE(f.running());
+  f.arm();
+  f.device.rpm = "190:190";
+  f.bench.run(0.1);
+  f.machine.enable(f.bench.now(), false);
+  f.machine.drive(f.bench.now(), {0.1, 0});  // by one who has not heard of it yet
+  f.bench.run(0.2);
+  EXPECT_THAT(f.device.heard, ::testing::Not(Contains("!G 1 191")));
+  EXPECT_EQ(std::count(f.device.heard.begin(), f.device.heard.end(), "!EX"), 1);  // of the set-up
+  f.device.rpm = "0:0";
+  f.bench.run(0.1);
+  EXPECT_EQ(std::count(f.device.heard.begin(), f.device.heard.end(), "!EX"), 2);
+  EXPECT_FALSE(f.machine.state().motors_on);
+  f.arm();
+  f.device.rpm = "190:190";
+  f.bench.run(0.1);
+  f.machine.cut(f.bench.now());
+  f.bench.settle();
+  EXPECT_EQ(f.device.heard.back(), "!EX");
+}
+
 TEST(RoboteqMachine, LeavesThePowerOff) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.arm();
   f.device.heard.clear();
   f.machine.leave(f.bench.now());
-  f.bench.settle();
-  EXPECT_THAT(f.device.heard, ElementsAre("!G 1 0", "!G 2 0", "!EX", "#"));
+  f.bench.run(0.1);
+  EXPECT_THAT(
+      f.device.heard,
+      ElementsAre(
+          "!DC 1 38197", "!DC 2 38197", "!G 1 0", "!G 2 0", "!G 1 0", "!G 2 0", "!EX", "#"));
   EXPECT_TRUE(f.machine.left());
 }
 

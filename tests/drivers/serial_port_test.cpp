@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <pty.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -170,6 +171,10 @@ TEST(SerialPort, TcpInPlaceOfAPort) {
   const int box = ::accept(listener, nullptr, nullptr);
   ASSERT_GE(box, 0);
   EXPECT_EQ(port.baud(), 0U);
+  int at_once = 0;
+  socklen_t option = sizeof(at_once);
+  ASSERT_EQ(::getsockopt(port.descriptor(), IPPROTO_TCP, TCP_NODELAY, &at_once, &option), 0);
+  EXPECT_NE(at_once, 0);
   ASSERT_EQ(::send(box, "\x02\x80", 2, 0), 2);
   EXPECT_EQ(read_all(port, 2), hex("02 80"));
   port.write(every_byte(), kLong);

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "tests/drivers/fake_robot.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,131 +20,8 @@ namespace {
 using algo::Halt;
 using ::testing::HasSubstr;
 
-constexpr double kPeriod = 0.05;
-
-class FakeClock final : public Clock {
- public:
-  explicit FakeClock(double& time) : time_(time) {}
-  double now() override { return time_; }
-  void sleep_until(double time) override { time_ = std::max(time_, time); }
-
- private:
-  double& time_;
-};
-
-/// A scan every 26.6 ms while it runs.
-class FakeScanner final : public Scanner {
- public:
-  explicit FakeScanner(double& time) : time_(time) {}
-  bool silent = false;
-  bool bad_line = false;
-  bool faulty = false;
-
-  bool take(algo::LaserScan& scan) override {
-    if (silent) return false;
-    last_ = time_;
-    scan.stamp = time_ - 0.01;
-    scan.range_max = 8.191;
-    scan.resize(3);
-    for (std::size_t i = 0; i < 3; ++i) scan.set_ok(i, 1.0);
-    return true;
-  }
-  ScannerState state() override {
-    if (!silent) last_ = time_;
-    return {.running = true,
-            .last_scan = last_,
-            .period = 0.0266,
-            .bad_line = bad_line,
-            .faulty = faulty};
-  }
-  DeviceReport report() override {
-    return {.name = "front laser", .port = "/dev/test", .well = !silent, .sentence = "Silent."};
-  }
-
- private:
-  double& time_;
-  double last_ = 0;
-};
-
-class FakeBase final : public Base {
- public:
-  explicit FakeBase(double& time) : time_(time) {
-    now.running = true;
-    now.set_ups = 1;
-  }
-  BaseState now{};
-  bool silent = false;
-  bool motors_work = true;
-  algo::Twist2 commanded{};
-  int commands = 0;
-
-  void enable(bool on) override { now.motors_on = on && motors_work; }
-  void drive(const algo::Twist2& twist) override {
-    commanded = twist;
-    ++commands;
-  }
-  void stop() noexcept override { commanded = {}; }
-  BaseState state() override {
-    if (!silent) now.stamp = time_;
-    return now;
-  }
-  double watchdog() const override { return 0.5; }
-  DeviceReport report() override {
-    return {.name = "base", .port = "/dev/base", .well = !silent, .sentence = "No answer."};
-  }
-
- private:
-  double& time_;
-};
-
-RobotFile file() {
-  RobotFile out;
-  out.spec.name = "test";
-  out.spec.period = kPeriod;
-  out.spec.radius = 0.3;
-  out.spec.drives = true;
-  out.lasers.push_back({.name = "front laser", .port = "/dev/test", .mount_R = {0.2, 0, 0}});
-  out.base.battery_low = 11;
-  return out;
-}
-
-struct Fixture {
-  Fixture() {
-    auto own_scanner = std::make_unique<FakeScanner>(time);
-    auto own_base = std::make_unique<FakeBase>(time);
-    scanner = own_scanner.get();
-    base = own_base.get();
-    std::vector<std::unique_ptr<Scanner>> scanners;
-    scanners.push_back(std::move(own_scanner));
-    robot = std::make_unique<SerialRobot>(
-        file(), std::move(scanners), std::move(own_base), std::make_unique<FakeClock>(time));
-    robot->reset(seen);
-  }
-  Fixture(const Fixture&) = delete;
-  Fixture& operator=(const Fixture&) = delete;
-
-  void step(double v = 0.05, double omega = 0) { robot->step({{v, omega}}, seen); }
-  void steps(double seconds, double v = 0.05) {
-    for (const double until = time + seconds; time < until;) step(v);
-  }
-  void arm() {
-    step();
-    ASSERT_EQ(robot->arm(), std::nullopt);
-    step();
-    step();
-  }
-  bool moves() const { return base->commanded != algo::Twist2{}; }
-  bool armed() const { return robot->report().armed; }
-
-  double time = 500;
-  FakeScanner* scanner = nullptr;
-  FakeBase* base = nullptr;
-  std::unique_ptr<SerialRobot> robot{};
-  algo::Observation seen{};
-};
-
 TEST(SerialRobot, DoesNotMoveUntilItIsArmed) {
-  Fixture f;
+  FakeRobot f;
   f.steps(1);
   EXPECT_FALSE(f.moves());
   EXPECT_EQ(f.seen.halt, Halt::Disarmed);
@@ -157,22 +33,35 @@ TEST(SerialRobot, DoesNotMoveUntilItIsArmed) {
 }
 
 TEST(SerialRobot, CommandsTheBaseOncePerTickAndNeverBetween) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   const int before = f.base->commands;
   f.steps(1);
   EXPECT_EQ(f.base->commands - before, 20);
 }
 
+TEST(SerialRobot, StopBrakesAsInAnEmergencyAndAZeroSpeedIsAnOrdinaryCommand) {
+  FakeRobot f;
+  f.arm();
+  const int before = f.base->brakes;
+  f.step(0);
+  EXPECT_EQ(f.base->brakes, before);
+  f.robot->stop();
+  EXPECT_EQ(f.base->brakes, before + 1);
+  // WHEN the gate lets go THEN the robot drives on: Stop is no fault.
+  f.step();
+  EXPECT_TRUE(f.moves());
+}
+
 TEST(SerialRobot, LimitsHold) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.step(3, -9);
   EXPECT_EQ(f.base->commanded, (algo::Twist2{0.1, -0.5}));
 }
 
 TEST(SerialRobot, ObservationIsOnTheRunClockAndFromTheStart) {
-  Fixture f;
+  FakeRobot f;
   f.base->now.pose = {1, 2, 0.5};
   f.robot->reset(f.seen);
   EXPECT_EQ(f.seen.stamp, 0);
@@ -189,7 +78,7 @@ TEST(SerialRobot, ObservationIsOnTheRunClockAndFromTheStart) {
 }
 
 TEST(SerialRobot, PoseIsOfTheTickThoughTheReportIsOlder) {
-  Fixture f;
+  FakeRobot f;
   f.base->now.twist = {0.1, 0.5};
   f.step();
   EXPECT_EQ(f.seen.odometry.pose, algo::Pose2{});
@@ -204,7 +93,7 @@ TEST(SerialRobot, PoseIsOfTheTickThoughTheReportIsOlder) {
 }
 
 TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.scanner->silent = true;
   const double silent_at = f.time;
@@ -218,8 +107,28 @@ TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
   EXPECT_TRUE(f.moves());
 }
 
+TEST(SerialRobot, SilentScannerOfAnyRateStopsItInTimeAndOneThatIsLateDoesNot) {
+  for (const double period : {0.01332, 0.0266, 0.12, 0.24, 0.8}) {
+    FakeRobot f;
+    f.scanner->period = period;
+    f.arm();
+    // A gap of one period and what a USB chip keeps is no silence.
+    f.scanner->silent = true;
+    f.steps(std::floor((period + SerialRobot::kArrivalJitter) / kPeriod) * kPeriod);
+    EXPECT_TRUE(f.moves()) << period;
+    f.scanner->silent = false;
+    f.step();
+    f.scanner->silent = true;
+    const double silent_at = f.time;
+    while (f.moves() && f.time < silent_at + 3) f.step();
+    // The zero leaves at the beginning of the last of these steps.
+    EXPECT_LE(f.time - kPeriod - silent_at, blind_time(period)) << period;
+    EXPECT_EQ(f.seen.halt, Halt::ScannerLost) << period;
+  }
+}
+
 TEST(SerialRobot, WhatLastsLongDisarms) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.scanner->silent = true;
   f.steps(SerialRobot::kRearm + 0.5);
@@ -233,16 +142,19 @@ TEST(SerialRobot, WhatLastsLongDisarms) {
 }
 
 TEST(SerialRobot, EveryFaultStopsInTheTickThatSeesIt) {
-  const std::vector<std::pair<Halt, std::function<void(Fixture&)>>> faults{
-      {Halt::StopButton, [](Fixture& f) { f.base->now.stop_button = true; }},
-      {Halt::BaseFault, [](Fixture& f) { f.base->now.faulty = true; }},
-      {Halt::OverCurrent, [](Fixture& f) { f.base->now.over_current = true; }},
-      {Halt::BaseLost, [](Fixture& f) { f.base->now.running = false; }},
-      {Halt::MotorsOff, [](Fixture& f) { f.base->now.motors_on = false; }},
-      {Halt::BadLine, [](Fixture& f) { f.scanner->bad_line = true; }},
-      {Halt::ScannerFault, [](Fixture& f) { f.scanner->faulty = true; }}};
+  const std::vector<std::pair<Halt, std::function<void(FakeRobot&)>>> faults{
+      {Halt::StopButton, [](FakeRobot& f) { f.base->now.stop_button = true; }},
+      {Halt::BaseFault, [](FakeRobot& f) { f.base->now.faulty = true; }},
+      {Halt::OverCurrent, [](FakeRobot& f) { f.base->now.over_current = true; }},
+      {Halt::OverCurrent, [](FakeRobot& f) { f.base->now.stalled = true; }},
+
+      {Halt::BaseLost, [](FakeRobot& f) { f.base->now.running = false; }},
+      {Halt::MotorsOff, [](FakeRobot& f) { f.base->now.motors_on = false; }},
+      {Halt::BadLine, [](FakeRobot& f) { f.scanner->bad_line = true; }},
+      {Halt::ScannerFault, [](FakeRobot& f) { f.scanner->faulty = true; }},
+      {Halt::ScannerFault, [](FakeRobot& f) { f.scanner->blinded = true; }}};
   for (const auto& [halt, inject] : faults) {
-    Fixture f;
+    FakeRobot f;
     f.arm();
     ASSERT_TRUE(f.moves());
     inject(f);
@@ -255,8 +167,42 @@ TEST(SerialRobot, EveryFaultStopsInTheTickThatSeesIt) {
   }
 }
 
+TEST(SerialRobot, WheelsThatTurnWithoutACommandAreCutOff) {
+  FakeRobot f;
+  f.arm();
+  for (int i = 0; i < 20; ++i) f.step(0);
+  EXPECT_TRUE(f.armed());
+  const double began = f.time;
+  f.base->now.twist = {2 * 0.1, 0};
+  while (f.armed() && f.time < began + 4) f.step(0);
+  EXPECT_LE(f.time - began, 0.3);
+  EXPECT_EQ(f.base->cuts, 1);
+  EXPECT_THAT(f.robot->report().trouble, HasSubstr("does not turn as told"));
+  // Pushed without power it is left alone.
+  f.steps(5);
+  EXPECT_EQ(f.base->cuts, 1);
+  f.base->now.twist = {};
+  f.arm();
+  EXPECT_TRUE(f.armed());
+}
+
+TEST(SerialRobot, BaseWithoutAProperWatchdogIsNotArmed) {
+  FakeRobot f;
+  f.step();
+  f.base->now.watchdog = 0;
+  EXPECT_THAT(*f.robot->arm(), HasSubstr("watchdog is off"));
+  f.base->now.watchdog = 0.1;
+  EXPECT_THAT(*f.robot->arm(), HasSubstr("three times within"));
+  f.base->now.watchdog = 25;  // 2.5 m at 0.1 m/s
+  EXPECT_THAT(*f.robot->arm(), HasSubstr("go on for 2.5 m"));
+  f.base->now.watchdog = 2;
+  EXPECT_EQ(f.robot->arm(), std::nullopt);
+  EXPECT_THAT(f.robot->report().warnings,
+              ::testing::Contains(HasSubstr("says that its watchdog is 2.00 s")));
+}
+
 TEST(SerialRobot, StateOfTheBaseMustNotBeOld) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.base->silent = true;
   const double silent_at = f.time;
@@ -266,7 +212,7 @@ TEST(SerialRobot, StateOfTheBaseMustNotBeOld) {
 }
 
 TEST(SerialRobot, BaseThatWasSetUpAnewHasToBeArmedAgain) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   ++f.base->now.set_ups;
   f.step();
@@ -275,7 +221,7 @@ TEST(SerialRobot, BaseThatWasSetUpAnewHasToBeArmedAgain) {
 }
 
 TEST(SerialRobot, BatteryMaySagButNotStayLow) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.base->now.volts = 10;
   f.steps(2);
@@ -285,19 +231,42 @@ TEST(SerialRobot, BatteryMaySagButNotStayLow) {
   EXPECT_THAT(f.robot->report().trouble, HasSubstr("battery"));
 }
 
-TEST(SerialRobot, BumperAllowsOnlyTheWayBack) {
-  Fixture f;
+TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
+  FakeRobot f;
   f.arm();
   f.base->now.bumper_front = true;
   f.step(0.05, 0.2);
   EXPECT_FALSE(f.moves());
   EXPECT_TRUE(f.seen.bumper_pressed());
+  EXPECT_FALSE(f.armed());
+  EXPECT_THAT(f.robot->report().trouble, HasSubstr("touched something"));
+  // Free again, it does not go on by itself.
+  f.base->now.bumper_front = false;
+  f.steps(1);
+  EXPECT_FALSE(f.moves());
+  // Whoever arms it with the bumper pressed knows.
+  f.base->now.bumper_front = true;
+  f.arm();
+  f.step(0.05, 0.2);
+  EXPECT_FALSE(f.moves());
   f.step(-0.05, 0.2);
   EXPECT_EQ(f.base->commanded, (algo::Twist2{-0.05, 0}));
+  EXPECT_TRUE(f.armed());
+  // WHEN it has been free for a while THEN the next touch counts; one of the other bumper at once.
+  f.base->now.bumper_front = false;
+  f.steps(1);
+  EXPECT_TRUE(f.moves());
+  f.base->now.bumper_front = true;
+  f.step();
+  EXPECT_FALSE(f.armed());
+  f.arm();
+  f.base->now.bumper_rear = true;
+  f.step(-0.05);
+  EXPECT_FALSE(f.armed());
 }
 
 TEST(SerialRobot, CommandThatComesTooLateIsNone) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.time += 0.4;  // the control loop was elsewhere
   f.step();
@@ -308,8 +277,38 @@ TEST(SerialRobot, CommandThatComesTooLateIsNone) {
   EXPECT_TRUE(f.moves());
 }
 
+TEST(SerialRobot, ProgramThatSleptFindsItselfLateAndDisarms) {
+  // Anywhere in its tick: before its deadline, or while it decides.
+  for (const bool asleep : {true, false}) {
+    FakeRobot f;
+    f.arm();
+    ASSERT_TRUE(f.moves());
+    if (asleep) f.clock->oversleep = 2;
+    f.step();
+    if (!asleep) f.time += 2;
+    f.step();
+    EXPECT_FALSE(f.moves());
+    EXPECT_FALSE(f.armed());
+    EXPECT_THAT(f.robot->report().trouble, HasSubstr("stood still for 2."));
+    f.steps(5);
+    EXPECT_FALSE(f.moves());
+    f.arm();
+    EXPECT_TRUE(f.moves());
+  }
+}
+
+TEST(SerialRobot, LateCommandIsTakenBackEvenWhenItWasOnItsWay) {
+  FakeRobot f;
+  f.arm();
+  const int brakes = f.base->brakes;
+  f.base->write_takes = 0.4;
+  f.step();
+  EXPECT_FALSE(f.moves());
+  EXPECT_EQ(f.base->brakes, brakes + 1);
+}
+
 TEST(SerialRobot, LatenessOfLessThanAPeriodDelaysNoDeadline) {
-  Fixture f;
+  FakeRobot f;
   for (int i = 0; i < 10; ++i) {
     f.time += 0.02;  // work within the period
     f.step();
@@ -320,7 +319,7 @@ TEST(SerialRobot, LatenessOfLessThanAPeriodDelaysNoDeadline) {
 }
 
 TEST(SerialRobot, ResetAndStopDoNotLeaveItArmed) {
-  Fixture f;
+  FakeRobot f;
   f.arm();
   f.robot->reset(f.seen);
   EXPECT_FALSE(f.armed());
@@ -329,7 +328,7 @@ TEST(SerialRobot, ResetAndStopDoNotLeaveItArmed) {
 }
 
 TEST(SerialRobot, IsNotArmedWhileSomethingIsWrong) {
-  Fixture f;
+  FakeRobot f;
   f.scanner->silent = true;
   f.steps(1);
   const auto refusal = f.robot->arm();
@@ -338,7 +337,7 @@ TEST(SerialRobot, IsNotArmedWhileSomethingIsWrong) {
 }
 
 TEST(SerialRobot, MotorsThatDoNotComeOnDisarm) {
-  Fixture f;
+  FakeRobot f;
   f.base->motors_work = false;
   f.step();
   ASSERT_EQ(f.robot->arm(), std::nullopt);
@@ -349,7 +348,7 @@ TEST(SerialRobot, MotorsThatDoNotComeOnDisarm) {
 }
 
 TEST(SerialRobot, ObstaclesCannotBeEdited) {
-  Fixture f;
+  FakeRobot f;
   EXPECT_TRUE(f.robot->edit(algo::AddObstacle{}));
   EXPECT_FALSE(f.robot->edit(algo::Stop{true}));
 }

@@ -4,127 +4,17 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/drivers/line_bench.hpp"
+#include "tests/drivers/emulated_laser.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "drivers/emulators/lms200_emulator.hpp"
 #include "drivers/emulators/p2os_emulator.hpp"
 #include "drivers/emulators/roboteq_emulator.hpp"
-#include "drivers/lms200_machine.hpp"
 #include "drivers/p2os_machine.hpp"
 #include "drivers/roboteq_machine.hpp"
 
 namespace drivers {
 namespace {
-
-using emulators::misread;
-
-/// An emulated device as the bench wants one.
-class Emulated : public LineDevice {
- public:
-  explicit Emulated(emulators::Device& device) : device_(device) {}
-
-  void hear(double now, ByteView bytes, unsigned baud) override {
-    if (baud == device_.baud()) {
-      device_.receive(bytes, now);
-    } else {
-      const Bytes garbled = misread(bytes, baud, device_.baud());
-      device_.receive(ByteView(garbled), now);
-    }
-  }
-  Bytes say(double now, unsigned host_baud) override {
-    device_.advance(now);
-    live(now);
-    Bytes all;
-    for (;;) {
-      Bytes bytes;
-      const unsigned baud = device_.send(now, bytes);
-      if (bytes.empty()) return all;
-      append(all, baud == host_baud ? bytes : misread(ByteView(bytes), baud, host_baud));
-    }
-  }
-
- protected:
-  /// What the world does to it meanwhile.
-  virtual void live(double /*now*/) {}
-
- private:
-  emulators::Device& device_;
-};
-
-/// A room in which every beam of a sweep meets something else.
-class EmulatedLaser final : public Emulated {
- public:
-  explicit EmulatedLaser(lms200::Emulator& emulator) : Emulated(emulator), emulator_(emulator) {}
-
-  static double range_at(double bearing) { return std::round(3000 + 1000 * bearing) / 1000; }
-
- protected:
-  void live(double now) override {
-    const lms200::Sweep& sweep = emulator_.sweep();
-    const bool parts = !sweep.parts.empty();
-    const double period = lms200::kTurnPeriod * (parts ? 1 : sweep.variant.turns());
-    if (now < next_) return;
-    next_ = std::max(next_ + period, now);
-    algo::LaserScan scan;
-    scan.range_max = 8.191;
-    scan.angle_increment = 0.25 * std::numbers::pi / 180;
-    scan.angle_min = -std::numbers::pi / 2;
-    scan.resize(721);
-    for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, range_at(scan.angle(i)));
-    if (parts) {
-      emulator_.offer(scan, now, sweep.parts[turn_++ % sweep.parts.size()]);
-    } else {
-      emulator_.offer(scan, now);
-    }
-  }
-
- private:
-  lms200::Emulator& emulator_;
-  double next_ = 0;
-  std::size_t turn_ = 0;
-};
-
-struct Laser {
-  explicit Laser(const lms200::EmulatorOptions& options, const lms200::LaserSetup& setup = {})
-      : emulator(options), device(emulator), machine(setup), bench(machine, device) {
-    emulator.on_scan = [this](const lms200::SentScan& sent) {
-      using Fate = lms200::SentScan::Fate;
-      if (sent.fate == Fate::Sent) ++intact;
-      if (sent.fate == Fate::Damaged) ++damaged;
-    };
-    bench.open();
-  }
-  Laser(const Laser&) = delete;
-  Laser& operator=(const Laser&) = delete;
-
-  bool running(double seconds) {
-    return bench.run_until(seconds, [&] { return machine.stage() == lms200::Stage::Running; });
-  }
-  /// Every beam of the next scan as the world has it, to the millimetre.
-  void expect_room(std::size_t beams) {
-    algo::LaserScan scan;
-    ASSERT_TRUE(bench.run_until(5, [&] { return machine.take(scan); }));
-    ASSERT_EQ(scan.size(), beams);
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      ASSERT_NEAR(scan.ranges[i], EmulatedLaser::range_at(scan.angle(i)), 1e-9) << i;
-    }
-  }
-  std::uint64_t intact = 0;
-  std::uint64_t damaged = 0;
-  lms200::Emulator emulator;
-  EmulatedLaser device;
-  lms200::LaserMachine machine;
-  LineBench bench;
-};
-
-lms200::LaserSetup setup(unsigned baud, lms200::Variant variant = {180, 50}) {
-  lms200::LaserSetup out;
-  out.baud = baud;
-  out.variant = variant;
-  return out;
-}
 
 TEST(WithEmulators, ScansArriveToTheMillimetreInEveryVariant) {
   for (const lms200::Variant variant :
@@ -230,11 +120,11 @@ class EmulatedBase final : public Emulated {
   void live(double now) override {
     const double dt = last_ > 0 ? now - last_ : 0;
     last_ = now;
-    motion = base_.drive(now);
+    motion = base_.turn(now);
     senses.left_travel += motion.left * dt;
     senses.right_travel += motion.right * dt;
     senses.motion = motion;
-    base_.feel(senses, now);
+    base_.sense(senses, now);
   }
 
  private:
@@ -338,6 +228,80 @@ void check_base(Rig& rig) {
   rig.emulator.restart(rig.bench.now(), 2);
   ASSERT_TRUE(rig.bench.run_until(30, [&] { return rig.machine.state().set_ups == 2; }));
   EXPECT_FALSE(rig.machine.state().motors_on);
+}
+
+/// Brakes from 0.3 m/s on a driving ramp of 0.3 m/s2, which would take 0.15 m.
+template <class Rig>
+void check_braking(Rig& rig) {
+  ASSERT_TRUE(rig.ready());
+  ASSERT_TRUE(rig.arm());
+  rig.drive({0.3, 0}, 4);
+  ASSERT_NEAR(rig.device.motion.left, 0.3, 0.01);
+  const double before = rig.travel();
+  for (int tick = 0; tick < 20; ++tick) {
+    rig.machine.halt(rig.bench.now());
+    rig.bench.settle();
+    rig.bench.run(0.05);
+  }
+  EXPECT_EQ(rig.device.motion.left, 0);
+  EXPECT_LE(rig.travel() - before, 0.3 * 0.3 / (2 * kEmergencyDeceleration) + 0.3 * 0.05);
+  // The motors are still on, and the driving ramp is the file's again.
+  rig.drive({0.3, 0}, 4);
+  EXPECT_NEAR(rig.device.motion.left, 0.3, 0.01);
+  rig.drive({}, 0.5);
+  EXPECT_GT(rig.device.motion.left, 0.1);
+  // Switched off while it drives: it brakes first, and then nothing has power.
+  rig.drive({0.3, 0}, 4);
+  rig.machine.enable(rig.bench.now(), false);
+  rig.bench.run(0.05);
+  EXPECT_TRUE(rig.emulator.powered());
+  rig.bench.run(1);
+  EXPECT_FALSE(rig.emulator.powered());
+  EXPECT_EQ(rig.device.motion.left, 0);
+}
+
+BaseLimits gentle() {
+  return {.speed = 0.3, .turn = 1.0, .acceleration = 0.3, .turn_acceleration = 1.0};
+}
+
+TEST(WithEmulators, PioneerBrakesWithItsEmergencyRamp) {
+  p2os::PioneerSetup setup = pioneer();
+  setup.limits = gentle();
+  Driven<p2os::Emulator, p2os::PioneerMachine> rig(setup, std::type_identity<p2os::PioneerSetup>());
+  check_braking(rig);
+}
+
+TEST(WithEmulators, RoboteqBrakesWithItsEmergencyRamp) {
+  roboteq::RoboteqSetup setup = roboteq_setup();
+  setup.limits = gentle();
+  setup.limits.turn_acceleration = 0.01;  // its ramps are of the wheels, and a turn's part adds up
+  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
+      setup, std::type_identity<roboteq::RoboteqSetup>());
+  check_braking(rig);
+}
+
+TEST(WithEmulators, PioneerTellsItsWatchdog) {
+  Driven<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
+                                                   std::type_identity<p2os::PioneerSetup>());
+  ASSERT_TRUE(rig.ready());
+  rig.bench.run(1);
+  ASSERT_TRUE(rig.machine.state().watchdog);
+  EXPECT_DOUBLE_EQ(*rig.machine.state().watchdog, 2.0);
+}
+
+TEST(WithEmulators, BlockedWheelOfARoboteqIsReportedWhateverTheCurrent) {
+  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
+      roboteq_setup(), std::type_identity<roboteq::RoboteqSetup>());
+  ASSERT_TRUE(rig.ready());
+  EXPECT_THAT(rig.machine.report(rig.bench.now()).remarks,
+              ::testing::Contains(::testing::HasSubstr("^CLERD was set")));
+  ASSERT_TRUE(rig.arm());
+  rig.drive({0.2, 0}, 2);
+  EXPECT_FALSE(rig.machine.state().stalled);
+  rig.emulator.trouble.blocked = true;
+  rig.drive({0.2, 0}, 0.5);
+  EXPECT_TRUE(rig.machine.state().stalled);
+  EXPECT_THAT(rig.machine.report(rig.bench.now()).sentence, ::testing::HasSubstr("blocked"));
 }
 
 TEST(WithEmulators, PioneerIsDrivenAndStops) {
