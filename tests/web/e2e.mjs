@@ -123,6 +123,7 @@ test("two pages at once: the last writer wins and both see it", { timeout: 60_00
   with_page({ scenario: "case1" }, async (p, { base }) => {
     const q = await open(browser, base, { theme: "light" });
     const value = async (page, id) => Number(await page.get(id).inputValue());
+    for (const page of [p, q]) await page.page.keyboard.press("g");
     for (const [writer, x] of [[p, 2], [q, 2.5]]) {
       await writer.get("goal-x").fill(String(x));
       await writer.get("goal-set").click();
@@ -144,9 +145,19 @@ test("the page comes back by itself after the server was away", { timeout: 90_00
   await server.stop("SIGKILL");
   const words = await until("it is said", 15, () => p.page.locator('[data-testid="banner"]').textContent().catch(() => ""));
   assert.match(words, /Connection lost\. Trying/);
+  // What is drawn is grey and says its age, which grows; a Stop says that it did not get through.
+  const age = async () => Number((await p.get("stale").textContent()).match(/([\d.]+) s/)[1]);
+  const first = await age();
+  await until("the age grows", 10, age, (seconds) => seconds > first + 1);
+  await p.get("stop").click();
+  assert.match(await p.get("stop-alarm").textContent({ timeout: 3000 }), /Stop did NOT reach the robot/);
   await p.shot("drive-disconnected");
   server = await serve({ database: place.database, port: server.port });
   await p.page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
+  // The Stop that failed is sent until it arrives.
+  await until("the Stop arrived", 15, () => json(server.base, "/session"), (s) => s.stop);
+  await p.get("stop-alarm").waitFor({ state: "detached" });
+  assert.equal(await p.page.locator('[data-testid="stale"]').count(), 0);
   await until("frames again", 15, () => p.get("link").textContent(), (w) => /[1-9]\d* frames/.test(w));
   // The run that was cut is marked so.
   const runs = await json(server.base, "/runs");
@@ -160,7 +171,14 @@ test("the page comes back by itself after the server was away", { timeout: 90_00
 test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1", size: phone, touch: true }, async (p, { base }) => {
     const at = await p.pixels(1.0, 4.0);
+    // At rest a tap sets no goal; the goal tool is one press away.
+    const { goal } = await json(base, "/session");
     await p.page.touchscreen.tap(at.x, at.y);
+    await p.page.waitForTimeout(400);
+    assert.deepEqual((await json(base, "/session")).goal, goal);
+    await p.get("goal-hint").getByRole("button").click();
+    const there = await p.pixels(1.0, 4.0);
+    await p.page.touchscreen.tap(there.x, there.y);
     await until("the goal", 10, () => json(base, "/session"), (s) => s.goal && near(s.goal.x, 1, 0.06) && near(s.goal.y, 4, 0.06));
     const wide = await p.page.evaluate(() => document.documentElement.scrollWidth);
     assert.ok(wide <= phone.width, `the page is ${wide} px wide`);

@@ -99,6 +99,20 @@ test("what cannot be asked for is refused in words, not sent", () => {
   assert.deepEqual([...done, ...box.done], ["refused goal", "refused obstacle"]);
 });
 
+test("at rest a drag moves the view, a press shows what is there, and nothing is asked for", () => {
+  const { done, view, drag, scene } = hands("pan");
+  scene.goal = { x: 1, y: 1, heading: null };
+  drag([100, 100], [102, 101]); // a tap on nothing
+  drag([600, 200], [602, 201]); // on the obstacle
+  drag([500, 200], [501, 200]); // on the goal
+  assert.deepEqual(done, ["select nothing", "select obstacle", "select goal"]);
+  assert.ok(view.fitted, "a press leaves the view as it is");
+  drag([600, 200], [700, 200]); // from the obstacle: it stays
+  drag([500, 200], [300, 200]); // and so does the goal
+  assert.equal(done.length, 3);
+  assert.equal(view.fitted, false);
+});
+
 test("the right button pans and asks for nothing", () => {
   const { done, view, drag } = hands("goal");
   drag([400, 300], [500, 250], 2); // the world goes right and up, so the middle goes left and down

@@ -99,6 +99,39 @@ test("every channel speaks as its schema says", { timeout: 90_000 }, () => with_
   client.close();
 }));
 
+test("a viewer who connects at rest sees the scene", { timeout: 60_000 }, () => with_server(async ({ base }) => {
+  const goal = { type: "set_goal", x: 3, y: 3 };
+  await json(base, "/session/requests", { method: "POST", body: JSON.stringify(goal) });
+  await until("some way", 20, () => json(base, "/session"), (s) => s.tick > 40);
+  await json(base, "/session/control", { method: "POST", body: JSON.stringify({ action: "pause" }) });
+  const still = await until("rest", 10, async () => {
+    const before = await json(base, "/session");
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    const now = await json(base, "/session");
+    return before.tick === now.tick ? now : null;
+  });
+  // Twice: the second viewer finds the channels encoded for the first.
+  for (let viewer = 0; viewer < 2; ++viewer) {
+    const { client, seen } = await connect(base);
+    const got = new Map();
+    let clock = null;
+    client.on("time", ({ timestamp }) => (clock = timestamp));
+    const topics = new Map([...seen.channels.values()].map((c) => [client.subscribe(c.id), c]));
+    client.on("message", ({ subscriptionId, data, timestamp }) => {
+      const { topic, encoding } = topics.get(subscriptionId);
+      got.set(topic, { timestamp, value: encoding === "json" ? JSON.parse(new TextDecoder().decode(data)) : data });
+    });
+    await until(`the newest of every channel, viewer ${viewer}`, 10, () => kTopics.filter((t) => !got.has(t)), (none) => none.length === 0);
+    assert.ok(got.get("/scan").value.ranges.length > 300, "a scan");
+    assert.ok(got.get("/strip").value.entities.length > 0, "the strip");
+    const pose = got.get("/odom").value.pose.position;
+    assert.ok(Math.hypot(pose.x - still.pose.x, pose.y - still.pose.y) < 1e-6, "where the robot stands");
+    assert.ok(got.get("/trajectory").value.poses.length > 1, "the way it came");
+    assert.equal(got.get("/tf").timestamp, BigInt(Math.floor(still.stamp * 1e9)));
+    if (viewer === 1) client.close();
+  }
+}));
+
 test("a goal, a gain and a reset from outside", { timeout: 60_000 }, () => with_server(async ({ base }) => {
   const { client, seen, service } = await connect(base);
   // A goal as viewers publish it: PoseStamped, heading 90 degrees.

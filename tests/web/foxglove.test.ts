@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { kBackoff, LinkStatus, LiveLink, SocketLike } from "../../web/src/link/live";
 import { parse_binary, parse_text, service_request } from "../../web/src/link/foxglove";
 import { Frame } from "../../web/src/link/frame";
+import { hand_wound } from "./timers";
 import { frame_bytes } from "./wire";
 
 const hex = (text: string) => Uint8Array.from(text.match(/../g)!.map((b) => parseInt(b, 16))).buffer as ArrayBuffer;
@@ -42,29 +43,6 @@ test("a service request is laid out as the protocol says", () => {
   assert.equal(Buffer.from(service_request(1, 258, {})).toString("hex"),
     "02" + "01000000" + "02010000" + "04000000" + "6a736f6e" + "7b7d");
 });
-
-/** Timers that go by when told to; put back by `restore`. */
-function hand_wound() {
-  const kept = { setTimeout, clearTimeout, setInterval, clearInterval };
-  const waiting = new Map<number, { at: number; act: () => void }>();
-  let now = 0;
-  let next = 1;
-  Object.assign(globalThis, {
-    setTimeout: (act: () => void, ms = 0) => (waiting.set(next, { at: now + ms, act }), next++),
-    clearTimeout: (id: number) => waiting.delete(id),
-    setInterval: () => 0, // the heartbeat is not wanted here
-    clearInterval: () => undefined,
-  });
-  return {
-    tick(ms: number) {
-      now += ms;
-      for (const [id, timer] of [...waiting]) {
-        if (timer.at <= now && waiting.delete(id)) timer.act();
-      }
-    },
-    restore: () => Object.assign(globalThis, kept),
-  };
-}
 
 class FakeSocket implements SocketLike {
   binaryType = "";

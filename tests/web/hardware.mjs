@@ -1,42 +1,10 @@
 // tests/web/hardware.mjs: the page on a robot whose scanner and base are emulated: arming, trouble in
 // words, Stop, and all of it within reach on a phone.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { existsSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
 import { test } from "node:test";
+import { devices } from "./devices.mjs";
 import { desktop, launch, open, phone } from "./page.mjs";
-import { binary, json, scratch, serve, until } from "./program.mjs";
-
-/** The devices on pseudo-terminals in `folder`, and the robot's file beside them. */
-async function devices(folder) {
-  const emulator = spawn(binary, ["emulate", "robot", "--scenario", "demo", "--links", folder],
-    { stdio: ["pipe", "ignore", "inherit"] });
-  const there = () => existsSync(join(folder, "scanner")) && existsSync(join(folder, "base"));
-  await until("the emulated devices", 20, async () => there(), (yes) => yes);
-  const file = join(folder, "robot.toml");
-  writeFileSync(file, `name = "emulated"
-period = 0.026
-[hull]
-radius = 0.35
-[limits]
-speed = 0.1
-[[laser]]
-name = "front laser"
-port = "${folder}/scanner"
-rate = 500000
-[base]
-type = "roboteq"
-port = "${folder}/base"
-track = 0.5
-watchdog = 0.5
-wheel_radius = 0.1
-gear = 20
-encoder_lines = 500
-full_speed_rpm = 1000
-`);
-  return { file, tell: (line) => emulator.stdin.write(`${line}\n`), end: () => emulator.kill() };
-}
+import { json, scratch, serve, until } from "./program.mjs";
 
 /** Every button of the header and the hardware bar lies within the window. */
 async function within_reach(p, size) {
@@ -71,8 +39,10 @@ test("emulated hardware: arm, drive, a silent scanner, the stop button, Stop", {
 
       await p.get("arm").click();
       await words("armed", /may move/);
-      await json(server.base, "/session/goal", { method: "PUT", headers: { "Content-Type": "application/json" },
-        body: JSON.stringify({ x: 3, y: -1 }) });
+      await p.get("tool-goal").click();
+      const at = await p.pixels(3, -1);
+      await p.page.mouse.click(at.x, at.y);
+      await p.get("go").click();
       await until("wheels that turn", 20, way, (metres) => metres > 0.01);
 
       robot.tell("scanner silence 2");

@@ -18,11 +18,15 @@ export function scratch() {
   return { folder, database: join(folder, "runs.db"), remove: () => rmSync(folder, { recursive: true, force: true }) };
 }
 
-/** `tautline serve` on a free port (or `port`), once it has said its address; `scenario` null: none. */
-export async function serve({ database, scenario = "case1", port = 0, more = [] }) {
+/**
+ * `tautline serve` on a free port (or `port`), once it has said its address; `scenario` null: none.
+ * `limit`: what the shell is told first, such as "ulimit -f 400".
+ */
+export async function serve({ database, scenario = "case1", port = 0, more = [], limit = ":" }) {
   const args = ["serve", "--port", String(port), "--db", database, ...more];
   if (scenario) args.push("--scenario", scenario);
-  const child = spawn(binary, args, { stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn("bash", ["-c", `${limit}; exec "$0" "$@"`, binary, ...args],
+    { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
   const address = await new Promise((resolve, reject) => {
     const late = setTimeout(() => reject(new Error(`no address within 20 s; it said:\n${said}`)), 20_000);
@@ -46,13 +50,16 @@ export async function serve({ database, scenario = "case1", port = 0, more = [] 
     port: Number(url.port),
     pid: child.pid,
     said: () => said,
-    /** Rejects when the program has ended before it was told to. */
+    /** Closes the pipes that the program speaks into. */
+    hang_up: () => [child.stdout, child.stderr].forEach((stream) => stream.destroy()),
+    kill: () => child.kill("SIGKILL"),
+    /** Its exit status; rejects when the program has ended before it was told to. */
     stop: (signal = "SIGTERM") => new Promise((resolve, reject) => {
       if (ended()) {
         reject(new Error(`the program ended by itself (${child.exitCode ?? child.signalCode}):\n${said}`));
         return;
       }
-      child.once("exit", () => resolve());
+      child.once("exit", (code) => resolve(code));
       child.kill(signal);
       setTimeout(() => child.kill("SIGKILL"), 10_000).unref();
     }),

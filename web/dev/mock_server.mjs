@@ -286,6 +286,8 @@ function request(r) {
 }
 const services = {
   "/request": request,
+  "/watch": () => ({ ok: true }),
+  "/check_goal": () => ({ ok: true, trouble: null }),
   "/load": (b) => { load(b.scenario, b); return { ok: true }; },
   "/reset": () => { load(s.name, s); return { ok: true }; },
   "/pause": () => { s.paused = true; return { ok: true }; },

@@ -1,24 +1,33 @@
 // web/src/app.ts: what the page knows and can do: one link, one scene, one set of controls' state.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Catalog, Page, RequestJson, ScenarioItem, SessionState } from "./contract";
+import { Accepted, Catalog, Page, RequestJson, ScenarioItem, SessionState } from "./contract";
 import { Selection } from "./draw/scene";
 import { View } from "./draw/view";
 import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
-import { move_edit, move_request } from "./edit/edits";
-import { decode_frame } from "./link/frame";
+import { add_goal_edit, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
+import { Goal, decode_frame } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
 import { split_frames } from "./link/stored";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { TickRow } from "./state/columns";
+import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
 import { Store } from "./state/store";
+import { StopState, Stopper, sound_alarm } from "./stopper";
 import { sentence_of, titled } from "./words";
 
 export type ViewName = "drive" | "runs" | "system";
 export interface Toast { id: number; tone: "info" | "warn" | "bad"; text: string }
+
+/** A goal for real hardware that nobody has sent off yet: the page's own, drawn dashed. */
+export interface Preview {
+  goal: Goal;
+  further: boolean;        // for when those before it are reached
+  trouble: string | null;  // what is known to be wrong with it
+}
 
 export interface UiState {
   link: LinkStatus;
@@ -41,6 +50,10 @@ export interface UiState {
   shortcuts: boolean;
   sheet: boolean;
   loading: string | null;
+  stop: StopState;
+  preview: Preview | null;
+  /** A goal was set by hand: the hint how to has done its work. */
+  goal_learnt: boolean;
   undo: string | null;
   redo: string | null;
 }
@@ -50,6 +63,7 @@ const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
 const kLate = 40;   // [ticks] a page that comes this late asks for what it missed
 const kRecentTicks = 60;
 const kFrameWait = 600; // [ms] a run that goes on has sent a frame by then
+const kHeardLimit = 1000; // [ms] who hears nothing for so long sees nothing of the robot either
 const kMoveMs = 90; // between two requests of one drag
 
 export class App {
@@ -60,6 +74,8 @@ export class App {
   readonly history: EditHistory;
   /** Asks the canvas to draw once more. */
   redraw: () => void = () => undefined;
+  private readonly sign_: SignOfLife;
+  private readonly stopper_: Stopper;
   private past_of_: number | null = null; // run whose past was asked for
   private next_toast_ = 1;
   private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
@@ -68,13 +84,14 @@ export class App {
     this.ui = new Store<UiState>({
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
       locked: false, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
-      theme: initial_theme(), tool: "goal", selection: null, three: false, follow: false,
-      force_scale: 1, shortcuts: false, sheet: false, loading: null, undo: null, redo: null,
+      theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
+      force_scale: 1, shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
     });
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
       frame: (frame) => {
         fold_frame(this.scene, frame);
+        this.scene.heard_at = performance.now();
         this.look_back();
         this.redraw();
       },
@@ -91,6 +108,13 @@ export class App {
         void this.fetch_lists();
       },
     });
+    this.stopper_ = new Stopper([
+      () => this.link.call("/request", { type: "stop", engaged: true }),
+      () => rest.post("/session/control", { action: "stop" }),
+    ], (stop) => this.take_stop(stop));
+    this.sign_ = new SignOfLife(browser,
+      () => this.link.is_open && this.link.silence < kHeardLimit && stop_in_reach(),
+      () => this.link.tell("/watch"));
     this.history = new EditHistory((r) => this.link.call("/request", r), () => {
       this.ui.set({ undo: this.history.can_undo, redo: this.history.can_redo });
     });
@@ -101,6 +125,7 @@ export class App {
     this.read_route();
     addEventListener("hashchange", () => this.read_route());
     this.link.start();
+    this.sign_.start();
   }
 
   /** The catalog and the scenarios; asked again after each connection. */
@@ -130,10 +155,15 @@ export class App {
     try {
       const { tick } = await rest.get<{ tick?: number }>("/session");
       if (tick === undefined) return;
-      const from = Math.max(0, tick - kRecentTicks);
-      const page = await rest.get_bytes(`/runs/${run}/frames?from=${from}&limit=${kRecentTicks + 1}`);
+      const frames: Uint8Array[] = [];
+      for (let from: number | null = Math.max(0, tick - kRecentTicks); from !== null && from <= tick;) {
+        const page: { bytes: Uint8Array; next: number | null } =
+          await rest.get_bytes(`/runs/${run}/frames?from=${from}&limit=${kRecentTicks + 1}`);
+        frames.push(...split_frames(page.bytes));
+        from = page.next;
+      }
       if (this.scene.frame || run !== this.scene.run) return; // a live one came meanwhile
-      for (const bytes of split_frames(page.bytes)) fold_frame(this.scene, decode_frame(bytes));
+      for (const bytes of frames) fold_frame(this.scene, decode_frame(bytes));
       this.look_back();
       this.redraw();
     } catch {
@@ -175,9 +205,11 @@ export class App {
     return this.ask("/request", request);
   }
 
-  async edit(edit: Edit): Promise<{ id?: number } | null> {
+  async edit(edit: Edit): Promise<Accepted | null> {
     try {
-      return await this.history.perform(edit);
+      const answer = await this.history.perform(edit);
+      if (answer.warning) this.toast("warn", answer.warning);
+      return answer;
     } catch (error) {
       this.toast("warn", sentence_of(error));
       return null;
@@ -246,8 +278,61 @@ export class App {
     this.redraw();
   }
 
-  async stop(engaged: boolean): Promise<void> {
-    await this.request({ type: "stop", engaged });
+  /** Stop, by every way there is until the server has answered. */
+  stop(): void {
+    this.stopper_.press();
+  }
+  /** Of real hardware this starts nothing: Stop has cleared its goals. */
+  async release(): Promise<void> {
+    this.stopper_.forget();
+    await this.request({ type: "stop", engaged: false });
+  }
+  /** Stops trying to send a Stop that does not get through. */
+  give_up_stop(): void {
+    this.stopper_.forget();
+  }
+
+  get on_hardware(): boolean {
+    return this.ui.value.session?.source === "hardware";
+  }
+
+  /** The goal that hands work on: the preview before the one the robot has. */
+  get shown_goal(): Goal | null {
+    return this.ui.value.preview?.goal ?? this.scene.goal;
+  }
+
+  /** A simulated robot sets off at once; real hardware only with go(). */
+  want_goal(goal: Goal | null, further = false): void {
+    if (!this.on_hardware) {
+      if (goal) this.ui.set({ goal_learnt: true });
+      void this.edit(goal && further ? add_goal_edit(goal) : set_goal_edit(this.scene.goal, goal));
+    } else if (goal) {
+      void this.preview(goal, further);
+    } else {
+      this.ui.set({ preview: null });
+      if (this.scene.goal) void this.request(goal_request(null));
+    }
+  }
+  private async preview(goal: Goal, further: boolean): Promise<void> {
+    const preview = { goal, further, trouble: null };
+    this.ui.set({ preview, selection: { kind: "goal" } });
+    this.redraw();
+    const { x, y, heading } = goal;
+    const body = heading === null ? { x, y } : { x, y, heading };
+    const answer = await this.ask<{ trouble: string | null }>("/check_goal", body);
+    if (answer && this.ui.value.preview === preview) this.ui.set({ preview: { ...preview, trouble: answer.trouble } });
+  }
+  drop_preview(): void {
+    this.ui.set({ preview: null });
+    this.redraw();
+  }
+  /** Sends the robot off to the goal of the preview. No undo leads back: it would send it elsewhere. */
+  async go_there(): Promise<void> {
+    const preview = this.ui.value.preview;
+    if (!preview) return;
+    const request = preview.further ? add_goal_edit(preview.goal).forward : goal_request(preview.goal);
+    if (await this.request(request)) this.ui.set({ preview: null, selection: null });
+    this.redraw();
   }
   /** Switches the motors of real hardware on or off; a refusal says why. */
   async arm(armed: boolean): Promise<void> {
@@ -311,11 +396,26 @@ export class App {
       setTimeout(() => void this.fetch_newest(), kFrameWait);
     }
     if (session.problem && session.problem !== before?.problem) this.toast("bad", session.problem);
+    const other_world = before?.scenario.name !== session.scenario.name;
+    const other_run = before?.run?.id !== session.run?.id;
+    if (other_world || (other_run && session.source === "hardware")) this.ui.set({ tool: "pan", preview: null });
     const selection = this.ui.value.selection;
     const gone = selection?.kind === "obstacle" &&
       !this.scene.obstacles.some((o) => o.id === selection.id);
     this.ui.set({ session, selection: gone ? null : selection });
     this.redraw();
+  }
+
+  private take_stop(stop: StopState): void {
+    const before = this.ui.value.stop;
+    this.ui.set({ stop });
+    if (stop.phase === "failed" && before.phase !== "failed") {
+      sound_alarm();
+      this.say("Stop did not reach the robot");
+    }
+    if (before.phase === "failed" && stop.phase === "none" && this.ui.value.session?.stop) {
+      this.toast("info", "Stop has reached the robot.");
+    }
   }
 
   private take_status(status: LinkStatus): void {
@@ -347,6 +447,12 @@ export class App {
     await rest.post("/login", { token });
     this.ui.set({ locked: false });
     this.link.retry_now();
+  }
+
+  /** Gives the cookie back. The server closes what was opened with it, and the page asks for the token. */
+  async logout(): Promise<void> {
+    await rest.post("/logout", {});
+    this.ui.set({ locked: true });
   }
 
   private read_route(): void {

@@ -55,6 +55,9 @@ export interface HardwareInfo {
   lateness: { ticks: number; worst: number; buckets: { below: number | null; ticks: number }[] };
 }
 
+/** How the record of the live run is doing. */
+export interface RecordInfo { status: string; sentence: string; deleted: string | null }
+
 /** The /state document. */
 export interface SessionState {
   run: { id: number; status: string; outcome: string } | null;
@@ -75,6 +78,9 @@ export interface SessionState {
   missed_periods: number;
   problem: string | null;
   hardware?: HardwareInfo | null;
+  watchers?: number;          // pages that are looked at, and one for scripts
+  watched_by_script?: boolean;
+  record?: RecordInfo;
 }
 
 export type RequestJson =
@@ -85,6 +91,9 @@ export type RequestJson =
   | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }
   | { type: "remove_obstacle"; id: number }
   | { type: "stop"; engaged: boolean };
+
+/** The answer to a request; `warning` says what is known to be wrong with a goal. */
+export interface Accepted { id?: number; warning?: string }
 
 export interface Choice { name: string; label: string; help?: string }
 export interface ParameterInfo {

@@ -40,7 +40,7 @@ const kHalts: Record<Exclude<Halt, "none">, Explanation> = {
   bad_line: { what: "Holding still",
     why: "More of what the scanner sends comes damaged than whole: look at its cable." },
   scanner_fault: { what: "Holding still",
-    why: "The scanner reports a fault of its own." },
+    why: "The scanner reports a fault of its own, or is blinded." },
   stop_button: { what: "Stop button pressed",
     why: "The stop button on the robot is pressed. Release it, then arm again." },
   base_fault: { what: "Holding still",
@@ -55,7 +55,7 @@ const kHalts: Record<Exclude<Halt, "none">, Explanation> = {
     why: "The control loop came too late; the wheels were stopped." },
 };
 
-const kJustCome = 0.05; // [s] a scan this old that does not count is a blinded one
+const kJustCome = 0.2; // [s] a younger scan that does not count is a blinded one
 
 function explain_hold(f: Frame): Explanation {
   switch (f.hold) {
@@ -70,7 +70,7 @@ function explain_hold(f: Frame): Explanation {
       return { what: "Waiting for the laser", why: f.newest_scan === null
         ? "No scan has come yet. The robot waits."
         : f.stamp - f.newest_scan < kJustCome
-          ? "It is blinded: most beams ahead tell nothing."
+          ? "It is blinded or dazzled: beams ahead tell nothing."
           : `Scan is ${(f.stamp - f.newest_scan).toFixed(1)} s old. The robot waits.` };
     case "not_finite":
       return { what: "Holding still",

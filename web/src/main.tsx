@@ -19,6 +19,7 @@ import { Rail } from "./views/rail";
 import { Runs } from "./views/runs";
 import { Shortcuts } from "./views/shortcuts";
 import { System } from "./views/system";
+import { StopAlarm } from "./views/stop";
 import { Spoken, Toasts } from "./views/toasts";
 import { TopBar } from "./views/topbar";
 
@@ -52,6 +53,7 @@ function Shell(): JSX.Element {
       {view === "drive" && <Drive />}
       {view === "runs" && <Runs />}
       {view === "system" && <System />}
+      <StopAlarm />
       <Toasts />
       <Spoken />
       {shortcuts && <Shortcuts />}

@@ -2,6 +2,8 @@
 import { SessionState } from "./contract";
 import { LinkStatus } from "./link/live";
 import { Frame } from "./link/frame";
+import { age_words, motion, news_age } from "./state/age";
+import { SceneState } from "./state/scene";
 
 export type Tone = "ok" | "warn" | "bad" | "info" | "muted";
 
@@ -37,11 +39,38 @@ export function state_word(frame: Frame | null, session: SessionState | null,
   open: boolean): { word: string; tone: Tone } {
   if (!open) return { word: "No link", tone: "bad" };
   if (!session) return { word: "Waiting", tone: "muted" };
-  if (session.stop || frame?.hold === "stopped") return { word: "Stopped", tone: "bad" };
+  if (session.stop || frame?.hold === "stopped") return { word: moving(frame) ? "Stopping" : "Stopped", tone: "bad" };
   if (session.pace.paused) return { word: "Paused", tone: "info" };
   if (frame && frame.hold !== "none") return { word: "Held", tone: "bad" };
   if (session.source === "replay") return { word: "Replaying", tone: "info" };
   return frame_word(frame);
+}
+
+/** Below what odometry resolves the robot counts as at rest. */
+function moving(frame: Frame | null): boolean {
+  return frame !== null && Math.hypot(frame.twist.v, frame.twist.omega) > 0.01;
+}
+
+/** "watched by 1 page", or by a script, or by nobody. */
+export function watchers_words(session: SessionState): string {
+  const scripts = session.watched_by_script ?? false;
+  const pages = (session.watchers ?? 0) - (scripts ? 1 : 0);
+  const by = [...(pages > 0 ? [pages === 1 ? "1 page" : `${pages} pages`] : []), ...(scripts ? ["a script"] : [])];
+  return by.length > 0 ? `watched by ${by.join(" and ")}` : "watched by nobody";
+}
+
+/** What is known of a robot that was told to stop, and what a release will do. */
+export function stopped_words(scene: SceneState, session: SessionState, open: boolean, now: number): string {
+  const after = session.source === "hardware"
+    ? "Its goals are cleared: Release moves nothing by itself."
+    : session.goal ? "Release lets it drive on to its goal." : "Release lets it take goals again.";
+  const age = news_age(scene, session, open, now);
+  if (age !== null) {
+    return `Stop is commanded. Whether the robot stands is not known: it was last heard ${age_words(age)} ago.`;
+  }
+  const { value, unit } = motion(scene);
+  if (value !== 0) return `Stop is commanded. The wheels still turn: ${fixed(value, 2)} ${unit}.`;
+  return `Stopped: the robot stands. ${after}`;
 }
 
 /** The same for an instant of a stored run. */

@@ -3,6 +3,7 @@ import { Obstacle } from "../obstacle";
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
+import { sweep_age } from "../state/age";
 import { SceneState, robot_pose } from "../state/scene";
 import { Palette } from "./palette";
 import { draw_bumpers, draw_ranging } from "./ranging";
@@ -37,6 +38,8 @@ export interface Overlay {
   /** Draws the path still to come, faintly. */
   future: boolean;
   insets: Insets;
+  /** A goal that the robot has not been sent to. */
+  preview?: Goal | null;
   /** A path in the strip's colour, as the Runs view draws the first of two. */
   path_colour?: string;
 }
@@ -48,11 +51,12 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   draw_grid(g, view, palette);
   const pose = robot_pose(scene);
   const f = scene.frame;
-  for (const sweep of scene.sweeps) draw_fan(g, view, palette, sweep);
+  const old = new Set(scene.sweeps.filter((s) => sweep_age(scene, s) !== null));
+  for (const sweep of scene.sweeps) if (!old.has(sweep)) draw_fan(g, view, palette, sweep);
   const selected = overlay.selection?.kind === "obstacle" ? overlay.selection.id : null;
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
-  for (const sweep of scene.sweeps) draw_returns(g, view, palette, sweep);
+  for (const sweep of scene.sweeps) draw_returns(g, view, palette, sweep, old.has(sweep));
   draw_ranging(g, view, palette, scene.readings);
   if (scene.grid && f?.goal) draw_cells(g, view, palette, scene.grid);
   const path = overlay.path_colour ?? palette.path;
@@ -62,13 +66,16 @@ export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Pal
   if (overlay.ghost) draw_ghost(g, view, palette, overlay.ghost);
   draw_path(g, view, scene.columns, 0, Math.min(scene.rows, scene.columns.length), path, 3);
   if (pose && scene.world) draw_safety(g, view, palette, pose, scene.safety_distance);
+  const preview = overlay.preview && !overlay.draft.goal ? overlay.preview : null;
+  if (preview) draw_goal(g, view, palette, preview, overlay.selection?.kind === "goal", true);
   const goal = overlay.draft.goal ?? scene.goal;
   if (goal) {
     draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
-    draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal", !!overlay.draft.goal);
+    draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal" && !preview,
+      !!overlay.draft.goal);
   }
   if (f) draw_tracks(g, view, palette, f);
-  if (f) draw_nearest(g, view, palette, f);
+  if (f && old.size === 0) draw_nearest(g, view, palette, f);
   if (f) draw_plan(g, view, palette, f);
   if (f) draw_histogram(g, view, palette, f);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);

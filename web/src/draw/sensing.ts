@@ -26,10 +26,12 @@ export function draw_fan(g: Context, view: View, palette: Palette, placed: Place
   g.globalAlpha = 1;
 }
 
-export function draw_returns(g: Context, view: View, palette: Palette, placed: PlacedSweep): void {
+/** Returns of a sweep too `old` to drive by are grey and small. */
+export function draw_returns(g: Context, view: View, palette: Palette, placed: PlacedSweep,
+  old = false): void {
   const { raw, filtered } = sweep_points(placed);
-  dots(g, view, raw, palette.scan, 2.2);
-  dots(g, view, filtered, palette.filtered, 1.4);
+  if (!old) dots(g, view, raw, palette.scan, 2.2);
+  dots(g, view, filtered, old ? palette.scan : palette.filtered, 1.4);
 }
 
 function dots(g: Context, view: View, xy: Float32Array, colour: string, radius: number): void {

@@ -9,7 +9,7 @@ function goal_json({ x, y, heading }: Goal): { x: number; y: number; heading?: n
   return heading === null ? { x, y } : { x, y, heading };
 }
 
-function goal_request(goal: Goal | null): RequestJson {
+export function goal_request(goal: Goal | null): RequestJson {
   return goal ? { type: "set_goal", ...goal_json(goal) } : { type: "clear_goal" };
 }
 

@@ -8,7 +8,7 @@ import { Obstacle, covers } from "../obstacle";
 import { SceneState } from "../state/scene";
 import { new_box, new_cylinder } from "./edits";
 
-/** `pan` is what is left where nothing can be asked for: a stored run, a recorded log. */
+/** `pan` moves the view, and a press shows what is there; it asks the robot for nothing. */
 export type Tool = "goal" | "cylinder" | "box" | "measure" | "pan";
 
 /** What the gestures may do to the world; the page asks the server. */
@@ -42,7 +42,7 @@ type Active =
   | { kind: "cylinder" | "box"; at: Point; px: Point }
   | { kind: "measure"; at: Point }
   | { kind: "move"; id: number; from: Pose; offset: Point; px: Point; moved: boolean }
-  | { kind: "pan"; px: Point }
+  | { kind: "pan"; px: Point; inspects: boolean; moved: boolean }
   | { kind: "pinch"; a: number; b: number };
 
 export class Gestures {
@@ -69,7 +69,7 @@ export class Gestures {
       return;
     }
     if (this.pointers_.size > 2) return;
-    this.active_ = button === 0 ? this.begin(px, shift) : { kind: "pan", px };
+    this.active_ = button === 0 ? this.begin(px, shift) : pan(px, false);
     this.update(px);
   }
 
@@ -113,7 +113,7 @@ export class Gestures {
     const at = view.to_world(px.x, px.y);
     const tool = this.t_.tool();
     if (tool === "measure") return { kind: "measure", at };
-    if (tool === "pan") return { kind: "pan", px };
+    if (tool === "pan") return pan(px, true);
     this.measure_ = undefined;
     if (tool === "goal" && shift && this.t_.can_drive()) return { kind: "further_goal", at, px };
     const obstacle = this.obstacle_at(px);
@@ -123,8 +123,7 @@ export class Gestures {
       const offset = { x: obstacle.pose.x - at.x, y: obstacle.pose.y - at.y };
       return { kind: "move", id: obstacle.id, from: obstacle.pose, offset, px, moved: false };
     }
-    if (scene.goal && this.t_.can_drive() &&
-        distance(scene.goal, at) * view.scale < Math.max(14, 0.22 * view.scale)) {
+    if (scene.goal && this.t_.can_drive() && this.on_goal(px)) {
       this.t_.select({ kind: "goal" });
       const offset = { x: scene.goal.x - at.x, y: scene.goal.y - at.y };
       return { kind: "move_goal", from: scene.goal, offset, px };
@@ -145,6 +144,8 @@ export class Gestures {
     const to = this.t_.view.to_world(px.x, px.y);
     switch (active.kind) {
       case "pan":
+        if (!active.moved && !far(active.px, px)) break;
+        active.moved = true;
         this.t_.view.pan(px.x - active.px.x, px.y - active.px.y);
         active.px = px;
         break;
@@ -201,10 +202,20 @@ export class Gestures {
             true);
         }
         break;
+      case "pan":
+        if (active.inspects && !active.moved) this.inspect(px);
+        break;
       default:
         break;
     }
     this.t_.changed();
+  }
+
+  /** Shows what is pressed on, and changes nothing. */
+  private inspect(px: Point): void {
+    const obstacle = this.obstacle_at(px);
+    if (obstacle) this.t_.select({ kind: "obstacle", id: obstacle.id });
+    else this.t_.select(this.on_goal(px) ? { kind: "goal" } : null);
   }
 
   private pinch(id: number, before: Point, px: Point): void {
@@ -226,12 +237,22 @@ export class Gestures {
     return this.measure_ ? { measure: this.measure_ } : {};
   }
 
+  private on_goal(px: Point): boolean {
+    const { scene: { goal }, view } = this.t_;
+    const at = view.to_world(px.x, px.y);
+    return goal !== null && distance(goal, at) * view.scale < Math.max(14, 0.22 * view.scale);
+  }
+
   private obstacle_at(px: Point): Obstacle | null {
     const at = this.t_.view.to_world(px.x, px.y);
     const slack = kGrabPixels / this.t_.view.scale;
     const hits = this.t_.scene.obstacles.filter((o) => covers(o, at, slack));
     return hits.at(-1) ?? null; // drawn last lies on top
   }
+}
+
+function pan(px: Point, inspects: boolean): Active {
+  return { kind: "pan", px, inspects, moved: false };
 }
 
 function far(a: Point, b: Point): boolean {

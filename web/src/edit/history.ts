@@ -1,6 +1,6 @@
 // web/src/edit/history.ts: edits as values that can be done, undone and done again. A value holds
 // the Requests for both ways; a drag is merged into one step.
-import { RequestJson } from "../contract";
+import { Accepted, RequestJson } from "../contract";
 
 export interface Edit {
   label: string;
@@ -9,7 +9,7 @@ export interface Edit {
 }
 
 /** Sends a request; resolves with the id of an added obstacle where there is one. */
-export type Send = (request: RequestJson) => Promise<{ id?: number }>;
+export type Send = (request: RequestJson) => Promise<Accepted>;
 
 export class EditHistory {
   private done_: Edit[] = [];
@@ -33,7 +33,7 @@ export class EditHistory {
   }
 
   /** Sends the edit and keeps it for undo when the server accepts it; rejects when refused. */
-  perform(edit: Edit): Promise<{ id?: number }> {
+  perform(edit: Edit): Promise<Accepted> {
     return this.in_turn(async () => {
       const answer = await this.send_(edit.forward);
       this.record(complete(edit, answer.id));

@@ -117,6 +117,17 @@ export class LiveLink {
     });
   }
 
+  /** Calls a service whose answer is no matter; does nothing without a connection. */
+  tell(name: string): void {
+    const service = this.services_.get(name);
+    if (this.is_open && service !== undefined) this.send(service_request(service, this.next_id_++, {}));
+  }
+
+  /** [ms] since the server was last heard. */
+  get silence(): number {
+    return now() - this.last_heard_;
+  }
+
   /** Sets a parameter; resolves with the value the server now holds, which may be the old one. */
   set_parameter(name: string, value: number): Promise<number> {
     if (!this.is_open) {

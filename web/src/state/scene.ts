@@ -42,6 +42,7 @@ export interface SceneState {
   safety_distance: number; // [m] about the centre
   events: EventLog;
   run: number | null;
+  heard_at: number | null; // [ms] performance.now() when the newest live frame came
   /** A world has walls to fit; a log has only what the scanner saw. */
   world: boolean;
 }
@@ -50,13 +51,14 @@ export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], readings: new Map(), grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
     goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
-    events: new EventLog(), run: null, world: true,
+    events: new EventLog(), run: null, heard_at: null, world: true,
   };
 }
 
 /** Forgets the travelled path, the history and the events: a new run begins. */
 export function begin_run(scene: SceneState): void {
   scene.frame = null;
+  scene.heard_at = null;
   scene.sweeps = [];
   scene.readings.clear();
   scene.grid = null;

@@ -23,6 +23,7 @@ export const icons = {
   system: line(<><rect x="4" y="4" width="12" height="12" rx="2" /><path d="M8 8h4v4H8z" /></>),
   tune: line(<><path d="M4 6h6M14 6h2M4 14h2M10 14h6" /><circle cx="12" cy="6" r="1.8" />
     <circle cx="8" cy="14" r="1.8" /></>),
+  pan: line(<path d="M10 3v14M3 10h14M8 5l2-2 2 2M8 15l2 2 2-2M5 8l-2 2 2 2M15 8l2 2-2 2" />),
   goal: line(<path d="M6 17V4l9 3-9 4" />),
   cylinder: line(<circle cx="10" cy="10" r="6" />),
   box: line(<rect x="4" y="4" width="12" height="12" />),

@@ -5,8 +5,9 @@ import { useState } from "preact/hooks";
 import { use_app } from "../app";
 import { explain } from "../explain";
 import { Frame } from "../link/frame";
+import { age_words, news_age, scan_age } from "../state/age";
 import { use_pulse, use_store } from "../state/store";
-import { link_words } from "../words";
+import { link_words, stopped_words } from "../words";
 
 /** What the robot is doing, and why, with the numbers. */
 export function Explain(): JSX.Element | null {
@@ -48,7 +49,8 @@ export function Banner(): JSX.Element | null {
   if (link.phase === "lost") {
     return (
       <div class="banner bad" role="alert" data-testid="banner">
-        <span>{link_words(link, performance.now())} {session && "What is drawn is the last that was heard."}</span>
+        <span>{link_words(link, performance.now())} {session?.source === "hardware" &&
+          "The robot stops by itself when nobody can stop it."}</span>
         <button class="text" onClick={() => app.link.retry_now()}>Try now</button>
       </div>
     );
@@ -56,10 +58,14 @@ export function Banner(): JSX.Element | null {
   if (session?.stop) {
     return (
       <div class="banner bad" role="alert" data-testid="banner">
-        <span>Stopped. The robot stays at rest until it is released.</span>
-        <button class="text" onClick={() => void app.stop(false)}>Release</button>
+        <span>{stopped_words(app.scene, session, link.phase === "open", performance.now())}</span>
+        <button class="text" onClick={() => void app.release()}>Release</button>
       </div>
     );
+  }
+  const record = session?.record;
+  if (record && (record.status === "failed" || record.status === "full")) {
+    return <div class="banner bad" role="alert" data-testid="banner"><span>{record.sentence}</span></div>;
   }
   const outcome = session?.run?.outcome;
   if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
@@ -75,6 +81,23 @@ export function Banner(): JSX.Element | null {
     );
   }
   return null;
+}
+
+/** How old what is drawn is, growing, while it is too old to go by. The scene is grey meanwhile. */
+export function Staleness(): JSX.Element | null {
+  const app = use_app();
+  const open = use_store(app.ui, (u) => u.link.phase === "open");
+  const session = use_store(app.ui, (u) => u.session);
+  use_pulse(100);
+  const news = news_age(app.scene, session, open, performance.now());
+  const scan = scan_age(app.scene);
+  if (news === null && scan === null) return null;
+  const words = news !== null
+    ? <>Old picture: the robot was last heard <b class="num">{age_words(news)}</b> ago</>
+    : <>The scan is <b class="num">{age_words(scan!)}</b> old</>;
+  return (
+    <div class={`stale ${news !== null ? "all" : ""}`} role="status" data-testid="stale"><span>{words}</span></div>
+  );
 }
 
 interface Key { colour: string; label: string; shape: string }

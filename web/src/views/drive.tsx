@@ -4,14 +4,15 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import { App, use_app } from "../app";
 import { Draft } from "../draw/scene";
 import { Insets } from "../draw/view";
-import { add_edit, add_goal_edit, set_goal_edit } from "../edit/edits";
+import { add_edit } from "../edit/edits";
 import { Gestures, Tool } from "../edit/gestures";
 import { scene_bounds } from "../state/scene";
 import { use_store } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { icons } from "../ui/icons";
 import { SceneThree } from "../three/view";
-import { Banner, Explain, Legend } from "./cards";
+import { Banner, Explain, Legend, Staleness } from "./cards";
+import { GoalHint, PreviewCard } from "./preview";
 import { scene_keys } from "./keys";
 import { Figures, Tuning } from "./panel";
 import { Transport } from "./transport";
@@ -32,10 +33,11 @@ export function Drive(): JSX.Element {
   const tool = use_store(app.ui, (u) => u.tool);
   const selection = use_store(app.ui, (u) => u.selection);
   const force_scale = use_store(app.ui, (u) => u.force_scale);
+  const preview = use_store(app.ui, (u) => u.preview);
   const hand = useMemo(() => make_hand(app), [app]);
   const main = useRef<HTMLElement>(null);
 
-  useEffect(() => app.redraw(), [selection, force_scale, tool]);
+  useEffect(() => app.redraw(), [selection, force_scale, tool, preview]);
   useEffect(() => {
     const keys = scene_keys(app, hand);
     addEventListener("keydown", keys.window);
@@ -50,18 +52,20 @@ export function Drive(): JSX.Element {
           ? <SceneThree />
           : <SceneCanvas scene={app.scene} view={app.view} gestures={hand.gestures} theme={theme}
               label="The world from above. Arrow keys move the crosshair or what is selected, Enter places."
-              cursor={tool} bounds={() => scene_bounds(app.scene)}
+              cursor={usable_tool(app)} bounds={() => scene_bounds(app.scene)}
               insets={() => free_insets(main.current)}
               on_ready={(redraw) => (app.redraw = redraw)} on_key={canvas_key}
               overlay={() => ({
                 selection: app.ui.value.selection, hovered: hand.hovered, draft: hand.draft,
                 force_scale: app.ui.value.force_scale, ghost: null, future: false,
-                insets: scale_insets(main.current),
+                insets: scale_insets(main.current), preview: app.ui.value.preview?.goal ?? null,
               })} />}
         <Tools />
         {!three && <ValueBox hand={hand} />}
+        {!three && <GoalHint />}
         <Banner />
-        <div class="cards"><Legend /><Explain /></div>
+        <Staleness />
+        <div class="cards"><Legend /><div class="stack"><PreviewCard /><Explain /></div></div>
       </main>
       <Transport />
       <aside class="panel" aria-label="Figures and gains">
@@ -89,8 +93,8 @@ function make_hand(app: App): Hand {
     tool: () => usable_tool(app),
     can_edit,
     can_drive,
-    set_goal: (goal) => void app.edit(set_goal_edit(app.scene.goal, goal)),
-    add_goal: (goal) => void app.edit(add_goal_edit(goal)),
+    set_goal: (goal) => app.want_goal(goal),
+    add_goal: (goal) => app.want_goal(goal, true),
     add: (obstacle) => void app.edit(add_edit(obstacle)).then((answer) => {
       if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
     }),
@@ -115,7 +119,7 @@ function make_hand(app: App): Hand {
 
 function usable_tool(app: App): Tool {
   const { tool, session } = app.ui.value;
-  if (!session || tool === "measure") return tool === "measure" ? tool : "pan";
+  if (!session || tool === "measure" || tool === "pan") return tool === "measure" ? tool : "pan";
   if (tool === "goal") return session.robot.drives ? tool : "pan";
   return session.robot.editable ? tool : "pan";
 }
@@ -127,8 +131,8 @@ function free_insets(main: HTMLElement | null): Insets {
   const box = main.getBoundingClientRect();
   const tools = main.querySelector(".tools")?.getBoundingClientRect();
   if (tools) insets.left = tools.right - box.left + 16;
-  const values = main.querySelector(".values")?.getBoundingClientRect();
-  if (values) insets.top = values.bottom - box.top + 12;
+  const values = main.querySelector(".values:not(.hint)")?.getBoundingClientRect();
+  if (values && values.height > 0) insets.top = values.bottom - box.top + 12;
   const cards = main.querySelector(".cards")?.getBoundingClientRect();
   if (cards && cards.height > 0) insets.bottom = box.bottom - cards.top + 12;
   return insets;
@@ -168,6 +172,7 @@ function Tools(): JSX.Element {
   );
   return (
     <div class="tools" role="toolbar" aria-label="Tools" aria-orientation="vertical">
+      {button("pan", "Look round: drag to move the view, press to see what is there", "V", true)}
       {button("goal", "Goal: press where, drag for the heading", "G", drives)}
       {button("cylinder", "Cylinder: press, drag for its size", "C", editable)}
       {button("box", "Box: press, drag for its size", "B", editable)}

@@ -4,7 +4,7 @@ import { JSX } from "preact";
 import { use_app } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
 import { use_store } from "../state/store";
-import { titled } from "../words";
+import { titled, watchers_words } from "../words";
 
 /** A bar under the top bar. Says what keeps the wheels still, or that they may turn; arms the motors. */
 export function HardwareBar(): JSX.Element | null {
@@ -14,9 +14,11 @@ export function HardwareBar(): JSX.Element | null {
   if (session?.source !== "hardware") return null;
   const armed = hardware?.armed ?? false;
   const words = hardware?.trouble || (armed ? "Armed: the robot may move." : "Not armed.");
+  const next = armed ? "It moves when a goal is sent off with Go." : "Arming moves nothing by itself.";
   return (
     <div class={`hardware-bar ${armed ? "armed" : ""}`} role="status" data-testid="hardware-bar">
-      <p><b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span></p>
+      <p><b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span>
+        <span class="wide-only">{next}</span><span data-testid="watchers">{watchers_words(session)}</span></p>
       {hardware && <ArmButton armed={armed} />}
     </div>
   );
@@ -27,7 +29,8 @@ function ArmButton({ armed }: { armed: boolean }): JSX.Element {
   const app = use_app();
   return (
     <button class={`arm ${armed ? "armed" : ""}`} data-testid="arm" aria-pressed={armed}
-      title={armed ? "Switches the motors off" : "Switches the motors on: the robot may then move"}
+      title={armed ? "Switches the motors off and clears the goals"
+        : "Switches the motors on. The robot stands still until a goal is sent off"}
       onClick={() => void app.arm(!armed)}>{armed ? "Disarm" : "Arm motors"}</button>
   );
 }

@@ -1,7 +1,7 @@
 // web/src/views/keys.ts: the keyboard of the Drive view. Space stops from everywhere but a text
 // field; the rest acts on the tool and the selection.
 import { App } from "../app";
-import { add_edit, move_edit, new_box, new_cylinder, remove_edit, set_goal_edit } from "../edit/edits";
+import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
 import { Pose, wrap_angle } from "../geometry";
 import { Obstacle } from "../obstacle";
 import type { Hand } from "./drive";
@@ -25,7 +25,7 @@ export function stop_key(app: App): (e: KeyboardEvent) => void {
   return (e) => {
     if (e.code !== "Space" || typing(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
     e.preventDefault(); // a button in focus is pressed with Enter
-    if (e.type === "keydown" && !e.repeat) void app.stop(true);
+    if (e.type === "keydown" && !e.repeat) app.stop();
   };
 }
 
@@ -36,6 +36,7 @@ export function scene_keys(app: App, hand: Hand): {
   const simple: Record<string, () => void> = {
     p: () => void app.toggle_play(),
     ".": () => void app.step(),
+    v: () => set({ tool: "pan", selection: null }),
     g: () => set({ tool: "goal", selection: null }),
     c: () => set({ tool: "cylinder", selection: null }),
     b: () => set({ tool: "box", selection: null }),
@@ -56,7 +57,7 @@ export function scene_keys(app: App, hand: Hand): {
     escape: () => {
       hand.gestures.cancel();
       hand.draft = {};
-      set({ selection: null, sheet: false });
+      set({ selection: null, sheet: false, preview: null });
       app.redraw();
     },
   };
@@ -143,9 +144,9 @@ function moves_selection(app: App, e: KeyboardEvent): boolean {
   // A slider or a list in focus keeps its arrows.
   const focus = document.activeElement;
   if (focus && focus !== document.body && !(focus instanceof HTMLCanvasElement)) return false;
-  if (s?.kind === "goal" && app.scene.goal) {
-    const g = app.scene.goal;
-    void app.edit(set_goal_edit(g, { ...g, x: round(g.x + dx * step), y: round(g.y + dy * step) }));
+  const g = app.shown_goal;
+  if (s?.kind === "goal" && g) {
+    app.want_goal({ ...g, x: round(g.x + dx * step), y: round(g.y + dy * step) });
     return true;
   }
   const o = selected_obstacle(app);
@@ -160,17 +161,17 @@ function turn(app: App, by: number): void {
   const o = selected_obstacle(app);
   if (o) {
     void app.edit(move_edit(o.id, o.pose, turned(o.pose)));
-  } else if (app.ui.value.selection?.kind === "goal" && app.scene.goal) {
-    const g = app.scene.goal;
-    void app.edit(set_goal_edit(g, { ...g, heading: wrap_angle((g.heading ?? 0) + by) }));
+  } else if (app.ui.value.selection?.kind === "goal" && app.shown_goal) {
+    const g = app.shown_goal;
+    app.want_goal({ ...g, heading: wrap_angle((g.heading ?? 0) + by) });
   }
 }
 
 function remove_selected(app: App): void {
   const o = selected_obstacle(app);
   if (o && app.ui.value.session?.robot.editable) void app.edit(remove_edit(o));
-  else if (app.ui.value.selection?.kind === "goal" && app.scene.goal) {
-    void app.edit(set_goal_edit(app.scene.goal, null));
+  else if (app.ui.value.selection?.kind === "goal" && app.shown_goal) {
+    app.want_goal(null);
     app.ui.set({ selection: null });
   }
 }
@@ -178,7 +179,7 @@ function remove_selected(app: App): void {
 function place(app: App, at: { x: number; y: number }): void {
   const { tool, session } = app.ui.value;
   if (tool === "goal" && session?.robot.drives) {
-    void app.edit(set_goal_edit(app.scene.goal, { ...at, heading: null }));
+    app.want_goal({ ...at, heading: null });
   } else if (tool === "cylinder" && session?.robot.editable) {
     add(app, new_cylinder(at.x, at.y, 0.3));
   } else if (tool === "box" && session?.robot.editable) {

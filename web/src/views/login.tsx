@@ -24,7 +24,7 @@ export function Login(): JSX.Element {
         <label class="line"><span>Token</span>
           <input type="password" autocomplete="current-password" data-testid="token" value={token}
             autofocus onInput={(e) => set_token(e.currentTarget.value)} /></label>
-        <p class="quiet">Whoever runs the server has it: it was given with --token or TAUTLINE_TOKEN.</p>
+        <p class="quiet">Ask the person who runs the server: it was given with --token or TAUTLINE_TOKEN.</p>
         {problem && <p class="problem" role="alert" data-testid="login-problem">{problem}</p>}
         <button type="submit" class="small primary" disabled={token === ""} data-testid="login-go">Sign in</button>
       </form>

@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import { use_app } from "../app";
 import * as rest from "../link/rest";
 import { use_pulse, use_store } from "../state/store";
-import { fixed, link_words, sentence_of, titled } from "../words";
+import { fixed, link_words, sentence_of, titled, watchers_words } from "../words";
 import { Devices } from "./hardware";
 import { ShortcutTable } from "./shortcuts";
 
@@ -43,6 +43,9 @@ export function System(): JSX.Element {
             Use the {theme === "dark" ? "light" : "dark"} theme
           </button>
           <a class="ghost" href="/api/v1/openapi.json" target="_blank" rel="noreferrer">OpenAPI document</a>
+          {version?.signed_in === true && <button class="ghost" data-testid="logout" onClick={() => {
+            app.logout().catch((error) => set_problem(sentence_of(error)));
+          }}>Sign out</button>}
         </div>
       </section>
       {session?.hardware && <Devices hardware={session.hardware} />}
@@ -57,6 +60,9 @@ export function System(): JSX.Element {
           ["Hull radius", `${fixed(session.robot.radius, 2)} m`],
           ["Limits", `${fixed(session.robot.max_v, 2)} m/s, ${fixed(session.robot.max_omega, 2)} rad/s`],
           ["Seed", String(session.seed)],
+          ["Watched", watchers_words(session)],
+          ...(session.record ? [["Record", session.record.sentence] as [string, string]] : []),
+          ...(session.record?.deleted ? [["Deleted", session.record.deleted] as [string, string]] : []),
           ["Lost ticks", String(session.lost_ticks)],
           ["Missed periods", String(session.missed_periods)],
         ]} />

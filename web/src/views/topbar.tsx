@@ -6,6 +6,7 @@ import { ScenarioItem } from "../contract";
 import { use_pulse, use_store } from "../state/store";
 import { link_words, source_word, titled } from "../words";
 import { Brand, icons } from "../ui/icons";
+import { StopButtons } from "./stop";
 
 export function TopBar(): JSX.Element {
   const app = use_app();
@@ -39,20 +40,6 @@ function LinkWords(): JSX.Element {
       {link.phase === "lost" &&
         <button class="text wide" onClick={() => app.link.retry_now()}>Try now</button>}
     </span>
-  );
-}
-
-function StopButtons(): JSX.Element {
-  const app = use_app();
-  const stopped = use_store(app.ui, (u) => u.session?.stop ?? false);
-  return (
-    <>
-      {stopped &&
-        <button class="release" data-testid="release" onClick={() => void app.stop(false)}>Release</button>}
-      <button class={`stop ${stopped ? "latched" : ""}`} data-testid="stop" aria-pressed={stopped}
-        title="Brings the robot to rest and keeps it there (Space). It does not replace an emergency stop."
-        onClick={() => void app.stop(true)}>{stopped ? "Stopped" : "Stop"}</button>
-    </>
   );
 }
 

@@ -1,6 +1,7 @@
 // web/src/views/transport.tsx: reset, play and pause, step, run clock, events, speed of the live run.
 import { JSX } from "preact";
 import { use_app } from "../app";
+import { RecordInfo } from "../contract";
 import { use_pulse, use_store } from "../state/store";
 import { Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
@@ -8,6 +9,16 @@ import { Timeline } from "../ui/timeline";
 import { clock, speed_word } from "../words";
 
 export const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
+
+/** What is to be said of the record of the live run, after a comma: nothing while all is well. */
+function record_word(record?: RecordInfo): string {
+  const words: Record<string, string> = { paused: ", record rests", full: ", record full",
+    failed: ", not recorded", off: ", not recorded" };
+  return record ? words[record.status] ?? "" : "";
+}
+function record_tone(record?: RecordInfo): string {
+  return record && (record.status === "full" || record.status === "failed") ? "tone-bad" : "";
+}
 
 export function Transport(): JSX.Element {
   const app = use_app();
@@ -32,7 +43,8 @@ export function Transport(): JSX.Element {
         title={why_off ?? "One tick (.)"} onClick={() => void app.step()}>{icons.step}</button>
       <span class="num time" data-testid="time">{clock(time)}</span>
       <Timeline time={time} end={Math.max(time, 20)} events={app.scene.events.list} />
-      <span class="live-words wide">{session?.source === "replay" ? "from the log" : "live"}</span>
+      <span class={`live-words wide ${record_tone(session?.record)}`} title={session?.record?.sentence} data-testid="record-word">
+        {session?.source === "replay" ? "from the log" : "live"}{record_word(session?.record)}</span>
       <Pick label="Speed" name="speed" value={String(speed)} disabled={off}
         choices={speeds.map((s) => ({ value: String(s), label: speed_word(s) }))}
         on_pick={(v) => void app.ask("/speed", { speed: Number(v) })} />

@@ -2,7 +2,7 @@
 import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { use_app } from "../app";
-import { add_edit, move_edit, new_box, new_cylinder, remove_edit, set_goal_edit } from "../edit/edits";
+import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
 import { Goal } from "../link/frame";
 import { Obstacle, obstacle_name } from "../obstacle";
 import { robot_pose } from "../state/scene";
@@ -27,7 +27,7 @@ export function ValueBox(props: { hand: Hand }): JSX.Element | null {
     return <ObstacleValues key={o.id} obstacle={shown} editable={session.robot.editable} />;
   }
   if ((selection?.kind === "goal" || tool === "goal") && session.robot.drives) {
-    return <GoalValues goal={props.hand.draft.goal ?? app.scene.goal} selected={selection !== null} />;
+    return <GoalValues goal={props.hand.draft.goal ?? app.shown_goal} selected={selection !== null} />;
   }
   if ((tool === "cylinder" || tool === "box") && session.robot.editable) {
     return <NewValues key={tool} kind={tool} />;
@@ -60,7 +60,8 @@ function GoalValues(props: { goal: Goal | null; selected: boolean }): JSX.Elemen
       return;
     }
     const heading = v.turn === null ? null : (v.turn * Math.PI) / 180;
-    void app.edit(set_goal_edit(app.scene.goal, { x: v.x, y: v.y, heading })).then(forget);
+    app.want_goal({ x: v.x, y: v.y, heading });
+    forget();
   };
   return (
     <form class={`card values ${props.selected ? "" : "unasked"}`} noValidate onSubmit={apply} aria-label="Goal" data-testid="goal-values">
@@ -69,9 +70,9 @@ function GoalValues(props: { goal: Goal | null; selected: boolean }): JSX.Elemen
       <NumberField label="y" unit="m" name="goal-y" value={v.y} on_change={(y) => type({ y })} />
       <NumberField label="heading" unit="°" name="goal-heading" value={v.turn} step={5} empty="any"
         on_change={(turn) => type({ turn })} />
-      <button type="submit" class="small primary" disabled={!changed} data-testid="goal-set">Set</button>
+      <button type="submit" class="small primary" disabled={!changed} data-testid="goal-set">{app.on_hardware ? "Preview" : "Set"}</button>
       {g && <button type="button" class="icon" aria-label="Clear the goal" title="Clear the goal (Delete)"
-        onClick={() => void app.edit(set_goal_edit(app.scene.goal, null))}>{icons.trash}</button>}
+        onClick={() => app.want_goal(null)}>{icons.trash}</button>}
     </form>
   );
 }

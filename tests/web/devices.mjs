@@ -1,0 +1,35 @@
+// tests/web/devices.mjs: an emulated scanner and base for the browser tests.
+import { spawn } from "node:child_process";
+import { existsSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
+import { binary, until } from "./program.mjs";
+
+/** The devices on pseudo-terminals in `folder`, and the robot's file beside them. */
+export async function devices(folder) {
+  const emulator = spawn(binary, ["emulate", "robot", "--scenario", "demo", "--links", folder],
+    { stdio: ["pipe", "ignore", "inherit"] });
+  const there = () => existsSync(join(folder, "scanner")) && existsSync(join(folder, "base"));
+  await until("the emulated devices", 20, async () => there(), (yes) => yes);
+  const file = join(folder, "robot.toml");
+  writeFileSync(file, `name = "emulated"
+period = 0.026
+[hull]
+radius = 0.35
+[limits]
+speed = 0.1
+[[laser]]
+name = "front laser"
+port = "${folder}/scanner"
+rate = 500000
+[base]
+type = "roboteq"
+port = "${folder}/base"
+track = 0.5
+watchdog = 0.5
+wheel_radius = 0.1
+gear = 20
+encoder_lines = 500
+full_speed_rpm = 1000
+`);
+  return { file, tell: (line) => emulator.stdin.write(`${line}\n`), end: () => emulator.kill() };
+}

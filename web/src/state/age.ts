@@ -1,0 +1,43 @@
+// web/src/state/age.ts: how old what is drawn is. Times of arrival are the page's own [ms], stamps
+// the robot's run clock [s].
+import { SessionState } from "../contract";
+import { PlacedSweep, SceneState } from "./scene";
+
+const kNewsLimit = 1.0; // [s] a robot at work is heard of many times a second
+const kScanLimit = 0.5; // [s] the slowest scanner brings four a second
+const kAtRest = 0.01;   // [m/s], [rad/s] below what odometry resolves
+
+/** [s] Since the robot was last heard of; null while that is no matter. */
+export function news_age(scene: SceneState, session: SessionState | null, open: boolean, now: number):
+  number | null {
+  if (scene.heard_at === null) return null;
+  const age = (now - scene.heard_at) / 1000;
+  if (!open) return age;
+  const resting = !session || session.pace.paused || session.run?.status === "finished";
+  return resting || age < kNewsLimit ? null : age;
+}
+
+/** [s] Of a sweep at the newest tick; null while it is young enough to drive by. */
+export function sweep_age(scene: SceneState, placed: PlacedSweep): number | null {
+  const age = (scene.frame?.stamp ?? 0) - placed.sweep.stamp;
+  return age > kScanLimit ? age : null;
+}
+
+/** [s] Of the oldest scanner's newest sweep; null while all are young. */
+export function scan_age(scene: SceneState): number | null {
+  const ages = scene.sweeps.map((s) => sweep_age(scene, s)).filter((a): a is number => a !== null);
+  return ages.length > 0 ? Math.max(...ages) : null;
+}
+
+/** [m/s] or, when it only turns, [rad/s]: how fast the wheels move the robot; 0 at rest. */
+export function motion(scene: SceneState): { value: number; unit: string } {
+  const { v = 0, omega = 0 } = scene.frame?.twist ?? {};
+  if (Math.abs(v) >= kAtRest) return { value: v, unit: "m/s" };
+  return { value: Math.abs(omega) >= kAtRest ? omega : 0, unit: "rad/s" };
+}
+
+/** "4 s", then "2 min 5 s". */
+export function age_words(seconds: number): string {
+  const s = Math.floor(seconds);
+  return s < 60 ? `${s < 10 ? seconds.toFixed(1) : s} s` : `${Math.floor(s / 60)} min ${s % 60} s`;
+}

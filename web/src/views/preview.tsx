@@ -1,0 +1,54 @@
+// web/src/views/preview.tsx: a goal for real hardware before it is sent off, and where to begin.
+import { JSX } from "preact";
+import { use_app } from "../app";
+import { SessionState } from "../contract";
+import { use_store } from "../state/store";
+import { icons } from "../ui/icons";
+import { fixed } from "../words";
+
+/** Why the robot would not set off now, and what to do; nothing when Go works. */
+function not_yet(session: SessionState | null): string | null {
+  if (!session?.hardware?.armed) return "Arm the motors first. Arming moves nothing by itself.";
+  if (session.stop) return "Release Stop first. Releasing moves nothing by itself.";
+  return null;
+}
+
+/** Nothing moves before Go is pressed. */
+export function PreviewCard(): JSX.Element | null {
+  const app = use_app();
+  const preview = use_store(app.ui, (u) => u.preview);
+  const session = use_store(app.ui, (u) => u.session);
+  if (!preview) return null;
+  const { goal, further, trouble } = preview;
+  const wait = not_yet(session);
+  return (
+    <div class="card preview" role="group" aria-label="A goal that is not sent yet" data-testid="preview">
+      <p>
+        <b>{further ? "A further goal" : "A goal"} at {fixed(goal.x, 2)}, {fixed(goal.y, 2)} m.</b>{" "}
+        <span>The real robot sets off when you press Go.</span>
+      </p>
+      {trouble && <p class="tone-warn words" role="alert" data-testid="preview-trouble">{trouble}</p>}
+      {wait && <p class="tone-muted words" data-testid="preview-wait">{wait}</p>}
+      <div class="acts">
+        <button class="go" disabled={wait !== null} data-testid="go" onClick={() => void app.go_there()}>Go</button>
+        <button class="ghost" data-testid="preview-drop" onClick={() => app.drop_preview()}>Drop it</button>
+      </div>
+    </div>
+  );
+}
+
+/** The first thing to do in a simulated world; gone once it was done. */
+export function GoalHint(): JSX.Element | null {
+  const app = use_app();
+  const tool = use_store(app.ui, (u) => u.tool);
+  const selection = use_store(app.ui, (u) => u.selection);
+  const learnt = use_store(app.ui, (u) => u.goal_learnt);
+  const drives = use_store(app.ui, (u) => u.session?.robot.drives ?? false);
+  if (tool !== "pan" || selection || learnt || !drives) return null;
+  return (
+    <div class="card values hint" data-testid="goal-hint">
+      <span class="wide">Send the robot somewhere:</span>
+      <button class="small primary" onClick={() => app.ui.set({ tool: "goal" })}>{icons.goal}Set a goal<span class="wide">(G)</span></button>
+    </div>
+  );
+}
