@@ -1,7 +1,6 @@
 // server/app.cpp: wires the parts together; the io thread runs here.
 #include "server/app.hpp"
 
-#include <csignal>
 #include <system_error>
 #include <utility>
 
@@ -11,16 +10,13 @@
 #include "server/bridge.hpp"
 #include "server/record_sink.hpp"
 #include "server/run_json.hpp"
+#include "server/signals.hpp"
 
 namespace server {
 namespace {
 
 // Frames are looked for this often: a good part of a tick sooner than any display shows them.
 constexpr std::chrono::milliseconds kPollPeriod{4};
-
-constexpr std::chrono::milliseconds kWatchPeriod{100};
-
-volatile std::sig_atomic_t g_terminated = 0;  // NOLINT: the one thing a signal may touch
 
 std::string prepared(const std::filesystem::path& database) {
   std::error_code error;
@@ -33,6 +29,8 @@ std::string prepared(const std::filesystem::path& database) {
 RecorderOptions recorder_options_for(const AppOptions& options) {
   RecorderOptions out = recorder_options();
   out.retention_bytes = options.keep_bytes;
+  out.evict_oldest = options.evict_oldest;
+  out.wait_for_room = true;
   return out;
 }
 
@@ -42,37 +40,51 @@ RecorderOptions recorder_options_for(const AppOptions& options) {
 struct App::Impl {
   explicit Impl(AppOptions options)
       : recorder(prepared(options.database), recorder_options_for(options)),
-        reader(options.database.string()),
         library(options.scenarios, options.logs),
+        workers(options.database.string()),
         experiments(recorder),
         session(&recorder),
+        loader(session,
+               workers,
+               [this](std::function<void()> work) { server->post(std::move(work)); }),
         context{.session = session,
                 .library = library,
                 .experiments = experiments,
                 .recorder = recorder,
-                .reader = reader},
-        bridge(session, [this](const nlohmann::json& body) { load_from_json(context, body); }) {
+                .workers = workers,
+                .loader = loader},
+        bridge(
+            session,
+            {.load =
+                 [this](const nlohmann::json& body, SessionLoader::Done done) {
+                   return load_from_json(context, body, std::move(done));
+                 },
+             .reset = [this](SessionLoader::Done done) { return loader.reset(std::move(done)); }}) {
+    options.net.limits.frame_bytes = kRequestBytes;
+    options.net.offload = [this](std::function<void()> job) {
+      workers.post([job = std::move(job)](Worker&) { job(); });
+    };
     server = std::make_unique<net::Server>(options.net);
     add_api(server->router(), context);
     server->add(bridge.hub().endpoint("/ws"));
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
+    if (options.unattended) session.watch().need_nobody();
+    if (options.require_record) session.require_record();
     session.load(std::move(options.first));
     if (options.armed) session.arm_when_ready();
-    if (session.state().spec.hardware && !options.unattended) {
-      server->every(kWatchPeriod, [this] { look_for_operator(); });
-    }
     server->every(kPollPeriod, [this] {
       session.poll();
-      if (g_terminated != 0) server->stop();
+      bridge.flush();
+      if (end_requested()) server->stop();
     });
-    std::signal(SIGINT, [](int) { g_terminated = 1; });
-    std::signal(SIGTERM, [](int) { g_terminated = 1; });
   }
   ~Impl() {
-    session.end();
+    workers.stop();
+    experiments.stop();
+    session.end(true);
     // What was posted may still answer through the server: while it is there.
     try {
-      recorder.flush();
+      if (!recorder.flush()) spdlog::error("The last of the record could not be written.");
     } catch (const std::exception& e) {
       spdlog::error("The last of the record could not be written: {}", e.what());
     }
@@ -80,27 +92,21 @@ struct App::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// A real robot that is on its way stops when nobody is left who could stop it.
-  void look_for_operator() {
-    const SessionState& state = session.state();
-    const bool on_its_way = state.hardware && state.hardware->armed && state.goal;
-    context.watch.seen(bridge.hub().heard());
-    if (on_its_way && context.watch.nobody(OperatorWatch::Clock::now())) {
-      state.spec.hardware->disarm(OperatorWatch::kWords);
-    }
-  }
-
   Recorder recorder;
-  db::RunReader reader;
   ScenarioLibrary library;
-  std::unique_ptr<net::Server> server{};  // outlives experiments, which post to it
+  std::unique_ptr<net::Server> server{};  // outlives workers and experiments, which post to it
+  Workers workers;
   Experiments experiments;
   Session session;
+  SessionLoader loader;
   ApiContext context;
   Bridge bridge;
 };
 
-App::App(AppOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+App::App(AppOptions options) {
+  heed_signals();  // first: also what is opened here may fail to be written
+  impl_ = std::make_unique<Impl>(std::move(options));
+}
 App::~App() = default;
 
 std::string App::url() const {

@@ -16,9 +16,11 @@ struct AppOptions {
   std::filesystem::path scenarios{};  // the user's own
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
   std::uint64_t keep_bytes = std::uint64_t{2} << 30;
-  RunSpec first{};          // loaded at the start
-  bool armed = false;       // hardware: its motors on as soon as its devices are well
-  bool unattended = false;  // hardware: drives on though nobody is there to stop it
+  bool evict_oldest = false;    // finished runs may be deleted for room
+  bool require_record = false;  // a tick that is not recorded ends the live run
+  RunSpec first{};              // loaded at the start
+  bool armed = false;           // hardware: its motors on as soon as its devices are well
+  bool unattended = false;      // hardware: drives on though nobody is there to stop it
 };
 
 class App {
@@ -31,7 +33,7 @@ class App {
   App& operator=(const App&) = delete;
 
   std::string url() const;
-  void run();   // until SIGINT, SIGTERM or stop()
+  void run();   // until SIGINT, SIGTERM, SIGHUP or stop()
   void stop();  // from any thread
 
  private:

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/operator_watch.hpp"
+#include "server/paths.hpp"
 #include "server/request_json.hpp"
 #include "server/scenario_json.hpp"
 #include "server/session_json.hpp"
@@ -21,7 +24,9 @@ using foxglove::ChannelId;
 using foxglove::ClientId;
 using foxglove::ServiceReply;
 using nlohmann::json;
-constexpr const char* kBusy = "The control loop has more requests than it can take. Try again.";
+constexpr std::chrono::milliseconds kPathPeriod{500};  // the whole path is sent each time
+constexpr int kStateShare = 9;  // times what publishing the state took, until the next
+constexpr const char* kBusy = "More is waiting to be done than this robot can take. Try again.";
 
 std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
@@ -61,6 +66,20 @@ algo::Joystick stick_from_twist(const json& message, const algo::RobotSpec& robo
     return limit > 0 ? std::clamp(value / limit, -1.0, 1.0) : 0.0;
   };
   return {share(v, robot.max_v), share(omega, robot.max_omega)};
+}
+
+std::function<void(std::exception_ptr)> answer_when_loaded(const ServiceReply& reply) {
+  return [reply](const std::exception_ptr& failure) {
+    if (!failure) {
+      reply.success({{"ok", true}});
+      return;
+    }
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::exception& e) {
+      reply.failure(e.what());
+    }
+  };
 }
 
 }  // namespace
@@ -108,17 +127,16 @@ void Bridge::Gains::follow() {
   if (on_their_way_ == 0) shown_ = bridge_.session_.state().parameters;
 }
 
-Bridge::Bridge(Session& session, std::function<void(const json&)> load)
-    : session_(session), load_(std::move(load)) {
+Bridge::Bridge(Session& session, Loads loads) : session_(session), loads_(std::move(loads)) {
   hub_.set_parameters(gains_);
   add_channels();
   add_services();
   add_topics();
   session_.on_frame = [this](const FrameRef& frame) { publish_frame(frame); };
-  session_.on_change = [this] { publish_state(); };
+  session_.on_change = [this] { state_changed(); };
   session_.on_log = [this](LogLevel level, const std::string& text) {
     const double stamp = static_cast<double>(now_ns()) * 1e-9;
-    hub_.publish_event(log_, now_ns(), shared(log_json(stamp, level, text)));
+    hub_.publish_event(log_, now_ns(), shared(log_json(stamp, level, without_folders(text))));
   };
 }
 
@@ -129,31 +147,56 @@ std::uint64_t Bridge::now_ns() const {
 }
 
 void Bridge::add_channels() {
-  telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", true});
-  state_ = hub_.add_channel({"/state", "tautline.State", true});
-  scan_ = hub_.add_channel({"/scan", "foxglove.LaserScan"});
-  tf_ = hub_.add_channel({"/tf", "foxglove.FrameTransforms"});
-  odom_ = hub_.add_channel({"/odom", "foxglove.Odometry"});
-  strip_ = hub_.add_channel({"/strip", "foxglove.SceneUpdate"});
-  forces_ = hub_.add_channel({"/forces", "foxglove.SceneUpdate"});
-  obstacles_ = hub_.add_channel({"/obstacles", "foxglove.SceneUpdate", true});
-  goal_ = hub_.add_channel({"/goal", "foxglove.PoseInFrame"});
-  trajectory_ = hub_.add_channel({"/trajectory", "foxglove.PosesInFrame"});
+  // Encoded only while somebody subscribes: of each frame, and of the newest for who comes later.
+  const auto drawn = [this](const char* topic,
+                            const char* schema,
+                            std::function<std::string(const algo::Telemetry&)> encode,
+                            const FrameRef& newest) {
+    return hub_.add_channel({topic, schema, [this, &newest, encode = std::move(encode)] {
+                               return newest ? foxglove::Stamped{now_ns(),
+                                                                 shared(encode(newest->telemetry))}
+                                             : foxglove::Stamped{};
+                             }});
+  };
+  const FrameRef& newest = session_.newest();
+  telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
+  state_ = hub_.add_channel({"/state", "tautline.State"});
+  scan_ = drawn("/scan", "foxglove.LaserScan", laser_scan_json, session_.newest_scan());
+  tf_ = drawn("/tf", "foxglove.FrameTransforms", transforms_json, newest);
+  odom_ = drawn("/odom", "foxglove.Odometry", odometry_json, newest);
+  strip_ = drawn("/strip", "foxglove.SceneUpdate", strip_json, newest);
+  forces_ = drawn("/forces", "foxglove.SceneUpdate", forces_json, newest);
+  obstacles_ = hub_.add_channel({"/obstacles", "foxglove.SceneUpdate"});
+  goal_ = drawn("/goal", "foxglove.PoseInFrame", goal_json, newest);
+  trajectory_ = drawn(
+      "/trajectory",
+      "foxglove.PosesInFrame",
+      [this](const algo::Telemetry& t) { return session_.path().message(t.observation.stamp); },
+      newest);
   log_ = hub_.add_channel({"/log", "foxglove.Log"});
 }
 
-void Bridge::submit(algo::Request request, const ServiceReply& reply) {
+void Bridge::sign_of(ClientId client) {
+  session_.watch().page_sign(client, OperatorWatch::Clock::now());
+}
+
+void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& reply) {
+  sign_of(client);
   const auto id = std::make_shared<std::uint32_t>(0);
+  const bool stop = is_stop(request);
+  const std::optional<std::string> trouble = session_.trouble_with(request);
   const auto given =
-      session_.submit(std::move(request), [reply, id](const std::optional<std::string>& refusal) {
-        if (refusal) {
-          reply.failure(*refusal);
-          return;
-        }
-        json body = {{"ok", true}};
-        if (*id != 0) body["id"] = *id;
-        reply.success(body);
-      });
+      session_.submit(std::move(request),
+                      [this, reply, id, stop, trouble](const std::optional<std::string>& refusal) {
+                        if (refusal) {
+                          reply.failure(*refusal);
+                          return;
+                        }
+                        json body = accepted_json(session_, stop);
+                        if (*id != 0) body["id"] = *id;
+                        if (trouble) body["warning"] = *trouble;
+                        reply.success(body);
+                      });
   if (given) {
     *id = *given;
   } else {
@@ -170,12 +213,31 @@ void Bridge::add_services() {
           reply.success({{"ok", true}});
         });
   };
-  hub_.add_service("/request", [this](ClientId, const json& body, const ServiceReply& reply) {
-    submit(request_from_json(body), reply);
+  hub_.add_service("/request",
+                   [this](ClientId client, const json& body, const ServiceReply& reply) {
+                     submit(client, request_from_json(body), reply);
+                   });
+  hub_.add_service("/watch", [this](ClientId client, const json& body, const ServiceReply& reply) {
+    JsonReader(body, "").only({});
+    sign_of(client);
+    reply.success({{"ok", true}});
   });
-  add("/load", [this](const json& body) { load_(body); });
-  add("/reset", [this](const json&) { session_.reset(); });
-  add("/pause", [this](const json&) { session_.pause(true); });
+  hub_.add_service("/check_goal", [this](ClientId, const json& body, const ServiceReply& reply) {
+    reply.success(goal_check_json(session_, body));
+  });
+  hub_.add_service("/load", [this](ClientId, const json& body, const ServiceReply& reply) {
+    if (!loads_.load(body, answer_when_loaded(reply))) reply.failure(kBusy);
+  });
+  hub_.add_service("/reset", [this](ClientId, const json&, const ServiceReply& reply) {
+    if (!loads_.reset(answer_when_loaded(reply))) reply.failure(kBusy);
+  });
+  const auto heed_pace = [this] {
+    if (const auto refusal = session_.pace_refusal()) throw std::runtime_error(*refusal);
+  };
+  add("/pause", [this, heed_pace](const json&) {
+    heed_pace();
+    session_.pause(true);
+  });
   add("/play", [this](const json&) { session_.pause(false); });
   add("/arm", [this](const json& body) {
     const JsonReader in(body, "");
@@ -185,11 +247,13 @@ void Bridge::add_services() {
       throw std::runtime_error(*refusal);
     }
   });
-  add("/step", [this](const json& body) {
+  add("/step", [this, heed_pace](const json& body) {
+    heed_pace();
     const JsonReader in(body, "");
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   });
-  add("/speed", [this](const json& body) {
+  add("/speed", [this, heed_pace](const json& body) {
+    heed_pace();
     JsonReader(body, "").number("speed");
     session_.set_speed(pace_from_json(body, "speed", 1));
   });
@@ -197,11 +261,26 @@ void Bridge::add_services() {
 
 /// A refusal found out later goes to the status line of the client that asked.
 std::string Bridge::hand_over(ClientId client, algo::Request request) {
-  const auto given = session_.submit(std::move(request),
-                                     [this, client](const std::optional<std::string>& refusal) {
-                                       if (refusal) hub_.warn(client, *refusal);
-                                     });
+  sign_of(client);
+  if (const auto trouble = session_.trouble_with(request)) hub_.warn(client, *trouble);
+  const bool stick = std::holds_alternative<algo::Joystick>(request);
+  const auto given = session_.submit(
+      std::move(request), [this, client, stick](const std::optional<std::string>& refusal) {
+        if (refusal) say_refusal(client, stick, *refusal);
+      });
   return given ? std::string() : std::string(kBusy);
+}
+
+/// A stick is published many times a second: once in a while is enough.
+void Bridge::say_refusal(ClientId client, bool stick, const std::string& refusal) {
+  constexpr std::chrono::seconds kEvery{3};
+  const auto now = std::chrono::steady_clock::now();
+  if (stick) {
+    const auto [said, first] = stick_refused_.try_emplace(client, now);
+    if (!first && now - said->second < kEvery) return;
+    said->second = now;
+  }
+  hub_.warn(client, refusal);
 }
 
 void Bridge::add_topics() {
@@ -218,6 +297,10 @@ void Bridge::add_topics() {
   });
   hub_.on_publish("/edits", [this](ClientId client, const json& message) {
     return hand_over(client, request_from_json(message));
+  });
+  hub_.on_client_gone([this](ClientId client) {
+    session_.watch().page_gone(client);
+    stick_refused_.erase(client);
   });
   hub_.on_publisher_gone([this](ClientId, const std::string& topic) {
     // A driver who leaves lets go of the stick.
@@ -241,11 +324,31 @@ void Bridge::publish_frame(const FrameRef& frame) {
   publish(strip_, [&] { return strip_json(t); });
   publish(forces_, [&] { return forces_json(t); });
   publish(goal_, [&] { return goal_json(t); });
-  if (session_.path().size() != path_published_) {
-    path_published_ = session_.path().size();
-    publish(trajectory_, [&] { return trajectory_json(t.observation.stamp, session_.path()); });
+  const PathTrail& path = session_.path();
+  const auto now = std::chrono::steady_clock::now();
+  if (path.changes() != path_published_ && now - path_sent_ >= kPathPeriod) {
+    path_published_ = path.changes();
+    path_sent_ = now;
+    publish(trajectory_, [&] { return path.message(t.observation.stamp); });
   }
-  hub_.broadcast_time(time_ns, std::chrono::steady_clock::now());
+  hub_.broadcast_time(time_ns, now);
+}
+
+void Bridge::state_changed() {
+  state_waits_ = true;
+  flush();
+}
+
+/// The state of a world of two thousand obstacles takes milliseconds to write: changes that follow
+/// each other closely are told together, so that this takes a tenth of the io thread's time at
+/// most.
+void Bridge::flush() {
+  const auto begin = std::chrono::steady_clock::now();
+  if (!state_waits_ || begin < state_due_) return;
+  state_waits_ = false;
+  publish_state();
+  const auto end = std::chrono::steady_clock::now();
+  state_due_ = end + kStateShare * (end - begin);
 }
 
 void Bridge::publish_state() {

@@ -1,7 +1,11 @@
 // server/bridge.hpp: a session on the Foxglove protocol: channels out; goals, edits, gains in.
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -14,10 +18,18 @@ namespace server {
 
 class Bridge {
  public:
-  /// `load` carries out a `/load` document; it throws with a sentence.
-  Bridge(Session& session, std::function<void(const nlohmann::json&)> load);
+  /// Carry out a `/load` document and a reset; either throws or tells `done` what went wrong.
+  using Done = std::function<void(std::exception_ptr)>;
+  struct Loads {
+    std::function<bool(const nlohmann::json&, Done)> load{};  // false: too many wait
+    std::function<bool(Done)> reset{};
+  };
+  Bridge(Session& session, Loads loads);
 
   foxglove::Hub& hub() { return hub_; }
+
+  /// Publishes the state when it has changed and its turn has come; call it often.
+  void flush();
 
  private:
   /// The session's tunables as protocol parameters.
@@ -40,16 +52,25 @@ class Bridge {
   void add_topics();
   void publish_frame(const FrameRef& frame);
   void publish_state();
-  void submit(algo::Request request, const foxglove::ServiceReply& reply);
+  void state_changed();
+  void submit(foxglove::ClientId client,
+              algo::Request request,
+              const foxglove::ServiceReply& reply);
   std::string hand_over(foxglove::ClientId client, algo::Request request);
+  void sign_of(foxglove::ClientId client);
+  void say_refusal(foxglove::ClientId client, bool stick, const std::string& refusal);
   std::uint64_t now_ns() const;
 
   Session& session_;
-  std::function<void(const nlohmann::json&)> load_;
+  Loads loads_;
   foxglove::Hub hub_{};
   Gains gains_{*this};
   algo::Parameters told_parameters_{};
+  bool state_waits_ = false;
+  std::chrono::steady_clock::time_point state_due_{};  // when it may be published again
   std::size_t path_published_ = 0;
+  std::map<foxglove::ClientId, std::chrono::steady_clock::time_point> stick_refused_{};
+  std::chrono::steady_clock::time_point path_sent_{};
 
   foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
                       forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;

@@ -17,8 +17,10 @@ constexpr int kReached = 0;
 constexpr int kBadInput = 1;
 constexpr int kNotReached = 2;
 constexpr int kCollided = 3;
-constexpr int kNotHeld = 3;  // of `reproduce` and `compare`: a limit did not hold
-constexpr int kNotWell = 2;  // of `doctor` and `lms200`: a device is not as it should be
+constexpr int kNotHeld = 3;     // of `reproduce` and `compare`: a limit did not hold
+constexpr int kDifferent = 2;   // of `verify`
+constexpr int kIncomplete = 4;  // of `export` and `verify`: not the whole run
+constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device is not as it should be
 
 void add_serve_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);

@@ -20,6 +20,7 @@ using nlohmann::json;
 struct BarnCommand {
   std::string file{};
   std::string physics = "bullet";
+  std::string scanner = "flat";
   std::vector<std::uint64_t> only{};
   bool as_json = false;
   std::string scenarios{};
@@ -147,6 +148,8 @@ int execute(BarnCommand command) {
   }
   command.options.conditions.vehicle =
       command.physics == "kinematic" ? sim::Vehicle::Kinematic : sim::Vehicle::Bullet;
+  command.options.conditions.scanner =
+      command.scanner == "lms200" ? barn::Scanner::Lms200 : barn::Scanner::Flat;
   if (!command.scenarios.empty()) {
     write_scenarios(worlds, command.options.conditions, command.scenarios);
     return kReached;
@@ -182,6 +185,11 @@ void add_barn_command(CLI::App& app, int& status) {
                  "Short scanner, slow base, delay, slip, drifting odometry");
   barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
       ->check(CLI::IsMember({"bullet", "kinematic"}));
+  barn->add_option("--scanner",
+                   command->scanner,
+                   "flat (default): the benchmark's, which sees all at one instant; lms200: the "
+                   "default LMS200, which sweeps")
+      ->check(CLI::IsMember({"flat", "lms200"}));
   barn->add_option("--repeats", command->options.repeats, "Seeds of each world (default 1)")
       ->check(CLI::Range(1, 10'000));
   barn->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")

@@ -15,6 +15,7 @@
 #include "server/cli.hpp"
 #include "server/emulate/emulation.hpp"
 #include "server/scenario_library.hpp"
+#include "server/signals.hpp"
 
 namespace server {
 namespace {
@@ -34,7 +35,7 @@ struct Options {
   unsigned address = 0;
 };
 
-/// SIGINT and SIGTERM as something to read; blocked in all threads, so to be made first.
+/// SIGINT, SIGTERM and SIGHUP as something to read; blocked in all threads, so to be made first.
 class Signals {
  public:
   Signals() {
@@ -42,8 +43,10 @@ class Signals {
     ::sigemptyset(&set);
     ::sigaddset(&set, SIGINT);
     ::sigaddset(&set, SIGTERM);
+    ::sigaddset(&set, SIGHUP);
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     fd_ = ::signalfd(-1, &set, SFD_CLOEXEC);
+    heed_signals();  // of those that are not blocked
   }
   ~Signals() { ::close(fd_); }
   Signals(const Signals&) = delete;
@@ -142,6 +145,16 @@ void add_scanner_flags(CLI::App& command, Options& options) {
       .add_option("--rate", options.emulation.scanner.start_rate, "Stored start-up rate [bit/s]")
       ->check(CLI::IsMember({9600, 19200, 38400, 500000}))
       ->capture_default_str();
+  drivers::lms200::EmulatorOptions& scanner = options.emulation.scanner;
+  command.add_option("--mode-time", scanner.times.mode, "A mode switch takes so long [s]")
+      ->check(CLI::Range(0.0, 60.0));
+  command
+      .add_option("--deaf",
+                  scanner.times.deaf,
+                  "It hears and says nothing for so long [s] after a mode switch and power-on")
+      ->check(CLI::Range(0.0, 60.0));
+  command.add_option("--refuse", scanner.refusals, "It answers NAK to so many telegrams");
+  command.add_option("--password", scanner.password, "Of its configuration");
   command.add_flag("--rs232", options.rs232, "The plug's jumper is set to RS-232: no 500000");
   command.add_flag("--interlaced",
                    options.emulation.scanner.interlaced,

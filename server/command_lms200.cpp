@@ -24,9 +24,8 @@
 namespace server {
 namespace {
 
-using drivers::lms200::LaserReport;
+using drivers::lms200::LaserSetup;
 using drivers::lms200::Lms200Device;
-using drivers::lms200::Stage;
 
 volatile std::sig_atomic_t g_interrupted = 0;  // NOLINT: the one thing a signal may touch
 
@@ -36,18 +35,21 @@ struct Options {
   std::optional<double> step{};
   std::optional<unsigned> angle{};
   std::optional<unsigned> range{};
+  std::string password{drivers::lms200::kFactoryPassword};
   double patience = 20;
   std::size_t scans = 0;
   std::string output{};
 
-  /// What was not asked for stays as it is in the device.
-  drivers::lms200::LaserSetup setup() const {
-    drivers::lms200::LaserSetup out;
+  /// What was not asked for stays as it is in the device. Throws what no device can do.
+  LaserSetup setup() const {
+    LaserSetup out;
+    out.password = password;
     out.as_it_is = !rate && !step && !angle && !range;
     out.baud = rate.value_or(out.baud);
     out.range = range.value_or(out.range);
     if (angle) out.variant.angle_degrees = static_cast<std::uint16_t>(*angle);
     if (step) out.variant.step_centidegrees = static_cast<std::uint16_t>(std::lround(*step * 100));
+    if (const std::string why = refusal(out); !why.empty()) throw std::runtime_error(why + ".");
     return out;
   }
 };
@@ -58,13 +60,8 @@ void nap() {
 
 /// Waits until the scanner runs. Throws its trouble when it does not.
 void wait_for(Lms200Device& laser, double patience) {
-  const double until = drivers::steady_now() + patience;
-  while (g_interrupted == 0) {
-    const LaserReport report = laser.details();
-    if (report.stage == Stage::Running) return;
-    if (drivers::steady_now() > until) throw std::runtime_error(report.trouble);
-    nap();
-  }
+  const bool runs = laser.comes_to_run(patience, [] { return g_interrupted != 0; });
+  if (!runs && g_interrupted == 0) throw std::runtime_error(laser.details().trouble);
 }
 
 void print_info(Lms200Device& laser) {
@@ -140,6 +137,13 @@ void add_common(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({100U, 180U}));
   command.add_option("--range", options.range, "Metres: 8, 16, 32 or 80 (in centimetres)")
       ->check(CLI::IsMember({8U, 16U, 32U, 80U}));
+  command.add_option("--password", options.password, "Of its configuration, where it was changed")
+      ->check(
+          [](const std::string& text) -> std::string {
+            return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
+          },
+          "8 CHARACTERS")
+      ->capture_default_str();
   command.add_option("--patience", options.patience, "Seconds for it to be found")
       ->check(CLI::Range(1.0, 300.0))
       ->capture_default_str();
@@ -157,8 +161,8 @@ void add_action(CLI::App& parent,
   command->callback([options, &status, action] {
     std::signal(SIGINT, [](int) { g_interrupted = 1; });
     std::signal(SIGTERM, [](int) { g_interrupted = 1; });
-    Lms200Device laser("laser", options->port, options->setup());
     try {
+      Lms200Device laser("laser", options->port, options->setup());
       wait_for(laser, options->patience);
       action(laser, *options);
       status = 0;
@@ -175,7 +179,9 @@ void add_lms200_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("lms200", "One SICK LMS2xx: what it is, its scans, a log");
   command->require_subcommand(1);
-  command->footer("Without --rate, --step, --angle or --range the scanner keeps its own settings.");
+  command->footer(
+      "Without --rate, --step, --angle or --range the scanner keeps its own settings. It is left "
+      "silent, at the rate at which it was found.");
   add_action(*command,
              "info",
              "What it is and how it is",

@@ -1,4 +1,5 @@
 // server/command_record.cpp: `tautline export` and `tautline verify`: looking back at stored runs.
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -30,7 +31,7 @@ std::shared_ptr<Options> add_common(CLI::App& command) {
   return options;
 }
 
-void export_run(const Options& options) {
+int export_run(const Options& options) {
   db::RunReader reader(options.database);
   std::FILE* out = stdout;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
@@ -39,7 +40,8 @@ void export_run(const Options& options) {
     if (!file) throw std::runtime_error(fmt::format("Cannot write {}.", options.output));
     out = file.get();
   }
-  if (!reader.get(options.run)) {
+  const auto row = reader.get(options.run);
+  if (!row) {
     throw std::runtime_error(
         fmt::format("There is no run {} in {}.", options.run, options.database));
   }
@@ -47,8 +49,10 @@ void export_run(const Options& options) {
   std::string text(db::RunReader::csv_header());
   std::optional<std::uint64_t> from = 0;
   bool written = true;
+  std::uint64_t ticks = 0;
   while (from && written) {
     from = reader.csv(options.run, *from, 4096, text, csv_names());
+    ticks += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
     written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
     text.clear();
     if (from && !options.output.empty()) progress.show(fmt::format("{} ticks", *from));
@@ -56,6 +60,11 @@ void export_run(const Options& options) {
   if (!written || std::fflush(out) != 0) {
     throw std::runtime_error("The export could not be written completely: is the disk full?");
   }
+  const auto incomplete = incompleteness(reader, *row, ticks - 1);  // less the header
+  if (!incomplete) return 0;
+  fmt::print(
+      stderr, "tautline: The export of run {} is incomplete. {}\n", options.run, *incomplete);
+  return kIncomplete;
 }
 
 int verify(const Options& options) {
@@ -64,15 +73,25 @@ int verify(const Options& options) {
   if (options.as_json) {
     nlohmann::json out = {{"run", options.run},
                           {"ticks", result.ticks},
-                          {"identical", !result.difference.has_value()}};
+                          {"compared", result.compared},
+                          {"identical", !result.difference.has_value()},
+                          {"complete", !result.incomplete.has_value()}};
     if (result.difference) out["difference"] = *result.difference;
+    if (result.incomplete) out["incomplete"] = *result.incomplete;
     fmt::print("{}\n", out.dump(2));
   } else if (result.difference) {
     fmt::print("Run {} differs. {}\n", options.run, *result.difference);
+  } else if (result.incomplete) {
+    fmt::print("Run {} is incomplete: {} of {} ticks compared, identical commands. {}\n",
+               options.run,
+               result.compared,
+               result.ticks,
+               *result.incomplete);
   } else {
     fmt::print("Run {}: {} ticks, identical commands.\n", options.run, result.ticks);
   }
-  return result.difference ? 2 : 0;
+  if (result.difference) return kDifferent;
+  return result.incomplete ? kIncomplete : 0;
 }
 
 }  // namespace
@@ -82,10 +101,10 @@ void add_export_command(CLI::App& app, int& status) {
   auto options = add_common(*command);
   command->add_option("--format", options->format, "csv")->check(CLI::IsMember({"csv"}));
   command->add_option("--output,-o", options->output, "File to write (default: standard output)");
-  command->callback([options, &status] {
-    export_run(*options);
-    status = 0;
-  });
+  command->footer(
+      "Exit status: 0 the whole run, 1 bad input or error, 4 incomplete: a gap, a cut, or a run "
+      "deleted meanwhile; what there is has been written.");
+  command->callback([options, &status] { status = export_run(*options); });
 }
 
 void add_verify_command(CLI::App& app, int& status) {
@@ -93,7 +112,9 @@ void add_verify_command(CLI::App& app, int& status) {
       "verify", "Feed a stored run to a fresh pipeline and compare every command");
   auto options = add_common(*command);
   command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer("Exit status: 0 identical, 1 bad input or error, 2 different.");
+  command->footer(
+      "Exit status: 0 identical, 1 bad input or error, 2 different, 4 incomplete: a gap, a pause "
+      "or a cut of the record, beyond which nothing can be compared.");
   command->callback([options, &status] { status = verify(*options); });
 }
 

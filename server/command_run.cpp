@@ -1,5 +1,4 @@
 // server/command_run.cpp: `tautline run` and `tautline replay`: headless, with figures at the end.
-#include <csignal>
 #include <cstdio>
 #include <memory>
 #include <stop_token>
@@ -11,26 +10,24 @@
 #include "server/headless.hpp"
 #include "server/run_json.hpp"
 #include "server/scenario_json.hpp"
+#include "server/signals.hpp"
 
 namespace server {
 namespace {
 
 using nlohmann::json;
 
-volatile std::sig_atomic_t g_interrupted = 0;  // NOLINT: the one thing a signal handler may touch
-
-/// Turns Ctrl-C into a stop request, so that the record is closed in order.
+/// Turns Ctrl-C and its kin into a stop request, so that the record is closed in order.
 class InterruptWatch {
  public:
   explicit InterruptWatch(std::stop_source& source)
       : thread_([&source](const std::stop_token& done) {
-          while (!done.stop_requested() && g_interrupted == 0) {
+          while (!done.stop_requested() && !end_requested()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
           }
-          if (g_interrupted != 0) source.request_stop();
+          if (end_requested()) source.request_stop();
         }) {
-    std::signal(SIGINT, [](int) { g_interrupted = 1; });
-    std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+    heed_signals();
   }
 
  private:
@@ -89,7 +86,7 @@ int execute(const Options& options) {
   headless.hash_frames = true;
   if (!options.out.empty()) {
     recorder = std::make_unique<Recorder>(options.out, recorder_options());
-    headless.record = recorder->open(new_run(spec, robot->spec()));
+    headless.record = recorder->open(headless_run(spec, robot->spec(), options.pace));
   }
   ProgressLine progress;
   const double limit = time_limit(spec);
@@ -105,10 +102,13 @@ int execute(const Options& options) {
     result = run_headless(spec, *robot, headless, stop.get_token());
   }
   std::int64_t run_id = 0;
+  std::string problem;  // of the record
   if (recorder) {
-    recorder->flush();
+    // A store that is locked gets as long as it takes, or until somebody has had enough.
+    while (!recorder->flush() && !end_requested()) {
+    }
     run_id = headless.record->run();
-    if (headless.record->failed()) throw std::runtime_error(headless.record->problem());
+    if (headless.record->failed()) problem = headless.record->problem();
   }
   if (options.as_json) {
     json out = {{"scenario", spec.scenario.name},
@@ -125,7 +125,9 @@ int execute(const Options& options) {
   } else {
     print_table(spec, result, run_id);
   }
-  return exit_status(result.run.outcome);
+  if (problem.empty()) return exit_status(result.run.outcome);
+  fmt::print(stderr, "tautline: The record of this run is incomplete. {}\n", problem);
+  return kBadInput;
 }
 
 }  // namespace

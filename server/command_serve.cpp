@@ -11,7 +11,6 @@
 #include "server/app.hpp"
 #include "server/cli.hpp"
 #include "server/hardware.hpp"
-#include "server/operator_watch.hpp"
 #include "server/paths.hpp"
 #include "server/scenario_library.hpp"
 
@@ -24,6 +23,7 @@ struct Options {
   std::string robot{};  // file of real hardware; empty: simulation
   RunFlags flags{};
   double keep_gigabytes = 2;
+  std::string evict = "never";
 };
 
 /// The spec to begin with: of the devices of a robot's file, or of a scenario.
@@ -46,6 +46,22 @@ RunSpec first_spec(const Options& options) {
   return hardware_spec(robot, overrides);
 }
 
+/// Loud, since the docker image and many a shell history say --insecure without another thought.
+void warn_of_open_door(const net::ServerOptions& net, bool hardware) {
+  if (!net.access.insecure || !net.access.token.empty() || net::is_loopback_name(net.address)) {
+    return;
+  }
+  const std::string bar(78, '!');
+  fmt::print(stderr,
+             "{0}\n"
+             "INSECURE: there is no token. Everybody who can reach this port can {1},\n"
+             "change its world and delete its runs. Set TAUTLINE_TOKEN and leave --insecure out,\n"
+             "unless a firewall or a port mapping lets only people you trust come in.\n"
+             "{0}\n",
+             bar,
+             hardware ? "DRIVE THE REAL ROBOT" : "drive the robot");
+}
+
 void serve(Options& options) {
   AppOptions& app = options.app;
   if (const char* token = std::getenv("TAUTLINE_TOKEN");
@@ -53,12 +69,13 @@ void serve(Options& options) {
     app.net.access.token = token;
   }
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
+  app.evict_oldest = options.evict == "oldest";
   app.first = first_spec(options);
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   const std::string database = app.database.string();
   const bool armed = app.armed;
   const bool hardware = app.first.hardware != nullptr;
-  if (hardware) app.net.timeouts.ws_ping = OperatorWatch::kPing;
+  warn_of_open_door(app.net, hardware);
   // Moved: the devices are to be left in order when the program ends, not later.
   App program(std::move(app));
   fmt::print("Tautline is at {}\n", program.url());
@@ -90,6 +107,18 @@ void add_serve_command(CLI::App& app, int& status) {
                       "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
   command->add_flag(
       "--insecure", net.access.insecure, "Listen beyond this machine without a token");
+  command
+      ->add_option("--trusted-proxy",
+                   net.access.trusted_proxies,
+                   "A proxy in front that says whom it speaks for (X-Forwarded-For, "
+                   "X-Forwarded-Proto), such as 127.0.0.1 or 172.17.0.0/16; may be given again")
+      ->type_name("ADDRESS");
+  command
+      ->add_option("--per-address",
+                   net.limits.connections_per_address,
+                   "Connections one address may have; more for many people behind one router")
+      ->check(CLI::Range(8, 100000))
+      ->capture_default_str();
   command->add_option("--allow-host",
                       net.access.allow_hosts,
                       "A further name this server goes by, such as one of a port mapping");
@@ -102,10 +131,20 @@ void add_serve_command(CLI::App& app, int& status) {
   command
       ->add_option("--keep",
                    options->keep_gigabytes,
-                   "Delete the oldest runs beyond this size; 0: keep everything")
+                   "Room for the record: beyond it a live run gives up its oldest ticks, and "
+                   "nothing more is recorded; 0: what the disk has")
       ->type_name("GB")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
+  command
+      ->add_option("--evict",
+                   options->evict,
+                   "Finished runs to delete when there is no room: never, or the oldest")
+      ->check(CLI::IsMember({"never", "oldest"}))
+      ->capture_default_str();
+  command->add_flag("--require-record",
+                    options->app.require_record,
+                    "A live run stops as soon as it is not recorded; else the robot drives on");
   command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
       ->type_name("DIR")
       ->capture_default_str();
@@ -128,7 +167,7 @@ void add_serve_command(CLI::App& app, int& status) {
                     "Switch the motors of real hardware on as soon as its devices are well");
   command->add_flag("--unattended",
                     options->app.unattended,
-                    "Real hardware drives on though no page is open and nobody asks over REST");
+                    "Real hardware drives on though nobody watches it who could stop it");
   options->flags.add_to(*command);
   command->callback([options, &status] {
     serve(*options);

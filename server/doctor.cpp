@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "algo/dazzle.hpp"
+#include "algo/perceive.hpp"
 #include "drivers/lms200_device.hpp"
 #include "drivers/p2os_machine.hpp"
 #include "drivers/real_time.hpp"
@@ -77,27 +79,57 @@ bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
   }
 }
 
+/// What the scans of some seconds had in them.
+struct Tally {
+  std::size_t scans = 0;
+  std::size_t beams = 0;
+  std::size_t readings = 0;  // beams that met something
+  std::size_t spikes = 0;
+  std::size_t blinded = 0;  // scans of which most beams tell nothing,
+  std::size_t dazzled = 0;  // and scans with a cone of beams that do not
+};
+
+void add(const algo::LaserScan& scan, Tally& tally) {
+  std::vector<double> ranges;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const bool ok = scan.status[i] == algo::Beam::Ok;
+    ranges.push_back(ok ? scan.ranges[i] : scan.range_max);
+    tally.readings += ok ? 1U : 0U;
+  }
+  const algo::BeamSpan cone = algo::widest_cone(scan);
+  ++tally.scans;
+  tally.beams += scan.size();
+  tally.spikes += count_spikes(ranges);
+  tally.blinded += algo::blinded(scan) ? 1U : 0U;
+  tally.dazzled += cone.end > cone.begin ? 1U : 0U;
+}
+
+/// Whether they could be driven by.
+bool look_at_dazzle(const Tally& tally, Notes& notes) {
+  constexpr const char* kAdvice =
+      "Keep the sun, lamps and other scanners out of its sight; look at its window.";
+  if (tally.blinded > 0) {
+    notes.bad(
+        fmt::format(
+            "It is blinded: {} of {} scans tell next to nothing.", tally.blinded, tally.scans),
+        kAdvice);
+  } else if (tally.dazzled > 0) {
+    notes.bad(fmt::format("It is dazzled: {} of {} scans have a cone that tells nothing.",
+                          tally.dazzled,
+                          tally.scans),
+              kAdvice);
+  }
+  return tally.blinded == 0 && tally.dazzled == 0;
+}
+
 void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& notes) {
   const drivers::lms200::LaserReport before = laser.details();
   algo::LaserScan scan;
-  std::size_t scans = 0;
-  std::size_t spikes = 0;
-  std::size_t beams = 0;
-  std::size_t readings = 0;
-  std::vector<double> ranges;
+  Tally tally;
   const double begun = steady_now();
   while (steady_now() < begun + seconds) {
     pause();
-    if (!laser.take(scan)) continue;
-    ++scans;
-    ranges.clear();
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      const bool ok = scan.status[i] == algo::Beam::Ok;
-      ranges.push_back(ok ? scan.ranges[i] : scan.range_max);
-      readings += ok ? 1 : 0;
-    }
-    beams += scan.size();
-    spikes += count_spikes(ranges);
+    if (laser.take(scan)) add(scan, tally);
   }
   const drivers::lms200::LaserReport after = laser.details();
   const double rate = static_cast<double>(after.scans - before.scans) / (steady_now() - begun);
@@ -116,15 +148,16 @@ void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& 
             "{} of {} telegrams came damaged.", damaged, damaged + after.scans - before.scans),
         "A longer or unshielded cable does that; so does a computer that is busy.");
   }
-  if (scans == 0 || beams == 0) return;
-  const double percent = 100.0 * static_cast<double>(readings) / static_cast<double>(beams);
+  if (tally.beams == 0 || !look_at_dazzle(tally, notes)) return;
+  const double percent =
+      100.0 * static_cast<double>(tally.readings) / static_cast<double>(tally.beams);
   if (percent < 5) {
     notes.note(fmt::format("Only {:.0f} % of the beams meet something within range.", percent),
                "Is the window covered, or the room larger than the range?");
   } else {
     notes.well(fmt::format("{:.0f} % of the beams meet something within range.", percent));
   }
-  const double per_scan = static_cast<double>(spikes) / static_cast<double>(scans);
+  const double per_scan = static_cast<double>(tally.spikes) / static_cast<double>(tally.scans);
   if (per_scan > 2) {
     notes.note(fmt::format("{:.1f} beams a scan stand alone against their neighbours.", per_scan),
                "Clean the window; look for dust, sun and mirrors.");
@@ -139,13 +172,9 @@ bool look_at_laser(const drivers::LaserEntry& entry,
   Notes notes(entry.name, found);
   if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
   drivers::lms200::Lms200Device laser(entry.name, entry.port, entry.setup);
-  drivers::lms200::LaserReport report;
-  const double until = steady_now() + options.patience;
-  do {
-    pause();
-    report = laser.details();
-  } while (report.stage != drivers::lms200::Stage::Running && steady_now() < until);
-  if (report.stage != drivers::lms200::Stage::Running) {
+  const bool runs = laser.comes_to_run(options.patience);
+  const drivers::lms200::LaserReport report = laser.details();
+  if (!runs) {
     notes.bad(
         report.trouble,
         fmt::format("One that was just switched on takes up to 60 s: --patience 70 waits for it "
@@ -200,7 +229,7 @@ Drive drive_for_a_second(drivers::Base& base, double speed) {
     base.drive({speed, 0});
     pause();
   }
-  base.stop();
+  base.drive({});  // along the ramp it started with
   const double told = speed * (steady_now() - begun);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   const algo::Pose2 after = base.state().pose;

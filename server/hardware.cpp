@@ -2,9 +2,12 @@
 #include "server/hardware.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "algo/parameters.hpp"
+#include "drivers/lms200_scan.hpp"
+#include "drivers/scanner.hpp"
 
 namespace server {
 namespace {
@@ -15,6 +18,21 @@ using nlohmann::json;
 double allowed(algo::Parameter parameter, double wanted) {
   const algo::ParameterInfo& info = algo::info(parameter);
   return std::clamp(wanted, info.min, info.max);
+}
+
+/// [s] How old the newest scan may be, or the newest reading of a robot that has sonar alone. The
+/// robot halts by its scanner's own period as it is; this is the second wall behind that, wide
+/// enough for the rate to which a scanner may have to fall back.
+double scan_timeout(const drivers::RobotFile& file) {
+  constexpr double kSonar = 0.5;  // [s] a ring of eight takes 0.32
+  if (!file.spec.has_laser) return kSonar;
+  double longest = 0;
+  for (const drivers::LaserEntry& laser : file.lasers) {
+    const unsigned baud = std::min(laser.setup.baud, drivers::lms200::kFallbackRate);
+    const double period = drivers::lms200::scan_period(laser.setup.variant, baud);
+    longest = std::max(longest, drivers::blind_time(period));
+  }
+  return longest;
 }
 
 json to_json(const drivers::DeviceReport& device) {
@@ -48,7 +66,8 @@ RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOver
   sim::Scenario scenario;
   scenario.name = file.spec.name;
   scenario.title = "Real hardware";
-  scenario.description = "Described in " + file.path;
+  // Its name alone: everybody who may look at the robot reads it.
+  scenario.description = "Described in " + std::filesystem::path(file.path).filename().string();
   scenario.period = file.spec.period;
   scenario.controller = file.controller;
   scenario.filter = file.filter;
@@ -57,12 +76,11 @@ RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOver
     scenario.sonar.emplace();
   }
   using algo::Parameter;
-  // The robot's own limits hold in any case; controllers should plan by them too. How old a scan
-  // may be depends on the scanner's rate, which the robot knows better.
+  // The robot's own limits hold in any case; controllers should plan by them too.
   scenario.parameters = {
       {Parameter::MaxSpeed, allowed(Parameter::MaxSpeed, file.limits.speed)},
       {Parameter::MaxTurnRate, allowed(Parameter::MaxTurnRate, file.limits.turn)},
-      {Parameter::ScanTimeout, allowed(Parameter::ScanTimeout, 2.0)}};
+      {Parameter::ScanTimeout, allowed(Parameter::ScanTimeout, scan_timeout(file))}};
   RunSpec spec = make_spec(std::move(scenario), overrides);
   spec.hardware = std::move(robot);
   return spec;

@@ -50,9 +50,10 @@ HeadlessResult run_headless(const RunSpec& spec,
   result.run = run(robot, pipeline, first_requests(spec), policy, links, stop);
   if (result.run.outcome == algo::Outcome::Running) result.run.outcome = algo::Outcome::Stopped;
   if (options.record) {
-    db::RunEnd end = run_end(result.run);
-    if (options.cancelled && options.cancelled()) end.status = db::RunStatus::Cancelled;
-    options.record->close(std::move(end));
+    const bool cancelled = options.cancelled && options.cancelled();
+    db::RunEnd end = run_end(result.run, stop.stop_requested() && !cancelled);
+    if (cancelled) end.status = db::RunStatus::Cancelled;
+    options.record->close(std::move(end), result.run.metrics.ticks);
   }
   return result;
 }

@@ -27,8 +27,8 @@ struct HeadlessResult {
 };
 
 /// Runs `robot`, which make_robot(spec) made, until reached, stuck, collided, out of time, the end
-/// of the log, or `stop`. The record channel is closed with the result. Throws nothing of its own:
-/// what breaks a run is in the result.
+/// of the log, or `stop`, which interrupts it. The record channel is closed with the result. Throws
+/// nothing of its own: what breaks a run is in the result.
 HeadlessResult run_headless(const RunSpec& spec,
                             algo::Robot& robot,
                             const HeadlessOptions& options,

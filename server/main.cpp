@@ -1,6 +1,7 @@
 // server/main.cpp: the program: one subcommand each for serving, running, replaying, looking back.
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -8,7 +9,9 @@
 #include "server/cli.hpp"
 #include "server/version.hpp"
 
-int main(int argc, char** argv) {
+namespace {
+
+int main_of(int argc, char** argv) {
   CLI::App app{"Tautline: simulation and teleoperation of mobile robots, in the browser."};
   app.name("tautline");
   app.set_version_flag("--version", fmt::format("tautline {}", server::kVersion));
@@ -34,9 +37,21 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".
     return app.exit(e) == 0 ? 0 : server::kBadInput;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "tautline: There is not enough memory for this.\n");
+    return server::kBadInput;
   } catch (const std::exception& e) {
     fmt::print(stderr, "tautline: {}\n", e.what());
     return server::kBadInput;
   }
   return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int status = main_of(argc, argv);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  fmt::print(stderr, "tautline: The output could not be written completely: is the disk full?\n");
+  return status == 0 ? server::kBadInput : status;
 }

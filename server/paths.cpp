@@ -34,4 +34,27 @@ fs::path web_folder() {
   return TAUTLINE_WEB_DIST;
 }
 
+std::string without_folders(std::string_view sentence) {
+  constexpr std::string_view kBefore = " \t\n'\"([=,;";
+  constexpr std::string_view kAfter = " \t\n'\"()[],;:";
+  std::string out;
+  while (!sentence.empty()) {
+    const bool word_begins = out.empty() || kBefore.find(out.back()) != std::string_view::npos;
+    if (sentence.front() != '/' || !word_begins) {
+      out.push_back(sentence.front());
+      sentence.remove_prefix(1);
+      continue;
+    }
+    std::string_view path = sentence.substr(0, sentence.find_first_of(kAfter));
+    sentence.remove_prefix(path.size());
+    const bool public_name = path.starts_with("/dev/") || path.starts_with("/api/");
+    if (!public_name) {
+      while (path.size() > 1 && path.back() == '/') path.remove_suffix(1);
+      path.remove_prefix(path.size() > 1 ? path.rfind('/') + 1 : 0);
+    }
+    out.append(path);
+  }
+  return out;
+}
+
 }  // namespace server

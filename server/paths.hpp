@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace server {
 
@@ -11,5 +13,9 @@ std::filesystem::path state_folder();
 
 /// The built page: --web, else beside the program, else the source tree it was built from.
 std::filesystem::path web_folder();
+
+/// A sentence for visitors: of each absolute path its last name alone. What lies where on this
+/// machine is for its log. Devices (/dev) and addresses of the API stay whole.
+std::string without_folders(std::string_view sentence);
 
 }  // namespace server

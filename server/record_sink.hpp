@@ -25,6 +25,7 @@ class RecordSink final : public FrameSink {
     FrameHandle handle(frame.get());
     return channel_->push(handle);  // a handle that was not taken gives its reference back
   }
+  void pause() override { channel_->pause(); }
   std::optional<std::string> failure() const override {
     if (!channel_->failed()) return std::nullopt;
     return channel_->problem();

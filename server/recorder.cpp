@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <exception>
 
+#include "server/net/io_thread.hpp"
+
 namespace server {
 
 namespace {
@@ -13,70 +15,38 @@ using std::chrono::milliseconds;
 // How long the database thread sleeps when nobody rings: short against the commit interval, and
 // long enough to cost nothing. A ring that fills faster rings at half.
 constexpr milliseconds kNap{20};
-// What one commit interval may spend on deleting old runs.
-constexpr milliseconds kSweepTime{400};
+// What a stopping recorder waits for a store that is locked.
+constexpr milliseconds kLastPatience{2000};
+// Ended runs that wait for a failed store to take their ends; older ones are then let go.
+constexpr std::size_t kMostWaiting = 64;
+
+/// The write-ahead log is to be a small part of what may be kept at all.
+db::StoreOptions store_options(const RecorderOptions& options,
+                               const std::shared_ptr<db::RunNumbers>& numbers) {
+  constexpr std::uint64_t kPageBytes = 4096;
+  constexpr std::uint64_t kFewestPages = 16;
+  db::StoreOptions store = options.store;
+  store.numbers = numbers;
+  if (options.retention_bytes > 0) {
+    store.log_pages = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
+        options.retention_bytes / 16 / kPageBytes, kFewestPages, store.log_pages));
+  }
+  return store;
+}
+
+constexpr const char* kStopping = "The server is stopping; nothing more is recorded.";
 
 }  // namespace
 
-namespace detail {
-
-void Doorbell::ring() {
-  {
-    const std::lock_guard lock(mutex_);
-    rung_ = true;
-  }
-  condition_.notify_one();
-}
-
-void Doorbell::nudge() {
-  if (asleep_.load()) ring();
-}
-
-void Doorbell::wait_until(std::chrono::steady_clock::time_point until) {
-  std::unique_lock lock(mutex_);
-  asleep_ = true;
-  condition_.wait_until(lock, until, [&] { return rung_; });
-  asleep_ = false;
-  rung_ = false;
-}
-
-}  // namespace detail
-
-RunChannel::RunChannel(db::RunId run, std::size_t capacity, std::shared_ptr<detail::Doorbell> bell)
-    : run_(run), half_(capacity / 2), ring_(capacity), bell_(std::move(bell)) {}
-
-RunChannel::~RunChannel() {
-  ring_.consume_all([](RecordedFrame* frame) { frame->release(); });
-}
-
-bool RunChannel::push(FrameHandle& frame) {
-  if (failed()) {
-    frame.reset();
-    return true;
-  }
-  const bool taken = ring_.push(frame.get());
-  if (taken) frame.detach();
-  if (!taken || ring_.write_available() <= half_) bell_->nudge();
-  return taken;
-}
-
-void RunChannel::close(db::RunEnd end) {
-  end_ = std::move(end);
-  closed_.store(true, std::memory_order_release);
-  bell_->ring();
-}
-
-void RunChannel::fail(const std::string& why) {
-  if (failed()) return;
-  problem_ = why;
-  failed_.store(true, std::memory_order_release);
-}
-
 Recorder::Recorder(const std::string& path, RecorderOptions options)
     : options_(std::move(options)),
-      store_(path, options_.store),
-      interrupted_(store_.interrupted()),
-      thread_([this] { work(); }) {}
+      store_(path, store_options(options_, numbers_), db::RunStore::Closed{}) {
+  open_store();
+  interrupted_ = store_.interrupted();
+  takes_more_ = !ailment_;
+  publish();
+  thread_ = std::thread([this] { work(); });
+}
 
 Recorder::~Recorder() {
   {
@@ -87,67 +57,88 @@ Recorder::~Recorder() {
   thread_.join();
 }
 
+std::shared_ptr<RunChannel> Recorder::begin(const db::NewRun& what) {
+  auto channel = std::make_shared<RunChannel>(
+      numbers_->take(), what, Keep::NewestHour, options_.ring_frames, bell_);
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw db::StoreError(kStopping);
+    arrivals_.push_back(channel);
+  }
+  bell_->ring();
+  return channel;
+}
+
 std::shared_ptr<RunChannel> Recorder::open(const db::NewRun& what) {
+  net::not_on_io_thread("Waiting for the run store");
   return ask([&](db::RunStore& store) {
     const db::RunId run = store.begin_run(what);
     store.commit();
-    return add_channel(run);
+    return add_channel(run, what);
   });
 }
 
-std::shared_ptr<RunChannel> Recorder::open(db::RunId queued, const std::string& started) {
+std::shared_ptr<RunChannel> Recorder::open(db::RunId queued, const db::NewRun& what) {
+  net::not_on_io_thread("Waiting for the run store");
   return ask([&](db::RunStore& store) {
-    store.start_run(queued, started);
+    db::RunId run = queued;
+    if (store.status_of(queued)) {
+      store.start_run(queued, what.started);
+    } else {
+      run = store.begin_run(what, queued);
+    }
     store.commit();
-    return add_channel(queued);
+    return add_channel(run, what);
   });
 }
 
-std::shared_ptr<RunChannel> Recorder::add_channel(db::RunId run) {
-  channels_.push_back(std::make_shared<RunChannel>(run, options_.ring_frames, bell_));
+std::shared_ptr<RunChannel> Recorder::add_channel(db::RunId run, const db::NewRun& what) {
+  channels_.push_back(
+      std::make_shared<RunChannel>(run, what, Keep::Whole, options_.ring_frames, bell_));
   return channels_.back();
 }
 
 void Recorder::post(Job job) {
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_) throw db::StoreError("The server is stopping; nothing more is recorded.");
+    if (stopping_) throw db::StoreError(kStopping);
     jobs_.push_back(std::move(job));
   }
   bell_->ring();
 }
 
-void Recorder::flush() {
-  ask([this](db::RunStore&) {
-    take_frames();
-    end_closed();
-    commit();
-  });
+void Recorder::post_when_well(Job job) {
+  post([this, job = std::move(job)](db::RunStore& /*store*/) { later_.push_back(job); });
 }
 
-void Recorder::report(const std::string& sentence) const {
-  if (options_.report) options_.report(sentence);
+bool Recorder::flush(milliseconds patience) {
+  const auto until = Clock::now() + patience;
+  for (;;) {
+    const bool done = ask([this](db::RunStore& /*store*/) {
+      take_arrivals();
+      take_frames();
+      end_closed();
+      commit();
+      const bool locked = ailment_ && ailment_->trouble == db::Trouble::Busy;
+      return !locked && std::ranges::none_of(channels_, [&](const auto& channel) {
+        return waits(*channel) && channel->ring_.read_available() > 0;
+      });
+    });
+    if (done || Clock::now() >= until) return done;
+    std::this_thread::sleep_for(kNap);
+  }
 }
 
-/// Runs `action`; a failing database costs the runs it dropped, not the thread.
+/// Runs `action`; a failing database costs what was not committed, not the thread.
 template <typename Action>
 void Recorder::guarded(const Action& action) {
   try {
     action();
+  } catch (const db::DatabaseError& error) {
+    store_.take_failure();
+    note_trouble(error);
   } catch (const std::exception& error) {
     report(error.what());
-    drop_lost(error.what());
-  }
-}
-
-/// Fails the channels whose runs the store no longer records.
-void Recorder::drop_lost(const std::string& why) {
-  for (const auto& channel : channels_) {
-    if (channel->failed() || channel->full_ || store_.recording(channel->run())) continue;
-    channel->fail(why);
-    lost_.emplace_back(
-        channel->run(),
-        db::RunEnd{.status = db::RunStatus::Failed, .outcome = "failed", .reason = why});
   }
 }
 
@@ -157,20 +148,31 @@ void Recorder::work() {
       const std::lock_guard lock(mutex_);
       last = stopping_;
     }
-    run_jobs();
-    take_frames();
-    end_closed();
-    if (Clock::now() >= commit_due_) {
-      end_lost();
-      commit();
-      make_room();
-    }
-    if (!last) {
-      bell_->wait_until(channels_.empty() ? commit_due_
-                                          : std::min(Clock::now() + kNap, commit_due_));
+    // Nothing that goes wrong here may end the program: a robot may be on its way.
+    try {
+      work_once(last);
+    } catch (const std::exception& error) {
+      report(std::string("The record's thread: ") + error.what());
     }
   }
   stop_all();
+}
+
+void Recorder::work_once(bool last) {
+  recover();
+  run_jobs();
+  take_arrivals();
+  take_frames();
+  end_closed();
+  if (Clock::now() >= commit_due_) {
+    run_later();
+    look_at_file();
+    commit();
+    make_room();
+    publish();
+  }
+  if (last) return;
+  bell_->wait_until(channels_.empty() ? commit_due_ : std::min(Clock::now() + kNap, commit_due_));
 }
 
 void Recorder::run_jobs() {
@@ -185,38 +187,126 @@ void Recorder::run_jobs() {
       store_.commit();
     });
     // ask() passes the error on to its caller, and yet it may have cost a recording.
-    drop_lost("The run store failed; what it held since its last commit is lost.");
+    if (const auto failure = store_.take_failure()) note_trouble(*failure);
+    // Many jobs must not make the frames that came meanwhile wait for their commit.
+    take_frames();
+    if (Clock::now() >= commit_due_) commit();
   }
+}
+
+void Recorder::run_later() {
+  std::size_t done = 0;
+  for (; done < later_.size() && !ailment_; ++done) {
+    guarded([&] {
+      later_[done](store_);
+      store_.commit();
+    });
+    if (ailment_) break;
+  }
+  later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+/// Live runs that began meanwhile: their rows are written, and at once.
+void Recorder::take_arrivals() {
+  std::vector<std::shared_ptr<RunChannel>> arrivals;
+  {
+    const std::lock_guard lock(mutex_);
+    arrivals.swap(arrivals_);
+  }
+  for (auto& channel : arrivals) {
+    channels_.push_back(channel);
+    if (ailment_ && ailment_->trouble != db::Trouble::Busy) channel->fail(ailment_->sentence);
+    if (full_) channel->fail(*full_);
+    guarded([&] {
+      if (ailment_) return;
+      resume(*channel);
+      store_.commit();
+    });
+  }
+  if (!arrivals.empty()) publish();
 }
 
 void Recorder::take_frames() {
   for (const auto& channel : channels_) take_frames(*channel);
 }
 
+/// Whether the frames of a run stay in its ring for now.
+bool Recorder::waits(const RunChannel& channel) const {
+  if (ailment_) return ailment_->trouble == db::Trouble::Busy;
+  return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room;
+}
+
 void Recorder::take_frames(RunChannel& channel) {
   // Only what is here now, so that one fast run does not keep the others and the commit waiting.
-  for (std::size_t left = channel.ring_.read_available(); left > 0; --left) {
-    RecordedFrame* popped = nullptr;
-    if (!channel.ring_.pop(popped)) return;
-    const FrameHandle frame(popped);
-    if (channel.failed() || channel.full_) continue;
-    ++channel.taken_;
-    guarded([&] {
-      try {
-        store_.append_tick(channel.run(), frame->row(), frame->bytes(), frame->windows());
-      } catch (const db::DatabaseError&) {
-        throw;
-      } catch (const std::exception& error) {
-        // A frame that cannot be stored ends its own run and no other.
-        channel.fail(error.what());
-        lost_.emplace_back(
-            channel.run(),
-            db::RunEnd{
-                .status = db::RunStatus::Failed, .outcome = "failed", .reason = error.what()});
-        report(error.what());
-      }
-    });
+  std::size_t left = channel.ring_.read_available();
+  if (left == 0 || waits(channel)) return;
+  if (!ailment_ && !full_ && !channel.broken_) guarded([&] { store_.begin(); });
+  if (waits(channel)) return;  // locked: nothing has left the ring
+  for (; left > 0; --left) {
+    RunChannel::Pushed pushed{};
+    if (!channel.ring_.pop(pushed)) return;
+    const FrameHandle frame(pushed.frame);
+    keep(channel, *frame.get(), pushed.after_pause);
   }
+}
+
+void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause) {
+  if (channel.broken_) return;
+  if (ailment_ || full_) {
+    channel.missing_ = {.cause = ailment_ ? db::GapCause::Failed : db::GapCause::Full,
+                        .sentence = without_folder(ailment_ ? ailment_->sentence : *full_)};
+    return;
+  }
+  guarded([&] {
+    try {
+      resume(channel);
+      const db::TickRow row = frame.row();
+      if (row.tick > channel.next_tick_) {
+        store_.note_gap(channel.run(), channel.gap_until(row.tick, after_pause));
+      }
+      store_.append_tick(channel.run(), row, frame.bytes(), frame.windows());
+      channel.next_tick_ = row.tick + 1;
+      channel.missing_.reset();
+    } catch (const db::DatabaseError&) {
+      throw;
+    } catch (const std::exception& error) {
+      // A frame that cannot be stored ends its own run and no other.
+      channel.broken_ = true;
+      channel.fail(error.what());
+      report(error.what());
+      store_.end_run(
+          channel.run(),
+          {.status = db::RunStatus::Failed, .outcome = "failed", .reason = error.what()});
+    }
+  });
+}
+
+/// Goes on with a run that the store does not record: in its row, or in a new one where that is
+/// gone.
+void Recorder::resume(RunChannel& channel) {
+  if (channel.broken_ || store_.recording(channel.run())) return;
+  if (const auto next = store_.resume_run(channel.run())) {
+    channel.next_tick_ = *next;
+    return;
+  }
+  channel.next_tick_ = 0;
+  channel.run_.store(store_.begin_run(channel.what_, channel.run()), std::memory_order_release);
+}
+
+/// Writes a run's end, after what is missing there. False when the store does not take it.
+bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks) {
+  bool ended = channel.broken_;
+  guarded([&] {
+    if (ended || ailment_) return;
+    resume(channel);
+    if (ticks > channel.next_tick_) {
+      store_.note_gap(channel.run(), channel.gap_until(ticks, channel.paused_));
+    }
+    store_.end_run(channel.run(), end);
+    store_.commit();
+    ended = true;
+  });
+  return ended;
 }
 
 void Recorder::end_closed() {
@@ -226,97 +316,57 @@ void Recorder::end_closed() {
     // before close() is seen in the ring.
     const bool held = channels_[i].use_count() > 1;
     const bool closed = channel.closed_.load(std::memory_order_acquire);
-    if (!closed && held) {
+    const auto take_rest = [&] {
+      take_frames(channel);
+      return channel.ring_.read_available() == 0;
+    };
+    const db::RunEnd broken_off{.status = db::RunStatus::Failed,
+                                .outcome = "failed",
+                                .reason = "The run broke off without a result."};
+    if ((!closed && held) || !take_rest() ||
+        !end(channel, closed ? channel.end_ : broken_off, closed ? channel.ticks_ : 0)) {
       ++i;
       continue;
     }
-    take_frames(channel);
-    if (!channel.failed() && !channel.full_) {
-      guarded([&] {
-        store_.end_run(channel.run(),
-                       closed ? channel.end_
-                              : db::RunEnd{.status = db::RunStatus::Failed,
-                                           .outcome = "failed",
-                                           .reason = "The run broke off without a result."});
-        store_.commit();
-      });
-    }
     channels_.erase(channels_.begin() + static_cast<std::ptrdiff_t>(i));
   }
-}
-
-/// Marks failed runs in the store, as soon as it takes writes again.
-void Recorder::end_lost() {
-  while (!lost_.empty()) {
-    try {
-      store_.end_run(lost_.back().first, lost_.back().second);
-      store_.commit();
-    } catch (const db::DatabaseError&) {
-      drop_lost("The run store failed.");
-      return;  // still not; the next start will find the run unfinished and say so
-    } catch (const db::StoreError&) {
-      // Its first commit was lost too: there is nothing to mark.
-    }
-    lost_.pop_back();
+  const auto over = [](const auto& channel) {
+    return channel->closed_.load(std::memory_order_acquire);
+  };
+  while (std::ranges::count_if(channels_, over) > static_cast<std::ptrdiff_t>(kMostWaiting)) {
+    channels_.erase(std::ranges::find_if(channels_, over));
   }
 }
 
 void Recorder::commit() {
   commit_due_ = Clock::now() + options_.commit_interval;
-  guarded([&] { store_.commit(); });
-}
-
-/// Only runs in progress are left and they are too much: the longest is recorded no further, and
-/// may then be deleted like any other. Its robot goes on; nobody meant to keep it all.
-void Recorder::cut_longest() {
-  const auto longest =
-      std::max_element(channels_.begin(), channels_.end(), [](const auto& a, const auto& b) {
-        return std::pair(!a->full_, a->taken_) < std::pair(!b->full_, b->taken_);
-      });
-  if (longest == channels_.end() || (*longest)->full_) return;
-  RunChannel& channel = **longest;
-  const std::string why = "Run " + std::to_string(channel.run()) +
-                          " fills the run store alone: from here on it is not recorded.";
-  store_.end_run(channel.run(), {.outcome = "stopped", .reason = why});
-  store_.commit();
-  channel.full_ = true;
-  report(why);
-}
-
-void Recorder::make_room() {
-  guarded([&] {
-    // What people deleted goes first: nothing else has to go while that is still there. Every slice
-    // commits, so the frames that came meanwhile are as safe as without it.
-    const auto until = Clock::now() + kSweepTime;
-    bool more = store_.sweep();
-    while (more && Clock::now() < until) {
-      take_frames();
-      more = store_.sweep();
-    }
-    if (more || options_.retention_bytes == 0) return;
-    if (const auto run = store_.retire_oldest(options_.retention_bytes)) {
-      report("Deleted run " + std::to_string(run->id) + " (" + run->what.scenario + ", " +
-             run->what.started + ", " + std::to_string(run->ticks) +
-             " ticks): the run store is full.");
-    } else if (store_.used_bytes() > options_.retention_bytes) {
-      cut_longest();
-    }
-  });
+  if (!ailment_) guarded([&] { store_.commit(); });
 }
 
 void Recorder::stop_all() {
+  const auto until = Clock::now() + kLastPatience;
+  const auto end_all = [&] {
+    if (ailment_) ailment_->retry = {};
+    recover();
+    run_later();
+    take_arrivals();
+    take_frames();
+    end_closed();
+    return !ailment_ || ailment_->trouble != db::Trouble::Busy;
+  };
+  while (!end_all() && Clock::now() < until) std::this_thread::sleep_for(kNap);
+  full_.reset();  // what is still in a ring is all there will be
   for (const auto& channel : channels_) {
-    if (channel->failed() || channel->full_) continue;
-    guarded([&] {
-      store_.end_run(channel->run(),
-                     {.status = db::RunStatus::Interrupted,
-                      .outcome = "stopped",
-                      .reason = "The server was stopped in the middle of this run."});
-    });
+    take_frames(*channel);
+    end(*channel,
+        {.status = db::RunStatus::Interrupted,
+         .outcome = "stopped",
+         .reason = "The server was stopped in the middle of this run."},
+        0);
+    channel->fail("The server was stopped.");
+    channel->over_.store(true, std::memory_order_release);
   }
-  end_lost();
   commit();
-  for (const auto& channel : channels_) channel->fail("The server was stopped.");
   channels_.clear();
 }
 

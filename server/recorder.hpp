@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -13,7 +12,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <span>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -21,77 +19,15 @@
 #include <variant>
 #include <vector>
 
-#include <boost/lockfree/spsc_queue.hpp>
-
 #include "db/records.hpp"
 #include "db/run_store.hpp"
+#include "server/disk_space.hpp"
+#include "server/record_status.hpp"
+#include "server/run_channel.hpp"
 
 namespace server {
 
-/// One tick as the database needs it. The frame pool implements it; bytes() may encode on its
-/// first call, so that the control thread never does. Called on the database thread only, while
-/// others may read the same frame.
-class RecordedFrame {
- public:
-  virtual std::span<const std::byte> bytes() const = 0;
-  virtual std::span<const db::Window> windows() const = 0;
-  virtual db::TickRow row() const = 0;
-  /// Gives up one reference; the last one returns the frame to its pool. Any thread.
-  virtual void release() noexcept = 0;
-
- protected:
-  ~RecordedFrame() = default;
-};
-
-/// Owns one reference to a frame.
-class FrameHandle {
- public:
-  FrameHandle() = default;
-  /// Takes over a reference the caller holds.
-  explicit FrameHandle(RecordedFrame* frame) noexcept : frame_(frame) {}
-  FrameHandle(FrameHandle&& other) noexcept : frame_(other.detach()) {}
-  FrameHandle& operator=(FrameHandle&& other) noexcept {
-    if (this != &other) {
-      reset();
-      frame_ = other.detach();
-    }
-    return *this;
-  }
-  FrameHandle(const FrameHandle&) = delete;
-  FrameHandle& operator=(const FrameHandle&) = delete;
-  ~FrameHandle() { reset(); }
-
-  RecordedFrame* get() const noexcept { return frame_; }
-  RecordedFrame* operator->() const noexcept { return frame_; }
-  explicit operator bool() const noexcept { return frame_ != nullptr; }
-  RecordedFrame* detach() noexcept { return std::exchange(frame_, nullptr); }
-  void reset() noexcept {
-    if (RecordedFrame* frame = detach()) frame->release();
-  }
-
- private:
-  RecordedFrame* frame_ = nullptr;
-};
-
 namespace detail {
-
-/// Wakes the database thread.
-class Doorbell {
- public:
-  /// Ends the present or the next sleep.
-  void ring();
-  /// Ends the present sleep, if any: one atomic load while the other is awake, so the control
-  /// thread can afford it. A sleep that just begins may be missed; it is short.
-  void nudge();
-  /// Sleeps until rung or `until`.
-  void wait_until(std::chrono::steady_clock::time_point until);
-
- private:
-  std::mutex mutex_{};
-  std::condition_variable condition_{};
-  std::atomic<bool> asleep_ = false;
-  bool rung_ = false;  // guarded by mutex_
-};
 
 /// What a job returned or threw, on its way to another thread. A failure travels as its sentence:
 /// an exception object shared by two threads is more than this needs.
@@ -100,10 +36,10 @@ struct Answer {
   using Value = std::conditional_t<std::is_void_v<Result>, std::monostate, Result>;
   std::optional<Value> value{};
   std::string problem{};
-  bool of_database = false;
+  std::optional<db::Trouble> trouble{};  // the database's
 
   Result take() {
-    if (!value && of_database) throw db::DatabaseError(problem);
+    if (!value && trouble) throw db::DatabaseError(problem, *trouble);
     if (!value) throw db::StoreError(problem);
     if constexpr (!std::is_void_v<Result>) return std::move(*value);
   }
@@ -124,7 +60,7 @@ Answer<Result> answer_of(F& job, db::RunStore& store) {
     }
   } catch (const db::DatabaseError& error) {
     answer.problem = error.what();
-    answer.of_database = true;
+    answer.trouble = error.trouble();
   } catch (const std::exception& error) {
     answer.problem = error.what();
   }
@@ -133,69 +69,41 @@ Answer<Result> answer_of(F& job, db::RunStore& store) {
 
 }  // namespace detail
 
-/// What a control thread holds of the recorder: the ring its frames go through.
-///
-/// push() and close() belong to one thread, the run's; failed() and problem() to any. Destroying
-/// the last handle without close() ends the run as failed.
-class RunChannel {
- public:
-  RunChannel(db::RunId run, std::size_t capacity, std::shared_ptr<detail::Doorbell> bell);
-  ~RunChannel();
-  RunChannel(const RunChannel&) = delete;
-  RunChannel& operator=(const RunChannel&) = delete;
-
-  db::RunId run() const { return run_; }
-
-  /// Hands a frame over and empties `frame`; false, with `frame` as it was, when the ring is full:
-  /// simulated time then waits, on hardware the tick counts as lost. Never blocks on the disk and
-  /// allocates nothing. After failed() frames are taken and dropped.
-  bool push(FrameHandle& frame);
-
-  /// The run is over: after the frames pushed so far it is ended so and committed. Once only.
-  void close(db::RunEnd end);
-
-  /// True once frames are no longer recorded; problem() then says why, as a sentence.
-  bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
-  std::string problem() const { return failed() ? problem_ : std::string{}; }
-
- private:
-  friend class Recorder;
-  void fail(const std::string& why);  // database thread, the first time counts
-
-  db::RunId run_ = 0;
-  std::size_t half_ = 0;
-  boost::lockfree::spsc_queue<RecordedFrame*> ring_;
-  std::shared_ptr<detail::Doorbell> bell_{};
-  std::uint64_t taken_ = 0;  // frames; the database thread's
-  bool full_ = false;        // recorded no further; the database thread's
-  db::RunEnd end_{};         // written before closed_
-  std::atomic<bool> closed_ = false;
-  std::string problem_{};  // written before failed_
-  std::atomic<bool> failed_ = false;
-};
-
 struct RecorderOptions {
   db::StoreOptions store{};
-  std::uint64_t retention_bytes = std::uint64_t{2} << 30;  // 0: keep everything
+  std::uint64_t retention_bytes = std::uint64_t{2} << 30;  // 0: what the disk has
+  /// Delete the oldest finished runs when there is no room. Else finished runs are never deleted.
+  bool evict_oldest = false;
+  /// Without room a run to be kept whole waits until somebody makes some; else it goes on with a
+  /// gap.
+  bool wait_for_room = true;
+  double live_span = 3600;  // [s] run clock that a live run keeps
+  double least_span = 60;   // [s] the least it keeps when there is no room for that
   /// A little under the second that may be lost, because packing and a slow disk come on top.
   std::chrono::milliseconds commit_interval{900};
+  std::chrono::milliseconds retry_interval{1000};  // how often a failed store is tried again
   std::size_t ring_frames = 1024;
+  std::function<DiskSpace(const std::string&)> disk = disk_space;
   /// Told in a sentence what was deleted for room and what went wrong. Database thread.
   std::function<void(const std::string&)> report{};
 };
 
 /// Owns the database thread and the writing connection; lives from the server's start to its end.
 ///
-/// Threads: open(), post(), ask() and flush() may be called from any thread but the database
-/// thread itself; open(), ask() and flush() wait for it. The control thread's steady state touches
-/// its RunChannel only. Jobs and reports run on the database thread.
+/// Threads: all of it may be called from any thread but the database thread itself; open(), ask()
+/// and flush() wait for it. The control thread's steady state touches its RunChannel only. Jobs
+/// and reports run on the database thread.
 ///
 /// All channels share one transaction, committed once per commit_interval, when a run opens or
-/// ends, and after a job. When the disk fails, the channels whose frames were lost turn failed();
-/// the recorder goes on, and a later open() works again as soon as the disk does.
+/// ends, and after a job. A store that is locked keeps the frames waiting in their rings. One that
+/// fails costs what was not committed; from then on frames are dropped, the store is tried again
+/// once per retry_interval, and the runs go on where it is well, in a new file when the old one was
+/// deleted or, being damaged, had to be set aside.
 class Recorder {
  public:
-  /// Opens the store, in which unfinished runs become interrupted. Throws db::StoreError.
+  /// Opens the store, in which unfinished runs become interrupted. Throws db::StoreError when it
+  /// may not be written or is no run store. A store that is damaged is set aside for a new one; one
+  /// that is locked, or on a full disk, is opened later.
   explicit Recorder(const std::string& path, RecorderOptions options = {});
   /// Writes what was pushed; runs that are still open end as interrupted.
   ~Recorder();
@@ -205,17 +113,24 @@ class Recorder {
   /// The runs found unfinished when the store was opened.
   const std::vector<db::RunId>& interrupted() const { return interrupted_; }
 
-  /// Begins a run and commits it. Throws db::StoreError with the reason, such as a full disk.
+  /// Begins a live run, of which the newest hour is kept; waits for nothing. Its row is written as
+  /// soon as the store takes it.
+  std::shared_ptr<RunChannel> begin(const db::NewRun& what);
+  /// Begins a run to be kept whole and commits it. Throws db::StoreError with the reason, such as a
+  /// full disk.
   std::shared_ptr<RunChannel> open(const db::NewRun& what);
-  /// The same for a queued run; `started`: wall time, ISO 8601.
-  std::shared_ptr<RunChannel> open(db::RunId queued, const std::string& started);
+  /// The same for a queued run; `what.started` is when it starts. Begins it anew when its row went
+  /// with a store that was set aside.
+  std::shared_ptr<RunChannel> open(db::RunId queued, const db::NewRun& what);
 
   using Job = std::function<void(db::RunStore&)>;
   /// Runs `job` on the database thread and commits. What it throws goes to `report`.
   void post(Job job);
+  /// The same, again and again until the database takes it.
+  void post_when_well(Job job);
 
-  /// The same, and gives back what `job` returns, after the commit. What it throws comes back as a
-  /// db::StoreError (db::DatabaseError stays one) with the same sentence.
+  /// The same as post(), and gives back what `job` returns, after the commit. What it throws comes
+  /// back as a db::StoreError (db::DatabaseError stays one) with the same sentence.
   template <typename F>
   auto ask(F job) -> std::invoke_result_t<F&, db::RunStore&> {
     using Result = std::invoke_result_t<F&, db::RunStore&>;
@@ -228,40 +143,95 @@ class Recorder {
     return answer.get().take();
   }
 
-  /// Returns when all that was pushed, closed and posted before is committed.
-  void flush();
+  /// Returns when all that was pushed, closed and posted before is committed or the store has
+  /// failed. False when it is still locked, or without room, after about `patience`.
+  bool flush(std::chrono::milliseconds patience = std::chrono::seconds(2));
+
+  /// Whether a run that begins now would be recorded.
+  bool takes_more() const { return takes_more_.load(); }
+
+  /// How the newest live run's record is doing, as of the last commit.
+  RecordStatus status() const;
+  /// Counts the changes of status() and of what news there is: cheap to look at.
+  std::uint64_t revision() const { return revision_.load(); }
+  /// What was reported since the last call, without the folder of the store.
+  std::vector<std::string> take_news();
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// What ails the store, as long as it does.
+  struct Ailment {
+    db::Trouble trouble = db::Trouble::Failed;
+    std::string sentence{};
+    Clock::time_point since{};
+    Clock::time_point retry{};
+  };
 
-  std::shared_ptr<RunChannel> add_channel(db::RunId run);
+  void open_store();
+  std::shared_ptr<RunChannel> add_channel(db::RunId run, const db::NewRun& what);
   void work();
+  void work_once(bool last);
   void run_jobs();
+  void run_later();
+  void take_arrivals();
   void take_frames();
   void take_frames(RunChannel& channel);
+  void keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause);
+  void resume(RunChannel& channel);
+  bool waits(const RunChannel& channel) const;
   void end_closed();
-  void end_lost();
+  bool end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks);
   void commit();
-  void make_room();
-  void cut_longest();
   void stop_all();
-  void drop_lost(const std::string& why);
-  void report(const std::string& sentence) const;
   template <typename Action>
   void guarded(const Action& action);
 
+  // recorder_health.cpp
+  void note_trouble(const db::DatabaseError& error);
+  void look_at_file();
+  void set_aside();
+  void recover();
+  void publish();
+  std::string state_sentence(RecordKind kind, const RunChannel* live) const;
+  RunChannel* live_channel() const;
+  void report(const std::string& sentence);
+  std::string without_folder(std::string sentence) const;
+
+  // recorder_room.cpp
+  void make_room();
+  bool sweep(Clock::time_point until);
+  bool evict();
+  bool drop_live(double span, Clock::time_point until);
+  void judge_room(bool more_to_come);
+  std::int64_t room();
+
   RecorderOptions options_{};
   std::shared_ptr<detail::Doorbell> bell_ = std::make_shared<detail::Doorbell>();
+  std::shared_ptr<db::RunNumbers> numbers_ = std::make_shared<db::RunNumbers>();
   db::RunStore store_;  // the database thread's, once it runs
   std::vector<db::RunId> interrupted_{};
-  std::vector<std::shared_ptr<RunChannel>> channels_{};   // the database thread's
-  std::vector<std::pair<db::RunId, db::RunEnd>> lost_{};  // runs still to be marked as failed
-  Clock::time_point commit_due_{};
 
-  std::mutex mutex_{};
-  std::vector<Job> jobs_{};  // guarded by mutex_
-  bool stopping_ = false;    // guarded by mutex_
-  std::thread thread_{};     // last: it uses all of the above
+  // The database thread's.
+  std::vector<std::shared_ptr<RunChannel>> channels_{};
+  std::vector<Job> later_{};  // until the database takes them
+  std::optional<Ailment> ailment_{};
+  std::optional<std::string> full_{};  // why there is no room, as a sentence
+  std::string evicted_{};              // what was deleted for room, as a sentence
+  std::string room_problem_{};         // why no room could be made, as it was last reported
+  std::uint64_t evicted_runs_ = 0;
+  std::uint64_t used_ = 0;  // [bytes] at the last commit
+  Clock::time_point commit_due_{};
+  Clock::time_point set_aside_{};
+
+  std::atomic<bool> takes_more_{false};
+  std::atomic<std::uint64_t> revision_{0};
+  mutable std::mutex mutex_{};
+  std::vector<Job> jobs_{};                              // guarded by mutex_
+  std::vector<std::shared_ptr<RunChannel>> arrivals_{};  // guarded by mutex_
+  bool stopping_ = false;                                // guarded by mutex_
+  RecordStatus status_{};                                // guarded by mutex_
+  std::vector<std::string> news_{};                      // guarded by mutex_
+  std::thread thread_{};                                 // last: it uses all of the above
 };
 
 }  // namespace server

@@ -2,6 +2,7 @@
 #include "server/request_json.hpp"
 
 #include <string>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -58,6 +59,11 @@ algo::Request request_from_json(const nlohmann::json& value) {
           fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "
                       "add_obstacle, move_obstacle, remove_obstacle, joystick, stop, set_parameter",
                       type));
+}
+
+bool is_stop(const algo::Request& request) {
+  const auto* stop = std::get_if<algo::Stop>(&request);
+  return stop != nullptr && stop->engaged;
 }
 
 }  // namespace server

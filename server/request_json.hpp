@@ -10,4 +10,7 @@ namespace server {
 /// {"type":"set_goal","x":1,"y":2} and the like; throws DocumentError.
 algo::Request request_from_json(const nlohmann::json& value);
 
+/// True for a Stop that engages, false for its release and for anything else.
+bool is_stop(const algo::Request& request);
+
 }  // namespace server

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "server/json_limits.hpp"
+#include "server/paths.hpp"
 #include "server/record_sink.hpp"
 #include "server/scenario_json.hpp"
 #include "server/version.hpp"
@@ -40,7 +42,7 @@ std::string wall_time() {
 db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
   db::NewRun row;
   row.scenario = spec.scenario.name;
-  row.document = run_document(spec, robot).dump();
+  row.document = dump_json(run_document(spec, robot));
   row.controller = spec.scenario.controller;
   row.filter = spec.scenario.filter;
   row.vehicle = vehicle_of(spec);
@@ -51,7 +53,15 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
   return row;
 }
 
-db::RunEnd run_end(const RunResult& result) {
+db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace) {
+  db::NewRun row = new_run(spec, robot);
+  json document = run_document(spec, robot);
+  document["pace"] = pace;
+  row.document = dump_json(document);
+  return row;
+}
+
+db::RunEnd run_end(const RunResult& result, bool cut) {
   db::RunEnd end;
   end.status =
       result.outcome == algo::Outcome::Failed ? db::RunStatus::Failed : db::RunStatus::Finished;
@@ -61,6 +71,10 @@ db::RunEnd run_end(const RunResult& result) {
   metrics["outcome"] = algo::name(result.outcome);
   end.metrics = metrics.dump();
   end.lost_ticks = result.lost_ticks;
+  if (cut && result.outcome == algo::Outcome::Stopped) {
+    end.status = db::RunStatus::Interrupted;
+    end.reason = "The program was stopped in the middle of this run.";
+  }
   return end;
 }
 
@@ -81,6 +95,9 @@ db::TickRow tick_row(const algo::Telemetry& t) {
 RecorderOptions recorder_options() {
   RecorderOptions options;
   options.ring_frames = kRecordRing;
+  // Only a server is told how much to keep, and has somebody who could make room.
+  options.retention_bytes = 0;
+  options.wait_for_room = false;
   options.report = [](const std::string& sentence) { spdlog::warn(sentence); };
   return options;
 }
@@ -92,7 +109,7 @@ json to_json(const db::RunRow& row) {
   json out = {{"id", row.id},
               {"status", db::to_string(row.status)},
               {"outcome", row.outcome},
-              {"reason", row.reason},
+              {"reason", without_folders(row.reason)},
               {"scenario", row.what.scenario},
               {"controller", row.what.controller},
               {"filter", row.what.filter},
@@ -106,6 +123,13 @@ json to_json(const db::RunRow& row) {
               {"lost_ticks", row.lost_ticks},
               {"bytes", row.bytes},
               {"metrics", parsed(row.metrics)}};
+  if (!row.gaps.empty()) out["gaps"] = json::array();
+  for (const db::Gap& gap : row.gaps) {
+    out["gaps"].push_back({{"first_tick", gap.first_tick},
+                           {"last_tick", gap.last_tick},
+                           {"cause", db::to_string(gap.cause)},
+                           {"sentence", gap.sentence}});
+  }
   if (!row.what.document.empty()) out["document"] = parsed(row.what.document);
   return out;
 }

@@ -19,8 +19,12 @@ nlohmann::json to_json(const algo::Metrics& metrics);
 
 /// The row that begins a run: enough to run it again.
 db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
+/// The same of a run with nobody at it: its document has the `pace` too, with which it can be run
+/// again from its start.
+db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace);
 /// The row's end. A run ended by a person is finished all the same; its outcome says `stopped`.
-db::RunEnd run_end(const RunResult& result);
+/// One that was `cut` by the end of the program before it came to an outcome is interrupted.
+db::RunEnd run_end(const RunResult& result, bool cut = false);
 db::TickRow tick_row(const algo::Telemetry& t);
 
 /// Options every recorder of this program shares; what it reports goes to the log.

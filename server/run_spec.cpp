@@ -10,6 +10,7 @@
 #include "algo/filter.hpp"
 #include "server/hardware.hpp"
 #include "server/json_reader.hpp"
+#include "server/net/io_thread.hpp"
 #include "server/scenario_json.hpp"
 #include "sim/replay.hpp"
 #include "sim/world.hpp"
@@ -82,6 +83,9 @@ RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
   RunSpec spec;
   spec.parameters =
       parameters_from_json(overrides.parameters, "parameters", parameters_of(scenario));
+  if (const auto complaint = algo::refusal(scenario.controller, spec.parameters)) {
+    throw DocumentError("parameters", *complaint);
+  }
   spec.seed = overrides.seed.value_or(1);
   // The document of the run must tell the whole story: parameters included.
   scenario.parameters.clear();
@@ -106,6 +110,7 @@ const char* vehicle_of(const RunSpec& spec) {
 }
 
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
+  net::not_on_io_thread("Building a world");
   if (spec.hardware) return std::make_unique<HardwareRun>(spec.hardware);
   if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
   return std::make_unique<sim::World>(spec.scenario, spec.seed);
@@ -165,20 +170,21 @@ json to_json(const algo::RobotSpec& robot) {
           {"drives", robot.drives}};
 }
 
+/// Without limits: what a run was accepted with is read as it is.
 algo::RobotSpec robot_spec_from_json(const json& value) {
   const JsonReader in(value, "robot");
   algo::RobotSpec robot;
-  robot.name = in.text("name");
-  robot.radius = in.number("radius", {0, 10});
-  robot.half_length = in.number_or("half_length", 0, {0, 10});
-  robot.half_width = in.number_or("half_width", 0, {0, 10});
-  robot.half_track = in.number("half_track", {0, 10});
-  robot.period = in.number("period", {1e-4, 10});
-  robot.max_v = in.number("max_v", {0, 100});
-  robot.max_omega = in.number("max_omega", {0, 100});
-  robot.max_acceleration = in.number("max_acceleration", {0, 1000});
-  robot.max_angular_acceleration = in.number("max_angular_acceleration", {0, 1000});
-  robot.command_delay = in.number_or("command_delay", 0, {0, 10});
+  robot.name = in.text("name", SIZE_MAX);
+  robot.radius = in.number("radius");
+  robot.half_length = in.number_or("half_length", 0);
+  robot.half_width = in.number_or("half_width", 0);
+  robot.half_track = in.number("half_track");
+  robot.period = in.number("period");
+  robot.max_v = in.number("max_v");
+  robot.max_omega = in.number("max_omega");
+  robot.max_acceleration = in.number("max_acceleration");
+  robot.max_angular_acceleration = in.number("max_angular_acceleration");
+  robot.command_delay = in.number_or("command_delay", 0);
   robot.has_laser = in.flag_or("has_laser", true);
   robot.editable = in.flag_or("editable", false);
   robot.paceable = in.flag_or("paceable", false);

@@ -2,15 +2,45 @@
 #include "server/runner.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 #include <variant>
+
+#include "server/fresh_orders.hpp"
 
 namespace server {
 namespace {
 
 using algo::Outcome;
 constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
+
+/// How long nothing has happened: nobody asked for anything, and the robot neither drives nor
+/// moves nor is held for another reason than before.
+class Stillness {
+ public:
+  /// True when that has lasted longer than `span` [s] at `t`; never when `span` is 0.
+  bool lasts(const algo::Telemetry& t, double span) {
+    const double now = t.observation.stamp;
+    const algo::Twist2& twist = t.observation.odometry.twist;
+    const bool moves = std::abs(twist.v) > kStandingSpeed ||
+                       std::abs(twist.omega) > kStandingTurn || t.command.base != algo::Twist2{};
+    const bool event = moves || !t.requests.empty() || t.mission == algo::Mission::Driving ||
+                       t.mission != mission_ || t.hold != hold_;
+    mission_ = t.mission;
+    hold_ = t.hold;
+    if (event || now < since_) since_ = now;
+    return span > 0 && now - since_ > span;
+  }
+
+ private:
+  // What the noise of an encoder amounts to.
+  static constexpr double kStandingSpeed = 0.01;  // [m/s]
+  static constexpr double kStandingTurn = 0.02;   // [rad/s]
+  double since_ = 0;                              // [s] of the last event
+  algo::Mission mission_ = algo::Mission::Idle;
+  algo::Hold hold_ = algo::Hold::None;
+};
 
 /// One run in progress. Lives on the control thread.
 class Run {
@@ -26,10 +56,13 @@ class Run {
 
  private:
   void serve_requests();
-  std::optional<std::string> refusal_of(const algo::Request& request) const;
+  void notice_arming();
+  void void_orders();
+  std::optional<std::string> refusal_of(const algo::Request& request);
   void accept(const algo::Request& request);
   void publish(const FrameRef& frame);
   bool record(const FrameRef& frame);
+  bool push(const FrameRef& frame);
   void judge(const algo::Telemetry& t);
   void set_outcome(Outcome outcome, const char* reason = "");
   FrameRef next_frame();
@@ -43,8 +76,12 @@ class Run {
   const std::stop_token& stop_;
   algo::Recycled<algo::Request> pending_{};  // accepted, for the next tick's record
   algo::Parameters accepted_{};
+  FreshOrders orders_{};  // of a real robot
+  double now_ = 0;        // [s] run clock, of the newest observation
   algo::MetricsRecorder metrics_{};
   RunResult result_{};
+  Stillness stillness_{};
+  bool impatient_ = false;  // the record kept a tick waiting too long and has taken none since
   bool broken_ = false;
 };
 
@@ -54,21 +91,39 @@ bool is_real_time(const algo::RobotSpec& spec) {
 
 void Run::serve_requests() {
   if (links_.rings == nullptr) return;
-  if (links_.rings->stop_now.exchange(false)) accept(algo::Stop{true});
+  notice_arming();
+  const bool stop = links_.rings->stop_now.exchange(false);
   links_.rings->requests.consume_all([&](const Submission& submission) {
+    notice_arming();
     std::optional<std::string> refusal = refusal_of(submission.request);
     if (!refusal) refusal = robot_.edit(submission.request);
     if (!refusal) accept(submission.request);
     links_.rings->replies.push({submission.ticket, std::move(refusal)});
   });
+  if (stop) accept(algo::Stop{true});  // last: a release in the full ring was given before it
+}
+
+/// Asked before each request: it may have been disarmed and armed again since the last.
+void Run::notice_arming() {
+  if (links_.arming && orders_.notice(links_.arming())) void_orders();
+}
+
+/// As requests of its own, so that the record has them and a replay does the same.
+void Run::void_orders() {
+  if (orders_.stick()) accept(algo::Joystick{});
+  if (!orders_.goal()) return;
+  accept(algo::ClearGoal{});
+  if (links_.rings != nullptr) links_.rings->replies.push({kGoalsCleared, std::nullopt});
 }
 
 /// Parameters are checked against those accepted before, which the pipeline may not have seen yet.
-std::optional<std::string> Run::refusal_of(const algo::Request& request) const {
+std::optional<std::string> Run::refusal_of(const algo::Request& request) {
   if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
-    return algo::refusal(accepted_, set->parameter, set->value);
+    return pipeline_.refusal(accepted_, *set);
   }
-  return pipeline_.refusal(request);
+  auto refusal = pipeline_.refusal(request);
+  if (!refusal && links_.arming) refusal = orders_.refusal(request, now_);
+  return refusal;
 }
 
 void Run::accept(const algo::Request& request) {
@@ -76,6 +131,7 @@ void Run::accept(const algo::Request& request) {
   if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
     accepted_.set(set->parameter, set->value);
   }
+  if (links_.arming && orders_.accept(request)) void_orders();
 }
 
 /// A simulated robot's time waits for a free frame; a real one's cannot, so that tick gets none.
@@ -94,22 +150,40 @@ void Run::publish(const FrameRef& frame) {
   if (links_.observer) links_.observer(*frame);
 }
 
+/// True unless the tick was lost.
 bool Run::record(const FrameRef& frame) {
-  while (!links_.record->push(frame)) {
-    if (is_real_time(robot_.spec()) || stop_.stop_requested()) return false;
-    if (auto failure = links_.record->failure()) {
-      robot_.stop();
-      set_outcome(Outcome::Failed, failure->c_str());
-      broken_ = true;
-      return false;
-    }
-    std::this_thread::sleep_for(std::chrono::microseconds(50));
+  const algo::Telemetry& t = frame->telemetry;
+  if (stillness_.lasts(t, policy_.pause_record_after)) {
+    links_.record->pause();
+    return true;
   }
-  if (auto failure = links_.record->failure()) {
+  const bool taken = push(frame);
+  if (!policy_.require_record) return taken;
+  std::optional<std::string> failure = links_.record->failure();
+  if (!taken && !failure) failure = "The record cannot keep up.";
+  if (failure && !broken_) {
     robot_.stop();
     set_outcome(Outcome::Failed, failure->c_str());
     broken_ = true;
   }
+  return taken;
+}
+
+bool Run::push(const FrameRef& frame) {
+  using Clock = std::chrono::steady_clock;
+  if (links_.record->push(frame)) {
+    impatient_ = false;
+    return true;
+  }
+  if (is_real_time(robot_.spec()) || impatient_) return false;
+  const auto begun = Clock::now();
+  do {
+    impatient_ = policy_.record_patience && Clock::now() - begun >= *policy_.record_patience;
+    if (impatient_ || stop_.stop_requested()) return false;
+    if (policy_.require_record && links_.record->failure()) return false;
+    serve_requests();
+    std::this_thread::sleep_for(std::chrono::microseconds(50));
+  } while (!links_.record->push(frame));
   return true;
 }
 
@@ -162,6 +236,7 @@ RunResult Run::execute(const std::vector<algo::Request>& first) {
     pipeline_.reset(frame->telemetry.observation.odometry.pose);
     while (true) {
       algo::Telemetry& t = frame->telemetry;
+      now_ = t.observation.stamp;
       serve_requests();
       t.requests = pending_;
       pending_.clear();
@@ -174,6 +249,8 @@ RunResult Run::execute(const std::vector<algo::Request>& first) {
 
       FrameRef next = next_frame();
       if (!next) break;
+      // A real base brakes harder than along the driving ramp to the zero that follows.
+      if (t.hold != algo::Hold::None && is_real_time(robot_.spec())) robot_.stop();
       step_into(t.command, next);  // returns at the robot's next deadline with the newest data
       if (stop_.stop_requested()) break;
       frame = std::move(next);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -22,6 +23,9 @@ struct Submission {
   std::uint64_t ticket = 0;
   algo::Request request{};
 };
+/// Ticket of a reply that nobody asked for: a real robot was disarmed or stopped, and its goals are
+/// cleared.
+constexpr std::uint64_t kGoalsCleared = 0;
 struct Reply {
   std::uint64_t ticket = 0;
   std::optional<std::string> refusal{};  // none: accepted
@@ -33,7 +37,7 @@ struct Rings {
   boost::lockfree::spsc_queue<Submission> requests{256};
   boost::lockfree::spsc_queue<Reply> replies{1024};
   boost::lockfree::spsc_queue<FrameRef> stream{64};
-  std::atomic<bool> stop_now{false};  // a Stop that found the ring full
+  std::atomic<bool> stop_now{false};  // a Stop after all in the ring, which was full
 };
 
 /// Where a run's frames are kept. Called on the control thread: must not block.
@@ -42,13 +46,20 @@ class FrameSink {
   virtual ~FrameSink() = default;
   /// False when full just now.
   virtual bool push(const FrameRef& frame) = 0;
-  /// The record broke (disk full): a sentence. The robot stops first.
+  /// Frames are left out on purpose until the next push.
+  virtual void pause() {}
+  /// What is pushed is not kept just now (disk full): a sentence.
   virtual std::optional<std::string> failure() const { return std::nullopt; }
 };
 
 struct RunPolicy {
   bool until_outcome = false;  // headless: ends when reached, stuck, collided or out of time
   double time_limit = 0;       // [s] run clock; 0 = none
+  /// What a tick waits at most for a record that cannot keep up; unset: as long as it takes. The
+  /// ticks after it are lost until the record takes one again. A real robot never waits.
+  std::optional<std::chrono::milliseconds> record_patience{};
+  double pause_record_after = 0;  // [s] run clock in which nothing happened; 0: never
+  bool require_record = false;    // a tick that is not kept ends the run
 };
 
 struct RunResult {
@@ -64,6 +75,8 @@ struct RunLinks {
   Rings* rings = nullptr;                        // null: nobody watches or asks
   FrameSink* record = nullptr;                   // null: not recorded
   std::function<void(const Frame&)> observer{};  // control thread, after each tick; for tests, CLI
+  /// Control thread. A real robot's arming (SerialRobot::arming); empty for a simulated one.
+  std::function<std::uint32_t()> arming{};
   /// Control thread, each time the outcome changes; with the figures so far.
   std::function<void(algo::Outcome, const algo::Metrics&)> on_outcome{};
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <mutex>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "server/embedded_documents.hpp"
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/net/io_thread.hpp"
 #include "server/scenario_json.hpp"
 
 namespace server {
@@ -20,19 +22,20 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = LibraryError::Kind;
 
+std::mutex writing;  // two savers must not share a draft
+
 sim::Scenario parse(const std::string& text, const std::string& where) {
   try {
-    return scenario_from_json(parse_json(text));
+    return scenario_from_json(parse_json(text, kOwnDocument));
   } catch (const std::exception& e) {
     throw LibraryError(Kind::Unreadable, fmt::format("{}: {}", where, e.what()));
   }
 }
 
-std::string read_file(const fs::path& path) {
+/// @param shown  the file as it is named to people: visitors need not know where it lies
+std::string read_file(const fs::path& path, const std::string& shown) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    throw LibraryError(Kind::NotFound, fmt::format("Cannot read {}.", path.string()));
-  }
+  if (!in) throw LibraryError(Kind::NotFound, fmt::format("Cannot read {}.", shown));
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -73,6 +76,7 @@ ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs)
     : own_(std::move(own)), logs_(std::move(logs)) {}
 
 std::vector<ScenarioEntry> ScenarioLibrary::list() const {
+  net::not_on_io_thread("Listing scenarios");
   std::vector<ScenarioEntry> entries;
   for (const EmbeddedWorld& world : embedded_worlds()) {
     const sim::Scenario s = parse(std::string(world.json), std::string(world.name));
@@ -80,7 +84,8 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
   }
   for_each_file(own_, ".json", [&](const fs::path& path) {
     try {
-      const sim::Scenario s = parse(read_file(path), path.string());
+      const std::string shown = path.filename().string();
+      const sim::Scenario s = parse(read_file(path, shown), shown);
       entries.push_back({path.stem().string(), s.title, s.description, false, false});
     } catch (const LibraryError& e) {
       entries.push_back({path.stem().string(), path.stem().string(), e.what(), false, false});
@@ -94,14 +99,17 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
 }
 
 sim::Scenario ScenarioLibrary::load(const std::string& name) const {
+  net::not_on_io_thread("Reading a scenario");
   if (const EmbeddedWorld* world = find_embedded(name)) {
     return parse(std::string(world->json), name);
   }
   if (valid_scenario_name(name)) {
     std::error_code error;
     const fs::path own = own_ / (name + ".json");
-    if (!own_.empty() && fs::is_regular_file(own, error))
-      return parse(read_file(own), own.string());
+    if (!own_.empty() && fs::is_regular_file(own, error)) {
+      const std::string shown = own.filename().string();
+      return parse(read_file(own, shown), shown);
+    }
     const fs::path log = logs_ / (name + ".log");
     if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
   }
@@ -123,17 +131,22 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
         fmt::format("'{}' is built in and cannot be changed; save it under another name.",
                     scenario.name));
   }
+  net::not_on_io_thread("Saving a scenario");
+  const std::string text = dump_json(to_json(scenario)) + '\n';
+  parse(text, scenario.name);  // what could not be loaded again is not kept
+  const std::lock_guard lock(writing);
   std::error_code error;
   fs::create_directories(own_, error);
   // Written beside and renamed, so that a full disk cannot leave half a scenario behind.
   const fs::path target = own_ / (scenario.name + ".json");
   const fs::path draft = own_ / (scenario.name + ".json.new");
   std::ofstream out(draft, std::ios::binary);
-  out << to_json(scenario).dump(2) << '\n';
+  out << text;
   out.close();
   if (out) fs::rename(draft, target, error);
   if (!out || error) {
-    throw LibraryError(Kind::Unreadable, fmt::format("Cannot write {}.", target.string()));
+    throw LibraryError(Kind::Unreadable,
+                       fmt::format("Cannot write {}.", target.filename().string()));
   }
 }
 
@@ -141,6 +154,8 @@ void ScenarioLibrary::remove(const std::string& name) const {
   if (find_embedded(name) != nullptr) {
     throw LibraryError(Kind::Builtin, fmt::format("'{}' is built in and cannot be deleted.", name));
   }
+  net::not_on_io_thread("Deleting a scenario");
+  const std::lock_guard lock(writing);
   std::error_code error;
   if (!valid_scenario_name(name) || !fs::remove(own_ / (name + ".json"), error)) {
     throw LibraryError(Kind::NotFound, fmt::format("You have no scenario '{}' of your own.", name));
@@ -149,7 +164,7 @@ void ScenarioLibrary::remove(const std::string& name) const {
 
 sim::Scenario ScenarioLibrary::from_file(const fs::path& path) {
   if (path.extension() == ".log") return log_scenario(path);
-  return parse(read_file(path), path.string());
+  return parse(read_file(path, path.string()), path.string());
 }
 
 }  // namespace server

@@ -31,7 +31,7 @@ struct ScenarioEntry {
   bool is_log = false;  // a recorded log to replay instead of a world
 };
 
-/// Reads its folders anew on each call: few files, and people edit them. Not thread-safe.
+/// Reads its folders anew on each call: people edit them. Any thread, but never the io thread.
 class ScenarioLibrary {
  public:
   /// `own`: folder for the user's *.json, made on the first save; `logs`: folder of CARMEN *.log

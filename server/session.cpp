@@ -3,79 +3,50 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "algo/explain.hpp"
-#include "server/record_sink.hpp"
+#include "server/goal_check.hpp"
+#include "server/request_json.hpp"
 #include "server/run_json.hpp"
 #include "server/scenario_json.hpp"
 
 namespace server {
 namespace {
 
-constexpr std::size_t kMaxPending = 900;     // fewer than the ring of replies holds
-constexpr double kPathSpacing = 0.02;        // [m]
-constexpr std::size_t kPathPoints = 20'000;  // then every second one goes
+constexpr std::size_t kMaxPending = 900;  // fewer than the ring of replies holds
+constexpr double kAtRest = 0.01;          // [m/s], [rad/s] below what odometry resolves
+constexpr std::chrono::milliseconds kFresh{500};
 
 }  // namespace
 
-LiveRun::LiveRun(RunSpec spec,
-                 std::unique_ptr<algo::Robot> robot,
-                 std::vector<algo::Request> first,
-                 std::shared_ptr<RunChannel> channel)
-    : spec_(std::move(spec)),
-      robot_(std::move(robot)),
-      pipeline_(pipeline_config(spec_), robot_->spec()),
-      first_(std::move(first)),
-      channel_(std::move(channel)),
-      pool_(FramePool::make(kPoolFrames)),
-      thread_([this](const std::stop_token& stop) { control(stop); }) {}
-
-LiveRun::~LiveRun() {
-  thread_.request_stop();
-  robot_->set_pace({.paused = false, .speed = 0});  // wakes a robot that waits for its time
-  if (thread_.joinable()) thread_.join();
-  rings.stream.consume_all([](const FrameRef&) {});
+Session::Session(Recorder* recorder) : recorder_(recorder) {
+  state_.record.sentence = "This server keeps no record.";
+  if (recorder != nullptr) state_.record = recorder->status();
 }
 
-void LiveRun::control(const std::stop_token& stop) {
-  std::unique_ptr<RecordSink> sink;
-  if (channel_) sink = std::make_unique<RecordSink>(channel_);
-  RunLinks links;
-  links.pool = pool_.get();
-  links.rings = &rings;
-  links.record = sink.get();
-  links.on_outcome = [this](algo::Outcome outcome, const algo::Metrics& metrics) {
-    {
-      const std::lock_guard lock(mutex_);
-      metrics_ = metrics;
-    }
-    outcome_.store(outcome, std::memory_order_relaxed);
-  };
-  result_ = run(*robot_, pipeline_, first_, {}, links, stop);
-  if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
-  outcome_.store(result_.outcome, std::memory_order_relaxed);
-  if (channel_) channel_->close(run_end(result_));
-  finished_.store(true, std::memory_order_release);
-}
-
-algo::Metrics LiveRun::metrics() const {
-  const std::lock_guard lock(mutex_);
-  return metrics_;
-}
-
-Session::Session(Recorder* recorder) : recorder_(recorder) {}
-
-void Session::load(RunSpec spec) {
-  // Both may throw: nothing has changed yet.
+PreparedRun Session::prepare(RunSpec spec) {
   std::unique_ptr<algo::Robot> robot = make_robot(spec);
   std::shared_ptr<RunChannel> channel;
-  if (recorder_ != nullptr) channel = recorder_->open(new_run(spec, robot->spec()));
-  end();
+  if (recorder_ != nullptr) channel = recorder_->begin(new_run(spec, robot->spec()));
+  auto live = std::make_unique<LiveRun>(
+      spec, std::move(robot), std::move(channel), watch_, require_record_);
+  return {std::move(spec), std::move(live)};
+}
 
-  state_.robot = robot->spec();
+void Session::load(RunSpec spec) {
+  PreparedRun next = prepare(std::move(spec));  // may throw: nothing has changed yet
+  end();
+  begin(std::move(next));
+}
+
+void Session::begin(PreparedRun next) {
+  const RunSpec& spec = next.spec;
+  state_.robot = next.live->robot().spec();
   set_goals(std::nullopt);
   state_.obstacles = spec.scenario.obstacles;
   state_.parameters = spec.parameters;
@@ -87,6 +58,7 @@ void Session::load(RunSpec spec) {
   state_.running = true;
   path_.clear();
   newest_.reset();
+  newest_scan_.reset();
   told_mission_ = algo::Mission::Idle;
   told_hold_ = algo::Hold::None;
   next_obstacle_ = 1;
@@ -95,18 +67,26 @@ void Session::load(RunSpec spec) {
   if (state_.stop) first.push_back(algo::Stop{true});
   for (const algo::Request& request : first) adopt(request);
   state_.spec = spec;
-  robot->set_pace(state_.pace);
-  live_ = std::make_unique<LiveRun>(
-      std::move(spec), std::move(robot), std::move(first), std::move(channel));
+  live_ = std::move(next.live);
+  live_->robot().set_pace(state_.pace);
+  live_->start(std::move(first));
   changed();
 }
 
-void Session::end() {
-  if (!live_) return;
+std::unique_ptr<LiveRun> Session::part() {
+  if (!live_) return nullptr;
+  live_->ask_to_end();
   newest_.reset();
-  live_.reset();
+  newest_scan_.reset();
   state_.running = false;
+  std::unique_ptr<LiveRun> last = std::move(live_);
   answer_the_rest();
+  return last;
+}
+
+void Session::end(bool cut) {
+  if (live_ && cut) live_->cut();
+  part().reset();
 }
 
 /// What the run did not get round to is answered here, so that nobody waits for ever.
@@ -114,8 +94,8 @@ void Session::answer_the_rest() {
   const std::map<std::uint64_t, Pending> rest = std::exchange(pending_, {});
   for (const auto& [ticket, pending] : rest) {
     if (!pending.answer) continue;
-    if (std::holds_alternative<algo::Stop>(pending.request)) {
-      adopt(pending.request);
+    if (std::holds_alternative<algo::Stop>(pending.request) && ticket > stop_ticket_) {
+      adopt(pending.request);  // a release
       pending.answer(std::nullopt);
     } else {
       pending.answer("The run ended before this could be done.");
@@ -147,30 +127,50 @@ std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answe
     if (add->obstacle.id == 0) add->obstacle.id = free_obstacle_id();
     id = add->obstacle.id;
   }
-  // Stop holds from this moment on, whatever becomes of the request: it belongs to the session.
-  const auto* stop = std::get_if<algo::Stop>(&request);
-  if (stop != nullptr && stop->engaged && !state_.stop) {
-    state_.stop = true;
-    changed();
+  const bool stop = is_stop(request);
+  const bool release = !stop && std::holds_alternative<algo::Stop>(request);
+  const std::uint64_t ticket = next_ticket_++;
+  if (stop) {
+    engage_stop(ticket, answer);
+    return id;
   }
   if (!live_ || live_->finished()) {
-    if (stop != nullptr) adopt(request);
-    if (answer && stop != nullptr) answer(std::nullopt);
-    if (answer && stop == nullptr) answer("The run is over. Reset or load a scenario first.");
-    if (stop != nullptr) changed();
+    if (release) {
+      adopt(request);
+      changed();
+    }
+    if (answer && release) answer(std::nullopt);
+    if (answer && !release) answer("The run is over. Reset or load a scenario first.");
     return id;
   }
-  const std::uint64_t ticket = next_ticket_++;
-  const bool full =
-      pending_.size() >= kMaxPending || !live_->rings.requests.push({ticket, request});
-  if (full && stop != nullptr && stop->engaged) {
-    live_->rings.stop_now.store(true);
-    if (answer) answer(std::nullopt);
-    return id;
+  // A Stop that found the ring full comes after all that is in it; nothing may come in between.
+  if (release && live_->rings.stop_now.load()) return std::nullopt;
+  if (pending_.size() >= kMaxPending || !live_->rings.requests.push({ticket, request})) {
+    return std::nullopt;
   }
-  if (full) return std::nullopt;
   pending_.emplace(ticket, Pending{std::move(request), std::move(answer)});
   return id;
+}
+
+void Session::engage_stop(std::uint64_t ticket, const Answer& answer) {
+  stop_ticket_ = ticket;
+  if (live_ && !live_->rings.requests.push({ticket, algo::Stop{true}})) {
+    live_->rings.stop_now.store(true);
+  }
+  const bool news = !std::exchange(state_.stop, true);
+  if (answer) answer(std::nullopt);  // before people are told of it: Stop waits for nothing
+  if (news) changed();
+}
+
+bool Session::standing() const {
+  if (!newest_) return false;
+  // Of real devices an old tick proves nothing.
+  const auto age = std::chrono::steady_clock::now() - newest_came_;
+  if (state_.spec.hardware && age > kFresh) return false;
+  const algo::Telemetry& t = newest_->telemetry;
+  const algo::Twist2& moving = t.observation.odometry.twist;
+  return t.command.base == algo::Twist2{} && std::abs(moving.v) < kAtRest &&
+         std::abs(moving.omega) < kAtRest;
 }
 
 void Session::apply_pace() {
@@ -197,6 +197,12 @@ std::optional<std::string> Session::arm(bool on) {
   return refusal;
 }
 
+std::optional<std::string> Session::pace_refusal() const {
+  if (state_.spec.hardware == nullptr) return std::nullopt;
+  return "This robot is real: its time cannot be paused, stepped or sped up. Press Stop to stop "
+         "it.";
+}
+
 void Session::pause(bool paused) {
   state_.pace.paused = paused;
   apply_pace();
@@ -214,11 +220,23 @@ void Session::single_step(std::uint32_t ticks) {
 }
 
 void Session::poll() {
+  count_watchers();
+  watch_record();
   if (!live_) return;
   drain_replies();
   drain_frames();
   watch_run();
   watch_hardware();
+}
+
+/// How full the store is changes at every commit; people are told when that means something else.
+void Session::watch_record() {
+  if (recorder_ == nullptr || recorder_->revision() == record_seen_) return;
+  record_seen_ = recorder_->revision();
+  for (const std::string& news : recorder_->take_news()) log(LogLevel::Warning, news);
+  const RecordStatus was = std::exchange(state_.record, recorder_->status());
+  const RecordStatus& now = state_.record;
+  if (was.kind != now.kind || was.sentence != now.sentence || was.deleted != now.deleted) changed();
 }
 
 /// People are told at once of what moves or stops the robot, of the rest once a second.
@@ -243,16 +261,32 @@ void Session::watch_hardware() {
   changed();
 }
 
+void Session::count_watchers() {
+  const Watchers watchers = watch_.watchers(OperatorWatch::Clock::now());
+  if (watchers == state_.watchers) return;
+  state_.watchers = watchers;
+  changed();
+}
+
 void Session::drain_replies() {
   bool different = false;
   live_->rings.replies.consume_all([&](const Reply& reply) {
+    if (reply.ticket == kGoalsCleared) {
+      set_goals(std::nullopt);
+      log(LogLevel::Info, "The goals are cleared: the robot was disarmed or stopped.");
+      different = true;
+      return;
+    }
     const auto it = pending_.find(reply.ticket);
     if (it == pending_.end()) return;
     const Pending pending = std::move(it->second);
     pending_.erase(it);
     if (reply.refusal) {
-      log(LogLevel::Warning, "Refused: " + *reply.refusal);
-    } else {
+      // A stick is pushed many times a second; who pushes it is told.
+      const bool stick = std::holds_alternative<algo::Joystick>(pending.request);
+      if (!stick) log(LogLevel::Warning, "Refused: " + *reply.refusal);
+    } else if (!std::holds_alternative<algo::Stop>(pending.request) ||
+               reply.ticket > stop_ticket_) {  // a release from before the newest Stop is void
       adopt(pending.request);
       different = different || !std::holds_alternative<algo::Joystick>(pending.request);
     }
@@ -324,19 +358,15 @@ void Session::drain_frames() {
   live_->rings.stream.consume_all([&](const FrameRef& frame) {
     const algo::Telemetry& t = frame->telemetry;
     const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
-    if (path_.empty() || (pose.position() - path_.back().position()).norm() > kPathSpacing) {
-      path_.push_back(pose);
-    }
+    path_.add(pose);
     narrate(t);
     follow_goal(t);
+    if (t.scene.fresh) newest_scan_ = frame;
     latest = frame;
   });
-  if (path_.size() > kPathPoints) {
-    for (std::size_t i = 0; 2 * i < path_.size(); ++i) path_[i] = path_[2 * i];
-    path_.resize(path_.size() / 2);
-  }
   if (!latest) return;
   newest_ = latest;
+  newest_came_ = std::chrono::steady_clock::now();
   if (on_frame) on_frame(latest);
 }
 
@@ -381,6 +411,28 @@ void Session::watch_run() {
     }
     changed();
   }
+}
+
+std::optional<std::string> Session::trouble_with(const algo::Request& request) const {
+  const auto* add = std::get_if<algo::AddGoal>(&request);
+  const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
+  if (asked == nullptr) return std::nullopt;
+  const algo::SetGoal& goal = *asked;
+  if (state_.spec.hardware) {
+    if (!newest_scan_) return std::nullopt;
+    const algo::Telemetry& t = newest_scan_->telemetry;
+    return goal_trouble(state_.robot, goal, t.observation.odometry.pose, t.scene.scan);
+  }
+  if (!newest_) return std::nullopt;
+  const std::vector<sim::ObstaclePath>& paths = state_.spec.scenario.paths;
+  std::vector<algo::Obstacle> standing;
+  std::ranges::copy_if(
+      state_.obstacles, std::back_inserter(standing), [&](const algo::Obstacle& obstacle) {
+        return std::ranges::none_of(paths, [&](const auto& p) { return p.id == obstacle.id; });
+      });
+  const algo::Telemetry& t = newest_->telemetry;
+  const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+  return goal_trouble(state_.robot, goal, pose, standing);
 }
 
 sim::Scenario Session::as_scenario(const std::string& name, const std::string& title) const {

@@ -1,24 +1,24 @@
 // server/session.hpp: one robot and everything that belongs to it; the server may hold many.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "algo/metrics.hpp"
 #include "drivers/serial_robot.hpp"
 #include "server/frame_pool.hpp"
+#include "server/live_run.hpp"
+#include "server/operator_watch.hpp"
+#include "server/path_trail.hpp"
+#include "server/record_status.hpp"
 #include "server/recorder.hpp"
 #include "server/run_spec.hpp"
-#include "server/runner.hpp"
 #include "server/wire/scene_json.hpp"
 
 namespace server {
@@ -38,46 +38,19 @@ struct SessionState {
   std::uint64_t lost_ticks = 0;
   std::uint64_t missed_periods = 0;
   std::optional<std::string> problem{};
+  RecordStatus record{};
   std::optional<drivers::HardwareReport> hardware{};  // as people were last told
+  Watchers watchers{};
 };
 
-/// One call of run() with its thread, rings and frames. Made and ended by the io thread.
-class LiveRun {
- public:
-  LiveRun(RunSpec spec,
-          std::unique_ptr<algo::Robot> robot,
-          std::vector<algo::Request> first,
-          std::shared_ptr<RunChannel> channel);
-  ~LiveRun();  // asks the loop to end and waits for it: at most one period of the robot
-
-  Rings rings{};
-  algo::Robot& robot() { return *robot_; }
-  algo::Outcome outcome() const { return outcome_.load(std::memory_order_relaxed); }
-  /// The figures when the outcome last changed.
-  algo::Metrics metrics() const;
-  bool finished() const { return finished_.load(std::memory_order_acquire); }
-  /// Only once finished() is true.
-  const RunResult& result() const { return result_; }
-  db::RunId id() const { return channel_ ? channel_->run() : 0; }
-
- private:
-  void control(const std::stop_token& stop);
-
-  RunSpec spec_;
-  std::unique_ptr<algo::Robot> robot_;
-  algo::Pipeline pipeline_;
-  std::vector<algo::Request> first_;
-  std::shared_ptr<RunChannel> channel_;
-  std::shared_ptr<FramePool> pool_;
-  RunResult result_{};
-  mutable std::mutex mutex_{};
-  algo::Metrics metrics_{};  // guarded by mutex_, which is taken only when the outcome changes
-  std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
-  std::atomic<bool> finished_{false};
-  std::jthread thread_;  // last: starts when all above is there
+/// The next run, made but not begun.
+struct PreparedRun {
+  RunSpec spec{};
+  std::unique_ptr<LiveRun> live{};
 };
 
-/// All calls from the io thread. Two pages at once work: the last writer wins and both see it.
+/// All calls from the io thread, but for prepare(). Two pages at once work: the last writer wins
+/// and both see it.
 class Session {
  public:
   using Answer = std::function<void(const std::optional<std::string>& refusal)>;
@@ -85,24 +58,44 @@ class Session {
   /// `recorder` may be null: nothing is kept.
   explicit Session(Recorder* recorder);
 
-  /// Ends the present run and begins the next. Throws std::exception with a sentence when the
-  /// robot cannot be made; the present run then goes on untouched. An engaged Stop stays engaged:
-  /// loading and resetting must not set a stopped robot in motion.
+  /// Builds the world or opens the log or the record: whatever takes time. Throws std::exception
+  /// with a sentence. Any thread but the io thread.
+  PreparedRun prepare(RunSpec spec);
+  /// Asks the present run to end and gives it away: whoever lets go of it waits for its last tick.
+  /// Null without one.
+  std::unique_ptr<LiveRun> part();
+  /// Begins a run once the last has gone. An engaged Stop stays engaged: loading and resetting must
+  /// not set a stopped robot in motion.
+  void begin(PreparedRun next);
+  /// All of it, waiting: before there is an io thread, and for tests. When it throws, the present
+  /// run goes on untouched.
   void load(RunSpec spec);
-  void reset() { load(state_.spec); }
-  /// Ends the run for good; the session can be loaded again.
-  void end();
+  /// Ends the run for good; the session can be loaded again. `cut`: because the program ends, so
+  /// that a run without an outcome is interrupted.
+  void end(bool cut = false);
+
+  /// From the next load on a tick that is not recorded ends the run.
+  void require_record() { require_record_ = true; }
 
   /// Hands `request` to the control thread; `answer` is called from a later poll(). An obstacle
   /// without an id gets one, which is returned (0 for other requests). Nothing when the control
   /// thread cannot take more just now: try again later.
+  ///
+  /// A Stop holds from this call on, whatever becomes of the run, and is answered in it: it needs
+  /// no tick and no room in the ring, and takes back a release on its way.
   std::optional<std::uint32_t> submit(algo::Request request, Answer answer);
+  /// True when the newest tick shows a robot at rest that was told to stay so.
+  bool standing() const;
 
   /// Switches the motors of real hardware on or off. Returns why not, as a sentence.
   std::optional<std::string> arm(bool on);
   /// The same as soon as its devices are well for the first time.
   void arm_when_ready() { arm_when_ready_ = true; }
+  /// Signs of life of those who could stop the robot.
+  OperatorWatch& watch() { return watch_; }
 
+  /// Why this robot's time cannot be paused, stepped or sped up, as a sentence: it is real.
+  std::optional<std::string> pace_refusal() const;
   void pause(bool paused);
   void set_speed(double times_real_time);  // 0: as fast as it goes
   void single_step(std::uint32_t ticks);
@@ -112,9 +105,13 @@ class Session {
 
   const SessionState& state() const { return state_; }
   db::RunId run_id() const { return live_ ? live_->id() : 0; }
+  /// What is known to be wrong with a goal now, as a sentence; nothing for other requests.
+  std::optional<std::string> trouble_with(const algo::Request& request) const;
   /// The newest frame, null before the first.
   const FrameRef& newest() const { return newest_; }
-  const std::vector<algo::Pose2>& path() const { return path_; }
+  /// The newest frame that brought a scan: not every tick does.
+  const FrameRef& newest_scan() const { return newest_scan_; }
+  const PathTrail& path() const { return path_; }
   /// The world as it stands, as a scenario of its own.
   sim::Scenario as_scenario(const std::string& name, const std::string& title) const;
 
@@ -128,6 +125,7 @@ class Session {
     Answer answer{};
   };
 
+  void engage_stop(std::uint64_t ticket, const Answer& answer);
   void set_goals(const std::optional<algo::SetGoal>& goal);
   void adopt(const algo::Request& request);
   std::uint32_t free_obstacle_id();
@@ -135,7 +133,9 @@ class Session {
   void drain_frames();
   void answer_the_rest();
   void watch_run();
+  void watch_record();
   void watch_hardware();
+  void count_watchers();
   void narrate(const algo::Telemetry& t);
   void follow_goal(const algo::Telemetry& t);
   void apply_pace();
@@ -143,15 +143,21 @@ class Session {
   void log(LogLevel level, const std::string& text) const;
 
   Recorder* recorder_;
+  OperatorWatch watch_{};  // outlives the runs
   SessionState state_{};
   FrameRef newest_{};
-  std::vector<algo::Pose2> path_{};
+  std::chrono::steady_clock::time_point newest_came_{};
+  FrameRef newest_scan_{};
+  PathTrail path_{};
   std::map<std::uint64_t, Pending> pending_{};
   std::uint64_t next_ticket_ = 1;
+  std::uint64_t stop_ticket_ = 0;  // of the newest Stop
   std::uint32_t next_obstacle_ = 1;
   algo::Mission told_mission_ = algo::Mission::Idle;
   algo::Hold told_hold_ = algo::Hold::None;
   bool arm_when_ready_ = false;
+  bool require_record_ = false;
+  std::uint64_t record_seen_ = 0;                          // revision of the recorder
   std::chrono::steady_clock::time_point hardware_seen_{};  // when it was last looked at
   std::chrono::steady_clock::time_point hardware_told_{};  // when people were last told of it
   std::unique_ptr<LiveRun> live_{};

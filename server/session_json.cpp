@@ -5,6 +5,8 @@
 #include "algo/explain.hpp"
 #include "algo/filter.hpp"
 #include "server/hardware.hpp"
+#include "server/json_reader.hpp"
+#include "server/paths.hpp"
 #include "server/pose_json.hpp"
 #include "server/scenario_json.hpp"
 
@@ -37,11 +39,14 @@ json state_json(const Session& session) {
       {"lost_ticks", s.lost_ticks},
       {"missed_periods", s.missed_periods},
       {"problem", nullptr},
+      {"record", to_json(s.record)},
       {"hardware", nullptr},
+      {"watchers", s.watchers.pages + (s.watchers.scripts ? 1U : 0U)},
+      {"watched_by_script", s.watchers.scripts},
   };
   if (s.goal) out["goal"] = to_json(*s.goal);
   for (const algo::SetGoal& goal : s.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
-  if (s.problem) out["problem"] = *s.problem;
+  if (s.problem) out["problem"] = without_folders(*s.problem);
   if (s.hardware) out["hardware"] = to_json(*s.hardware);
   return out;
 }
@@ -63,6 +68,20 @@ json session_json(const Session& session) {
   out["what"] = words.what;
   out["why"] = words.why;
   return out;
+}
+
+json goal_check_json(const Session& session, const json& goal) {
+  const JsonReader in(goal, "");
+  in.only({"x", "y", "heading"});
+  json out = {{"ok", true}, {"trouble", nullptr}};
+  if (const auto trouble = session.trouble_with(goal_from_json(in))) out["trouble"] = *trouble;
+  return out;
+}
+
+json accepted_json(const Session& session, bool stop) {
+  json body = {{"ok", true}};
+  if (stop) body["stop"] = session.standing() ? "standing" : "commanded";
+  return body;
 }
 
 json catalog_json() {

@@ -5,27 +5,32 @@
 
 #include <nlohmann/json.hpp>
 
-#include "db/run_reader.hpp"
+#include "server/api/worker_reply.hpp"
 #include "server/experiments.hpp"
 #include "server/net/router.hpp"
-#include "server/operator_watch.hpp"
 #include "server/recorder.hpp"
 #include "server/scenario_library.hpp"
 #include "server/session.hpp"
+#include "server/session_loader.hpp"
+#include "server/workers.hpp"
 
 namespace server {
 
-/// What the handlers work on. All of it belongs to the io thread, but for experiments and recorder,
-/// which are safe from any.
+/// What the handlers work on. Session and loader belong to the io thread; the others are
+/// safe from any thread.
 struct ApiContext {
   Session& session;
   const ScenarioLibrary& library;
   Experiments& experiments;
   Recorder& recorder;
-  db::RunReader& reader;
+  Workers& workers;
+  SessionLoader& loader;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
-  OperatorWatch watch{};
+  PageRoom room{};
 };
+
+/// [bytes] of what is read on the io thread: what a person does, never a whole world.
+constexpr std::size_t kRequestBytes = 256 << 10;
 
 /// Registers every route of the API. `context` must outlive the router.
 void add_api(net::Router& router, ApiContext& context);
@@ -40,8 +45,9 @@ void add_run_routes(net::Router& router, ApiContext& context);
 /// Throws LibraryError or what is wrong with the world.
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
 
-/// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError,
-/// LibraryError or what the robot says; the present run then goes on.
-void load_from_json(ApiContext& context, const nlohmann::json& body);
+/// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError on
+/// a document that does not say what it must; `done` gets what goes wrong later, and the present
+/// run then goes on. False when too many loads wait.
+bool load_from_json(ApiContext& context, const nlohmann::json& body, SessionLoader::Done done);
 
 }  // namespace server

@@ -1,7 +1,9 @@
 // server/api/catalog_routes.cpp: health, version, the API's own description, and what there is.
 #include "server/api/api.hpp"
+#include "server/api/openapi.hpp"
 #include "server/api/reply.hpp"
-#include "server/embedded_documents.hpp"
+#include "server/net/access.hpp"
+#include "server/paths.hpp"
 #include "server/session_json.hpp"
 #include "server/version.hpp"
 
@@ -20,15 +22,18 @@ void add_catalog_routes(net::Router& router, ApiContext& context) {
   router.add("GET", "/api/v1/healthz", immediate([&context](const net::Request&) {
                json body = {{"status", "ok"}};
                if (const auto& problem = context.session.state().problem) {
-                 body = {{"status", "degraded"}, {"problem", *problem}};
+                 body = {{"status", "degraded"}, {"problem", without_folders(*problem)}};
                }
                return json_response(200, body);
              }));
-  router.add("GET", "/api/v1/version", immediate([](const net::Request&) {
-               return json_response(200, {{"name", "tautline"}, {"version", kVersion}, {"api", 1}});
+  router.add("GET", "/api/v1/version", immediate([](const net::Request& request) {
+               json body = {{"name", "tautline"}, {"version", kVersion}, {"api", 1}};
+               // So that the page knows whether there is a login to end.
+               body["signed_in"] = !request.cookie(net::Access::kCookie).empty();
+               return json_response(200, body);
              }));
   router.add("GET", "/api/v1/openapi.json", immediate([](const net::Request&) {
-               return net::json_response(200, std::string(embedded_openapi()));
+               return net::json_response(200, openapi_document());
              }));
   router.add("GET", "/api/v1/catalog", immediate([](const net::Request&) {
                return json_response(200, catalog_json());

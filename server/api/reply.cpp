@@ -2,6 +2,7 @@
 #include "server/api/reply.hpp"
 
 #include <exception>
+#include <new>
 #include <stdexcept>
 #include <utility>
 
@@ -11,12 +12,13 @@
 #include "db/sqlite.hpp"
 #include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/paths.hpp"
 #include "server/scenario_library.hpp"
 
 namespace server {
 namespace {
 
-net::Response problem_of(const LibraryError& e) {
+net::Response problem_of_library(const LibraryError& e) {
   switch (e.kind()) {
     case LibraryError::Kind::NotFound:
       return net::problem(404, "Not found", e.what());
@@ -44,13 +46,24 @@ net::Response problem_of_current_exception() {
   } catch (const DocumentError& e) {
     return net::problem(422, "Document not usable", e.what());
   } catch (const LibraryError& e) {
-    return problem_of(e);
+    return problem_of_library(e);
   } catch (const db::StoreError& e) {
-    return net::problem(503, "The record is not available", e.what());
+    return net::problem(503, "The record is not available", without_folders(e.what()));
+  } catch (const std::bad_alloc&) {
+    return net::problem(
+        503, "Out of memory", "The server has not enough memory for this. Ask for less.");
   } catch (const std::invalid_argument& e) {  // a world that cannot be built
-    return net::problem(422, "Scenario not usable", e.what());
+    return net::problem(422, "Scenario not usable", without_folders(e.what()));
   } catch (const std::exception& e) {
-    return net::problem(500, "Internal error", e.what());
+    return net::problem(500, "Internal error", without_folders(e.what()));
+  }
+}
+
+net::Response problem_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (...) {
+    return problem_of_current_exception();
   }
 }
 

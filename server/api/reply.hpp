@@ -1,6 +1,7 @@
 // server/api/reply.hpp: JSON in, JSON out, and every failure as a problem document.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -16,6 +17,8 @@ net::Response json_response(int status, const nlohmann::json& body);
 /// The problem document for the exception now being handled: 400 for what is not JSON, 422 for a
 /// document that does not say what it must, 404 or 409 for scenarios, 503 for the database.
 net::Response problem_of_current_exception();
+
+net::Response problem_of(const std::exception_ptr& failure);
 
 /// The body as JSON; an empty one is an empty object. Throws on malformed JSON.
 nlohmann::json body_json(const net::Request& request);

@@ -1,11 +1,13 @@
 // server/api/run_routes.cpp: experiments in, records out.
-#include <cstring>
+#include <algorithm>
 
 #include <fmt/format.h>
 
 #include "server/api/api.hpp"
 #include "server/api/reply.hpp"
+#include "server/json_limits.hpp"
 #include "server/json_reader.hpp"
+#include "server/paths.hpp"
 #include "server/run_json.hpp"
 #include "server/scenario_json.hpp"
 
@@ -14,7 +16,6 @@ namespace {
 
 using nlohmann::json;
 constexpr std::uint64_t kMaxRepeats = 10'000;
-constexpr std::size_t kMaxQueued = 20'000;  // runs of all experiments together
 
 db::RunId run_id(const net::Request& request) {
   const std::string& text = request.params.at("id");
@@ -51,19 +52,44 @@ db::RunFilter filter_of(const net::Request& request) {
   return filter;
 }
 
-net::Response list_runs(ApiContext& context, const net::Request& request) {
+/// Appends `item` to a list in JSON.
+void append_item(std::string& list, const json& item) {
+  if (list.size() > 1) list += ',';
+  list += dump_json(item);
+}
+
+/// {"items":[...],"next":...} and `more`, the fields after those, as a page that counts.
+net::Response page_response(ApiContext& context,
+                            std::string list,
+                            const json& next,
+                            const std::string& more = "") {
+  net::Response response;
+  response.content_type = "application/json";
+  response.body =
+      context.room.hold("{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
+  return response;
+}
+
+net::Response list_runs(ApiContext& context, const net::Request& request, Worker& worker) {
   std::optional<db::RunId> cursor;
   if (request.query.contains("cursor")) {
     cursor = static_cast<db::RunId>(number_of(request, "cursor", 0));
   }
+  const bool first_page = !cursor;
   const db::RunFilter filter = filter_of(request);
-  const db::RunPage page = context.reader.list(filter, limit_of(request, 50, 500), cursor);
-  json items = json::array();
-  for (const db::RunRow& row : page.runs) items.push_back(to_json(row));
-  json body = {{"items", std::move(items)}, {"next", nullptr}};
-  if (page.next) body["next"] = std::to_string(*page.next);
-  if (!cursor) body["total"] = context.reader.count(filter);
-  return json_response(200, body);
+  db::RunReader& reader = worker.runs();
+  const std::size_t room = context.room.page();
+  std::string list = "[";
+  for (std::size_t left = limit_of(request, 50, 500); left > 0 && list.size() < room; --left) {
+    const db::RunPage page = reader.list(filter, 1, cursor);
+    cursor = page.next;
+    for (const db::RunRow& row : page.runs) append_item(list, to_json(row));
+    if (!cursor) break;
+  }
+  return page_response(context,
+                       std::move(list),
+                       cursor ? json(std::to_string(*cursor)) : json(nullptr),
+                       first_page ? fmt::format(",\"total\":{}", reader.count(filter)) : "");
 }
 
 Experiment experiment_from_json(const ApiContext& context, const json& body) {
@@ -81,24 +107,18 @@ Experiment experiment_from_json(const ApiContext& context, const json& body) {
 }
 
 void start_runs(ApiContext& context, const net::Request& request, const net::Responder& respond) {
-  Experiment experiment = experiment_from_json(context, body_json(request));
-  if (context.experiments.waiting() + experiment.repeats > kMaxQueued) {
+  const auto accepted = [respond](const std::vector<db::RunId>& runs, const std::string& failure) {
+    if (runs.empty()) {
+      respond(net::problem(503, "The record is not available", without_folders(failure)));
+      return;
+    }
+    net::Response response = json_response(202, {{"runs", runs}});
+    response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
+    respond(std::move(response));
+  };
+  if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
     respond(net::problem(503, "Busy", "Too many runs are queued already. Try again later."));
-    return;
   }
-  context.experiments.start(
-      std::move(experiment),
-      [&context, respond](const std::vector<db::RunId>& runs, const std::string& failure) {
-        context.post_to_io([runs, failure, respond] {
-          if (runs.empty()) {
-            respond(net::problem(503, "The record is not available", failure));
-            return;
-          }
-          net::Response response = json_response(202, {{"runs", runs}});
-          response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
-          respond(std::move(response));
-        });
-      });
 }
 
 void delete_run(ApiContext& context, const net::Request& request, const net::Responder& respond) {
@@ -118,105 +138,180 @@ void delete_run(ApiContext& context, const net::Request& request, const net::Res
           response = net::problem(409, "Still recording", "Cancel or end the run first.");
           break;
       }
+    } catch (const db::DatabaseError&) {
+      // A disk that is full must not keep what somebody wants to be rid of.
+      context.recorder.post_when_well([run](db::RunStore& later) { later.delete_run(run); });
+      response = json_response(
+          202, {{"ok", true}, {"detail", "It goes as soon as the store takes writes again."}});
     } catch (const std::exception& e) {
-      response = net::problem(503, "The record is not available", e.what());
+      response = net::problem(503, "The record is not available", without_folders(e.what()));
     }
     context.post_to_io([respond, response = std::move(response)] { respond(response); });
   });
 }
 
-net::Response list_ticks(ApiContext& context, const net::Request& request) {
+/// Runs a run that was cut again from its start, under its own number.
+void resume_run(ApiContext& context,
+                const net::Request& request,
+                Worker& worker,
+                const net::Responder& respond) {
   const db::RunId run = run_id(request);
-  if (!context.reader.get(run)) return no_such_run(run);
-  const db::TickPage page =
-      context.reader.ticks(run, number_of(request, "from", 0), limit_of(request, 1000, 10'000));
-  json items = json::array();
-  for (const db::TickRow& row : page.ticks) items.push_back(to_json(row));
-  json body = {{"items", std::move(items)}, {"next", nullptr}};
-  if (page.next) body["next"] = *page.next;
-  return json_response(200, body);
+  const auto row = worker.runs().get(run);
+  if (!row) {
+    respond(no_such_run(run));
+    return;
+  }
+  const json document = parse_json(row->what.document, kOwnDocument);
+  if (!document.contains("pace")) {
+    respond(net::problem(409,
+                         "Driven live",
+                         "People drove this run, which cannot be run again by itself: load its "
+                         "scenario and drive it."));
+    return;
+  }
+  RunOverrides overrides;
+  overrides.seed = row->what.seed;
+  RunSpec spec = make_spec(document.value("source", "") == "replay"
+                               ? context.library.load(row->what.scenario)
+                               : scenario_from_json(document.at("scenario")),
+                           overrides);
+  const bool taken = context.experiments.resume(
+      run,
+      std::move(spec),
+      document.at("pace").get<double>(),
+      [run, respond](const std::string& refusal) {
+        respond(refusal.empty() ? json_response(202, {{"runs", {run}}})
+                                : net::problem(409, "Not resumed", refusal));
+      });
+  if (!taken) {
+    respond(net::problem(503, "Busy", "Too many runs are queued already. Try again later."));
+  }
+}
+
+net::Response list_ticks(ApiContext& context, const net::Request& request, Worker& worker) {
+  constexpr std::size_t kRows = 250;  // between two looks at the room
+  const db::RunId run = run_id(request);
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  std::optional<std::uint64_t> next = number_of(request, "from", 0);
+  std::size_t left = limit_of(request, 1000, 10'000);
+  const std::size_t room = context.room.page();
+  std::string list = "[";
+  while (next && left > 0 && list.size() < room) {
+    const db::TickPage page = reader.ticks(run, *next, std::min(left, kRows));
+    for (const db::TickRow& row : page.ticks) append_item(list, to_json(row));
+    left -= page.ticks.size();
+    next = page.next;
+  }
+  return page_response(context, std::move(list), next ? json(*next) : json(nullptr));
 }
 
 /// Each frame as u32 little-endian length + bytes.
-net::Response list_frames(ApiContext& context, const net::Request& request) {
+net::Response list_frames(ApiContext& context, const net::Request& request, Worker& worker) {
   const db::RunId run = run_id(request);
-  if (!context.reader.get(run)) return no_such_run(run);
-  auto body = std::make_shared<std::string>();
-  const auto next = context.reader.frames(
-      run,
-      number_of(request, "from", 0),
-      limit_of(request, 1000, 5000),
-      [&](std::uint64_t /*tick*/, std::span<const std::byte> frame) {
-        const auto size = static_cast<std::uint32_t>(frame.size());
-        for (int shift = 0; shift < 32; shift += 8) {
-          body->push_back(static_cast<char>((size >> shift) & 0xFF));
-        }
-        body->append(reinterpret_cast<const char*>(frame.data()), frame.size());
-      });
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  std::string body;
+  const auto append = [&](std::uint64_t /*tick*/, std::span<const std::byte> frame) {
+    const auto size = static_cast<std::uint32_t>(frame.size());
+    for (int shift = 0; shift < 32; shift += 8) {
+      body.push_back(static_cast<char>((size >> shift) & 0xFF));
+    }
+    body.append(reinterpret_cast<const char*>(frame.data()), frame.size());
+  };
+  std::optional<std::uint64_t> next = number_of(request, "from", 0);
+  const std::size_t room = context.room.page();
+  for (std::size_t left = limit_of(request, 1000, 5000); left > 0 && body.size() < room; --left) {
+    next = reader.frames(run, *next, 1, append);
+    if (!next) break;
+  }
   net::Response response;
   response.content_type = "application/octet-stream";
   if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
-  response.body = std::move(body);
+  response.body = context.room.hold(std::move(body));
   return response;
 }
 
-net::Response export_csv(ApiContext& context, const net::Request& request) {
+net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
+  constexpr std::size_t kLines = 1000;  // of a slice: some 100 kB
   const db::RunId run = run_id(request);
-  if (!context.reader.get(run)) return no_such_run(run);
-  auto body = std::make_shared<std::string>(db::RunReader::csv_header());
-  std::optional<std::uint64_t> from = 0;
-  while (from) {
-    const std::uint64_t tick = *from;
-    from = context.reader.csv(run, tick, 10'000, *body, csv_names());
-  }
+  if (!worker.runs().get(run)) return no_such_run(run);
+  const auto next = std::make_shared<std::optional<std::uint64_t>>(0);
+  const auto make = [run, next](Worker& at_work) {
+    std::string slice;
+    if (!*next) return slice;
+    const std::uint64_t from = **next;
+    if (from == 0) slice = db::RunReader::csv_header();
+    const std::size_t before = slice.size();
+    *next = at_work.runs().csv(run, from, kLines, slice, csv_names());
+    if (from > 0 && slice.size() == before) throw db::StoreError("The run was deleted meanwhile.");
+    return slice;
+  };
   net::Response response;
   response.content_type = "text/csv; charset=utf-8";
   response.headers.push_back(
       {"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
-  response.body = std::move(body);
+  response.stream = std::make_shared<WorkerStream>(context, make);
   return response;
+}
+
+net::Response cancel_run(ApiContext& context, const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  if (context.experiments.cancel(run)) return json_response(202, {{"ok", true}});
+  if (!worker.runs().get(run)) return no_such_run(run);
+  return net::problem(409, "Not running", "The run is neither queued nor running.");
+}
+
+net::Response get_run(const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  const auto row = worker.runs().get(run);
+  return row ? json_response(200, to_json(*row)) : no_such_run(run);
+}
+
+net::Response get_metrics(const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  auto row = worker.runs().get(run);
+  if (!row) return no_such_run(run);
+  row->what.document.clear();
+  return json_response(200, to_json(*row).at("metrics"));
 }
 
 }  // namespace
 
 void add_run_routes(net::Router& router, ApiContext& context) {
-  router.add("POST",
-             "/api/v1/runs",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               start_runs(context, request, respond);
-             }));
-  router.add("GET", "/api/v1/runs", immediate([&context](const net::Request& request) {
-               return list_runs(context, request);
-             }));
-  router.add("GET", "/api/v1/runs/{id}", immediate([&context](const net::Request& request) {
-               const auto row = context.reader.get(run_id(request));
-               return row ? json_response(200, to_json(*row)) : no_such_run(run_id(request));
-             }));
+  using Make = net::Response (*)(ApiContext&, const net::Request&, Worker&);
+  const auto made = [&context](Make make) {
+    return made_on_worker(context, [&context, make](const net::Request& request, Worker& worker) {
+      return make(context, request, worker);
+    });
+  };
+  router.add(
+      "POST",
+      "/api/v1/runs",
+      on_worker(context,
+                [&context](const net::Request& request, Worker&, const net::Responder& respond) {
+                  start_runs(context, request, respond);
+                }));
+  router.add("GET", "/api/v1/runs", made(list_runs));
+  router.add("GET", "/api/v1/runs/{id}", made_on_worker(context, get_run));
   router.add("DELETE",
              "/api/v1/runs/{id}",
              guarded([&context](const net::Request& request, const net::Responder& respond) {
                delete_run(context, request, respond);
              }));
-  router.add("POST", "/api/v1/runs/{id}/cancel", immediate([&context](const net::Request& request) {
-               const db::RunId run = run_id(request);
-               if (context.experiments.cancel(run)) return json_response(202, {{"ok", true}});
-               if (!context.reader.get(run)) return no_such_run(run);
-               return net::problem(409, "Not running", "The run is neither queued nor running.");
-             }));
-  router.add("GET", "/api/v1/runs/{id}/metrics", immediate([&context](const net::Request& request) {
-               const auto row = context.reader.get(run_id(request));
-               if (!row) return no_such_run(run_id(request));
-               return json_response(200, to_json(*row).at("metrics"));
-             }));
-  router.add("GET", "/api/v1/runs/{id}/ticks", immediate([&context](const net::Request& request) {
-               return list_ticks(context, request);
-             }));
-  router.add("GET", "/api/v1/runs/{id}/frames", immediate([&context](const net::Request& request) {
-               return list_frames(context, request);
-             }));
-  router.add("GET", "/api/v1/runs/{id}/csv", immediate([&context](const net::Request& request) {
-               return export_csv(context, request);
-             }));
+  router.add("POST", "/api/v1/runs/{id}/cancel", made(cancel_run));
+  router.add(
+      "POST",
+      "/api/v1/runs/{id}/resume",
+      on_worker(
+          context,
+          [&context](const net::Request& request, Worker& worker, const net::Responder& respond) {
+            resume_run(context, request, worker, respond);
+          }));
+  router.add("GET", "/api/v1/runs/{id}/metrics", made_on_worker(context, get_metrics));
+  router.add("GET", "/api/v1/runs/{id}/ticks", made(list_ticks));
+  router.add("GET", "/api/v1/runs/{id}/frames", made(list_frames));
+  router.add("GET", "/api/v1/runs/{id}/csv", made(export_csv));
 }
 
 }  // namespace server

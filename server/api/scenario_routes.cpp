@@ -25,18 +25,23 @@ void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
 }
 
 void add_scenario_routes(net::Router& router, ApiContext& context) {
-  router.add("GET", "/api/v1/scenarios", immediate([&context](const net::Request&) {
-               json items = json::array();
-               for (const ScenarioEntry& entry : context.library.list()) {
-                 items.push_back(to_json(entry));
-               }
-               return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
-             }));
-  router.add("GET", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
+  router.add(
+      "GET", "/api/v1/scenarios", made_on_worker(context, [&context](const net::Request&, Worker&) {
+        json items = json::array();
+        for (const ScenarioEntry& entry : context.library.list()) {
+          items.push_back(to_json(entry));
+        }
+        return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
+      }));
+  router.add("GET",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
                return json_response(
                    200, server::to_json(context.library.load(request.params.at("name"))));
              }));
-  router.add("PUT", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
+  router.add("PUT",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
                json body = body_json(request);
                const std::string name = request.params.at("name");
                if (body.is_object() && !body.contains("name")) body["name"] = name;
@@ -47,13 +52,14 @@ void add_scenario_routes(net::Router& router, ApiContext& context) {
                keep_scenario(context, scenario);
                return json_response(200, server::to_json(scenario));
              }));
-  router.add(
-      "DELETE", "/api/v1/scenarios/{name}", immediate([&context](const net::Request& request) {
-        context.library.remove(request.params.at("name"));
-        net::Response response;
-        response.status = 204;
-        return response;
-      }));
+  router.add("DELETE",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
+               context.library.remove(request.params.at("name"));
+               net::Response response;
+               response.status = 204;
+               return response;
+             }));
 }
 
 }  // namespace server

@@ -19,28 +19,47 @@ namespace server {
 namespace {
 
 using nlohmann::json;
+void busy(const net::Responder& respond) {
+  net::Response response =
+      net::problem(503, "Busy", "More is waiting to be done than this robot can take. Try again.");
+  response.headers.push_back({"Retry-After", "1"});
+  respond(std::move(response));
+}
 
-/// Submits and answers once the control thread has: 200 with `body`, or 409 with the reason.
+/// The session as it is then, or why the present run goes on.
+SessionLoader::Done answer_when_loaded(ApiContext& context, const net::Responder& respond) {
+  return [&context, respond](const std::exception_ptr& failure) {
+    if (failure) {
+      respond(problem_of(failure));
+    } else {
+      respond(json_response(200, state_json(context.session)));
+    }
+  };
+}
+
+/// Submits and answers once the control thread has, a Stop at once: `status`, or 409 with the
+/// reason.
 void submit_and_reply(ApiContext& context,
                       algo::Request request,
                       const net::Responder& respond,
                       int status = 200) {
   const auto id = std::make_shared<std::uint32_t>(0);
+  const bool stop = is_stop(request);
+  const std::optional<std::string> trouble = context.session.trouble_with(request);
   const auto given = context.session.submit(
-      std::move(request), [respond, id, status](const std::optional<std::string>& refusal) {
+      std::move(request),
+      [&context, respond, id, status, stop, trouble](const std::optional<std::string>& refusal) {
         if (refusal) {
           respond(net::problem(409, "Refused", *refusal));
           return;
         }
-        json body = {{"ok", true}};
+        json body = accepted_json(context.session, stop);
         if (*id != 0) body["id"] = *id;
+        if (trouble) body["warning"] = *trouble;
         respond(json_response(status, body));
       });
   if (!given) {
-    net::Response busy = net::problem(
-        503, "Busy", "The control loop has more requests than it can take. Try again.");
-    busy.headers.push_back({"Retry-After", "1"});
-    respond(std::move(busy));
+    busy(respond);
     return;
   }
   *id = *given;
@@ -102,7 +121,7 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
                                    : net::problem(409, "Refused", *refused));
         });
     if (!given) {
-      respond(net::problem(503, "Busy", "The control loop is busy. Try again."));
+      busy(respond);
       return;
     }
   }
@@ -112,10 +131,17 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
   const JsonReader in(body, "");
   const std::string action = in.text("action", 32);
   Session& session = context.session;
+  if (action == "pause" || action == "step" || action == "speed") {
+    if (const auto refusal = session.pace_refusal()) {
+      respond(net::problem(409, "Refused", *refusal));
+      return;
+    }
+  }
   if (action == "load") {
     json load = body;
     load.erase("action");
-    load_from_json(context, load);
+    if (!load_from_json(context, load, answer_when_loaded(context, respond))) busy(respond);
+    return;
   } else if (action == "step") {
     in.only({"action", "ticks"});
     session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
@@ -138,7 +164,8 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
     session.pause(action == "pause");
   } else if (action == "reset") {
     in.only({"action"});
-    session.reset();
+    if (!context.loader.reset(answer_when_loaded(context, respond))) busy(respond);
+    return;
   } else {
     in.fail("action",
             fmt::format("'{}' is unknown; known are play, pause, step, speed, reset, stop, "
@@ -146,6 +173,23 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
                         action));
   }
   respond(json_response(200, state_json(session)));
+}
+
+void save_scenario(ApiContext& context, const json& body, const net::Responder& respond) {
+  const JsonReader in(body, "");
+  in.only({"name", "title"});
+  const std::string name = in.text("name", 64);
+  if (!context.session.state().spec.scenario.log.empty()) {
+    respond(net::problem(409, "Refused", "A recorded log is playing: there is no world to save."));
+    return;
+  }
+  const sim::Scenario scenario = context.session.as_scenario(name, in.text_or("title", name));
+  answer_from_worker(context, respond, [&context, scenario](Worker&) {
+    keep_scenario(context, scenario);
+    net::Response response = json_response(201, to_json(scenario));
+    response.headers.push_back({"Location", "/api/v1/scenarios/" + scenario.name});
+    return response;
+  });
 }
 
 /// A goal as the body, to be taken as a request of `type`.
@@ -160,35 +204,55 @@ net::Handler goal_route(ApiContext& context, const char* type) {
 
 }  // namespace
 
-void load_from_json(ApiContext& context, const json& body) {
+bool load_from_json(ApiContext& context, const json& body, SessionLoader::Done done) {
   const JsonReader in(body, "");
   in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
   const RunOverrides overrides = overrides_from_json(body);
+  std::optional<std::string> name;
+  if (in.has("scenario")) name = in.text("scenario", 64);
   if (const auto& hardware = context.session.state().spec.hardware) {
-    const std::string& name = hardware->spec().name;
-    if (in.has("scenario") && in.text("scenario", 64) != name) {
+    if (name && *name != hardware->spec().name) {
       in.fail("scenario",
               "cannot be loaded: this server drives real hardware. Start another for simulation");
     }
-    context.session.load(hardware_spec(hardware, overrides));
-    return;
+    const auto plan = [hardware, overrides] {
+      return [hardware, overrides] { return hardware_spec(hardware, overrides); };
+    };
+    return context.loader.load(plan, std::move(done));
   }
-  sim::Scenario scenario = in.has("scenario") ? context.library.load(in.text("scenario", 64))
-                                              : context.session.state().spec.scenario;
-  context.session.load(make_spec(std::move(scenario), overrides));
+  const auto plan = [&context, name, overrides]() -> SessionLoader::Make {
+    sim::Scenario now;
+    if (!name) now = context.session.state().spec.scenario;
+    return [&library = context.library, name, now, overrides] {
+      return make_spec(name ? library.load(*name) : now, overrides);
+    };
+  };
+  return context.loader.load(plan, std::move(done));
 }
 
 void add_session_routes(net::Router& router, ApiContext& context) {
-  // Whoever asks for any of these is there.
-  const auto route = [&](const char* method, const char* pattern, net::Handler handler) {
-    router.add(method,
-               pattern,
-               [&context, handler = std::move(handler)](const net::Request& request,
-                                                        const net::Responder& respond) {
-                 context.watch.seen(OperatorWatch::Clock::now());
-                 handler(request, respond);
-               });
+  // A script that looks on may be a cron job; one that asks for something is there.
+  const auto route = [&](const std::string& method, const char* pattern, net::Handler handler) {
+    router.add(
+        method,
+        pattern,
+        [&context, looks_on = method == "GET", handler = std::move(handler)](
+            const net::Request& request, const net::Responder& respond) {
+          if (!looks_on) context.session.watch().script_sign(OperatorWatch::Clock::now());
+          handler(request, respond);
+        },
+        kRequestBytes);
   };
+  route("POST", "/api/v1/session/watch", immediate([](const net::Request& request) {
+          if (!request.body.empty()) JsonReader(body_json(request), "").only({});
+          return json_response(200, {{"ok", true}});
+        }));
+  router.add("POST",
+             "/api/v1/session/goal/check",
+             immediate([&context](const net::Request& request) {
+               return json_response(200, goal_check_json(context.session, body_json(request)));
+             }),
+             kRequestBytes);
   route("GET", "/api/v1/session", immediate([&context](const net::Request&) {
           return json_response(200, session_json(context.session));
         }));
@@ -240,21 +304,10 @@ void add_session_routes(net::Router& router, ApiContext& context) {
         guarded([&context](const net::Request& request, const net::Responder& respond) {
           control(context, body_json(request), respond);
         }));
-  route("POST", "/api/v1/session/scenario", immediate([&context](const net::Request& request) {
-          const json body = body_json(request);
-          const JsonReader in(body, "");
-          in.only({"name", "title"});
-          const std::string name = in.text("name", 64);
-          if (!context.session.state().spec.scenario.log.empty()) {
-            return net::problem(
-                409, "Refused", "A recorded log is playing: there is no world to save.");
-          }
-          const sim::Scenario scenario =
-              context.session.as_scenario(name, in.text_or("title", name));
-          keep_scenario(context, scenario);
-          net::Response response = json_response(201, to_json(scenario));
-          response.headers.push_back({"Location", "/api/v1/scenarios/" + name});
-          return response;
+  route("POST",
+        "/api/v1/session/scenario",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          save_scenario(context, body_json(request), respond);
         }));
 }
 

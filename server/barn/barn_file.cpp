@@ -112,6 +112,9 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
     drive.max_angular_acceleration = 8;
     drive.delay_ticks = 1;
   }
+  if (conditions.scanner == Scanner::Lms200) {
+    scenario.lasers = {sim::LaserConfig::with_resolution(0.5)};
+  }
   // Low enough for every obstacle, and clear of the hull.
   scenario.lasers.front().height = 0.30;
 }

@@ -25,9 +25,14 @@ struct World {
   std::vector<sim::ObstaclePath> paths{};
 };
 
+/// `Flat`, the benchmark's own: all beams at one instant. `Lms200`: the default model, whose beams
+/// are fired one by one while things move.
+enum class Scanner : std::uint8_t { Flat, Lms200 };
+
 /// Under which a world is run: limits and faults of the base and its scanner.
 struct Conditions {
   bool stress = false;
+  Scanner scanner = Scanner::Flat;
   sim::Vehicle vehicle = sim::Vehicle::Bullet;
   std::string controller{};  // empty: `strip`, or `strip_moving` where something moves
   double phase = 0;          // [s] of the moving obstacles' paths when a run begins

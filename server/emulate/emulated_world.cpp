@@ -73,7 +73,7 @@ void EmulatedWorld::run(const std::stop_token& stop) {
 algo::Command EmulatedWorld::command() {
   if (!links_.base) return {};
   const auto held = links_.base->thread->lock();
-  motion_ = links_.base->device->drive(machine_time());
+  motion_ = links_.base->device->turn(machine_time());
   const double track = 2 * world_.spec().half_track;
   return {.base = {.v = (motion_.left + motion_.right) / 2,
                    .omega = (motion_.right - motion_.left) / track}};
@@ -101,7 +101,7 @@ void EmulatedWorld::feel(const algo::Observation& observation, const algo::Pose2
   senses_.echoes.clear();
   sonars_.sense(observation.stamp, pose_W, senses_.echoes);
   const auto held = links_.base->thread->lock();
-  links_.base->device->feel(senses_, machine_time());
+  links_.base->device->sense(senses_, machine_time());
 }
 
 void EmulatedWorld::look(double now) {

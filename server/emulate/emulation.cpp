@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algo/units.hpp"
 #include "server/emulate/clock.hpp"
 
 namespace server::emulate {
@@ -50,12 +51,17 @@ enum class Verb : std::uint8_t {
   Unplug,
   Nak,
   Dazzle,
+  Cone,
   Dirty,
   Health,
   Stop,
   Bumper,
   Battery,
   Faults,
+  Runaway,
+  Gain,
+  Block,
+  Encoder,
 };
 enum class Who : std::uint8_t { World, Any, Scanner, Base };
 
@@ -66,7 +72,7 @@ struct VerbRow {
   std::string_view help{};
 };
 
-constexpr std::array<VerbRow, 15> kVerbs{{
+constexpr std::array<VerbRow, 20> kVerbs{{
     {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
     {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
     {Verb::Flip, "flip", Who::Any, "P: turn over a bit of each byte with this probability"},
@@ -76,12 +82,20 @@ constexpr std::array<VerbRow, 15> kVerbs{{
     {Verb::Unplug, "unplug", Who::Any, "SECONDS: take the port away, then bring it back"},
     {Verb::Nak, "nak", Who::Scanner, "N: take the next N telegrams for damaged"},
     {Verb::Dazzle, "dazzle", Who::Scanner, "on|off: blind all beams"},
+    {Verb::Cone, "cone", Who::Scanner, "DEGREES: blind so many about the middle; 0: none"},
     {Verb::Dirty, "dirty", Who::Scanner, "on|off: report a dirty window"},
     {Verb::Health, "health", Who::Scanner, "BYTE: the last byte of all answers"},
     {Verb::Stop, "stop", Who::Base, "on|off: press or release the stop button"},
     {Verb::Bumper, "bumper", Who::Base, "on|off: press or release a bumper"},
     {Verb::Battery, "battery", Who::Base, "VOLTS"},
     {Verb::Faults, "faults", Who::Base, "BITS: fault flags the controller reports"},
+    {Verb::Runaway,
+     "runaway",
+     Who::Base,
+     "SPEED: with power both wheels turn so fast [m/s]; 0: none"},
+    {Verb::Gain, "gain", Who::Base, "N: the wheels turn N times as fast as told"},
+    {Verb::Block, "block", Who::Base, "on|off: the left wheel cannot turn"},
+    {Verb::Encoder, "encoder", Who::Base, "on|off: the left wheel's encoder"},
 }};
 
 const VerbRow& verb_of(const std::string& word) {
@@ -145,6 +159,9 @@ void befall_scanner(Verb verb, double value, DeviceThread& thread, lms200::Emula
     case Verb::Dazzle:
       device.dazzle(value != 0);
       break;
+    case Verb::Cone:
+      device.dazzle(value > 0, value * algo::units::kRadiansPerDegree);
+      break;
     case Verb::Dirty:
       device.set_health(value != 0 ? kPolluted : kGood);
       break;
@@ -168,6 +185,18 @@ void befall_base(Verb verb, double value, DeviceThread& thread, emulators::Base&
       break;
     case Verb::Battery:
       device.set_battery(value);
+      break;
+    case Verb::Runaway:
+      device.trouble.runaway = value;
+      break;
+    case Verb::Gain:
+      device.trouble.gain = value;
+      break;
+    case Verb::Block:
+      device.trouble.blocked = value != 0;
+      break;
+    case Verb::Encoder:
+      device.trouble.encoder_dead = value == 0;
       break;
     default:
       device.set_faults_reported(static_cast<std::uint16_t>(value));

@@ -12,7 +12,6 @@
 namespace server::foxglove {
 namespace {
 
-constexpr std::uint32_t kTimeKey = 0xFFFFFFFF;  // send slot of the time; channels use their id
 constexpr std::chrono::milliseconds kTimePeriod{100};
 
 std::string made_up_session_id() {
@@ -58,7 +57,7 @@ ChannelId Hub::add_channel(const ChannelSpec& spec) {
   channel.schema_encoding = std::string(found.encoding);
   channels_.push_back(std::move(channel));
   states_.emplace_back();
-  states_.back().latched = spec.latched;
+  states_.back().newest = spec.newest;
   return channels_.back().id;
 }
 
@@ -105,9 +104,7 @@ void Hub::publish(ChannelId channel, std::uint64_t t_ns, Payload payload) {
     const MessageHeader header = message_header(subscriber.subscription_id, t_ns);
     subscriber.client->socket->send_latest(channel, header, payload);
   }
-  if (!to.latched) return;
-  to.t_ns = t_ns;
-  to.last = std::move(payload);
+  to.last = {t_ns, std::move(payload)};
 }
 
 void Hub::publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload) {
@@ -125,12 +122,11 @@ void Hub::publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload) 
     }
     client.dropping_events = !kept;
   }
-  if (!to.latched) return;
-  to.t_ns = t_ns;
-  to.last = std::move(payload);
+  to.last = {t_ns, std::move(payload)};
 }
 
 void Hub::broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_point now) {
+  time_ns_ = t_ns;
   if (time_sent_ && now - *time_sent_ < kTimePeriod) return;
   time_sent_ = now;
   const TimeMessage message = time_message(t_ns);
@@ -149,14 +145,6 @@ void Hub::parameters_changed(std::span<const std::string> names) {
     }
     if (!wanted.empty()) send(client, parameter_values(wanted));
   }
-}
-
-std::chrono::steady_clock::time_point Hub::heard() const {
-  std::chrono::steady_clock::time_point newest{};
-  for (const auto& [id, client] : clients_) {
-    newest = std::max(newest, client.socket->counters().heard);
-  }
-  return newest;
 }
 
 void Hub::warn(ClientId id, std::string_view sentence) {

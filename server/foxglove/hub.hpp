@@ -59,11 +59,20 @@ using ServiceHandler =
 /// Takes what a client published. @return why it is refused, as a sentence; empty when it is taken
 using PublishHandler = std::function<std::string(ClientId, const nlohmann::json& message)>;
 
+/// A message with its time on the run clock.
+struct Stamped {
+  std::uint64_t t_ns = 0;
+  Payload payload{};
+};
+
+/// Every channel is latched: a newly subscribed client gets the newest message at once, so that it
+/// sees the scene of a robot at rest.
 struct ChannelSpec {
   std::string topic{};
   std::string schema_name{};  // one of schemas.hpp
-  /// A newly subscribed client gets the last message at once.
-  bool latched = false;
+  /// For a channel that is encoded only while somebody subscribes: makes the newest message for the
+  /// first subscriber, or nothing (a null payload). Without it the last one published is kept.
+  std::function<Stamped()> newest{};
 };
 
 struct HubOptions {
@@ -99,7 +108,7 @@ class Hub {
   void on_client_gone(std::function<void(ClientId)> callback);
 
   // ---- sending
-  /// True while somebody subscribes; encode only then (a latched channel: always).
+  /// True while somebody subscribes. A channel with ChannelSpec::newest is encoded only then.
   bool wanted(ChannelId channel) const;
   /// State-like data: each client gets the newest it can take. `t_ns` is the run clock.
   void publish(ChannelId channel, std::uint64_t t_ns, Payload payload);
@@ -117,8 +126,6 @@ class Hub {
 
   const std::vector<Channel>& channels() const { return channels_; }
   std::size_t clients() const { return clients_.size(); }
-  /// When any of them last gave a sign of life; the clock's epoch without one.
-  std::chrono::steady_clock::time_point heard() const;
 
  private:
   struct Client {
@@ -134,9 +141,8 @@ class Hub {
     std::uint32_t subscription_id = 0;
   };
   struct ChannelState {
-    bool latched = false;
-    std::uint64_t t_ns = 0;
-    Payload last{};
+    std::function<Stamped()> newest{};
+    Stamped last{};
     std::vector<Subscriber> subscribers{};
   };
 
@@ -160,6 +166,7 @@ class Hub {
   void subscribe(Client& client, const Subscription& subscription);
   void remove_subscriber(const Client& client, ChannelId channel);
   std::vector<Parameter> values(std::span<const std::string> names) const;
+  static constexpr std::uint32_t kTimeKey = 0xFFFFFFFF;  // send slot; channels use their id
   static void send(Client& client, std::string message);
   static void complain(Client& client, StatusLevel level, std::string_view sentence);
 
@@ -174,6 +181,7 @@ class Hub {
   std::function<void(ClientId)> client_gone_{};
   std::map<ClientId, Client> clients_{};
   std::optional<std::chrono::steady_clock::time_point> time_sent_{};
+  std::optional<std::uint64_t> time_ns_{};  // the run clock as last told
 };
 
 }  // namespace server::foxglove

@@ -6,6 +6,7 @@
 
 #include "server/foxglove/hub.hpp"
 #include "server/json_limits.hpp"
+#include "server/paths.hpp"
 
 namespace server::foxglove {
 namespace {
@@ -62,6 +63,7 @@ void Hub::opened(const std::shared_ptr<net::WsClient>& socket) {
   send(client, server_info(info_));  // must be the first message
   send(client, advertise(channels_));
   if (!services_.empty()) send(client, advertise_services(services_));
+  if (time_ns_) socket->send_latest(kTimeKey, time_message(*time_ns_), nullptr);
 }
 
 void Hub::closed(ClientId id) {
@@ -131,9 +133,12 @@ void Hub::subscribe(Client& client, const Subscription& subscription) {
   }
   client.subscriptions[subscription.id] = channel;
   ChannelState& to = states_[channel - 1];
+  // While nobody subscribed, what was last encoded grew old.
+  if (to.newest && to.subscribers.empty()) to.last = to.newest();
   to.subscribers.push_back({&client, subscription.id});
-  if (to.latched && to.last) {
-    client.socket->send_latest(channel, message_header(subscription.id, to.t_ns), to.last);
+  if (to.last.payload) {
+    const MessageHeader header = message_header(subscription.id, to.last.t_ns);
+    client.socket->send_latest(channel, header, to.last.payload);
   }
 }
 
@@ -283,7 +288,7 @@ void Hub::handle(Client& client, const ServiceRequest& request) {
         request.payload.empty() ? nlohmann::json::object() : parse_json(request.payload);
     service_handlers_[request.service_id - 1](client.socket->id(), body, reply);
   } catch (const std::exception& error) {
-    reply.failure(error.what());
+    reply.failure(without_folders(error.what()));
   }
 }
 

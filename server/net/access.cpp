@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
@@ -13,9 +11,9 @@
 namespace server::net {
 namespace {
 
-constexpr std::string_view kCookie = "tautline_session";
 constexpr std::size_t kMinToken = 16;
-constexpr std::size_t kMaxSessions = 64;
+constexpr std::string_view kHttp = "http://";
+constexpr std::string_view kHttps = "https://";
 
 struct HostPort {
   std::string_view host{};  // IPv6 without its brackets
@@ -41,18 +39,6 @@ std::string with_port(std::string_view authority, std::string_view default_port)
   return std::string(parts.host).append(":").append(port);
 }
 
-/// 128 random bits in hex. random_device reads the kernel's generator on this platform.
-std::string random_id() {
-  static constexpr std::string_view kHex = "0123456789abcdef";
-  std::random_device source;
-  std::string id;
-  for (int word = 0; word < 4; ++word) {
-    std::uint32_t bits = source();
-    for (int digit = 0; digit < 8; ++digit, bits >>= 4) id.push_back(kHex[bits & 15u]);
-  }
-  return id;
-}
-
 std::string_view bearer(const Request& request) {
   const std::string_view value = request.header("Authorization");
   constexpr std::string_view kScheme = "Bearer ";
@@ -60,6 +46,28 @@ std::string_view bearer(const Request& request) {
     return {};
   }
   return value.substr(kScheme.size());
+}
+
+Address address_of(const Request& request) {
+  return Address::parse(request.peer).value_or(Address());
+}
+
+/// The browser sends it to this server alone, shows it to no script and, where the connection was
+/// encrypted, sends it over nothing else.
+Header cookie_header(const Request& request, std::string_view id, std::chrono::seconds life) {
+  // An origin that was let in says it too: a proxy that encrypts need not be a trusted one.
+  const std::string_view origin = request.header("Origin");
+  const bool https = request.https || equal_no_case(origin.substr(0, kHttps.size()), kHttps);
+  return {"Set-Cookie",
+          std::string(Access::kCookie) + '=' + std::string(id) +
+              "; Path=/; Max-Age=" + std::to_string(life.count()) + "; HttpOnly; SameSite=Strict" +
+              (https ? "; Secure" : "")};
+}
+
+Response too_many_guesses(std::chrono::seconds wait) {
+  Response response = problem(429, "too many wrong tokens came from this address; wait a little");
+  response.headers.push_back({"Retry-After", std::to_string(wait.count())});
+  return response;
 }
 
 std::size_t count_headers(const Request& request, std::string_view name) {
@@ -71,16 +79,6 @@ std::size_t count_headers(const Request& request, std::string_view name) {
 
 }  // namespace
 
-bool equal_constant_time(std::string_view a, std::string_view b) {
-  std::size_t difference = a.size() ^ b.size();
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const char other = b.empty() ? '\0' : b[i % b.size()];
-    difference |= static_cast<std::size_t>(static_cast<unsigned char>(a[i]) ^
-                                           static_cast<unsigned char>(other));
-  }
-  return difference == 0;
-}
-
 bool is_loopback_name(std::string_view host) {
   if (equal_no_case(host, "localhost") || host == "::1") return true;
   // Only the dotted form: "127.0.0.1.example" is somebody's domain.
@@ -89,7 +87,8 @@ bool is_loopback_name(std::string_view host) {
          });
 }
 
-Access::Access(AccessOptions options) : options_(std::move(options)) {
+Access::Access(AccessOptions options, Log log)
+    : options_(std::move(options)), log_(std::move(log)), proxies_(options_.trusted_proxies) {
   if (!options_.token.empty() && options_.token.size() < kMinToken) {
     throw std::invalid_argument("the token has " + std::to_string(options_.token.size()) +
                                 " characters; give it at least " + std::to_string(kMinToken));
@@ -105,10 +104,11 @@ bool Access::host_allowed(std::string_view host, std::string_view local_address)
   });
 }
 
-bool Access::origin_allowed(const Request& request) const {
+bool Access::origin_allowed(const Request& request, bool login, bool authorized) const {
   if (count_headers(request, "Origin") > 1) return false;
   if (count_headers(request, "Origin") == 0) {
-    return request.loopback || options_.insecure || (token_required() && authorized(request));
+    // Not a browser. Whoever knows the token may as well log in.
+    return request.loopback || options_.insecure || (token_required() && (login || authorized));
   }
   const std::string_view origin = request.header("Origin");
   const auto& list = options_.allow_origins;
@@ -116,25 +116,60 @@ bool Access::origin_allowed(const Request& request) const {
           list.begin(), list.end(), [&](const auto& o) { return equal_no_case(o, origin); })) {
     return true;
   }
-  constexpr std::string_view kScheme = "http://";
-  if (!equal_no_case(origin.substr(0, kScheme.size()), kScheme)) return false;
-  return equal_no_case(with_port(origin.substr(kScheme.size()), "80"),
-                       with_port(request.header("Host"), "80"));
+  const std::string_view scheme = request.https ? kHttps : kHttp;
+  const std::string_view port = request.https ? "443" : "80";
+  if (!equal_no_case(origin.substr(0, scheme.size()), scheme)) return false;
+  return equal_no_case(with_port(origin.substr(scheme.size()), port),
+                       with_port(request.header("Host"), port));
 }
 
-bool Access::authorized(const Request& request) const {
-  if (options_.token.empty()) return true;
-  if (equal_constant_time(bearer(request), options_.token)) return true;
-  const std::string_view cookie = request.cookie(kCookie);
-  return !cookie.empty() && std::any_of(sessions_.begin(), sessions_.end(), [&](const auto& id) {
-    return equal_constant_time(cookie, id);
-  });
+/// Names the option that is missing when a proxy encrypts for this server.
+Response Access::foreign_origin(const Request& request) const {
+  const std::string origin{request.header("Origin")};
+  const bool encrypted = !request.https && equal_no_case(origin.substr(0, kHttps.size()), kHttps);
+  return problem(403,
+                 "requests from the origin '" + origin +
+                     "' are not taken; the page must come from this server or an allowed origin" +
+                     (encrypted ? ". Behind a proxy that encrypts, start the server with "
+                                  "--trusted-proxy and the proxy's address"
+                                : ""));
+}
+
+void Access::identify(Request& request, const Address& peer) const {
+  const Sender sender = proxies_.sender(peer, request);
+  request.peer = sender.address.text();
+  request.loopback = sender.loopback;
+  request.https = sender.https;
+}
+
+void Access::log(const std::string& line) const {
+  if (log_ && !line.empty()) log_(line);
+}
+
+Access::Presented Access::look_at(std::string_view token,
+                                  const Address& from,
+                                  Clock::time_point now) {
+  if (guesses_.may_look(from, now) && equal_constant_time(token, options_.token)) {
+    return {Credential::Right};
+  }
+  const GuessThrottle::Verdict verdict = guesses_.wrong(from, now);
+  log(verdict.line);
+  return {Credential::Wrong, verdict.wait};
+}
+
+/// A cookie is random and long: it is no guess, only old when it opens nothing.
+Access::Presented Access::look_at(const Request& request, Clock::time_point now) {
+  if (!token_required() || !login_of(request, now).empty()) return {Credential::Right};
+  const std::string_view token = bearer(request);
+  if (token.empty()) return {};
+  return look_at(token, address_of(request), now);
 }
 
 std::optional<Response> Access::refuse(const Request& request,
                                        std::string_view local_address,
                                        bool upgrade,
-                                       bool protected_path) const {
+                                       bool protected_path,
+                                       Clock::time_point now) {
   if (count_headers(request, "Host") != 1) {
     return problem(400, "a request needs exactly one Host header");
   }
@@ -146,24 +181,20 @@ std::optional<Response> Access::refuse(const Request& request,
   }
   const bool reads =
       request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
-  const bool authorized_now = authorized(request);
+  const bool login = request.path == kLoginPath || request.path == kLogoutPath;
   const bool needs_token =
-      (protected_path || upgrade) && request.path != kLoginPath &&
+      (protected_path || upgrade) && !login &&
       std::find(options_.open_paths.begin(), options_.open_paths.end(), request.path) ==
           options_.open_paths.end();
-  if ((upgrade || !reads) && !origin_allowed(request)) {
-    const std::string origin{request.header("Origin")};
-    if (origin.empty() && token_required() && needs_token && !authorized_now) {
-      // Not a browser and no token: say what is missing rather than speak of origins.
-      Response response = problem(401, "this server wants its token, as 'Authorization: Bearer'");
-      response.headers.push_back({"WWW-Authenticate", "Bearer"});
-      return response;
-    }
-    return problem(403,
-                   "requests from the origin '" + origin +
-                       "' are not taken; the page must come from this server or an allowed origin");
+  const Presented presented = needs_token ? look_at(request, now) : Presented{};
+  const bool authorized = presented.credential == Credential::Right;
+  if (presented.wait) return too_many_guesses(*presented.wait);
+  const bool browser = count_headers(request, "Origin") > 0;
+  if ((upgrade || !reads) && (browser || !token_required() || !needs_token || authorized) &&
+      !origin_allowed(request, login, authorized)) {
+    return foreign_origin(request);
   }
-  if (needs_token && !authorized_now) {
+  if (needs_token && !authorized) {
     Response response = problem(
         401, "this server wants its token, as 'Authorization: Bearer' or by a login of the page");
     response.headers.push_back({"WWW-Authenticate", "Bearer"});
@@ -172,7 +203,7 @@ std::optional<Response> Access::refuse(const Request& request,
   return std::nullopt;
 }
 
-Response Access::login(const Request& request) {
+Response Access::login(const Request& request, Clock::time_point now) {
   if (!token_required()) return text_response(204, "", "");
   std::string token;
   try {
@@ -184,15 +215,36 @@ Response Access::login(const Request& request) {
   } catch (const JsonError& error) {
     return problem(400, error.what());
   }
-  if (!equal_constant_time(token, options_.token)) return problem(401, "that is not the token");
-
-  if (sessions_.size() >= kMaxSessions) sessions_.pop_front();
-  sessions_.push_back(random_id());
+  const Address from = address_of(request);
+  const Presented presented = look_at(token, from, now);
+  if (presented.wait) return too_many_guesses(*presented.wait);
+  if (presented.credential != Credential::Right) return problem(401, "that is not the token");
+  log(guesses_.right(from, now));
   Response response = text_response(204, "", "");
-  response.headers.push_back(
-      {"Set-Cookie",
-       std::string(kCookie) + '=' + sessions_.back() + "; Path=/; HttpOnly; SameSite=Strict"});
+  response.headers.push_back(cookie_header(request, logins_.open(now), LoginSessions::kCookieLife));
   return response;
+}
+
+Response Access::logout(const Request& request) {
+  logins_.close(request.cookie(kCookie));
+  Response response = text_response(204, "", "");
+  response.headers.push_back(cookie_header(request, "", std::chrono::seconds(0)));
+  return response;
+}
+
+std::string Access::login_of(const Request& request, Clock::time_point now) {
+  const std::string_view id = request.cookie(kCookie);
+  return logins_.use(id, now) ? std::string(id) : std::string();
+}
+
+std::optional<Header> Access::renewal(const Request& request, Clock::time_point now) {
+  const std::string_view id = request.cookie(kCookie);
+  if (!logins_.renew(id, now)) return std::nullopt;
+  return cookie_header(request, id, LoginSessions::kCookieLife);
+}
+
+void Access::sweep(Clock::time_point now) {
+  log(guesses_.overdue(now));
 }
 
 }  // namespace server::net

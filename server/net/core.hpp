@@ -2,11 +2,7 @@
 // header here that shows Asio.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
-#include <map>
-#include <memory>
-#include <string>
 #include <string_view>
 #include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
 #include <vector>
@@ -15,6 +11,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "server/net/access.hpp"
+#include "server/net/connections.hpp"
 #include "server/net/router.hpp"
 #include "server/net/server.hpp"
 #include "server/net/static_files.hpp"
@@ -23,45 +20,32 @@
 namespace server::net {
 
 namespace asio = boost::asio;
-using Clock = std::chrono::steady_clock;
 // The concrete executor spares every operation a type-erased one.
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<asio::ip::tcp, Executor>;
 
-/// One open connection. The core owns it until remove(); pending operations share it.
-class Connection {
- public:
-  virtual ~Connection() = default;
-  /// Called about once a second: closes the connection when its time is up.
-  virtual void check(Clock::time_point now) = 0;
-  /// The server stops: say goodbye if the protocol has a way to, then close.
-  virtual void go_away() = 0;
-  /// Ends the connection now; runs no operation afterwards and does not touch the core again.
-  virtual void abort() noexcept = 0;
-};
-
 struct Core {
   explicit Core(ServerOptions server_options)
-      : options(std::move(server_options)), access(options.access), files(options.web_root) {}
+      : options(std::move(server_options)),
+        access(options.access, options.log),
+        files(options.web_root),
+        connections({options.limits.connections,
+                     options.limits.connections_per_address,
+                     options.limits.connections_kept}) {}
 
   const ServerOptions options;
   Access access;
   StaticFiles files;
   Router router{};
   std::vector<WsEndpoint> endpoints{};
-  std::map<std::uint64_t, std::shared_ptr<Connection>> connections{};  // by number, oldest first
-  std::uint64_t next_connection = 1;
+  Connections connections;
   std::uint32_t next_client = 1;
   bool stopping = false;
   asio::io_context context{1};
 
-  std::uint64_t add(std::shared_ptr<Connection> connection) {
-    connections.emplace(next_connection, std::move(connection));
-    return next_connection++;
-  }
   /// Forgets a connection that has ended. The last one of a stopping server ends run().
-  void remove(std::uint64_t number) {
-    connections.erase(number);
+  void remove(Connections::Number number) {
+    connections.remove(number);
     if (stopping && connections.empty()) context.stop();
   }
   void log(std::string_view line) const {
@@ -69,7 +53,13 @@ struct Core {
   }
 };
 
+/// The address of one end of a connection.
+Address address_of(const asio::ip::tcp::endpoint& endpoint);
+
+/// What a connection or a request is told for which there is no room.
+Response no_room(Connections::Room why);
+
 /// Serves HTTP on an accepted socket; hands over to start_websocket on an upgrade.
-void start_http(Core& core, Socket socket);
+void start_http(Core& core, Socket socket, const Address& peer);
 
 }  // namespace server::net

@@ -37,10 +37,9 @@ std::string http_date() {
   return {text.data(), size};
 }
 
-bool has_header(const Response& response, std::string_view name) {
-  return std::any_of(response.headers.begin(), response.headers.end(), [&](const Header& h) {
-    return equal_no_case(h.name, name);
-  });
+bool has_header(const std::vector<Header>& headers, std::string_view name) {
+  return std::any_of(
+      headers.begin(), headers.end(), [&](const Header& h) { return equal_no_case(h.name, name); });
 }
 
 /// Length of the UTF-8 sequence at the front of `text`, 0 when it is not well formed.
@@ -87,6 +86,25 @@ std::string_view Request::header(std::string_view name) const {
     if (equal_no_case(h.name, name)) return h.value;
   }
   return {};
+}
+
+std::vector<std::string_view> Request::elements(std::string_view name) const {
+  constexpr std::string_view kBlank = " \t";
+  std::vector<std::string_view> out;
+  for (const Header& header : headers) {
+    if (!equal_no_case(header.name, name)) continue;
+    std::string_view rest = header.value;
+    for (bool more = true; more;) {
+      const std::size_t comma = rest.find(',');
+      std::string_view element = rest.substr(0, comma);
+      element.remove_prefix(std::min(element.find_first_not_of(kBlank), element.size()));
+      element = element.substr(0, element.find_last_not_of(kBlank) + 1);
+      out.push_back(element);
+      more = comma != std::string_view::npos;
+      if (more) rest.remove_prefix(comma + 1);
+    }
+  }
+  return out;
 }
 
 std::string_view Request::cookie(std::string_view name) const {
@@ -226,16 +244,22 @@ std::optional<std::string> parse_target(std::string_view target, Request& reques
   return std::nullopt;
 }
 
-std::string response_head(const Response& response, std::size_t body_size, bool keep_alive) {
+std::string response_head(const Response& response,
+                          std::size_t body_size,
+                          bool keep_alive,
+                          Framing framing) {
   std::string head = "HTTP/1.1 " + std::to_string(response.status) + ' ';
   head.append(reason_phrase(response.status)).append("\r\n");
   append_header(head, "Date", http_date());
   if (!response.content_type.empty()) append_header(head, "Content-Type", response.content_type);
   // 204 and 304 have no body and must not announce one.
-  if (response.status != 204 && response.status != 304) {
+  const bool has_body = response.status != 204 && response.status != 304;
+  if (has_body && framing == Framing::Chunked) append_header(head, "Transfer-Encoding", "chunked");
+  if (has_body && framing == Framing::Length) {
     append_header(head, "Content-Length", std::to_string(body_size));
   }
-  if (!has_header(response, "Cache-Control")) append_header(head, "Cache-Control", "no-store");
+  if (!has_header(response.headers, "Cache-Control"))
+    append_header(head, "Cache-Control", "no-store");
   append_header(head, "X-Content-Type-Options", "nosniff");
   append_header(head, "Referrer-Policy", "no-referrer");
   append_header(head,
@@ -248,6 +272,32 @@ std::string response_head(const Response& response, std::size_t body_size, bool 
   append_header(head, "Connection", keep_alive ? "keep-alive" : "close");
   head.append("\r\n");
   return head;
+}
+
+std::optional<Response> framing_problem(const Request& request, bool http_1_0) {
+  for (const char* name :
+       {"Host", "Origin", "Content-Length", "Transfer-Encoding", "Content-Type", "Authorization"}) {
+    const auto lines = std::count_if(request.headers.begin(),
+                                     request.headers.end(),
+                                     [&](const Header& h) { return equal_no_case(h.name, name); });
+    if (lines > 1) {
+      return problem(400, "the request has more than one " + std::string(name) + " line");
+    }
+  }
+  const std::string_view coding = request.header("Transfer-Encoding");
+  const std::string_view length = request.header("Content-Length");
+  if (std::any_of(length.begin(), length.end(), [](char c) { return c < '0' || c > '9'; })) {
+    return problem(400, "the Content-Length is not a whole number");
+  }
+  if (!has_header(request.headers, "Transfer-Encoding")) return std::nullopt;
+  if (!length.empty()) {
+    return problem(400, "a request has either Content-Length or Transfer-Encoding, not both");
+  }
+  if (http_1_0) return problem(400, "HTTP/1.0 knows no Transfer-Encoding");
+  if (!equal_no_case(coding, "chunked")) {
+    return problem(501, "the only transfer coding understood here is chunked");
+  }
+  return std::nullopt;
 }
 
 Responder::State::~State() {

@@ -2,6 +2,7 @@
 // socket.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -31,15 +32,31 @@ struct Request {
   std::map<std::string, std::string> params{};  // what the router matched: "{id}" of the pattern
   std::vector<Header> headers{};                // in order of arrival
   std::string body{};
-  std::string peer{};     // address of the other end
-  bool loopback = false;  // the other end is this machine
+  std::string peer{};     // address of the client, behind a trusted proxy too
+  bool loopback = false;  // the client is on this machine
+  bool https = false;     // a trusted proxy encrypts for it
 
   /// Value of the first header of that name (case does not matter); empty when there is none.
   std::string_view header(std::string_view name) const;
+  /// The elements of a comma list that may be split over several headers of that name, in order.
+  std::vector<std::string_view> elements(std::string_view name) const;
   /// Value of the cookie `name`; empty when there is none.
   std::string_view cookie(std::string_view name) const;
   /// Query value, or nothing.
   std::optional<std::string> query_value(const std::string& name) const;
+};
+
+/// A body that is made while it is sent, so that neither its length nor a slow client decides how
+/// much memory it takes: one slice a client. Io thread only.
+class BodyStream {
+ public:
+  /// The next bytes; empty after the last ones; nothing when the rest cannot be made, and the
+  /// connection then breaks off so that the client does not take a part for the whole.
+  using Slice = std::optional<std::string>;
+
+  virtual ~BodyStream() = default;
+  /// Calls `give` once, now or later. Asked for the next slice when the last one has been written.
+  virtual void next(std::function<void(Slice)> give) = 0;
 };
 
 struct Response {
@@ -47,6 +64,7 @@ struct Response {
   std::string content_type{};
   std::vector<Header> headers{};
   Payload body{};
+  std::shared_ptr<BodyStream> stream{};  // instead of `body`
 };
 
 /// One thing wrong in a request body, as listed in a problem's "errors".
@@ -89,9 +107,19 @@ bool equal_no_case(std::string_view a, std::string_view b);
 /// True when `text` is well-formed UTF-8 (no overlong forms, no surrogates).
 bool valid_utf8(std::string_view text);
 
+/// How the end of a body is told.
+enum class Framing : std::uint8_t { Length, Chunked, Close };
+
 /// Status line and header block, ending in the empty line. Line breaks in a value become spaces, so
 /// that no value can add a header.
-std::string response_head(const Response& response, std::size_t body_size, bool keep_alive);
+std::string response_head(const Response& response,
+                          std::size_t body_size,
+                          bool keep_alive,
+                          Framing framing = Framing::Length);
+
+/// What is wrong with how a request's body is framed; nothing when it is well. Two readers of the
+/// same bytes, such as a proxy and this server, must not disagree on where the next request begins.
+std::optional<Response> framing_problem(const Request& request, bool http_1_0);
 
 /// Answers one request, at once or later. Io thread only. The first call sends, later ones do
 /// nothing; a client that has gone is no error. When the last copy goes unused the client gets 500.

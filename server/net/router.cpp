@@ -38,7 +38,7 @@ bool matches(const std::vector<std::string>& pattern, const std::vector<std::str
 
 }  // namespace
 
-void Router::add(std::string method, std::string pattern, Handler handler) {
+void Router::add(std::string method, std::string pattern, Handler handler, std::size_t body_bytes) {
   if (pattern.empty() || pattern.front() != '/') {
     throw std::invalid_argument("route pattern '" + pattern + "' does not start with '/'");
   }
@@ -47,16 +47,20 @@ void Router::add(std::string method, std::string pattern, Handler handler) {
       throw std::invalid_argument(fmt::format("route {} {} is there already", method, pattern));
     }
   }
-  entries_.push_back({split(pattern), std::move(handler)});
+  entries_.push_back({split(pattern), std::move(handler), body_bytes});
   routes_.push_back({std::move(method), std::move(pattern)});
 }
 
-void Router::add(std::string method, std::string pattern, SyncHandler handler) {
+void Router::add(std::string method,
+                 std::string pattern,
+                 SyncHandler handler,
+                 std::size_t body_bytes) {
   add(std::move(method),
       std::move(pattern),
       Handler([answer = std::move(handler)](const Request& request, const Responder& responder) {
         responder(answer(request));
-      }));
+      }),
+      body_bytes);
 }
 
 bool Router::knows(std::string_view path) const {
@@ -64,6 +68,16 @@ bool Router::knows(std::string_view path) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& entry) {
     return matches(entry.segments, segments);
   });
+}
+
+std::size_t Router::body_limit(std::string_view method, std::string_view path) const {
+  const std::vector<std::string> segments = split(path);
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (routes_[i].method == method && matches(entries_[i].segments, segments)) {
+      return entries_[i].body_bytes;
+    }
+  }
+  return kAnyBody;
 }
 
 const Router::Entry* Router::find(Request& request, std::string& allow) const {

@@ -11,14 +11,18 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/system/error_code.hpp>
+#include <sys/resource.h>
 
 #include "server/net/core.hpp"
+#include "server/net/io_thread.hpp"
 
 namespace server::net {
 namespace {
 
 using Acceptor = asio::basic_socket_acceptor<asio::ip::tcp, Executor>;
 using Timer = asio::basic_waitable_timer<Clock, asio::wait_traits<Clock>, Executor>;
+
+constexpr std::size_t kLoginBytes = 4096;  // of the body of a login
 
 asio::ip::address parse_address(const std::string& text) {
   if (text == "localhost") return asio::ip::address_v4::loopback();
@@ -38,7 +42,32 @@ void require_protection(const asio::ip::address& address, const AccessOptions& a
                     "in who can reach the port");
 }
 
+/// Each connection is an open file. Allows as many as the system lets us, and leaves the rest of
+/// the program its share: the database, the devices, the page's files.
+std::size_t affordable_connections(std::size_t wanted) {
+  constexpr rlim_t kForTheRest = 128;
+  rlimit files{};
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return wanted;
+  files.rlim_cur = files.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &files);
+  if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return wanted;
+  const rlim_t rest = std::min(kForTheRest, files.rlim_cur / 2);
+  return static_cast<std::size_t>(std::min<rlim_t>(wanted, files.rlim_cur - rest));
+}
+
 }  // namespace
+
+Address address_of(const asio::ip::tcp::endpoint& endpoint) {
+  return Address::parse(endpoint.address().to_string()).value_or(Address());
+}
+
+Response no_room(Connections::Room why) {
+  Response response = why == Connections::Room::AddressFull
+                          ? problem(429, "this address has as many connections as one may have")
+                          : problem(503, "the server has as many connections as it takes");
+  response.headers.push_back({"Retry-After", "5"});
+  return response;
+}
 
 struct Server::Impl {
   explicit Impl(ServerOptions options)
@@ -57,6 +86,7 @@ struct Server::Impl {
 
   static ServerOptions checked(ServerOptions options) {
     require_protection(parse_address(options.address), options.access);
+    options.limits.connections = affordable_connections(options.limits.connections);
     return options;
   }
 
@@ -64,6 +94,7 @@ struct Server::Impl {
   void accept();
   void welcome(Socket socket);
   void sweep();
+  Response logout(const Request& request);
   void schedule(Periodic& periodic);
   void guarded(const std::function<void()>& fn);
   void begin_stop();
@@ -72,6 +103,7 @@ struct Server::Impl {
   Acceptor acceptor;
   Timer sweep_timer;
   Timer retry_timer;
+  Bucket accept_lines{10, 0.1, Clock::now()};  // of the log, while none can be accepted
   std::list<Periodic> timers{};
 };
 
@@ -108,7 +140,9 @@ void Server::Impl::accept() {
       return;
     }
     // Mostly "too many open files": the next try would fail at once too, so wait a little.
-    core.log("cannot accept a connection: " + error.message());
+    if (accept_lines.take(Clock::now())) {
+      core.log("cannot accept a connection: " + error.message());
+    }
     retry_timer.expires_after(std::chrono::milliseconds(100));
     retry_timer.async_wait([this](boost::system::error_code cancelled) {
       if (!cancelled) accept();
@@ -120,12 +154,16 @@ void Server::Impl::welcome(Socket socket) {
   boost::system::error_code ignored;
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
   socket.non_blocking(true, ignored);
-  if (core.connections.size() < core.options.limits.connections) {
-    start_http(core, std::move(socket));
+  const asio::ip::tcp::endpoint remote = socket.remote_endpoint(ignored);
+  if (ignored) return;  // gone before we looked
+  const Address peer = address_of(remote);
+  const Connections::Room room =
+      core.connections.make_room(peer, core.access.is_proxy(peer), Clock::now());
+  if (room == Connections::Room::Yes) {
+    start_http(core, std::move(socket), peer);
     return;
   }
-  Response response = problem(503, "the server has as many connections as it takes");
-  response.headers.push_back({"Retry-After", "5"});
+  const Response response = no_room(room);
   const std::string text = response_head(response, response.body->size(), false) + *response.body;
   socket.write_some(asio::buffer(text),
                     ignored);  // fresh socket: fits, or the client is out of luck
@@ -139,14 +177,24 @@ void Server::Impl::sweep() {
       std::clamp(shortest / 4, std::chrono::milliseconds(10), std::chrono::milliseconds(1000)));
   sweep_timer.async_wait([this](boost::system::error_code cancelled) {
     if (cancelled) return;
-    // Over a copy: a connection that ends takes itself out of the map.
-    std::vector<std::shared_ptr<Connection>> open;
-    open.reserve(core.connections.size());
-    for (const auto& [number, connection] : core.connections) open.push_back(connection);
     const Clock::time_point now = Clock::now();
-    for (const auto& connection : open) guarded([&] { connection->check(now); });
+    for (const auto& connection : core.connections.all()) {
+      guarded([&] { connection->check(now); });
+      if (!connection->login().empty()) core.access.keep_login(connection->login(), now);
+    }
+    core.access.sweep(now);
+    if (const std::string line = core.connections.report(now); !line.empty()) core.log(line);
     sweep();
   });
+}
+
+/// What was opened with the login ends with it.
+Response Server::Impl::logout(const Request& request) {
+  const std::string login = core.access.login_of(request, Clock::now());
+  for (const auto& connection : core.connections.all()) {
+    if (!login.empty() && connection->login() == login) connection->logged_out();
+  }
+  return core.access.logout(request);
 }
 
 void Server::Impl::schedule(Periodic& periodic) {
@@ -177,10 +225,9 @@ void Server::Impl::begin_stop() {
   boost::system::error_code ignored;
   acceptor.close(ignored);
   retry_timer.cancel();
-  std::vector<std::shared_ptr<Connection>> open;
-  open.reserve(core.connections.size());
-  for (const auto& [number, connection] : core.connections) open.push_back(connection);
-  for (const auto& connection : open) guarded([&] { connection->go_away(); });
+  for (const auto& connection : core.connections.all()) {
+    guarded([&] { connection->go_away(); });
+  }
   if (core.connections.empty()) {
     core.context.stop();
     return;
@@ -195,16 +242,18 @@ Server::Server(ServerOptions options) : impl_(std::make_unique<Impl>(std::move(o
   impl_->core.router.add("POST",
                          std::string(Access::kLoginPath),
                          SyncHandler([core = &impl_->core](const Request& request) {
-                           return core->access.login(request);
-                         }));
+                           return core->access.login(request, Clock::now());
+                         }),
+                         kLoginBytes);
+  impl_->core.router.add(
+      "POST",
+      std::string(Access::kLogoutPath),
+      SyncHandler([impl = impl_.get()](const Request& request) { return impl->logout(request); }),
+      kLoginBytes);
 }
 
 Server::~Server() {
-  while (!impl_->core.connections.empty()) {
-    const auto connection = impl_->core.connections.begin()->second;
-    impl_->core.connections.erase(impl_->core.connections.begin());
-    connection->abort();
-  }
+  impl_->core.connections.abort_all();
 }
 
 Router& Server::router() {
@@ -229,16 +278,13 @@ std::string Server::url() const {
 }
 
 void Server::run() {
+  const IoThreadMark mark;
   impl_->accept();
   impl_->sweep();
   while (!impl_->core.context.stopped()) {
     impl_->guarded([this] { impl_->core.context.run(); });
   }
-  while (!impl_->core.connections.empty()) {
-    const auto connection = impl_->core.connections.begin()->second;
-    impl_->core.connections.erase(impl_->core.connections.begin());
-    connection->abort();
-  }
+  impl_->core.connections.abort_all();
 }
 
 void Server::stop() {

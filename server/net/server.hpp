@@ -18,7 +18,9 @@
 namespace server::net {
 
 struct Limits {
-  std::size_t connections = 2048;
+  std::size_t connections = 2048;             // fewer where the system allows fewer files
+  std::size_t connections_per_address = 256;  // an IPv6 /64 is one address
+  std::size_t connections_kept = 64;          // of all, for this machine and those who drive
   std::size_t header_bytes = 8192;
   std::size_t body_bytes = 1u << 20;
   std::size_t frame_bytes = 1u << 20;       // of one WebSocket message
@@ -44,6 +46,8 @@ struct ServerOptions {
   std::filesystem::path web_root{};  // the built page; empty: none
   Limits limits{};
   Timeouts timeouts{};
+  /// Runs a job on another thread: files are read there. Empty: on the io thread.
+  std::function<void(std::function<void()>)> offload{};
   /// Told of everything worth a log line, on the io thread. May be empty.
   std::function<void(std::string_view)> log{};
 };

@@ -20,6 +20,7 @@ void start_websocket(Core& core,
                      const UpgradeRequest& request,
                      const WsEndpoint& endpoint,
                      std::string subprotocol,
-                     std::string peer);
+                     std::string peer,
+                     std::string login);
 
 }  // namespace server::net

@@ -36,7 +36,8 @@ class WsConnection final : public Connection,
                Socket socket,
                const WsEndpoint& endpoint,
                std::string subprotocol,
-               std::string peer);
+               std::string peer,
+               std::string login);
 
   void start(const UpgradeRequest& request);
 
@@ -44,6 +45,11 @@ class WsConnection final : public Connection,
   void check(Clock::time_point now) override;
   void go_away() override { close(websocket::close_code::going_away, "the server stops"); }
   void abort() noexcept override;
+  std::optional<Clock::time_point> idle_since(Clock::time_point /*now*/) const override {
+    return std::nullopt;
+  }
+  std::string_view login() const override { return login_; }
+  void logged_out() override { close(websocket::close_code::policy_error, "logged out"); }
 
   // WsClient
   std::uint32_t id() const override { return id_; }
@@ -82,8 +88,9 @@ class WsConnection final : public Connection,
   std::optional<Stream> stream_;  // empty once ended
   std::string subprotocol_;
   std::string peer_;
+  std::string login_;
   std::uint32_t id_;
-  std::uint64_t number_ = 0;
+  Connections::Number number_ = 0;
   State state_ = State::Handshake;
   bool announced_ = false;  // on_open was called, on_close is owed
   beast::flat_buffer input_{};
@@ -101,12 +108,14 @@ WsConnection::WsConnection(Core& core,
                            Socket socket,
                            const WsEndpoint& endpoint,
                            std::string subprotocol,
-                           std::string peer)
+                           std::string peer,
+                           std::string login)
     : core_(core),
       endpoint_(endpoint),
       stream_(std::in_place, FrameSocket(std::move(socket))),
       subprotocol_(std::move(subprotocol)),
       peer_(std::move(peer)),
+      login_(std::move(login)),
       id_(core.next_client++),
       queue_({core.options.limits.control_messages, core.options.limits.control_bytes}) {}
 
@@ -124,7 +133,8 @@ void WsConnection::limit_kernel_queue() {
 }
 
 void WsConnection::start(const UpgradeRequest& request) {
-  number_ = core_.add(shared_from_this());
+  const Address client = Address::parse(peer_).value_or(Address());
+  number_ = core_.connections.add(shared_from_this(), client, Connections::Kind::WebSocket, false);
   heard_ = counters_.heard = Clock::now();
   deadline_ = heard_ + core_.options.timeouts.header;
   limit_kernel_queue();
@@ -373,9 +383,10 @@ void start_websocket(Core& core,
                      const UpgradeRequest& request,
                      const WsEndpoint& endpoint,
                      std::string subprotocol,
-                     std::string peer) {
+                     std::string peer,
+                     std::string login) {
   std::make_shared<WsConnection>(
-      core, std::move(socket), endpoint, std::move(subprotocol), std::move(peer))
+      core, std::move(socket), endpoint, std::move(subprotocol), std::move(peer), std::move(login))
       ->start(request);
 }
 

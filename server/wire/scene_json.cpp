@@ -216,11 +216,8 @@ std::string goal_json(const algo::Telemetry& t) {
       .dump();
 }
 
-std::string trajectory_json(double stamp, std::span<const algo::Pose2> path_W) {
-  json poses = json::array();
-  for (const algo::Pose2& pose : path_W) poses.push_back(pose_json(pose));
-  return json{{"timestamp", time_json(stamp)}, {"frame_id", "map"}, {"poses", std::move(poses)}}
-      .dump();
+std::string time_text(double stamp) {
+  return time_json(stamp).dump();
 }
 
 std::string log_json(double stamp, LogLevel level, const std::string& message) {

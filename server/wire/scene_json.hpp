@@ -25,7 +25,8 @@ std::string forces_json(const algo::Telemetry& t);
 std::string obstacles_json(double stamp, std::span<const algo::Obstacle> obstacles);
 /// The goal's pose; the robot's own while it has no goal (the message cannot say "none").
 std::string goal_json(const algo::Telemetry& t);
-std::string trajectory_json(double stamp, std::span<const algo::Pose2> path_W);
+/// {"sec","nsec"} of the run clock.
+std::string time_text(double stamp);
 enum class LogLevel { Info = 2, Warning = 3, Error = 4 };
 std::string log_json(double stamp, LogLevel level, const std::string& message);
 
