@@ -19,7 +19,7 @@ constexpr double kFarthestMount = 1.0;   // [m] a laser farther off its robot is
 std::ifstream open(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file)) {
-    throw std::runtime_error("The log " + file.string() + " cannot be opened.");
+    throw std::runtime_error("The log " + file.filename().string() + " cannot be opened.");
   }
   return stream;
 }

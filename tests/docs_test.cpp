@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/hardware/fault_table.hpp"
+#include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace {
 
@@ -20,7 +21,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 fs::path root() {
-  return fs::path(TAUTLINE_TESTS).parent_path();
+  return tests::folder().parent_path();
 }
 
 std::string text_of(const fs::path& file) {
@@ -125,18 +126,18 @@ TEST(Docs, CoverageClaimsNothingBuiltWithoutAFileAndATest) {
   EXPECT_GT(built, 10);
 }
 
-/// Rows of six cells, which `hardware_trial faults` prints, begin with fault and base.
+/// Rows of seven cells, which `tests/dev/hardware_faults.py` prints, begin with fault and base.
 TEST(Docs, HardwareHasARowForEveryFaultOnBothBases) {
   std::istringstream lines(text_of(root() / "docs/hardware.md"));
   std::set<std::string> rows;
   for (std::string line; std::getline(lines, line);) {
     const std::vector<std::string> cells = cells_of(line);
-    if (cells.size() == 6) rows.insert(cells[0] + ", " + cells[1]);
+    if (cells.size() == 7) rows.insert(cells[0] + ", " + cells[1]);
   }
   std::set<std::string> wanted{"fault, base"};
-  for (const server::hardware::Fault& fault : server::hardware::kFaults) {
+  for (const auto& fault : nlohmann::json::parse(text_of(root() / "tests/hardware/faults.json"))) {
     for (const char* base : {"roboteq", "p2os"}) {
-      wanted.insert(std::string(fault.name).append(", ").append(base));
+      wanted.insert(fault.at("fault").get<std::string>().append(", ").append(base));
     }
   }
   EXPECT_EQ(rows, wanted);

@@ -33,7 +33,7 @@ std::uint64_t now_ns() {
 class Stream {
  public:
   Stream() : running_(options()) {
-    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", false});
+    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
     running_.server.add(hub_.endpoint("/ws"));
     running_.server.every(25ms, [this] {
       if (on_) publish();
@@ -68,6 +68,7 @@ class Stream {
   static server::net::ServerOptions options() {
     server::net::ServerOptions options;
     options.timeouts.ws_silence = 10min;  // our readers do not answer pings
+    options.limits.connections_per_address = options.limits.connections;  // all come from here
     return options;
   }
   void publish() {

@@ -109,7 +109,7 @@ Both run_both(Lateness (*loop)(double, double), double seconds, bool fifo) {
 class Streaming {
  public:
   Streaming() {
-    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", false});
+    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
     running_.server.add(hub_.endpoint("/ws"));
     running_.server.every(std::chrono::milliseconds(25), [this] {
       const auto now = std::chrono::steady_clock::now().time_since_epoch();

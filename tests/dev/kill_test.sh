@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # tests/dev/kill_test.sh: kills the real server at random moments of a 1x run and looks at what is
-# left: at most 1.1 s lost, the file sound, the run marked interrupted at the next start.
+# left: at most 1.1 s lost, the file sound, the run marked interrupted at the next start. With `post`
+# the server is just then storing a batch of 10,000 runs.
 #
-# tests/dev/kill_test.sh PROGRAM [KILLS]
+# tests/dev/kill_test.sh PROGRAM [KILLS] [post]
 set -euo pipefail
 program=$1
 kills=${2:-20}
+load=${3:-}
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 worst=0
@@ -15,11 +17,16 @@ for ((i = 1; i <= kills; ++i)); do
   server=$!
   until url=$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1) && [ -n "$url" ]; do sleep 0.02; done
   sleep "$(awk -v r="$RANDOM" 'BEGIN{print 1.2 + 2.5 * r / 32768}')"
+  if [ "$load" = post ]; then
+    curl -s -o "$folder/answer" -H 'Content-Type: application/json' "${url%/}/api/v1/runs" \
+      -d '{"scenario":"case1","vehicle":"kinematic","repeats":10000}' &
+    sleep "$(awk -v r="$RANDOM" 'BEGIN{print 1.0 * r / 32768}')"
+  fi
   # The newest tick a viewer was shown just before the end.
-  seen=$(curl -s "${url%/}/api/v1/session" | python3 -c 'import json,sys; d=json.load(sys.stdin); print(d["run"]["id"], d["stamp"])')
+  curl -s "${url%/}/api/v1/session" >"$folder/seen"
   kill -9 "$server"
   wait "$server" 2>/dev/null || true
-  read -r run stamp <<<"$seen"
+  read -r run stamp < <(python3 -c 'import json,sys; d=json.load(sys.stdin); print(d["run"]["id"], d["stamp"])' <"$folder/seen")
   check=$(sqlite3 "$folder/runs.db" 'PRAGMA integrity_check')
   stored=$(sqlite3 "$folder/runs.db" "SELECT coalesce(max(t), 0) FROM tick WHERE run = $run")
   lost=$(awk -v a="$stamp" -v b="$stored" 'BEGIN{printf "%.3f", a - b}')
@@ -37,4 +44,4 @@ interrupted=$(sqlite3 "$folder/runs.db" "SELECT count(*) FROM run WHERE status =
   curl -s "$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1)api/v1/runs?status=interrupted" | grep -o '"status":"interrupted"' | wc -l)
 kill "$server"
 wait "$server" 2>/dev/null || true
-echo "worst loss $worst s; $interrupted of $kills runs marked interrupted"
+echo "worst loss $worst s of $kills; $interrupted runs marked interrupted"

@@ -37,7 +37,9 @@ class SilentClient final : public server::net::WsClient {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   server::Session session(nullptr);  // without a run: requests are refused, parsing is the same
-  server::Bridge bridge(session, [](const nlohmann::json&) {});
+  server::Bridge bridge(session,
+                        {.load = [](const auto&, const auto&) { return false; },
+                         .reset = [](const auto&) { return false; }});
   const server::net::WsEndpoint endpoint = bridge.hub().endpoint("/ws");
   const auto client = std::make_shared<SilentClient>();
   endpoint.on_open(client);

@@ -39,15 +39,12 @@ StoredRun read_stored(const std::filesystem::path& database) {
   const db::RunPage page = reader.list({}, 1);
   StoredRun run;
   algo::Telemetry t;
-  bool moved = false;
   std::optional<std::uint64_t> from = 0;
   while (from) {
     from = reader.frames(
         page.runs.front().id, *from, 1000, [&](std::uint64_t, std::span<const std::byte> bytes) {
           decode_frame(bytes, t);
           run.commands.push_back({t.observation.stamp, t.command.base.omega});
-          moved = moved || t.command.base != algo::Twist2{};
-          if (moved && t.hold != algo::Hold::None) run.holds.emplace(algo::name(t.hold));
           for (const algo::LaserScan& scan : t.observation.scans) {
             StoredScan& stored = run.scans.emplace_back();
             stored.stamp = scan.stamp;

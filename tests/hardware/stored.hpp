@@ -3,8 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <set>
-#include <string>
 #include <vector>
 
 #include "tests/hardware/bench.hpp"
@@ -24,7 +22,6 @@ struct StoredCommand {
 struct StoredRun {
   std::vector<StoredScan> scans{};
   std::vector<StoredCommand> commands{};
-  std::set<std::string> holds{};  // what has held the robot once it had moved
 };
 /// The newest run of `database`.
 StoredRun read_stored(const std::filesystem::path& database);

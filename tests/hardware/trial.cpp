@@ -2,7 +2,6 @@
 // prints a table and ends with status 1 when something did not hold.
 //
 //   hardware_trial experiments FOLDER [exp1-roboteq]   against pure simulation
-//   hardware_trial faults FOLDER [roboteq]             the table of docs/hardware.md
 //   hardware_trial soak FOLDER SECONDS                 1 % of telegrams damaged
 #include <string>
 
@@ -16,11 +15,9 @@ int main_of(int argc, char** argv) {
   const std::string what = argc > 2 ? argv[1] : "";
   const std::string more = argc > 3 ? argv[3] : "";
   if (what == "experiments") return experiments(argv[2], more) ? 0 : 1;
-  if (what == "faults") return faults(argv[2], more) ? 0 : 1;
   if (what == "soak" && !more.empty()) return soak(argv[2], std::stod(more)) ? 0 : 1;
   fmt::print(stderr,
              "hardware_trial experiments FOLDER [exp1-roboteq]\n"
-             "hardware_trial faults FOLDER [roboteq]\n"
              "hardware_trial soak FOLDER SECONDS\n");
   return 1;
 }

@@ -11,8 +11,6 @@ namespace server::hardware {
 /// Thesis experiments 1 to 4 over both bases, beside pure simulation. `only`: one, as
 /// "exp1-roboteq".
 bool experiments(const std::filesystem::path& folder, const std::string& only);
-/// Every fault of fault_table.hpp. `only`: one base.
-bool faults(const std::filesystem::path& folder, const std::string& only);
 /// One telegram in a hundred damaged for so long [s]: memory, and where each scan went.
 bool soak(const std::filesystem::path& folder, double seconds);
 

@@ -25,7 +25,7 @@ using nlohmann::json;
 class AppTest : public ::testing::Test {
  protected:
   AppTest() : AppTest(kinematic_case1()) {}
-  explicit AppTest(RunSpec first) {
+  explicit AppTest(RunSpec first, const std::string& token = "") {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               ("tautline_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
@@ -33,6 +33,7 @@ class AppTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     AppOptions options;
     options.net.port = 0;
+    options.net.access.token = token;
     options.database = folder_ / "runs.db";
     options.scenarios = folder_ / "scenarios";
     options.first = std::move(first);
@@ -40,7 +41,11 @@ class AppTest : public ::testing::Test {
     const std::string url = app_->url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
     thread_ = std::thread([this] { app_->run(); });
-    EXPECT_TRUE(net::test::eventually([this] { return get("/session").contains("pose"); }));
+    const std::string authorization =
+        token.empty() ? "" : "Authorization: Bearer " + token + "\r\n";
+    EXPECT_TRUE(net::test::eventually([&] {
+      return ask("GET", "/session", "", authorization).body.find("\"pose\"") != std::string::npos;
+    }));
   }
   ~AppTest() override {
     app_->stop();

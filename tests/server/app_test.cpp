@@ -57,15 +57,17 @@ TEST_F(AppTest, TheDescriptionListsExactlyTheRoutesThereAre) {
   }
   const std::string database = (folder_ / "other.db").string();
   Recorder recorder(database);
-  db::RunReader reader(database);
+  Workers workers(database);
   const ScenarioLibrary library({}, {});
   Experiments experiments(recorder);
   Session session(nullptr);
+  SessionLoader loader(session, workers, {});
   ApiContext context{.session = session,
                      .library = library,
                      .experiments = experiments,
                      .recorder = recorder,
-                     .reader = reader};
+                     .workers = workers,
+                     .loader = loader};
   net::Server server({.port = 0});  // adds the login itself
   add_api(server.router(), context);
   std::multiset<std::string> routes;
@@ -157,6 +159,29 @@ TEST_F(AppTest, AGoodScenarioIsKeptReadRunAndDeleted) {
   expect_problem(ask("DELETE", "/scenarios/case1"), 409, "case1");
 }
 
+TEST_F(AppTest, EveryScenarioThatCanBeSavedCanBeLoaded) {
+  // Each is longer with every value spelled out than a request may be.
+  json many = {{"vehicle", "kinematic"}, {"goal", {{"x", 1.5}, {"y", 0}}}};
+  for (int i = 0; i < 2000; ++i) {
+    many["obstacles"].push_back(
+        {{"type", "cylinder"}, {"x", 100 + i}, {"y", 100.25}, {"radius", 0.3}});
+  }
+  json large = {{"vehicle", "kinematic"}, {"goal", {{"x", 1.5}, {"y", 0}}}};
+  for (int i = 0; i < 500; ++i) {
+    large["obstacles"].push_back(
+        {{"type", "wall"}, {"from", {100 + i, 50}}, {"to", {100 + i, 60}}});
+    large["obstacles"].push_back(
+        {{"type", "polygon"}, {"points", {{-50 - i, 9}, {-49 - i, 9}, {-49 - i, 9.5}}}});
+  }
+  large["description"] = std::string(4000, 'x');
+  for (const json& world : {many, large}) {
+    const Answer put = ask("PUT", "/scenarios/big", world.dump());
+    ASSERT_EQ(put.status, 200) << put.body.substr(0, 300);
+    EXPECT_EQ(get("/scenarios/big"), json::parse(put.body));
+    EXPECT_EQ(post("/session/control", {{"action", "load"}, {"scenario", "big"}}), 200);
+  }
+}
+
 TEST_F(AppTest, AScenarioWithWaypointsDrivesThroughThem) {
   const std::string body = R"({"name":"round","vehicle":"kinematic","goal":{"x":0.6,"y":1},)"
                            R"("waypoints":[{"x":0.6,"y":0},{"x":1.2,"y":0.5}],"time_limit":90})";
@@ -237,6 +262,24 @@ TEST_F(AppTest, ATwofoldExperimentReachesAndItsRecordsAgree) {
   }
 }
 
+TEST_F(AppTest, ABatchOfTenThousandIsQueuedWithOneDocument) {
+  const Answer accepted = ask(
+      "POST", "/runs", R"({"scenario":"case1","vehicle":"kinematic","repeats":10000,"pace":1})");
+  ASSERT_EQ(accepted.status, 202) << accepted.body.substr(0, 200);
+  const json runs = json::parse(accepted.body)["runs"];
+  ASSERT_EQ(runs.size(), 10'000u);
+  const json last = get("/runs/" + runs.back().dump());
+  EXPECT_EQ(last["seed"], 10'000);
+  EXPECT_EQ(last["document"]["scenario"]["name"], "case1");
+  EXPECT_EQ(get("/runs?status=queued&limit=500")["items"].size(), 500u);
+  // The live run's frames were taken in between: none was lost for want of room.
+  EXPECT_EQ(get("/session")["lost_ticks"], 0);
+  // A second of the same fits, a third is more than is kept waiting.
+  const std::string more = R"({"scenario":"case1","vehicle":"kinematic","repeats":10000})";
+  EXPECT_EQ(ask("POST", "/runs", more).status, 202);
+  expect_problem(ask("POST", "/runs", more), 503, "queued already");
+}
+
 TEST_F(AppTest, RunsAreCancelledDeletedAndThenGone) {
   const Answer accepted =
       ask("POST", "/runs", R"({"scenario":"case1","vehicle":"kinematic","repeats":2,"pace":0.5})");
@@ -260,6 +303,43 @@ TEST_F(AppTest, RunsAreCancelledDeletedAndThenGone) {
     expect_problem(ask("DELETE", path), 404, "no run");
     expect_problem(ask("POST", path + "/cancel"), 404, "no run");
   }
+}
+
+TEST_F(AppTest, ARunThatPeopleDroveIsNotRunAgainByItself) {
+  const std::string run = get("/session")["run"]["id"].dump();
+  ASSERT_TRUE(eventually([&] { return ask("GET", "/runs/" + run).status == 200; }));
+  expect_problem(ask("POST", "/runs/" + run + "/resume"), 409, "People drove this run");
+  expect_problem(ask("POST", "/runs/4711/resume"), 404, "no run");
+}
+
+TEST(App, ARunCutByTheEndOfTheProgramIsInterrupted) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("tautline_cut_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string database = (folder / "runs.db").string();
+  {
+    AppOptions options;
+    options.net.port = 0;
+    options.database = database;
+    RunOverrides kinematic;
+    kinematic.vehicle = "kinematic";
+    options.first = make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
+    App app(std::move(options));
+    std::jthread serving([&] { app.run(); });
+    db::RunReader reader(database, db::RunReader::Later{});
+    EXPECT_TRUE(eventually([&] {
+      const auto row = reader.get(1);
+      return row && row->ticks > 0;
+    }));
+    app.stop();
+  }
+  db::RunReader reader(database);
+  const auto row = reader.get(1);
+  ASSERT_TRUE(row);
+  EXPECT_EQ(row->status, db::RunStatus::Interrupted);
+  EXPECT_EQ(row->outcome, "stopped");
+  EXPECT_NE(row->reason.find("in the middle"), std::string::npos);
+  std::filesystem::remove_all(folder);
 }
 
 TEST_F(AppTest, ObstaclesAreAddedMovedRemovedAndKeptOffTheRobot) {

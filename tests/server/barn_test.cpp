@@ -85,6 +85,15 @@ TEST(BarnFile, ItsScenariosComeBackFromTheirDocuments) {
   }
 }
 
+TEST(BarnFile, TheScannerMayBeOneThatSweeps) {
+  const World world = worlds_from_json(lane()).at(0);
+  const sim::Scenario flat = scenario_of(world, {});
+  EXPECT_FALSE(flat.lasers.front().rolling);
+  const sim::Scenario sweeping = scenario_of(world, {.scanner = Scanner::Lms200});
+  EXPECT_TRUE(sweeping.lasers.front().rolling);
+  EXPECT_DOUBLE_EQ(sweeping.lasers.front().range_max, 8.191);
+}
+
 TEST(BarnRun, ScoresByTheOfficialFormula) {
   const auto worlds = worlds_from_json(lane());
   Options options;

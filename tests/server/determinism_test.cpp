@@ -108,6 +108,9 @@ class RecordedRun : public ::testing::Test {
     recorder.flush();
     return channel->run();
   }
+  void change(const std::string& sql) const {
+    db::detail::Connection(database_, db::detail::Connection::Mode::Write).execute(sql);
+  }
   Verification verify(db::RunId run) const {
     db::RunReader reader(database_);
     return verify_run(reader, run);
@@ -161,6 +164,48 @@ TEST_F(RecordedRun, ATamperedFrameIsFound) {
   const Verification verification = verify(record(case1("kinematic"), {}, 100));
   ASSERT_TRUE(verification.difference);
   EXPECT_EQ(verification.difference->substr(0, 10), "Tick 100: ") << *verification.difference;
+}
+
+TEST_F(RecordedRun, AGapOrACutIsIncompleteAndSaysSo) {
+  const db::RunId run = record(case1("kinematic"), {});
+  EXPECT_EQ(verify(run).incomplete, std::nullopt);
+  change("DELETE FROM block WHERE first_tick > 0 AND first_tick < 130");
+  change("DELETE FROM tick WHERE tick >= 128 AND tick < 256");
+  const Verification gap = verify(run);
+  EXPECT_EQ(gap.difference, std::nullopt);
+  ASSERT_TRUE(gap.incomplete);
+  EXPECT_NE(gap.incomplete->find("Ticks 128 to 255 are missing"), std::string::npos)
+      << *gap.incomplete;
+  EXPECT_EQ(gap.compared, 128u);
+
+  const db::RunId cut = record(case1("kinematic"), {});
+  change("UPDATE run SET status = 'interrupted', reason = 'It was cut.' WHERE id = " +
+         std::to_string(cut));
+  EXPECT_EQ(verify(cut).incomplete, "It was cut.");
+}
+
+TEST_F(RecordedRun, ARowThatIsNotWhatItsFrameSaysIsFound) {
+  const db::RunId run = record(case1("kinematic"), {});
+  change("UPDATE tick SET x = x + 1e-9 WHERE tick = 50");
+  EXPECT_EQ(verify(run).difference, "Tick 50: the row of its columns is not what its frame says.");
+}
+
+TEST_F(RecordedRun, WhateverWasAcceptedIsVerified) {
+  RunSpec spec = case1("kinematic");
+  spec.scenario.period = 0.5;
+  spec.scenario.drive.delay_ticks = 100;      // 50 s
+  for (std::uint32_t i = 0; i < 1900; ++i) {  // a document of more than a megabyte
+    algo::Polygon far;
+    for (int k = 0; k < 16; ++k) {
+      far.points.emplace_back(std::cos(k * 0.39) * 0.123456789, std::sin(k * 0.39) * 0.123456789);
+    }
+    spec.scenario.obstacles.push_back(
+        {.id = 100 + i, .pose_W = {1000.0 + i, 1000, 0}, .shape = far});
+  }
+  ASSERT_GT(run_document(spec, make_robot(spec)->spec()).dump().size(), 1u << 20);
+  const Verification verification = verify(record(spec, {}));
+  EXPECT_EQ(verification.difference, std::nullopt);
+  EXPECT_EQ(verification.incomplete, std::nullopt);
 }
 
 TEST_F(RecordedRun, AnUnknownRunIsSaidToBeMissing) {

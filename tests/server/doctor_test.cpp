@@ -2,20 +2,24 @@
 // scan as a line of a log.
 #include "server/doctor.hpp"
 
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "server/carmen_line.hpp"
+#include "server/emulate/emulation.hpp"
 #include "sim/replay.hpp"
 
 namespace server {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Doctor, PortsThatAreNotThereAreBadAndComeWithAdvice) {
   const drivers::RobotFile file = drivers::parse_robot(R"(name = "none"
@@ -38,6 +42,37 @@ track = 0.33
   EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
   EXPECT_EQ(bad[1].device, "base");
   for (const Finding& f : bad) EXPECT_NE(f.advice, "");
+}
+
+/// What is said of an emulated scanner after `command`, and that not all is well.
+std::string bad_words_after(const std::string& command) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("tautline_doctor_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  emulate::EmulationOptions options;
+  options.scanner_links = {folder / "scanner"};
+  emulate::Emulation emulation(options);
+  emulation.start();
+  emulation.command(command);
+  const drivers::RobotFile file = drivers::parse_robot(
+      "name = \"a\"\nhull = { radius = 0.3 }\n[[laser]]\nport = \"" +
+          (folder / "scanner").string() +
+          "\"\n[base]\ntype = \"pioneer\"\nport = \"/dev/no_such_base\"\ntrack = 0.33\n",
+      "a.toml");
+  std::string bad;
+  const auto listen = [&bad](const Finding& f) {
+    if (f.verdict == Verdict::Bad && f.device == "laser 1") bad += f.sentence + "\n";
+    EXPECT_THAT(f.sentence, Not(HasSubstr("% of the beams meet something")));
+  };
+  EXPECT_FALSE(examine(file, {.measuring = 0.5}, listen));
+  fs::remove_all(folder);
+  return bad;
+}
+
+TEST(Doctor, ADazzledScannerIsNeverWell) {
+  EXPECT_THAT(bad_words_after("dazzle on"), HasSubstr("It is blinded"));
+  EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
 }
 
 TEST(Doctor, SpikesStandAloneAgainstBothNeighbours) {

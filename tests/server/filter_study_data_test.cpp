@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,8 +15,7 @@ namespace {
 using ::testing::ElementsAre;
 
 const std::vector<Recording>& recordings() {
-  static const std::vector<Recording> read =
-      read_recordings(std::filesystem::path(TAUTLINE_SHARED_DATA) / "laser");
+  static const std::vector<Recording> read = read_recordings(tests::shared_data() / "laser");
   return read;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -156,7 +157,7 @@ TEST(FilterScenes, AreThoseOfTheThesis) {
 
 /// The notes' prototype, to the digit: tests/golden/A_pseudomedian.json, scan360.
 TEST(FilterScenes, FlatLayoutGivesThePrototypesValues) {
-  std::ifstream stream(fs::path(TAUTLINE_TESTS) / "golden/A_pseudomedian.json");
+  std::ifstream stream(tests::folder() / "golden/A_pseudomedian.json");
   const json about = json::parse(stream).at("scan360");
   const FilterScene flat = flat_scene();
   ASSERT_EQ(flat.spikes.size(), about.at("spikes").size());

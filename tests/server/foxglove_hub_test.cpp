@@ -150,9 +150,9 @@ class FoxgloveHub : public testing::Test {
   Hub hub_{};
   Gains gains_{};
   net::WsEndpoint endpoint_ = hub_.endpoint("/ws");
-  ChannelId scan_ = hub_.add_channel({"/scan", "foxglove.LaserScan", false});
-  ChannelId state_ = hub_.add_channel({"/state", "tautline.State", true});
-  ChannelId telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", false});
+  ChannelId scan_ = hub_.add_channel({"/scan", "foxglove.LaserScan"});
+  ChannelId state_ = hub_.add_channel({"/state", "tautline.State"});
+  ChannelId telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
   std::vector<ServiceReply> waiting_{};
   std::vector<std::string> published_{};
   std::vector<std::string> gone_{};
@@ -200,15 +200,50 @@ TEST_F(FoxgloveHub, SendsToSubscribersUnderTheirOwnIds) {
   EXPECT_FALSE(hub_.wanted(scan_));
 }
 
-TEST_F(FoxgloveHub, ALateSubscriberGetsTheLatchedValueOnly) {
+TEST_F(FoxgloveHub, ALateSubscriberGetsTheNewestMessageOfEveryChannel) {
   hub_.publish(state_, 3, payload("old"));
   hub_.publish(state_, 4, payload("new"));
-  hub_.publish(scan_, 4, payload("scan"));
+  hub_.publish_event(scan_, 4, payload("scan"));
   const auto socket = greeted(1);
   subscribe(*socket, 1, state_);
   subscribe(*socket, 2, scan_);
-  ASSERT_EQ(1u, socket->data.size());
+  subscribe(*socket, 3, telemetry_);  // nothing was ever published there
+  ASSERT_EQ(2u, socket->data.size());
   EXPECT_EQ(message_bytes(1, 4, "new"), socket->data[0].bytes);
+  EXPECT_EQ(message_bytes(2, 4, "scan"), socket->data[1].bytes);
+}
+
+TEST_F(FoxgloveHub, AChannelEncodedOnDemandIsEncodedForItsFirstSubscriber) {
+  int encoded = 0;
+  Payload now = payload("one");
+  const ChannelId strip = hub_.add_channel({"/strip", "foxglove.SceneUpdate", [&] {
+                                              ++encoded;
+                                              return Stamped{9, now};
+                                            }});
+  const auto first = greeted(1);
+  subscribe(*first, 1, strip);
+  EXPECT_EQ(message_bytes(1, 9, "one"), first->data.at(0).bytes);
+  const auto second = greeted(2);
+  subscribe(*second, 1, strip);  // while somebody subscribes, what was sent last is the newest
+  EXPECT_EQ(message_bytes(1, 9, "one"), second->data.at(0).bytes);
+  EXPECT_EQ(1, encoded);
+  hub_.publish(strip, 10, payload("two"));
+  endpoint_.on_close(*first);
+  endpoint_.on_close(*second);
+  now = nullptr;  // another run has begun: what was sent in the last is not of this one
+  const auto third = greeted(3);
+  subscribe(*third, 1, strip);
+  EXPECT_TRUE(third->data.empty());
+  EXPECT_EQ(2, encoded);
+}
+
+TEST_F(FoxgloveHub, AClientThatComesAtRestIsToldTheRunClock) {
+  EXPECT_TRUE(connect(1)->data.empty());
+  hub_.broadcast_time(7, steady_clock::now());
+  hub_.broadcast_time(8, steady_clock::now());  // too soon to be sent, not to be known
+  const auto late = connect(2);
+  ASSERT_EQ(1u, late->data.size());
+  EXPECT_EQ(std::string("\x02\x08\0\0\0\0\0\0\0", 9), late->data[0].bytes);
 }
 
 TEST_F(FoxgloveHub, WrongSubscriptionsAreStatusMessages) {
@@ -240,7 +275,7 @@ TEST_F(FoxgloveHub, GarbageIsAStatusMessage) {
 }
 
 TEST_F(FoxgloveHub, EventsGoToARingAndDropsAreSaidOncePerEpisode) {
-  const ChannelId log = hub_.add_channel({"/log", "foxglove.Log", false});
+  const ChannelId log = hub_.add_channel({"/log", "foxglove.Log"});
   const auto socket = greeted(1);
   subscribe(*socket, 1, log);
   hub_.publish_event(log, 1, payload("a"));
@@ -416,8 +451,8 @@ TEST_F(FoxgloveHub, AnnouncesToEverybody) {
 }
 
 TEST_F(FoxgloveHub, RefusesADoubleChannelAndAnUnknownSchema) {
-  EXPECT_THROW(hub_.add_channel({"/scan", "foxglove.LaserScan", false}), std::invalid_argument);
-  EXPECT_THROW(hub_.add_channel({"/x", "foxglove.None", false}), std::out_of_range);
+  EXPECT_THROW(hub_.add_channel({"/scan", "foxglove.LaserScan"}), std::invalid_argument);
+  EXPECT_THROW(hub_.add_channel({"/x", "foxglove.None"}), std::out_of_range);
   EXPECT_THROW(hub_.publish(99, 0, payload("")), std::out_of_range);
 }
 

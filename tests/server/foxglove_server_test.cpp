@@ -19,7 +19,7 @@ using nlohmann::json;
 class FoxgloveServer : public testing::Test {
  protected:
   FoxgloveServer() {
-    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame", false});
+    channel_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
     hub_.add_service("/reset", [](ClientId, const json&, const ServiceReply& reply) {
       reply.success({{"ok", true}});
     });

@@ -2,6 +2,7 @@
 #include "server/hardware.hpp"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -55,6 +56,7 @@ class GoodBase final : public drivers::Base {
     const std::lock_guard lock(mutex_);
     state_.motors_on = on && !*button_;
   }
+  void cut() noexcept override { enable(false); }
   void drive(const algo::Twist2& twist) override {
     const std::lock_guard lock(mutex_);
     const double now = drivers::steady_now();
@@ -102,6 +104,27 @@ class HardwareAppTest : public AppTest {
       return h.is_object() && h.at("halt") == halt;
     });
   }
+  /// The same while somebody is there: a sign of life with each look.
+  bool watched_until(const std::function<bool()>& condition) const {
+    return eventually([&] {
+      EXPECT_EQ(ask("POST", "/session/watch").status, 200);
+      return condition();
+    });
+  }
+  bool gets_beyond(double x) const {
+    return watched_until([&] { return get("/session").at("pose").at("x") > x; });
+  }
+  /// [m] of the way in a tenth of a second.
+  double way() const {
+    const double from = get("/session").at("pose").at("x");
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return get("/session").at("pose").at("x").get<double>() - from;
+  }
+  void arm() const {
+    ASSERT_TRUE(comes_to_halt("disarmed"));
+    ASSERT_EQ(control("arm").status, 200);
+    ASSERT_TRUE(comes_to_halt("none"));
+  }
   net::test::Answer control(const char* action) const {
     return ask("POST", "/session/control", json({{"action", action}}).dump());
   }
@@ -140,12 +163,13 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   EXPECT_EQ(state.at("vehicle"), "hardware");
   EXPECT_FALSE(state.at("robot").at("paceable"));
   ASSERT_TRUE(comes_to_halt("disarmed"));
-  EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":5,"y":0})").status, 200);
-  ASSERT_TRUE(eventually([&] { return get("/session").at("hold") == "halted"; }));
+  EXPECT_EQ(get("/session").at("hold"), "halted");
   EXPECT_NEAR(get("/session").at("pose").at("x").get<double>(), 0, 1e-9);
 
+  // WHEN the goal follows the arming at once THEN it is taken: no tick has to pass between.
   ASSERT_EQ(control("arm").status, 200);
-  EXPECT_TRUE(eventually([&] { return get("/session").at("pose").at("x") > 0.1; }));
+  EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":5,"y":0})").status, 200);
+  EXPECT_TRUE(gets_beyond(0.1));
 
   *button_ = true;
   ASSERT_TRUE(comes_to_halt("stop_button"));
@@ -159,18 +183,89 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   EXPECT_FALSE(hardware().at("armed"));
 }
 
-TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
+TEST_F(HardwareAppTest, AGoalIsRefusedInWordsUntilTheRobotMayGo) {
   ASSERT_TRUE(comes_to_halt("disarmed"));
-  ASSERT_EQ(control("arm").status, 200);
+  const std::string goal = R"({"x":5,"y":0})";
+  expect_problem(ask("PUT", "/session/goal", goal), 409, "Arm the robot first");
+  expect_problem(ask("POST", "/session/goal", goal), 409, "Arm the robot first");
+  expect_problem(ask("POST", "/session/requests", R"({"type":"joystick","forward":1,"turn":0})"),
+                 409,
+                 "Arm the robot first");
+  arm();
+  EXPECT_EQ(control("stop").status, 200);
+  expect_problem(ask("PUT", "/session/goal", goal), 409, "Release Stop first");
+  EXPECT_EQ(control("release").status, 200);
+  EXPECT_EQ(ask("PUT", "/session/goal", goal).status, 200);
+  EXPECT_TRUE(gets_beyond(0.05));
+}
+
+TEST_F(HardwareAppTest, NeitherArmingNorAReleaseDrivesToAGoalOfBefore) {
+  arm();
+  for (const auto& [end, begin] :
+       {std::pair("stop", "release"), std::pair("disarm", "arm"), std::pair("button", "arm")}) {
+    const double from = get("/session").at("pose").at("x");
+    ASSERT_EQ(ask("PUT", "/session/goal", R"({"x":50,"y":0})").status, 200);
+    EXPECT_EQ(ask("POST", "/session/goal", R"({"x":60,"y":0})").status, 200);
+    ASSERT_TRUE(gets_beyond(from + 0.05));
+    if (end == std::string("button")) {
+      *button_ = true;
+      ASSERT_TRUE(comes_to_halt("stop_button"));
+      *button_ = false;
+      ASSERT_TRUE(comes_to_halt("disarmed"));
+    } else {
+      ASSERT_EQ(control(end).status, 200);
+    }
+    ASSERT_TRUE(watched_until([&] { return get("/session").at("goal").is_null(); })) << end;
+    EXPECT_TRUE(get("/session").at("goals_ahead").empty());
+    ASSERT_EQ(control(begin).status, 200);
+    ASSERT_TRUE(comes_to_halt("none"));
+    ASSERT_TRUE(watched_until([&] { return way() == 0; }));
+    EXPECT_EQ(way(), 0) << begin;
+  }
+}
+
+TEST_F(HardwareAppTest, AGoalWhereSomethingIsSeenOrNothingIsKnownIsTold) {
+  arm();
+  ASSERT_TRUE(eventually([&] { return get("/session").at("watchers") == 0; }));
+  const auto told = [&](const char* goal) {
+    const json answer = json::parse(ask("POST", "/session/goal/check", goal).body);
+    return answer.at("trouble").is_null() ? "" : answer.at("trouble").get<std::string>();
+  };
+  EXPECT_EQ(told(R"({"x":5,"y":0})"), "");
+  EXPECT_NE(told(R"({"x":-5,"y":0})").find("does not look that way"), std::string::npos);
+  EXPECT_TRUE(get("/session").at("goal").is_null());
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  EXPECT_EQ(get("/session").at("watchers"), 0);  // a question is no sign of life
+  const json answer = json::parse(ask("PUT", "/session/goal", R"({"x":50,"y":0})").body);
+  EXPECT_NE(answer.value("warning", "").find("nothing is known"), std::string::npos);
+}
+
+TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
+  arm();
   // WHEN it stands and nobody asks THEN it stays armed.
   std::this_thread::sleep_for(OperatorWatch::kPatience + std::chrono::milliseconds(500));
   EXPECT_TRUE(hardware().at("armed"));
-  // WHEN it is on its way and nobody asks THEN it is not.
+  // WHEN it is on its way and a script only looks on THEN it is not.
   EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":50,"y":0})").status, 200);
-  ASSERT_TRUE(eventually([&] { return get("/session").at("pose").at("x") > 0.1; }));
-  std::this_thread::sleep_for(OperatorWatch::kPatience + std::chrono::milliseconds(500));
+  ASSERT_TRUE(gets_beyond(0.1));
+  const auto last = OperatorWatch::Clock::now();
   EXPECT_TRUE(eventually([&] { return !hardware().at("armed").get<bool>(); }));
-  EXPECT_TRUE(eventually([&] { return hardware().at("trouble") == OperatorWatch::kWords; }));
+  const auto after = OperatorWatch::Clock::now() - last;
+  EXPECT_GT(after, std::chrono::milliseconds(1000));
+  EXPECT_TRUE(eventually([&] { return hardware().at("trouble") == OperatorWatch::kGone; }));
+  EXPECT_TRUE(eventually([&] { return way() == 0; }));
+}
+
+TEST_F(HardwareAppTest, ThoseWhoWatchAreCounted) {
+  const auto watchers = [&] { return get("/session").at("watchers").get<int>(); };
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  EXPECT_TRUE(eventually([&] { return watchers() == 0; }));
+  EXPECT_EQ(ask("POST", "/session/watch").status, 200);
+  EXPECT_TRUE(eventually([&] { return watchers() == 1; }));
+  EXPECT_TRUE(get("/session").at("watched_by_script"));
+  EXPECT_TRUE(eventually([&] { return watchers() == 0; }));
+  EXPECT_EQ(ask("POST", "/session/watch", "{}").status, 200);
+  expect_problem(ask("POST", "/session/watch", R"({"for":9})"), 422, "for");
 }
 
 TEST_F(HardwareAppTest, AResetDisarmsAndNoSimulationTakesItsPlace) {
@@ -188,11 +283,34 @@ TEST_F(HardwareAppTest, AResetDisarmsAndNoSimulationTakesItsPlace) {
   EXPECT_EQ(get("/session").at("source"), "hardware");
 }
 
+TEST_F(HardwareAppTest, ItsTimeCannotBePausedSteppedOrSpedUp) {
+  for (const char* body :
+       {R"({"action":"pause"})", R"({"action":"step"})", R"({"action":"speed","speed":2})"}) {
+    expect_problem(ask("POST", "/session/control", body), 409, "Press Stop");
+  }
+  EXPECT_FALSE(get("/session").at("pace").at("paused"));
+}
+
 TEST_F(HardwareAppTest, ObstaclesAreNotPlaced) {
   expect_problem(
       ask("POST", "/session/obstacles", R"({"type":"cylinder","x":1,"y":1,"radius":0.2})"),
       409,
       "by hand");
+}
+
+TEST_F(AppTest, ASimulatedRobotTakesAGoalInAnObstacleAndSaysSo) {
+  const auto told = [&](const char* goal) {
+    const net::test::Answer answer = ask("PUT", "/session/goal", goal);
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return json::parse(answer.body).value("warning", "");
+  };
+  EXPECT_EQ(told(R"({"x":1.75,"y":2.5})"), "The goal lies inside an obstacle.");
+  EXPECT_EQ(get("/session").at("goal").at("x"), 1.75);
+  EXPECT_EQ(told(R"({"x":3.5,"y":5})"), "");
+  // Stop keeps a simulated robot's goal: a release lets it drive on.
+  EXPECT_EQ(ask("POST", "/session/control", R"({"action":"stop"})").status, 200);
+  EXPECT_EQ(told(R"({"x":3.5,"y":4})"), "");
+  EXPECT_EQ(get("/session").at("goal").at("y"), 4);
 }
 
 TEST_F(AppTest, ASimulatedRobotCannotBeArmed) {

@@ -2,6 +2,7 @@
 // docs/mapping.md.
 #include <filesystem>
 
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 
 #include "server/mapping/map_study.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 TEST(MapData, FreiburgIsHeldTogetherByItsScans) {
   constexpr std::size_t kScans = 700;
-  const std::filesystem::path folder(TAUTLINE_SHARED_DATA);
+  const std::filesystem::path folder = tests::shared_data();
   Recording log = read_recording(folder / "laser/freiburg-079-first2000.log");
   ASSERT_EQ(log.scans.size(), 2000U);
   log.scans.resize(kScans);

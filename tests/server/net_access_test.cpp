@@ -22,13 +22,13 @@ Request request_of(const std::string& method, std::vector<Header> headers, bool 
 }
 
 /// Status of the refusal, 0 when it may pass.
-int refused(const Access& access, const Request& request, bool upgrade = false) {
-  const auto refusal = access.refuse(request, "10.1.2.3", upgrade, true);
+int refused(Access& access, const Request& request, bool upgrade = false) {
+  const auto refusal = access.refuse(request, "10.1.2.3", upgrade, true, Clock::now());
   return refusal ? refusal->status : 0;
 }
 
 TEST(NetAccess, TakesTheNamesOfThisServerOnly) {
-  const Access access({.allow_hosts = {"robot.lan", "demo.example:8443"}});
+  Access access({.allow_hosts = {"robot.lan", "demo.example:8443"}});
   for (const char* host : {"localhost",
                            "LocalHost:8080",
                            "127.0.0.1",
@@ -58,7 +58,7 @@ TEST(NetAccess, TakesTheNamesOfThisServerOnly) {
 }
 
 TEST(NetAccess, OriginMustBeThisServerOrListed) {
-  const Access access({.allow_origins = {"https://viewer.example"}});
+  Access access({.allow_origins = {"https://viewer.example"}});
   const auto status = [&](const char* origin) {
     return refused(access, request_of("POST", {{"Host", "localhost:8080"}, {"Origin", origin}}));
   };
@@ -80,7 +80,7 @@ TEST(NetAccess, OriginMustBeThisServerOrListed) {
 }
 
 TEST(NetAccess, TheDefaultPortMayBeWrittenOrNot) {
-  const Access access({});
+  Access access({});
   for (const auto& [host, origin] :
        std::vector<std::pair<const char*, const char*>>{{"localhost", "http://localhost"},
                                                         {"localhost:80", "http://localhost"},
@@ -90,7 +90,7 @@ TEST(NetAccess, TheDefaultPortMayBeWrittenOrNot) {
 }
 
 TEST(NetAccess, OriginIsJudgedOnUpgradesButNotOnReading) {
-  const Access access({});
+  Access access({});
   const Request foreign =
       request_of("GET", {{"Host", "localhost"}, {"Origin", "http://evil.example"}});
   EXPECT_EQ(0, refused(access, foreign));
@@ -99,10 +99,12 @@ TEST(NetAccess, OriginIsJudgedOnUpgradesButNotOnReading) {
 
 TEST(NetAccess, WithoutOriginOnlyFromHereOrWithTheTokenOrInsecure) {
   const std::vector<Header> host{{"Host", "localhost"}};
-  EXPECT_EQ(0, refused(Access({}), request_of("POST", host, true)));
-  EXPECT_EQ(403, refused(Access({}), request_of("POST", host, false)));
-  EXPECT_EQ(0, refused(Access({.insecure = true}), request_of("POST", host, false)));
-  const Access guarded({.token = kToken});
+  Access plain({});
+  Access insecure({.insecure = true});
+  EXPECT_EQ(0, refused(plain, request_of("POST", host, true)));
+  EXPECT_EQ(403, refused(plain, request_of("POST", host, false)));
+  EXPECT_EQ(0, refused(insecure, request_of("POST", host, false)));
+  Access guarded({.token = kToken});
   EXPECT_EQ(401, refused(guarded, request_of("POST", host, false)));
   EXPECT_EQ(
       0,
@@ -111,10 +113,129 @@ TEST(NetAccess, WithoutOriginOnlyFromHereOrWithTheTokenOrInsecure) {
                   "POST", {{"Host", "localhost"}, {"Authorization", "Bearer " + kToken}}, false)));
 }
 
+TEST(NetAccess, BehindATrustedProxyThatEncryptsTheOriginIsHttps) {
+  Access access({.allow_hosts = {"robot.lan"}, .trusted_proxies = {"127.0.0.1"}});
+  const auto status = [&](const char* peer, const char* host, const char* origin) {
+    Request request = request_of("POST",
+                                 {{"Host", host},
+                                  {"Origin", origin},
+                                  {"X-Forwarded-For", "203.0.113.7"},
+                                  {"X-Forwarded-Proto", "https"}});
+    access.identify(request, *Address::parse(peer));
+    return refused(access, request);
+  };
+  EXPECT_EQ(0, status("127.0.0.1", "robot.lan", "https://robot.lan"));
+  EXPECT_EQ(0, status("127.0.0.1", "robot.lan:443", "https://robot.lan"));
+  EXPECT_EQ(0, status("127.0.0.1", "robot.lan:8443", "https://robot.lan:8443"));
+  EXPECT_EQ(403, status("127.0.0.1", "robot.lan", "http://robot.lan"));
+  EXPECT_EQ(403, status("127.0.0.1", "robot.lan", "https://evil.example"));
+  // The header says nothing when somebody else sends it.
+  EXPECT_EQ(403, status("127.0.0.2", "robot.lan", "https://robot.lan"));
+  Request untrusted = request_of("POST", {{"Host", "robot.lan"}, {"Origin", "https://robot.lan"}});
+  const auto refusal = access.refuse(untrusted, "10.1.2.3", false, true, Clock::now());
+  ASSERT_TRUE(refusal);
+  EXPECT_NE(std::string::npos, refusal->body->find("--trusted-proxy"));
+}
+
+TEST(NetAccess, WrongTokensAreToldToWaitAndTheRightOnePassesAllTheSame) {
+  std::vector<std::string> lines;
+  Access access({.token = kToken}, [&](std::string_view line) { lines.emplace_back(line); });
+  const Clock::time_point now = Clock::now();
+  const auto ask_from = [&](const char* peer, const std::string& token) {
+    Request request =
+        request_of("GET", {{"Host", "localhost"}, {"Authorization", "Bearer " + token}});
+    access.identify(request, *Address::parse(peer));
+    return access.refuse(request, "10.1.2.3", false, true, now);
+  };
+  std::size_t guesses = 0;
+  std::optional<Response> refusal = ask_from("203.0.113.7", "wrong-wrong-wrong-0");
+  for (; refusal && refusal->status == 401 && guesses < 100; ++guesses) {
+    refusal = ask_from("203.0.113.7", "wrong-wrong-wrong-" + std::to_string(guesses));
+  }
+  EXPECT_EQ(std::size_t(GuessThrottle::kGuesses), guesses);
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(429, refusal->status);
+  ASSERT_EQ("Retry-After", refusal->headers.at(0).name);
+  EXPECT_EQ("5", refusal->headers.at(0).value);
+  EXPECT_FALSE(ask_from("203.0.113.7", kToken)) << "a neighbour behind the same router";
+  EXPECT_FALSE(ask_from("203.0.113.8", kToken));
+  EXPECT_EQ(401, ask_from("203.0.113.8", "wrong-wrong-wrong")->status);
+  ASSERT_FALSE(lines.empty());
+  EXPECT_EQ("A wrong token came from 203.0.113.7.", lines[0]);
+  for (const std::string& line : lines) EXPECT_EQ(std::string::npos, line.find("wrong-wrong"));
+}
+
+TEST(NetAccess, AGuessAtLoginAndOneAtTheApiCountAlike) {
+  Access access({.token = kToken});
+  const Clock::time_point now = Clock::now();
+  const auto log_in = [&](const std::string& token) {
+    Request request = request_of("POST", {{"Host", "localhost"}});
+    request.path = Access::kLoginPath;
+    request.peer = "203.0.113.7";
+    request.body = R"({"token":")" + token + R"("})";
+    return access.login(request, now).status;
+  };
+  for (int i = 0; i < int(GuessThrottle::kGuesses); ++i) EXPECT_EQ(401, log_in("x"));
+  EXPECT_EQ(429, log_in("x"));
+  Request request = request_of("GET", {{"Host", "localhost"}, {"Authorization", "Bearer x"}});
+  request.peer = "203.0.113.7";
+  EXPECT_EQ(429, refused(access, request));
+  EXPECT_EQ(204, log_in(kToken));
+}
+
+TEST(NetAccess, TheCookieEndsUnusedAndWithALogout) {
+  Access access({.token = kToken, .trusted_proxies = {"127.0.0.1"}});
+  Clock::time_point now = Clock::now();
+  const auto log_in = [&](bool https) {
+    Request request = request_of("POST", {{"Host", "localhost"}});
+    request.https = https;
+    request.body = R"({"token":")" + kToken + R"("})";
+    return access.login(request, now).headers.at(0).value;
+  };
+  const std::string plain = log_in(false);
+  EXPECT_EQ(std::string::npos, plain.find("Secure"));
+  EXPECT_NE(std::string::npos, plain.find("; Max-Age=604800"));
+  EXPECT_NE(std::string::npos, log_in(true).find("; Secure"));
+
+  Request request = request_of("GET", {{"Host", "localhost"}});
+  request.headers.push_back({"Cookie", plain.substr(0, plain.find(';'))});
+  const auto status = [&] {
+    const auto refusal = access.refuse(request, "10.1.2.3", false, true, now);
+    return refusal ? refusal->status : 0;
+  };
+  for (int day = 0; day < 30; ++day) {  // one in use lives on
+    now += LoginSessions::kIdle;
+    EXPECT_EQ(0, status());
+  }
+  ASSERT_TRUE(access.renewal(request, now)) << "the browser's own clock is set back as well";
+  EXPECT_FALSE(access.renewal(request, now));
+  now += LoginSessions::kIdle + std::chrono::seconds(1);
+  EXPECT_EQ(401, status());
+
+  const std::string second = log_in(false);
+  request.headers.back().value = second.substr(0, second.find(';'));
+  EXPECT_EQ(0, status());
+  const Response out = access.logout(request);
+  EXPECT_EQ(204, out.status);
+  EXPECT_NE(std::string::npos, out.headers.at(0).value.find("tautline_session=; "));
+  EXPECT_NE(std::string::npos, out.headers.at(0).value.find("Max-Age=0"));
+  EXPECT_EQ(401, status());
+}
+
+TEST(NetAccess, AScriptElsewhereMayLogInWithoutAnOrigin) {
+  Access access({.token = kToken});
+  Request request = request_of("POST", {{"Host", "localhost"}}, false);
+  request.path = Access::kLoginPath;
+  EXPECT_EQ(0, refused(access, request));
+}
+
 TEST(NetAccess, TheTokenIsNeededWhole) {
-  const Access access({.token = kToken});
+  Access access({.token = kToken});
+  int guest = 0;  // each from an address of its own, so that none is told to wait
   const auto status = [&](const std::string& value) {
-    return refused(access, request_of("GET", {{"Host", "localhost"}, {"Authorization", value}}));
+    Request request = request_of("GET", {{"Host", "localhost"}, {"Authorization", value}});
+    request.peer = "10.9.9." + std::to_string(++guest);
+    return refused(access, request);
   };
   EXPECT_EQ(0, status("Bearer " + kToken));
   EXPECT_EQ(0, status("bearer " + kToken));
@@ -215,6 +336,31 @@ TEST_F(NetLogin, AForeignOriginIsRefusedEvenWithTheToken) {
 
 TEST_F(NetLogin, AForeignHostIsMisdirected) {
   EXPECT_EQ(421, ask(port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status);
+}
+
+TEST_F(NetLogin, ALogoutEndsTheCookieAndTheSocketsOpenedWithIt) {
+  const auto log_in = [&] {
+    const Answer login =
+        ask(port(), post_request("/api/v1/login", R"({"token":")" + kToken + R"("})"));
+    const std::string cookie = login.headers.at("Set-Cookie");
+    return "Cookie: " + cookie.substr(0, cookie.find(';')) + "\r\n";
+  };
+  const std::string mine = log_in();
+  const std::string other = log_in();
+  Client my_socket(port());
+  my_socket.send(upgrade_request("foxglove.websocket.v1", mine));
+  ASSERT_EQ(101, read_answer(my_socket, false).status);
+  Client other_socket(port());
+  other_socket.send(upgrade_request("foxglove.websocket.v1", other));
+  ASSERT_EQ(101, read_answer(other_socket, false).status);
+  const Answer out =
+      ask(port(), "POST /api/v1/logout HTTP/1.1\r\nHost: localhost\r\n" + mine + "\r\n");
+  EXPECT_EQ(204, out.status);
+  EXPECT_NE(std::string::npos, out.headers.at("Set-Cookie").find("Max-Age=0"));
+  EXPECT_EQ("\x88", my_socket.take(1)) << "a closing frame";
+  EXPECT_EQ(401, ask(port(), get_request("/api/v1/session", mine)).status);
+  EXPECT_EQ(200, ask(port(), get_request("/api/v1/session", other)).status);
+  EXPECT_FALSE(other_socket.ends_within(50ms));
 }
 
 }  // namespace

@@ -28,12 +28,24 @@ namespace server::net::test {
 using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
+/// How long a client waits for an answer; sanitizers on a busy machine are slow.
+constexpr std::chrono::milliseconds kPatience = 20s;
+
 /// A blocking TCP connection to 127.0.0.1 that gives up waiting after `patience`.
 class Client {
  public:
   /// @param receive_buffer  bytes, 0: the system's default
-  explicit Client(std::uint16_t port, int receive_buffer = 0)
+  /// @param from            own address, one of 127.x.y.z; null: the system's choice, 127.0.0.1
+  explicit Client(std::uint16_t port, int receive_buffer = 0, const char* from = nullptr)
       : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    if (from != nullptr) {
+      sockaddr_in own{};
+      own.sin_family = AF_INET;
+      own.sin_addr.s_addr = ::inet_addr(from);
+      if (::bind(fd_, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
+        throw std::runtime_error("cannot connect from that address");
+      }
+    }
     if (receive_buffer > 0) {
       ::setsockopt(fd_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     }
@@ -66,7 +78,7 @@ class Client {
     return true;
   }
   /// Waits for more input. @return false on end of stream or when nothing came in time
-  bool receive(std::chrono::milliseconds patience = 5s) {
+  bool receive(std::chrono::milliseconds patience = kPatience) {
     pollfd wait{fd_, POLLIN, 0};
     if (::poll(&wait, 1, static_cast<int>(patience.count())) <= 0) return false;
     char buffer[65536];
@@ -79,7 +91,8 @@ class Client {
     return true;
   }
   /// Exactly `size` bytes, or nothing.
-  std::optional<std::string> take(std::size_t size, std::chrono::milliseconds patience = 5s) {
+  std::optional<std::string> take(std::size_t size,
+                                  std::chrono::milliseconds patience = kPatience) {
     while (input_.size() < size) {
       if (!receive(patience)) return std::nullopt;
     }
@@ -89,7 +102,7 @@ class Client {
   }
   /// Everything up to and with `end`, or nothing.
   std::optional<std::string> take_through(std::string_view end,
-                                          std::chrono::milliseconds patience = 5s) {
+                                          std::chrono::milliseconds patience = kPatience) {
     while (input_.find(end) == std::string::npos) {
       if (!receive(patience)) return std::nullopt;
     }
@@ -137,6 +150,15 @@ inline Answer read_answer(Client& client, bool has_body = true) {
   const auto length = answer.headers.find("Content-Length");
   if (has_body && length != answer.headers.end()) {
     answer.body = client.take(std::stoul(length->second)).value_or("");
+  }
+  const auto coding = answer.headers.find("Transfer-Encoding");
+  if (has_body && coding != answer.headers.end()) {
+    while (const auto size = client.take_through("\r\n")) {
+      const std::size_t bytes = std::stoul(*size, nullptr, 16);
+      const std::string chunk = client.take(bytes + 2).value_or("");
+      answer.body.append(chunk, 0, bytes);
+      if (bytes == 0) break;
+    }
   }
   return answer;
 }
@@ -210,7 +232,7 @@ class WsTestClient {
   bool send_binary(std::string_view payload) const { return send(2, payload); }
 
   /// The next frame, control frames included.
-  Frame read(std::chrono::milliseconds patience = 5s) {
+  Frame read(std::chrono::milliseconds patience = kPatience) {
     const auto head = socket.take(2, patience);
     if (!head) return {};
     std::size_t length = static_cast<unsigned char>((*head)[1]) & 0x7Fu;
@@ -285,7 +307,7 @@ class RunningServer {
 
 /// Polls until `condition` holds. @return whether it did in time
 inline bool eventually(const std::function<bool()>& condition,
-                       std::chrono::milliseconds patience = 5s) {
+                       std::chrono::milliseconds patience = kPatience) {
   const auto deadline = steady_clock::now() + patience;
   while (!condition()) {
     if (steady_clock::now() > deadline) return false;

@@ -322,15 +322,82 @@ TEST_F(NetServer, AtTheConnectionLimitItSays503) {
   options.limits.connections = 3;
   serve(options);
   std::vector<Client> open;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     open.emplace_back(port());
-    open.back().send(get_request("/api/v1/healthz"));
-    ASSERT_EQ(200, read_answer(open.back()).status);
+    open.back().send(get_request("/api/v1/later"));
+    ASSERT_TRUE(
+        eventually([&] { return running_->on_io([&] { return waiting_.size(); }) == i + 1; }));
   }
   Client refused(port());
   EXPECT_EQ(503, read_answer(refused).status);
   open.clear();
+  running_->on_io([&] {
+    waiting_.clear();
+    return 0;
+  });
   EXPECT_TRUE(eventually([&] { return ask(get_request("/api/v1/healthz")).status == 200; }));
+}
+
+TEST_F(NetServer, IdleConnectionsOfOneAddressStarveNobody) {
+  ServerOptions options;
+  options.limits.connections = 300;
+  options.limits.connections_per_address = 64;
+  serve(options);
+  // Half a request each, as who wants to hold a place sends it; from more addresses than one.
+  std::vector<Client> idle;
+  for (const char* from : {"127.0.0.2",
+                           "127.0.0.2",
+                           "127.0.0.2",
+                           "127.0.0.4",
+                           "127.0.0.5",
+                           "127.0.0.6",
+                           "127.0.0.7",
+                           "127.0.0.8"}) {
+    for (int i = 0; i < 64; ++i) {
+      idle.emplace_back(port(), 0, from);
+      idle.back().send("GET /api/v1/runs/1 HTTP/1.1\r\nX-Slow: ");
+    }
+    for (const char* honest : {"127.0.0.3", "127.0.0.2", "127.0.0.1"}) {
+      Client client(port(), 0, honest);
+      client.send(get_request("/api/v1/healthz"));
+      EXPECT_EQ(200, read_answer(client).status) << honest << " beside " << from;
+    }
+  }
+  EXPECT_LE(running_->on_io([&] { return running_->server.connections(); }), 300u);
+}
+
+TEST_F(NetServer, AClientBehindATrustedProxyIsCountedForItself) {
+  ServerOptions options;
+  options.limits.connections_per_address = 8;
+  options.access.trusted_proxies = {"127.0.0.1"};
+  serve(options);
+  const auto later = [](const std::string& client) {
+    return get_request("/api/v1/later", "X-Forwarded-For: " + client + "\r\n");
+  };
+  std::vector<Client> open;
+  for (int visitor = 0; visitor < 40; ++visitor) {  // each with one on its way
+    open.emplace_back(port());
+    open.back().send(later("203.0.113." + std::to_string(visitor)));
+  }
+  ASSERT_TRUE(eventually([&] { return running_->on_io([&] { return waiting_.size(); }) == 40; }));
+  for (int i = 0; i < 7; ++i) {  // and the last one seven more
+    open.emplace_back(port());
+    open.back().send(later("203.0.113.39"));
+  }
+  ASSERT_TRUE(eventually([&] { return running_->on_io([&] { return waiting_.size(); }) == 47; }));
+  EXPECT_EQ(429, ask(later("203.0.113.39")).status);
+  EXPECT_EQ(200, ask(get_request("/api/v1/healthz", "X-Forwarded-For: 203.0.113.40\r\n")).status);
+  // One connection of the proxy carries requests of many in turn.
+  Client shared(port());
+  for (int visitor = 0; visitor < 20; ++visitor) {
+    const std::string header = "X-Forwarded-For: 198.51.100." + std::to_string(visitor) + "\r\n";
+    shared.send(get_request("/api/v1/healthz", header));
+    EXPECT_EQ(200, read_answer(shared).status);
+  }
+  running_->on_io([&] {
+    waiting_.clear();
+    return 0;
+  });
 }
 
 TEST_F(NetServer, TimersKeepTheirPeriodAndSurviveAnException) {

@@ -1,7 +1,7 @@
 // tests/server/recorder_test.cpp: frames go from control threads to the disk, whatever goes wrong.
 #include "server/recorder.hpp"
 
-#include "tests/db/store_files.hpp"
+#include "tests/server/recorder_fixture.hpp"
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/mman.h>
@@ -19,48 +19,7 @@ using test::refusal;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A frame that counts how many of its kind are still referred to.
-class CountedFrame final : public server::RecordedFrame {
- public:
-  CountedFrame(const test::Frame& frame, const db::TickRow& row, std::atomic<int>& alive)
-      : frame_(frame), row_(row), alive_(alive) {
-    ++alive_;
-  }
-  std::span<const std::byte> bytes() const override { return frame_.bytes; }
-  std::span<const db::Window> windows() const override { return frame_.windows; }
-  db::TickRow row() const override { return row_; }
-  void release() noexcept override {
-    --alive_;
-    delete this;
-  }
-
- private:
-  ~CountedFrame() = default;
-  const test::Frame& frame_;
-  db::TickRow row_{};
-  std::atomic<int>& alive_;
-};
-
-class RecorderTest : public test::StoreFiles {
- protected:
-  FrameHandle handle(std::uint64_t tick) {
-    return FrameHandle(new CountedFrame(made[tick % made.size()], row(tick), alive));
-  }
-  /// As a simulated run does it: waits when the ring is full.
-  void push(server::RunChannel& channel, std::uint64_t tick) {
-    FrameHandle frame = handle(tick);
-    while (!channel.push(frame)) std::this_thread::yield();
-  }
-  void expect_frames(db::RunId run, std::size_t count) {
-    RunReader reader(path);
-    const auto found = read_frames(reader, run, 0, 1000);
-    ASSERT_EQ(found.size(), count);
-    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found[i], made[i % made.size()].bytes) << i;
-  }
-
-  std::vector<test::Frame> made = frames(53);
-  std::atomic<int> alive = 0;
-};
+class RecorderTest : public test::RecorderFiles {};
 
 TEST_F(RecorderTest, TwoRunsAtOnceLoseNothing) {
   Recorder recorder(path);
@@ -126,14 +85,14 @@ TEST_F(RecorderTest, QueuedRunsAreRecordedWhenTheirTurnComes) {
   const db::RunId run = recorder.ask([&](db::RunStore& store) { return store.queue_run(what()); });
   RunReader reader(path);
   EXPECT_EQ(get(reader, run).status, RunStatus::Queued);
-  const auto channel = recorder.open(run, "2026-11-21T12:00:00Z");
+  const auto channel = recorder.open(run, what());
   EXPECT_EQ(channel->run(), run);
   EXPECT_EQ(get(reader, run).status, RunStatus::Recording);
   push(*channel, 0);
   channel->close({.outcome = "stuck"});
   recorder.flush();
   EXPECT_EQ(get(reader, run).outcome, "stuck");
-  EXPECT_THAT(refusal([&] { recorder.open(run, ""); }), HasSubstr("not waiting"));
+  EXPECT_THAT(refusal([&] { recorder.open(run, what()); }), HasSubstr("not waiting"));
 }
 
 TEST_F(RecorderTest, ARunWhoseThreadDiedIsMarkedFailed) {
@@ -176,61 +135,6 @@ TEST_F(RecorderTest, StoppingEndsOpenRunsAsInterrupted) {
   EXPECT_TRUE(store.interrupted().empty());
 }
 
-TEST_F(RecorderTest, AFullDiskStopsTheRunAndNotTheRecorder) {
-  std::vector<std::string> reports;
-  db::RunId old = 0;
-  db::RunId cut = 0;
-  {
-    Recorder recorder(path,
-                      {.store = {.max_pages = 240},
-                       .retention_bytes = 0,
-                       .commit_interval = std::chrono::milliseconds(20),
-                       .report = [&](const std::string& line) { reports.push_back(line); }});
-    const auto first = recorder.open(what());
-    old = first->run();
-    for (std::uint64_t tick = 0; tick < 500; ++tick) push(*first, tick);
-    first->close({.outcome = "reached"});
-    const auto channel = recorder.open(what());
-    cut = channel->run();
-    push(*channel, 0);
-    recorder.flush();  // so that some of it is kept, however soon the rest fills the disk
-    for (std::uint64_t tick = 1; !channel->failed(); ++tick) {
-      ASSERT_LT(tick, 100'000U);
-      push(*channel, tick);
-    }
-    EXPECT_THAT(channel->problem(), HasSubstr("The disk is full"));
-    channel->close({.outcome = "stopped"});
-    // Until there is room again, a run cannot begin, and the caller is told why.
-    std::string why;
-    std::vector<std::shared_ptr<server::RunChannel>> fitting;
-    while (why.empty()) {
-      ASSERT_LT(fitting.size(), 10'000U);
-      why = refusal([&] { fitting.push_back(recorder.open(what(std::string(20'000, 'x')))); });
-    }
-    EXPECT_THAT(why, HasSubstr("The disk is full"));
-    EXPECT_EQ(recorder.ask([&](db::RunStore& store) { return store.delete_run(old); }),
-              db::RunStore::Deletion::Deleted);
-    recorder.ask([](db::RunStore& store) {
-      while (store.sweep()) {
-      }
-    });
-    const auto again = recorder.open(what());
-    push(*again, 0);
-    again->close({.outcome = "reached"});
-    recorder.flush();
-    expect_frames(again->run(), 1);
-  }
-  EXPECT_EQ(alive, 0);
-  EXPECT_THAT(reports, testing::Contains(HasSubstr("The disk is full")));
-  EXPECT_EQ(integrity(path), "ok");
-  RunReader reader(path);
-  const db::RunRow run = get(reader, cut);
-  EXPECT_EQ(run.status, RunStatus::Failed);
-  EXPECT_THAT(run.reason, HasSubstr("The disk is full"));
-  EXPECT_GT(run.ticks, 0U);
-  expect_frames(cut, run.ticks);
-}
-
 TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
   Recorder recorder(path);
   const auto bad = recorder.open(what());
@@ -248,93 +152,6 @@ TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
   RunReader reader(path);
   EXPECT_EQ(get(reader, good->run()).status, RunStatus::Finished);
   EXPECT_NE(get(reader, bad->run()).status, RunStatus::Finished);
-}
-
-TEST_F(RecorderTest, KeepsTheStoreUnderItsLimit) {
-  std::vector<std::string> reports;
-  constexpr std::uint64_t kLimit = 700'000;
-  std::vector<db::RunId> runs;
-  {
-    Recorder recorder(path,
-                      {.retention_bytes = kLimit,
-                       .commit_interval = std::chrono::milliseconds(10),
-                       .report = [&](const std::string& line) { reports.push_back(line); }});
-    for (int i = 0; i < 6; ++i) {
-      const auto channel = recorder.open(what());
-      runs.push_back(channel->run());
-      for (std::uint64_t tick = 0; tick < 1000; ++tick) push(*channel, tick);
-      channel->close({.outcome = "reached"});
-    }
-    recorder.flush();  // frames still in a ring would come on top of what is measured
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-    while (std::chrono::steady_clock::now() < deadline &&
-           recorder.ask([](db::RunStore& store) { return store.used_bytes(); }) > kLimit) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    EXPECT_LE(recorder.ask([](db::RunStore& store) { return store.used_bytes(); }), kLimit);
-  }
-  RunReader reader(path);
-  EXPECT_FALSE(reader.get(runs.front()));
-  EXPECT_TRUE(reader.get(runs.back()));
-  expect_frames(runs.back(), 1000);
-  ASSERT_FALSE(reports.empty());
-  EXPECT_THAT(reports.front(),
-              HasSubstr("Deleted run 1 (case1, 2026-11-21T10:40:47Z, 1000 ticks)"));
-}
-
-TEST_F(RecorderTest, ARunThatFillsTheStoreAloneIsRecordedNoFurther) {
-  std::vector<std::string> reports;
-  constexpr std::uint64_t kLimit = 100'000;
-  Recorder recorder(path,
-                    {.retention_bytes = kLimit,
-                     .commit_interval = std::chrono::milliseconds(5),
-                     .report = [&](const std::string& line) { reports.push_back(line); }});
-  const auto channel = recorder.open(what());
-  const auto ended = [&] {
-    return recorder.ask([&](db::RunStore& store) { return !store.recording(channel->run()); });
-  };
-  std::uint64_t tick = 0;
-  while (tick < 20'000 && !ended()) push(*channel, tick++);
-  ASSERT_TRUE(ended());
-  EXPECT_LT(tick, 20'000u);
-  for (int i = 0; i < 100; ++i) push(*channel, tick++);  // taken, and dropped
-  EXPECT_FALSE(channel->failed());                       // no reason to stop the robot
-  channel->close({.outcome = "reached"});
-  const auto other = recorder.open(what());  // the next run is recorded again
-  for (std::uint64_t i = 0; i < 10; ++i) push(*other, i);
-  other->close({.outcome = "reached"});
-  recorder.flush();
-  ASSERT_FALSE(reports.empty());
-  EXPECT_THAT(reports.front(), HasSubstr("fills the run store alone"));
-  expect_frames(other->run(), 10);
-}
-
-TEST_F(RecorderTest, ADeletedRunMakesRoomBeforeALiveOneIsCut) {
-  constexpr std::uint64_t kLimit = 1'000'000;
-  Recorder recorder(path,
-                    {.retention_bytes = kLimit, .commit_interval = std::chrono::milliseconds(5)});
-  const auto used = [&] {
-    return recorder.ask([](db::RunStore& store) { return store.used_bytes(); });
-  };
-  const auto old = recorder.open(what());
-  std::uint64_t ticks = 0;
-  while (used() < kLimit * 8 / 10) push(*old, ticks++);
-  old->close({.outcome = "reached"});
-  recorder.flush();
-  const std::uint64_t with_old = used();
-  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // what the start swept is done
-  recorder.ask([&](db::RunStore& store) { return store.delete_run(old->run()); });
-  const auto live = recorder.open(what());
-  for (std::uint64_t i = 0; i < ticks; ++i) push(*live, i);  // both together are over the limit
-  recorder.flush();
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (used() > kLimit && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  EXPECT_LE(used(), kLimit);
-  EXPECT_GT(2 * with_old, kLimit);
-  EXPECT_TRUE(recorder.ask([&](db::RunStore& store) { return store.recording(live->run()); }));
-  live->close({.outcome = "reached"});
 }
 
 /// What the child tells its parent; it outlives the kill.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 
 #include "db/run_reader.hpp"
@@ -39,7 +40,7 @@ std::vector<std::vector<double>> read_log(const fs::path& path) {
 }
 
 TEST(ReplayData, FreiburgGoesThroughPipelineAndDatabaseUnchanged) {
-  const fs::path log = fs::path(TAUTLINE_SHARED_DATA) / "laser/freiburg-079-first2000.log";
+  const fs::path log = tests::shared_data() / "laser/freiburg-079-first2000.log";
   const auto expected = read_log(log);
   ASSERT_EQ(expected.size(), 2000u);
   const fs::path folder = fs::temp_directory_path() / "tautline_replay_data_test";

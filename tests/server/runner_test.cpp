@@ -41,7 +41,10 @@ class PaperRobot final : public algo::Robot {
     observe(o);
     return true;
   }
-  void stop() noexcept override { stopped = true; }
+  void stop() noexcept override {
+    stopped = true;
+    ++stops;
+  }
   std::optional<std::string> edit(const algo::Request& request) override {
     if (std::holds_alternative<algo::RemoveObstacle>(request)) return "There is no obstacle 9.";
     return std::nullopt;
@@ -53,6 +56,7 @@ class PaperRobot final : public algo::Robot {
   int log_ends_at = -1;
   int paused_steps = 0;
   bool stopped = false;
+  int stops = 0;
 
  private:
   void observe(algo::Observation& o) {
@@ -117,6 +121,15 @@ TEST_F(RunnerTest, ALostLinkFailsTheRunWithTheReason) {
   EXPECT_TRUE(robot.stopped);
 }
 
+TEST_F(RunnerTest, RealRobotThatIsHeldBrakesAndASimulatedOneTakesItsZero) {
+  for (const bool real : {true, false}) {
+    robot = PaperRobot();
+    robot.spec_.paceable = !real;
+    go({algo::Stop{true}}, {.until_outcome = true, .time_limit = 0.5});
+    EXPECT_EQ(robot.stops, real ? robot.steps + 1 : 1);  // the last at the end
+  }
+}
+
 TEST_F(RunnerTest, TheEndOfALogIsNotAFault) {
   robot.log_ends_at = 5;
   EXPECT_EQ(go({}, {}).outcome, algo::Outcome::EndOfLog);
@@ -145,6 +158,19 @@ TEST_F(RunnerTest, AnswersRequestsAndRecordsOnlyWhatWasAccepted) {
   EXPECT_TRUE(replies[2].refusal);
 }
 
+TEST_F(RunnerTest, AStopThatFoundTheRingFullComesAfterAReleaseInIt) {
+  links.rings = &rings;
+  rings.requests.push({1, algo::Stop{false}});
+  while (rings.requests.push({2, algo::Joystick{1, 0}})) {
+  }
+  rings.stop_now = true;
+  links.observer = [&](const Frame& frame) {
+    EXPECT_EQ(frame.telemetry.hold, algo::Hold::Stopped);
+    stop.request_stop();
+  };
+  go({kGoal}, {});
+}
+
 TEST_F(RunnerTest, AFullStreamCostsOnlyTheViewersAFrame) {
   links.rings = &rings;  // nobody drains it
   const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
@@ -162,13 +188,64 @@ class BrokenSink final : public FrameSink {
   int pushed = 0;
 };
 
-TEST_F(RunnerTest, ABrokenRecordStopsTheRobotFirst) {
+TEST_F(RunnerTest, ARecordThatIsRequiredStopsTheRobotWhenItBreaks) {
   BrokenSink sink;
   links.record = &sink;
-  const RunResult result = go({kGoal}, {});
+  const RunResult result = go({kGoal}, {.require_record = true});
   EXPECT_EQ(result.outcome, algo::Outcome::Failed);
   EXPECT_EQ(result.reason, "The disk is full.");
   EXPECT_TRUE(robot.stopped);
+}
+
+TEST_F(RunnerTest, ARecordThatTakesNothingStopsNoRobot) {
+  BrokenSink sink;
+  links.record = &sink;
+  const RunResult result = go(
+      {kGoal},
+      {.until_outcome = true, .time_limit = 100, .record_patience = std::chrono::milliseconds(1)});
+  EXPECT_EQ(result.outcome, algo::Outcome::Reached);
+  EXPECT_EQ(result.lost_ticks + 9, result.metrics.ticks);
+  // It waited once, not at every tick.
+  EXPECT_LT(sink.pushed, 9 + 100 + static_cast<int>(result.metrics.ticks));
+}
+
+/// Notes which ticks it was given and how often it was told to pause.
+class NotingSink final : public FrameSink {
+ public:
+  bool push(const FrameRef& frame) override {
+    ticks.push_back(frame->telemetry.tick);
+    return true;
+  }
+  void pause() override { ++pauses; }
+  std::vector<std::uint64_t> ticks{};
+  int pauses = 0;
+};
+
+TEST_F(RunnerTest, TheRecordPausesWhenNothingHappensAndGoesOnWithTheNextGoal) {
+  NotingSink sink;
+  links.record = &sink;
+  links.rings = &rings;
+  std::optional<std::uint64_t> reached;
+  std::uint64_t asked = 0;
+  links.observer = [&](const Frame& frame) {
+    const algo::Telemetry& t = frame.telemetry;
+    rings.stream.consume_all([](const FrameRef&) {});
+    if (t.mission == algo::Mission::Arrived && !reached) reached = t.tick;
+    if (reached && asked == 0 && t.tick == *reached + 400) {
+      rings.requests.push({1, algo::SetGoal{{0.0, 0.0}, std::nullopt}});
+      asked = t.tick;
+    }
+    if (asked != 0 && t.tick == asked + 20) stop.request_stop();
+  };
+  go({kGoal}, {.pause_record_after = 5});
+  ASSERT_TRUE(reached);
+  const double period = robot.spec().period;
+  EXPECT_GT(sink.pauses, 400 - static_cast<int>(7 / period));
+  EXPECT_LT(sink.pauses, 400 - static_cast<int>(4 / period));
+  // The request's own tick is kept, and every one after it.
+  ASSERT_GT(sink.ticks.size(), 20u);
+  EXPECT_EQ(sink.ticks[sink.ticks.size() - 20], asked + 1);
+  EXPECT_EQ(sink.ticks.size() + static_cast<std::size_t>(sink.pauses), asked + 21);
 }
 
 TEST(FramePool, HandsOutEachFrameOnceAndTakesItBack) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,7 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-const std::string kFile = std::string(TAUTLINE_TESTS) + "/golden/words.json";
+const std::string kFile = (tests::folder() / "golden/words.json").string();
 
 algo::Telemetry driving() {
   algo::Telemetry t;

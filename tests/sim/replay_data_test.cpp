@@ -4,6 +4,7 @@
 #include <sstream>
 #include <vector>
 
+#include "tests/folders.hpp"
 #include <gtest/gtest.h>
 
 #include "sim/replay.hpp"
@@ -24,7 +25,7 @@ class RecordedLogs : public testing::TestWithParam<RecordedLog> {};
 
 TEST_P(RecordedLogs, EveryScanEqualsTheTextToTheMillimetre) {
   const RecordedLog& log = GetParam();
-  const std::string path = std::string(TAUTLINE_SHARED_DATA) + "/laser/" + log.file;
+  const std::string path = (tests::shared_data() / "laser" / log.file).string();
   Replay robot{std::filesystem::path(path)};
   robot.set_pace({.speed = 0});
   EXPECT_EQ(robot.size(), log.scans);

@@ -151,7 +151,7 @@ TEST(Replay, SaysWhyALogCannotBeReplayed) {
     const Replay missing("/nonexistent/some.log");
     FAIL() << "opened a file that does not exist";
   } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "The log /nonexistent/some.log cannot be opened.");
+    EXPECT_STREQ(error.what(), "The log some.log cannot be opened.");
   }
   EXPECT_THROW(Replay(std::filesystem::path("/tmp")), std::runtime_error);
 }

@@ -1,0 +1,14 @@
+// tests/folders.cpp: CMake tells the paths to this file alone.
+#include "tests/folders.hpp"
+
+namespace tests {
+
+std::filesystem::path folder() {
+  return TAUTLINE_TESTS;
+}
+
+std::filesystem::path shared_data() {
+  return TAUTLINE_SHARED_DATA;
+}
+
+}  // namespace tests
