@@ -149,10 +149,10 @@ bool LaserMachine::waits_on(double now) {
 bool LaserMachine::asks_again(double now) const {
   switch (step_) {
     case Step::Probe:
-    case Step::Restoring:
     case Step::WriteConfiguration:
       return false;
     case Step::Stopping:
+    case Step::Restoring:
       return now - last_heard_ < kDeaf;
     default:
       return now - step_since_ < kDeaf;

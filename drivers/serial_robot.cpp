@@ -19,7 +19,7 @@ using algo::Halt;
 
 constexpr double kBatteryTime = 3.0;  // [s] a voltage may sag when the motors start
 constexpr double kMotorsTime = 2.0;   // [s] from arming until they must be on
-constexpr double kLateHold = 1.0;     // [s] the robot stands after a late tick
+constexpr double kLateHold = 0.3;     // [s] the robot stands after a late tick
 constexpr double kSonarMax = 5.0;     // [m] a Pioneer's, and its word for nothing
 constexpr double kBumperFree =
     0.5;  // [s] after which a bumper that was known to be pressed is free

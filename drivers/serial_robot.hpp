@@ -44,7 +44,7 @@ class SerialRobot final : public algo::Robot {
   static constexpr double kArrivalJitter = 0.02;  // [s] a USB chip may keep bytes for 16 ms
   static constexpr double kOverrun = 3;           // periods from a tick's deadline to its command
   static constexpr double kSlept = 0.5;           // [s] likewise: the program stood still
-  static constexpr double kRearm = 3.0;           // [s]
+  static constexpr double kRearm = 0.5;           // [s] more than a lost scan or two of a fast line
 
   /// Scanners in the order of the file. They are already at work on their own.
   SerialRobot(RobotFile file,

@@ -2,8 +2,8 @@
 """tests/dev/hardware_stops.py PROGRAM [roboteq|p2os]: what becomes of the wheels when the server or
 its operator goes, on emulated devices, in real time; prints rows of the table in docs/hardware.md.
 
-The server is killed (kill -9), ended (SIGTERM, Ctrl-C, SIGHUP), left without its terminal, stopped for
-a while (SIGSTOP), left by a script, by a page that is closed and by one whose network is lost. After
+The server is killed (kill -9), ended (SIGTERM, Ctrl-C, SIGHUP), left without its terminal, stopped
+for a while (SIGSTOP), left by a script, by a page that is closed and by one whose network is lost. After
 kill -9 the server is started again: the scanner, which still streams at 500000 bit/s, has to be back
 in 5 s. Exit status 1 when anything took longer than it may.
 """
@@ -26,6 +26,8 @@ PATIENCE = 1.5  # [s] server/operator_watch.hpp
 SLACK = 0.2  # [s] a look every 0.1 s, and a busy machine
 REATTACH = 5.0  # [s]
 ASLEEP = 3.0  # [s]
+
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # `nohup` has it ignored, by children too
 
 
 class Page:

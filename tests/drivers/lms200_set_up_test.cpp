@@ -54,6 +54,19 @@ TEST(Lms200SetUp, TwoSecondsOfSilenceAfterSwitchesAndPowerOnEndInScans) {
   }
 }
 
+TEST(Lms200SetUp, ADeviceDeafAfterItsSwitchIsLeftAtTheRateItWasFoundAt) {
+  for (const unsigned found : {9600U, 38400U, 500'000U}) {
+    lms200::EmulatorOptions options;
+    options.times.deaf = 2.0;
+    options.start_rate = found;
+    Laser laser(options);
+    ASSERT_TRUE(laser.running(60)) << found << laser.machine.report().trouble;
+    EXPECT_TRUE(leaves(laser));
+    EXPECT_EQ(laser.emulator.baud(), found);
+    EXPECT_EQ(laser.emulator.mode(), lms200::Mode::OnRequest);
+  }
+}
+
 TEST(Lms200SetUp, SlowDeviceLeftStreamingIsFoundAgain) {
   lms200::EmulatorOptions options;
   options.times.mode = 3.0;

@@ -55,7 +55,12 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
     /** Pixels of a place of the world [m], once the view rests. */
     async pixels(x, y) {
       const scene = get("scene");
-      const view = await page.waitForFunction((e) => e.dataset.view || null, await scene.elementHandle());
+      // The view fits itself again when a card below it grows: the same for a while is at rest.
+      const rests = (e) => {
+        if (e.dataset.view !== e.test_view) [e.test_view, e.test_since] = [e.dataset.view, performance.now()];
+        return e.dataset.view && performance.now() - e.test_since > 250 ? e.dataset.view : null;
+      };
+      const view = await page.waitForFunction(rests, await scene.elementHandle());
       const [cx, cy, scale] = (await view.jsonValue()).split(" ").map(Number);
       const box = await scene.boundingBox();
       return { x: box.x + box.width / 2 + (x - cx) * scale, y: box.y + box.height / 2 - (y - cy) * scale };
