@@ -9,7 +9,8 @@ namespace {
 
 /// Whether beam `i` has not looked.
 bool unknown(const LaserScan& scan, std::size_t i) {
-  return scan.status[i] == Beam::Invalid && scan.codes[i] != BeamCode::NoEcho;
+  if (scan.status[i] != Beam::Invalid) return false;
+  return scan.codes[i] != BeamCode::NoEcho && scan.codes[i] != BeamCode::WeakSignal;
 }
 
 /// The widest run of neighbours of which `counts` holds for kLeastCone or more. Beams without an

@@ -1,9 +1,10 @@
 // algo/dazzle.hpp: where a scanner tells nothing, because light shines into it or its window is
 // bad.
 //
-// A beam that returned nothing (no echo, farther than the range) has looked. One that was dazzled,
-// too weak or in error has not: anything may stand there. A dropout here and there is no harm;
-// neighbouring beams that have not looked make a cone in which a person can stand unseen.
+// A beam that returned nothing (no echo, farther than the range) or too little (a dark or shining
+// wall, which rooms have) has looked. One that was dazzled or in error has not: anything may stand
+// there. A dropout here and there is no harm; neighbouring beams that have not looked make a cone in
+// which a person can stand unseen.
 #pragma once
 
 #include <cstddef>

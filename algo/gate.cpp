@@ -16,6 +16,15 @@ bool finite(const Twist2& twist) {
   return std::isfinite(twist.v) && std::isfinite(twist.omega);
 }
 
+/// Whether every bumper that is pressed lies behind the motion.
+bool leaves_bumpers(const Observation& observation, double v) {
+  for (const BumperReading& bumper : observation.bumpers) {
+    const bool front = bumper.mount_R.x >= 0;
+    if (bumper.pressed && !(front ? v < 0 : v > 0)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
@@ -25,7 +34,8 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
     return Hold::NotFinite;
   }
-  if (observation.bumper_pressed() && !in.reversing_by_hand) return Hold::Bumper;
+  const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);
+  if (observation.bumper_pressed() && !leaves) return Hold::Bumper;
   // Written so that a stamp that is not a number counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
   return fresh && !in.hidden ? Hold::None : Hold::StaleScan;

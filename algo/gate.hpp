@@ -11,7 +11,7 @@ struct GateInput {
   double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
   bool hidden = false;                 // the command leads where a dazzled scanner saw nothing
-  bool reversing_by_hand = false;      // the one motion allowed with a front bumper pressed
+  bool by_hand = false;                // a person drives, and may back away from what was hit
 };
 
 /// Why `command` must not be carried out, None when it may.

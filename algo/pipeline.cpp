@@ -230,7 +230,7 @@ void Pipeline::hold(Telemetry& t) {
   in.scan_timeout = parameters_[Parameter::ScanTimeout];
   in.scan_stamp = scan_stamp_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
-  in.reversing_by_hand = t.behaviour == BehaviourId::Manual && t.command.base.v < 0;
+  in.by_hand = t.behaviour == BehaviourId::Manual;
   t.hold = gate(in, t.observation, t.command);
   if (t.hold == Hold::None) return;
   t.command = {};

@@ -30,6 +30,8 @@ void SensorMerge::take(const Recycled<RangeReading>& readings,
   for (const RangeReading& reading : readings) {
     if (reading.status == Beam::Invalid) continue;
     Kept& kept = place_of(reading.mount_R, half_width);
+    // A base reports all of its sonars each time: one that has not sent since stays where it was.
+    if (kept.stamp == reading.stamp) continue;
     kept.stamp = reading.stamp;
     kept.hit = reading.status == Beam::Ok && std::isfinite(reading.range);
     if (!kept.hit) continue;

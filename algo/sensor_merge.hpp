@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
@@ -50,7 +51,7 @@ class SensorMerge {
   struct Kept {
     Pose2 mount_R{};
     double half_width = 0;  // [rad]
-    double stamp = 0;       // [s] run clock
+    double stamp = -std::numeric_limits<double>::infinity();  // [s] run clock
     bool hit = false;
     Vec2 from_W{0, 0};  // where the sensor was
     Vec2 point_W{0, 0};

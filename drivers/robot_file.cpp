@@ -158,6 +158,7 @@ roboteq::RoboteqSetup read_roboteq(Section& in) {
   setup.reversed = {in.flag_or("reverse_left", false), in.flag_or("reverse_right", false)};
   setup.swapped = in.flag_or("swap_channels", false);
   setup.bumper_inputs = in.whole_list("bumper_inputs", {1, 6});
+  setup.rear_bumper_inputs = in.whole_list("rear_bumper_inputs", {1, 6});
   return setup;
 }
 

@@ -189,11 +189,12 @@ std::array<T, 2> RoboteqMachine::by_side(const std::array<T, 2>& channels) const
 
 void RoboteqMachine::take_values(double now, const Reply& reply) {
   if (reply.name == "DI") {
-    bumper_ = false;
-    for (const int input : setup_.bumper_inputs) {
+    const auto hit = [&](int input) {
       const auto i = static_cast<std::size_t>(input - 1);
-      bumper_ = bumper_ || i >= reply.count || reply.values[i] != 0;
-    }
+      return i >= reply.count || reply.values[i] != 0;
+    };
+    bumper_front_ = std::ranges::any_of(setup_.bumper_inputs, hit);
+    bumper_rear_ = std::ranges::any_of(setup_.rear_bumper_inputs, hit);
     inputs_at_ = now;
     return;
   }
@@ -274,7 +275,9 @@ void RoboteqMachine::judge(double now) {
   state_.stop_button = enabled_ && stopped && now - enabled_at_ > kReleaseTime;
   state_.faulty = must_stop(faults & static_cast<std::uint16_t>(~kStopFault));
   state_.volts = values_.battery_volts;
-  state_.bumper_front = !setup_.bumper_inputs.empty() && (bumper_ || now - inputs_at_ > kInputsAge);
+  const bool unread = now - inputs_at_ > kInputsAge;
+  state_.bumper_front = !setup_.bumper_inputs.empty() && (bumper_front_ || unread);
+  state_.bumper_rear = !setup_.rear_bumper_inputs.empty() && (bumper_rear_ || unread);
   state_.stalled = enabled_ && (stalls_[0] >= kAgreeing || stalls_[1] >= kAgreeing);
   if (values_.motor_amperes && setup_.max_current > 0) {
     const auto& amperes = *values_.motor_amperes;

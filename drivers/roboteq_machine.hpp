@@ -20,7 +20,9 @@ struct RoboteqSetup {
   double max_current = 0;            // [A] of a motor; 0: not watched
   std::array<bool, 2> reversed{};    // a motor that turns the other way: left, right
   bool swapped = false;              // channel 1 is the right motor
-  std::vector<int> bumper_inputs{};  // digital inputs, counted from 1, that are 1 when hit
+  // Digital inputs, counted from 1, that are 1 when hit.
+  std::vector<int> bumper_inputs{};  // at the front
+  std::vector<int> rear_bumper_inputs{};
 };
 
 class RoboteqMachine final : public BaseMachine {
@@ -129,7 +131,8 @@ class RoboteqMachine final : public BaseMachine {
   SwitchingOff off_{};
   double current_since_ = 0;  // [s] that it has been too high; 0: it is not
   double inputs_at_ = 0;      // [s] when the bumpers were read
-  bool bumper_ = false;
+  bool bumper_front_ = false;
+  bool bumper_rear_ = false;
   std::uint64_t refused_ = 0;
   BaseState state_{};
 };

@@ -108,7 +108,8 @@ void RoboteqMachine::run(double now) {
   // Sixteen are as many as a controller remembers.
   constexpr std::array<std::string_view, 16> kQueries{
       "C", "S", "FF", "FM", "C", "S", "A", "V", "C", "S", "FF", "FM", "C", "S", "FS", "DI"};
-  const std::size_t count = setup_.bumper_inputs.empty() ? kQueries.size() - 1 : kQueries.size();
+  const bool bumpers = !setup_.bumper_inputs.empty() || !setup_.rear_bumper_inputs.empty();
+  const std::size_t count = bumpers ? kQueries.size() : kQueries.size() - 1;
   send(emergency_stop());
   send(set_counter(1, 0));
   send(set_counter(2, 0));

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kUntilSeen = 0.3;  // [s] from a command to the report that shows its effect
 constexpr double kShare = 0.5;      // of its ramp that a base reaches at least
+constexpr double kAtMost = 2;       // and times its ramp, for reports that come early or late
 // A file may ask for more than any base can: none is expected to be faster than that.
 constexpr double kGentleRamp = 0.25;     // [m/s2]
 constexpr double kGentleTurn = 1.0;      // [rad/s2]
@@ -44,8 +45,9 @@ void WheelWatch::command(double now, const algo::Twist2& twist, bool braking) {
   ++told_count_;
 }
 
-/// Moves the intervals on to `until`: at once to wherever a command may have taken the base by
-/// then, and back from where no command wants it any more, no faster than the slowest ramp.
+/// Moves the intervals on to `until`: no faster than the fastest ramp to wherever a command may have
+/// taken the base by then, and back from where no command wants it any more, no faster than the
+/// slowest.
 void WheelWatch::follow(double until) {
   const double dt = until - stamp_;
   std::array<Interval, 2> wanted{};
@@ -72,6 +74,10 @@ void WheelWatch::follow(double until) {
     double ramp = std::min(kShare * dynamics_.ramps[i], turn ? kGentleTurn : kGentleRamp);
     if (braking) ramp = std::max(ramp, turn ? kGentleBraking / half_track_ : kGentleBraking);
     Interval& axis = axes_[i];
+    // Speeding up alone: what slows it down may be the floor, or its own watchdog.
+    const double gain = kAtMost * dynamics_.ramps[i] * dt;
+    wanted[i].high = std::min(wanted[i].high, std::max(axis.high, 0.0) + gain);
+    wanted[i].low = std::max(wanted[i].low, std::min(axis.low, 0.0) - gain);
     axis.high = std::max(wanted[i].high, axis.high - ramp * dt);
     axis.low = std::min(wanted[i].low, axis.low + ramp * dt);
   }

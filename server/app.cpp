@@ -79,9 +79,9 @@ struct App::Impl {
     });
   }
   ~Impl() {
+    session.end(true);  // first: the robot stops, however long the others take
     workers.stop();
     experiments.stop();
-    session.end(true);
     // What was posted may still answer through the server: while it is there.
     try {
       if (!recorder.flush()) spdlog::error("The last of the record could not be written.");

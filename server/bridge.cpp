@@ -77,7 +77,7 @@ std::function<void(std::exception_ptr)> answer_when_loaded(const ServiceReply& r
     try {
       std::rethrow_exception(failure);
     } catch (const std::exception& e) {
-      reply.failure(e.what());
+      reply.failure(without_folders(e.what()));
     }
   };
 }
@@ -223,6 +223,10 @@ void Bridge::add_services() {
     reply.success({{"ok", true}});
   });
   hub_.add_service("/check_goal", [this](ClientId, const json& body, const ServiceReply& reply) {
+    if (!session_.may_look_at_goals()) {
+      reply.failure(kBusy);
+      return;
+    }
     reply.success(goal_check_json(session_, body));
   });
   hub_.add_service("/load", [this](ClientId, const json& body, const ServiceReply& reply) {

@@ -21,6 +21,14 @@ constexpr std::chrono::milliseconds kStoreRetry{200};
 
 }  // namespace
 
+/// Counts the world of a batch, given the size of its text. False when there is no room for it.
+bool Experiments::Batch::hold(std::size_t document_bytes) {
+  constexpr std::size_t kFixed = 4096;
+  constexpr std::size_t kTimes = 6;  // as measured: a world in memory against its text
+  bytes = kFixed + kTimes * document_bytes;
+  return held.fetch_add(bytes) + bytes <= kMaxBytes;
+}
+
 Experiments::Experiments(Recorder& recorder)
     : recorder_(recorder), worker_([this](const std::stop_token& stop) { work(stop); }) {}
 
@@ -54,13 +62,17 @@ bool Experiments::start(Experiment experiment, Accepted accepted) {
     if (stopping_ || queue_.size() + arriving_ + experiment.repeats > kMaxWaiting) return false;
     arriving_ += experiment.repeats;
   }
-  const auto batch = std::make_shared<Batch>();
+  const auto batch = std::make_shared<Batch>(held_);
   batch->experiment = std::move(experiment);
   batch->accepted = std::move(accepted);
   try {
     // A world that cannot be built is refused now, not in the background; its spec goes in the row.
     const RunSpec& spec = batch->experiment.spec;
     batch->row = headless_run(spec, make_robot(spec)->spec(), batch->experiment.pace);
+    if (!batch->hold(batch->row.document.size())) {
+      arrived(batch->experiment.repeats);
+      return false;
+    }
     insert_slice(batch);
   } catch (...) {
     arrived(batch->experiment.repeats);
@@ -89,6 +101,7 @@ void Experiments::insert(db::RunStore& store, Batch& batch) {
     const std::lock_guard lock(mutex_);
     if (stopping_) throw db::StoreError("The server is stopping; nothing more is queued.");
   }
+  if (!recorder_.takes_more()) throw db::StoreError(recorder_.status().sentence);
   const std::size_t before = batch.runs.size();
   const std::size_t end = std::min<std::size_t>(before + kSlice, batch.experiment.repeats);
   const auto until = std::chrono::steady_clock::now() + kSliceTime;
@@ -111,6 +124,7 @@ void Experiments::queue(const std::shared_ptr<Batch>& batch) {
       queue_.push_back({batch, batch->experiment.spec.seed + i, batch->runs[i]});
     }
   }
+  batch->row = {};  // its document is in the store now
   batch->accepted(batch->runs, {});
   arrived(batch->experiment.repeats);
 }
@@ -153,14 +167,19 @@ bool Experiments::cancel(db::RunId run) {
 bool Experiments::resume(db::RunId run,
                          RunSpec spec,
                          double pace,
+                         std::size_t document_bytes,
                          std::function<void(const std::string&)> resumed) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_ || queue_.size() + arriving_ >= kMaxWaiting) return false;
     ++arriving_;
   }
-  const auto batch = std::make_shared<Batch>();
+  const auto batch = std::make_shared<Batch>(held_);
   batch->experiment = {.spec = std::move(spec), .pace = pace};
+  if (!batch->hold(document_bytes)) {
+    arrived(1);
+    return false;
+  }
   try {
     recorder_.post([this, run, batch, resumed = std::move(resumed)](db::RunStore& store) {
       const std::string refusal = requeue(store, run);
@@ -240,17 +259,25 @@ bool Experiments::execute(const Job& job) {
   const RunSpec spec = spec_of(job);
   options.pace = job.batch->experiment.pace;
   std::unique_ptr<algo::Robot> robot;
+  const auto fail = [&](const char* why) {
+    end_later(job.run, {.status = db::RunStatus::Failed, .outcome = "failed", .reason = why});
+    return true;
+  };
   try {
-    robot = make_robot(spec);
     while (job.again &&
            recorder_.ask([&](db::RunStore& store) { return store.clear_run(job.run); })) {
     }
+  } catch (const db::DatabaseError& e) {
+    // What is damaged there concerns this run alone; the next ones must not wait for it.
+    return e.trouble() == db::Trouble::Damaged && fail(e.what());
+  }
+  try {
+    robot = make_robot(spec);
     options.record = recorder_.open(job.run, headless_run(spec, robot->spec(), options.pace));
   } catch (const db::DatabaseError&) {
     return false;
   } catch (const std::exception& e) {
-    end_later(job.run, {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()});
-    return true;
+    return fail(e.what());
   }
   std::stop_token stop;
   {

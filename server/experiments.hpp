@@ -1,6 +1,7 @@
 // server/experiments.hpp: headless runs in the background, one after another.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -33,6 +34,8 @@ class Experiments {
       std::function<void(const std::vector<db::RunId>& runs, const std::string& failure)>;
 
   static constexpr std::size_t kMaxWaiting = 20'000;  // runs of all experiments together
+  /// [bytes] of the worlds that wait to be run, which repeats share.
+  static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
   explicit Experiments(Recorder& recorder);
   ~Experiments();  // the run at work is interrupted, queued ones stay behind
@@ -43,23 +46,34 @@ class Experiments {
 
   /// Gives the runs their numbers and queues them, a slice at a time between the frames of live
   /// runs; `accepted` is called on the db thread, with either all numbers or why there are none.
-  /// False when too many runs wait already. Throws what is wrong with the world.
+  /// False when too many runs or too large worlds wait already. Throws what is wrong with the
+  /// world.
   bool start(Experiment experiment, Accepted accepted);
 
   /// Ends or unqueues a run. False when it is not among the queued and running.
   bool cancel(db::RunId run);
 
   /// Queues a run that was cut, to be run again from its start under its own number. `resumed` is
-  /// called on the db thread with why not, or "". `spec`, `pace`: as it was begun. False when too
-  /// many runs wait already.
+  /// called on the db thread with why not, or "". `spec`, `pace`: as it was begun;
+  /// `document_bytes`: the size of its world as text. False when too much waits already.
   bool resume(db::RunId run,
               RunSpec spec,
               double pace,
+              std::size_t document_bytes,
               std::function<void(const std::string& refusal)> resumed);
 
  private:
-  /// What all repeats have in common, kept once.
+  /// What all repeats have in common, kept once. It counts in `held` as long as it lives.
   struct Batch {
+    explicit Batch(std::atomic<std::size_t>& all_bytes) : held(all_bytes) {}
+    ~Batch() { held -= bytes; }
+    Batch(const Batch&) = delete;
+    Batch& operator=(const Batch&) = delete;
+
+    bool hold(std::size_t document_bytes);
+
+    std::atomic<std::size_t>& held;
+    std::size_t bytes = 0;
     Experiment experiment{};
     db::NewRun row{};
     Accepted accepted{};
@@ -84,6 +98,7 @@ class Experiments {
   void end_later(db::RunId run, db::RunEnd end);
 
   Recorder& recorder_;
+  std::atomic<std::size_t> held_{0};  // [bytes] before what counts in it
   std::mutex mutex_{};
   std::condition_variable_any wake_{};
   std::deque<Job> queue_{};

@@ -30,7 +30,10 @@ double scan_timeout(const drivers::RobotFile& file) {
   for (const drivers::LaserEntry& laser : file.lasers) {
     const unsigned baud = std::min(laser.setup.baud, drivers::lms200::kFallbackRate);
     const double period = drivers::lms200::scan_period(laser.setup.variant, baud);
-    longest = std::max(longest, drivers::blind_time(period));
+    // From its stamp on: it is on the line for a good part of its period, and a tick may pass.
+    const double under_way =
+        drivers::lms200::transfer_time(drivers::lms200::scan_bytes(laser.setup.variant), baud);
+    longest = std::max(longest, drivers::blind_time(period) + under_way + file.spec.period);
   }
   return longest;
 }

@@ -74,6 +74,10 @@ void LiveRun::control(const std::stop_token& stop) {
   };
   result_ = run(*robot_, pipeline_, first_, policy_, links, stop);
   if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
+  // Nobody looks after it any more; the base's own thread brakes it and cuts its motors off.
+  if (spec_.hardware && spec_.hardware->arming() != 0) {
+    spec_.hardware->disarm("The run ended, and the motors are off. " + result_.reason);
+  }
   outcome_.store(result_.outcome, std::memory_order_relaxed);
   if (channel_) {
     channel_->close(run_end(result_, cut_.load(std::memory_order_relaxed)), result_.metrics.ticks);

@@ -17,8 +17,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kNap{20};
 // What a stopping recorder waits for a store that is locked.
 constexpr milliseconds kLastPatience{2000};
-// Ended runs that wait for a failed store to take their ends; older ones are then let go.
+// Runs that began and ended while the store failed, and wait for it; older ones are then let go.
 constexpr std::size_t kMostWaiting = 64;
+// What one commit interval may spend on jobs that waited for the store.
+constexpr milliseconds kLaterTime{100};
 
 /// The write-ahead log is to be a small part of what may be kept at all.
 db::StoreOptions store_options(const RecorderOptions& options,
@@ -194,16 +196,19 @@ void Recorder::run_jobs() {
   }
 }
 
+/// Many are committed together, and a slice at a time: ten thousand cancelled runs must not keep
+/// the frames waiting for as many commits. What fails is done again, all of the slice.
 void Recorder::run_later() {
+  const auto until = Clock::now() + kLaterTime;
   std::size_t done = 0;
-  for (; done < later_.size() && !ailment_; ++done) {
-    guarded([&] {
-      later_[done](store_);
-      store_.commit();
-    });
-    if (ailment_) break;
+  while (done < later_.size() && !ailment_ && Clock::now() < until) {
+    guarded([&] { later_[done](store_); });
+    ++done;
+    take_frames();
   }
-  later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
+  if (done == 0 || ailment_) return;
+  guarded([&] { store_.commit(); });
+  if (!ailment_) later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
 /// Live runs that began meanwhile: their rows are written, and at once.
@@ -215,6 +220,7 @@ void Recorder::take_arrivals() {
   }
   for (auto& channel : arrivals) {
     channels_.push_back(channel);
+    channel->unheard_ = ailment_.has_value();
     if (ailment_ && ailment_->trouble != db::Trouble::Busy) channel->fail(ailment_->sentence);
     if (full_) channel->fail(*full_);
     guarded([&] {
@@ -230,17 +236,25 @@ void Recorder::take_frames() {
   for (const auto& channel : channels_) take_frames(*channel);
 }
 
+/// A run to be kept whole that has ended: what its ring still holds is stored, room or not, so that
+/// it ends and can be deleted.
+bool Recorder::last_of_whole(const RunChannel& channel) const {
+  return channel.keep_ == Keep::Whole && options_.wait_for_room &&
+         channel.closed_.load(std::memory_order_acquire);
+}
+
 /// Whether the frames of a run stay in its ring for now.
 bool Recorder::waits(const RunChannel& channel) const {
   if (ailment_) return ailment_->trouble == db::Trouble::Busy;
-  return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room;
+  return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room && !last_of_whole(channel);
 }
 
 void Recorder::take_frames(RunChannel& channel) {
   // Only what is here now, so that one fast run does not keep the others and the commit waiting.
   std::size_t left = channel.ring_.read_available();
   if (left == 0 || waits(channel)) return;
-  if (!ailment_ && !full_ && !channel.broken_) guarded([&] { store_.begin(); });
+  const bool stored = !full_ || last_of_whole(channel);
+  if (!ailment_ && stored && !channel.broken_) guarded([&] { store_.begin(); });
   if (waits(channel)) return;  // locked: nothing has left the ring
   for (; left > 0; --left) {
     RunChannel::Pushed pushed{};
@@ -252,7 +266,7 @@ void Recorder::take_frames(RunChannel& channel) {
 
 void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause) {
   if (channel.broken_) return;
-  if (ailment_ || full_) {
+  if (ailment_ || (full_ && !last_of_whole(channel))) {
     channel.missing_ = {.cause = ailment_ ? db::GapCause::Failed : db::GapCause::Full,
                         .sentence = without_folder(ailment_ ? ailment_->sentence : *full_)};
     return;
@@ -285,6 +299,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
 /// gone.
 void Recorder::resume(RunChannel& channel) {
   if (channel.broken_ || store_.recording(channel.run())) return;
+  channel.unheard_ = false;
   if (const auto next = store_.resume_run(channel.run())) {
     channel.next_tick_ = *next;
     return;
@@ -330,8 +345,9 @@ void Recorder::end_closed() {
     }
     channels_.erase(channels_.begin() + static_cast<std::ptrdiff_t>(i));
   }
+  // Nothing of these is in the store, so nothing there stays without its end.
   const auto over = [](const auto& channel) {
-    return channel->closed_.load(std::memory_order_acquire);
+    return channel->unheard_ && channel->closed_.load(std::memory_order_acquire);
   };
   while (std::ranges::count_if(channels_, over) > static_cast<std::ptrdiff_t>(kMostWaiting)) {
     channels_.erase(std::ranges::find_if(channels_, over));
@@ -352,7 +368,7 @@ void Recorder::stop_all() {
     take_arrivals();
     take_frames();
     end_closed();
-    return !ailment_ || ailment_->trouble != db::Trouble::Busy;
+    return ailment_ ? ailment_->trouble != db::Trouble::Busy : later_.empty();
   };
   while (!end_all() && Clock::now() < until) std::this_thread::sleep_for(kNap);
   full_.reset();  // what is still in a ring is all there will be

@@ -178,6 +178,7 @@ class Recorder {
   void take_frames(RunChannel& channel);
   void keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause);
   void resume(RunChannel& channel);
+  bool last_of_whole(const RunChannel& channel) const;
   bool waits(const RunChannel& channel) const;
   void end_closed();
   bool end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks);

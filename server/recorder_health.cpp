@@ -21,6 +21,8 @@ constexpr milliseconds kBusyNotable{1000};
 // A new store that is damaged too says that the disk is: it is not set aside, one after another.
 constexpr std::chrono::minutes kSetAsideAgain{1};
 constexpr std::size_t kMostNews = 100;
+// A store that has filled its disk is opened again when so many bytes are free.
+constexpr std::uint64_t kToWorkWith = std::uint64_t{4} << 20;
 constexpr std::uintmax_t kPage = 4096;
 
 /// Whether a file that is no database may have been one. A text that somebody gave for one by
@@ -94,7 +96,8 @@ void Recorder::recover() {
   try {
     if (was.trouble == db::Trouble::Full) {
       const DiskSpace disk = options_.disk(store_.path());
-      if (disk.free < disk.reserve()) {
+      // Little is enough to delete runs with; whether there is room to record is judged after.
+      if (disk.free < std::min(disk.reserve(), kToWorkWith)) {
         ailment_->retry = Clock::now() + options_.retry_interval;
         return;
       }

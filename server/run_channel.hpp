@@ -155,6 +155,7 @@ class RunChannel {
   std::uint64_t next_tick_ = 0;       // after the last one stored
   std::optional<db::Gap> missing_{};  // why the ticks since then are not: cause and sentence
   bool broken_ = false;               // a frame of it could not be stored
+  bool unheard_ = false;              // it began while the store took nothing
 
   db::RunEnd end_{};  // written before closed_
   std::uint64_t ticks_ = 0;

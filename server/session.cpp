@@ -413,11 +413,19 @@ void Session::watch_run() {
   }
 }
 
-std::optional<std::string> Session::trouble_with(const algo::Request& request) const {
+std::optional<std::string> Session::trouble_with(const algo::Request& request) {
+  constexpr int kShare = 10;  // of this thread's time goes into looks at goals: a tenth
   const auto* add = std::get_if<algo::AddGoal>(&request);
   const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
-  if (asked == nullptr) return std::nullopt;
-  const algo::SetGoal& goal = *asked;
+  if (asked == nullptr || !may_look_at_goals()) return std::nullopt;
+  const auto began = std::chrono::steady_clock::now();
+  std::optional<std::string> trouble = trouble_with_goal(*asked);
+  const auto ended = std::chrono::steady_clock::now();
+  next_look_ = ended + (kShare - 1) * (ended - began);
+  return trouble;
+}
+
+std::optional<std::string> Session::trouble_with_goal(const algo::SetGoal& goal) const {
   if (state_.spec.hardware) {
     if (!newest_scan_) return std::nullopt;
     const algo::Telemetry& t = newest_scan_->telemetry;

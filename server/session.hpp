@@ -105,8 +105,12 @@ class Session {
 
   const SessionState& state() const { return state_; }
   db::RunId run_id() const { return live_ ? live_->id() : 0; }
-  /// What is known to be wrong with a goal now, as a sentence; nothing for other requests.
-  std::optional<std::string> trouble_with(const algo::Request& request) const;
+  /// What is known to be wrong with a goal now, as a sentence; nothing for other requests, nor when
+  /// there is no time to look.
+  std::optional<std::string> trouble_with(const algo::Request& request);
+  /// Whether there is time to look at a goal: in a world of thousands of things a look takes some
+  /// milliseconds, and this thread carries Stop.
+  bool may_look_at_goals() const { return std::chrono::steady_clock::now() >= next_look_; }
   /// The newest frame, null before the first.
   const FrameRef& newest() const { return newest_; }
   /// The newest frame that brought a scan: not every tick does.
@@ -133,6 +137,7 @@ class Session {
   void drain_frames();
   void answer_the_rest();
   void watch_run();
+  std::optional<std::string> trouble_with_goal(const algo::SetGoal& goal) const;
   void watch_record();
   void watch_hardware();
   void count_watchers();
@@ -148,6 +153,7 @@ class Session {
   FrameRef newest_{};
   std::chrono::steady_clock::time_point newest_came_{};
   FrameRef newest_scan_{};
+  std::chrono::steady_clock::time_point next_look_{};  // at a goal
   PathTrail path_{};
   std::map<std::uint64_t, Pending> pending_{};
   std::uint64_t next_ticket_ = 1;

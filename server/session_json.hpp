@@ -9,7 +9,7 @@ namespace server {
 
 /// {"ok":true,"trouble":sentence or null} for a goal {"x","y","heading"?} that nobody has set yet.
 /// Throws DocumentError.
-nlohmann::json goal_check_json(const Session& session, const nlohmann::json& goal);
+nlohmann::json goal_check_json(Session& session, const nlohmann::json& goal);
 /// The answer to a request that was accepted: {"ok":true}, and for a Stop whether the robot is
 /// "standing" already or the stop is "commanded" only.
 nlohmann::json accepted_json(const Session& session, bool stop);

@@ -152,6 +152,10 @@ std::optional<std::string> incompleteness(db::RunReader& reader,
     return fmt::format("Run {} is still {}.", row.id, db::to_string(row.status));
   }
   if (row.status == db::RunStatus::Interrupted) return row.reason;
+  if (row.status == db::RunStatus::Cancelled) return fmt::format("Run {} was cancelled.", row.id);
+  if (row.status == db::RunStatus::Failed) {
+    return fmt::format("Run {} failed: {}", row.id, row.reason);
+  }
   for (const db::Gap& gap : now->gaps) {
     if (gap.cause == db::GapCause::Pause) continue;
     return fmt::format(

@@ -374,8 +374,8 @@ bool Emulator::ask(const Order& order, double at) {
       return stalled_[channel] ? long{MotorStalled | LoopError} : 0;
     });
   } else if (order.name == "DI") {
-    values = {
-        senses_.front_bumper || senses_.rear_bumper || bumper_pressed_ ? 1 : 0, 0, 0, 0, 0, 0};
+    const bool front = senses_.front_bumper || bumper_pressed_;
+    values = {front ? 1 : 0, senses_.rear_bumper ? 1 : 0, 0, 0, 0, 0};
   } else {
     return false;
   }

@@ -58,16 +58,10 @@ void append_item(std::string& list, const json& item) {
   list += dump_json(item);
 }
 
-/// {"items":[...],"next":...} and `more`, the fields after those, as a page that counts.
-net::Response page_response(ApiContext& context,
-                            std::string list,
-                            const json& next,
-                            const std::string& more = "") {
-  net::Response response;
-  response.content_type = "application/json";
-  response.body =
-      context.room.hold("{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
-  return response;
+/// {"items":[...],"next":...} and `more`, the fields after those.
+net::Response page_response(std::string list, const json& next, const std::string& more = "") {
+  return net::json_response(
+      200, "{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
 }
 
 net::Response list_runs(ApiContext& context, const net::Request& request, Worker& worker) {
@@ -86,8 +80,7 @@ net::Response list_runs(ApiContext& context, const net::Request& request, Worker
     for (const db::RunRow& row : page.runs) append_item(list, to_json(row));
     if (!cursor) break;
   }
-  return page_response(context,
-                       std::move(list),
+  return page_response(std::move(list),
                        cursor ? json(std::to_string(*cursor)) : json(nullptr),
                        first_page ? fmt::format(",\"total\":{}", reader.count(filter)) : "");
 }
@@ -117,7 +110,7 @@ void start_runs(ApiContext& context, const net::Request& request, const net::Res
     respond(std::move(response));
   };
   if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
-    respond(net::problem(503, "Busy", "Too many runs are queued already. Try again later."));
+    respond(net::problem(503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
   }
 }
 
@@ -179,12 +172,13 @@ void resume_run(ApiContext& context,
       run,
       std::move(spec),
       document.at("pace").get<double>(),
+      row->what.document.size(),
       [run, respond](const std::string& refusal) {
         respond(refusal.empty() ? json_response(202, {{"runs", {run}}})
                                 : net::problem(409, "Not resumed", refusal));
       });
   if (!taken) {
-    respond(net::problem(503, "Busy", "Too many runs are queued already. Try again later."));
+    respond(net::problem(503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
   }
 }
 
@@ -203,7 +197,7 @@ net::Response list_ticks(ApiContext& context, const net::Request& request, Worke
     left -= page.ticks.size();
     next = page.next;
   }
-  return page_response(context, std::move(list), next ? json(*next) : json(nullptr));
+  return page_response(std::move(list), next ? json(*next) : json(nullptr));
 }
 
 /// Each frame as u32 little-endian length + bytes.
@@ -228,7 +222,7 @@ net::Response list_frames(ApiContext& context, const net::Request& request, Work
   net::Response response;
   response.content_type = "application/octet-stream";
   if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
-  response.body = context.room.hold(std::move(body));
+  response.body = std::make_shared<const std::string>(std::move(body));
   return response;
 }
 

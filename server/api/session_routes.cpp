@@ -249,8 +249,12 @@ void add_session_routes(net::Router& router, ApiContext& context) {
         }));
   router.add("POST",
              "/api/v1/session/goal/check",
-             immediate([&context](const net::Request& request) {
-               return json_response(200, goal_check_json(context.session, body_json(request)));
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               if (context.session.may_look_at_goals()) {
+                 respond(json_response(200, goal_check_json(context.session, body_json(request))));
+               } else {
+                 busy(respond);
+               }
              }),
              kRequestBytes);
   route("GET", "/api/v1/session", immediate([&context](const net::Request&) {

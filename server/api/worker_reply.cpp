@@ -39,9 +39,9 @@ net::Handler on_worker(
 net::Handler made_on_worker(ApiContext& context,
                             std::function<net::Response(const net::Request&, Worker&)> handler) {
   return on_worker(context,
-                   [handler = std::move(handler)](
+                   [&context, handler = std::move(handler)](
                        const net::Request& request, Worker& worker, const net::Responder& respond) {
-                     respond(handler(request, worker));
+                     respond(context.room.admit(handler(request, worker)));
                    });
 }
 
@@ -49,9 +49,9 @@ void answer_from_worker(ApiContext& context,
                         const net::Responder& respond,
                         std::function<net::Response(Worker&)> make) {
   context.workers.post(
-      [make = std::move(make), answer = through_io(context, respond)](Worker& worker) {
+      [&context, make = std::move(make), answer = through_io(context, respond)](Worker& worker) {
         try {
-          answer(make(worker));
+          answer(context.room.admit(make(worker)));
         } catch (...) {
           answer(problem_of_current_exception());
         }
@@ -71,6 +71,18 @@ net::Payload PageRoom::hold(std::string page) {
             delete body;
             held->fetch_sub(bytes);
           }};
+}
+
+net::Response PageRoom::admit(net::Response answer) {
+  if (!answer.body || answer.body->size() <= kLeast) return answer;
+  if (held_->load() + answer.body->size() > kAll) {
+    net::Response busy = net::problem(
+        503, "Busy", "Many large answers wait for slow clients to take them. Try again later.");
+    busy.headers.push_back({"Retry-After", "5"});
+    return busy;
+  }
+  answer.body = hold(*answer.body);
+  return answer;
 }
 
 void WorkerStream::next(std::function<void(Slice)> give) {

@@ -31,15 +31,17 @@ void answer_from_worker(ApiContext& context,
 net::Handler made_on_worker(ApiContext& context,
                             std::function<net::Response(const net::Request&, Worker&)> handler);
 
-/// What pages of runs, ticks and frames may hold in memory, all clients together. A page ends with
-/// the item that fills it and says where the next one begins. While many clients take their pages
-/// slowly, pages get shorter. Any thread.
+/// What answers made on workers may hold in memory, all clients together, until they are sent. A
+/// page of runs, ticks or frames ends with the item that fills it and says where the next one
+/// begins; while many clients take their pages slowly, pages get shorter. Any thread.
 class PageRoom {
  public:
   /// [bytes] after which a page of now ends.
   std::size_t page() const;
   /// The page as a body; it counts until it has been sent.
   net::Payload hold(std::string page);
+  /// The answer, its body counted; 503 when it is large and there is no room for it.
+  net::Response admit(net::Response answer);
 
  private:
   static constexpr std::size_t kPage = std::size_t{4} << 20;

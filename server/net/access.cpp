@@ -11,6 +11,10 @@
 namespace server::net {
 namespace {
 
+bool reads(const Request& request) {
+  return request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
+}
+
 constexpr std::size_t kMinToken = 16;
 constexpr std::string_view kHttp = "http://";
 constexpr std::string_view kHttps = "https://";
@@ -165,6 +169,16 @@ Access::Presented Access::look_at(const Request& request, Clock::time_point now)
   return look_at(token, address_of(request), now);
 }
 
+bool Access::needs_token(const Request& request) const {
+  const auto& open = options_.open_paths;
+  return request.path != kLoginPath && request.path != kLogoutPath &&
+         std::find(open.begin(), open.end(), request.path) == open.end();
+}
+
+bool Access::may_drive(const Request& request, bool upgrade, bool api) const {
+  return (upgrade || (api && !reads(request))) && needs_token(request);
+}
+
 std::optional<Response> Access::refuse(const Request& request,
                                        std::string_view local_address,
                                        bool upgrade,
@@ -179,22 +193,17 @@ std::optional<Response> Access::refuse(const Request& request,
                    "this server does not go by the name '" + host +
                        "'; start it with --allow-host " + host + " if it should");
   }
-  const bool reads =
-      request.method == "GET" || request.method == "HEAD" || request.method == "OPTIONS";
   const bool login = request.path == kLoginPath || request.path == kLogoutPath;
-  const bool needs_token =
-      (protected_path || upgrade) && !login &&
-      std::find(options_.open_paths.begin(), options_.open_paths.end(), request.path) ==
-          options_.open_paths.end();
-  const Presented presented = needs_token ? look_at(request, now) : Presented{};
+  const bool asks = (protected_path || upgrade) && needs_token(request);
+  const Presented presented = asks ? look_at(request, now) : Presented{};
   const bool authorized = presented.credential == Credential::Right;
   if (presented.wait) return too_many_guesses(*presented.wait);
   const bool browser = count_headers(request, "Origin") > 0;
-  if ((upgrade || !reads) && (browser || !token_required() || !needs_token || authorized) &&
+  if ((upgrade || !reads(request)) && (browser || !token_required() || !asks || authorized) &&
       !origin_allowed(request, login, authorized)) {
     return foreign_origin(request);
   }
-  if (needs_token && !authorized) {
+  if (asks && !authorized) {
     Response response = problem(
         401, "this server wants its token, as 'Authorization: Bearer' or by a login of the page");
     response.headers.push_back({"WWW-Authenticate", "Bearer"});

@@ -53,6 +53,10 @@ class Access {
                                  bool protected_path,
                                  Clock::time_point now);
 
+  /// Whether a request that may pass is one of somebody who may drive, and does: not of a visitor
+  /// who looks, logs in or asks for the health.
+  bool may_drive(const Request& request, bool upgrade, bool api) const;
+
   bool token_required() const { return !options_.token.empty(); }
 
   /// The body of POST /api/v1/login: {"token":"..."}. Right: 204 and a cookie; wrong: 401, or 429
@@ -80,6 +84,7 @@ class Access {
     std::optional<std::chrono::seconds> wait{};  // of a wrong one, where it comes too often
   };
 
+  bool needs_token(const Request& request) const;
   bool host_allowed(std::string_view host, std::string_view local_address) const;
   bool origin_allowed(const Request& request, bool login, bool authorized) const;
   Response foreign_origin(const Request& request) const;

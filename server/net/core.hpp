@@ -24,6 +24,25 @@ namespace asio = boost::asio;
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<asio::ip::tcp, Executor>;
 
+/// Bytes of large request bodies, all clients together, from the first byte of one to its answer.
+/// Small bodies pass always: a Stop is one. Io thread only.
+class BodyRoom {
+ public:
+  static constexpr std::size_t kSmall = std::size_t{16} << 10;  // [bytes]
+  static constexpr std::size_t kAll = std::size_t{64} << 20;    // [bytes]
+
+  /// False when there is no room for `bytes` more.
+  bool take(std::size_t bytes) {
+    if (taken_ + bytes > kAll) return false;
+    taken_ += bytes;
+    return true;
+  }
+  void give_back(std::size_t bytes) { taken_ -= bytes; }
+
+ private:
+  std::size_t taken_ = 0;
+};
+
 struct Core {
   explicit Core(ServerOptions server_options)
       : options(std::move(server_options)),
@@ -39,6 +58,7 @@ struct Core {
   Router router{};
   std::vector<WsEndpoint> endpoints{};
   Connections connections;
+  BodyRoom bodies{};
   std::uint32_t next_client = 1;
   bool stopping = false;
   asio::io_context context{1};

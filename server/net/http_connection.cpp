@@ -69,6 +69,8 @@ class HttpConnection final : public Connection,
   void take_header();
   bool admitted(bool upgrading);
   void upgrade();
+  bool take_body_room(std::size_t bytes);
+  void give_back_body_room();
   void send_continue();
   void read_body();
   void dispatch();
@@ -105,6 +107,7 @@ class HttpConnection final : public Connection,
   Framing framing_ = Framing::Length;
   std::string slice_{};
   std::size_t body_limit_ = 0;
+  std::size_t body_room_ = 0;  // taken of core_.bodies
   bool keep_alive_ = false;
   std::array<char, 4096> drained_{};
 };
@@ -139,6 +142,7 @@ void HttpConnection::check(Clock::time_point now) {
 
 void HttpConnection::abort() noexcept {
   ended_ = true;
+  give_back_body_room();
   error_code ignored;
   socket_.close(ignored);
 }
@@ -249,11 +253,28 @@ void HttpConnection::take_header() {
     return;
   }
   parser_->body_limit(body_limit_);
+  if (has_body && !take_body_room(parser_->content_length().value_or(body_limit_))) {
+    Response busy = problem(503, "the server has many large requests to read; try again");
+    busy.headers.push_back({"Retry-After", "5"});
+    respond(std::move(busy), false);
+    return;
+  }
   if (equal_no_case(request_.header("Expect"), "100-continue") && has_body) {
     send_continue();
   } else {
     read_body();
   }
+}
+
+bool HttpConnection::take_body_room(std::size_t bytes) {
+  if (bytes <= BodyRoom::kSmall) return true;
+  if (!core_.bodies.take(bytes)) return false;
+  body_room_ = bytes;
+  return true;
+}
+
+void HttpConnection::give_back_body_room() {
+  core_.bodies.give_back(std::exchange(body_room_, 0));
 }
 
 /// Answers what may not pass.
@@ -276,7 +297,7 @@ bool HttpConnection::admitted(bool upgrading) {
     return false;
   }
   // Who may drive, and does, will be let in again.
-  if (upgrading || (is_api() && request_.method != "GET")) core_.connections.welcome(client, now);
+  if (core_.access.may_drive(request_, upgrading, is_api())) core_.connections.welcome(client, now);
   return true;
 }
 
@@ -374,6 +395,7 @@ void HttpConnection::dispatch() {
   const std::string method_and_path =
       request_.method + ' ' + request_.target;  // undecoded: one line
   const std::string failure = core_.router.dispatch(request_, responder);
+  std::string().swap(request_.body);  // the handler has taken a copy of what it keeps
   if (!failure.empty()) core_.log(method_and_path + " failed: " + failure);
 }
 
@@ -392,6 +414,7 @@ void HttpConnection::send_file(bool keep_alive) {
 }
 
 void HttpConnection::respond(Response response, bool keep_alive) {
+  give_back_body_room();
   keep_alive_ = keep_alive && !core_.stopping;
   served_ = Clock::now();
   if (auto cookie = core_.access.renewal(request_, served_)) {

@@ -51,11 +51,25 @@ TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
   }
 }
 
-TEST_F(GateTest, ABumperHoldsUnlessTheDriverBacksAway) {
-  observation.bumpers.push_back({.mount_R = {0.35, 0, 0}, .stamp = 10, .pressed = true});
+TEST_F(GateTest, ABumperHoldsUnlessTheDriverLeavesWhatItTouched) {
+  const BumperReading front{.mount_R = {0.35, 0, 0}, .stamp = 10, .pressed = true};
+  const BumperReading rear{.mount_R = {-0.35, 0, 3.14}, .stamp = 10, .pressed = true};
+  for (const bool at_front : {true, false}) {
+    observation.bumpers.clear();
+    observation.bumpers.push_back(at_front ? front : rear);
+    const double away = at_front ? -0.1 : 0.1;
+    for (const double v : {away, -away, 0.0}) {
+      command.base = {v, 0};
+      input.by_hand = false;
+      EXPECT_EQ(gate(input, observation, command), Hold::Bumper) << at_front << v;
+      input.by_hand = true;
+      EXPECT_EQ(gate(input, observation, command), v == away ? Hold::None : Hold::Bumper)
+          << at_front << v;
+    }
+  }
+  observation.bumpers.push_back(front);  // both
+  command.base = {-0.1, 0};
   EXPECT_EQ(gate(input, observation, command), Hold::Bumper);
-  input.reversing_by_hand = true;
-  EXPECT_EQ(gate(input, observation, command), Hold::None);
 }
 
 TEST_F(GateTest, NothingDrivesWhereADazzledScannerSeesNothing) {

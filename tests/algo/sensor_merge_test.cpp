@@ -49,6 +49,18 @@ TEST(SensorMerge, WhatTheLaserMissedStandsInItsBeams) {
   for (std::size_t i = 178; i <= 182; ++i) EXPECT_NEAR(scan.ranges[i], 1.0, 1e-12) << i;
 }
 
+TEST(SensorMerge, AReadingThatIsReportedAgainStaysWhereItWas) {
+  SensorMerge merge;
+  Observation observation;
+  observation.sonar.push_back(reading(0, 0.8, 1.0));
+  merge.take(observation);
+  observation.odometry.pose.x = 0.2;  // driven on since; the base says the same once more
+  merge.take(observation);
+  LaserScan scan = free_scan();
+  merge.enter(observation.odometry.pose, 1.1, scan);
+  EXPECT_NEAR(scan.ranges[180], 0.8, 1e-12);
+}
+
 TEST(SensorMerge, WhatTheLaserSeesAsNearIsLeftToIt) {
   SensorMerge merge;
   Observation observation;

@@ -21,7 +21,7 @@ run_emulated() {
       printf 'type = "pioneer"\nwatchdog = 2.0\n'
     else
       printf 'type = "roboteq"\nwatchdog = 0.5\nwheel_radius = 0.10\ngear = 20\n'
-      printf 'encoder_lines = 500\nfull_speed_rpm = 1000\nbumper_inputs = [1]\n'
+      printf 'encoder_lines = 500\nfull_speed_rpm = 1000\nbumper_inputs = [1]\nrear_bumper_inputs = [2]\n'
     fi
   } >"$links/robot.toml"
   "$root/$program" emulate robot --scenario demo --base "$base" --links "$links" </dev/null >&2 &

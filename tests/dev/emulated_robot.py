@@ -33,7 +33,7 @@ watchdog = {watchdog}
 
 BASE = {
     "roboteq": 'type = "roboteq"\nwheel_radius = 0.10\ngear = 20\nencoder_lines = 500\n'
-    "full_speed_rpm = 1000\nbumper_inputs = [1]\nbattery_low = 22\n",
+    "full_speed_rpm = 1000\nbumper_inputs = [1]\nrear_bumper_inputs = [2]\nbattery_low = 22\n",
     "p2os": 'type = "pioneer"\nbattery_low = 11\n',
 }
 

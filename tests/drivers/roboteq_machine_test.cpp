@@ -315,6 +315,21 @@ TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
   EXPECT_TRUE(f.machine.state().bumper_front);
 }
 
+TEST(RoboteqMachine, BumpersAtTheRearAreNotTakenForThoseAtTheFront) {
+  RoboteqSetup with = setup();
+  with.bumper_inputs = {1};
+  with.rear_bumper_inputs = {2};
+  Fixture f(with);
+  ASSERT_TRUE(f.running());
+  for (const auto& [inputs, front, rear] :
+       {std::tuple{"0:0", false, false}, {"1:0", true, false}, {"0:1", false, true}}) {
+    f.device.inputs = inputs;
+    f.bench.run(0.3);
+    EXPECT_EQ(f.machine.state().bumper_front, front) << inputs;
+    EXPECT_EQ(f.machine.state().bumper_rear, rear) << inputs;
+  }
+}
+
 TEST(RoboteqMachine, SilenceIsSaidAndEverythingCheckedAgain) {
   Fixture f;
   ASSERT_TRUE(f.running());

@@ -22,6 +22,7 @@ const WheelDynamics kRoboteq{.ramp_of_wheels = true, .ramps = {0.465, 0.465}, .c
 struct Wrong {
   double runaway = 0;         // [m/s] of both
   bool encoder_dead = false;  // of the left one
+  double gain = 1;            // times as fast as told
 };
 
 /// A base on ramps, its wheels slipping, its line late by turns; and a watch over it.
@@ -97,8 +98,8 @@ class Driven {
   void report() {
     if (now >= next_report_) {
       next_report_ += dynamics_.checked ? 0.1 : 0.035;
-      double left = measured(left_, 0);
-      double right = measured(right_, 1);
+      double left = measured(wrong.gain * left_, 0);
+      double right = measured(wrong.gain * right_, 1);
       if (wrong.runaway != 0) left = right = wrong.runaway;
       if (wrong.encoder_dead) left = 0;
       // Some wait on the line for a while, and those behind them too.
@@ -185,6 +186,23 @@ TEST(WheelWatch, WheelsFasterThanToldAreFoundInTime) {
       const auto after = found_after(base, {0.1, 0});
       ASSERT_TRUE(after);
       EXPECT_LE(*after, 0.3);
+    }
+  }
+}
+
+/// What is told in the same moment excuses nothing that its ramp cannot have brought about.
+TEST(WheelWatch, WheelsFasterThanToldAreFoundWhileTheRobotIsToldToTurn) {
+  for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
+    for (std::uint64_t seed = 1; seed < 20; ++seed) {
+      Driven base(dynamics, seed);
+      for (int i = 0; i < 60; ++i) ASSERT_FALSE(base.tick({0.08, 0}));
+      base.wrong.gain = 2;
+      bool found = false;
+      const double began = base.now;
+      while (!found && base.now < began + 1) {
+        found = base.tick(base.now < began + 0.15 ? algo::Twist2{0.08, 0} : algo::Twist2{0.07, 0.8});
+      }
+      EXPECT_LE(base.now - began, 0.4) << seed;
     }
   }
 }

@@ -36,7 +36,7 @@ std::string robot_file(const BenchOptions& options, const sim::Scenario& scenari
   if (!p2os) {
     text +=
         "wheel_radius = 0.1\ngear = 20\nencoder_lines = 500\nfull_speed_rpm = 1000\n"
-        "bumper_inputs = [1]\n";
+        "bumper_inputs = [1]\nrear_bumper_inputs = [2]\n";
   }
   return text;
 }

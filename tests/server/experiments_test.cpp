@@ -36,9 +36,16 @@ class ExperimentsTest : public test::RecorderFiles {
     });
     return runs.get_future().get();
   }
+  static std::string refused(Experiments& experiments, const Experiment& experiment) {
+    std::promise<std::string> why;
+    experiments.start(experiment, [&](const std::vector<db::RunId>&, const std::string& failure) {
+      why.set_value(failure);
+    });
+    return why.get_future().get();
+  }
   static std::string resume(Experiments& experiments, db::RunId run) {
     std::promise<std::string> refusal;
-    experiments.resume(run, case1(), 0, [&](const std::string& why) { refusal.set_value(why); });
+    experiments.resume(run, case1(), 0, 1000, [&](const std::string& why) { refusal.set_value(why); });
     return refusal.get_future().get();
   }
   bool comes_to(db::RunId run, RunStatus status) {
@@ -77,24 +84,47 @@ TEST_F(ExperimentsTest, RunsThatWereCutAreInterruptedAndRunAgainUnderTheirNumber
   }
 }
 
-TEST_F(ExperimentsTest, QueuedRunsWaitForRoomAndCanBeCancelledMeanwhile) {
-  std::atomic<std::uint64_t> free = 0;
+TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
+  std::atomic<std::uint64_t> free = 100 << 20;
   RecorderOptions options = recorder_options();
   options.wait_for_room = true;
   options.commit_interval = std::chrono::milliseconds(5);
   options.disk = [&](const std::string&) { return DiskSpace{.free = free, .total = 160 << 20}; };
   Recorder recorder(path, std::move(options));
-  ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
   Experiments experiments(recorder);
-  const auto runs = start(experiments, {.spec = case1(), .repeats = 2});
-  EXPECT_TRUE(experiments.cancel(runs[0]));
-  EXPECT_TRUE(comes_to(runs[0], RunStatus::Cancelled));
+  const auto runs = start(experiments, {.spec = case1(), .repeats = 3, .pace = 4});
   RunReader reader(path);
-  EXPECT_EQ(get(reader, runs[1]).status, RunStatus::Queued);
-  EXPECT_EQ(recorder.ask([&](db::RunStore& store) { return store.delete_run(runs[0]); }),
-            db::RunStore::Deletion::Deleted);
+  ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
+  free = 0;
+  ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
+  EXPECT_THAT(refused(experiments, {.spec = case1()}), HasSubstr("almost full"));
+  // The one at work has ticks that wait for room: it ends all the same.
+  for (const db::RunId run : {runs[0], runs[1]}) {
+    EXPECT_TRUE(experiments.cancel(run));
+    EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
+    EXPECT_EQ(recorder.ask([&](db::RunStore& store) { return store.delete_run(run); }),
+              db::RunStore::Deletion::Deleted);
+  }
+  EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
   free = 100 << 20;
-  EXPECT_TRUE(comes_to(runs[1], RunStatus::Finished));
+  EXPECT_TRUE(comes_to(runs[2], RunStatus::Finished));
+  EXPECT_EQ(verify_run(reader, runs[2]).incomplete, std::nullopt);
+}
+
+TEST_F(ExperimentsTest, LargeWorldsThatWaitAreCountedInBytes) {
+  Recorder recorder(path, recorder_options());
+  Experiments experiments(recorder);
+  Experiment large{.spec = case1(), .pace = 0.1};
+  for (std::uint32_t id = 100; id < 1900; ++id) {
+    algo::Obstacle thing{.id = id, .shape = algo::Cylinder{.radius = 0.1}};
+    thing.pose_W = {20.0 + id, 0, 0};
+    large.spec.scenario.obstacles.push_back(thing);
+  }
+  std::size_t taken = 0;
+  while (taken < 2000 && experiments.start(large, [](const auto&, const auto&) {})) ++taken;
+  EXPECT_GT(taken, 20U);
+  EXPECT_LT(taken, 1000U);
+  EXPECT_TRUE(experiments.start({.spec = case1()}, [](const auto&, const auto&) {}));
 }
 
 }  // namespace

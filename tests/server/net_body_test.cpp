@@ -9,6 +9,8 @@
 #include "tests/server/net_client.hpp"
 #include <gtest/gtest.h>
 
+#include "server/net/core.hpp"
+
 namespace server::net::test {
 namespace {
 
@@ -99,6 +101,30 @@ TEST_F(NetBody, ARouteMayTakeLessThanTheServer) {
                 "Content-Type: application/json\r\nTransfer-Encoding: chunked\r\n\r\n"
                 "b\r\n[1,2,3,4,5]\r\n0\r\n\r\n")
                 .status);
+}
+
+TEST_F(NetBody, LargeBodiesOfAllClientsTogetherHaveABoundAndSmallOnesPass) {
+  serve();
+  const std::string large =
+      "POST /api/v1/echo HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+      "Content-Length: 1048576\r\n\r\n[";
+  std::vector<Client> slow;
+  for (std::size_t bytes = 0; bytes < BodyRoom::kAll; bytes += std::size_t{1} << 20) {
+    slow.emplace_back(port());
+    slow.back().send(large);
+  }
+  const auto refused = [&] {
+    Client one_more(port());
+    one_more.send(large);
+    const Answer answer = read_answer(one_more);
+    return answer.status == 503 && answer.headers.count("Retry-After") == 1;
+  };
+  EXPECT_TRUE(eventually(refused));
+  EXPECT_EQ(200, ask(post_request("/api/v1/echo", "[1]")).status);
+  slow.clear();
+  EXPECT_TRUE(eventually([&] {
+    return ask(post_request("/api/v1/echo", "[" + std::string(100'000, ' ') + "]")).status == 200;
+  }));
 }
 
 /// Counts to `slices` in slices of 100 kB; breaks off instead of the slice after `good`.

@@ -104,6 +104,45 @@ TEST_F(RecorderHealthTest, AFullDiskLeavesAGapAndTheRunGoesOn) {
   EXPECT_EQ(read_frames(reader, run.id, 0, 1000).size(), run.ticks);
 }
 
+TEST_F(RecorderHealthTest, ManyResetsWhileTheStoreFailsLeaveNoRunWithoutItsEnd) {
+  RecorderOptions options = quick();
+  std::atomic<std::uint64_t> free = 100 << 20;
+  options.store.max_pages = 240;
+  options.disk = [&](const std::string&) {
+    return server::DiskSpace{.free = free, .total = 160 << 20};
+  };
+  Recorder recorder(path, std::move(options));
+  const auto old = recorder.open(what());
+  push(*old, 0, 500);
+  old->close({.outcome = "reached"}, 500);
+  recorder.flush();
+  const auto first = recorder.begin(what());
+  std::uint64_t tick = 0;
+  for (; !first->failed(); ++tick) {
+    ASSERT_LT(tick, 100'000U);
+    push(*first, tick);
+  }
+  free = 0;
+  first->close({.outcome = "stopped"}, tick);
+  for (int reset = 0; reset < 100; ++reset) {
+    const auto next = recorder.begin(what());
+    push(*next, 0);
+    next->close({.outcome = "stopped"}, 1);
+  }
+  EXPECT_TRUE(recorder.flush());
+  recorder.post_when_well([&](db::RunStore& store) {
+    store.delete_run(old->run());
+    while (store.sweep()) {
+    }
+  });
+  free = 100 << 20;
+  EXPECT_TRUE(comes([&] {
+    recorder.flush();
+    RunReader reader(path);
+    return get(reader, first->run()).status == RunStatus::Finished;
+  }));
+}
+
 TEST_F(RecorderHealthTest, ADeletedFileIsBegunAnew) {
   Recorder recorder(path, quick());
   const auto live = recorder.begin(what());

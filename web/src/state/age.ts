@@ -4,7 +4,7 @@ import { SessionState } from "../contract";
 import { PlacedSweep, SceneState } from "./scene";
 
 const kNewsLimit = 1.0; // [s] a robot at work is heard of many times a second
-const kScanLimit = 0.5; // [s] the slowest scanner brings four a second
+const kScanLimit = 0.5; // [s] at least; a slow scanner's robot waits longer before it stops
 const kAtRest = 0.01;   // [m/s], [rad/s] below what odometry resolves
 
 /** [s] Since the robot was last heard of; null while that is no matter. */
@@ -20,7 +20,7 @@ export function news_age(scene: SceneState, session: SessionState | null, open: 
 /** [s] Of a sweep at the newest tick; null while it is young enough to drive by. */
 export function sweep_age(scene: SceneState, placed: PlacedSweep): number | null {
   const age = (scene.frame?.stamp ?? 0) - placed.sweep.stamp;
-  return age > kScanLimit ? age : null;
+  return age > Math.max(kScanLimit, scene.scan_timeout) ? age : null;
 }
 
 /** [s] Of the oldest scanner's newest sweep; null while all are young. */

@@ -40,6 +40,7 @@ export interface SceneState {
   filter: FilterName | string;
   half_width: number;
   safety_distance: number; // [m] about the centre
+  scan_timeout: number; // [s] the age of a scan by which the robot stops
   events: EventLog;
   run: number | null;
   heard_at: number | null; // [ms] performance.now() when the newest live frame came
@@ -51,6 +52,7 @@ export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], readings: new Map(), grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
     goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
+    scan_timeout: 0,
     events: new EventLog(), run: null, heard_at: null, world: true,
   };
 }
@@ -88,6 +90,7 @@ export function fold_session(scene: SceneState, s: SessionState): void {
 export function take_parameters(scene: SceneState, p: Record<string, number>): void {
   scene.half_width = Math.round(p.filter_half_width ?? scene.half_width);
   scene.safety_distance = p.safety_distance ?? scene.safety_distance;
+  scene.scan_timeout = p.scan_timeout ?? scene.scan_timeout;
 }
 
 /** A live frame: the newest instant, and a row of history. */

@@ -50,7 +50,7 @@ export function Banner(): JSX.Element | null {
     return (
       <div class="banner bad" role="alert" data-testid="banner">
         <span>{link_words(link, performance.now())} {session?.source === "hardware" &&
-          "The robot stops by itself when nobody can stop it."}</span>
+          "A robot that nobody watches stops by itself, unless its server was started with --unattended."}</span>
         <button class="text" onClick={() => app.link.retry_now()}>Try now</button>
       </div>
     );
