@@ -10,7 +10,6 @@
 namespace algo {
 namespace {
 
-constexpr double kJustCome = 0.2;      // [s] a younger scan that does not count is a blinded one
 constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence
 
 template <typename... Args>
@@ -50,11 +49,10 @@ Explanation explain_hold(const Telemetry& t) {
       if (t.scene.scan.size() == 0) {
         return {"Waiting for the laser", "No scan has come yet. The robot waits."};
       }
-      if (age < kJustCome) {
-        return {"Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
-      }
       return {"Waiting for the laser", format("Scan is %.1f s old. The robot waits.", age)};
     }
+    case Hold::Dazzled:
+      return {"Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
     case Hold::NotFinite:
       return {"Holding still", "A sensor or the controller gave a value that is not a number."};
     case Hold::LinkLost:

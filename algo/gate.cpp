@@ -38,7 +38,8 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   if (observation.bumper_pressed() && !leaves) return Hold::Bumper;
   // Written so that a stamp that is not a number counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
-  return fresh && !in.hidden ? Hold::None : Hold::StaleScan;
+  if (!fresh) return in.blinded ? Hold::Dazzled : Hold::StaleScan;
+  return in.hidden ? Hold::Dazzled : Hold::None;
 }
 
 }  // namespace algo

@@ -10,6 +10,7 @@ struct GateInput {
   bool link_lost = false;
   double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
+  bool blinded = false;                // most of the newest scan tells nothing: it does not count
   bool hidden = false;                 // the command leads where a dazzled scanner saw nothing
   bool by_hand = false;                // a person drives, and may back away from what was hit
 };

@@ -83,6 +83,7 @@ void Pipeline::reset(const Pose2& start_W) {
   scene_ = {};
   merge_.reset();
   scan_stamp_.reset();
+  blinded_ = false;
   clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
@@ -158,7 +159,8 @@ void Pipeline::sense(Telemetry& t) {
   if (front != nullptr) {
     const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
     filter_.apply(filter_kind_, half_width, *front, scene_.scan);
-    if (!blinded(*front)) scan_stamp_ = front->stamp;
+    blinded_ = blinded(*front);
+    if (!blinded_) scan_stamp_ = front->stamp;
     merge_.enter(t.observation.odometry.pose, t.observation.stamp, scene_.scan);
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
@@ -229,6 +231,7 @@ void Pipeline::hold(Telemetry& t) {
   in.stopped = stopped_;
   in.scan_timeout = parameters_[Parameter::ScanTimeout];
   in.scan_stamp = scan_stamp_;
+  in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
   in.by_hand = t.behaviour == BehaviourId::Manual;
   t.hold = gate(in, t.observation, t.command);

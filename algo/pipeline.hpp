@@ -63,6 +63,7 @@ class Pipeline {
   SensorMerge merge_{};
   bool by_sonar_ = false;               // the ring stands in for the scanner
   std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
+  bool blinded_ = false;                // the newest scan is
   double clearance_ = 0;                // [m] of the newest scan
   Joystick joystick_{};
   std::uint64_t joystick_ticks_ = 0;       // ticks the stick's value still counts

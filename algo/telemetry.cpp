@@ -13,6 +13,8 @@ std::string_view name(Hold hold) {
       return "bumper";
     case Hold::StaleScan:
       return "stale_scan";
+    case Hold::Dazzled:
+      return "dazzled";
     case Hold::NotFinite:
       return "not_finite";
     case Hold::LinkLost:

@@ -142,7 +142,8 @@ enum class Hold : std::uint8_t {
   StaleScan,
   NotFinite,
   LinkLost,
-  Halted,  // by the robot itself: observation.halt says why
+  Halted,   // by the robot itself: observation.halt says why
+  Dazzled,  // beams ahead, or most of them, tell nothing
 };
 
 /// The sequencing layer's state.

@@ -21,6 +21,7 @@ constexpr double kCreep = 0.02;         // [m/s] a wheel that must go no faster 
 constexpr double kStill = 0.25;         // of the least speed: below, a wheel counts as standing
 constexpr double kSeenToStand = 0.005;  // [m] a wheel must have gone while its encoder stood
 constexpr double kClearly = 0.03;       // [m/s] from here on one checked report is enough
+constexpr double kSurely = 1.5;         // times what is tolerated: likewise
 constexpr unsigned kReports = 2;        // that agree, otherwise
 
 }  // namespace
@@ -75,9 +76,11 @@ void WheelWatch::follow(double until) {
     if (braking) ramp = std::max(ramp, turn ? kGentleBraking / half_track_ : kGentleBraking);
     Interval& axis = axes_[i];
     // Speeding up alone: what slows it down may be the floor, or its own watchdog.
-    const double gain = kAtMost * dynamics_.ramps[i] * dt;
-    wanted[i].high = std::min(wanted[i].high, std::max(axis.high, 0.0) + gain);
-    wanted[i].low = std::max(wanted[i].low, std::min(axis.low, 0.0) - gain);
+    if (dynamics_.ramps[i] > 0) {
+      const double gain = kAtMost * dynamics_.ramps[i] * dt;
+      wanted[i].high = std::min(wanted[i].high, std::max(axis.high, 0.0) + gain);
+      wanted[i].low = std::max(wanted[i].low, std::min(axis.low, 0.0) - gain);
+    }
     axis.high = std::max(wanted[i].high, axis.high - ramp * dt);
     axis.low = std::min(wanted[i].low, axis.low + ramp * dt);
   }
@@ -129,7 +132,7 @@ bool WheelWatch::report(double stamp, const algo::Twist2& twist) {
   const bool enough = dynamics_.checked;
   too_fast_.reports = excess > tolerance ? too_fast_.reports + 1 : 0;
   if (too_fast_.reports >= kReports) return true;
-  if (enough && excess > 2 * tolerance) return true;
+  if (enough && excess > kSurely * tolerance) return true;
   too_slow_ = stands > 0 ? Doubt{too_slow_.reports + 1, too_slow_.way + stands * dt} : Doubt{};
   if (enough && stands > kClearly) return true;
   return too_slow_.reports >= kReports && too_slow_.way > kSeenToStand;

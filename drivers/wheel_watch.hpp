@@ -12,7 +12,8 @@ namespace drivers {
 struct WheelDynamics {
   /// Each wheel has a ramp of its own; otherwise speed and turn have one each.
   bool ramp_of_wheels = false;
-  /// [m/s2] of the left and the right wheel; or [m/s2] of the speed, [rad/s2] of the turn.
+  /// [m/s2] of the left and the right wheel; or [m/s2] of the speed, [rad/s2] of the turn. 0: not
+  /// known, it may be any.
   std::array<double, 2> ramps{};
   /// [m/s] of a wheel: the least difference that is told or reported.
   double resolution = 0;

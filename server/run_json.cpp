@@ -137,7 +137,7 @@ json to_json(const db::RunRow& row) {
 const db::CsvNames& csv_names() {
   static const db::CsvNames names = [] {
     db::CsvNames out;
-    for (int i = 0; i <= static_cast<int>(algo::Hold::Halted); ++i) {
+    for (int i = 0; i <= static_cast<int>(algo::Hold::Dazzled); ++i) {
       out.holds.emplace_back(algo::name(static_cast<algo::Hold>(i)));
     }
     for (int i = 0; i <= static_cast<int>(algo::BehaviourId::Manual); ++i) {

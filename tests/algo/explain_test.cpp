@@ -84,7 +84,8 @@ TEST(Explain, EveryStateHasItsSentences) {
                           Hold::Bumper,
                           Hold::StaleScan,
                           Hold::NotFinite,
-                          Hold::LinkLost}) {
+                          Hold::LinkLost,
+                          Hold::Dazzled}) {
     for (const Mission mission :
          {Mission::Idle, Mission::Driving, Mission::Arrived, Mission::Stuck, Mission::Held}) {
       for (const bool with_goal : {false, true}) {

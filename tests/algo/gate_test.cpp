@@ -74,7 +74,12 @@ TEST_F(GateTest, ABumperHoldsUnlessTheDriverLeavesWhatItTouched) {
 
 TEST_F(GateTest, NothingDrivesWhereADazzledScannerSeesNothing) {
   input.hidden = true;
-  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  EXPECT_EQ(gate(input, observation, command), Hold::Dazzled);
+  input.hidden = false;
+  input.blinded = true;  // lately: the last one that counted is young enough
+  EXPECT_EQ(gate(input, observation, command), Hold::None);
+  input.scan_stamp.reset();
+  EXPECT_EQ(gate(input, observation, command), Hold::Dazzled);
 }
 
 TEST_F(GateTest, StopComesFirst) {

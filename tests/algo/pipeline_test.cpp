@@ -83,7 +83,7 @@ TEST_F(PipelineTest, ABlindedScanIsNone) {
   ask(SetGoal{{3, 0}, std::nullopt});
   tick();
   for (int i = 0; i < 8; ++i) tick(0, true, true);
-  EXPECT_EQ(tick(0, true, true).hold, Hold::StaleScan);
+  EXPECT_EQ(tick(0, true, true).hold, Hold::Dazzled);
   EXPECT_EQ(t.command, Command{});
   EXPECT_NE(algo::explain(t).why.find("blinded"), std::string::npos);
   EXPECT_EQ(tick().hold, Hold::None);
@@ -92,11 +92,11 @@ TEST_F(PipelineTest, ABlindedScanIsNone) {
 TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
   ask(SetGoal{{3, 0}, std::nullopt});
   EXPECT_EQ(tick().hold, Hold::None);
-  EXPECT_EQ(tick(0, true, false, 20).hold, Hold::StaleScan);
+  EXPECT_EQ(tick(0, true, false, 20).hold, Hold::Dazzled);
   EXPECT_EQ(t.command, Command{});
   EXPECT_EQ(t.mission, Mission::Held);
   EXPECT_NE(algo::explain(t).why.find("dazzled"), std::string::npos);
-  EXPECT_EQ(tick(0, false).hold, Hold::StaleScan);  // no newer scan
+  EXPECT_EQ(tick(0, false).hold, Hold::Dazzled);  // no newer scan
   EXPECT_EQ(tick(0, true, false, 2).hold, Hold::None);
 }
 

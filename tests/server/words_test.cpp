@@ -35,7 +35,8 @@ algo::Telemetry driving() {
 /// One of each sentence.
 std::vector<algo::Telemetry> ticks() {
   std::vector<algo::Telemetry> out;
-  for (int hold = 1; hold <= static_cast<int>(algo::Hold::LinkLost); ++hold) {
+  for (int hold = 1; hold <= static_cast<int>(algo::Hold::Dazzled); ++hold) {
+    if (static_cast<algo::Hold>(hold) == algo::Hold::Halted) continue;
     out.push_back(driving());
     out.back().hold = static_cast<algo::Hold>(hold);
   }

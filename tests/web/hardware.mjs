@@ -49,8 +49,10 @@ test("emulated hardware: arm, drive, a silent scanner, the stop button, Stop", {
       await words("a silent scanner", /front laser|scanner is silent/);
       await until("rest", 10, way, (metres) => metres < 1e-4);
       await p.shot(`hardware-${name}-silent`);
+      await until("disarmed, as it stood for long", 10, session, (s) => !s.hardware.armed);
+      await words("a scanner that is lost", /looked for again/);
       await until("a scanner that is back", 30, session, (s) => s.hardware.devices.every((d) => d.well));
-      if (await p.get("arm").textContent() === "Arm motors") await p.get("arm").click();
+      await p.get("arm").click();
       await until("armed again", 20, session, (s) => s.hardware.armed);
 
       robot.tell("stop on");

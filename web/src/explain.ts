@@ -55,8 +55,6 @@ const kHalts: Record<Exclude<Halt, "none">, Explanation> = {
     why: "The control loop came too late; the wheels were stopped." },
 };
 
-const kJustCome = 0.2; // [s] a younger scan that does not count is a blinded one
-
 function explain_hold(f: Frame): Explanation {
   switch (f.hold) {
     case "halted":
@@ -69,9 +67,9 @@ function explain_hold(f: Frame): Explanation {
     case "stale_scan":
       return { what: "Waiting for the laser", why: f.newest_scan === null
         ? "No scan has come yet. The robot waits."
-        : f.stamp - f.newest_scan < kJustCome
-          ? "It is blinded or dazzled: beams ahead tell nothing."
-          : `Scan is ${(f.stamp - f.newest_scan).toFixed(1)} s old. The robot waits.` };
+        : `Scan is ${(f.stamp - f.newest_scan).toFixed(1)} s old. The robot waits.` };
+    case "dazzled":
+      return { what: "Waiting for the laser", why: "It is blinded or dazzled: beams ahead tell nothing." };
     case "not_finite":
       return { what: "Holding still",
         why: "A sensor or the controller gave a value that is not a number." };

@@ -43,7 +43,7 @@ export type FrameRequest =
   | { type: "stop"; engaged: boolean }
   | { type: "set_parameter"; name: string; value: number };
 
-export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost" | "halted";
+export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost" | "halted" | "dazzled";
 /** Why real hardware holds its own wheels still. */
 export type Halt = "none" | "disarmed" | "base_lost" | "scanner_lost" | "bad_line" | "scanner_fault" |
   "stop_button" | "base_fault" | "over_current" | "battery_low" | "motors_off" | "late_tick";
@@ -51,7 +51,7 @@ export type Mission = "idle" | "driving" | "arrived" | "stuck" | "held";
 export type Behaviour = "rest" | "avoid" | "manual";
 
 const kHolds: Hold[] =
-  ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost", "halted"];
+  ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost", "halted", "dazzled"];
 const kHalts: Halt[] = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
   "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"];
 const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];

@@ -13,6 +13,7 @@ const kHoldWords: Record<string, string> = {
   stopped: "Stop",
   bumper: "Bumper pressed",
   stale_scan: "Scan too old",
+  dazzled: "Laser dazzled",
   not_finite: "A number was not finite",
   link_lost: "Link to the robot lost",
   halted: "Held by the robot",
