@@ -3,8 +3,8 @@
 //
 // A beam that returned nothing (no echo, farther than the range) or too little (a dark or shining
 // wall, which rooms have) has looked. One that was dazzled or in error has not: anything may stand
-// there. A dropout here and there is no harm; neighbouring beams that have not looked make a cone in
-// which a person can stand unseen.
+// there. A dropout here and there is no harm; neighbouring beams that have not looked make a cone
+// in which a person can stand unseen.
 #pragma once
 
 #include <cstddef>

@@ -50,7 +50,7 @@ class SensorMerge {
  private:
   struct Kept {
     Pose2 mount_R{};
-    double half_width = 0;  // [rad]
+    double half_width = 0;                                    // [rad]
     double stamp = -std::numeric_limits<double>::infinity();  // [s] run clock
     bool hit = false;
     Vec2 from_W{0, 0};  // where the sensor was

@@ -57,6 +57,10 @@ RunStore::RunStore(const std::string& path, const StoreOptions& options, Closed 
   if (!options_.numbers) options_.numbers = std::make_shared<RunNumbers>();
 }
 
+std::uint64_t RunStore::log_limit() const {
+  return std::uint64_t{options_.log_pages} * kPageBytes;
+}
+
 RunStore::RunStore(const std::string& path, const StoreOptions& options)
     : RunStore(path, options, Closed{}) {
   open();

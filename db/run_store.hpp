@@ -137,6 +137,8 @@ class RunStore {
   std::uint64_t used_bytes();
   /// [bytes] of the write-ahead log beside it.
   std::uint64_t log_bytes() const;
+  /// [bytes] after which it is folded into the file; one large transaction may go beyond it.
+  std::uint64_t log_limit() const;
   /// Folds the log into the file and empties it, as far as no reader needs it. Commits.
   void fold_log();
   /// [bytes] of the file that deleted runs left and new ones will fill.

@@ -25,7 +25,8 @@ class LineThread {
   LineThread(const LineThread&) = delete;
   LineThread& operator=(const LineThread&) = delete;
 
-  static constexpr double kLeaving = 12.0;  // [s] an LMS200: 3 for a switch, 2 or 3 deaf, 3 for its rate
+  static constexpr double kLeaving =
+      12.0;  // [s] an LMS200: 3 for a switch, 2 or 3 deaf, 3 for its rate
 
   /// Calls `action`, which may give orders, with the machine locked. From any thread.
   template <class Action>

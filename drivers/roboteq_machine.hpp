@@ -16,10 +16,10 @@ struct RoboteqSetup {
   Wheel wheel{};
   double half_track = 0.25;  // [m]
   BaseLimits limits{};
-  double watchdog = 0.5;             // [s]
-  double max_current = 0;            // [A] of a motor; 0: not watched
-  std::array<bool, 2> reversed{};    // a motor that turns the other way: left, right
-  bool swapped = false;              // channel 1 is the right motor
+  double watchdog = 0.5;           // [s]
+  double max_current = 0;          // [A] of a motor; 0: not watched
+  std::array<bool, 2> reversed{};  // a motor that turns the other way: left, right
+  bool swapped = false;            // channel 1 is the right motor
   // Digital inputs, counted from 1, that are 1 when hit.
   std::vector<int> bumper_inputs{};  // at the front
   std::vector<int> rear_bumper_inputs{};

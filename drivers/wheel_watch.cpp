@@ -46,9 +46,9 @@ void WheelWatch::command(double now, const algo::Twist2& twist, bool braking) {
   ++told_count_;
 }
 
-/// Moves the intervals on to `until`: no faster than the fastest ramp to wherever a command may have
-/// taken the base by then, and back from where no command wants it any more, no faster than the
-/// slowest.
+/// Moves the intervals on to `until`: no faster than the fastest ramp to wherever a command may
+/// have taken the base by then, and back from where no command wants it any more, no faster than
+/// the slowest.
 void WheelWatch::follow(double until) {
   const double dt = until - stamp_;
   std::array<Interval, 2> wanted{};

@@ -14,7 +14,7 @@ struct DiskSpace {
   std::uint64_t total = 0;          // [bytes]
 
   /// [bytes] the record leaves free, for its own log and for everybody else.
-  std::uint64_t reserve() const { return std::min<std::uint64_t>(total / 16, 64u << 20); }
+  std::uint64_t reserve() const { return std::min<std::uint64_t>(total / 8, 64u << 20); }
 };
 
 /// Of the disk that holds `file`. What cannot be found out counts as plenty.

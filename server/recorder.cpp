@@ -19,20 +19,28 @@ constexpr milliseconds kNap{20};
 constexpr milliseconds kLastPatience{2000};
 // Runs that began and ended while the store failed, and wait for it; older ones are then let go.
 constexpr std::size_t kMostWaiting = 64;
+// [bytes] of frames, not packed yet, that never make a commit due before its time.
+constexpr std::uint64_t kLeastUncommitted = std::uint64_t{1} << 20;
 // What one commit interval may spend on jobs that waited for the store.
 constexpr milliseconds kLaterTime{100};
 
-/// The write-ahead log is to be a small part of what may be kept at all.
-db::StoreOptions store_options(const RecorderOptions& options,
+/// [bytes] that may be kept, as far as anybody knows at the start.
+std::uint64_t most_kept(const std::string& path, const RecorderOptions& options) {
+  const std::uint64_t limit = options.retention_bytes > 0 ? options.retention_bytes : UINT64_MAX;
+  const std::uint64_t disk = options.disk(path).total;
+  return disk > 0 ? std::min(limit, disk) : limit;
+}
+
+/// The write-ahead log is to be a small part of that.
+db::StoreOptions store_options(std::uint64_t most,
+                               const RecorderOptions& options,
                                const std::shared_ptr<db::RunNumbers>& numbers) {
   constexpr std::uint64_t kPageBytes = 4096;
   constexpr std::uint64_t kFewestPages = 16;
   db::StoreOptions store = options.store;
   store.numbers = numbers;
-  if (options.retention_bytes > 0) {
-    store.log_pages = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(
-        options.retention_bytes / 16 / kPageBytes, kFewestPages, store.log_pages));
-  }
+  store.log_pages = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(most / 16 / kPageBytes, kFewestPages, store.log_pages));
   return store;
 }
 
@@ -42,7 +50,10 @@ constexpr const char* kStopping = "The server is stopping; nothing more is recor
 
 Recorder::Recorder(const std::string& path, RecorderOptions options)
     : options_(std::move(options)),
-      store_(path, store_options(options_, numbers_), db::RunStore::Closed{}) {
+      most_uncommitted_(std::max(kLeastUncommitted, most_kept(path, options_) / 16)),
+      store_(path,
+             store_options(most_kept(path, options_), options_, numbers_),
+             db::RunStore::Closed{}) {
   open_store();
   interrupted_ = store_.interrupted();
   takes_more_ = !ailment_;
@@ -166,7 +177,7 @@ void Recorder::work_once(bool last) {
   take_arrivals();
   take_frames();
   end_closed();
-  if (Clock::now() >= commit_due_) {
+  if (Clock::now() >= commit_due_ || uncommitted_ > most_uncommitted_) {
     run_later();
     look_at_file();
     commit();
@@ -279,6 +290,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
         store_.note_gap(channel.run(), channel.gap_until(row.tick, after_pause));
       }
       store_.append_tick(channel.run(), row, frame.bytes(), frame.windows());
+      uncommitted_ += frame.bytes().size();
       channel.next_tick_ = row.tick + 1;
       channel.missing_.reset();
     } catch (const db::DatabaseError&) {
@@ -356,6 +368,7 @@ void Recorder::end_closed() {
 
 void Recorder::commit() {
   commit_due_ = Clock::now() + options_.commit_interval;
+  uncommitted_ = 0;
   if (!ailment_) guarded([&] { store_.commit(); });
 }
 

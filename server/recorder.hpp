@@ -207,6 +207,9 @@ class Recorder {
   std::int64_t room();
 
   RecorderOptions options_{};
+  /// [bytes] of frames, not packed, after which a commit does not wait for its time: a fast run
+  /// must not fill a small disk between two looks at the room.
+  std::uint64_t most_uncommitted_;
   std::shared_ptr<detail::Doorbell> bell_ = std::make_shared<detail::Doorbell>();
   std::shared_ptr<db::RunNumbers> numbers_ = std::make_shared<db::RunNumbers>();
   db::RunStore store_;  // the database thread's, once it runs
@@ -220,7 +223,8 @@ class Recorder {
   std::string evicted_{};              // what was deleted for room, as a sentence
   std::string room_problem_{};         // why no room could be made, as it was last reported
   std::uint64_t evicted_runs_ = 0;
-  std::uint64_t used_ = 0;  // [bytes] at the last commit
+  std::uint64_t used_ = 0;         // [bytes] at the last commit
+  std::uint64_t uncommitted_ = 0;  // [bytes] of frames since then, not packed
   Clock::time_point commit_due_{};
   Clock::time_point set_aside_{};
 

@@ -141,6 +141,9 @@ std::string Recorder::state_sentence(RecordKind kind, const RunChannel* live) co
   }
   const auto span = live != nullptr ? store_.span(live->run()) : db::RunStore::Span{};
   if (span.from <= 0) return "Every tick is kept.";
+  if (!live->dropped_) {
+    return fmt::format("This run is in the store from {:.1f} min on.", span.from / 60);
+  }
   const double minutes = (span.to - span.from) / 60;
   if (span.to - span.from >= options_.live_span * 0.99) {
     return fmt::format("The newest {:.0f} min of this run are kept.", minutes);
@@ -166,7 +169,7 @@ void Recorder::publish() {
   now.bytes = used_;
   if (live != nullptr) now.kept_from = store_.span(live->run()).from;
   now.deleted = evicted_;
-  if (now.kept_from > 0) {
+  if (now.kept_from > 0 && live->dropped_) {
     if (!now.deleted.empty()) now.deleted += ' ';
     now.deleted += fmt::format("The first {:.0f} min of this run went for newer ticks.",
                                std::floor(now.kept_from / 60));

@@ -33,8 +33,10 @@ std::int64_t Recorder::room() {
     return static_cast<std::int64_t>(std::min(value, kMost));
   };
   const DiskSpace disk = options_.disk(store_.path());
+  // While the log is folded into the file, its pages are in both; dropping ticks writes to it too.
+  const std::uint64_t for_log = 2 * store_.log_limit();
   const std::int64_t on_disk =
-      bytes(disk.free) + bytes(store_.spare_bytes()) - bytes(disk.reserve());
+      bytes(disk.free) + bytes(store_.spare_bytes()) - bytes(disk.reserve()) - bytes(for_log);
   if (options_.retention_bytes == 0) return on_disk;
   return std::min(on_disk, bytes(options_.retention_bytes) - bytes(used_));
 }
@@ -81,10 +83,13 @@ bool Recorder::drop_live(double span, Clock::time_point until) {
     if (channel->keep() != Keep::NewestHour) continue;
     const auto kept = store_.span(channel->run());
     if (kept.to - kept.from <= span || Clock::now() >= until) continue;
-    dropped |= store_.drop_oldest(channel->run(),
-                                  kept.to - span,
-                                  kDropBlocks,
-                                  "A live run gives its oldest ticks up for newer ones.") > 0;
+    const bool went =
+        store_.drop_oldest(channel->run(),
+                           kept.to - span,
+                           kDropBlocks,
+                           "A live run gives its oldest ticks up for newer ones.") > 0;
+    channel->dropped_ |= went;
+    dropped |= went;
     take_frames();
   }
   return dropped;

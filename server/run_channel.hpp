@@ -156,6 +156,7 @@ class RunChannel {
   std::optional<db::Gap> missing_{};  // why the ticks since then are not: cause and sentence
   bool broken_ = false;               // a frame of it could not be stored
   bool unheard_ = false;              // it began while the store took nothing
+  bool dropped_ = false;              // its oldest ticks went for newer ones
 
   db::RunEnd end_{};  // written before closed_
   std::uint64_t ticks_ = 0;

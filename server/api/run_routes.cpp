@@ -110,7 +110,8 @@ void start_runs(ApiContext& context, const net::Request& request, const net::Res
     respond(std::move(response));
   };
   if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
-    respond(net::problem(503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+    respond(net::problem(
+        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
   }
 }
 
@@ -178,7 +179,8 @@ void resume_run(ApiContext& context,
                                 : net::problem(409, "Not resumed", refusal));
       });
   if (!taken) {
-    respond(net::problem(503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+    respond(net::problem(
+        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
   }
 }
 

@@ -73,7 +73,7 @@ TEST(Dazzle, SingleBeamsAreNoCone) {
 TEST(Dazzle, ABeamWithoutAnEchoHasLookedAndDoesNotPartACone) {
   EXPECT_FALSE(hidden(with(open_field(), -40, 40, BeamCode::NoEcho), disc()));
   EXPECT_FALSE(hidden(with(open_field(), -40, 40, BeamCode::WeakSignal), disc()));  // a dark wall
-  LaserScan scan = with(open_field(), -1, 1);  // five
+  LaserScan scan = with(open_field(), -1, 1);                                       // five
   scan.set_invalid(180, BeamCode::NoEcho);
   EXPECT_TRUE(hidden(scan, disc()));
   EXPECT_EQ(widest_cone(scan).begin, 178U);

@@ -200,7 +200,8 @@ TEST(WheelWatch, WheelsFasterThanToldAreFoundWhileTheRobotIsToldToTurn) {
       bool found = false;
       const double began = base.now;
       while (!found && base.now < began + 1) {
-        found = base.tick(base.now < began + 0.15 ? algo::Twist2{0.08, 0} : algo::Twist2{0.07, 0.8});
+        found =
+            base.tick(base.now < began + 0.15 ? algo::Twist2{0.08, 0} : algo::Twist2{0.07, 0.8});
       }
       EXPECT_LE(base.now - began, 0.4) << seed;
     }

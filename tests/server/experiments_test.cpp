@@ -45,7 +45,8 @@ class ExperimentsTest : public test::RecorderFiles {
   }
   static std::string resume(Experiments& experiments, db::RunId run) {
     std::promise<std::string> refusal;
-    experiments.resume(run, case1(), 0, 1000, [&](const std::string& why) { refusal.set_value(why); });
+    experiments.resume(
+        run, case1(), 0, 1000, [&](const std::string& why) { refusal.set_value(why); });
     return refusal.get_future().get();
   }
   bool comes_to(db::RunId run, RunStatus status) {

@@ -91,14 +91,13 @@ TEST(NetAccess, TheDefaultPortMayBeWrittenOrNot) {
 
 TEST(NetAccess, WhoLooksLogsInOrAsksForTheHealthDoesNotDrive) {
   const Access access({.token = kToken});
-  for (const auto& [method, path, drives] :
-       {std::tuple{"PUT", "/api/v1/session/goal", true},
-        {"POST", "/api/v1/session/control", true},
-        {"GET", "/api/v1/session", false},
-        {"HEAD", "/api/v1/session", false},
-        {"OPTIONS", "/api/v1/session/goal", false},
-        {"POST", "/api/v1/login", false},
-        {"POST", "/api/v1/healthz", false}}) {
+  for (const auto& [method, path, drives] : {std::tuple{"PUT", "/api/v1/session/goal", true},
+                                             {"POST", "/api/v1/session/control", true},
+                                             {"GET", "/api/v1/session", false},
+                                             {"HEAD", "/api/v1/session", false},
+                                             {"OPTIONS", "/api/v1/session/goal", false},
+                                             {"POST", "/api/v1/login", false},
+                                             {"POST", "/api/v1/healthz", false}}) {
     Request request = request_of(method, {});
     request.path = path;
     EXPECT_EQ(access.may_drive(request, false, true), drives) << method << path;

@@ -1,4 +1,9 @@
 // tests/server/recorder_room_test.cpp: what is kept when there is no room for everything.
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
 #include "tests/server/recorder_fixture.hpp"
 #include <gmock/gmock.h>
 
@@ -68,6 +73,37 @@ TEST_F(RecorderRoomTest, ALiveRunKeepsItsNewestHourAndNobodyElsesRunGoes) {
   const std::string of_run = " WHERE run = " + std::to_string(run.id);
   EXPECT_EQ(count("count(*) FROM tick" + of_run), static_cast<std::int64_t>(run.ticks));
   EXPECT_EQ(count("sum(length(frames)) FROM block" + of_run), static_cast<std::int64_t>(run.bytes));
+}
+
+TEST_F(RecorderRoomTest, ASmallDiskIsNotFilledByALiveRun) {
+  constexpr std::uint64_t kDisk = 8 << 20;
+  RecorderOptions options = limited(0);
+  options.live_span = 1e9;
+  const auto taken = [](const std::string& file) {
+    std::uint64_t bytes = 0;
+    for (const char* part : {"", "-wal", "-shm"}) {
+      std::error_code error;
+      const auto size = std::filesystem::file_size(file + part, error);
+      if (!error) bytes += size;
+    }
+    return bytes;
+  };
+  options.disk = [&](const std::string& file) {
+    return server::DiskSpace{.free = kDisk - std::min(kDisk, taken(file)), .total = kDisk};
+  };
+  Recorder recorder(path, std::move(options));
+  const auto live = recorder.begin(what("demo"));
+  std::uint64_t tick = 0;
+  for (; recorder.status().kept_from == 0 || tick % 20'000 != 0; ++tick) {
+    ASSERT_LT(tick, 1'000'000U);
+    push(*live, tick);
+    if (tick % 100 == 0) {
+      ASSERT_LT(taken(path), kDisk) << tick;
+    }
+  }
+  EXPECT_EQ(recorder.status().kind, RecordKind::Recording) << recorder.status().sentence;
+  EXPECT_THAT(recorder.status().sentence, HasSubstr("no room for more"));
+  EXPECT_FALSE(live->failed());
 }
 
 TEST_F(RecorderRoomTest, ALiveRunMakesDoWithTheRoomThatIsLeft) {
@@ -176,7 +212,7 @@ TEST_F(RecorderRoomTest, SomeOfTheDiskIsLeftToOthers) {
   std::atomic<std::uint64_t> free = 100 << 20;
   RecorderOptions options = limited(0);
   options.disk = [&](const std::string&) {
-    return server::DiskSpace{.free = free, .total = 160 << 20};  // 10 MB are left free
+    return server::DiskSpace{.free = free, .total = 80 << 20};  // 10 MB are left free
   };
   Recorder recorder(path, std::move(options));
   const auto live = recorder.begin(what());
