@@ -357,6 +357,7 @@ void LaserMachine::start_streaming(double now) {
   parts_ = PartialScans(setup_.variant, *format);
   period_ = nominal_period();
   last_arrival_ = 0;
+  long_gaps_ = 0;
   last_heard_ = now;
   trouble_.clear();
   ++set_ups_;
@@ -400,12 +401,24 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
   fresh_ = true;
 }
 
+/// Its motor sets the pace: scans that come in a bunch waited on their way, and a gap is of scans that
+/// are missing. Unless every gap is so long: then the line or another setting makes it slower.
 void LaserMachine::measure_period(double now) {
   constexpr double kWeight = 1.0 / 16;
-  constexpr double kLongest = 2.5;  // periods: then scans are missing, and it is none
+  constexpr double kShortest = 0.9;  // of the nominal period
+  constexpr double kLongest = 2.5;   // periods
+  constexpr unsigned kSurely = 8;    // gaps in a row
   const double gap = now - last_arrival_;
-  if (last_arrival_ > 0 && gap < kLongest * period_) period_ += (gap - period_) * kWeight;
+  const bool first = last_arrival_ == 0;
   last_arrival_ = now;
+  if (first) return;
+  long_gaps_ = gap < kLongest * period_ ? 0 : long_gaps_ + 1;
+  if (long_gaps_ == 0) {
+    period_ = std::max(period_ + (gap - period_) * kWeight, kShortest * nominal_period());
+  } else if (long_gaps_ >= kSurely) {
+    period_ = gap;
+    long_gaps_ = 0;
+  }
 }
 
 bool LaserMachine::take(algo::LaserScan& scan) {

@@ -211,6 +211,7 @@ class LaserMachine final : public Machine {
   bool fresh_ = false;
   double period_ = 0.1;      // [s]
   double last_arrival_ = 0;  // [s] of the scan before
+  unsigned long_gaps_ = 0;   // in a row
   double last_scan_ = 0;     // [s]
   double last_heard_ = 0;    // [s]
   double damaged_ = 0;

@@ -24,15 +24,16 @@ DISK_MB = 8
 
 
 def drive(server):
-    """Pushes the stick until the wheels turn; false when the robot is not to be moved."""
-    def push(forward):
+    """Pushes the stick aside until the wheels turn, on the spot, so that no wall ends the way; false
+    when the robot is not to be moved."""
+    def push(turn):
         server.ask("POST", "/session/watch", {})
-        server.ask("POST", "/session/requests", {"type": "joystick", "forward": forward, "turn": 0})
+        server.ask("POST", "/session/requests", {"type": "joystick", "forward": 0, "turn": turn})
         time.sleep(0.05)
 
     for _ in range(60):
         session = load.json.loads(server.ask("GET", "/session")[2])
-        if abs(session.get("command", {}).get("v", 0)) > 0:
+        if abs(session.get("command", {}).get("omega", 0)) > 0:
             return True
         if not (session.get("hardware") or {}).get("armed"):
             server.ask("POST", "/session/control", {"action": "arm"})

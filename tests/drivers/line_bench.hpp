@@ -36,6 +36,9 @@ class LineBench {
   /// [bit/s] what the port makes of a wish.
   std::function<unsigned(unsigned)> port = [](unsigned wanted) { return wanted; };
 
+  /// [s] What comes waits so long on its way, and then all at once: a busy machine, a poor adapter.
+  double bunch = 0;
+
   void open() {
     baud_ = machine_.opening_baud();
     machine_.opened(now_, port(baud_));
@@ -53,8 +56,11 @@ class LineBench {
     for (long i = 0; i < steps; ++i) {
       if (done()) return true;
       now_ += kStep;
-      if (const Bytes bytes = device_.say(now_, baud_); !bytes.empty()) {
-        machine_.receive(now_, ByteView(bytes));
+      append(waiting_, device_.say(now_, baud_));
+      if (!waiting_.empty() && now_ >= next_) {
+        machine_.receive(now_, ByteView(waiting_));
+        waiting_.clear();
+        next_ = now_ + bunch;
       }
       settle();
     }
@@ -84,6 +90,8 @@ class LineBench {
   Machine& machine_;
   LineDevice& device_;
   double now_ = 1000.0;
+  Bytes waiting_{};
+  double next_ = 0;  // [s] when it is let through
   unsigned baud_ = 0;
 };
 

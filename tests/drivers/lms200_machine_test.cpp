@@ -218,6 +218,18 @@ TEST(Lms200Machine, PeriodIsMeasured) {
   EXPECT_NEAR(f.machine.scan_period(), 2 * kTurnPeriod, 0.001);
 }
 
+TEST(Lms200Machine, ScansThatComeInBunchesAreNotTakenForAFasterScanner) {
+  Fixture f;
+  f.bench.open();
+  ASSERT_TRUE(f.running(10));
+  f.bench.bunch = 0.12;
+  f.bench.run(20);
+  EXPECT_GE(f.machine.scan_period(), 0.9 * 2 * kTurnPeriod);
+  f.bench.bunch = 0;
+  f.bench.run(5);
+  EXPECT_NEAR(f.machine.scan_period(), 2 * kTurnPeriod, 0.001);
+}
+
 TEST(Lms200Machine, UpsideDownIsTurnedRound) {
   LaserSetup setup;
   setup.upside_down = true;
