@@ -401,8 +401,8 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
   fresh_ = true;
 }
 
-/// Its motor sets the pace: scans that come in a bunch waited on their way, and a gap is of scans that
-/// are missing. Unless every gap is so long: then the line or another setting makes it slower.
+/// Its motor sets the pace: scans that come in a bunch waited on their way, and a gap is of scans
+/// that are missing. Unless every gap is so long: then the line or another setting makes it slower.
 void LaserMachine::measure_period(double now) {
   constexpr double kWeight = 1.0 / 16;
   constexpr double kShortest = 0.9;  // of the nominal period
