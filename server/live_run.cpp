@@ -76,7 +76,8 @@ void LiveRun::control(const std::stop_token& stop) {
   if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
   // Nobody looks after it any more; the base's own thread brakes it and cuts its motors off.
   if (spec_.hardware && spec_.hardware->arming() != 0) {
-    spec_.hardware->disarm("The run ended, and the motors are off. " + result_.reason);
+    const std::string why = result_.reason.empty() ? "" : ": " + result_.reason;
+    spec_.hardware->disarm("The motors are off, as the run ended" + (why.empty() ? "." : why));
   }
   outcome_.store(result_.outcome, std::memory_order_relaxed);
   if (channel_) {

@@ -13,6 +13,7 @@ trap 'rm -rf "$folder"' EXIT
 worst=0
 
 for ((i = 1; i <= kills; ++i)); do
+  : >"$folder/log" # nobody is to read the last server's address
   "$program" serve --port 0 --db "$folder/runs.db" --scenario case1 >"$folder/log" 2>&1 &
   server=$!
   until url=$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1) && [ -n "$url" ]; do sleep 0.02; done
