@@ -142,7 +142,7 @@ std::string Recorder::state_sentence(RecordKind kind, const RunChannel* live) co
   const auto span = live != nullptr ? store_.span(live->run()) : db::RunStore::Span{};
   if (span.from <= 0) return "Every tick is kept.";
   if (!live->dropped_) {
-    return fmt::format("This run is in the store from {:.1f} min on.", span.from / 60);
+    return fmt::format("This store holds the run from {:.0f} s on.", std::ceil(span.from));
   }
   const double minutes = (span.to - span.from) / 60;
   if (span.to - span.from >= options_.live_span * 0.99) {
