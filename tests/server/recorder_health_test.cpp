@@ -130,8 +130,8 @@ TEST_F(RecorderHealthTest, ManyResetsWhileTheStoreFailsLeaveNoRunWithoutItsEnd) 
     next->close({.outcome = "stopped"}, 1);
   }
   EXPECT_TRUE(recorder.flush());
-  recorder.post_when_well([&](db::RunStore& store) {
-    store.delete_run(old->run());
+  recorder.post_when_well([run = old->run()](db::RunStore& store) {
+    store.delete_run(run);
     while (store.sweep()) {
     }
   });
