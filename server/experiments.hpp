@@ -98,7 +98,7 @@ class Experiments {
   void end_later(db::RunId run, db::RunEnd end);
 
   Recorder& recorder_;
-  std::atomic<std::size_t> held_{0};  // [bytes] before what counts in it
+  std::atomic<std::size_t> held_{0};  // [bytes] of all batches; declared first, as they count in it
   std::mutex mutex_{};
   std::condition_variable_any wake_{};
   std::deque<Job> queue_{};

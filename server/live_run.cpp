@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kRecordPatience{200};
 // [s] run clock: the record of a run in which nothing happens pauses after so long.
 constexpr double kRecordPause = 5;
 
-/// A log is played to its end: what stands still in it is part of it.
+/// A log is played to its end, its standstills included.
 RunPolicy live_policy(const RunSpec& spec, bool require_record) {
   return {.record_patience = kRecordPatience,
           .pause_record_after = spec.scenario.log.empty() ? kRecordPause : 0,

@@ -61,7 +61,7 @@ class Session {
   /// Builds the world or opens the log or the record: whatever takes time. Throws std::exception
   /// with a sentence. Any thread but the io thread.
   PreparedRun prepare(RunSpec spec);
-  /// Asks the present run to end and gives it away: whoever lets go of it waits for its last tick.
+  /// Asks the present run to end and hands it over. Its destructor waits for the last tick.
   /// Null without one.
   std::unique_ptr<LiveRun> part();
   /// Begins a run once the last has gone. An engaged Stop stays engaged: loading and resetting must

@@ -111,7 +111,7 @@ bool Access::host_allowed(std::string_view host, std::string_view local_address)
 bool Access::origin_allowed(const Request& request, bool login, bool authorized) const {
   if (count_headers(request, "Origin") > 1) return false;
   if (count_headers(request, "Origin") == 0) {
-    // Not a browser. Whoever knows the token may as well log in.
+    // Not a browser. A client with the token may log in too.
     return request.loopback || options_.insecure || (token_required() && (login || authorized));
   }
   const std::string_view origin = request.header("Origin");

@@ -14,7 +14,7 @@ namespace server::net {
 /// socket equals itself on a v4 socket.
 class Address {
  public:
-  /// All zero, which is nobody's.
+  /// All zero: no client has it.
   Address() = default;
 
   /// Reads "10.1.2.3", "10.1.2.3:80", "::1", "[::1]", "[::1]:80", "::ffff:10.1.2.3" and

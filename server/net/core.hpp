@@ -11,6 +11,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "server/net/access.hpp"
+#include "server/net/body_room.hpp"
 #include "server/net/connections.hpp"
 #include "server/net/router.hpp"
 #include "server/net/server.hpp"
@@ -23,25 +24,6 @@ namespace asio = boost::asio;
 // The concrete executor spares every operation a type-erased one.
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<asio::ip::tcp, Executor>;
-
-/// Bytes of large request bodies, all clients together, from the first byte of one to its answer.
-/// Small bodies pass always: a Stop is one. Io thread only.
-class BodyRoom {
- public:
-  static constexpr std::size_t kSmall = std::size_t{16} << 10;  // [bytes]
-  static constexpr std::size_t kAll = std::size_t{64} << 20;    // [bytes]
-
-  /// False when there is no room for `bytes` more.
-  bool take(std::size_t bytes) {
-    if (taken_ + bytes > kAll) return false;
-    taken_ += bytes;
-    return true;
-  }
-  void give_back(std::size_t bytes) { taken_ -= bytes; }
-
- private:
-  std::size_t taken_ = 0;
-};
 
 struct Core {
   explicit Core(ServerOptions server_options)

@@ -69,8 +69,6 @@ class HttpConnection final : public Connection,
   void take_header();
   bool admitted(bool upgrading);
   void upgrade();
-  bool take_body_room(std::size_t bytes);
-  void give_back_body_room();
   void send_continue();
   void read_body();
   void dispatch();
@@ -107,7 +105,7 @@ class HttpConnection final : public Connection,
   Framing framing_ = Framing::Length;
   std::string slice_{};
   std::size_t body_limit_ = 0;
-  std::size_t body_room_ = 0;  // taken of core_.bodies
+  BodyRoom::Place body_place_{};
   bool keep_alive_ = false;
   std::array<char, 4096> drained_{};
 };
@@ -142,7 +140,7 @@ void HttpConnection::check(Clock::time_point now) {
 
 void HttpConnection::abort() noexcept {
   ended_ = true;
-  give_back_body_room();
+  body_place_ = BodyRoom::Place();
   error_code ignored;
   socket_.close(ignored);
 }
@@ -253,7 +251,10 @@ void HttpConnection::take_header() {
     return;
   }
   parser_->body_limit(body_limit_);
-  if (has_body && !take_body_room(parser_->content_length().value_or(body_limit_))) {
+  if (auto place =
+          core_.bodies.take(has_body ? parser_->content_length().value_or(body_limit_) : 0)) {
+    body_place_ = std::move(*place);
+  } else {
     Response busy = problem(503, "the server has many large requests to read; try again");
     busy.headers.push_back({"Retry-After", "5"});
     respond(std::move(busy), false);
@@ -264,17 +265,6 @@ void HttpConnection::take_header() {
   } else {
     read_body();
   }
-}
-
-bool HttpConnection::take_body_room(std::size_t bytes) {
-  if (bytes <= BodyRoom::kSmall) return true;
-  if (!core_.bodies.take(bytes)) return false;
-  body_room_ = bytes;
-  return true;
-}
-
-void HttpConnection::give_back_body_room() {
-  core_.bodies.give_back(std::exchange(body_room_, 0));
 }
 
 /// Answers what may not pass.
@@ -414,7 +404,7 @@ void HttpConnection::send_file(bool keep_alive) {
 }
 
 void HttpConnection::respond(Response response, bool keep_alive) {
-  give_back_body_room();
+  body_place_ = BodyRoom::Place();
   keep_alive_ = keep_alive && !core_.stopping;
   served_ = Clock::now();
   if (auto cookie = core_.access.renewal(request_, served_)) {

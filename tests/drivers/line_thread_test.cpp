@@ -101,16 +101,21 @@ bool wait_for(Done&& done) {
   return false;
 }
 
+/// Whether the line has opened its terminal, once.
+bool opened(LineThread& line, const EchoMachine& machine) {
+  return wait_for([&] {
+    int openings = 0;
+    line.look([&] { openings = machine.openings; });
+    return openings == 1;
+  });
+}
+
 TEST(LineThread, CarriesBytesBothWaysAndLetsTheMachineLeave) {
   const Terminal terminal;
   EchoMachine machine;
   {
     LineThread line(terminal.path(), machine);
-    ASSERT_TRUE(wait_for([&] {
-      int openings = 0;
-      line.look([&] { openings = machine.openings; });
-      return openings == 1;
-    }));
+    ASSERT_TRUE(opened(line, machine));
     terminal.send(hex("01 02 03"));
     EXPECT_EQ(terminal.receive(3), hex("01 02 03"));
     line.with([&] { machine.orders.send(ByteView(hex("0A 0B"))); });
@@ -129,11 +134,7 @@ TEST(LineThread, WhatWaitedWhileTheProgramSleptIsThrownAway) {
   const Terminal terminal;
   EchoMachine machine;
   LineThread line(terminal.path(), machine);
-  ASSERT_TRUE(wait_for([&] {
-    int openings = 0;
-    line.look([&] { openings = machine.openings; });
-    return openings == 1;
-  }));
+  ASSERT_TRUE(opened(line, machine));
   terminal.send(hex("01"));
   EXPECT_EQ(terminal.receive(1), hex("01"));
   // GIVEN a thread that stands still for half a second WHEN bytes come meanwhile THEN nobody can

@@ -9,7 +9,7 @@
 #include "tests/server/net_client.hpp"
 #include <gtest/gtest.h>
 
-#include "server/net/core.hpp"
+#include "server/net/body_room.hpp"
 
 namespace server::net::test {
 namespace {
