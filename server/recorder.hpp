@@ -202,7 +202,7 @@ class Recorder {
   void make_room();
   bool sweep(Clock::time_point until);
   bool evict();
-  bool drop_live(double span, Clock::time_point until);
+  bool drop_live(double span);
   void judge_room(bool more_to_come);
   std::int64_t room();
 

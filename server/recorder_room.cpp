@@ -42,10 +42,10 @@ std::int64_t Recorder::room() {
 }
 
 /// Gives the room of deleted runs back, slice by slice, each committed: the frames that come
-/// meanwhile are as safe as without it. True while there is more.
+/// meanwhile are as safe as without it. One slice at least. True while there is more.
 bool Recorder::sweep(Clock::time_point until) {
   bool more = true;
-  while (more && !ailment_ && Clock::now() < until) {
+  for (bool first = true; more && !ailment_ && (first || Clock::now() < until); first = false) {
     try {
       more = store_.sweep();
     } catch (const db::DatabaseError&) {
@@ -75,14 +75,14 @@ bool Recorder::evict() {
   return true;
 }
 
-/// Drops the oldest ticks of live runs beyond their newest `span` [s]. True when some went.
-bool Recorder::drop_live(double span, Clock::time_point until) {
+/// Drops some of the oldest ticks of live runs beyond their newest `span` [s]. True when some went.
+bool Recorder::drop_live(double span) {
   bool dropped = false;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const std::shared_ptr<RunChannel> channel = channels_[i];
     if (channel->keep() != Keep::NewestHour) continue;
     const auto kept = store_.span(channel->run());
-    if (kept.to - kept.from <= span || Clock::now() >= until) continue;
+    if (kept.to - kept.from <= span) continue;
     const bool went =
         store_.drop_oldest(channel->run(),
                            kept.to - span,
@@ -127,16 +127,18 @@ void Recorder::make_room() {
   const auto until = Clock::now() + kRoomTime;
   try {
     bool more = sweep(until);
-    while (drop_live(options_.live_span, until)) {
+    while (drop_live(options_.live_span) && Clock::now() < until) {
     }
     // A log that nobody writes to any more would stay as long as it is.
     if (full_ || room() <= 0) store_.fold_log();
-    while (!ailment_ && room() <= 0 && Clock::now() < until) {
+    // One step at least, however slow the machine: it frees more than came since the last look.
+    for (bool first = true; !ailment_ && room() <= 0 && (first || Clock::now() < until);
+         first = false) {
       if (more) {
         more = sweep(until);
       } else if (options_.evict_oldest && evict()) {
         more = true;
-      } else if (!drop_live(options_.least_span, until)) {
+      } else if (!drop_live(options_.least_span)) {
         break;
       }
     }

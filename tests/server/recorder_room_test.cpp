@@ -75,11 +75,11 @@ TEST_F(RecorderRoomTest, ALiveRunKeepsItsNewestHourAndNobodyElsesRunGoes) {
   EXPECT_EQ(count("sum(length(frames)) FROM block" + of_run), static_cast<std::int64_t>(run.bytes));
 }
 
-TEST_F(RecorderRoomTest, ASmallDiskIsNotFilledByALiveRun) {
-  constexpr std::uint64_t kDisk = 8 << 20;
-  RecorderOptions options = limited(0);
-  options.live_span = 1e9;
-  const auto taken = [](const std::string& file) {
+/// A disk that holds the store's files and nothing else.
+class SmallDisk {
+ public:
+  static constexpr std::uint64_t kBytes = 8 << 20;
+  static std::uint64_t taken(const std::string& file) {
     std::uint64_t bytes = 0;
     for (const char* part : {"", "-wal", "-shm"}) {
       std::error_code error;
@@ -87,10 +87,16 @@ TEST_F(RecorderRoomTest, ASmallDiskIsNotFilledByALiveRun) {
       if (!error) bytes += size;
     }
     return bytes;
-  };
-  options.disk = [&](const std::string& file) {
-    return server::DiskSpace{.free = kDisk - std::min(kDisk, taken(file)), .total = kDisk};
-  };
+  }
+  static server::DiskSpace space(const std::string& file) {
+    return {.free = kBytes - std::min(kBytes, taken(file)), .total = kBytes};
+  }
+};
+
+TEST_F(RecorderRoomTest, ASmallDiskIsNotFilledByALiveRun) {
+  RecorderOptions options = limited(0);
+  options.live_span = 1e9;
+  options.disk = &SmallDisk::space;
   Recorder recorder(path, std::move(options));
   const auto live = recorder.begin(what("demo"));
   std::uint64_t tick = 0;
@@ -98,11 +104,35 @@ TEST_F(RecorderRoomTest, ASmallDiskIsNotFilledByALiveRun) {
     ASSERT_LT(tick, 1'000'000U);
     push(*live, tick);
     if (tick % 100 == 0) {
-      ASSERT_LT(taken(path), kDisk) << tick;
+      ASSERT_LT(SmallDisk::taken(path), SmallDisk::kBytes) << tick;
     }
   }
   EXPECT_EQ(recorder.status().kind, RecordKind::Recording) << recorder.status().sentence;
   EXPECT_THAT(recorder.status().sentence, HasSubstr("no room for more"));
+  EXPECT_FALSE(live->failed());
+}
+
+TEST_F(RecorderRoomTest, AMachineTooSlowToMakeRoomInTimeDoesNotFillTheDisk) {
+  RecorderOptions options = limited(0);
+  options.live_span = 1e9;
+  std::atomic<int> looks{0};
+  options.disk = [&](const std::string& file) {
+    const server::DiskSpace space = SmallDisk::space(file);
+    if (space.free < SmallDisk::kBytes / 4) {  // from here on room is short
+      ++looks;
+      std::this_thread::sleep_for(std::chrono::milliseconds(410));  // all the time there is for it
+    }
+    return space;
+  };
+  Recorder recorder(path, std::move(options));
+  const auto live = recorder.begin(what("demo"));
+  std::uint64_t most = 0;
+  for (std::uint64_t tick = 0; looks < 15; ++tick) {
+    push(*live, tick);
+    if (tick % 100 == 0) most = std::max(most, SmallDisk::taken(path));
+  }
+  EXPECT_LT(most, SmallDisk::kBytes);
+  EXPECT_GT(recorder.status().kept_from, 0);
   EXPECT_FALSE(live->failed());
 }
 
