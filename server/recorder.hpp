@@ -9,6 +9,7 @@
 #include <exception>
 #include <functional>
 #include <future>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -203,6 +204,7 @@ class Recorder {
   bool sweep(Clock::time_point until);
   bool evict();
   bool drop_live(double span);
+  bool must_free(Clock::time_point until);
   void judge_room(bool more_to_come);
   std::int64_t room();
 
@@ -223,7 +225,8 @@ class Recorder {
   std::string evicted_{};              // what was deleted for room, as a sentence
   std::string room_problem_{};         // why no room could be made, as it was last reported
   std::uint64_t evicted_runs_ = 0;
-  std::uint64_t used_ = 0;         // [bytes] at the last commit
+  std::uint64_t used_ = 0;                                             // [bytes] at the last commit
+  std::int64_t room_left_ = std::numeric_limits<std::int64_t>::min();  // [bytes] at the last look
   std::uint64_t uncommitted_ = 0;  // [bytes] of frames since then, not packed
   Clock::time_point commit_due_{};
   Clock::time_point set_aside_{};

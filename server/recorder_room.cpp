@@ -90,14 +90,27 @@ bool Recorder::drop_live(double span) {
                            "A live run gives its oldest ticks up for newer ones.") > 0;
     channel->dropped_ |= went;
     dropped |= went;
-    take_frames();
   }
   return dropped;
+}
+
+/// Whether another step of making room is due: until there is some, or the time for it is over. On
+/// a slow machine it is over before what came since the last look is freed: then the frames wait,
+/// and time passes, until there is as much room as at that look.
+bool Recorder::must_free(Clock::time_point until) {
+  if (room() > 0) return false;
+  if (Clock::now() < until) {
+    take_frames();
+    return true;
+  }
+  store_.fold_log();  // what was freed counts once it is out of the log
+  return room() < room_left_;
 }
 
 /// Stops recording when there is no room and none to come, and begins again when there is.
 void Recorder::judge_room(bool more_to_come) {
   const std::int64_t left = room();
+  room_left_ = left;
   const auto limit = static_cast<std::int64_t>(options_.retention_bytes);
   const std::int64_t enough =
       limit == 0 ? kMostRoom : std::clamp(limit / 64, kLeastRoom, kMostRoom);
@@ -127,13 +140,10 @@ void Recorder::make_room() {
   const auto until = Clock::now() + kRoomTime;
   try {
     bool more = sweep(until);
-    while (drop_live(options_.live_span) && Clock::now() < until) {
-    }
+    while (drop_live(options_.live_span) && Clock::now() < until) take_frames();
     // A log that nobody writes to any more would stay as long as it is.
     if (full_ || room() <= 0) store_.fold_log();
-    // One step at least, however slow the machine: it frees more than came since the last look.
-    for (bool first = true; !ailment_ && room() <= 0 && (first || Clock::now() < until);
-         first = false) {
+    while (!ailment_ && must_free(until)) {
       if (more) {
         more = sweep(until);
       } else if (options_.evict_oldest && evict()) {
