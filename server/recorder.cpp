@@ -243,8 +243,8 @@ void Recorder::take_arrivals() {
   if (!arrivals.empty()) publish();
 }
 
-void Recorder::take_frames() {
-  for (const auto& channel : channels_) take_frames(*channel);
+void Recorder::take_frames(std::size_t most) {
+  for (const auto& channel : channels_) take_frames(*channel, most);
 }
 
 /// A run to be kept whole that has ended: what its ring still holds is stored, room or not, so that
@@ -260,9 +260,9 @@ bool Recorder::waits(const RunChannel& channel) const {
   return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room && !last_of_whole(channel);
 }
 
-void Recorder::take_frames(RunChannel& channel) {
+void Recorder::take_frames(RunChannel& channel, std::size_t most) {
   // Only what is here now, so that one fast run does not keep the others and the commit waiting.
-  std::size_t left = channel.ring_.read_available();
+  std::size_t left = std::min(channel.ring_.read_available(), most);
   if (left == 0 || waits(channel)) return;
   const bool stored = !full_ || last_of_whole(channel);
   if (!ailment_ && stored && !channel.broken_) guarded([&] { store_.begin(); });

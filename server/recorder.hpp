@@ -175,8 +175,8 @@ class Recorder {
   void run_jobs();
   void run_later();
   void take_arrivals();
-  void take_frames();
-  void take_frames(RunChannel& channel);
+  void take_frames(std::size_t most = SIZE_MAX);
+  void take_frames(RunChannel& channel, std::size_t most = SIZE_MAX);
   void keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause);
   void resume(RunChannel& channel);
   bool last_of_whole(const RunChannel& channel) const;

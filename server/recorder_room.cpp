@@ -17,6 +17,10 @@ namespace {
 constexpr std::chrono::milliseconds kRoomTime{400};
 // Blocks of a live run that go in one transaction: some thousand ticks.
 constexpr std::size_t kDropBlocks = 16;
+// Frames of a run that are stored between two steps of making room: more than come meanwhile in real
+// time, and far fewer than a step frees. A fast run has a whole ring of them waiting, and would fill
+// a small disk.
+constexpr std::size_t kFewFrames = 64;
 // Recording that has stopped for want of room begins again when there is so much.
 constexpr std::int64_t kLeastRoom = 64 << 10;
 constexpr std::int64_t kMostRoom = 16 << 20;
@@ -53,7 +57,7 @@ bool Recorder::sweep(Clock::time_point until) {
     } catch (const db::StoreError& error) {
       report(error.what());  // one run that is damaged: the next may be well
     }
-    take_frames();
+    take_frames(kFewFrames);
   }
   return more;
 }
@@ -100,7 +104,7 @@ bool Recorder::drop_live(double span) {
 bool Recorder::must_free(Clock::time_point until) {
   if (room() > 0) return false;
   if (Clock::now() < until) {
-    take_frames();
+    take_frames(kFewFrames);
     return true;
   }
   store_.fold_log();  // what was freed counts once it is out of the log
@@ -140,7 +144,7 @@ void Recorder::make_room() {
   const auto until = Clock::now() + kRoomTime;
   try {
     bool more = sweep(until);
-    while (drop_live(options_.live_span) && Clock::now() < until) take_frames();
+    while (drop_live(options_.live_span) && Clock::now() < until) take_frames(kFewFrames);
     // A log that nobody writes to any more would stay as long as it is.
     if (full_ || room() <= 0) store_.fold_log();
     while (!ailment_ && must_free(until)) {

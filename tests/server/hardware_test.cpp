@@ -227,8 +227,14 @@ TEST_F(HardwareAppTest, NeitherArmingNorAReleaseDrivesToAGoalOfBefore) {
 TEST_F(HardwareAppTest, AGoalWhereSomethingIsSeenOrNothingIsKnownIsTold) {
   arm();
   ASSERT_TRUE(eventually([&] { return get("/session").at("watchers") == 0; }));
+  // Looks at goals may take a tenth of the time, so that one may have to be asked for again.
   const auto told = [&](const char* goal) {
-    const json answer = json::parse(ask("POST", "/session/goal/check", goal).body);
+    auto reply = ask("POST", "/session/goal/check", goal);
+    EXPECT_TRUE(eventually([&] {
+      if (reply.status == 503) reply = ask("POST", "/session/goal/check", goal);
+      return reply.status == 200;
+    })) << reply.body;
+    const json answer = json::parse(reply.body);
     return answer.at("trouble").is_null() ? "" : answer.at("trouble").get<std::string>();
   };
   EXPECT_EQ(told(R"({"x":5,"y":0})"), "");
@@ -236,8 +242,10 @@ TEST_F(HardwareAppTest, AGoalWhereSomethingIsSeenOrNothingIsKnownIsTold) {
   EXPECT_TRUE(get("/session").at("goal").is_null());
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   EXPECT_EQ(get("/session").at("watchers"), 0);  // a question is no sign of life
-  const json answer = json::parse(ask("PUT", "/session/goal", R"({"x":50,"y":0})").body);
-  EXPECT_NE(answer.value("warning", "").find("nothing is known"), std::string::npos);
+  EXPECT_TRUE(eventually([&] {
+    const json answer = json::parse(ask("PUT", "/session/goal", R"({"x":50,"y":0})").body);
+    return answer.value("warning", "").find("nothing is known") != std::string::npos;
+  }));
 }
 
 TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
