@@ -17,9 +17,9 @@ namespace {
 constexpr std::chrono::milliseconds kRoomTime{400};
 // Blocks of a live run that go in one transaction: some thousand ticks.
 constexpr std::size_t kDropBlocks = 16;
-// Frames of a run that are stored between two steps of making room: more than come meanwhile in real
-// time, and far fewer than a step frees. A fast run has a whole ring of them waiting, and would fill
-// a small disk.
+// Frames of a run that are stored between two steps of making room: more than come meanwhile in
+// real time, and far fewer than a step frees. A fast run has a whole ring of them waiting, and
+// would fill a small disk.
 constexpr std::size_t kFewFrames = 64;
 // Recording that has stopped for want of room begins again when there is so much.
 constexpr std::int64_t kLeastRoom = 64 << 10;
