@@ -123,7 +123,7 @@ test("two pages at once: the last writer wins and both see it", { timeout: 60_00
   with_page({ scenario: "case1" }, async (p, { base }) => {
     const q = await open(browser, base, { theme: "light" });
     const value = async (page, id) => Number(await page.get(id).inputValue());
-    for (const page of [p, q]) await page.get("tool-goal").click(); // waits until the page is there
+    for (const page of [p, q]) await page.page.keyboard.press("g");
     for (const [writer, x] of [[p, 2], [q, 2.5]]) {
       await writer.get("goal-x").fill(String(x));
       await writer.get("goal-set").click();

@@ -38,7 +38,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
   await page.waitForSelector('[data-testid="link"].open', { timeout: patience });
   // It listens to keys once it has drawn, and a key before that is lost.
   await page.evaluate(() => new Promise((done) =>
-    requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50)))));
+    requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))));
   const get = (id) => page.getByTestId(id);
   return {
     page, context, faults, get,
