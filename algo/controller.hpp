@@ -1,11 +1,7 @@
-// algo/controller.hpp: what turns a scene and a goal into a twist, and the table of all that can.
+// algo/controller.hpp: what turns a scene and a goal into a twist.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "algo/observation.hpp"
 #include "algo/parameters.hpp"
@@ -39,20 +35,5 @@ class Controller {
   /// (NaN never reaches a comparison).
   virtual void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) = 0;
 };
-
-struct ControllerInfo {
-  std::string_view name{};   // "modified": REST, command line, scenario files
-  std::string_view label{};  // for people
-  std::string_view help{};
-  bool by_sonar = false;  // drives a robot that has a sonar ring and no laser
-};
-
-std::span<const ControllerInfo> controller_table();
-
-/// Why the controller `name` cannot run with `parameters`, as a sentence; nothing when it can.
-std::optional<std::string> refusal(std::string_view name, const Parameters& parameters);
-
-/// Throws std::invalid_argument naming the known ones.
-std::unique_ptr<Controller> make_controller(std::string_view name);
 
 }  // namespace algo

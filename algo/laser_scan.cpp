@@ -11,11 +11,11 @@ namespace {
 
 /// Ranges as if all were distances. The sum leaves no room for a fraction; the clamps turn a NaN
 /// into 0. By way of 32 bits, since that conversion exists for vectors.
-TAUTLINE_WIDE void ranges_to_wire(const double* ranges,
-                                  std::size_t count,
-                                  std::uint16_t* __restrict out) {
+TAUTLINE_WIDE void pack_ranges(const double* ranges,
+                               std::size_t count,
+                               std::uint16_t* __restrict out) {
   constexpr double kNoFraction = 0x1p52;
-  constexpr double kMax = kWireMaxRange;
+  constexpr double kMax = kPackedMaxRange;
   for (std::size_t i = 0; i < count; ++i) {
     const double mm = ranges[i] * 1000.0;
     const double positive = mm > 0 ? mm : 0;
@@ -34,8 +34,8 @@ bool all_finite(std::span<const double> numbers) {
   return (x - x).sum() == 0;
 }
 
-void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out) {
-  ranges_to_wire(scan.ranges.data(), scan.size(), out.data());
+void pack_beams(const LaserScan& scan, std::span<std::uint16_t> out) {
+  pack_ranges(scan.ranges.data(), scan.size(), out.data());
   // Beams without a distance come in stretches: eight are looked at together.
   constexpr std::size_t kTogether = sizeof(std::uint64_t);
   for (std::size_t first = 0; first < scan.size(); first += kTogether) {
@@ -46,9 +46,9 @@ void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out) {
     static_assert(static_cast<int>(Beam::Free) == 1);
     constexpr std::uint64_t kAllFree = 0x0101010101010101;
     if (together == kAllFree) {
-      std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(first), kTogether, kWireFree);
+      std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(first), kTogether, kPackedFree);
     } else if (together != 0) {
-      for (std::size_t i = first; i < last; ++i) out[i] = beam_to_wire(scan, i);
+      for (std::size_t i = first; i < last; ++i) out[i] = pack_beam(scan, i);
     }
   }
 }

@@ -76,43 +76,44 @@ struct LaserScan {
 /// No infinity and no NaN among them; quick, for all ranges of a scan.
 bool all_finite(std::span<const double> numbers);
 
-// A beam on the wire and in the record: one uint16. Measured values are clipped below the codes.
-constexpr std::uint16_t kWireFree = 65535;
-constexpr std::uint16_t kWireCodeBase = 65519;  // + BeamCode (1..15) = 65520..65534
-constexpr std::uint16_t kWireMaxRange = 65519;  // [mm]
+// A packed beam, as the record and its viewers have it: one uint16 of millimetres, free, or a code.
+// Measured values are clipped below the codes.
+constexpr std::uint16_t kPackedFree = 65535;
+constexpr std::uint16_t kPackedCodeBase = 65519;  // + BeamCode (1..15) = 65520..65534
+constexpr std::uint16_t kPackedMaxRange = 65519;  // [mm]
 
-/// Beam `i` of `scan` as its wire value; a range is rounded to the nearest millimetre.
-inline std::uint16_t beam_to_wire(const LaserScan& scan, std::size_t i) {
-  if (scan.status[i] == Beam::Free) return kWireFree;
+/// Beam `i` of `scan` packed; a range is rounded to the nearest millimetre.
+inline std::uint16_t pack_beam(const LaserScan& scan, std::size_t i) {
+  if (scan.status[i] == Beam::Free) return kPackedFree;
   if (scan.status[i] == Beam::Invalid) {
     const auto code = static_cast<std::uint16_t>(scan.codes[i]);
-    return static_cast<std::uint16_t>(kWireCodeBase + (code == 0 ? 1 : code));
+    return static_cast<std::uint16_t>(kPackedCodeBase + (code == 0 ? 1 : code));
   }
   // Adding this number leaves no room for a fraction: rounds as nearbyint() does, which without
   // SSE 4.1 is a call. Beyond 2^51 it does not, but there the range is clipped.
   constexpr double kNoFraction = 0x1.8p52;
   const double mm = (scan.ranges[i] * 1000.0 + kNoFraction) - kNoFraction;
   if (!(mm > 0)) return 0;
-  return mm >= kWireMaxRange ? kWireMaxRange : static_cast<std::uint16_t>(mm);
+  return mm >= kPackedMaxRange ? kPackedMaxRange : static_cast<std::uint16_t>(mm);
 }
 
-/// All beams of `scan` as their wire values, `out` having room for as many; the same as one by one.
-void beams_to_wire(const LaserScan& scan, std::span<std::uint16_t> out);
+/// All beams of `scan` packed, `out` having room for as many; the same as one by one.
+void pack_beams(const LaserScan& scan, std::span<std::uint16_t> out);
 
-inline void beam_from_wire(LaserScan& scan, std::size_t i, std::uint16_t wire) {
-  if (wire == kWireFree) {
+inline void unpack_beam(LaserScan& scan, std::size_t i, std::uint16_t packed) {
+  if (packed == kPackedFree) {
     scan.set_free(i);
-  } else if (wire > kWireMaxRange) {
-    scan.set_invalid(i, static_cast<BeamCode>(wire - kWireCodeBase));
+  } else if (packed > kPackedMaxRange) {
+    scan.set_invalid(i, static_cast<BeamCode>(packed - kPackedCodeBase));
   } else {
-    scan.set_ok(i, static_cast<double>(wire) / 1000.0);
+    scan.set_ok(i, static_cast<double>(packed) / 1000.0);
   }
 }
 
-/// Rounds every range to what the wire can hold. Each Robot calls it before a scan leaves the
+/// Rounds every range to what a packed beam can hold. Each Robot calls it before a scan leaves the
 /// port, so that a stored run replays to identical commands.
 inline void quantise(LaserScan& scan) {
-  for (std::size_t i = 0; i < scan.size(); ++i) beam_from_wire(scan, i, beam_to_wire(scan, i));
+  for (std::size_t i = 0; i < scan.size(); ++i) unpack_beam(scan, i, pack_beam(scan, i));
 }
 
 }  // namespace algo

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "algo/geometry.hpp"
-#include "algo/mapping/pose_step.hpp"
+#include "algo/pose_step.hpp"
 
 namespace algo {
 

@@ -166,7 +166,7 @@ void ScanDecoder::decode_word(std::uint16_t word,
   if (value + kCodes >= format_.top) {
     decode_code(value, i, scan);
   } else {
-    // Divided, as algo/laser_scan.hpp does: the same number from the wire as from the device.
+    // Divided, as algo/laser_scan.hpp does: the same number from a packed beam as from the device.
     scan.set_ok(i, static_cast<double>(value) / (in_millimetres ? 1000.0 : 100.0));
   }
 }

@@ -11,8 +11,8 @@
 
 #include <toml++/toml.h>
 
-#include "algo/controller.hpp"
-#include "algo/filter.hpp"
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/controllers.hpp"
 #include "algo/units.hpp"
 #include "drivers/lms200_scan.hpp"
 #include "drivers/robot_section.hpp"

@@ -211,25 +211,25 @@ double carmen_range_max(CarmenUnit unit) {
   return row.top * row.step_mm / 1000.0;
 }
 
-std::uint16_t carmen_to_wire(std::uint32_t reading_mm, CarmenUnit unit) {
+std::uint16_t pack_carmen(std::uint32_t reading_mm, CarmenUnit unit) {
   const UnitRow& row = row_of(unit);
   const std::uint32_t raw = (reading_mm + row.step_mm / 2) / row.step_mm;
   if (raw < row.first_code) {
-    return static_cast<std::uint16_t>(std::min<std::uint32_t>(reading_mm, algo::kWireMaxRange));
+    return static_cast<std::uint16_t>(std::min<std::uint32_t>(reading_mm, algo::kPackedMaxRange));
   }
   // Codes end in 7, A, B, D, E or F; on anything else nothing is known.
   const std::uint32_t digit = raw <= row.top && raw + 8 >= row.top ? raw & 0xFU : 0;
   switch (static_cast<algo::BeamCode>(digit)) {
     case algo::BeamCode::BeyondRange:
-      return algo::kWireFree;
+      return algo::kPackedFree;
     case algo::BeamCode::ReadError:
     case algo::BeamCode::WeakSignal:
     case algo::BeamCode::Overflow:
     case algo::BeamCode::Dazzled:
     case algo::BeamCode::NoEcho:
-      return static_cast<std::uint16_t>(algo::kWireCodeBase + digit);
+      return static_cast<std::uint16_t>(algo::kPackedCodeBase + digit);
     default:
-      return static_cast<std::uint16_t>(algo::kWireCodeBase +
+      return static_cast<std::uint16_t>(algo::kPackedCodeBase +
                                         static_cast<std::uint16_t>(algo::BeamCode::Unknown));
   }
 }

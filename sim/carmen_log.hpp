@@ -71,9 +71,9 @@ class CarmenUnitGuess {
 /// [m] Largest value the device can write in this unit, its no-echo code.
 double carmen_range_max(CarmenUnit unit);
 
-/// A reading [mm] as the wire value of a beam (algo/laser_scan.hpp): a distance, free, or a code.
+/// A reading [mm] as a packed beam (algo/laser_scan.hpp): a distance, free, or a code.
 /// The device's codes were scaled like distances when the log was written; the last hexadecimal
 /// digit of the raw value tells them apart.
-std::uint16_t carmen_to_wire(std::uint32_t reading_mm, CarmenUnit unit);
+std::uint16_t pack_carmen(std::uint32_t reading_mm, CarmenUnit unit);
 
 }  // namespace sim

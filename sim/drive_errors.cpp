@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "algo/mapping/pose_step.hpp"
+#include "algo/pose_step.hpp"
 
 namespace sim {
 namespace {

@@ -48,7 +48,7 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
               .noise = config_.noise,
               .per_metre = config_.unit == LaserUnit::Centimetre ? 100.0 : 1000.0,
               .range_max = config_.range_max,
-              .most = algo::kWireMaxRange / 1000.0};
+              .most = algo::kPackedMaxRange / 1000.0};
   // Several scanners are not synchronised: each further one has a phase of its own.
   if (index > 0) phase_ = stream(seed, index, Purpose::Phase).uniform(0, config_.mirror_period);
 
@@ -214,7 +214,7 @@ void LaserModel::aim_still() {
   allow_for_spot();
 }
 
-/// Bias, noise and rounding to the device's unit. What comes out is what the wire can hold
+/// Bias, noise and rounding to the device's unit. What comes out is what a packed beam can hold
 /// (algo::quantise() would change nothing).
 void LaserModel::report(algo::LaserScan& scan) {
   if (config_.noise > 0 && config_.noise_shape == NoiseShape::Gaussian) {

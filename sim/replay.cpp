@@ -85,7 +85,7 @@ void Replay::read(std::istream& log) {
   for (const std::uint32_t reading : readings_mm) guess.see(reading);
   unit_ = guess.unit();
   wire_.reserve(readings_mm.size());
-  for (const std::uint32_t reading : readings_mm) wire_.push_back(carmen_to_wire(reading, unit_));
+  for (const std::uint32_t reading : readings_mm) wire_.push_back(pack_carmen(reading, unit_));
   time_scans();
   describe();
 }
@@ -195,7 +195,7 @@ void Replay::deliver(algo::Observation& observation) const {
   scan.turns = 1;
   scan.resize(source.beams);
   for (std::size_t i = 0; i < source.beams; ++i) {
-    algo::beam_from_wire(scan, i, wire_[source.first + i]);
+    algo::unpack_beam(scan, i, wire_[source.first + i]);
   }
 }
 

@@ -25,7 +25,7 @@ struct SkippedLines {
 /// Replays a log one scan a tick, at the pace of its time stamps; where those are missing, repeated
 /// or run backwards, 0.2 s a scan. The run clock starts at 0 with the first scan.
 ///
-/// The whole log is read when it is opened and kept as wire values. Commands are ignored.
+/// The whole log is read when it is opened and kept as packed beams. Commands are ignored.
 /// set_pace() may come from any thread; everything else belongs to one.
 class Replay final : public algo::Robot {
  public:

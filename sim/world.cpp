@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "algo/diff_drive.hpp"
-#include "algo/mapping/pose_step.hpp"
+#include "algo/pose_step.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
 

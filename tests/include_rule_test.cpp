@@ -1,11 +1,12 @@
-// tests/include_rule_test.cpp: holds every #include against the dependency rule of the folders.
-//
-//   algo <- sim, drivers;  db alone;  server over all;  nobody includes server or tests.
+// tests/include_rule_test.cpp: holds every #include against the rule of the rooms
+// (docs/adr/0011-rooms.md), and every room against the others in size.
 //
 // CMake links the same rule; this test also sees headers, and says which line breaks it.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -51,11 +52,11 @@ std::vector<Include> includes_of(std::string_view text) {
   return found;
 }
 
-/// What one folder may include.
+/// What one room may include: of ours itself and `rooms`.
 struct Rule {
-  std::vector<std::string> folders{};  // of ours
-  std::string others{};                // regex over whole header names that are not ours
-  std::string forbidden_standard{};    // regex over standard headers; empty forbids none
+  std::vector<std::string> rooms{};
+  std::string others{};              // regex over whole header names that are not ours
+  std::string forbidden_standard{};  // regex over standard headers; empty forbids none
 };
 
 const std::vector<std::string>& our_folders() {
@@ -63,49 +64,109 @@ const std::vector<std::string>& our_folders() {
   return folders;
 }
 
-const std::map<std::string, Rule>& rules() {
-  // algo is plain data: no clock, file, thread, socket or random number behind its mathematics.
-  static const std::map<std::string, Rule> table{
-      {"algo",
-       {.folders = {"algo"},
-        .others = "Eigen/.*",
-        .forbidden_standard = "thread|mutex|shared_mutex|condition_variable|atomic|future|chrono|"
-                              "fstream|filesystem|iostream|random|ctime"}},
+// algo is plain data: no clock, file, thread, socket or random number behind its mathematics.
+constexpr const char* kNoPlainData =
+    "thread|mutex|shared_mutex|condition_variable|atomic|future|chrono|fstream|filesystem|iostream|"
+    "random|ctime";
+constexpr const char* kPosix =
+    R"((fcntl|grp|netdb|poll|pthread|pty|sched|termios|unistd)\.h|sys/[a-z]+\.h|netinet/(in|tcp)\.h|arpa/inet\.h|)"
+    R"(asm/termbits\.h|linux/serial\.h)";
+constexpr const char* kDocuments = R"(Eigen/.*|nlohmann/json\.hpp|fmt/[a-z]+\.h|(pwd|unistd)\.h)";
+
+std::vector<std::string> operator+(std::vector<std::string> rooms, const std::string& one) {
+  rooms.push_back(one);
+  return rooms;
+}
+
+std::map<std::string, Rule> make_rules() {
+  using Rooms = std::vector<std::string>;
+  const Rooms methods{"algo",
+                      "algo/filter",
+                      "algo/strip",
+                      "algo/full_strip",
+                      "algo/baselines",
+                      "algo/mapping",
+                      "algo/pipeline"};
+  const Rooms below_run = methods + "sim" + "drivers";
+  const Rooms below_record = below_run + "server/run" + "db";
+  const Rooms below_experiment = below_record + "server/record";
+  const Rooms below_lab = below_experiment + "server/experiment";
+  const std::string eigen = "Eigen/.*";
+  const std::string posix = kPosix;
+  const std::string documents = kDocuments;
+  const std::string boost_data = R"(|boost/(lockfree/.*|intrusive_ptr\.hpp))";
+  const auto method = [&](Rooms rooms) { return Rule{std::move(rooms), eigen, kNoPlainData}; };
+  return {
+      {"algo", method({})},
+      {"algo/filter", method({"algo"})},
+      {"algo/strip", method({"algo"})},
+      {"algo/full_strip", method({"algo", "algo/strip"})},
+      {"algo/baselines", method({"algo", "algo/strip"})},
+      {"algo/mapping", method({"algo"})},
+      {"algo/pipeline",
+       method({"algo", "algo/filter", "algo/strip", "algo/full_strip", "algo/baselines"})},
       {"sim",
-       {.folders = {"sim", "algo"},
-        .others = R"(Eigen/.*|bt[A-Za-z]+\.h|(LinearMath|BulletCollision|BulletDynamics)/.*)"}},
+       {{"algo"}, R"(Eigen/.*|bt[A-Za-z]+\.h|(LinearMath|BulletCollision|BulletDynamics)/.*)", ""}},
       {"drivers",
-       {.folders = {"drivers", "algo"},
-        .others =
-            R"(Eigen/.*|(fcntl|grp|netdb|poll|pthread|pty|sched|termios|unistd)\.h|sys/[a-z]+\.h|)"
-            R"(netinet/tcp\.h|)"
-            R"(asm/termbits\.h|linux/serial\.h|toml\+\+/toml\.h)"}},
-      {"db", {.folders = {"db"}, .others = R"((sqlite3|zstd|fcntl|unistd)\.h|sys/(file|stat)\.h)"}},
-      {"server", {.folders = {"server", "db", "drivers", "sim", "algo"}, .others = ".*"}},
+       {{"algo", "algo/filter", "algo/pipeline"},
+        eigen + "|" + posix + R"(|toml\+\+/toml\.h)",
+        ""}},
+      {"drivers/emulators", {{"algo", "drivers"}, eigen, ""}},
+      {"db", {{}, R"((sqlite3|zstd|fcntl|unistd)\.h|sys/(file|stat)\.h)", ""}},
+      {"server/run", {below_run, documents + boost_data, ""}},
+      {"server/record",
+       {below_record,
+        documents + boost_data + R"(|flatbuffers/.*|telemetry_generated\.h|spdlog/.*)",
+        ""}},
+      {"server/experiment", {below_experiment, documents, ""}},
+      {"server/lab", {below_lab, documents, ""}},
+      {"server/serve", {below_lab, documents + "|" + posix + "|boost/.*|spdlog/.*", ""}},
+      {"server/emulate",
+       {below_run + "server/run" + "drivers/emulators",
+        documents + "|" + posix + "|spdlog/.*",
+        ""}},
+      {"server/cli",
+       {below_lab + "drivers/emulators" + "server/lab" + "server/serve" + "server/emulate",
+        ".*",
+        ""}},
   };
+}
+
+const std::map<std::string, Rule>& rules() {
+  static const std::map<std::string, Rule> table = make_rules();
   return table;
 }
 
-/// Why `folder` may not have `include`; empty when it may.
-std::string objection(const std::string& folder, const Include& include) {
+/// The room that holds `path`, a file or a header; empty when none does.
+std::string room_of(const std::string& path) {
+  std::string found;
+  for (const auto& [room, rule] : rules()) {
+    if (path.starts_with(room + "/") && room.size() > found.size()) found = room;
+  }
+  return found;
+}
+
+/// Why `room` may not have `include`; empty when it may.
+std::string objection(const std::string& room, const Include& include) {
   static const std::regex standard("[a-z][a-z0-9_]*");
-  const Rule& rule = rules().at(folder);
+  const Rule& rule = rules().at(room);
   const std::string first = include.header.substr(0, include.header.find('/'));
   const bool ours = std::ranges::count(our_folders(), first) > 0 && first != include.header;
   if (include.header.find("..") != std::string::npos) {
     return "is not written from the repository root";
   }
   if (ours) {
-    return std::ranges::count(rule.folders, first) > 0 ? ""
-                                                       : folder + " may not include from " + first;
+    const std::string other = room_of(include.header);
+    if (other == room || std::ranges::count(rule.rooms, other) > 0) return "";
+    return room + " may not include from " + (other.empty() ? first : other);
   }
   if (std::regex_match(include.header, standard)) {
     return std::regex_match(include.header, std::regex(rule.forbidden_standard))
-               ? folder + " has no use for <" + include.header + ">"
+               ? room + " has no use for <" + include.header + ">"
                : "";
   }
   if (!std::regex_match(include.header, std::regex(rule.others))) {
-    return folder + " does not know this library";
+    return room + " does not know this library";
   }
   if (include.quoted && include.header.find('/') == std::string::npos) {
     // A generated header is quoted; one of ours without its folder is a slip.
@@ -116,12 +177,12 @@ std::string objection(const std::string& folder, const Include& include) {
 }
 
 /// "FILE:LINE: HEADER: why" for each include that breaks the rule.
-std::vector<std::string> violations(const std::string& folder,
+std::vector<std::string> violations(const std::string& room,
                                     const std::string& file,
                                     std::string_view text) {
   std::vector<std::string> found;
   for (const Include& include : includes_of(text)) {
-    if (const std::string why = objection(folder, include); !why.empty()) {
+    if (const std::string why = objection(room, include); !why.empty()) {
       std::ostringstream sentence;
       sentence << file << ':' << include.line << ": " << include.header << ": " << why;
       found.push_back(sentence.str());
@@ -176,11 +237,23 @@ TEST(IncludeRule, FindsEachPlantedViolation) {
               ElementsAre(HasSubstr("library")));
   EXPECT_THAT(broken("db", "#include \"algo/types.hpp\""), ElementsAre(HasSubstr("from algo")));
   EXPECT_THAT(broken("db", "#include <Eigen/Core>"), ElementsAre(HasSubstr("library")));
-  EXPECT_THAT(broken("sim", "#include \"server/session.hpp\""),
-              ElementsAre(HasSubstr("from server")));
-  EXPECT_THAT(broken("server", "#include \"tests/server/client.hpp\""),
+  EXPECT_THAT(broken("sim", "#include \"server/serve/session.hpp\""),
+              ElementsAre(HasSubstr("from server/serve")));
+  EXPECT_THAT(broken("algo", "#include \"algo/strip/strip.hpp\""),
+              ElementsAre(HasSubstr("from algo/strip")));
+  EXPECT_THAT(broken("algo/full_strip", "#include \"algo/baselines/dwa.hpp\""),
+              ElementsAre(HasSubstr("from algo/baselines")));
+  EXPECT_THAT(broken("server/run", "#include \"server/record/recorder.hpp\""),
+              ElementsAre(HasSubstr("from server/record")));
+  EXPECT_THAT(broken("server/run", "#include <boost/asio.hpp>"), ElementsAre(HasSubstr("library")));
+  EXPECT_THAT(broken("server/run", "#include <zstd.h>"), ElementsAre(HasSubstr("library")));
+  EXPECT_THAT(broken("server/lab", "#include \"server/serve/session.hpp\""),
+              ElementsAre(HasSubstr("from server/serve")));
+  EXPECT_THAT(broken("server/serve", "#include \"server/lab/barn/barn_run.hpp\""),
+              ElementsAre(HasSubstr("from server/lab")));
+  EXPECT_THAT(broken("server/serve", "#include \"tests/server/client.hpp\""),
               ElementsAre(HasSubstr("from tests")));
-  EXPECT_THAT(broken("server", "#include \"session.hpp\""), ElementsAre(HasSubstr("root")));
+  EXPECT_THAT(broken("server/cli", "#include \"session.hpp\""), ElementsAre(HasSubstr("root")));
 }
 
 TEST(IncludeRule, LetsEachFolderHaveWhatItNeeds) {
@@ -195,27 +268,73 @@ TEST(IncludeRule, LetsEachFolderHaveWhatItNeeds) {
   EXPECT_THAT(fine("drivers", "#include <termios.h>\n#include \"algo/robot.hpp\""), IsEmpty());
   EXPECT_THAT(fine("db", "#include <sqlite3.h>\n#include <zstd.h>\n#include \"db/a.hpp\""),
               IsEmpty());
-  EXPECT_THAT(fine("server", "#include \"telemetry_generated.h\"\n#include <boost/asio.hpp>"),
-              IsEmpty());
+  EXPECT_THAT(fine("server/record", "#include \"telemetry_generated.h\""), IsEmpty());
+  EXPECT_THAT(fine("server/serve", "#include <boost/asio.hpp>\n#include <vector>"), IsEmpty());
 }
 
-TEST(IncludeRule, HoldsInEveryFolder) {
+struct House {
+  std::map<std::string, int> lines{};  // of each room
+  std::vector<std::string> outside{};  // files that stand in no room
+  std::vector<std::string> broken{};
+};
+
+House look() {
+  House house;
   const std::filesystem::path root = tests::folder().parent_path();
-  int files = 0;
-  for (const auto& [folder, rule] : rules()) {
-    if (!std::filesystem::exists(root / folder)) {
-      continue;  // the rule for a folder may come before it
-    }
+  for (const char* folder : {"algo", "sim", "drivers", "db", "server"}) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
-      if (extension == ".hpp" || extension == ".cpp") {
-        ++files;
-        const std::string name = std::filesystem::relative(entry.path(), root).string();
-        EXPECT_THAT(violations(folder, name, text_of(entry.path())), IsEmpty());
+      if (extension != ".hpp" && extension != ".cpp") continue;
+      const std::string name = std::filesystem::relative(entry.path(), root).string();
+      const std::string room = room_of(name);
+      if (room.empty()) {
+        house.outside.push_back(name);
+        continue;
       }
+      const std::string text = text_of(entry.path());
+      house.lines[room] += static_cast<int>(std::ranges::count(text, '\n'));
+      std::ranges::copy(violations(room, name, text), std::back_inserter(house.broken));
     }
   }
-  EXPECT_GT(files, 10) << "looked in " << root;  // algo's headers alone are ten
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "web" / "src")) {
+    const std::string extension = entry.path().extension().string();
+    if (extension != ".ts" && extension != ".tsx" && extension != ".css") continue;
+    house.lines["web"] += static_cast<int>(std::ranges::count(text_of(entry.path()), '\n'));
+  }
+  return house;
+}
+
+TEST(IncludeRule, HoldsInEveryRoom) {
+  const House house = look();
+  EXPECT_THAT(house.broken, IsEmpty());
+  EXPECT_THAT(house.outside, IsEmpty());
+  for (const auto& [room, rule] : rules()) EXPECT_GT(house.lines.count(room), 0U) << room;
+}
+
+TEST(IncludeRule, NoRoomHoldsMoreThanAFifth) {
+  const House house = look();
+  int all = 0;
+  for (const auto& [room, lines] : house.lines) all += lines;
+  ASSERT_GT(all, 10'000);
+  for (const auto& [room, lines] : house.lines) EXPECT_LE(5 * lines, all) << room;
+}
+
+TEST(IncludeRule, HasNoCircle) {
+  // A room stands only on rooms that stand on fewer.
+  std::map<std::string, std::size_t> height;
+  const std::function<std::size_t(const std::string&, std::size_t)> climb =
+      [&](const std::string& room, std::size_t depth) -> std::size_t {
+    EXPECT_LT(depth, rules().size()) << room << " stands on itself";
+    if (depth >= rules().size() || height.contains(room)) return height[room];
+    std::size_t highest = 0;
+    for (const std::string& below : rules().at(room).rooms) {
+      highest = std::max(highest, climb(below, depth + 1) + 1);
+    }
+    return height[room] = highest;
+  };
+  for (const auto& [room, rule] : rules()) climb(room, 0);
+  EXPECT_EQ(height["algo"], 0U);
+  EXPECT_GT(height["server/cli"], height["server/lab"]);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr double kBreak = 0.02;       // [m] a strip may be narrower than what w
 constexpr double kPlanEvery = 0.25;   // [s]
 constexpr int kExpansions = 400;      // of the planner a tick
 constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
-constexpr double kRivalShare = 0.9;   // of the present cost that a rival must stay below,
+constexpr double kOtherShare = 0.9;   // of the present cost that another must stay below,
 constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal,
 constexpr double kNearerTaken = 0.1;  // or so much where something stands on that,
 constexpr double kAtGoal = 1e-6;      // or at the goal itself where the present one does not
@@ -195,7 +195,7 @@ void FullStripController::take_plan(const ControlInput& in) {
   const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
   const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - nearer ||
                       (left(rival_) < kAtGoal && left(strip_) >= kAtGoal) ||
-                      rival_.cost(map_) < kRivalShare * strip_.cost(map_);
+                      rival_.cost(map_) < kOtherShare * strip_.cost(map_);
   if (better) {
     std::swap(strip_, rival_);
     broken_at_ = -1;

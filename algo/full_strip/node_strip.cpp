@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "algo/full_strip/planner.hpp"
-#include "algo/strip.hpp"
+#include "algo/strip/strip.hpp"
 
 namespace algo {
 namespace {

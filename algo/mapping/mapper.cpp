@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "algo/mapping/pose_step.hpp"
+#include "algo/pose_step.hpp"
 
 namespace algo {
 

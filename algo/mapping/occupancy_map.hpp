@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "algo/laser_scan.hpp"
-#include "algo/rivals/rolling_grid.hpp"
+#include "algo/rolling_grid.hpp"
 #include "algo/types.hpp"
 
 namespace algo {

@@ -66,7 +66,7 @@ struct SentScan {
   Fate fate = Fate::Sent;
   double end = 0;  // [s] when its last byte left
   std::optional<std::uint8_t> part{};
-  /// What a sound receiver makes of it: beams on the wire (algo/laser_scan.hpp), first value first.
+  /// What a sound receiver makes of it: packed beams (algo/laser_scan.hpp), first value first.
   std::vector<std::uint16_t> beams{};
 };
 

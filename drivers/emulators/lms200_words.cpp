@@ -33,11 +33,11 @@ std::uint16_t beam_of(std::uint16_t word, const WordLayout& layout, bool millime
   const unsigned value = word & layout.top;
   if (value + kCodes < layout.top) {
     return static_cast<std::uint16_t>(
-        std::min<unsigned>(millimetres ? value : 10 * value, algo::kWireMaxRange));
+        std::min<unsigned>(millimetres ? value : 10 * value, algo::kPackedMaxRange));
   }
   const unsigned digit = value & 0xFU;
-  if (digit == static_cast<unsigned>(algo::BeamCode::BeyondRange)) return algo::kWireFree;
-  return static_cast<std::uint16_t>(algo::kWireCodeBase + digit);
+  if (digit == static_cast<unsigned>(algo::BeamCode::BeyondRange)) return algo::kPackedFree;
+  return static_cast<std::uint16_t>(algo::kPackedCodeBase + digit);
 }
 
 }  // namespace drivers::lms200

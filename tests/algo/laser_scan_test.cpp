@@ -43,8 +43,8 @@ TEST(LaserScan, AllBeamsAtOnceAreTheSameAsOneByOne) {
       }
     }
     std::vector<std::uint16_t> all(beams);
-    beams_to_wire(scan, all);
-    for (std::size_t i = 0; i < beams; ++i) EXPECT_EQ(all[i], beam_to_wire(scan, i)) << i;
+    pack_beams(scan, all);
+    for (std::size_t i = 0; i < beams; ++i) EXPECT_EQ(all[i], pack_beam(scan, i)) << i;
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include "tests/bench/rooms.hpp"
 
-#include "algo/pipeline.hpp"
+#include "algo/pipeline/pipeline.hpp"
 #include "sim/world.hpp"
 
 namespace bench {

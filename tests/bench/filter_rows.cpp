@@ -7,7 +7,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/core.h>
 
-#include "algo/filter_kernels.hpp"
+#include "algo/filter/filter_kernels.hpp"
 
 namespace bench {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include "server/wire/frame_codec.hpp"
+#include "server/record/frame_codec.hpp"
 
 namespace bench {
 namespace {
@@ -30,7 +30,7 @@ json nearest(const algo::Nearest& n) {
 
 json scan_json(const algo::LaserScan& scan) {
   json ranges = json::array();
-  for (std::size_t i = 0; i < scan.size(); ++i) ranges.push_back(algo::beam_to_wire(scan, i));
+  for (std::size_t i = 0; i < scan.size(); ++i) ranges.push_back(algo::pack_beam(scan, i));
   return {{"mount", pose(scan.mount_R)},
           {"stamp", scan.stamp},
           {"angle_min", scan.angle_min},

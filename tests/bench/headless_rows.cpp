@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "db/run_reader.hpp"
-#include "server/app.hpp"
-#include "server/scenario_json.hpp"
-#include "server/scenario_library.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/scenario_library.hpp"
+#include "server/serve/app.hpp"
 
 namespace bench {
 namespace {

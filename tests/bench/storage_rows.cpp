@@ -15,9 +15,9 @@
 
 #include "db/run_reader.hpp"
 #include "db/run_store.hpp"
-#include "server/recorder.hpp"
-#include "server/run_json.hpp"
-#include "server/wire/frame_codec.hpp"
+#include "server/record/frame_codec.hpp"
+#include "server/record/recorder.hpp"
+#include "server/record/run_json.hpp"
 
 namespace bench {
 namespace {

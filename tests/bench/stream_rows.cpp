@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
-#include "server/foxglove/hub.hpp"
+#include "server/serve/foxglove/hub.hpp"
 
 namespace bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <sched.h>
 
 #include "drivers/real_time.hpp"
-#include "server/foxglove/hub.hpp"
+#include "server/serve/foxglove/hub.hpp"
 #include "sim/pacer.hpp"
 
 namespace bench {

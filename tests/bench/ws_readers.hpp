@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "tests/server/net_client.hpp"
+#include "tests/server/serve/net_client.hpp"
 
 namespace bench {
 

@@ -22,7 +22,7 @@ from emulated_robot import Devices, Server, TICK, WATCHDOG, robot_file, row
 
 PROGRAM = sys.argv[1]
 BASES = sys.argv[2:] or ["roboteq", "p2os"]
-PATIENCE = 1.5  # [s] server/operator_watch.hpp
+PATIENCE = 1.5  # [s] server/serve/operator_watch.hpp
 SLACK = 0.2  # [s] a look every 0.1 s, and a busy machine
 REATTACH = 5.0  # [s]
 ASLEEP = 3.0  # [s]

@@ -17,8 +17,8 @@ void check_scan(const sim::CarmenScan& scan, std::size_t line_size) {
     guess.see(static_cast<std::uint32_t>(std::lround(std::min(reading, 1e6) * 1000)));
   }
   for (const double reading : scan.readings) {
-    sim::carmen_to_wire(static_cast<std::uint32_t>(std::lround(std::min(reading, 1e6) * 1000)),
-                        guess.unit());
+    sim::pack_carmen(static_cast<std::uint32_t>(std::lround(std::min(reading, 1e6) * 1000)),
+                     guess.unit());
   }
 }
 

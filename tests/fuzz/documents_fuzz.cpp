@@ -4,10 +4,10 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "server/json_limits.hpp"
-#include "server/json_reader.hpp"
-#include "server/request_json.hpp"
-#include "server/scenario_json.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/request_json.hpp"
+#include "server/run/scenario_json.hpp"
 
 namespace {
 

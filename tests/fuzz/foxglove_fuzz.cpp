@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/bridge.hpp"
+#include "server/serve/bridge.hpp"
 
 namespace {
 

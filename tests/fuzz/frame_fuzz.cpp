@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "server/wire/frame_codec.hpp"
+#include "server/record/frame_codec.hpp"
 
 namespace {
 

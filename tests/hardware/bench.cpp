@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "server/cli.hpp"
+#include "server/cli/cli.hpp"
 #include "server/emulate/clock.hpp"
-#include "server/recorder.hpp"
-#include "server/run_json.hpp"
-#include "server/scenario_library.hpp"
+#include "server/record/recorder.hpp"
+#include "server/record/run_json.hpp"
+#include "server/run/scenario_library.hpp"
 
 namespace server::hardware {
 namespace {

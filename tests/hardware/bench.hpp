@@ -14,7 +14,7 @@
 
 #include "drivers/serial_robot.hpp"
 #include "server/emulate/emulation.hpp"
-#include "server/headless.hpp"
+#include "server/record/headless.hpp"
 
 namespace server::hardware {
 

@@ -9,7 +9,7 @@
 #include "tests/hardware/trials.hpp"
 #include <fmt/format.h>
 
-#include "server/scenario_library.hpp"
+#include "server/run/scenario_library.hpp"
 
 namespace server::hardware {
 namespace {

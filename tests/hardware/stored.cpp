@@ -8,7 +8,7 @@
 #include "algo/laser_scan.hpp"
 #include "db/run_reader.hpp"
 #include "drivers/lms200_telegram.hpp"
-#include "server/wire/frame_codec.hpp"
+#include "server/record/frame_codec.hpp"
 
 namespace server::hardware {
 namespace {
@@ -49,7 +49,7 @@ StoredRun read_stored(const std::filesystem::path& database) {
             StoredScan& stored = run.scans.emplace_back();
             stored.stamp = scan.stamp;
             stored.beams.resize(scan.size());
-            algo::beams_to_wire(scan, stored.beams);
+            algo::pack_beams(scan, stored.beams);
           }
         });
   }

@@ -150,29 +150,29 @@ TEST(CarmenUnits, AreToldFromTheReadings) {
 TEST(CarmenUnits, DeviceCodesAreNeverDistances) {
   using algo::BeamCode;
   const auto code = [](BeamCode c) {
-    return static_cast<std::uint16_t>(algo::kWireCodeBase + static_cast<std::uint16_t>(c));
+    return static_cast<std::uint16_t>(algo::kPackedCodeBase + static_cast<std::uint16_t>(c));
   };
   const auto cm = CarmenUnit::Centimetre;
-  EXPECT_EQ(carmen_to_wire(1650, cm), 1650);
-  EXPECT_EQ(carmen_to_wire(81790, cm), algo::kWireMaxRange);  // 81.79 m, more than a beam can hold
-  EXPECT_EQ(carmen_to_wire(81830, cm), algo::kWireFree);      // 8183 = 1FF7
-  EXPECT_EQ(carmen_to_wire(81860, cm), code(BeamCode::ReadError));   // 1FFA
-  EXPECT_EQ(carmen_to_wire(81870, cm), code(BeamCode::WeakSignal));  // 1FFB
-  EXPECT_EQ(carmen_to_wire(81890, cm), code(BeamCode::Overflow));    // 1FFD
-  EXPECT_EQ(carmen_to_wire(81900, cm), code(BeamCode::Dazzled));     // 1FFE
-  EXPECT_EQ(carmen_to_wire(81910, cm), code(BeamCode::NoEcho));      // 1FFF
-  EXPECT_EQ(carmen_to_wire(81800, cm), code(BeamCode::Unknown));
-  EXPECT_EQ(carmen_to_wire(100000, cm), code(BeamCode::Unknown));
+  EXPECT_EQ(pack_carmen(1650, cm), 1650);
+  EXPECT_EQ(pack_carmen(81790, cm), algo::kPackedMaxRange);  // 81.79 m, more than a beam can hold
+  EXPECT_EQ(pack_carmen(81830, cm), algo::kPackedFree);      // 8183 = 1FF7
+  EXPECT_EQ(pack_carmen(81860, cm), code(BeamCode::ReadError));   // 1FFA
+  EXPECT_EQ(pack_carmen(81870, cm), code(BeamCode::WeakSignal));  // 1FFB
+  EXPECT_EQ(pack_carmen(81890, cm), code(BeamCode::Overflow));    // 1FFD
+  EXPECT_EQ(pack_carmen(81900, cm), code(BeamCode::Dazzled));     // 1FFE
+  EXPECT_EQ(pack_carmen(81910, cm), code(BeamCode::NoEcho));      // 1FFF
+  EXPECT_EQ(pack_carmen(81800, cm), code(BeamCode::Unknown));
+  EXPECT_EQ(pack_carmen(100000, cm), code(BeamCode::Unknown));
   const auto mm = CarmenUnit::Millimetre32m;
-  EXPECT_EQ(carmen_to_wire(32754, mm), 32754);
-  EXPECT_EQ(carmen_to_wire(32755, mm), code(BeamCode::Unknown));
-  EXPECT_EQ(carmen_to_wire(32759, mm), algo::kWireFree);
-  EXPECT_EQ(carmen_to_wire(32763, mm), code(BeamCode::WeakSignal));
-  EXPECT_EQ(carmen_to_wire(32765, mm), code(BeamCode::Overflow));
-  EXPECT_EQ(carmen_to_wire(32767, mm), code(BeamCode::NoEcho));
-  EXPECT_EQ(carmen_to_wire(8182, CarmenUnit::Millimetre8m), 8182);
-  EXPECT_EQ(carmen_to_wire(8191, CarmenUnit::Millimetre8m), code(BeamCode::NoEcho));
-  EXPECT_EQ(carmen_to_wire(16375, CarmenUnit::Millimetre16m), algo::kWireFree);
+  EXPECT_EQ(pack_carmen(32754, mm), 32754);
+  EXPECT_EQ(pack_carmen(32755, mm), code(BeamCode::Unknown));
+  EXPECT_EQ(pack_carmen(32759, mm), algo::kPackedFree);
+  EXPECT_EQ(pack_carmen(32763, mm), code(BeamCode::WeakSignal));
+  EXPECT_EQ(pack_carmen(32765, mm), code(BeamCode::Overflow));
+  EXPECT_EQ(pack_carmen(32767, mm), code(BeamCode::NoEcho));
+  EXPECT_EQ(pack_carmen(8182, CarmenUnit::Millimetre8m), 8182);
+  EXPECT_EQ(pack_carmen(8191, CarmenUnit::Millimetre8m), code(BeamCode::NoEcho));
+  EXPECT_EQ(pack_carmen(16375, CarmenUnit::Millimetre16m), algo::kPackedFree);
 }
 
 }  // namespace

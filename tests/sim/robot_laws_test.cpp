@@ -245,7 +245,7 @@ TEST_P(RobotLaws, EveryBeamSurvivesTheWire) {
     for (const algo::LaserScan& scan : seen.scans) {
       algo::LaserScan copy = scan;
       for (std::size_t i = 0; i < scan.size(); ++i, ++beams) {
-        algo::beam_from_wire(copy, i, algo::beam_to_wire(scan, i));
+        algo::unpack_beam(copy, i, algo::pack_beam(scan, i));
         ASSERT_EQ(copy.ranges[i], scan.ranges[i]);
         ASSERT_EQ(copy.status[i], scan.status[i]);
         ASSERT_EQ(copy.codes[i], scan.codes[i]);

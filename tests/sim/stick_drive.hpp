@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "algo/pipeline.hpp"
+#include "algo/pipeline/pipeline.hpp"
 #include "sim/random.hpp"
 #include "sim/world.hpp"
 

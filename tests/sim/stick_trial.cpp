@@ -5,7 +5,7 @@
 
 #include "tests/sim/stick_drive.hpp"
 
-#include "server/soak/random_world.hpp"
+#include "server/lab/soak/random_world.hpp"
 
 namespace {
 

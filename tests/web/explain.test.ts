@@ -1,4 +1,4 @@
-// tests/web/explain.test.ts: the page says what the server says (tests/server/words_test.cpp wrote
+// tests/web/explain.test.ts: the page says what the server says (tests/server/serve/words_test.cpp wrote
 // the frames and their sentences).
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";

@@ -5,7 +5,7 @@
 #include "tests/algo/mapping/rooms.hpp"
 #include <gtest/gtest.h>
 
-#include "algo/mapping/pose_step.hpp"
+#include "algo/pose_step.hpp"
 
 namespace {
 

@@ -352,7 +352,7 @@ TEST(Lms200Emulator, TellsWhatAReceiverIsToKeep) {
       ASSERT_TRUE(decoder.decode(*measured_values(telegram_of(got[0])), decoded));
       ASSERT_EQ(decoded.size(), sent[0].beams.size());
       for (std::size_t i = 0; i < decoded.size(); ++i) {
-        EXPECT_EQ(algo::beam_to_wire(decoded, i), sent[0].beams[i]) << "beam " << i;
+        EXPECT_EQ(algo::pack_beam(decoded, i), sent[0].beams[i]) << "beam " << i;
       }
     }
   }

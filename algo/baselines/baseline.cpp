@@ -1,0 +1,62 @@
+// algo/baselines/baseline.cpp: the frame round every comparison controller.
+#include "algo/baselines/baseline.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algo/baselines/returns.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kShownStep = 0.5;  // [m] from the robot to the pass point that is shown
+
+/// On an obstacle point there is no direction away from it.
+bool on_obstacle(const Scene& scene) {
+  const auto touches = [](const auto& side) { return side && !(side->distance > 0); };
+  return touches(scene.left) || touches(scene.right);
+}
+
+}  // namespace
+
+void Baseline::reset(const Pose2& /*start_W*/) {
+  goal_W_.reset();
+  forget();
+}
+
+void Baseline::update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
+  out.clear();
+  if (!all_finite(in, parameters) || !finite_sonar(*in.observation)) return;
+  if (!in.goal) {
+    if (goal_W_) reset(in.odometry.pose);
+    return;
+  }
+  if (goal_W_ && *goal_W_ != goal_W(in)) retarget();
+  goal_W_ = goal_W(in);
+  const Pose2& pose = in.odometry.pose;
+  if ((*goal_W_ - pose.position()).norm() < parameters[Parameter::GoalReach]) {
+    out.pass_W = *goal_W_;
+    out.twist = turn_to(pose, *in.goal, parameters);
+    return;
+  }
+  steer(in, parameters, out);
+  if (on_obstacle(*in.scene)) out.twist = {};
+}
+
+double bearing_W(const Vec2& from_W, const Vec2& to_W) {
+  const Vec2 way = to_W - from_W;
+  return std::atan2(way.y(), way.x());
+}
+
+void steer_along(const ControlInput& in,
+                 double bearing,
+                 double speed,
+                 const Parameters& parameters,
+                 ControlOutput& out) {
+  const Pose2& pose = in.odometry.pose;
+  const double to_goal = (goal_W(in) - pose.position()).norm();
+  out.pass_W = pose.position() + std::min(kShownStep, to_goal) * direction(bearing);
+  out.twist = drive_along(pose, bearing, speed, parameters);
+}
+
+}  // namespace algo

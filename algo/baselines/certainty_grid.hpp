@@ -1,0 +1,93 @@
+// algo/baselines/certainty_grid.hpp: a grid of how surely each cell is empty or occupied, and a
+// path over it (Moravec and Elfes 1985; equations.md F.2).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "algo/baselines/baseline.hpp"
+#include "algo/baselines/returns.hpp"
+#include "algo/grid_search.hpp"
+#include "algo/rolling_grid.hpp"
+
+namespace algo {
+
+/// One range reading as a sector of space.
+struct RangeSector {
+  Pose2 mount_W{};     // apex and axis
+  double width = 0;    // [rad] w, whole beam, below pi / 2
+  double range = 0;    // [m] R
+  double nearest = 0;  // [m] R_min: below it nothing can be measured
+  bool hit = false;    // something returned from R; false: empty as far as R
+};
+
+/// p_E = (1 - ((s - R_min) / (R - e - R_min))^2) (1 - (2 a / w)^2) for R_min <= s <= R - e, else 0:
+/// how surely a cell at distance `s` and angle `a` off the axis is empty. e = 0.1 m [D].
+double empty_probability(const RangeSector& sector, double s, double a);
+/// p_O = (1 - ((s - R) / e)^2) (1 - (2 a / w)^2) for |s - R| <= e, else 0.
+double occupied_probability(const RangeSector& sector, double s, double a);
+
+/// The map. A reading adds E := E + p_E - E p_E, then O := O + q - O q with q = p_O (1 - E),
+/// normalised to the sum 1 over the arc. A laser beam's arc is a cell or three: it is sure at once.
+class CertaintyGrid {
+ public:
+  static constexpr double kCell = 0.1;  // [m]
+  static constexpr int kSide = 81;      // [D] cells remembered: 4 m round the robot
+
+  CertaintyGrid();
+  void clear() { cells_.clear(); }
+  void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
+  void add(const RangeSector& sector);
+  /// Every beam of a new picture: scan or sonar ring.
+  void sense(const ControlInput& in, NewPicture& is_new);
+
+  Cell first() const { return cells_.first(); }
+  Cell cell_of(const Vec2& p_W) const { return cells_.cell_of(p_W); }
+  Vec2 centre(Cell c) const { return cells_.centre(c); }
+  bool covers(Cell c) const { return cells_.covers(c); }
+  /// O where O >= E, else -E: 1 surely occupied, -1 surely empty, 0 unknown.
+  double certainty(Cell c) const;
+  void show(GridLayer& layer) const;
+
+ private:
+  struct Belief {
+    float empty = 0;     // E
+    float occupied = 0;  // O
+    double value() const { return occupied >= empty ? occupied : -empty; }
+  };
+  struct ArcCell {
+    Cell cell{};
+    float share = 0;  // q
+  };
+  template <typename Visit>
+  void for_each_in(const RangeSector& sector, Visit&& visit) const;
+
+  RollingGrid<Belief> cells_{kCell, kSide};
+  std::vector<ArcCell> arc_{};
+};
+
+/// Plans with A* on the grid five times a second [D] and follows the path: occupied cells are kept
+/// off by the hull and 5 cm, unknown ones count as free. A goal beyond the grid is sought at its
+/// border; without a way the robot drives to where it is nearest to the goal, and stands when it is
+/// too near to something already.
+class CertaintyGridPlanner final : public Baseline {
+  void forget() override;
+  void retarget() override { planned_at_.reset(); }
+  void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void plan(const ControlInput& in);
+  void fill_costs(double radius);
+  bool too_near(const Vec2& robot_W) const;
+  void open_way_out(const Vec2& robot_W);
+  GridCell place(Cell c) const;
+  Vec2 next_point(const Vec2& p_W) const;
+
+  CertaintyGrid grid_{};
+  NewPicture is_new_{};
+  std::vector<float> costs_{};
+  GridSearch search_{};
+  std::vector<Vec2> path_W_{};
+  bool reaches_ = false;                // the path ends at the goal
+  std::optional<double> planned_at_{};  // [s] run clock
+};
+
+}  // namespace algo

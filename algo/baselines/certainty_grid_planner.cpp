@@ -1,0 +1,142 @@
+// algo/baselines/certainty_grid_planner.cpp: from the map to costs, a path, and a twist along it.
+#include <algorithm>
+#include <cmath>
+
+#include "algo/baselines/certainty_grid.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kReplanPeriod = 0.2;  // [s] [D]
+constexpr double kOccupied = 0.25;     // [D] certainty from which a cell is kept off
+constexpr double kMargin = 0.05;       // [m] [D] kept beyond the hull
+constexpr double kComfort = 0.3;       // [m] [D] beyond the margin cells still cost more
+constexpr float kNearCost = 3;         // [D] what a cell at the margin costs on top
+constexpr float kWayOutCost = 10;      // [D] of a cell under the robot that is too near
+constexpr double kWayOut = 0.3;        // [m] [D] round the robot where such cells are not blocked
+constexpr double kLookAhead = 0.4;     // [m] [D] to the point of the path that is driven to
+constexpr std::size_t kCells =
+    static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
+
+}  // namespace
+
+void CertaintyGridPlanner::forget() {
+  grid_.clear();
+  is_new_.reset();
+  costs_.resize(kCells);
+  search_.resize(kCells);
+  path_W_.reserve(kCells);
+  path_W_.clear();
+  reaches_ = false;
+  planned_at_.reset();
+}
+
+GridCell CertaintyGridPlanner::place(Cell c) const {
+  return {c.i - grid_.first().i, c.j - grid_.first().j};
+}
+
+/// Whether the robot stands where no path may lead.
+bool CertaintyGridPlanner::too_near(const Vec2& robot_W) const {
+  const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
+  return view.blocked(place(grid_.cell_of(robot_W)));
+}
+
+/// 1 in the open, more near occupied cells, blocked where the hull of `radius` would touch them.
+void CertaintyGridPlanner::fill_costs(double radius) {
+  constexpr int kSide = CertaintyGrid::kSide;
+  constexpr double kCell = CertaintyGrid::kCell;
+  const double hard = radius + kMargin;
+  const int reach = static_cast<int>(std::ceil((hard + kComfort) / kCell));
+  std::fill(costs_.begin(), costs_.end(), 1.0F);
+  const CostGrid view{kSide, kSide, costs_};
+  const Cell first = grid_.first();
+  const auto spread = [&](GridCell occupied) {
+    for (int row = occupied.row - reach; row <= occupied.row + reach; ++row) {
+      for (int column = occupied.column - reach; column <= occupied.column + reach; ++column) {
+        if (!view.covers({column, row})) continue;
+        float& cost = costs_[view.index({column, row})];
+        const double d = kCell * std::hypot(column - occupied.column, row - occupied.row);
+        if (d < hard) cost = CostGrid::kBlocked;
+        if (cost < 1 || d >= hard + kComfort) continue;
+        cost = std::max(cost, 1 + kNearCost * static_cast<float>(1 - (d - hard) / kComfort));
+      }
+    }
+  };
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      const Cell cell{first.i + column, first.j + row};
+      if (grid_.certainty(cell) >= kOccupied) spread({column, row});
+    }
+  }
+}
+
+/// Cells under the robot that are too near to something, but not occupied, may be crossed.
+void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
+  constexpr int kSide = CertaintyGrid::kSide;
+  const CostGrid view{kSide, kSide, costs_};
+  const Cell first = grid_.first();
+  for (int row = 0; row < kSide; ++row) {
+    for (int column = 0; column < kSide; ++column) {
+      float& cost = costs_[view.index({column, row})];
+      const Cell cell{first.i + column, first.j + row};
+      const bool under = (grid_.centre(cell) - robot_W).norm() < kWayOut;
+      if (cost < 1 && under && grid_.certainty(cell) < kOccupied) cost = kWayOutCost;
+    }
+  }
+}
+
+void CertaintyGridPlanner::plan(const ControlInput& in) {
+  const Vec2 p = in.odometry.pose.position();
+  fill_costs(in.spec->radius);
+  const bool trapped = too_near(p);
+  if (trapped) open_way_out(p);
+  Vec2 aim = goal_W(in);
+  constexpr int kHalf = CertaintyGrid::kSide / 2;
+  const double farthest = (kHalf - 1) * CertaintyGrid::kCell;
+  const double over = (aim - p).cwiseAbs().maxCoeff() / farthest;
+  if (over > 1) aim = p + (aim - p) / over;  // on the border of the grid
+  const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
+  reaches_ = search_.find(view, place(grid_.cell_of(p)), place(grid_.cell_of(aim)));
+  path_W_.clear();
+  path_W_.push_back(p);
+  // Out of too narrow a place only to the goal: the place nearest to it could be a wall.
+  if (trapped && !reaches_) return;
+  const auto path = search_.path();
+  for (std::size_t k = 1; k < path.size(); ++k) {
+    const Cell first = grid_.first();
+    path_W_.push_back(grid_.centre({first.i + path[k].column, first.j + path[k].row}));
+  }
+  if (!reaches_) return;
+  if (path_W_.size() == 1) path_W_.push_back(aim);
+  path_W_.back() = aim;
+}
+
+/// The point of the path kLookAhead on from its point nearest to the robot.
+Vec2 CertaintyGridPlanner::next_point(const Vec2& p_W) const {
+  const auto nearest = std::ranges::min_element(
+      path_W_, {}, [&](const Vec2& point) { return (point - p_W).squaredNorm(); });
+  const auto next = std::find_if(nearest, path_W_.end(), [&](const Vec2& point) {
+    return (point - p_W).norm() >= kLookAhead;
+  });
+  return next == path_W_.end() ? path_W_.back() : *next;
+}
+
+void CertaintyGridPlanner::steer(const ControlInput& in,
+                                 const Parameters& parameters,
+                                 ControlOutput& out) {
+  grid_.sense(in, is_new_);
+  grid_.show(out.grid);
+  if (!planned_at_ || in.stamp - *planned_at_ >= kReplanPeriod) {
+    plan(in);
+    planned_at_ = in.stamp;
+  }
+  out.manner = reaches_ ? Manner::Planned : Manner::NoPlan;
+  for (const Vec2& point : path_W_) out.plan_W.push_back(point);
+  const Vec2 p = in.odometry.pose.position();
+  const Vec2 next = next_point(p);
+  if ((next - p).norm() < CertaintyGrid::kCell / 2) return;  // as near as it gets
+  steer_along(in, bearing_W(p, next), parameters[Parameter::MaxSpeed], parameters, out);
+  out.pass_W = next;
+}
+
+}  // namespace algo

@@ -1,0 +1,70 @@
+// algo/baselines/dwa.hpp: dynamic window: of the twists the motors can reach and the brakes can
+// stop, the one that best combines heading, clearance and speed (Fox, Burgard, Thrun 1997).
+#pragma once
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "algo/baselines/baseline.hpp"
+
+namespace algo {
+
+/// What must not touch anything: a disc, or a rectangle when half_length is above 0.
+struct Hull {
+  double radius = 0;       // [m]
+  double half_length = 0;  // [m] along R's x
+  double half_width = 0;   // [m] along R's y
+};
+
+/// How far the robot comes along the arc of a constant twist before its hull touches a point.
+struct ArcRoom {
+  double distance = std::numeric_limits<double>::infinity();  // [m] of the centre's way
+  double angle = std::numeric_limits<double>::infinity();     // [rad] of turning
+};
+
+/// The room of `twist` (v >= 0) before `point_R`; no end when the point is never touched, zero
+/// when it is inside the hull.
+ArcRoom arc_room(const Hull& hull, const Twist2& twist, const Vec2& point_R);
+
+/// The same before all of `points_R`.
+ArcRoom arc_room(const Hull& hull, const Twist2& twist, std::span<const Vec2> points_R);
+
+/// v_a: whether the robot can still stop within the room: v^2 <= 2 a distance and
+/// w^2 <= 2 alpha angle, after it has gone on for `reaction` [s].
+bool admissible(const Twist2& twist, const ArcRoom& room, const RobotSpec& spec, double reaction);
+
+/// v_d: the twists that can be reached in one interval, within what is allowed.
+struct DynamicWindow {
+  double v_from = 0;
+  double v_to = 0;
+  double omega_from = 0;
+  double omega_to = 0;
+};
+DynamicWindow dynamic_window(const Twist2& now,
+                             const RobotSpec& spec,
+                             const Parameters& parameters);
+
+/// G = 0.4 heading + 0.4 dist + 0.2 velocity [D], each of 0..1. heading = 1 - |angle to the goal| /
+/// pi at the pose the twist leads to in one interval and then braking the turn; dist the room, 1
+/// from 3 m on [D]; velocity = v / v_max. The paper smooths the sum over the window; this does not.
+/// With most of the weight on the heading, the robot stops facing a post on its line.
+double dwa_objective(const Pose2& pose_W,
+                     const Vec2& goal_W,
+                     const Twist2& twist,
+                     const ArcRoom& room,
+                     double v_max,
+                     const RobotSpec& spec);
+
+class Dwa final : public Baseline {
+  void forget() override;
+  void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void gather(const ControlInput& in, double reach);
+
+  // The nearest return of every two degrees of bearing, in R.
+  std::vector<Vec2> points_R_{};
+};
+
+}  // namespace algo

@@ -1,0 +1,12 @@
+// algo/baselines/go_to_goal.cpp: one tick of it.
+#include "algo/baselines/go_to_goal.hpp"
+
+namespace algo {
+
+void GoToGoal::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
+  out.manner = Manner::ToGoal;
+  const double bearing = bearing_W(in.odometry.pose.position(), goal_W(in));
+  steer_along(in, bearing, parameters[Parameter::MaxSpeed], parameters, out);
+}
+
+}  // namespace algo

@@ -1,0 +1,66 @@
+// algo/baselines/histogram_grid.hpp: the histogram grid of VFF and VFH: how often each cell
+// returned a reading (Borenstein and Koren 1989, 1991; equations.md F.4).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "algo/baselines/returns.hpp"
+#include "algo/rolling_grid.hpp"
+
+namespace algo {
+
+/// Certainty values C of 0..15. A reading adds one to the cell of its return and nothing takes
+/// any away: an obstacle that leaves stays until the robot has driven on.
+class HistogramGrid {
+ public:
+  static constexpr double kCell = 0.1;          // [m]
+  static constexpr int kWindow = 33;            // cells of the active window's edge, odd
+  static constexpr int kSide = 81;              // [D] cells remembered: 4 m round the robot
+  static constexpr std::uint8_t kCertain = 15;  // C at most
+
+  void clear() { cells_.clear(); }
+  void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
+
+  /// One reading that returned from `point_W`.
+  void add(const Vec2& point_W) {
+    const Cell cell = cells_.cell_of(point_W);
+    if (!cells_.covers(cell)) return;
+    std::uint8_t& c = cells_[cell];
+    c = std::min<std::uint8_t>(kCertain, static_cast<std::uint8_t>(c + 1));
+  }
+
+  /// Follows the robot and counts every return of a picture that is new.
+  void sense(const ControlInput& in, NewPicture& is_new) {
+    centre_on(in.odometry.pose.position());
+    if (!is_new(*in.scene)) return;
+    for_each_return(in, [this](const Vec2& point_W) { add(point_W); });
+  }
+
+  /// visit(offset, C) for every cell of the active window with C > 0, offset [m] from `robot_W` to
+  /// the cell's centre. The grid must be centred on the robot.
+  template <typename Visit>
+  void for_each_in_window(const Vec2& robot_W, Visit&& visit) const {
+    constexpr int kHalf = kWindow / 2;
+    const Cell robot = cells_.cell_of(robot_W);
+    for (int j = robot.j - kHalf; j <= robot.j + kHalf; ++j) {
+      for (int i = robot.i - kHalf; i <= robot.i + kHalf; ++i) {
+        const std::uint8_t c = cells_[{i, j}];
+        if (c > 0) visit(Vec2(cells_.centre({i, j}) - robot_W), static_cast<double>(c));
+      }
+    }
+  }
+
+  /// A cell that returned nothing is unknown: the grid knows no free ones.
+  void show(GridLayer& layer) const {
+    cells_.show(layer, [](std::uint8_t c) {
+      return c == 0 ? GridLayer::kUnknown : static_cast<std::uint8_t>(127 + c * 127 / kCertain);
+    });
+  }
+
+ private:
+  RollingGrid<std::uint8_t> cells_{kCell, kSide};
+};
+
+}  // namespace algo

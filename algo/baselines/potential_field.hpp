@@ -1,0 +1,41 @@
+// algo/baselines/potential_field.hpp: the goal pulls, every obstacle near enough pushes, and the
+// robot follows the sum (Khatib 1986).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "algo/baselines/baseline.hpp"
+
+namespace algo {
+
+/// [D] All of them: the papers leave them open. With these a robot of 0.35 m comes to rest 0.64 m
+/// (centre to surface) before a single post on its line.
+struct PotentialSettings {
+  double k_a = 1.0;  // [1/m] with force as a bare number
+  double f_max = 1;  // largest pull; infinite: not limited
+  double eta = 0.5;  // [m2]
+  double rho_0 = 0;  // [m] beyond it nothing pushes
+};
+
+/// F_att = -k_a (p - goal), its length limited to f_max.
+Vec2 attraction(const PotentialSettings& settings, const Vec2& p_W, const Vec2& goal_W);
+
+/// F_rep = eta (1/rho - 1/rho_0) / rho^2 grad rho for 0 < rho <= rho_0, else 0; rho = |p -
+/// obstacle| is taken as 0.05 m where it is less. Source: Khatib 1986 (equations.md F.3).
+Vec2 repulsion(const PotentialSettings& settings, const Vec2& p_W, const Vec2& obstacle_W);
+
+/// One obstacle is what the scanner sees without a jump of more than 0.3 m between two beams; it
+/// pushes from its nearest point. Otherwise a wall of a hundred beams would push like a hundred
+/// posts. Sonar readings are an obstacle each.
+class PotentialField final : public Baseline {
+  void forget() override;
+  void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+
+  std::vector<Vec2> obstacles_W_{};
+};
+
+/// The nearest point of every obstacle to the robot, as above.
+void nearest_points(const ControlInput& in, std::vector<Vec2>& points_W);
+
+}  // namespace algo

@@ -1,0 +1,59 @@
+// algo/baselines/vff.cpp: the forces, the speed, and one tick.
+#include "algo/baselines/vff.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace algo {
+namespace {
+
+// [D] A post of six certain cells face-on balances the goal at sqrt(6 15 F_cr / F_ct) = 6.7 cells.
+constexpr double kRepulsion = 0.5;   // F_cr
+constexpr double kAttraction = 1.0;  // F_ct
+// [D] Share of v_max that is always left. The law stands still before the faintest push from
+// straight ahead, for good: nothing else then changes.
+constexpr double kCreep = 0.1;
+
+}  // namespace
+
+VffForces vff_forces(
+    const HistogramGrid& grid, const Vec2& robot_W, const Vec2& goal_W, double f_cr, double f_ct) {
+  VffForces forces;
+  grid.for_each_in_window(robot_W, [&](const Vec2& offset, double c) {
+    const double d = offset.norm();
+    if (!(d > 0)) return;
+    const double in_cells = d / HistogramGrid::kCell;
+    forces.repulsion -= f_cr * c / (in_cells * in_cells) * offset / d;
+  });
+  const Vec2 way = goal_W - robot_W;
+  const double to_goal = way.norm();
+  if (to_goal > 0) forces.attraction = f_ct * way / to_goal;
+  return forces;
+}
+
+double vff_speed(const Vec2& repulsion_W, double heading, double v_max) {
+  const double size = repulsion_W.norm();
+  if (!(size > 0)) return v_max;
+  const double along = direction(heading).dot(repulsion_W) / size;
+  return v_max * std::max(0.0, 1 - std::abs(along));
+}
+
+void Vff::forget() {
+  grid_.clear();
+  is_new_.reset();
+}
+
+void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
+  out.manner = Manner::Pushed;
+  grid_.sense(in, is_new_);
+  grid_.show(out.grid);
+  const Pose2& pose = in.odometry.pose;
+  const VffForces forces = vff_forces(grid_, pose.position(), goal_W(in), kRepulsion, kAttraction);
+  const Vec2 sum = forces.sum();
+  if (!(sum.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
+  const double v_max = parameters[Parameter::MaxSpeed];
+  const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
+  steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);
+}
+
+}  // namespace algo

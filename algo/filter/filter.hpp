@@ -1,0 +1,56 @@
+// algo/filter/filter.hpp: the scan filters by name, and their use on a LaserScan.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "algo/filter/filter_kernels.hpp"
+#include "algo/laser_scan.hpp"
+
+namespace algo {
+
+enum class FilterKind : std::uint8_t { None, Pseudomedian, Median, Lulu };
+
+struct FilterInfo {
+  std::string_view name{};   // "pseudomedian": REST, command line, scenario files
+  std::string_view label{};  // for people
+  std::string_view help{};
+  FilterKind kind{};
+};
+
+/// All filters, the papers' own first.
+std::span<const FilterInfo> filter_table();
+std::optional<FilterKind> find_filter(std::string_view name);
+
+/// Filters whole scans. Keeps its buffers: give each pipeline one of its own.
+class ScanFilter {
+ public:
+  /// `out` becomes `in` with filtered ranges; it must be another scan.
+  ///
+  /// A Free beam counts as range_max and is believed; an Invalid one, and one whose range is not a
+  /// finite number, never enters. An output is Ok when believed and below range_max, Free when
+  /// believed and at or beyond it; an Invalid beam keeps its flag, code and value, and a beam with
+  /// too few believed neighbours becomes Invalid with code Unknown (equations.md A). No border
+  /// sample is invented: the edge beam is repeated, since a scan of 180 degrees is not periodic.
+  /// Without a finite range_max no beam can be believed.
+  ///
+  /// Any number of beams is legal. Throws std::invalid_argument when half_width is below 0, and
+  /// when ranges, status and codes of `in` differ in number.
+  void apply(FilterKind kind, int half_width, const LaserScan& in, LaserScan& out);
+
+ private:
+  bool believe(const LaserScan& in);
+  void disbelieve(double range_max);
+  void filter_all(FilterKind kind, int half_width, LaserScan& out);
+  void filter_believed(FilterKind kind, int half_width, const LaserScan& in, LaserScan& out);
+
+  FilterScratch scratch_{};
+  std::vector<double> values_{};
+  std::vector<std::uint8_t> believed_{};
+  std::vector<std::uint8_t> out_believed_{};
+};
+
+}  // namespace algo

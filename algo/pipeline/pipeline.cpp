@@ -1,0 +1,269 @@
+// algo/pipeline/pipeline.cpp: what the robot does every period, in the order it does it.
+#include "algo/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "algo/dazzle.hpp"
+#include "algo/gate.hpp"
+#include "algo/geometry.hpp"
+#include "algo/perceive.hpp"
+#include "algo/pipeline/controllers.hpp"
+
+namespace algo {
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+/// [m] From a rectangular hull to the nearest return of all beams.
+double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
+  double least = scan.range_max - spec.radius;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (scan.status[i] != Beam::Ok) continue;
+    const Vec2 p = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
+    const double dx = std::abs(p.x()) - spec.half_length;
+    const double dy = std::abs(p.y()) - spec.half_width;
+    const bool inside = dx <= 0 && dy <= 0;
+    least = std::min(least,
+                     inside ? std::max(dx, dy) : std::hypot(std::max(dx, 0.0), std::max(dy, 0.0)));
+  }
+  return least;
+}
+
+constexpr double kGridPeriod = 0.5;  // [s] between two grids in the telemetry, which are large
+constexpr double kGridRefresh =
+    5.0;  // [s] after which an unchanged one comes again, for latecomers
+
+/// [m] To the nearest return of all beams: what stands abeam, outside of both sides, is close too,
+/// though it exerts no force.
+double nearest_distance(const Scene& scene) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto take = [&least](const auto& found) {
+    if (found) least = std::min(least, found->distance);
+  };
+  take(scene.right);
+  take(scene.left);
+  take(nearest_beam(scene.scan, {0, right_beams(scene.scan).begin}));
+  take(nearest_beam(scene.scan, {left_beams(scene.scan).end, scene.scan.size()}));
+  return std::isfinite(least) ? least : scene.scan.range_max;
+}
+
+bool within_unit(double axis) {
+  return axis >= -1.0 && axis <= 1.0;
+}  // false for NaN
+
+}  // namespace
+
+Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
+    : spec_(spec),
+      controller_(config.controller),
+      filter_kind_(config.filter),
+      initial_parameters_(config.parameters) {
+  if (spec.drives) coordinator_.add(std::make_unique<ManualBehaviour>());
+  coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
+  by_sonar_ = !spec.has_laser && std::ranges::any_of(controller_table(), [&](const auto& about) {
+    return about.by_sonar && about.name == config.controller;
+  });
+  const double delay = spec.period > 0 ? std::round(spec.command_delay / spec.period) : 0;
+  under_way_.resize(static_cast<std::size_t>(delay));
+  reset({});
+}
+
+void Pipeline::reset(const Pose2& start_W) {
+  parameters_ = initial_parameters_;
+  coordinator_.reset(start_W);
+  sequencer_.reset(spec_.period);
+  scene_ = {};
+  merge_.reset();
+  scan_stamp_.reset();
+  blinded_ = false;
+  clearance_ = 0;
+  joystick_ = {};
+  joystick_ticks_ = 0;
+  std::ranges::fill(under_way_, Twist2{});
+  grid_shown_at_.reset();
+  stopped_ = false;
+  tick_ = 0;
+}
+
+std::optional<std::string> Pipeline::refusal(const Request& request) const {
+  if (const auto* set = std::get_if<SetParameter>(&request)) {
+    return refusal(parameters_, *set);
+  }
+  const auto* add = std::get_if<AddGoal>(&request);
+  if (add != nullptr && sequencer_.goals_ahead().size() >= kMostGoalsAhead) {
+    return "There are " + std::to_string(kMostGoalsAhead) + " goals ahead; more are not kept.";
+  }
+  if (const auto* goal = add != nullptr ? &add->goal : std::get_if<SetGoal>(&request)) {
+    const bool finite = goal->position_W.allFinite() && std::isfinite(goal->heading.value_or(0));
+    if (!finite) return "The goal must be finite numbers.";
+    if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
+  }
+  if (const auto* stick = std::get_if<Joystick>(&request)) {
+    if (!within_unit(stick->forward) || !within_unit(stick->turn)) {
+      return "Joystick axes must lie between -1 and 1.";
+    }
+    if (!spec_.drives) return "This robot only replays a log; it cannot be driven.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Pipeline::refusal(const Parameters& now, const SetParameter& set) const {
+  if (auto reason = algo::refusal(now, set.parameter, set.value)) return reason;
+  Parameters then = now;
+  then.set(set.parameter, set.value);
+  return algo::refusal(controller_, then);
+}
+
+void Pipeline::tick(Telemetry& t) {
+  t.tick = tick_++;
+  if (joystick_ticks_ > 0) --joystick_ticks_;
+  for (const Request& request : t.requests) apply(request);
+
+  sense(t);    // filter the newest scan, find the nearest return of each side
+  control(t);  // sequence the goal, let behaviours propose, pick one
+  hold(t);     // the gate has the last word
+  remember(t.command.base);
+  thin_grid(t);
+}
+
+void Pipeline::apply(const Request& request) {
+  std::visit(Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
+                        [&](const AddGoal& add) { sequencer_.add_goal(add.goal); },
+                        [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
+                        [&](const Joystick& stick) {
+                          // Whoever takes the stick takes over: a silent driver must leave a robot
+                          // that stands still, not one that drives off to an old goal.
+                          if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
+                          joystick_ = stick;
+                          joystick_ticks_ = static_cast<std::uint64_t>(
+                              std::ceil(parameters_[Parameter::JoystickTimeout] / spec_.period));
+                        },
+                        [&](const Stop& stop) { stopped_ = stop.engaged; },
+                        [&](const SetParameter& set) { parameters_.set(set.parameter, set.value); },
+                        [](const auto&) {}},  // obstacle edits were carried out by the robot
+             request);
+}
+
+void Pipeline::sense(Telemetry& t) {
+  const LaserScan* front = front_scan(t.observation);
+  merge_.take(t.observation);
+  scene_.fresh = front != nullptr;
+  if (front != nullptr) {
+    const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
+    filter_.apply(filter_kind_, half_width, *front, scene_.scan);
+    blinded_ = blinded(*front);
+    if (!blinded_) scan_stamp_ = front->stamp;
+    merge_.enter(t.observation.odometry.pose, t.observation.stamp, scene_.scan);
+    perceive(t.observation.odometry.pose, scene_);
+    t.scene.scan = scene_.scan;
+  } else {
+    // The frame comes from a pool: what explains a stale scan must not be of another tick.
+    t.scene.scan.resize(scene_.scan.size());
+    t.scene.scan.stamp = scene_.scan.stamp;
+  }
+  if (!spec_.has_laser) sense_sonar(t);
+  t.scene.fresh = scene_.fresh;
+  t.scene.echoes = scene_.echoes;
+  t.scene.left = scene_.left;
+  t.scene.right = scene_.right;
+
+  if (scene_.fresh) {
+    clearance_ = spec_.half_length > 0 ? rectangle_clearance(scene_.scan, spec_)
+                                       : nearest_distance(scene_) - spec_.radius;
+  }
+  t.clearance = clearance_;
+}
+
+/// A controller that needs a scanner is held: only those that drive by sonar let its stamps count.
+void Pipeline::sense_sonar(Telemetry& t) {
+  const Observation& observation = t.observation;
+  const Vec2 p = observation.odometry.pose.position();
+  perceive(observation.odometry.pose, observation.sonar, scene_);
+  double nearest = 0;
+  for (const RangeReading& reading : observation.sonar) {
+    if (by_sonar_ && reading.status != Beam::Invalid) scan_stamp_ = reading.stamp;
+    nearest = std::max(nearest, reading.range_max);
+  }
+  if (observation.sonar.empty()) return;
+  for (const Echo& echo : scene_.echoes) {
+    if (echo.hit) nearest = std::min(nearest, (echo.point_W - p).norm());
+  }
+  clearance_ = nearest - spec_.radius;
+}
+
+bool Pipeline::manual() const {
+  return joystick_ticks_ > 0;
+}
+
+void Pipeline::control(Telemetry& t) {
+  t.mission = sequencer_.update(t.observation.odometry.pose, parameters_);
+  t.goal = sequencer_.goal();
+  t.goals_ahead.clear();
+  for (const SetGoal& goal : sequencer_.goals_ahead()) t.goals_ahead.push_back(goal);
+
+  Resource resource;
+  resource.dt = spec_.period;
+  resource.observation = &t.observation;
+  resource.scene = &scene_;
+  resource.merge = &merge_;
+  resource.under_way = under_way_;
+  resource.parameters = &parameters_;
+  resource.spec = &spec_;
+  resource.goal = t.goal;
+  resource.mission = t.mission;
+  resource.joystick = joystick_;
+  resource.manual = manual();
+  const Decision decision = coordinator_.decide(resource, t.output);
+  t.behaviour = decision.winner;
+  t.command = actuate(decision.twist, spec_);
+}
+
+void Pipeline::hold(Telemetry& t) {
+  GateInput in;
+  in.stopped = stopped_;
+  in.scan_timeout = parameters_[Parameter::ScanTimeout];
+  in.scan_stamp = scan_stamp_;
+  in.blinded = blinded_;
+  in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
+  in.by_hand = t.behaviour == BehaviourId::Manual;
+  t.hold = gate(in, t.observation, t.command);
+  if (t.hold == Hold::None) return;
+  t.command = {};
+  sequencer_.interrupt();
+  if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
+}
+
+/// A command acts after the robot's delay.
+void Pipeline::remember(const Twist2& command) {
+  if (under_way_.empty()) return;
+  std::ranges::rotate(under_way_, under_way_.begin() + 1);
+  under_way_.back() = command;
+}
+
+/// People need a grid twice a second, and only when it is another.
+void Pipeline::thin_grid(Telemetry& t) {
+  GridLayer& grid = t.output.grid;
+  if (grid.cells.empty()) return;
+  const double age = t.observation.stamp - grid_shown_at_.value_or(-kGridRefresh);
+  // Written so that a stamp that is not a number lets it pass.
+  const bool due = !(age < kGridPeriod) && (!(age < kGridRefresh) || !(grid == shown_grid_));
+  if (due) {
+    shown_grid_ = grid;
+    grid_shown_at_ = t.observation.stamp;
+    return;
+  }
+  grid.columns = 0;
+  grid.rows = 0;
+  grid.cells.clear();
+}
+
+}  // namespace algo

@@ -1,0 +1,78 @@
+// algo/pipeline/pipeline.hpp: one tick, sense to command: plain data, no clock, file, socket or
+// chance.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/reactive.hpp"
+#include "algo/pipeline/sequencing.hpp"
+#include "algo/sensor_merge.hpp"
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+struct PipelineConfig {
+  std::string controller = "modified";
+  FilterKind filter = FilterKind::Pseudomedian;
+  Parameters parameters{};
+};
+
+/// Everything that turns observations and requests into commands for one robot. Fed the same
+/// observations and requests again, a fresh one gives the same commands bit for bit.
+class Pipeline {
+ public:
+  /// Throws std::invalid_argument on an unknown controller.
+  Pipeline(const PipelineConfig& config, const RobotSpec& spec);
+
+  /// Starts over with the robot at rest at `start_W`.
+  void reset(const Pose2& start_W);
+
+  /// Why `request` cannot be applied now, as a sentence. Obstacle edits are the robot's business.
+  std::optional<std::string> refusal(const Request& request) const;
+  /// The same of a parameter, when the others are as in `now`: some accepted before it may be on
+  /// their way still.
+  std::optional<std::string> refusal(const Parameters& now, const SetParameter& set) const;
+
+  /// Fills the rest of `t`, whose observation and requests are given. Allocates nothing once its
+  /// buffers have grown.
+  void tick(Telemetry& t);
+
+  const Parameters& parameters() const { return parameters_; }
+
+ private:
+  void apply(const Request& request);
+  void sense(Telemetry& t);
+  void sense_sonar(Telemetry& t);
+  void control(Telemetry& t);
+  void hold(Telemetry& t);
+  void remember(const Twist2& command);
+  void thin_grid(Telemetry& t);
+  bool manual() const;
+
+  RobotSpec spec_{};
+  std::string controller_{};
+  FilterKind filter_kind_{};
+  Parameters initial_parameters_{};
+  Parameters parameters_{};
+  ScanFilter filter_{};
+  BehaviourCoordinator coordinator_{};
+  Sequencer sequencer_{};
+  Scene scene_{};
+  SensorMerge merge_{};
+  bool by_sonar_ = false;               // the ring stands in for the scanner
+  std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
+  bool blinded_ = false;                // the newest scan is
+  double clearance_ = 0;                // [m] of the newest scan
+  Joystick joystick_{};
+  std::uint64_t joystick_ticks_ = 0;       // ticks the stick's value still counts
+  std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
+  GridLayer shown_grid_{};                 // the newest that telemetry brought
+  std::optional<double> grid_shown_at_{};  // [s] run clock
+  bool stopped_ = false;
+  std::uint64_t tick_ = 0;
+};
+
+}  // namespace algo

@@ -1,0 +1,91 @@
+// algo/pipeline/reactive.cpp: behaviours, their coordinator and the actuator's limits.
+#include "algo/pipeline/reactive.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace algo {
+namespace {
+
+TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
+  return {
+      std::max(a.v_min, b.v_min), std::min(a.v_max, b.v_max), std::min(a.omega_max, b.omega_max)};
+}
+
+}  // namespace
+
+AvoidBehaviour::AvoidBehaviour(std::unique_ptr<Controller> controller)
+    : controller_(std::move(controller)) {}
+
+void AvoidBehaviour::reset(const Pose2& start_W) {
+  controller_->reset(start_W);
+}
+
+Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
+  ControlInput input;
+  input.stamp = in.observation->stamp;
+  input.dt = in.dt;
+  input.odometry = in.observation->odometry;
+  input.scene = in.scene;
+  input.observation = in.observation;
+  if (in.mission != Mission::Arrived) input.goal = in.goal;
+  input.spec = in.spec;
+  controller_->update(input, *in.parameters, output);
+  return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
+}
+
+void ManualBehaviour::reset(const Pose2& start_W) {
+  guard_.reset(start_W);
+}
+
+Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
+  guard_.sense(in);
+  if (!in.manual) return {};
+  const Twist2 wanted{in.joystick.forward * in.spec->max_v, in.joystick.turn * in.spec->max_omega};
+  return {.active = true, .twist = guard_.limit(in, wanted), .limits = {}};
+}
+
+void BehaviourCoordinator::add(std::unique_ptr<Behaviour> behaviour) {
+  slots_.push_back({.behaviour = std::move(behaviour)});
+}
+
+void BehaviourCoordinator::reset(const Pose2& start_W) {
+  for (Slot& slot : slots_) {
+    slot.behaviour->reset(start_W);
+    slot.held = {};
+    slot.age = std::numeric_limits<double>::infinity();
+  }
+}
+
+Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& output) {
+  Decision decision;
+  TwistLimits limits;
+  for (Slot& slot : slots_) {
+    slot.age += resource.dt;
+    // Half a tick of slack, or rounding would make a period of n ticks last n + 1.
+    if (slot.age + resource.dt / 2 >= slot.behaviour->period()) {
+      slot.held = slot.behaviour->propose(resource, output);
+      slot.age = 0;
+    }
+    if (!slot.held.active) continue;
+    limits = intersect(limits, slot.held.limits);
+    if (decision.winner == BehaviourId::Rest) {
+      decision.winner = slot.behaviour->id();
+      decision.twist = slot.held.twist;
+    }
+  }
+  // clamp() lets NaN through to the gate; min() and max() would turn it into a limit.
+  const bool contradictory = limits.v_min > limits.v_max || limits.omega_max < 0;
+  if (contradictory) return {.winner = decision.winner, .twist = {}};
+  decision.twist.v = std::clamp(decision.twist.v, limits.v_min, limits.v_max);
+  decision.twist.omega = std::clamp(decision.twist.omega, -limits.omega_max, limits.omega_max);
+  return decision;
+}
+
+Command actuate(const Twist2& twist, const RobotSpec& spec) {
+  return {{std::clamp(twist.v, -spec.max_v, spec.max_v),
+           std::clamp(twist.omega, -spec.max_omega, spec.max_omega)}};
+}
+
+}  // namespace algo

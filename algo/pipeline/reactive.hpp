@@ -1,0 +1,109 @@
+// algo/pipeline/reactive.hpp: the reactive layer of the thesis' hybrid architecture: the resource
+// behaviours read, behaviours that propose, a coordinator that picks, and the actuator's limits.
+//
+// Nong 2008 (thesis) Fig. 22: obstacle avoidance = AvoidBehaviour's controller, determining
+// velocity = the controllers' driving law, actuator = actuate().
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "algo/controller.hpp"
+#include "algo/pipeline/stick_guard.hpp"
+#include "algo/sensor_merge.hpp"
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+/// What every behaviour may look at in one tick. Nothing here knows the true pose.
+struct Resource {
+  double dt = 0;  // [s]
+  const Observation* observation = nullptr;
+  const Scene* scene = nullptr;
+  const SensorMerge* merge = nullptr;   // what sonar and infrared returned of late
+  std::span<const Twist2> under_way{};  // commands given that do not act yet, oldest first
+  const Parameters* parameters = nullptr;
+  const RobotSpec* spec = nullptr;
+  std::optional<SetGoal> goal{};
+  Mission mission = Mission::Idle;
+  Joystick joystick{};
+  bool manual = false;  // a driver's stick is live
+};
+
+struct TwistLimits {
+  double v_min = -std::numeric_limits<double>::infinity();     // [m/s]
+  double v_max = std::numeric_limits<double>::infinity();      // [m/s]
+  double omega_max = std::numeric_limits<double>::infinity();  // [rad/s] either way
+};
+
+struct Proposal {
+  bool active = false;  // wants the base
+  Twist2 twist{};
+  TwistLimits limits{};  // binds whoever wins
+};
+
+class Behaviour {
+ public:
+  virtual ~Behaviour() = default;
+  virtual BehaviourId id() const = 0;
+  /// [s] between samples; its proposal is held in between. 0: every tick.
+  virtual double period() const { return 0; }
+  virtual void reset(const Pose2& start_W) = 0;
+  /// `output` is what the page draws and the record keeps; only AvoidBehaviour fills it.
+  virtual Proposal propose(const Resource& resource, ControlOutput& output) = 0;
+};
+
+/// Drives to the goal with a controller of controller_table().
+class AvoidBehaviour final : public Behaviour {
+ public:
+  explicit AvoidBehaviour(std::unique_ptr<Controller> controller);
+  BehaviourId id() const override { return BehaviourId::Avoid; }
+  void reset(const Pose2& start_W) override;
+  Proposal propose(const Resource& resource, ControlOutput& output) override;
+
+ private:
+  std::unique_ptr<Controller> controller_;
+};
+
+/// Follows the driver's stick as far as its guard lets it.
+class ManualBehaviour final : public Behaviour {
+ public:
+  BehaviourId id() const override { return BehaviourId::Manual; }
+  void reset(const Pose2& start_W) override;
+  Proposal propose(const Resource& resource, ControlOutput& output) override;
+
+ private:
+  StickGuard guard_{};
+};
+
+struct Decision {
+  BehaviourId winner = BehaviourId::Rest;
+  Twist2 twist{};
+};
+
+/// Samples each behaviour at its own period, takes the first active one in the order given (the
+/// order is the priority) and applies the intersection of all limits.
+class BehaviourCoordinator {
+ public:
+  void add(std::unique_ptr<Behaviour> behaviour);
+  void reset(const Pose2& start_W);
+  Decision decide(const Resource& resource, ControlOutput& output);
+
+ private:
+  struct Slot {
+    std::unique_ptr<Behaviour> behaviour{};
+    Proposal held{};
+    double age = std::numeric_limits<double>::infinity();  // [s] since its last sample
+  };
+  std::vector<Slot> slots_{};
+};
+
+/// The command for the base: `twist` within the robot's own limits.
+Command actuate(const Twist2& twist, const RobotSpec& spec);
+
+}  // namespace algo

@@ -1,0 +1,101 @@
+// algo/pipeline/sequencing.cpp: the goal's state machine and the stuck rule.
+#include "algo/pipeline/sequencing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "algo/parameters.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kStuckRadius = 0.060;    // [m]
+constexpr double kStuckWindow = 20.0;     // [s] at least
+constexpr double kStuckDistance = 0.800;  // [m] nominal travel within the window
+constexpr double kGoalHeading = 0.05;     // [rad]
+
+bool at_goal(const SetGoal& goal, const Pose2& pose_W, double reach) {
+  const double distance = (goal.position_W - pose_W.position()).norm();
+  if (!(distance < reach)) return false;
+  if (!goal.heading) return true;
+  return std::abs(wrap_angle(*goal.heading - pose_W.heading)) < kGoalHeading;
+}
+
+}  // namespace
+
+double StuckDetector::window(double v_max) {
+  return std::max(kStuckWindow, kStuckDistance / v_max);
+}
+
+void StuckDetector::reset(double period) {
+  period_ = period;
+  const double longest = window(info(Parameter::MaxSpeed).min);
+  ring_.assign(static_cast<std::size_t>(longest / period) + 2, Vec2{0, 0});
+  next_ = 0;
+  count_ = 0;
+}
+
+bool StuckDetector::update(const Vec2& position_W, double v_max) {
+  const auto wanted = static_cast<std::size_t>(std::lround(window(v_max) / period_));
+  const std::size_t needed = std::min(wanted, ring_.size());
+  // Oldest first: a robot on its way fails at the first comparison.
+  bool stuck = count_ >= needed;
+  for (std::size_t back = std::min(needed, count_); stuck && back > 0; --back) {
+    const Vec2& past = ring_[(next_ + ring_.size() - back) % ring_.size()];
+    stuck = (past - position_W).norm() <= kStuckRadius;
+  }
+  ring_[next_] = position_W;
+  next_ = (next_ + 1) % ring_.size();
+  count_ = std::min(count_ + 1, ring_.size());
+  return stuck;
+}
+
+void Sequencer::reset(double period) {
+  goal_.reset();
+  ahead_.clear();
+  ahead_.reserve(kMostGoalsAhead);
+  mission_ = Mission::Idle;
+  stuck_.reset(period);
+}
+
+void Sequencer::set_goal(const std::optional<SetGoal>& goal) {
+  goal_ = goal;
+  ahead_.clear();
+  mission_ = goal ? Mission::Driving : Mission::Idle;
+  stuck_.restart();
+}
+
+void Sequencer::add_goal(const SetGoal& goal) {
+  if (!goal_) {
+    set_goal(goal);
+  } else {
+    ahead_.push_back(goal);
+  }
+}
+
+void Sequencer::go_on() {
+  goal_ = ahead_.front();
+  ahead_.erase(ahead_.begin());
+  mission_ = Mission::Driving;
+  stuck_.restart();
+}
+
+Mission Sequencer::update(const Pose2& pose_W, const Parameters& parameters) {
+  if (mission_ == Mission::Arrived && !ahead_.empty()) go_on();
+  if (!goal_ || mission_ == Mission::Arrived) return mission_;
+  while (at_goal(*goal_, pose_W, parameters[Parameter::GoalReach])) {
+    if (ahead_.empty()) return mission_ = Mission::Arrived;
+    go_on();
+  }
+
+  const Vec2 position_W = pose_W.position();
+  if (stuck_.update(position_W, parameters[Parameter::MaxSpeed])) {
+    if (mission_ != Mission::Stuck) stuck_at_W_ = position_W;
+    mission_ = Mission::Stuck;
+  } else if (mission_ == Mission::Stuck && (position_W - stuck_at_W_).norm() > kStuckRadius) {
+    mission_ = Mission::Driving;
+  }
+  return mission_;
+}
+
+}  // namespace algo

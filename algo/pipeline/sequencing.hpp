@@ -1,0 +1,59 @@
+// algo/pipeline/sequencing.hpp: the sequencing layer: idle, driving, arrived, stuck, held.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "algo/telemetry.hpp"
+
+namespace algo {
+
+/// All positions of the last window lie within 60 mm of the present one (scenarios.json
+/// `stuck_rule`): window = max(20 s, 0.8 m / v_max). Allocates only in reset().
+class StuckDetector {
+ public:
+  /// `period` [s] of one tick, > 0.
+  void reset(double period);
+  /// Forgets the past: a new goal starts a new window.
+  void restart() { count_ = 0; }
+  bool update(const Vec2& position_W, double v_max);
+  static double window(double v_max);  // [s]
+
+ private:
+  double period_ = 0;
+  std::vector<Vec2> ring_{};
+  std::size_t next_ = 0;
+  std::size_t count_ = 0;
+};
+
+constexpr std::size_t kMostGoalsAhead = 100;
+
+/// The goal's state machine, and the goals to come. A stuck robot keeps trying and counts as
+/// driving again as soon as it gets away; an arrived one waits for the next goal.
+class Sequencer {
+ public:
+  void reset(double period);
+  /// In place of all goals there are.
+  void set_goal(const std::optional<SetGoal>& goal);
+  void add_goal(const SetGoal& goal);
+  const std::optional<SetGoal>& goal() const { return goal_; }
+  /// Those after the present one, in order.
+  const std::vector<SetGoal>& goals_ahead() const { return ahead_; }
+  /// The robot was held: standing still does not mean that it is stuck.
+  void interrupt() { stuck_.restart(); }
+  /// The state for this tick, before control; `pose_W` is the odometry's. A goal that is reached
+  /// gives way to the next; the robot has arrived at the last only.
+  Mission update(const Pose2& pose_W, const Parameters& parameters);
+
+ private:
+  void go_on();  // to the next goal
+
+  std::optional<SetGoal> goal_{};
+  std::vector<SetGoal> ahead_{};
+  Mission mission_ = Mission::Idle;
+  StuckDetector stuck_{};
+  Vec2 stuck_at_W_{0, 0};
+};
+
+}  // namespace algo

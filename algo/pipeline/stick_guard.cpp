@@ -1,0 +1,163 @@
+// algo/pipeline/stick_guard.cpp: what is known around the robot, and the proof that it can stop
+// before it.
+#include "algo/pipeline/stick_guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "algo/perceive.hpp"
+#include "algo/pipeline/reactive.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kIdleEvery = 0.25;  // [s] between two looks while nobody holds the stick
+constexpr double kStep = 0.02;       // [s] of a roll-out, at most
+constexpr double kActs = 4;  // ticks a command is taken to act: bases need up to two to hear of it
+constexpr double kRounding = 1e-9;       // [m]
+constexpr double kBack = 0.5;            // of the stick's way: so far back it insists,
+constexpr double kStraight = 0.2;        // and no farther aside
+constexpr double kNoMotion = 0.015;      // [m/s] so slowly it could back into the unseen unnoticed
+constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
+constexpr std::size_t kMostBeside = 1024;
+
+bool finite(const Observation& seen) {
+  const Pose2& pose = seen.odometry.pose;
+  const Twist2& twist = seen.odometry.twist;
+  return std::isfinite(seen.stamp) && std::isfinite(pose.x) && std::isfinite(pose.y) &&
+         std::isfinite(pose.heading) && std::isfinite(twist.v) && std::isfinite(twist.omega);
+}
+
+/// Shares of the stick's two parts, the ones that a driver would miss least first: slower along the
+/// way that was asked for, then slower all round, then turning alone.
+struct Shares {
+  double v = 1, omega = 1;
+};
+constexpr std::array<Shares, 20> kShares{
+    {{1, 1},    {0.8, 1},     {0.6, 1},   {0.45, 1},    {0.3, 1},   {0.2, 1}, {0.1, 1},
+     {0.05, 1}, {0.75, 0.75}, {0.5, 0.5}, {0.25, 0.25}, {0.1, 0.1}, {0, 1},   {0.5, 0},
+     {0.25, 0}, {0.1, 0},     {0.05, 0},  {0, 0.5},     {0, 0.2},   {0, 0.05}}};
+
+}  // namespace
+
+StickGuard::StickGuard() {
+  beside_W_.reserve(kMostBeside);
+  map_.remember_for(kMemory);
+}
+
+void StickGuard::reset(const Pose2& start_W) {
+  map_.reset(start_W.position());
+  points_.reset();
+  rear_.reset();
+  placed_ = false;
+  next_look_ = 0;
+  straight_back_since_.reset();
+}
+
+void StickGuard::look(const Resource& in, const LaserScan& scan) {
+  // A number that is none has no place in a map.
+  if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
+  const Pose2 sensor_W = points_.map(scan);
+  map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
+  // Inside the hull nothing can stand.
+  const Pose2& here = in.observation->odometry.pose;
+  map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
+    return hull_.covers(here, point_W);
+  });
+}
+
+void StickGuard::sense(const Resource& in) {
+  const Observation& seen = *in.observation;
+  if (!finite(seen)) return;
+  const Pose2& here = seen.odometry.pose;
+  if (!hull_.is_of(*in.spec)) hull_ = HullCheck(*in.spec);
+  rear_.take(seen);
+  points_.follow(here, seen.stamp);
+  watch_insistence(in);
+  if (!in.manual && seen.stamp < next_look_) return;
+  map_.follow(here.position(), seen.stamp);
+  if (!placed_) hull_.take_place(map_.seen(), here);
+  placed_ = true;
+  hull_.stand_on(map_.seen(), here);
+  const LaserScan* ahead = front_scan(seen);
+  if (ahead != nullptr) look(in, in.scene->scan);  // as filtered
+  for (const LaserScan& scan : seen.scans) {
+    if (&scan != ahead) look(in, scan);
+  }
+  if (!seen.scans.empty()) next_look_ = seen.stamp + kIdleEvery;
+}
+
+/// A robot may stand where it can neither turn to look nor knows what is behind it.
+void StickGuard::watch_insistence(const Resource& in) {
+  const double now = in.observation->stamp;
+  const bool straight_back =
+      in.manual && in.joystick.forward <= -kBack && std::abs(in.joystick.turn) <= kStraight;
+  if (!straight_back) straight_back_since_.reset();
+  if (straight_back && !straight_back_since_) straight_back_since_ = now;
+  insists_ = straight_back && now - *straight_back_since_ >= kInsist;
+}
+
+/// [m] From the hull at `pose_W` to the nearest of all that is known.
+double StickGuard::room(const Pose2& pose_W) const {
+  double least = hull_.clearance(map_, pose_W);
+  for (const Vec2& point_W : beside_W_) least = std::min(least, hull_.distance(pose_W, point_W));
+  return least;
+}
+
+bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) const {
+  const double pieces = std::max(1.0, std::ceil(in.dt / kStep));
+  const double step = in.dt / pieces;
+  const auto on = [&](const MotionState& state, const Twist2& wanted) {
+    if (answer == Answer::Ramped) return advanced(state, wanted, limits_, step);
+    return MotionState{integrate_arc(state.pose_W, wanted, step), wanted};
+  };
+  MotionState state{in.observation->odometry.pose, in.observation->odometry.twist};
+  for (const Twist2& given : in.under_way) {
+    for (int k = 0; k < pieces; ++k) state = on(state, given);
+  }
+  // Too close already: no step may lead closer until there is room again.
+  double margin = std::min(kMargin, room(state.pose_W));
+  const auto free = [&](const MotionState& next) {
+    if (!may_back_ && hull_.enters_unseen(map_.seen(), next.pose_W, next.twist)) return false;
+    const double left = room(next.pose_W);
+    if (left < margin - kRounding) return false;
+    margin = std::max(margin, std::min(kMargin, left));
+    return true;
+  };
+  for (int k = 0; k < kActs * pieces; ++k) {
+    state = on(state, command);
+    if (!free(state)) return false;
+  }
+  return rests(state, limits_, step, free);
+}
+
+bool StickGuard::safe(const Resource& in, const Twist2& command) const {
+  return safe(in, command, Answer::AtOnce) && safe(in, command, Answer::Ramped);
+}
+
+Twist2 StickGuard::limit(const Resource& in, const Twist2& wanted) {
+  const Observation& seen = *in.observation;
+  if (wanted == Twist2{} || !finite(seen)) return {};
+  limits_ = {in.spec->max_v,
+             in.spec->max_omega,
+             in.spec->max_acceleration,
+             in.spec->max_angular_acceleration};
+  const Pose2& here = seen.odometry.pose;
+  beside_W_.clear();
+  in.merge->each_beside(here, seen.stamp, in.scene->scan, [&](const Vec2& point_W) {
+    if (beside_W_.size() < kMostBeside) beside_W_.push_back(point_W);
+  });
+  Twist2 asked = wanted;
+  const bool looks_back = rear_.looks(seen.stamp);
+  if (!looks_back) asked.v = std::max(asked.v, -kBlindSpeed);
+  may_back_ = looks_back || insists_;
+  for (const Shares& share : kShares) {
+    Twist2 command{share.v * asked.v, share.omega * asked.omega};
+    if (command.v < 0 && command.v > -kNoMotion) command.v = 0;
+    if (safe(in, command)) return command;
+  }
+  return {};
+}
+
+}  // namespace algo

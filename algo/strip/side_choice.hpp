@@ -1,0 +1,72 @@
+// algo/strip/side_choice.hpp: on which side to pass an obstacle on the line to the goal
+// (equations.md E.4).
+//
+// Not in the sources. It is needed because head-on every continuous reading of Eq. 13-14 has a
+// balance point, at which the robot stays stuck.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "algo/laser_scan.hpp"
+#include "algo/telemetry.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// What is remembered from tick to tick.
+struct SideState {
+  Side side = Side::None;
+  double since = 0;                      // [s] run clock of the choice
+  std::optional<double> last_blocked{};  // [s] run clock
+  bool operator==(const SideState&) const = default;
+};
+
+struct SideInput {
+  double stamp = 0;  // [s] run clock
+  Pose2 pose_W{};    // of the robot
+  Vec2 goal_W{0, 0};
+  double reach = 0;                 // [m] d_r = safety distance + robot radius
+  double robot_radius = 0;          // [m]
+  const LaserScan* scan = nullptr;  // filtered, the same as the force's; never null
+};
+
+/// What the choice adds to this tick.
+struct SidePush {
+  Vec2 force_W{0, 0};  // [m] to be added to the external force
+  double alpha = 0;    // its share, 0..1
+  std::optional<std::size_t> blocked_beam{};
+};
+
+class SideChoice {
+ public:
+  void reset() { state_ = {}; }
+  const SideState& state() const { return state_; }
+
+  /// One tick: is the lane to the goal blocked, is a side to be chosen or forgotten, and how much
+  /// of `force_W` (the external force without a push) is turned sideways.
+  SidePush update(const SideInput& in, const Vec2& force_W);
+
+ private:
+  std::optional<std::size_t> blocking_beam(const SideInput& in);
+  void prepare_directions(const LaserScan& scan);
+
+  SideState state_{};
+  // Unit vectors of the beams in R, kept while the scanner stays the same.
+  std::vector<Vec2> directions_R_{};
+  double angle_min_ = 0;
+  double angle_increment_ = 0;
+  double mount_heading_ = 0;
+};
+
+/// The side with less of the obstacle beyond the goal's bearing: grows a cluster from `beam` to
+/// both sides while the next beam's range is below that of `beam` + 0.8 m (a beam without a
+/// measurement is passed over), and takes the end nearer to the goal; left when both are equally
+/// near.
+Side choose_side(const LaserScan& scan, std::size_t beam, double goal_bearing_R);
+
+/// clamp((c - cos 45) / (cos 15 - cos 45), 0, 1) with c = -F.u / |F|: 1 when the force points
+/// straight back from the goal, 0 when it is more than 45 degrees off; 0 without a force.
+double side_share(const Vec2& force_W, const Vec2& to_goal_W);
+
+}  // namespace algo

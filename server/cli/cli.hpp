@@ -1,0 +1,70 @@
+// server/cli/cli.hpp: the subcommands of the program. Each adds itself to the application and, when
+// chosen, leaves its exit status in `status`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "server/run/run_spec.hpp"
+
+namespace server {
+
+/// Exit statuses of `run`, also in its --help.
+constexpr int kReached = 0;
+constexpr int kBadInput = 1;
+constexpr int kNotReached = 2;
+constexpr int kCollided = 3;
+constexpr int kNotHeld = 3;     // of `reproduce` and `compare`: a limit did not hold
+constexpr int kDifferent = 2;   // of `verify`
+constexpr int kIncomplete = 4;  // of `export` and `verify`: not the whole run
+constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device is not as it should be
+
+void add_serve_command(CLI::App& app, int& status);
+void add_run_command(CLI::App& app, int& status);
+void add_replay_command(CLI::App& app, int& status);
+void add_export_command(CLI::App& app, int& status);
+void add_verify_command(CLI::App& app, int& status);
+void add_health_command(CLI::App& app, int& status);
+void add_reproduce_command(CLI::App& app, int& status);
+void add_barn_command(CLI::App& app, int& status);
+void add_soak_command(CLI::App& app, int& status);
+void add_emulate_command(CLI::App& app, int& status);
+void add_compare_command(CLI::App& app, int& status);
+void add_doctor_command(CLI::App& app, int& status);
+void add_lms200_command(CLI::App& app, int& status);
+void add_map_command(CLI::App& app, int& status);
+
+/// Options that several commands share.
+struct RunFlags {
+  RunOverrides overrides{};
+  std::vector<std::string> settings{};  // k=v
+  void add_to(CLI::App& command);
+  /// Throws DocumentError on a malformed --set.
+  RunOverrides resolved() const;
+};
+
+/// `name` as a path when there is such a file or it looks like one, else a name of the library.
+sim::Scenario find_scenario(const std::string& name);
+
+/// Refuses the path of a folder at once, not after the minutes of work whose result was to go
+/// there.
+CLI::Validator file_to_write();
+
+/// Progress on standard error, only when somebody looks at it.
+class ProgressLine {
+ public:
+  ProgressLine();
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  void show(const std::string& text);
+
+ private:
+  bool interactive_ = false;
+  bool shown_ = false;
+};
+
+}  // namespace server

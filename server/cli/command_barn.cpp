@@ -1,0 +1,212 @@
+// server/cli/command_barn.cpp: `tautline barn`: the BARN worlds, run and scored by the official
+// formula.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "algo/controller.hpp"
+#include "server/cli/cli.hpp"
+#include "server/lab/barn/barn_run.hpp"
+#include "server/run/scenario_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+struct BarnCommand {
+  std::string file{};
+  std::string physics = "bullet";
+  std::string scanner = "flat";
+  std::vector<std::uint64_t> only{};
+  bool as_json = false;
+  std::string scenarios{};
+  barn::Options options{};
+};
+
+std::string_view name(barn::Ending ending) {
+  switch (ending) {
+    case barn::Ending::Success:
+      return "success";
+    case barn::Ending::Collision:
+      return "collision";
+    case barn::Ending::Timeout:
+      return "timeout";
+  }
+  return "timeout";
+}
+
+std::string_view name(barn::Contact contact) {
+  switch (contact) {
+    case barn::Contact::None:
+      return "none";
+    case barn::Contact::Avoidable:
+      return "avoidable";
+    case barn::Contact::Unavoidable:
+      return "unavoidable";
+    case barn::Contact::Jumped:
+      return "jumped";
+  }
+  return "none";
+}
+
+json result_json(const barn::Result& result) {
+  const barn::Summary sum = summarise(result);
+  json out = {{"worlds", sum.worlds},
+              {"runs", sum.runs},
+              {"success", sum.success},
+              {"collisions", sum.collisions},
+              {"timeouts", sum.timeouts},
+              {"score", sum.score},
+              {"score_quarter", sum.score_quarter},
+              {"mean_time_s", sum.mean_time},
+              {"tick_us_p50", sum.tick_us_p50},
+              {"tick_us_p99", sum.tick_us_p99},
+              {"contacts_avoidable", sum.avoidable},
+              {"contacts_unavoidable", sum.unavoidable},
+              {"contacts_after_jump", sum.jumped},
+              {"outcomes", json::array()}};
+  for (const barn::Run& run : result.runs) {
+    out["outcomes"].push_back({{"world", run.world},
+                               {"seed", run.seed},
+                               {"outcome", name(run.ending)},
+                               {"contact", name(run.contact)},
+                               {"time_s", run.time},
+                               {"score", run.score},
+                               {"min_clearance_m", run.min_clearance},
+                               {"path_m", run.path_length},
+                               {"end", {run.end.x, run.end.y, run.end.heading}}});
+  }
+  return out;
+}
+
+void print_table(const barn::Result& result) {
+  fmt::print("{:>6} {:>5} {:>10} {:>8} {:>7} {:>10} {:>8}\n",
+             "world",
+             "seed",
+             "outcome",
+             "time s",
+             "score",
+             "nearest m",
+             "path m");
+  for (const barn::Run& run : result.runs) {
+    fmt::print("{:>6} {:>5} {:>10} {:>8.2f} {:>7.4f} {:>10.3f} {:>8.2f}\n",
+               run.world,
+               run.seed,
+               name(run.ending),
+               run.time,
+               run.score,
+               run.min_clearance,
+               run.path_length);
+  }
+  const barn::Summary sum = summarise(result);
+  fmt::print("\nPublic BARN worlds, our simulator, the official score formula: no rank.\n");
+  fmt::print("worlds {}, runs {}\n", sum.worlds, sum.runs);
+  fmt::print("success    {:7.2f} %\n", 100 * sum.success);
+  fmt::print("collisions {:7.2f} %\n", 100 * sum.collisions);
+  fmt::print("timeouts   {:7.2f} %\n", 100 * sum.timeouts);
+  fmt::print("score      {:7.4f} of 0.5\n", sum.score);
+  fmt::print("           {:7.4f} of 0.25, the formula of 2022 and 2023\n", sum.score_quarter);
+  if (sum.avoidable + sum.unavoidable + sum.jumped > 0) {
+    fmt::print(
+        "contacts   {} avoidable with hindsight, {} not, {} with an obstacle that had jumped\n",
+        sum.avoidable,
+        sum.unavoidable,
+        sum.jumped);
+  }
+  fmt::print("mean time  {:7.2f} s\n", sum.mean_time);
+  fmt::print("control tick p50 {:.0f} us, p99 {:.0f} us\n", sum.tick_us_p50, sum.tick_us_p99);
+}
+
+void write_scenarios(const std::vector<barn::World>& worlds,
+                     const barn::Conditions& conditions,
+                     const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const barn::World& world : worlds) {
+    const sim::Scenario scenario = scenario_of(world, conditions);
+    const std::filesystem::path path = folder / (scenario.name + ".json");
+    std::ofstream out(path);
+    out << to_json(scenario).dump(1) << '\n';
+    if (!out) throw std::runtime_error("cannot write " + path.string());
+  }
+  fmt::print(
+      "{} scenarios written; `tautline serve --scenario {}/NAME.json` opens one in the page\n",
+      worlds.size(),
+      folder.string());
+}
+
+int execute(BarnCommand command) {
+  std::vector<barn::World> worlds = barn::read_worlds(command.file);
+  if (!command.only.empty()) {
+    std::erase_if(worlds, [&](const barn::World& world) {
+      return std::ranges::find(command.only, world.id) == command.only.end();
+    });
+    if (worlds.empty()) throw std::runtime_error("no world of the file has such a number");
+  }
+  command.options.conditions.vehicle =
+      command.physics == "kinematic" ? sim::Vehicle::Kinematic : sim::Vehicle::Bullet;
+  command.options.conditions.scanner =
+      command.scanner == "lms200" ? barn::Scanner::Lms200 : barn::Scanner::Flat;
+  if (!command.scenarios.empty()) {
+    write_scenarios(worlds, command.options.conditions, command.scenarios);
+    return kReached;
+  }
+  barn::Result result;
+  {
+    ProgressLine progress;
+    command.options.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} runs", done, all));
+    };
+    result = run_worlds(worlds, command.options);
+  }
+  if (command.as_json) {
+    fmt::print("{}\n", result_json(result).dump(2));
+  } else {
+    print_table(result);
+  }
+  return kReached;
+}
+
+}  // namespace
+
+void add_barn_command(CLI::App& app, int& status) {
+  auto command = std::make_shared<BarnCommand>();
+  CLI::App* barn = app.add_subcommand(
+      "barn", "Run the worlds of a BARN or DynaBARN file and score them by the official formula");
+  barn->add_option("file", command->file, "The worlds, as JSON")->required()->type_name("FILE");
+  barn->add_option("--controller",
+                   command->options.conditions.controller,
+                   "Default: strip; strip_moving where something moves");
+  barn->add_flag("--stress",
+                 command->options.conditions.stress,
+                 "Short scanner, slow base, delay, slip, drifting odometry");
+  barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
+      ->check(CLI::IsMember({"bullet", "kinematic"}));
+  barn->add_option("--scanner",
+                   command->scanner,
+                   "flat (default): the benchmark's, which sees all at one instant; lms200: the "
+                   "default LMS200, which sweeps")
+      ->check(CLI::IsMember({"flat", "lms200"}));
+  barn->add_option("--repeats", command->options.repeats, "Seeds of each world (default 1)")
+      ->check(CLI::Range(1, 10'000));
+  barn->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")
+      ->check(CLI::Range(0, 1'000'000'000));
+  barn->add_option("--phase",
+                   command->options.conditions.phase,
+                   "[s] Where moving obstacles are on their way when a run begins (default 0)")
+      ->check(CLI::Range(0.0, 1e6));
+  barn->add_option("--workers", command->options.workers, "0 (default): one a core")
+      ->check(CLI::Range(0, 256));
+  barn->add_option("--world", command->only, "Only these numbers");
+  barn->add_option("--scenarios",
+                   command->scenarios,
+                   "Run nothing: write each world there as a scenario the page can open")
+      ->type_name("DIR");
+  barn->add_flag("--json", command->as_json, "Print JSON");
+  barn->callback([command, &status] { status = execute(*command); });
+}
+
+}  // namespace server

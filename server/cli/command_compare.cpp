@@ -1,0 +1,78 @@
+// server/cli/command_compare.cpp: `tautline compare`: every controller beside the others.
+#include <algorithm>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/lab/compare/report.hpp"
+
+namespace server {
+namespace {
+
+struct CompareCommand {
+  compare::Options options{};
+  std::vector<std::string> parts{};
+  bool as_json = false;
+  std::string markdown{};
+};
+
+int execute(CompareCommand command) {
+  const auto wanted = [&](const char* part) {
+    return command.parts.empty() || std::ranges::find(command.parts, part) != command.parts.end();
+  };
+  command.options.worlds = wanted("worlds");
+  command.options.bottlenecks = wanted("bottlenecks");
+  command.options.random_layouts = wanted("layouts");
+  compare::Comparison comparison;
+  {
+    ProgressLine progress;
+    command.options.progress = [&](const std::string& what, std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{}: {} of {} runs", what, done, all));
+    };
+    comparison = compare::compare(command.options);
+  }
+  if (!command.markdown.empty()) compare::write_markdown(comparison, command.markdown);
+  if (command.as_json) {
+    fmt::print("{}\n", compare::to_json(comparison).dump(2));
+  } else {
+    fmt::print("{}", compare::to_text(comparison));
+  }
+  return compare::strip_on_layouts(comparison.layouts).held() ? kReached : kNotHeld;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& status) {
+  auto command = std::make_shared<CompareCommand>();
+  CLI::App* compare = app.add_subcommand(
+      "compare", "Run every controller on the same worlds and say which published claims hold");
+  compare->add_option("--part", command->parts, "worlds, bottlenecks or layouts (default: all)")
+      ->check(CLI::IsMember({"worlds", "bottlenecks", "layouts"}));
+  compare->add_option("--controller",
+                      command->options.only,
+                      "Only these, on the worlds and before the bottlenecks; may be given again");
+  compare->add_option("--seeds", command->options.seeds, "Runs of each row (default 3)")
+      ->check(CLI::Range(1, 1000));
+  compare->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")
+      ->check(CLI::Range(0, 1'000'000'000));
+  compare->add_option("--layouts", command->options.layouts, "Random ones a kind (default 150)")
+      ->check(CLI::Range(1, 10'000));
+  compare->add_option("--layout-seeds", command->options.layout_seeds, "Runs of each (default 2)")
+      ->check(CLI::Range(1, 1000));
+  compare->add_option("--threads", command->options.threads, "0 (default): one a core")
+      ->check(CLI::Range(0, 256));
+  compare
+      ->add_option("--markdown",
+                   command->markdown,
+                   "Also write comparison.md there, and the table of the worlds into its "
+                   "controllers.md")
+      ->type_name("DIR");
+  compare->add_flag("--json", command->as_json, "Print JSON");
+  compare->footer(
+      "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer than 99 % "
+      "reached, or a collision.");
+  compare->callback([command, &status] { status = execute(*command); });
+}
+
+}  // namespace server

@@ -1,0 +1,52 @@
+// server/cli/command_doctor.cpp: `tautline doctor`.
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/cli/doctor.hpp"
+
+namespace server {
+namespace {
+
+struct Options {
+  std::string robot{};
+  DoctorOptions doctor{};
+};
+
+void print(const Finding& finding) {
+  const char* word = "ok  ";
+  if (finding.verdict == Verdict::Note) word = "note";
+  if (finding.verdict == Verdict::Bad) word = "BAD ";
+  fmt::print("{}  {}: {}\n", word, finding.device, finding.sentence);
+  if (!finding.advice.empty()) fmt::print("      -> {}\n", finding.advice);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void add_doctor_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("doctor", "Look at each device of a robot and say what to do");
+  command->add_option("--robot", options->robot, "The robot's TOML file")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--move",
+                    options->doctor.move,
+                    "Turn the wheels, slowly, for two seconds: with the wheels off the floor");
+  command->add_option("--patience", options->doctor.patience, "For each device to be found")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1.0, 300.0))
+      ->capture_default_str();
+  command->footer("Exit status: 0 all is well, 2 something is not, 1 the file is not good.");
+  command->callback([options, &status] {
+    const drivers::RobotFile file = drivers::read_robot_file(options->robot);
+    const bool well = examine(file, options->doctor, print);
+    fmt::print("{}\n", well ? "All is well." : "Something is not well; see BAD above.");
+    status = well ? 0 : kNotWell;
+  });
+}
+
+}  // namespace server

@@ -1,0 +1,242 @@
+// server/cli/command_emulate.cpp: `tautline emulate`: devices on pseudo-terminals for whoever has
+// none.
+#include <array>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include "server/cli/cli.hpp"
+#include "server/cli/signals.hpp"
+#include "server/emulate/emulation.hpp"
+#include "server/run/scenario_library.hpp"
+
+namespace server {
+namespace {
+
+using emulate::BaseKind;
+using emulate::Emulation;
+using emulate::EmulationOptions;
+
+struct Options {
+  EmulationOptions emulation{};
+  std::string scenario = "demo";
+  std::filesystem::path link{};
+  std::filesystem::path links{};
+  std::string base = "roboteq";
+  double boot = 0;
+  bool rs232 = false;
+  unsigned address = 0;
+};
+
+/// SIGINT, SIGTERM and SIGHUP as something to read; blocked in all threads, so to be made first.
+class Signals {
+ public:
+  Signals() {
+    sigset_t set{};
+    ::sigemptyset(&set);
+    ::sigaddset(&set, SIGINT);
+    ::sigaddset(&set, SIGTERM);
+    ::sigaddset(&set, SIGHUP);
+    ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    fd_ = ::signalfd(-1, &set, SFD_CLOEXEC);
+    heed_signals();  // of those that are not blocked
+  }
+  ~Signals() { ::close(fd_); }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+  int descriptor() const { return fd_; }
+
+ private:
+  int fd_ = -1;
+};
+
+void obey(Emulation& emulation, const std::string& line) {
+  try {
+    const std::string answer = emulation.command(line);
+    if (!answer.empty()) fmt::print("{}\n", answer);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "{}\n", e.what());
+  }
+  std::fflush(stdout);
+}
+
+/// Carries out the lines of standard input until a signal; the end of the input ends nothing, as
+/// somebody may have started this in the background.
+void attend(Emulation& emulation, const Signals& signals) {
+  std::string pending;
+  std::array<pollfd, 2> sources{{{.fd = signals.descriptor(), .events = POLLIN, .revents = 0},
+                                 {.fd = STDIN_FILENO, .events = POLLIN, .revents = 0}}};
+  for (;;) {
+    if (::poll(sources.data(), sources.size(), -1) < 0) continue;
+    if (sources[0].revents != 0) return;
+    std::array<char, 1024> bytes{};
+    const ssize_t got = ::read(STDIN_FILENO, bytes.data(), bytes.size());
+    if (got <= 0) {
+      sources[1].fd = -1;
+      continue;
+    }
+    pending.append(bytes.data(), static_cast<std::size_t>(got));
+    for (std::size_t end = pending.find('\n'); end != std::string::npos; end = pending.find('\n')) {
+      const std::string line = pending.substr(0, end);
+      pending.erase(0, end + 1);
+      if (line == "quit") return;
+      obey(emulation, line);
+    }
+  }
+}
+
+void emulate_devices(Options& options) {
+  EmulationOptions& emulation = options.emulation;
+  emulation.scenario = find_scenario(options.scenario);
+  if (!emulation.scenario.log.empty()) emulation.log = emulation.scenario.log;
+  emulation.scanner.rs422 = !options.rs232;
+  emulation.scanner.address = static_cast<std::uint8_t>(options.address);
+  if (options.boot > 0) {
+    emulation.scanner.powered = false;
+    emulation.scanner.boot_time = options.boot;
+  }
+  const Signals signals;
+  Emulation running(emulation);
+  running.start();
+  for (const auto& link : emulation.scanner_links) fmt::print("LMS200 at {}\n", link.string());
+  if (emulation.base != BaseKind::None) {
+    const bool p2os = emulation.base == BaseKind::P2os;
+    fmt::print("{} at {}\n", p2os ? "Pioneer base" : "Roboteq", emulation.base_link.string());
+  }
+  std::fflush(stdout);
+  attend(running, signals);
+}
+
+void add_common_flags(CLI::App& command, Options& options) {
+  command.add_option("--scenario", options.scenario, "The world: a scenario's name or .json file")
+      ->capture_default_str();
+  command.add_option("--seed", options.emulation.seed, "Seed of noise and faults")
+      ->capture_default_str();
+  command
+      .add_option("--record",
+                  options.emulation.record,
+                  "Write every scan sent, every wheel command and the true poses there")
+      ->type_name("FILE");
+  drivers::emulators::LineFaults& faults = options.emulation.faults;
+  command.add_option("--drop", faults.drop, "Probability that a byte is lost")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--flip", faults.flip, "Probability that a byte has a bit turned over")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--damage", faults.damage, "Probability that a telegram is damaged")
+      ->check(CLI::Range(0.0, 1.0));
+  command.footer("Faults while it runs, one a line on standard input, such as 'silence 2':\n" +
+                 emulate::command_help() + "  quit     end");
+}
+
+void add_scanner_flags(CLI::App& command, Options& options) {
+  command.add_option("--address", options.address, "The scanner's own address")
+      ->check(CLI::Range(0, 127));
+  command
+      .add_option("--boot", options.boot, "Power comes now: the scanner starts up for so long [s]")
+      ->check(CLI::Range(0.0, 120.0));
+  command
+      .add_option("--rate", options.emulation.scanner.start_rate, "Stored start-up rate [bit/s]")
+      ->check(CLI::IsMember({9600, 19200, 38400, 500000}))
+      ->capture_default_str();
+  drivers::lms200::EmulatorOptions& scanner = options.emulation.scanner;
+  command.add_option("--mode-time", scanner.times.mode, "A mode switch takes so long [s]")
+      ->check(CLI::Range(0.0, 60.0));
+  command
+      .add_option("--deaf",
+                  scanner.times.deaf,
+                  "It hears and says nothing for so long [s] after a mode switch and power-on")
+      ->check(CLI::Range(0.0, 60.0));
+  command.add_option("--refuse", scanner.refusals, "It answers NAK to so many telegrams");
+  command.add_option("--password", scanner.password, "Of its configuration");
+  command.add_flag("--rs232", options.rs232, "The plug's jumper is set to RS-232: no 500000");
+  command.add_flag("--interlaced",
+                   options.emulation.scanner.interlaced,
+                   "Partial scans of 180 degrees come in quarters of a degree");
+  command
+      .add_option("--field-a",
+                  options.emulation.scanner.field_a,
+                  "Values nearer than this [m] have the flag of field A set")
+      ->check(CLI::Range(0.0, 100.0));
+}
+
+void add_base_flags(CLI::App& command, Options& options) {
+  command.add_flag("--near-wrap",
+                   options.emulation.near_wrap,
+                   "The base's counters stand shortly before they run over");
+  command.add_option("--watchdog", options.emulation.watchdog, "The base's own [s]")
+      ->check(CLI::Range(0.0, 60.0));
+}
+
+}  // namespace
+
+void add_emulate_command(CLI::App& app, int& status) {
+  CLI::App* const command = app.add_subcommand(
+      "emulate", "Emulate devices on pseudo-terminals, in a simulated world or before a log");
+  command->require_subcommand(1);
+
+  const auto single = [&](const char* name, const char* help, BaseKind kind) {
+    auto options = std::make_shared<Options>();
+    CLI::App* const device = command->add_subcommand(name, help);
+    device->add_option("--link", options->link, "Where the port is to appear")
+        ->type_name("PATH")
+        ->required();
+    add_common_flags(*device, *options);
+    if (kind == BaseKind::None) {
+      add_scanner_flags(*device, *options);
+      device->add_option("--log", options->emulation.log, "A CARMEN log in place of a world")
+          ->type_name("FILE")
+          ->check(CLI::ExistingFile);
+    } else {
+      add_base_flags(*device, *options);
+    }
+    device->callback([options, kind, &status] {
+      options->emulation.base = kind;
+      if (kind == BaseKind::None) {
+        options->emulation.scanner_links = {options->link};
+      } else {
+        options->emulation.base_link = options->link;
+      }
+      emulate_devices(*options);
+      status = 0;
+    });
+  };
+  single("lms200", "A SICK LMS200", BaseKind::None);
+  single("p2os", "A Pioneer base", BaseKind::P2os);
+  single("roboteq", "A Roboteq motor controller with two motors", BaseKind::Roboteq);
+
+  auto options = std::make_shared<Options>();
+  CLI::App* const robot = command->add_subcommand(
+      "robot", "A base and the scenario's scanners in one world: DIR/base, DIR/scanner, ...");
+  robot->add_option("--links", options->links, "Folder where the ports are to appear")
+      ->type_name("DIR")
+      ->required();
+  robot->add_option("--base", options->base, "p2os or roboteq")
+      ->check(CLI::IsMember({"p2os", "roboteq"}))
+      ->capture_default_str();
+  add_common_flags(*robot, *options);
+  add_scanner_flags(*robot, *options);
+  add_base_flags(*robot, *options);
+  robot->callback([options, &status] {
+    EmulationOptions& emulation = options->emulation;
+    std::filesystem::create_directories(options->links);
+    const std::size_t scanners = find_scenario(options->scenario).lasers.size();
+    for (std::size_t i = 0; i < scanners; ++i) {
+      emulation.scanner_links.push_back(options->links /
+                                        (i == 0 ? "scanner" : fmt::format("scanner{}", i + 1)));
+    }
+    emulation.base = options->base == "p2os" ? BaseKind::P2os : BaseKind::Roboteq;
+    emulation.base_link = options->links / "base";
+    emulate_devices(*options);
+    status = 0;
+  });
+}
+
+}  // namespace server

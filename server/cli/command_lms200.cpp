@@ -1,0 +1,209 @@
+// server/cli/command_lms200.cpp: `tautline lms200`: one scanner, without a robot.
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "drivers/lms200_device.hpp"
+#include "server/cli/carmen_line.hpp"
+#include "server/cli/cli.hpp"
+
+namespace server {
+namespace {
+
+using drivers::lms200::LaserSetup;
+using drivers::lms200::Lms200Device;
+
+volatile std::sig_atomic_t g_interrupted = 0;  // NOLINT: the one thing a signal may touch
+
+struct Options {
+  std::string port{};
+  std::optional<unsigned> rate{};
+  std::optional<double> step{};
+  std::optional<unsigned> angle{};
+  std::optional<unsigned> range{};
+  std::string password{drivers::lms200::kFactoryPassword};
+  double patience = 20;
+  std::size_t scans = 0;
+  std::string output{};
+
+  /// What was not asked for stays as it is in the device. Throws what no device can do.
+  LaserSetup setup() const {
+    LaserSetup out;
+    out.password = password;
+    out.as_it_is = !rate && !step && !angle && !range;
+    out.baud = rate.value_or(out.baud);
+    out.range = range.value_or(out.range);
+    if (angle) out.variant.angle_degrees = static_cast<std::uint16_t>(*angle);
+    if (step) out.variant.step_centidegrees = static_cast<std::uint16_t>(std::lround(*step * 100));
+    if (const std::string why = refusal(out); !why.empty()) throw std::runtime_error(why + ".");
+    return out;
+  }
+};
+
+void nap() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+}
+
+/// Waits until the scanner runs. Throws its trouble when it does not.
+void wait_for(Lms200Device& laser, double patience) {
+  const bool runs = laser.comes_to_run(patience, [] { return g_interrupted != 0; });
+  if (!runs && g_interrupted == 0) throw std::runtime_error(laser.details().trouble);
+}
+
+void print_info(Lms200Device& laser) {
+  const double until = drivers::steady_now() + 1.0;  // for a measured scan rate
+  while (drivers::steady_now() < until && g_interrupted == 0) nap();
+  const drivers::DeviceReport report = laser.report();
+  fmt::print("{}: {}\n", report.port, report.sentence);
+  for (const auto& [name, value] : report.facts) fmt::print("  {:<18} {}\n", name, value);
+  for (const std::string& remark : report.remarks) fmt::print("  note: {}\n", remark);
+}
+
+bool next_scan(Lms200Device& laser, algo::LaserScan& scan) {
+  const double until = drivers::steady_now() + 5.0;
+  while (g_interrupted == 0) {
+    if (laser.take(scan)) return true;
+    if (drivers::steady_now() > until) throw std::runtime_error(laser.details().trouble);
+    nap();
+  }
+  return false;
+}
+
+/// Degrees and millimetres; a word where there is no distance.
+void print_scan(Lms200Device& laser) {
+  algo::LaserScan scan;
+  if (!next_scan(laser, scan)) return;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const double degrees = scan.angle(i) * 180 / std::numbers::pi;
+    if (scan.status[i] == algo::Beam::Ok) {
+      fmt::print("{:.2f} {:.0f}\n", degrees, scan.ranges[i] * 1000);
+    } else {
+      fmt::print("{:.2f} {}\n",
+                 degrees,
+                 scan.status[i] == algo::Beam::Free
+                     ? "free"
+                     : fmt::format("code-{:X}", static_cast<unsigned>(scan.codes[i])));
+    }
+  }
+}
+
+/// [s] Time of day when `scan` ended.
+double wall_now(const algo::LaserScan& scan) {
+  const auto day = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration<double>(day).count() - (drivers::steady_now() - scan.stamp);
+}
+
+void write_log(Lms200Device& laser, const Options& options) {
+  std::ofstream file;
+  if (!options.output.empty()) {
+    file.open(options.output);
+    if (!file) throw std::runtime_error(options.output + " cannot be written.");
+  }
+  std::ostream& out = options.output.empty() ? std::cout : file;
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  algo::LaserScan scan;
+  std::optional<double> first;
+  for (std::size_t n = 0; options.scans == 0 || n < options.scans; ++n) {
+    if (!next_scan(laser, scan)) break;
+    if (!first) first = scan.stamp;
+    out << carmen_line(scan, host.data(), wall_now(scan), scan.stamp - *first) << '\n';
+    if (!out) throw std::runtime_error("The log cannot be written: is the disk full?");
+  }
+  out.flush();
+}
+
+void add_common(CLI::App& command, Options& options) {
+  command.add_option("device", options.port, "A serial port, or tcp:HOST:PORT")->required();
+  command.add_option("--rate", options.rate, "Line rate to be set")
+      ->check(CLI::IsMember({9600U, 19200U, 38400U, 500'000U}));
+  command.add_option("--step", options.step, "Degrees between two beams: 1, 0.5 or 0.25")
+      ->check(CLI::IsMember({1.0, 0.5, 0.25}));
+  command.add_option("--angle", options.angle, "Field of view: 100 or 180 degrees")
+      ->check(CLI::IsMember({100U, 180U}));
+  command.add_option("--range", options.range, "Metres: 8, 16, 32 or 80 (in centimetres)")
+      ->check(CLI::IsMember({8U, 16U, 32U, 80U}));
+  command.add_option("--password", options.password, "Of its configuration, where it was changed")
+      ->check(
+          [](const std::string& text) -> std::string {
+            return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
+          },
+          "8 CHARACTERS")
+      ->capture_default_str();
+  command.add_option("--patience", options.patience, "Seconds for it to be found")
+      ->check(CLI::Range(1.0, 300.0))
+      ->capture_default_str();
+}
+
+template <class Action>
+void add_action(CLI::App& parent,
+                const char* name,
+                const char* help,
+                const std::shared_ptr<Options>& options,
+                int& status,
+                Action action) {
+  CLI::App* command = parent.add_subcommand(name, help);
+  add_common(*command, *options);
+  command->callback([options, &status, action] {
+    std::signal(SIGINT, [](int) { g_interrupted = 1; });
+    std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+    try {
+      Lms200Device laser("laser", options->port, options->setup());
+      wait_for(laser, options->patience);
+      action(laser, *options);
+      status = 0;
+    } catch (const std::runtime_error& error) {
+      fmt::print(stderr, "tautline: {}\n", error.what());
+      status = kNotWell;
+    }
+  });
+}
+
+}  // namespace
+
+void add_lms200_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("lms200", "One SICK LMS2xx: what it is, its scans, a log");
+  command->require_subcommand(1);
+  command->footer(
+      "Without --rate, --step, --angle or --range the scanner keeps its own settings. It is left "
+      "silent, at the rate at which it was found.");
+  add_action(*command,
+             "info",
+             "What it is and how it is",
+             options,
+             status,
+             [](Lms200Device& laser, const Options&) { print_info(laser); });
+  add_action(*command,
+             "scan",
+             "One scan: degrees, millimetres",
+             options,
+             status,
+             [](Lms200Device& laser, const Options&) { print_scan(laser); });
+  add_action(*command,
+             "log",
+             "Scans as CARMEN FLASER lines, until Ctrl-C",
+             options,
+             status,
+             [](Lms200Device& laser, const Options& o) { write_log(laser, o); });
+  CLI::App* log = command->get_subcommand("log");
+  log->add_option("--scans", options->scans, "End after so many; 0: go on")->capture_default_str();
+  log->add_option("--out", options->output, "File to write instead of the screen")
+      ->type_name("FILE");
+}
+
+}  // namespace server

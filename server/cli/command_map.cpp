@@ -1,0 +1,95 @@
+// server/cli/command_map.cpp: `tautline map`: a map of a recorded log, its odometry spoilt and held
+// together again.
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/lab/mapping/map_study.hpp"
+
+namespace server {
+namespace {
+
+struct MapCommand {
+  std::vector<std::string> logs{};
+  mapping::MapOptions options{};
+  std::string out{};
+  std::string markdown{};
+  bool as_json = false;
+};
+
+void write_picture(const mapping::MapStudy& study, const std::string& file) {
+  const mapping::MapRun& run = study.runs.front();
+  const auto& path_W = study.options.match ? run.matched_W : run.odometry_W;
+  const std::string title =
+      fmt::format("{}, {}", study.log.name, study.options.match ? "matched" : "by its odometry");
+  std::ofstream stream(file, std::ios::binary);
+  stream << draw_map(study.log, path_W, title);
+  if (!stream.flush()) throw std::runtime_error(fmt::format("{} cannot be written.", file));
+}
+
+int execute(MapCommand command) {
+  if (!command.out.empty() && command.logs.size() > 1) {
+    throw std::runtime_error("--out takes the map of one log; --markdown those of several");
+  }
+  std::vector<mapping::MapStudy> studies;
+  {
+    ProgressLine progress;
+    for (const std::string& log : command.logs) {
+      command.options.progress = [&](std::size_t done, std::size_t all) {
+        progress.show(fmt::format("{}: {} of {}", log, done, all));
+      };
+      studies.push_back(study_map(mapping::read_recording(log), command.options));
+    }
+  }
+  if (!command.out.empty()) write_picture(studies.front(), command.out);
+  if (!command.markdown.empty()) write_markdown(studies, command.markdown);
+  if (command.as_json) {
+    nlohmann::json out = nlohmann::json::array();
+    for (const mapping::MapStudy& study : studies) out.push_back(to_json(study));
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    for (const mapping::MapStudy& study : studies) fmt::print("{}\n", to_text(study));
+  }
+  return kReached;
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app, int& status) {
+  auto command = std::make_shared<MapCommand>();
+  mapping::MapOptions& options = command->options;
+  CLI::App* map = app.add_subcommand(
+      "map", "Map recorded CARMEN logs and say how far the path is off the log's own");
+  map->add_option("logs", command->logs, "The logs")->required()->type_name("LOG");
+  map->add_flag("--match", options.match, "Place each scan by what the map holds already");
+  map->add_option("--odometry-scale",
+                  options.errors.odometry_scale,
+                  "Spoil the log's poses: error of distances and of angles, each of random sign "
+                  "(0.02 is 2 %)");
+  map->add_option("--yaw-slip",
+                  options.errors.odometry_slip,
+                  "Share of each turn of the wheels that was lost on the floor (0.05 is 5 %)");
+  map->add_option("--odometry-noise",
+                  options.errors.odometry_noise,
+                  "Random error per metre and per radian, relative (0.01 is 1 %)");
+  map->add_option("--seed", options.first_seed, "Of the errors (default 1)")
+      ->check(CLI::Range(0, 1'000'000'000));
+  map->add_option("--seeds", options.seeds, "How many, from that one on (default 1)")
+      ->check(CLI::Range(1, 1000));
+  map->add_option("--threads", options.threads, "0 (default): one a core")
+      ->check(CLI::Range(0, 256));
+  map->add_option("--out", command->out, "A picture of the first seed's map, as SVG")
+      ->check(file_to_write())
+      ->type_name("FILE");
+  map->add_option("--markdown",
+                  command->markdown,
+                  "Also write tables there, and pictures into pictures/mapping/ beside it")
+      ->check(file_to_write())
+      ->type_name("FILE");
+  map->add_flag("--json", command->as_json, "Print JSON");
+  map->callback([command, &status] { status = execute(*command); });
+}
+
+}  // namespace server

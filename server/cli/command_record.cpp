@@ -1,0 +1,122 @@
+// server/cli/command_record.cpp: `tautline export` and `tautline verify`: looking back at stored
+// runs.
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "db/run_reader.hpp"
+#include "server/cli/cli.hpp"
+#include "server/record/run_json.hpp"
+#include "server/record/verify.hpp"
+#include "server/run/paths.hpp"
+
+namespace server {
+namespace {
+
+struct Options {
+  db::RunId run = 0;
+  std::string database = (state_folder() / "runs.db").string();
+  std::string format = "csv";
+  std::string output{};
+  bool as_json = false;
+};
+
+std::shared_ptr<Options> add_common(CLI::App& command) {
+  auto options = std::make_shared<Options>();
+  command.add_option("RUN", options->run, "Number of the run")->required();
+  command.add_option("--db", options->database, "Database file (default: the server's own)")
+      ->type_name("FILE");
+  return options;
+}
+
+int export_run(const Options& options) {
+  db::RunReader reader(options.database);
+  std::FILE* out = stdout;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
+  if (!options.output.empty()) {
+    file.reset(std::fopen(options.output.c_str(), "wb"));
+    if (!file) throw std::runtime_error(fmt::format("Cannot write {}.", options.output));
+    out = file.get();
+  }
+  const auto row = reader.get(options.run);
+  if (!row) {
+    throw std::runtime_error(
+        fmt::format("There is no run {} in {}.", options.run, options.database));
+  }
+  ProgressLine progress;
+  std::string text(db::RunReader::csv_header());
+  std::optional<std::uint64_t> from = 0;
+  bool written = true;
+  std::uint64_t ticks = 0;
+  while (from && written) {
+    from = reader.csv(options.run, *from, 4096, text, csv_names());
+    ticks += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
+    written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
+    text.clear();
+    if (from && !options.output.empty()) progress.show(fmt::format("{} ticks", *from));
+  }
+  if (!written || std::fflush(out) != 0) {
+    throw std::runtime_error("The export could not be written completely: is the disk full?");
+  }
+  const auto incomplete = incompleteness(reader, *row, ticks - 1);  // less the header
+  if (!incomplete) return 0;
+  fmt::print(
+      stderr, "tautline: The export of run {} is incomplete. {}\n", options.run, *incomplete);
+  return kIncomplete;
+}
+
+int verify(const Options& options) {
+  db::RunReader reader(options.database);
+  const Verification result = verify_run(reader, options.run);
+  if (options.as_json) {
+    nlohmann::json out = {{"run", options.run},
+                          {"ticks", result.ticks},
+                          {"compared", result.compared},
+                          {"identical", !result.difference.has_value()},
+                          {"complete", !result.incomplete.has_value()}};
+    if (result.difference) out["difference"] = *result.difference;
+    if (result.incomplete) out["incomplete"] = *result.incomplete;
+    fmt::print("{}\n", out.dump(2));
+  } else if (result.difference) {
+    fmt::print("Run {} differs. {}\n", options.run, *result.difference);
+  } else if (result.incomplete) {
+    fmt::print("Run {} is incomplete: {} of {} ticks compared, identical commands. {}\n",
+               options.run,
+               result.compared,
+               result.ticks,
+               *result.incomplete);
+  } else {
+    fmt::print("Run {}: {} ticks, identical commands.\n", options.run, result.ticks);
+  }
+  if (result.difference) return kDifferent;
+  return result.incomplete ? kIncomplete : 0;
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("export", "Write a stored run as a table");
+  auto options = add_common(*command);
+  command->add_option("--format", options->format, "csv")->check(CLI::IsMember({"csv"}));
+  command->add_option("--output,-o", options->output, "File to write (default: standard output)");
+  command->footer(
+      "Exit status: 0 the whole run, 1 bad input or error, 4 incomplete: a gap, a cut, or a run "
+      "deleted meanwhile; what there is has been written.");
+  command->callback([options, &status] { status = export_run(*options); });
+}
+
+void add_verify_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "verify", "Feed a stored run to a fresh pipeline and compare every command");
+  auto options = add_common(*command);
+  command->add_flag("--json", options->as_json, "Print JSON");
+  command->footer(
+      "Exit status: 0 identical, 1 bad input or error, 2 different, 4 incomplete: a gap, a pause "
+      "or a cut of the record, beyond which nothing can be compared.");
+  command->callback([options, &status] { status = verify(*options); });
+}
+
+}  // namespace server

@@ -1,0 +1,124 @@
+// server/cli/command_reproduce.cpp: `tautline reproduce`: the sources' scenarios and their filter
+// chapter, and what holds.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/lab/reproduce/filter_study.hpp"
+#include "server/lab/reproduce/markdown.hpp"
+
+namespace server {
+namespace {
+
+struct Options {
+  std::string scenarios{};
+  bool as_json = false;
+  bool paper_only = false;
+  bool sweeps = false;
+  std::string markdown{};
+  reproduce::StudyOptions study{};
+  bool filter = false;
+  std::string logs{};
+};
+
+/// Chapter 3 alone. Its verdicts are findings, not limits to hold.
+int execute_filter_study(const Options& options) {
+  FilterStudyOptions wanted;
+  if (!options.logs.empty()) wanted.logs = options.logs;
+  const FilterStudy study = study_filters(wanted);
+  if (options.as_json) {
+    fmt::print("{}\n", to_json(study).dump(2));
+  } else {
+    fmt::print("{}", to_text(study));
+  }
+  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  return kReached;
+}
+
+/// More would take an hour and change no verdict.
+constexpr std::size_t kSweepSeeds = 3;
+
+int execute(Options options) {
+  const reproduce::PaperFile file = options.scenarios.empty()
+                                        ? reproduce::embedded_paper_file()
+                                        : reproduce::read_paper_file(options.scenarios);
+  options.study.full_simulator = !options.paper_only;
+  const std::size_t sweep_seeds = std::min(options.study.seeds, kSweepSeeds);
+  reproduce::Study study;
+  std::vector<reproduce::Sweep> sweeps;
+  {
+    ProgressLine progress;
+    options.study.progress = [&](const std::string& what, std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{}: {} of {} runs", what, done, all));
+    };
+    study = reproduce::run_study(file, options.study);
+    if (options.sweeps) {
+      sweeps = reproduce::run_sweeps(
+          file,
+          sweep_seeds,
+          options.study.first_seed,
+          options.study.threads,
+          [&](std::size_t done, std::size_t all) { options.study.progress("sweeps", done, all); });
+    }
+  }
+  if (!options.markdown.empty()) {
+    std::vector<reproduce::Section> sections =
+        reproduce::study_sections(file, study, reproduce::kPictures);
+    if (options.sweeps) sections.push_back(reproduce::sweeps_section(sweeps, sweep_seeds));
+    reproduce::write_reproduction(options.markdown, file, study, sections);
+  }
+  if (options.as_json) {
+    nlohmann::json out = reproduce::to_json(study);
+    if (options.sweeps) out["sweeps"] = reproduce::to_json(sweeps);
+    fmt::print("{}\n", out.dump(2));
+  } else {
+    fmt::print("{}{}\n{}\n",
+               reproduce::to_text(study),
+               reproduce::to_text(sweeps),
+               reproduce::checks_sentence(study.checks));
+  }
+  return reproduce::all_held(study.checks) ? kReached : kNotHeld;
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "reproduce", "Run the papers' scenarios with every reading and say which claims hold");
+  command->add_option("--scenarios", options->scenarios, "Another file of layouts and limits")
+      ->type_name("FILE");
+  command->add_option("--seeds", options->study.seeds, "Runs of each row (default 10)")
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--first-seed", options->study.first_seed, "The first of them (default 1)")
+      ->check(CLI::Range(0, 1'000'000'000));
+  command->add_option("--threads", options->study.threads, "0 (default): one a core")
+      ->check(CLI::Range(0, 256));
+  command->add_flag("--paper-only", options->paper_only, "Leave out the full simulator");
+  command->add_flag("--sweeps", options->sweeps, "Also sweep K_c, K_r, d_safe and N");
+  command
+      ->add_option("--markdown",
+                   options->markdown,
+                   "Also write the report there, and pictures/reproduction/ beside it")
+      ->check(file_to_write())
+      ->type_name("FILE");
+  CLI::Option* filter = command->add_flag(
+      "--filter", options->filter, "The filter chapter instead: scenes, recordings, verdicts");
+  command->add_option("--logs", options->logs, "Folder of CARMEN logs of a real scanner")
+      ->type_name("DIR")
+      ->needs(filter);
+  for (const char* tables :
+       {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
+    filter->excludes(command->get_option(tables));
+  }
+  command->add_flag("--json", options->as_json, "Print JSON");
+  command->footer("Exit status: 0 every limit of the file held, 1 bad input, 3 some did not.");
+  command->callback([options, &status] {
+    status = options->filter ? execute_filter_study(*options) : execute(*options);
+  });
+}
+
+}  // namespace server

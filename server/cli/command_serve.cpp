@@ -1,0 +1,181 @@
+// server/cli/command_serve.cpp: `tautline serve`.
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "server/cli/cli.hpp"
+#include "server/cli/signals.hpp"
+#include "server/run/hardware.hpp"
+#include "server/run/paths.hpp"
+#include "server/run/scenario_library.hpp"
+#include "server/serve/app.hpp"
+
+namespace server {
+namespace {
+
+struct Options {
+  AppOptions app{};
+  std::string scenario = "demo";
+  std::string robot{};  // file of real hardware; empty: simulation
+  RunFlags flags{};
+  double keep_gigabytes = 2;
+  std::string evict = "never";
+};
+
+/// The spec to begin with: of the devices of a robot's file, or of a scenario.
+RunSpec first_spec(const Options& options) {
+  const RunOverrides overrides = options.flags.resolved();
+  if (options.robot.empty()) {
+    const ScenarioLibrary library(options.app.scenarios, options.app.logs);
+    const bool file = options.scenario.find_first_of("/.") != std::string::npos;
+    return make_spec(
+        file ? ScenarioLibrary::from_file(options.scenario) : library.load(options.scenario),
+        overrides);
+  }
+  const drivers::RobotFile file = drivers::read_robot_file(options.robot);
+  const bool locked = drivers::lock_memory();
+  for (const std::string& warning : file.warnings) spdlog::warn(warning);
+  if (!locked) spdlog::warn(drivers::memory_advice());
+  if (!drivers::check_real_time().priority) spdlog::warn(drivers::priority_advice());
+  const std::shared_ptr<drivers::SerialRobot> robot = drivers::open_robot(file);
+  robot->note_memory_locked(locked);
+  return hardware_spec(robot, overrides);
+}
+
+/// Loud, since the docker image and many a shell history say --insecure without another thought.
+void warn_of_open_door(const net::ServerOptions& net, bool hardware) {
+  if (!net.access.insecure || !net.access.token.empty() || net::is_loopback_name(net.address)) {
+    return;
+  }
+  const std::string bar(78, '!');
+  fmt::print(stderr,
+             "{0}\n"
+             "INSECURE: there is no token. Everybody who can reach this port can {1},\n"
+             "change its world and delete its runs. Set TAUTLINE_TOKEN and leave --insecure out,\n"
+             "unless a firewall or a port mapping lets only people you trust come in.\n"
+             "{0}\n",
+             bar,
+             hardware ? "DRIVE THE REAL ROBOT" : "drive the robot");
+}
+
+void serve(Options& options) {
+  AppOptions& app = options.app;
+  if (const char* token = std::getenv("TAUTLINE_TOKEN");
+      app.net.access.token.empty() && token != nullptr) {
+    app.net.access.token = token;
+  }
+  app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
+  app.evict_oldest = options.evict == "oldest";
+  app.first = first_spec(options);
+  app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
+  const std::string database = app.database.string();
+  const bool armed = app.armed;
+  const bool hardware = app.first.hardware != nullptr;
+  app.ended = end_requested;
+  warn_of_open_door(app.net, hardware);
+  heed_signals();  // first: also what is opened now may fail to be written
+  // Moved: the devices are to be left in order when the program ends, not later.
+  App program(std::move(app));
+  fmt::print("Tautline is at {}\n", program.url());
+  fmt::print("Runs are kept in {}\n", database);
+  if (hardware) {
+    fmt::print("REAL HARDWARE: {}. It moves only once it is armed{}.\n",
+               options.robot,
+               armed ? ", which it is as soon as its devices are well" : "");
+  }
+  std::fflush(stdout);
+  program.run();
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, int& status) {
+  auto options = std::make_shared<Options>();
+  net::ServerOptions& net = options->app.net;
+  net.web_root = web_folder();
+  options->app.database = state_folder() / "runs.db";
+  options->app.scenarios = state_folder() / "scenarios";
+  options->app.logs = state_folder() / "logs";
+
+  CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
+  command->add_option("--port", net.port, "Port; 0: any free one")->capture_default_str();
+  command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
+  command->add_option("--token",
+                      net.access.token,
+                      "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
+  command->add_flag(
+      "--insecure", net.access.insecure, "Listen beyond this machine without a token");
+  command
+      ->add_option("--trusted-proxy",
+                   net.access.trusted_proxies,
+                   "A proxy in front that says whom it speaks for (X-Forwarded-For, "
+                   "X-Forwarded-Proto), such as 127.0.0.1 or 172.17.0.0/16; may be given again")
+      ->type_name("ADDRESS");
+  command
+      ->add_option("--per-address",
+                   net.limits.connections_per_address,
+                   "Connections one address may have; more for many people behind one router")
+      ->check(CLI::Range(8, 100000))
+      ->capture_default_str();
+  command->add_option("--allow-host",
+                      net.access.allow_hosts,
+                      "A further name this server goes by, such as one of a port mapping");
+  command->add_option("--allow-origin",
+                      net.access.allow_origins,
+                      "A page hosted elsewhere that may connect, such as https://viewer.example");
+  command->add_option("--db", options->app.database, "Database of the runs")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command
+      ->add_option("--keep",
+                   options->keep_gigabytes,
+                   "Room for the record: beyond it a live run gives up its oldest ticks, and "
+                   "nothing more is recorded; 0: what the disk has")
+      ->type_name("GB")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
+  command
+      ->add_option("--evict",
+                   options->evict,
+                   "Finished runs to delete when there is no room: never, or the oldest")
+      ->check(CLI::IsMember({"never", "oldest"}))
+      ->capture_default_str();
+  command->add_flag("--require-record",
+                    options->app.require_record,
+                    "A live run stops as soon as it is not recorded; else the robot drives on");
+  command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--web", net.web_root, "Folder of the built page")->type_name("DIR");
+  command
+      ->add_option("--scenario",
+                   options->scenario,
+                   "What to load first: a name, a .json file, or a .log to replay")
+      ->capture_default_str();
+  command
+      ->add_option("--robot",
+                   options->robot,
+                   "Real hardware, as a TOML file describes it (docs/hardware.md)")
+      ->type_name("FILE");
+  command->add_flag("--armed",
+                    options->app.armed,
+                    "Switch the motors of real hardware on as soon as its devices are well");
+  command->add_flag("--unattended",
+                    options->app.unattended,
+                    "Real hardware drives on though nobody watches it who could stop it");
+  options->flags.add_to(*command);
+  command->callback([options, &status] {
+    serve(*options);
+    status = 0;
+  });
+}
+
+}  // namespace server

@@ -1,0 +1,367 @@
+// server/cli/doctor.cpp: port, permission, rate, type, status, scans, wheels: one after the other.
+#include "server/cli/doctor.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "algo/dazzle.hpp"
+#include "algo/perceive.hpp"
+#include "drivers/lms200_device.hpp"
+#include "drivers/p2os_machine.hpp"
+#include "drivers/real_time.hpp"
+#include "drivers/roboteq_machine.hpp"
+#include "drivers/serial_base.hpp"
+
+namespace server {
+namespace {
+
+using drivers::steady_now;
+using Found = std::function<void(const Finding&)>;
+
+constexpr double kLook = 0.02;  // [s] between two looks at a device
+
+void pause() {
+  std::this_thread::sleep_for(std::chrono::duration<double>(kLook));
+}
+
+/// Findings about one device.
+class Notes {
+ public:
+  Notes(std::string device, const Found& found) : device_(std::move(device)), found_(found) {}
+
+  void well(const std::string& sentence) { add(Verdict::Well, sentence, ""); }
+  void note(const std::string& sentence, const std::string& advice = "") {
+    add(Verdict::Note, sentence, advice);
+  }
+  void bad(const std::string& sentence, const std::string& advice) {
+    add(Verdict::Bad, sentence, advice);
+    all_well_ = false;
+  }
+  bool all_well() const { return all_well_; }
+
+ private:
+  void add(Verdict verdict, const std::string& sentence, const std::string& advice) {
+    found_({verdict, device_, sentence, advice});
+  }
+
+  std::string device_;
+  const Found& found_;
+  bool all_well_ = true;
+};
+
+/// Whether the port opens; says why not. A look at its own that is over before the device is
+/// sought.
+bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
+  try {
+    const drivers::SerialPort port(path, baud);
+    if (port.baud() == 0) {
+      notes.well(fmt::format("{} answers; its box knows its own rate.", path));
+      return true;
+    }
+    const double off = std::abs(static_cast<double>(port.baud()) - baud) / baud;
+    if (off > 0.03) {
+      notes.note(fmt::format("{} makes {} bit/s of {}.", path, port.baud(), baud),
+                 "Take an adapter that makes this rate, or a lower `rate` in the file.");
+    } else {
+      notes.well(fmt::format("{} opens, and can do {} bit/s.", path, baud));
+    }
+    return true;
+  } catch (const drivers::LineError& error) {
+    notes.bad(error.what(), "Then look again; `ls -l /dev/serial/by-id` shows what is plugged in.");
+    return false;
+  }
+}
+
+/// What the scans of some seconds had in them.
+struct Tally {
+  std::size_t scans = 0;
+  std::size_t beams = 0;
+  std::size_t readings = 0;  // beams that met something
+  std::size_t spikes = 0;
+  std::size_t blinded = 0;  // scans of which most beams tell nothing,
+  std::size_t dazzled = 0;  // and scans with a cone of beams that do not
+};
+
+void add(const algo::LaserScan& scan, Tally& tally) {
+  std::vector<double> ranges;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const bool ok = scan.status[i] == algo::Beam::Ok;
+    ranges.push_back(ok ? scan.ranges[i] : scan.range_max);
+    tally.readings += ok ? 1U : 0U;
+  }
+  const algo::BeamSpan cone = algo::widest_cone(scan);
+  ++tally.scans;
+  tally.beams += scan.size();
+  tally.spikes += count_spikes(ranges);
+  tally.blinded += algo::blinded(scan) ? 1U : 0U;
+  tally.dazzled += cone.end > cone.begin ? 1U : 0U;
+}
+
+/// Whether they could be driven by.
+bool look_at_dazzle(const Tally& tally, Notes& notes) {
+  constexpr const char* kAdvice =
+      "Keep the sun, lamps and other scanners out of its sight; look at its window.";
+  if (tally.blinded > 0) {
+    notes.bad(
+        fmt::format(
+            "It is blinded: {} of {} scans tell next to nothing.", tally.blinded, tally.scans),
+        kAdvice);
+  } else if (tally.dazzled > 0) {
+    notes.bad(fmt::format("It is dazzled: {} of {} scans have a cone that tells nothing.",
+                          tally.dazzled,
+                          tally.scans),
+              kAdvice);
+  }
+  return tally.blinded == 0 && tally.dazzled == 0;
+}
+
+void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& notes) {
+  const drivers::lms200::LaserReport before = laser.details();
+  algo::LaserScan scan;
+  Tally tally;
+  const double begun = steady_now();
+  while (steady_now() < begun + seconds) {
+    pause();
+    if (laser.take(scan)) add(scan, tally);
+  }
+  const drivers::lms200::LaserReport after = laser.details();
+  const double rate = static_cast<double>(after.scans - before.scans) / (steady_now() - begun);
+  const double wanted = 1 / after.nominal_period;
+  if (rate < 0.95 * wanted) {
+    notes.bad(fmt::format("{:.1f} scans a second come, {:.1f} should.", rate, wanted),
+              "Look at the cable and its shield, and what else this computer does.");
+  } else {
+    notes.well(fmt::format("{:.1f} scans a second.", rate));
+  }
+  const std::uint64_t damaged =
+      after.line.bad_checks + after.line.given_up - before.line.bad_checks - before.line.given_up;
+  if (damaged > 0) {
+    notes.note(
+        fmt::format(
+            "{} of {} telegrams came damaged.", damaged, damaged + after.scans - before.scans),
+        "A longer or unshielded cable does that; so does a computer that is busy.");
+  }
+  if (tally.beams == 0 || !look_at_dazzle(tally, notes)) return;
+  const double percent =
+      100.0 * static_cast<double>(tally.readings) / static_cast<double>(tally.beams);
+  if (percent < 5) {
+    notes.note(fmt::format("Only {:.0f} % of the beams meet something within range.", percent),
+               "Is the window covered, or the room larger than the range?");
+  } else {
+    notes.well(fmt::format("{:.0f} % of the beams meet something within range.", percent));
+  }
+  const double per_scan = static_cast<double>(tally.spikes) / static_cast<double>(tally.scans);
+  if (per_scan > 2) {
+    notes.note(fmt::format("{:.1f} beams a scan stand alone against their neighbours.", per_scan),
+               "Clean the window; look for dust, sun and mirrors.");
+  } else {
+    notes.well(fmt::format("{:.1f} lone beams a scan.", per_scan));
+  }
+}
+
+bool look_at_laser(const drivers::LaserEntry& entry,
+                   const DoctorOptions& options,
+                   const Found& found) {
+  Notes notes(entry.name, found);
+  if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
+  drivers::lms200::Lms200Device laser(entry.name, entry.port, entry.setup);
+  const bool runs = laser.comes_to_run(options.patience);
+  const drivers::lms200::LaserReport report = laser.details();
+  if (!runs) {
+    notes.bad(
+        report.trouble,
+        fmt::format("One that was just switched on takes up to 60 s: --patience 70 waits for it "
+                    "(now {:.0f} s).",
+                    options.patience));
+    return false;
+  }
+  notes.well(fmt::format("{} found at {} bit/s, address {}, software {}.",
+                         report.type,
+                         report.baud,
+                         report.address,
+                         report.software));
+  notes.well(fmt::format("{} degrees in steps of {:.2f}, {}, measuring mode {:02x}.",
+                         report.variant.angle_degrees,
+                         report.variant.step_centidegrees / 100.0,
+                         report.in_millimetres ? "millimetres" : "centimetres",
+                         report.measuring_mode));
+  if (report.written > 0) notes.note("Its configuration was written: it was another.");
+  for (const std::string& remark : report.remarks) notes.note(remark);
+  if (const std::string health = health_text(report.health); !health.empty()) {
+    if (report.health.usable()) {
+      notes.note(health, "Clean the window, then look again.");
+    } else {
+      notes.bad(health, "Switch it off and on; if it stays, read its error memory.");
+    }
+  }
+  look_at_scans(laser, options.measuring, notes);
+  return notes.all_well();
+}
+
+std::unique_ptr<drivers::BaseMachine> machine_for(const drivers::BaseEntry& entry) {
+  if (const auto* pioneer = std::get_if<drivers::p2os::PioneerSetup>(&entry.setup)) {
+    return std::make_unique<drivers::p2os::PioneerMachine>(*pioneer);
+  }
+  return std::make_unique<drivers::roboteq::RoboteqMachine>(
+      std::get<drivers::roboteq::RoboteqSetup>(entry.setup));
+}
+
+/// What the base was told and what it says of it, each [m] ahead, and how far it turned [rad].
+struct Drive {
+  double told = 0;
+  double came = 0;
+  double turned = 0;
+};
+
+Drive drive_for_a_second(drivers::Base& base, double speed) {
+  const algo::Pose2 before = base.state().pose;
+  const double begun = steady_now();
+  while (steady_now() < begun + 1.0) {
+    const drivers::BaseState state = base.state();
+    if (state.stop_button || state.bumper_front || state.bumper_rear || !state.running) break;
+    base.drive({speed, 0});
+    pause();
+  }
+  base.drive({});  // along the ramp it started with
+  const double told = speed * (steady_now() - begun);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  const algo::Pose2 after = base.state().pose;
+  const algo::Vec2 way = after.position() - before.position();
+  return {.told = told,
+          .came = way.dot(algo::direction(before.heading)),
+          .turned = algo::wrap_angle(after.heading - before.heading)};
+}
+
+}  // namespace
+
+/// What a ramp takes at the start it gives back at the end.
+bool drove_as_told(double told, double came) {
+  constexpr double kTolerance = 0.2;  // of the way; a gear or a wheel is off by more
+  return std::abs(came - told) <= kTolerance * std::abs(told);
+}
+
+namespace {
+
+void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& notes) {
+  base.enable(true);
+  const double until = steady_now() + 2.0;
+  while (!base.state().motors_on && steady_now() < until) pause();
+  if (!base.state().motors_on) {
+    notes.bad("The motors do not switch on.", "Release the stop button; look at the motor power.");
+    base.enable(false);
+    return;
+  }
+  const double speed = std::min(0.05, file.limits.speed);
+  const Drive ahead = drive_for_a_second(base, speed);
+  const Drive back = drive_for_a_second(base, -speed);
+  base.enable(false);
+  const std::string ways =
+      fmt::format("Told to go {:.0f} mm ahead and {:.0f} back, it says {:.0f} and {:.0f} mm.",
+                  1000 * ahead.told,
+                  -1000 * back.told,
+                  1000 * ahead.came,
+                  -1000 * back.came);
+  if (drove_as_told(ahead.told, ahead.came) && drove_as_told(back.told, back.came)) {
+    notes.well(ways);
+  } else {
+    notes.bad(ways,
+              "The wrong sign: reverse_left, reverse_right. The wrong size: wheel_radius, gear, "
+              "encoder_lines. Nothing: the encoders' plugs.");
+  }
+  constexpr double kStraight = 0.05;  // [rad]
+  if (std::max(std::abs(ahead.turned), std::abs(back.turned)) > kStraight) {
+    notes.bad(
+        fmt::format(
+            "Told to go straight, it turned by {:.2f} and {:.2f} rad.", ahead.turned, back.turned),
+        "One wheel does not turn, or is counted otherwise than the other.");
+  }
+}
+
+bool look_at_base(const drivers::RobotFile& file,
+                  const DoctorOptions& options,
+                  const Found& found) {
+  Notes notes("base", found);
+  const drivers::BaseEntry& entry = file.base;
+  std::unique_ptr<drivers::BaseMachine> machine = machine_for(entry);
+  if (!look_at_port(entry.port, machine->opening_baud(), notes)) return false;
+  drivers::SerialBase base(entry.port, std::move(machine));
+  const double until = steady_now() + options.patience;
+  while (!base.state().running && steady_now() < until) pause();
+  const drivers::DeviceReport report = base.report();
+  const drivers::BaseState state = base.state();
+  if (!state.running) {
+    notes.bad(report.sentence, "Is it switched on? Is it the right cable, at the right port?");
+    return false;
+  }
+  std::string facts;
+  for (const auto& [name, value] : report.facts) {
+    facts.append(facts.empty() ? "" : ", ").append(name).append(" ").append(value);
+  }
+  notes.well("Found: " + facts + ".");
+  for (const std::string& remark : report.remarks) notes.note(remark);
+  if (!report.well) notes.bad(report.sentence, "Clear its cause, then look again.");
+  if (state.bumper_front || state.bumper_rear) {
+    notes.bad("A bumper is pressed.", "Free it; or its switch or plug is broken.");
+  }
+  if (entry.battery_low > 0 && state.volts && *state.volts < entry.battery_low) {
+    notes.bad(
+        fmt::format("The battery has {:.1f} V, less than {:.1f}.", *state.volts, entry.battery_low),
+        "Charge it.");
+  }
+  if (!options.move) {
+    notes.note("The wheels were not turned.",
+               "With the wheels off the floor: --move turns them for two seconds.");
+  } else if (notes.all_well()) {
+    look_at_wheels(base, file, notes);
+  }
+  return notes.all_well();
+}
+
+void look_at_system(const Found& found) {
+  Notes notes("system", found);
+  const drivers::RealTimeCheck check = drivers::check_real_time();
+  if (check.priority) {
+    notes.well("Real-time priority is permitted.");
+  } else {
+    notes.note("The control loop gets no real-time priority.", drivers::priority_advice());
+  }
+  if (!check.memory) notes.note("The memory cannot be locked.", drivers::memory_advice());
+  if (!check.preemptible_kernel) {
+    notes.note("This kernel is not PREEMPT_RT: a tick may come some milliseconds late.",
+               "`apt install linux-image-rt-amd64` has one; the page shows how late ticks are.");
+  }
+}
+
+}  // namespace
+
+std::size_t count_spikes(const std::vector<double>& ranges) {
+  constexpr double kAgree = 0.1;  // [m]
+  constexpr double kAlone = 0.3;  // [m]
+  std::size_t spikes = 0;
+  for (std::size_t i = 1; i + 1 < ranges.size(); ++i) {
+    const double left = ranges[i - 1];
+    const double right = ranges[i + 1];
+    if (std::abs(left - right) > kAgree) continue;
+    if (std::abs(ranges[i] - (left + right) / 2) > kAlone) ++spikes;
+  }
+  return spikes;
+}
+
+bool examine(const drivers::RobotFile& file, const DoctorOptions& options, const Found& found) {
+  for (const std::string& warning : file.warnings) found({Verdict::Note, "file", warning, ""});
+  look_at_system(found);
+  bool well = true;
+  for (const drivers::LaserEntry& laser : file.lasers) {
+    well = look_at_laser(laser, options, found) && well;
+  }
+  return look_at_base(file, options, found) && well;
+}
+
+}  // namespace server

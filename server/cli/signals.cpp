@@ -1,0 +1,25 @@
+// server/cli/signals.cpp: the one place that knows which signals there are.
+#include "server/cli/signals.hpp"
+
+#include <csignal>
+
+namespace server {
+
+namespace {
+volatile std::sig_atomic_t g_end = 0;  // NOLINT: the one thing a signal handler may touch
+}
+
+void heed_signals() {
+  const auto note = [](int) { g_end = 1; };
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+  if (std::signal(SIGHUP, note) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+bool end_requested() {
+  return g_end != 0;
+}
+
+}  // namespace server

@@ -1,0 +1,62 @@
+// server/experiment/svg_plot.hpp: a small picture of plane geometry as SVG text.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algo/types.hpp"
+
+namespace server::reproduce {
+
+/// Cells of a grid side by side in a row.
+struct CellRun {
+  int column = 0;
+  int row = 0;
+  int length = 0;
+};
+
+/// Shapes in metres of W, drawn with x to the right and y up. What is drawn later lies on top.
+class SvgPlot {
+ public:
+  /// The part of W between the corners `low_W` and `high_W` in a picture `width` pixels wide, with
+  /// room for `legend_lines` lines of text below.
+  SvgPlot(const algo::Vec2& low_W,
+          const algo::Vec2& high_W,
+          double width,
+          std::size_t legend_lines);
+
+  void circle(const algo::Vec2& centre_W, double radius, std::string_view style);
+  void polygon(std::span<const algo::Vec2> points_W, std::string_view style);
+  void polyline(std::span<const algo::Vec2> points_W, std::string_view style);
+  /// Runs of cells of edge `cell` [m], counted from `corner_W`, filled with `colour`.
+  void cells(const algo::Vec2& corner_W,
+             double cell,
+             std::span<const CellRun> runs,
+             std::string_view colour);
+  void text(const algo::Vec2& at_W, std::string_view words);
+  /// The next line of the legend: a stroke in `style` and its meaning.
+  void legend(std::string_view style, std::string_view words);
+
+  /// The document; `title` is what a screen reader says.
+  std::string document(std::string_view title) const;
+
+ private:
+  algo::Vec2 pixel(const algo::Vec2& p_W) const;
+  std::string points(std::span<const algo::Vec2> points_W) const;
+
+  algo::Vec2 low_W_{0, 0};
+  algo::Vec2 high_W_{0, 0};
+  double scale_ = 1;  // pixels a metre
+  double width_ = 0;
+  double plot_height_ = 0;
+  double height_ = 0;
+  std::size_t legend_lines_ = 0;  // written
+  std::string body_{};
+};
+
+/// `text` with what XML reserves written as entities.
+std::string escaped(std::string_view text);
+
+}  // namespace server::reproduce

@@ -1,0 +1,180 @@
+// server/lab/barn/barn_file.cpp: reads worlds, sets up the benchmark's robot.
+#include "server/lab/barn/barn_file.hpp"
+
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "algo/units.hpp"
+#include "server/run/json_reader.hpp"
+
+namespace server::barn {
+namespace {
+
+using nlohmann::json;
+using namespace algo::units;
+using algo::Parameter;
+
+constexpr std::size_t kMaxWorlds = 10'000;
+constexpr std::size_t kMaxObstacles = 5000;
+constexpr std::size_t kMaxKeys = 10'000;
+constexpr NumberRange kCoordinate{-1e4, 1e4};
+constexpr double kObstacleHeight = 1.0;  // [m]
+
+/// `count` numbers of the array `value`.
+std::vector<double> numbers(const json& value, const std::string& path, std::size_t count) {
+  if (!value.is_array() || value.size() != count) {
+    throw DocumentError(path, fmt::format("must be a list of {} numbers", count));
+  }
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(finite_number(value[i], fmt::format("{}/{}", path, i), kCoordinate));
+  }
+  return out;
+}
+
+void add_cylinder(World& world, double x, double y, double radius) {
+  algo::Obstacle obstacle;
+  obstacle.id = static_cast<std::uint32_t>(world.obstacles.size() + 1);
+  obstacle.pose_W = {x, y, 0};
+  obstacle.shape = algo::Cylinder{radius};
+  obstacle.height = kObstacleHeight;
+  world.obstacles.push_back(std::move(obstacle));
+}
+
+void add_moving(World& world, const JsonReader& in) {
+  sim::ObstaclePath path;
+  path.period = in.number("period", {0.1, 1e5});
+  const json& keys = in.array("keys", kMaxKeys);
+  if (keys.empty()) in.fail("keys", "must hold one key [t, x, y] at least");
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const std::string at = fmt::format("{}/{}", in.at("keys"), i);
+    const std::vector<double> key = numbers(keys[i], at, 3);
+    if (!path.keys.empty() && key[0] <= path.keys.back().time) {
+      throw DocumentError(at, "must be later than the key before");
+    }
+    path.keys.push_back({key[0], {key[1], key[2]}});
+  }
+  add_cylinder(world,
+               path.keys.front().position_W.x(),
+               path.keys.front().position_W.y(),
+               in.number("radius", {0.01, 10}));
+  path.id = world.obstacles.back().id;
+  world.paths.push_back(std::move(path));
+}
+
+World world_from_json(const JsonReader& in) {
+  World world;
+  world.id = in.whole("id", 1'000'000);
+  world.difficulty = in.text_or("difficulty", "");
+  const std::vector<double> start = numbers(in.array("start", 3), in.at("start"), 3);
+  world.start = {start[0], start[1], algo::wrap_angle(start[2])};
+  const std::vector<double> goal = numbers(in.array("goal", 2), in.at("goal"), 2);
+  world.goal = {goal[0], goal[1]};
+  world.goal_radius = in.number_or("goal_radius", 1, {0.01, 100});
+  world.optimal_length = in.number("optimal_path_length", {0.01, 1e5});
+  const json& obstacles = in.array("obstacles", kMaxObstacles);
+  const double radius = in.number_or("radius", 0.075, {0.001, 10});
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const std::string at = fmt::format("{}/{}", in.at("obstacles"), i);
+    if (obstacles[i].is_object()) {
+      add_moving(world, {obstacles[i], at});
+    } else {
+      const std::vector<double> centre = numbers(obstacles[i], at, 2);
+      add_cylinder(world, centre[0], centre[1], radius);
+    }
+  }
+  return world;
+}
+
+/// Nominal: a wide and precise scanner, one tick of delay. Stress: a narrower, shorter and noisier
+/// scanner, half the acceleration, twice the delay, slip and drifting odometry, all at once.
+void equip(sim::Scenario& scenario, const Conditions& conditions) {
+  sim::DriveConfig& drive = scenario.drive;
+  drive.ramps = true;
+  drive.max_v = 2.0;
+  if (conditions.stress) {
+    sim::LaserConfig laser = sim::LaserConfig::flat(180_deg, 361, 8.0);
+    laser.noise = 0.02;
+    scenario.lasers = {laser};
+    drive.max_omega = 1.5;
+    drive.max_acceleration = 1.5;
+    drive.max_angular_acceleration = 4;
+    drive.delay_ticks = 2;
+    drive.yaw_slip = 0.10;
+    drive.odometry_scale = 0.02;
+  } else {
+    sim::LaserConfig laser = sim::LaserConfig::flat(270_deg, 720, 30.0);
+    laser.noise = 0.01;
+    scenario.lasers = {laser};
+    drive.max_omega = 2.5;
+    drive.max_acceleration = 3;
+    drive.max_angular_acceleration = 8;
+    drive.delay_ticks = 1;
+  }
+  if (conditions.scanner == Scanner::Lms200) {
+    scenario.lasers = {sim::LaserConfig::with_resolution(0.5)};
+  }
+  // Low enough for every obstacle, and clear of the hull.
+  scenario.lasers.front().height = 0.30;
+}
+
+}  // namespace
+
+std::vector<World> worlds_from_json(const json& document) {
+  const JsonReader in(document, "");
+  const json& list = in.array("worlds", kMaxWorlds);
+  if (list.empty()) in.fail("worlds", "must hold one world at least");
+  std::vector<World> worlds;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    worlds.push_back(world_from_json({list[i], fmt::format("worlds/{}", i)}));
+  }
+  return worlds;
+}
+
+std::vector<World> read_worlds(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error("cannot read " + file);
+  try {
+    return worlds_from_json(json::parse(in));
+  } catch (const json::exception& e) {
+    throw std::runtime_error(file + " is not JSON: " + e.what());
+  } catch (const DocumentError& e) {
+    throw std::runtime_error(file + ": " + e.what());
+  }
+}
+
+sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
+  sim::Scenario scenario;
+  const bool moving = !world.paths.empty();
+  scenario.name = fmt::format("{}-{}", moving ? "dynabarn" : "barn", world.id);
+  scenario.title = fmt::format("{} world {}", moving ? "DynaBARN" : "BARN", world.id);
+  scenario.robot = "jackal";
+  scenario.vehicle = conditions.vehicle;
+  scenario.period = 0.05;
+  scenario.start = world.start;
+  scenario.goal = algo::SetGoal{world.goal, std::nullopt};
+  scenario.obstacles = world.obstacles;
+  scenario.paths = world.paths;
+  for (sim::ObstaclePath& path : scenario.paths) path.phase = conditions.phase;
+  for (const sim::ObstaclePath& path : scenario.paths) {
+    algo::Obstacle& obstacle = scenario.obstacles[path.id - 1];
+    const algo::Vec2 at_W = path.at(0);
+    obstacle.pose_W = {at_W.x(), at_W.y(), 0};
+  }
+  equip(scenario, conditions);
+  scenario.controller = conditions.controller;
+  if (scenario.controller.empty()) scenario.controller = moving ? "strip_moving" : "strip";
+  scenario.filter = "median";
+  scenario.parameters = {{Parameter::ContractionGain, 0.4},
+                         {Parameter::RepulsionGain, 0.6},
+                         {Parameter::SafetyDistance, 0.75},
+                         {Parameter::MaxSpeed, 2.0},
+                         {Parameter::MaxTurnRate, *scenario.drive.max_omega},
+                         {Parameter::GoalReach, std::min(0.3, world.goal_radius)},
+                         {Parameter::FilterHalfWidth, 2}};
+  scenario.time_limit = 100;
+  return scenario;
+}
+
+}  // namespace server::barn

@@ -1,0 +1,47 @@
+// server/lab/barn/barn_file.hpp: the worlds of the BARN and DynaBARN benchmarks as scenarios.
+//
+// Perille, Truong, Xiao, Stone: Benchmarking Metric Ground Navigation, SSRR 2020; Nair et al.:
+// DynaBARN, SSRR 2022. The score is that of The BARN Challenge.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "sim/scenario.hpp"
+
+namespace server::barn {
+
+struct World {
+  std::uint64_t id = 0;
+  std::string difficulty{};  // of a DynaBARN world: "easy", "medium", "hard"
+  algo::Pose2 start{};
+  algo::Vec2 goal{0, 0};
+  double goal_radius = 1;     // [m]
+  double optimal_length = 0;  // [m] of the published path: for the score only
+  std::vector<algo::Obstacle> obstacles{};
+  std::vector<sim::ObstaclePath> paths{};
+};
+
+/// `Flat`, the benchmark's own: all beams at one instant. `Lms200`: the default model, whose beams
+/// are fired one by one while things move.
+enum class Scanner : std::uint8_t { Flat, Lms200 };
+
+/// Under which a world is run: limits and faults of the base and its scanner.
+struct Conditions {
+  bool stress = false;
+  Scanner scanner = Scanner::Flat;
+  sim::Vehicle vehicle = sim::Vehicle::Bullet;
+  std::string controller{};  // empty: `strip`, or `strip_moving` where something moves
+  double phase = 0;          // [s] of the moving obstacles' paths when a run begins
+};
+
+/// Throws DocumentError naming the field, or std::runtime_error when the file cannot be read.
+std::vector<World> read_worlds(const std::string& file);
+std::vector<World> worlds_from_json(const nlohmann::json& document);
+
+sim::Scenario scenario_of(const World& world, const Conditions& conditions);
+
+}  // namespace server::barn

@@ -1,0 +1,63 @@
+// server/lab/compare/comparison.hpp: the runs of `tautline compare`: every controller on the
+// papers' worlds, before bottlenecks, and the strips on random layouts.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "server/experiment/figures.hpp"
+#include "server/lab/compare/findings.hpp"
+#include "server/lab/compare/scenes.hpp"
+
+namespace server::compare {
+
+using reproduce::Row;
+
+struct Options {
+  std::size_t seeds = 3;  // runs of each row
+  std::uint64_t first_seed = 1;
+  std::size_t layouts = 150;        // random ones of each kind
+  std::size_t layout_seeds = 2;     // runs of each
+  std::vector<std::string> only{};  // these controllers; empty: all
+  bool worlds = true;               // which parts are run
+  bool bottlenecks = true;
+  bool random_layouts = true;
+  unsigned threads = 0;  // 0: one a core
+  /// What is being run, and how far it is.
+  std::function<void(const std::string& what, std::size_t done, std::size_t all)> progress{};
+};
+
+/// Layouts with the same number of obstacles and the same K_r.
+struct LayoutSet {
+  std::size_t obstacles = 0;
+  double repulsion_gain = 0;
+  /// Paper conditions; a row a layout, for one controller after the other.
+  std::vector<Row> paper{};
+  std::vector<Row> full{};  // `strip` alone in the full simulator
+};
+
+struct Comparison {
+  Options options{};
+  std::vector<std::string> labels{};  // of the contestants
+  std::vector<Row> worlds{};          // a world a row, for one contestant after the other
+  std::vector<Row> bottlenecks{};     // a gap a row, likewise
+  std::vector<LayoutSet> layouts{};
+  std::vector<Finding> findings{};  // of the sources' claims, where their runs were made
+};
+
+/// Same options, same comparison, however many threads. Throws std::exception with a sentence.
+Comparison compare(const Options& options);
+
+/// The rows of one contestant, in the order of the scenes.
+std::vector<const Row*> rows_of(const std::vector<Row>& rows, const std::string& label);
+
+/// `strip` on all layouts under both conditions: at least 99 % of the runs reach, none collides.
+struct LayoutResult {
+  std::size_t runs = 0, reached = 0, collided = 0;
+  bool held() const { return collided == 0 && 100 * reached >= 99 * runs; }
+};
+LayoutResult strip_on_layouts(const std::vector<LayoutSet>& sets);
+
+}  // namespace server::compare

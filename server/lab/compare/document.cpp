@@ -1,0 +1,189 @@
+// server/lab/compare/document.cpp: the words round the tables, for the terminal and for Markdown.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "server/lab/compare/layouts.hpp"
+#include "server/lab/compare/report.hpp"
+#include "server/lab/reproduce/marked.hpp"
+
+namespace server::compare {
+namespace {
+
+/// Where controllers.md takes the table of the worlds.
+constexpr reproduce::Marks kWorlds{"<!-- worlds: made by tautline compare -->\n",
+                                   "<!-- end of the worlds -->\n"};
+
+std::string seeds_text(const Options& options, std::size_t seeds) {
+  if (seeds == 1) return fmt::format("seed {}", options.first_seed);
+  return fmt::format("seeds {} to {}", options.first_seed, options.first_seed + seeds - 1);
+}
+
+std::string worlds_text(const Options& options) {
+  return fmt::format(
+      "Bullet vehicle, rolling LMS200, the scenarios' own settings, {} of each row; by sonar a "
+      "ring of 24 in place of the scanner. Mean seconds / least clearance of the hull in metres "
+      "where every run reached the goal, else how the runs ended.",
+      seeds_text(options, options.seeds));
+}
+
+constexpr const char* kDetails =
+    "Time, path and rest are means, the clearance is the least of all runs. Standing: at rest, "
+    "neither driving nor turning, the end of a stuck run included. A pause is a rest of 0.1 s or "
+    "more from which the robot drives on.";
+
+std::string bottlenecks_text(const Options& options) {
+  return fmt::format(
+      "A closed hall, 10 m by 8 m, parted by a wall with one gap in the middle of the straight "
+      "way of 6 m to the goal; hull 0.7 m, at most 0.3 m/s, K_r 0.6, {} of each row. Walls "
+      "rather than posts: past posts there are other ways, so that reaching the goal would say "
+      "nothing about the gap. r reached, s stuck, t out of time, C collided; one letter when every "
+      "run ends so. *Passes from*: the narrowest gap such that it and every wider one is passed in "
+      "every run. The line to the goal is free, so that go_to_goal shows what seeing costs here.",
+      seeds_text(options, options.seeds));
+}
+
+std::string layouts_text(const Options& options) {
+  return fmt::format(
+      "Layouts with free gaps of {:g} m and more between surfaces and {:g} m round start and goal; "
+      "{} layouts of each kind, {} of each. How they are drawn is ours: start, goal (5 m, 4 "
+      "m) and 0.1 m/s of case 3; cylinders of 0.25 to 0.4 m radius and boxes of 0.5 to 0.8 m at "
+      "any heading, as likely, with centres up to 2 m beside the line; one at least stands in the "
+      "robot's straight way. Paper conditions as in the reproduction, and `strip` in the full "
+      "simulator as well.",
+      kFreeGap,
+      kFreeRoom,
+      options.layouts,
+      seeds_text(options, options.layout_seeds));
+}
+
+constexpr const char* kBeside =
+    "Layouts where the original strip and the other both reach by every seed, and among them those "
+    "where the original enters the safety circle, and where the other keeps out of it, turns less "
+    "and is faster:";
+
+std::string set_title(const LayoutSet& set) {
+  return fmt::format("{} obstacles, K_r {:g}", set.obstacles, set.repulsion_gain);
+}
+
+std::string strip_sentence(const std::vector<LayoutSet>& sets) {
+  const LayoutResult strip = strip_on_layouts(sets);
+  return fmt::format(
+      "`strip`: {} of {} runs reached, {} collided. At least 99 % and no collision: {}.",
+      strip.reached,
+      strip.runs,
+      strip.collided,
+      strip.held() ? "held" : "NOT held");
+}
+
+}  // namespace
+
+std::string to_text(const Comparison& comparison) {
+  std::string text;
+  if (!comparison.worlds.empty()) {
+    text += fmt::format("The papers' worlds. {}\n\n{}\n{}\n\n{}\n",
+                        worlds_text(comparison.options),
+                        to_text(worlds_table(comparison)),
+                        kDetails,
+                        to_text(details_table(comparison)));
+  }
+  if (!comparison.bottlenecks.empty()) {
+    text += fmt::format("Bottlenecks. {}\n\n{}\n",
+                        bottlenecks_text(comparison.options),
+                        to_text(bottlenecks_table(comparison)));
+  }
+  for (const Finding& each : comparison.findings) {
+    text += fmt::format(
+        "{}\n  {}. {}\n  Rule: {}\n\n", each.claim, name(each.verdict), each.because, each.rule);
+  }
+  if (!comparison.layouts.empty()) {
+    text += fmt::format("Random layouts. {}\n\n", layouts_text(comparison.options));
+  }
+  for (const LayoutSet& set : comparison.layouts) {
+    text += fmt::format("{}\n\n{}\n{}\n\n{}\n",
+                        set_title(set),
+                        to_text(layouts_table(set)),
+                        kBeside,
+                        to_text(beside_original_table(set)));
+  }
+  if (!comparison.layouts.empty()) text += strip_sentence(comparison.layouts) + "\n";
+  return text;
+}
+
+std::string to_markdown(const Comparison& comparison) {
+  std::string text =
+      "# Comparison\n\nWritten by `tautline compare --markdown`; do not edit. Every controller on "
+      "the papers' worlds and before bottlenecks, what section 1.1 of the thesis says of the "
+      "methods it names, and the strips on random layouts. What the controllers are: "
+      "[controllers.md](controllers.md).\n";
+  if (!comparison.findings.empty()) {
+    text += "\n## What the thesis says of the others\n";
+    for (const Finding& each : comparison.findings) {
+      text += fmt::format("\n*{}* **Verdict: {}.** {}\n\nRule: {}\n",
+                          each.claim,
+                          name(each.verdict),
+                          each.because,
+                          each.rule);
+    }
+  }
+  if (!comparison.worlds.empty()) {
+    text += fmt::format("\n## The papers' worlds\n\n{}\n\n{}",
+                        worlds_text(comparison.options),
+                        to_markdown(worlds_table(comparison)));
+  }
+  if (!comparison.bottlenecks.empty()) {
+    text += fmt::format("\n## Bottlenecks\n\n{}\n\n{}",
+                        bottlenecks_text(comparison.options),
+                        to_markdown(bottlenecks_table(comparison)));
+  }
+  if (!comparison.layouts.empty()) {
+    text += fmt::format("\n## Random layouts\n\n{}\n\n{}\n",
+                        layouts_text(comparison.options),
+                        strip_sentence(comparison.layouts));
+  }
+  for (const LayoutSet& set : comparison.layouts) {
+    text += fmt::format("\n### {}\n\n{}{}\n\n{}",
+                        set_title(set),
+                        to_markdown(layouts_table(set)),
+                        kBeside,
+                        to_markdown(beside_original_table(set)));
+  }
+  if (!comparison.worlds.empty()) {
+    text += fmt::format("\n## The papers' worlds in detail\n\n{}\n\n{}",
+                        kDetails,
+                        to_markdown(details_table(comparison)));
+  }
+  while (text.ends_with("\n\n")) text.pop_back();
+  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) {
+    text.erase(at, 1);  // a table brings its blank line, and so does the heading after it
+  }
+  return text;
+}
+
+void write_markdown(const Comparison& comparison, const std::string& folder) {
+  const auto write = [](const std::filesystem::path& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    if (!out.flush()) throw std::runtime_error(path.string() + ": cannot be written");
+  };
+  const std::filesystem::path at(folder);
+  std::error_code error;
+  std::filesystem::create_directories(at, error);
+  if (error) throw std::runtime_error(folder + ": " + error.message());
+  write(at / "comparison.md", to_markdown(comparison));
+  if (comparison.worlds.empty()) return;
+  std::ostringstream old;
+  old << std::ifstream(at / "controllers.md", std::ios::binary).rdbuf();
+  std::string text = old.str();
+  const std::string section = fmt::format("{}{}\n\n{}{}",
+                                          kWorlds.begin,
+                                          worlds_text(comparison.options),
+                                          to_markdown(worlds_table(comparison)),
+                                          kWorlds.end);
+  if (reproduce::replace_marked(text, kWorlds, section)) write(at / "controllers.md", text);
+}
+
+}  // namespace server::compare

@@ -1,0 +1,42 @@
+// server/lab/compare/findings.hpp: what section 1.1 of the thesis says of the methods it names,
+// held against the runs.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/experiment/figures.hpp"
+
+namespace server::compare {
+
+enum class Verdict : std::uint8_t { Reproduced, InPart, NotReproduced };
+std::string_view name(Verdict verdict);
+
+struct Finding {
+  std::string claim{};
+  Verdict verdict = Verdict::NotReproduced;
+  std::string because{};  // the figures
+  std::string rule{};
+};
+
+/// The findings whose runs are there. `worlds` and `bottlenecks`: a row a scene and contestant, the
+/// bottlenecks of one contestant in rising order of their gaps.
+std::vector<Finding> judge(std::span<const reproduce::Row> worlds,
+                           std::span<const reproduce::Row> bottlenecks);
+
+/// What the rows of one contestant before the bottlenecks come to.
+struct Passage {
+  /// [m] The narrowest gap such that it and every wider one is passed in every run.
+  std::optional<double> smallest{};
+  std::size_t runs = 0, passed = 0;
+  std::size_t stuck = 0, out_of_time = 0, collided = 0;
+  std::vector<double> traps{};  // [m] gaps before which every run was trapped: stuck or out of time
+  bool trapped_sometimes() const { return stuck + out_of_time > 0; }
+};
+Passage passage_of(std::span<const reproduce::Row> bottlenecks, std::string_view contestant);
+
+}  // namespace server::compare

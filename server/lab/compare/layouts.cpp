@@ -1,0 +1,111 @@
+// server/lab/compare/layouts.cpp: obstacles drawn one after the other, and drawn again where they
+// do not fit.
+#include "server/lab/compare/layouts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "sim/random.hpp"
+
+namespace server::compare {
+namespace {
+
+using algo::Vec2;
+
+constexpr std::uint64_t kPurpose = 0x6c61796f75747300;  // "layouts": of the generator
+constexpr int kTries = 200;     // of one obstacle before the layout is begun anew
+constexpr double kAside = 2.0;  // [m] farthest centre from the line
+const Vec2 kGoal{5.0, 4.0};     // [m] of case 3; the start is the origin
+
+/// A cylinder or a box at any heading, as likely; its centre anywhere beside the line.
+algo::Obstacle draw(sim::Random& random, std::uint32_t id) {
+  const Vec2 along = kGoal.normalized();
+  const Vec2 across{-along.y(), along.x()};
+  const double way = random.uniform(0, kGoal.norm());
+  const double aside = random.uniform(-kAside, kAside);
+  const Vec2 centre = way * along + aside * across;
+  algo::Obstacle obstacle;
+  obstacle.id = id;
+  obstacle.pose_W = {centre.x(), centre.y(), random.uniform(-std::numbers::pi, std::numbers::pi)};
+  if (random.uniform() < 0.5) {
+    obstacle.shape = algo::Cylinder{random.uniform(0.25, 0.4)};
+  } else {
+    const double length = random.uniform(0.5, 0.8);
+    obstacle.shape = algo::Box{length, random.uniform(0.5, 0.8)};
+  }
+  return obstacle;
+}
+
+/// Whether the robot would touch it on the straight line.
+bool in_lane(const algo::Obstacle& obstacle) {
+  const Vec2 along = kGoal.normalized();
+  const auto aside = [&](const Vec2& p) { return along.x() * p.y() - along.y() * p.x(); };
+  double low = aside(obstacle.pose_W.position());
+  double high = low;
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+    low -= cylinder->radius;
+    high += cylinder->radius;
+  }
+  for (const Vec2& corner : outline_W(obstacle)) {
+    low = std::min(low, aside(corner));
+    high = std::max(high, aside(corner));
+  }
+  return low < kLaneHalf && high > -kLaneHalf;
+}
+
+bool fits(const algo::Obstacle& obstacle, const std::vector<algo::Obstacle>& others) {
+  if (signed_distance(obstacle, Vec2(0, 0)) < kFreeRoom) return false;
+  if (signed_distance(obstacle, kGoal) < kFreeRoom) return false;
+  return std::ranges::all_of(
+      others, [&](const auto& other) { return surface_gap(obstacle, other) >= kFreeGap; });
+}
+
+/// Nothing when an obstacle found no place.
+std::vector<algo::Obstacle> draw_all(sim::Random& random, std::size_t count) {
+  std::vector<algo::Obstacle> obstacles;
+  for (int tries = 0; obstacles.size() < count && tries < kTries; ++tries) {
+    algo::Obstacle next = draw(random, static_cast<std::uint32_t>(obstacles.size() + 1));
+    if (!fits(next, obstacles)) continue;
+    obstacles.push_back(std::move(next));
+    tries = 0;
+  }
+  if (obstacles.size() < count) obstacles.clear();
+  return obstacles;
+}
+
+}  // namespace
+
+double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b) {
+  const auto* const round_a = std::get_if<algo::Cylinder>(&a.shape);
+  const auto* const round_b = std::get_if<algo::Cylinder>(&b.shape);
+  if (round_a != nullptr) return signed_distance(b, a.pose_W.position()) - round_a->radius;
+  if (round_b != nullptr) return signed_distance(a, b.pose_W.position()) - round_b->radius;
+  // Two convex outlines apart are nearest at a vertex of one of them. Boxes laid crosswise may have
+  // no vertex in each other, but they have each other's centre.
+  double nearest =
+      std::min(signed_distance(a, b.pose_W.position()), signed_distance(b, a.pose_W.position()));
+  for (const Vec2& corner : outline_W(a)) nearest = std::min(nearest, signed_distance(b, corner));
+  for (const Vec2& corner : outline_W(b)) nearest = std::min(nearest, signed_distance(a, corner));
+  return nearest;
+}
+
+reproduce::Layout random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index) {
+  reproduce::Layout layout;
+  layout.name = fmt::format("random-{}-{:04d}", obstacles, index);
+  layout.source = fmt::format("Random layout {} of {} obstacles", index, obstacles);
+  layout.goal_W = kGoal;
+  layout.contraction_gain = 0.6;
+  layout.repulsion_gain = repulsion_gain;
+  layout.v_max = 0.1;
+  sim::Random random(index, kPurpose + obstacles);
+  while (layout.obstacles.empty() || std::ranges::none_of(layout.obstacles, in_lane)) {
+    layout.obstacles = draw_all(random, obstacles);
+  }
+  return layout;
+}
+
+}  // namespace server::compare

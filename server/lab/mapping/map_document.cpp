@@ -1,0 +1,173 @@
+// server/lab/mapping/map_document.cpp: the figures as tables: on the terminal and as Markdown.
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "server/experiment/table.hpp"
+#include "server/lab/mapping/map_study.hpp"
+
+namespace server::mapping {
+namespace {
+
+using reproduce::Table;
+
+constexpr std::string_view kBegin = "<!-- maps: made by the program, not by hand -->\n";
+constexpr std::string_view kEnd = "<!-- end of the maps -->\n";
+
+std::string metres(double value) {
+  return fmt::format("{:.3f}", value);
+}
+std::string share(double part, double whole) {
+  return whole > 0 ? fmt::format("{:.2f}", part / whole) : "-";
+}
+
+Table run_table(const MapStudy& study) {
+  Table out{.header = {"seed", "odometry: end m", "RMS m", "step of 10 m"}};
+  if (study.options.match) {
+    for (const char* title :
+         {"matched: end m", "RMS m", "step of 10 m", "end left", "RMS left", "step left"}) {
+      out.header.emplace_back(title);
+    }
+  }
+  for (const MapRun& run : study.runs) {
+    std::vector<std::string>& row = out.rows.emplace_back();
+    row = {fmt::format("{}", run.seed),
+           metres(run.odometry.end),
+           metres(run.odometry.rms),
+           metres(run.odometry.rms_10m)};
+    if (!study.options.match) continue;
+    row.push_back(metres(run.matched.end));
+    row.push_back(metres(run.matched.rms));
+    row.push_back(metres(run.matched.rms_10m));
+    row.push_back(share(run.matched.end, run.odometry.end));
+    row.push_back(share(run.matched.rms, run.odometry.rms));
+    row.push_back(share(run.matched.rms_10m, run.odometry.rms_10m));
+  }
+  return out;
+}
+
+std::string head_of(const MapStudy& study) {
+  const sim::DriveConfig& errors = study.options.errors;
+  return fmt::format(
+      "{} scans over {:.0f} m; odometry of {:.3g} % scale error, {:.3g} % yaw slip, noise {:.3g}",
+      study.log.scans.size(),
+      path_length(study.log.path_W),
+      100 * errors.odometry_scale,
+      100 * errors.odometry_slip,
+      errors.odometry_noise);
+}
+
+/// Milliseconds a scan, mean of all runs.
+double scan_ms(const MapStudy& study) {
+  double sum = 0;
+  for (const MapRun& run : study.runs) sum += run.scan_time;
+  return 1e3 * sum / static_cast<double>(study.runs.size());
+}
+
+/// Whose walls are thinner, ours or the log's: piece by piece, in the mean of the seeds.
+std::string sharpness_sentence(const MapStudy& study) {
+  if (!study.options.match) return "";
+  double ours = 0;
+  std::size_t thinner = 0;
+  std::size_t pieces = 0;
+  for (const MapRun& run : study.runs) {
+    for (std::size_t i = 0; i < study.log_cells.size(); ++i) {
+      ours += static_cast<double>(run.matched_cells[i]);
+      if (run.matched_cells[i] < study.log_cells[i]) ++thinner;
+      ++pieces;
+    }
+  }
+  const double logs = static_cast<double>(study.runs.size()) *
+                      std::accumulate(study.log_cells.begin(), study.log_cells.end(), 0.0);
+  return fmt::format(
+      "Laid along the matched path, the walls of 10 m of way take {:.0f} % of the cells they take "
+      "along the log's own poses; fewer in {} of {} pieces.\n",
+      100 * ours / logs,
+      thinner,
+      pieces);
+}
+
+std::string time_sentence(const MapStudy& study) {
+  if (!study.options.match) return "";
+  return fmt::format("Placing a scan and entering it took {:.1f} ms.\n", scan_ms(study));
+}
+
+void write(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream stream(path, std::ios::binary);
+  stream << text;
+  if (!stream.flush()) {
+    throw std::runtime_error(fmt::format("{} cannot be written.", path.string()));
+  }
+}
+
+/// The pictures of one log, named in `section` as it tells of them.
+void add_log(const MapStudy& study, const std::filesystem::path& folder, std::string& section) {
+  const std::string& name = study.log.name;
+  section += fmt::format("### {}\n\n{}. {}{}\n{}",
+                         name,
+                         head_of(study),
+                         time_sentence(study),
+                         sharpness_sentence(study),
+                         to_markdown(run_table(study)));
+  const MapRun& first = study.runs.front();
+  const auto picture = [&](const std::string& ending,
+                           const std::vector<algo::Pose2>& path_W,
+                           const std::string& title) {
+    const std::string file = fmt::format("{}-{}.svg", name, ending);
+    write(folder / file, draw_map(study.log, path_W, title));
+    section += fmt::format("![{}](pictures/mapping/{})\n\n", title, file);
+  };
+  picture("odometry",
+          first.odometry_W,
+          fmt::format("{}: by the odometry of seed {}", name, first.seed));
+  if (!study.options.match) return;
+  picture("matched",
+          first.matched_W,
+          fmt::format("{}: by the matched scans, from the same odometry", name));
+}
+
+}  // namespace
+
+std::string to_text(const MapStudy& study) {
+  return fmt::format("{}: {}\n{}{}{}",
+                     study.log.name,
+                     head_of(study),
+                     to_text(run_table(study)),
+                     time_sentence(study),
+                     sharpness_sentence(study));
+}
+
+void write_markdown(const std::vector<MapStudy>& studies, const std::filesystem::path& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::runtime_error(fmt::format("{} is a folder, not a file.", file.string()));
+  }
+  const std::filesystem::path pictures = file.parent_path() / "pictures/mapping";
+  std::filesystem::create_directories(pictures, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("The folder {} cannot be made.", pictures.string()));
+  }
+  std::string section(kBegin);
+  for (const MapStudy& study : studies) add_log(study, pictures, section);
+  section += kEnd;
+
+  std::ostringstream old;
+  old << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string text = old.str();
+  const std::size_t begin = text.find(kBegin);
+  const std::size_t end = text.find(kEnd, begin == std::string::npos ? 0 : begin);
+  if (begin != std::string::npos && end != std::string::npos) {
+    text.replace(begin, end + kEnd.size() - begin, section);
+  } else {
+    if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
+    text += section;
+  }
+  write(file, text);
+}
+
+}  // namespace server::mapping

@@ -1,0 +1,156 @@
+// server/lab/reproduce/differences.cpp: one change at a time.
+#include "server/lab/reproduce/differences.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace server::reproduce {
+namespace {
+
+using algo::Outcome;
+
+struct Change {
+  const char* name = "";
+  Conditions conditions{};
+};
+// Base and scanner need the short tick; it goes with them, and is tried alone first.
+constexpr std::array<Change, 3> kChanges{{
+    {"the 26 ms tick", {.fast_period = true}},
+    {"the base (Bullet: ramps, wheels, encoder odometry)", {.base = true, .fast_period = true}},
+    {"the scanner (rolling LMS200 model)", {.scanner = true, .fast_period = true}},
+}};
+
+/// The outcome of most runs; the better one of equals.
+Outcome usual(const Row& row) {
+  Outcome best = Outcome::Reached;
+  for (const Outcome outcome : {Outcome::Stuck, Outcome::OutOfTime, Outcome::Collided}) {
+    if (count(row, outcome) > count(row, best)) best = outcome;
+  }
+  return best;
+}
+
+bool same_outcomes(const Row& a, const Row& b) {
+  const auto same = [&](Outcome outcome) { return count(a, outcome) == count(b, outcome); };
+  return same(Outcome::Reached) && same(Outcome::Stuck) && same(Outcome::OutOfTime) &&
+         same(Outcome::Collided);
+}
+
+/// The runs that end otherwise than most of the paper's.
+std::size_t ends_otherwise(const Row& row, const Row& paper) {
+  return row.runs.size() - count(row, usual(paper));
+}
+
+std::string capital(std::string sentence) {
+  sentence.front() = static_cast<char>(std::toupper(sentence.front()));
+  return sentence;
+}
+
+/// Which change alone is enough, seen in the runs of `tried` (under each of kChanges).
+std::string cause(const Row& paper, std::span<const Row> tried) {
+  if (ends_otherwise(tried[0], paper) > 0) {
+    return capital(
+        fmt::format("{} alone is enough, which the other changes include.", kChanges[0].name));
+  }
+  std::string names;
+  for (std::size_t i = 1; i < kChanges.size(); ++i) {
+    if (ends_otherwise(tried[i], paper) == 0) continue;
+    names += fmt::format("{}{}", names.empty() ? "" : ", or ", kChanges[i].name);
+  }
+  return names.empty() ? "No change alone is enough; it takes them together."
+                       : capital(fmt::format("{} alone is enough.", names));
+}
+
+double nearest_surface(const Layout& layout, const algo::Vec2& p_W) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const algo::Obstacle& obstacle : layout.obstacles) {
+    nearest = std::min(nearest, algo::signed_distance(obstacle, p_W));
+  }
+  return nearest;
+}
+
+/// Where the stuck runs stand, on average.
+std::string place(const PaperConditions& common, const Layout& layout, const Row& row) {
+  const std::size_t stuck = count(row, Outcome::Stuck);
+  if (stuck == 0) return {};
+  double to_goal = 0;
+  double to_surface = 0;
+  for (const RunFigures& run : row.runs) {
+    if (run.outcome != Outcome::Stuck) continue;
+    to_goal += (run.end_W - layout.goal_W).norm() / static_cast<double>(stuck);
+    to_surface += nearest_surface(layout, run.end_W) / static_cast<double>(stuck);
+  }
+  const double goal_to_surface = nearest_surface(layout, layout.goal_W);
+  const double reach = common.safety_distance + kHullRadius;
+  return fmt::format(
+      " The stuck runs truly stand {:.3f} m from the goal (arrival, by the robot's odometry: {:g} "
+      "m) and {:.2f} m from the nearest surface; the goal lies {:.2f} m from one, {} the {:.2f} m "
+      "in which obstacles push linearly.",
+      to_goal,
+      common.arrival_radius,
+      to_surface,
+      goal_to_surface,
+      goal_to_surface < reach ? "within" : "outside",
+      reach);
+}
+
+/// `tried`: the row under each of kChanges.
+std::string explain(const PaperConditions& common,
+                    const Layout& layout,
+                    const Row& paper,
+                    const Row& full,
+                    std::span<const Row> tried) {
+  std::string figures;
+  for (std::size_t i = 0; i < kChanges.size(); ++i) {
+    figures += fmt::format(
+        "{}{}: {}", figures.empty() ? "" : "; ", kChanges[i].name, outcomes_text(tried[i]));
+  }
+  return fmt::format("{}{} With one change at a time: {}.",
+                     cause(paper, tried),
+                     place(common, layout, full),
+                     figures);
+}
+
+}  // namespace
+
+std::vector<Difference> explain_differences(const PaperFile& file,
+                                            std::span<const Row> paper,
+                                            std::span<const Row> full,
+                                            std::uint64_t first_seed,
+                                            unsigned threads,
+                                            const Progress& progress) {
+  std::vector<std::size_t> differing;
+  std::vector<RowJob> jobs;
+  for (std::size_t i = 0; i < std::min(paper.size(), full.size()); ++i) {
+    if (same_outcomes(paper[i], full[i])) continue;
+    differing.push_back(i);
+    const Layout& layout = *std::ranges::find(file.layouts, paper[i].layout, &Layout::name);
+    for (const Change& change : kChanges) {
+      jobs.push_back({layout.name,
+                      paper[i].reading,
+                      make_run(file, layout, paper[i].reading, change.conditions, first_seed),
+                      paper[i].runs.size()});
+    }
+  }
+  const std::vector<Row> tried = run_rows(jobs, threads, progress);
+  std::vector<Difference> differences;
+  for (std::size_t k = 0; k < differing.size(); ++k) {
+    const Row& a = paper[differing[k]];
+    const Row& b = full[differing[k]];
+    const auto own = std::span(tried).subspan(k * kChanges.size(), kChanges.size());
+    differences.push_back(
+        {a.layout,
+         a.reading,
+         outcomes_text(a),
+         outcomes_text(b),
+         explain(
+             file.common, *std::ranges::find(file.layouts, a.layout, &Layout::name), a, b, own)});
+  }
+  return differences;
+}
+
+}  // namespace server::reproduce

@@ -1,0 +1,304 @@
+// server/lab/reproduce/filter_document.cpp: the study as tables: on the terminal and as Markdown.
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "server/experiment/table.hpp"
+#include "server/lab/reproduce/filter_study.hpp"
+#include "server/lab/reproduce/marked.hpp"
+
+namespace server {
+namespace {
+
+constexpr std::string_view kBegin = "<!-- filter study: made by the program, not by hand -->\n";
+constexpr std::string_view kEnd = "<!-- end of the filter study -->\n";
+
+using reproduce::Table;
+
+std::string percent(double share) {
+  return fmt::format("{:.1f} %", 100 * share);
+}
+std::string or_dash(const std::optional<double>& value, std::string_view format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+Table scene_table(const SceneResult& result) {
+  Table out{.header = {"filter",
+                       "values > 50 mm off",
+                       "of a spike left",
+                       "edge shift [beams]",
+                       "edge blur [beams]",
+                       "oscillation",
+                       "not in window",
+                       "not whole mm",
+                       "RMS off [mm]"}};
+  for (const FilterFigures& each : result.figures) {
+    out.rows.push_back({each.filter,
+                        fmt::format("{:.0f}", each.impulses),
+                        each.height_left ? percent(*each.height_left) : "-",
+                        or_dash(each.edge_shift, "{:.3f}"),
+                        or_dash(each.edge_blur, "{:.2f}"),
+                        or_dash(each.oscillation, "{:.2f}"),
+                        percent(each.not_in_window),
+                        percent(each.not_whole),
+                        or_dash(each.rms_mm, "{:.1f}")});
+  }
+  return out;
+}
+
+Table recording_table(const RecordingResult& result) {
+  Table out{.header = {"filter",
+                       "outliers per scan",
+                       "edge shift [beams]",
+                       "edge blur [beams]",
+                       "oscillation",
+                       "not in window",
+                       "no whole step"}};
+  for (const FilterFigures& each : result.figures) {
+    out.rows.push_back({each.filter,
+                        fmt::format("{:.2f}", each.impulses),
+                        or_dash(each.edge_shift, "{:.3f}"),
+                        or_dash(each.edge_blur, "{:.2f}"),
+                        or_dash(each.oscillation, "{:.2f}"),
+                        percent(each.not_in_window),
+                        percent(each.not_whole)});
+  }
+  return out;
+}
+
+Table signal_table(const FilterStudy& study) {
+  Table out{.header = {"filter, N",
+                       "one impulse",
+                       "two adjacent",
+                       "two, one apart",
+                       "step",
+                       "ramp",
+                       "oscillation 1-1",
+                       "oscillation 2-2"}};
+  for (const SignalResult& each : study.signals) {
+    out.rows.push_back({fmt::format("{}, {}", each.filter, each.half_width),
+                        percent(each.single),
+                        percent(each.adjacent),
+                        percent(each.apart),
+                        percent(each.step),
+                        percent(each.ramp),
+                        percent(each.fastest),
+                        percent(each.slower)});
+  }
+  return out;
+}
+
+Table noise_table(const FilterStudy& study) {
+  Table out{.header = {"filter, N"}};
+  for (const NoiseResult& each : study.noise) {
+    const std::string column = fmt::format("{:.0f} % spoiled", 100 * each.spoiled);
+    if (std::ranges::find(out.header, column) == out.header.end()) out.header.push_back(column);
+    const std::string row =
+        each.half_width == 0 ? each.filter : fmt::format("{}, {}", each.filter, each.half_width);
+    auto found = std::ranges::find_if(out.rows, [&](const auto& r) { return r[0] == row; });
+    if (found == out.rows.end()) found = out.rows.insert(out.rows.end(), {row});
+    found->push_back(fmt::format("{:.2f} %", 100 * each.off));
+  }
+  return out;
+}
+
+Table cost_table(const FilterStudy& study) {
+  Table out{.header = {"N", "tuned", "plain"}};
+  for (const CostResult& each : study.cost) {
+    out.rows.push_back({fmt::format("{}", each.half_width),
+                        fmt::format("{:.2f}", each.product),
+                        fmt::format("{:.2f}", each.textbook)});
+  }
+  return out;
+}
+
+std::string beams_with_spikes(const FilterScene& scene) {
+  if (scene.spikes.empty()) return "no spikes";
+  std::vector<std::size_t> beams;
+  beams.reserve(scene.spikes.size());
+  for (const Spike& spike : scene.spikes) beams.push_back(spike.beam);
+  return fmt::format("{} at {}", beams.size() == 1 ? "spike" : "spikes", fmt::join(beams, ", "));
+}
+
+std::string scene_title(const FilterScene& scene) {
+  return fmt::format("{}: N = {}, {}", scene.title, scene.half_width, beams_with_spikes(scene));
+}
+
+std::string recording_title(const RecordingResult& each) {
+  return fmt::format("{}: {} scans of {} values, steps of {:.0f} mm, N = {}",
+                     each.name,
+                     each.scans,
+                     each.beams,
+                     each.step_mm,
+                     each.half_width);
+}
+
+std::string about_recordings(const FilterStudy& study) {
+  return study.example.simulated
+             ? "No folder of recordings was given (--logs DIR), so a recording of our own scanner "
+               "model stands in: 200 scans, all its faults on, 1 % of the beams each far too long "
+               "and too short."
+             : "A beam that met nothing within range counts as the greatest range, as for the "
+               "product's filters; any other code of the device takes no part. An outlier is a "
+               "beam "
+               "more than 300 mm off the mean of its neighbours, which are within 150 mm of each "
+               "other.";
+}
+
+/// Where the pseudomedian of the flat layout differs from its truth: "186: 850".
+std::string flat_changes(const SceneResult& flat) {
+  std::vector<std::string> out;
+  const std::vector<double>& after = flat.after_mm.at(1);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    if (after[i] != flat.scene.truth_mm[i]) out.push_back(fmt::format("{}: {:g}", i, after[i]));
+  }
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+/// What the near spike of the first scene becomes.
+std::string phantom(const SceneResult& first) {
+  const auto near = std::ranges::min_element(first.scene.spikes, {}, &Spike::mm);
+  return fmt::format(
+      "The near spike at beam {} of the first scene, {:.0f} mm where the surface lies at {:.0f} "
+      "mm, "
+      "becomes a phantom obstacle at {:.0f} mm.",
+      near->beam,
+      near->mm,
+      first.scene.truth_mm[near->beam],
+      first.after_mm.at(1)[near->beam]);
+}
+
+constexpr std::string_view kAboutTable2 =
+    "The notes this work rests on keep none of the numbers of the thesis' Table 2, so nothing is "
+    "compared with it digit by digit.";
+constexpr std::string_view kAboutSignals =
+    "Left of an impulse or an oscillation, and the largest error at a step (of its height) or in a "
+    "ramp (of its rise per beam).";
+constexpr std::string_view kAboutCost =
+    "CPU time, pseudomedian / median, over 360 values, by turns in one run. Tuned: this program's "
+    "filters. Plain: Eq. 1 word for word and a sorted window that slides. It differs a little from "
+    "run to run and from machine to machine.";
+
+}  // namespace
+
+std::string to_text(const FilterStudy& study) {
+  std::string out = "Chapter 3: the pseudomedian filter\n";
+  for (const SceneResult& each : study.scenes) {
+    out += fmt::format("\n{}\n{}", scene_title(each.scene), to_text(scene_table(each)));
+  }
+  out += fmt::format(
+      "\nThe spikes of the first scene on a flat layout, left after the pseudomedian: "
+      "{} (beam: mm)\n",
+      flat_changes(study.flat));
+  out += fmt::format("{}\n{}\n", phantom(study.scenes.front()), kAboutTable2);
+  out += fmt::format("\nTest signals. {}\n{}", kAboutSignals, to_text(signal_table(study)));
+  out +=
+      fmt::format("\nSalt and pepper: values more than 50 mm off\n{}", to_text(noise_table(study)));
+  out += fmt::format("\nRecordings. {}\n", about_recordings(study));
+  for (const RecordingResult& each : study.recordings) {
+    out += fmt::format("\n{}\n{}", recording_title(each), to_text(recording_table(each)));
+  }
+  out += fmt::format("\nCost. {}\n{}", kAboutCost, to_text(cost_table(study)));
+  out += "\nVerdicts\n";
+  for (const Claim& each : study.claims) {
+    out += fmt::format("  {}: {} [{}]\n    {}\n    Rule: {}\n",
+                       name(each.verdict),
+                       each.sentence,
+                       each.source,
+                       each.found,
+                       each.rule);
+  }
+  return out;
+}
+
+std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
+  std::string out(kBegin);
+  out += "## Chapter 3: the pseudomedian filter\n\n";
+  out +=
+      "What the filter makes of a scan, beside the median, our `lulu`, the mean and the midrange. "
+      "Scenes, noise and the height of the spikes are ours where the thesis is silent: a wall 4 m "
+      "ahead between walls 2 m to either side, cylinders, 5 mm of noise in whole millimetres, "
+      "spikes of 8000 mm and, on the obstacle, 200 mm.\n\n";
+  out +=
+      "Two sentences are the thesis' own as our notes quote them, on impulses and on the noises of "
+      "the "
+      "figures. The others are in our words: the properties by which the chapter, like Schulze "
+      "(*Mathematical Properties of the Pseudomedian Filter*, University of Texas 1990), tells "
+      "these filters apart.\n\n";
+  out += "| sentence | source | verdict | figures | rule |\n| --- | --- | --- | --- | --- |\n";
+  for (const Claim& each : study.claims) {
+    out += fmt::format("| {} | {} | **{}** | {} | {} |\n",
+                       each.sentence,
+                       each.source,
+                       name(each.verdict),
+                       each.found,
+                       each.rule);
+  }
+  out += "\n### Figures 8 to 10\n";
+  for (const SceneResult& each : study.scenes) {
+    out += fmt::format("\n**{}**\n\n![{}]({}/filter-{}.svg)\n\n{}",
+                       scene_title(each.scene),
+                       each.scene.title,
+                       pictures,
+                       each.scene.name,
+                       to_markdown(scene_table(each)));
+  }
+  out += fmt::format(
+      "\nOscillation: RMS of the second difference on quiet stretches, after / before. "
+      "The spikes of the first scene on a flat layout (3000 mm, 1500 mm at 150..210), "
+      "left after the pseudomedian, beam: mm: {}. {}\n",
+      flat_changes(study.flat),
+      phantom(study.scenes.front()));
+  out += fmt::format("\n### Test signals\n\n{} {}\n\n{}",
+                     kAboutSignals,
+                     kAboutTable2,
+                     to_markdown(signal_table(study)));
+  out += fmt::format(
+      "\nSalt (8000) and pepper (0) on the flat layout, 500 scans of 360 values: share "
+      "of values more than 50 mm off.\n\n{}",
+      to_markdown(noise_table(study)));
+  out += fmt::format("\n### Recordings\n\n{}\n", about_recordings(study));
+  out += fmt::format("\n![A scan before and after]({}/filter-recording.svg)\n", pictures);
+  for (const RecordingResult& each : study.recordings) {
+    out += fmt::format("\n**{}**\n\n{}", recording_title(each), to_markdown(recording_table(each)));
+  }
+  out += fmt::format("\n### Cost\n\n{}\n\n{}", kAboutCost, to_markdown(cost_table(study)));
+  out += kEnd;
+  return out;
+}
+
+void write_markdown(const FilterStudy& study, const std::filesystem::path& file) {
+  const auto write = [](const std::filesystem::path& path, const std::string& text) {
+    std::ofstream stream(path, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) {
+      throw std::runtime_error(fmt::format("{} cannot be written.", path.string()));
+    }
+  };
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    throw std::runtime_error(fmt::format("{} is a folder, not a file.", file.string()));
+  }
+  const std::filesystem::path pictures = file.parent_path() / "pictures/reproduction";
+  std::filesystem::create_directories(pictures, error);
+  if (error) {
+    throw std::runtime_error(fmt::format("The folder {} cannot be made.", pictures.string()));
+  }
+  for (const Picture& picture : draw(study)) write(pictures / picture.file, picture.svg);
+
+  std::ostringstream old;
+  old << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string text = old.str();
+  const std::string section = to_markdown(study, "pictures/reproduction");
+  if (!reproduce::replace_marked(text, {kBegin, kEnd}, section)) {
+    if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
+    text += section;
+  }
+  write(file, text);
+}
+
+}  // namespace server

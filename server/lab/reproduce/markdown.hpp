@@ -1,0 +1,39 @@
+// server/lab/reproduce/markdown.hpp: docs/reproduction.md as sections, each made apart.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "server/lab/reproduce/report.hpp"
+#include "server/lab/reproduce/sweeps.hpp"
+
+namespace server::reproduce {
+
+/// A heading and what stands under it. A further study adds a section of its own to the list.
+struct Section {
+  std::string title{};
+  std::string body{};  // Markdown, ended by a new line
+};
+
+/// Conditions, claims, both tables, the limits, the differences; the pictures are linked as
+/// `pictures`/NAME.svg.
+std::vector<Section> study_sections(const PaperFile& file,
+                                    const Study& study,
+                                    const std::string& pictures);
+Section sweeps_section(std::span<const Sweep> sweeps, std::size_t seeds);
+
+/// The whole document.
+std::string to_markdown(std::span<const Section> sections);
+
+/// Writes the document to `path` and the pictures beside it in pictures/reproduction/. Throws
+/// std::runtime_error with the path that cannot be written.
+void write_reproduction(const std::string& path,
+                        const PaperFile& file,
+                        const Study& study,
+                        std::span<const Section> sections);
+
+/// Where write_reproduction() puts the pictures, from the document's folder.
+constexpr const char* kPictures = "pictures/reproduction";
+
+}  // namespace server::reproduce

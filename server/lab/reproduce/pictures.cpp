@@ -1,0 +1,99 @@
+// server/lab/reproduce/pictures.cpp: colours and what is drawn.
+#include "server/lab/reproduce/pictures.hpp"
+
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "server/experiment/svg_plot.hpp"
+
+namespace server::reproduce {
+namespace {
+
+using algo::Vec2;
+constexpr double kWidth = 560;     // [px]
+constexpr double kEdge = 0.6;      // [m] of free plane about what is drawn
+constexpr double kSpacing = 0.03;  // [m] between the points of a path that are drawn
+// In the order of readings(); dashes as well, for those who see no colours.
+constexpr std::array<const char*, 7> kStyles{
+    "stroke=\"#d1495b\" stroke-width=\"2\"",
+    "stroke=\"#8d6a9f\" stroke-width=\"2\" stroke-dasharray=\"8 3\"",
+    "stroke=\"#3f88c5\" stroke-width=\"2\" stroke-dasharray=\"2 3\"",
+    "stroke=\"#e09f3e\" stroke-width=\"2\" stroke-dasharray=\"10 3 2 3\"",
+    "stroke=\"#2e7d32\" stroke-width=\"3\"",
+    "stroke=\"#6b705c\" stroke-width=\"1.5\" stroke-dasharray=\"5 5\"",
+    "stroke=\"#111111\" stroke-width=\"1.5\" stroke-dasharray=\"12 4\""};
+
+std::vector<Vec2> thinned(std::span<const Vec2> track_W) {
+  std::vector<Vec2> kept_W;
+  for (const Vec2& p_W : track_W) {
+    if (kept_W.empty() || (p_W - kept_W.back()).norm() >= kSpacing) kept_W.push_back(p_W);
+  }
+  return kept_W;
+}
+
+/// The corners of all that is drawn.
+struct Bounds {
+  Vec2 low_W{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  Vec2 high_W = -low_W;
+  void add(const Vec2& p_W) {
+    low_W = low_W.cwiseMin(p_W);
+    high_W = high_W.cwiseMax(p_W);
+  }
+};
+
+Bounds bounds_of(const PaperFile& file, const Layout& layout, std::span<const Row> rows) {
+  Bounds bounds;
+  bounds.add(file.common.start.position());
+  bounds.add(layout.goal_W);
+  for (const algo::Obstacle& obstacle : layout.obstacles) {
+    for (const Vec2& p_W : algo::outline_W(obstacle)) bounds.add(p_W);
+    if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+      bounds.add(obstacle.pose_W.position() + Vec2(cylinder->radius, cylinder->radius));
+      bounds.add(obstacle.pose_W.position() - Vec2(cylinder->radius, cylinder->radius));
+    }
+  }
+  for (const Row& row : rows) {
+    if (row.layout != layout.name) continue;
+    for (const Vec2& p_W : row.runs.front().track_W) bounds.add(p_W);
+  }
+  bounds.low_W -= Vec2(kEdge, kEdge);
+  bounds.high_W += Vec2(kEdge, kEdge);
+  return bounds;
+}
+
+void draw_scene(const PaperFile& file, const Layout& layout, SvgPlot& plot) {
+  constexpr const char* kSolid = "fill=\"#b8b8b8\" stroke=\"#555555\"";
+  for (const algo::Obstacle& obstacle : layout.obstacles) {
+    if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+      plot.circle(obstacle.pose_W.position(), cylinder->radius, kSolid);
+    } else {
+      plot.polygon(algo::outline_W(obstacle), kSolid);
+    }
+  }
+  plot.circle(file.common.start.position(),
+              kHullRadius,
+              "fill=\"none\" stroke=\"#555555\" stroke-dasharray=\"3 3\"");
+  plot.circle(layout.goal_W, file.common.arrival_radius, "fill=\"none\" stroke=\"#111111\"");
+  plot.text(file.common.start.position() + Vec2(0, -kHullRadius - 0.15), "start");
+  plot.text(layout.goal_W + Vec2(0.15, 0.15), "goal");
+}
+
+}  // namespace
+
+std::string draw_paths(const PaperFile& file, const Layout& layout, std::span<const Row> rows) {
+  const Bounds bounds = bounds_of(file, layout, rows);
+  SvgPlot plot(bounds.low_W, bounds.high_W, kWidth, readings().size());
+  draw_scene(file, layout, plot);
+  for (std::size_t i = 0; i < readings().size(); ++i) {
+    const Row* row = find_row(rows, layout.name, readings()[i]);
+    if (row == nullptr) continue;
+    plot.polyline(thinned(row->runs.front().track_W), kStyles[i]);
+    plot.legend(kStyles[i],
+                fmt::format("{}: {}", readings()[i], algo::name(row->runs.front().outcome)));
+  }
+  return plot.document(fmt::format("{}: the path of each reading", layout.name));
+}
+
+}  // namespace server::reproduce

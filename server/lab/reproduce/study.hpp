@@ -1,0 +1,53 @@
+// server/lab/reproduce/study.hpp: all of `tautline reproduce` but its words: runs and what they
+// show.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/lab/reproduce/accept.hpp"
+#include "server/lab/reproduce/claims.hpp"
+#include "server/lab/reproduce/differences.hpp"
+#include "server/lab/reproduce/full_strip.hpp"
+
+namespace server::reproduce {
+
+struct StudyOptions {
+  std::size_t seeds = 10;
+  std::uint64_t first_seed = 1;
+  bool full_simulator = true;
+  unsigned threads = 0;  // 0: one a core
+  /// What is being run, and how far it is.
+  std::function<void(const std::string& what, std::size_t done, std::size_t all)> progress{};
+};
+
+struct Study {
+  std::size_t seeds = 0;
+  std::uint64_t first_seed = 0;
+  std::vector<Row> paper{};       // table A: every layout with every reading
+  std::vector<Row> noise_free{};  // one run each, where the file asks for it
+  std::vector<Row> full{};        // table B
+  std::vector<Row> strip{};       // our full strip under the conditions of table A
+  std::vector<Row> strip_full{};  // and of table B
+  Depths least_depths{};
+  std::vector<Check> checks{};
+  std::vector<Claim> claims{};       // by table A
+  std::vector<Claim> full_claims{};  // the same by table B
+  std::vector<Difference> differences{};
+};
+
+/// Same file and seeds, same study, however many threads. Throws std::exception with a sentence.
+Study run_study(const PaperFile& file, const StudyOptions& options);
+
+/// One row a layout and controller. `seeds` runs each from `first_seed` on.
+std::vector<RowJob> row_jobs(const PaperFile& file,
+                             const Conditions& conditions,
+                             std::size_t seeds,
+                             std::uint64_t first_seed,
+                             std::span<const std::string_view> controllers = readings());
+
+}  // namespace server::reproduce

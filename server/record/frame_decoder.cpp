@@ -1,0 +1,313 @@
+// server/record/frame_decoder.cpp: what may have come from anywhere, read part by part.
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "telemetry_generated.h"
+
+#include "server/record/frame_codec.hpp"
+
+namespace server {
+namespace {
+
+namespace fb = tautline::wire;
+
+algo::Vec2 from_wire(const fb::Vec2& v) {
+  return {v.x(), v.y()};
+}
+algo::Vec2 from_wire(const fb::Vec2f& v) {
+  return {v.x(), v.y()};
+}
+algo::Pose2 from_wire(const fb::Pose2& p) {
+  return {p.x(), p.y(), p.heading()};
+}
+algo::Pose2 from_wire(const fb::Pose2f& p) {
+  return {p.x(), p.y(), p.heading()};
+}
+algo::Twist2 from_wire(const fb::Twist2& t) {
+  return {t.v(), t.omega()};
+}
+
+/// The library's verifier looks at the length of a vector of structs, not at where its elements
+/// lie.
+template <typename T>
+void check_alignment(const flatbuffers::Vector<const T*>& structs) {
+  if (reinterpret_cast<std::uintptr_t>(structs.Data()) % alignof(T) == 0) return;
+  throw WireError("A list in the frame does not lie where its elements can be read.");
+}
+
+algo::Obstacle read_obstacle(const fb::Obstacle* o) {
+  if (o == nullptr || o->pose() == nullptr || o->size() == nullptr) {
+    throw WireError("An obstacle in the frame lacks its pose or size.");
+  }
+  algo::Obstacle out;
+  out.id = o->id();
+  out.pose_W = from_wire(*o->pose());
+  out.height = o->height();
+  out.reflectivity = o->reflectivity();
+  out.specular = o->specular();
+  const double a = o->size()->x();
+  const double c = o->size()->y();
+  switch (o->kind()) {
+    case fb::ShapeKind_Cylinder:
+      out.shape = algo::Cylinder{a};
+      break;
+    case fb::ShapeKind_Box:
+      out.shape = algo::Box{a, c};
+      break;
+    case fb::ShapeKind_Wall:
+      out.shape = algo::Wall{a, c};
+      break;
+    case fb::ShapeKind_Polygon: {
+      algo::Polygon polygon;
+      if (o->points() != nullptr) {
+        check_alignment(*o->points());
+        for (const fb::Vec2* p : *o->points()) polygon.points.push_back(from_wire(*p));
+      }
+      out.shape = std::move(polygon);
+      break;
+    }
+    default:
+      throw WireError("An obstacle in the frame has an unknown shape.");
+  }
+  return out;
+}
+
+algo::SetGoal read_goal(const fb::SetGoal& goal) {
+  if (goal.position() == nullptr) throw WireError("A goal in the frame lacks its position.");
+  algo::SetGoal out;
+  out.position_W = from_wire(*goal.position());
+  if (goal.has_heading()) out.heading = goal.heading();
+  return out;
+}
+
+algo::SetParameter read_parameter(const fb::SetParameter& r) {
+  const std::string name = r.name() == nullptr ? "" : r.name()->str();
+  const auto parameter = algo::find_parameter(name);
+  if (!parameter) throw WireError("The frame sets an unknown parameter '" + name + "'.");
+  return {*parameter, r.value()};
+}
+
+algo::Request read_request(const fb::RequestBox& box) {
+  if (box.request() == nullptr) throw WireError("The frame has an empty request.");
+  switch (box.request_type()) {
+    case fb::Request_SetGoal:
+      return read_goal(*box.request_as_SetGoal());
+    case fb::Request_AddGoal: {
+      const auto* add = box.request_as_AddGoal();
+      if (add->goal() == nullptr) throw WireError("A further goal in the frame is empty.");
+      return algo::AddGoal{read_goal(*add->goal())};
+    }
+    case fb::Request_ClearGoal:
+      return algo::ClearGoal{};
+    case fb::Request_AddObstacle:
+      return algo::AddObstacle{read_obstacle(box.request_as_AddObstacle()->obstacle())};
+    case fb::Request_MoveObstacle: {
+      const auto* move = box.request_as_MoveObstacle();
+      if (move->pose() == nullptr) throw WireError("A move in the frame lacks its pose.");
+      return algo::MoveObstacle{move->id(), from_wire(*move->pose())};
+    }
+    case fb::Request_RemoveObstacle:
+      return algo::RemoveObstacle{box.request_as_RemoveObstacle()->id()};
+    case fb::Request_Joystick: {
+      const auto* stick = box.request_as_Joystick();
+      return algo::Joystick{stick->forward(), stick->turn()};
+    }
+    case fb::Request_Stop:
+      return algo::Stop{box.request_as_Stop()->engaged()};
+    case fb::Request_SetParameter:
+      return read_parameter(*box.request_as_SetParameter());
+    default:
+      throw WireError("The frame has a request of an unknown kind.");
+  }
+}
+
+void read_scan(const fb::LaserScan& in, algo::LaserScan& scan) {
+  if (in.ranges() == nullptr || in.turns() == 0) {
+    throw WireError("A scan in the frame lacks its turns or ranges.");
+  }
+  scan.mount_R = in.mount() == nullptr ? algo::Pose2{} : from_wire(*in.mount());
+  scan.stamp = in.stamp();
+  scan.angle_min = in.angle_min();
+  scan.angle_increment = in.angle_increment();
+  scan.range_max = in.range_max();
+  scan.turn_period = in.turn_period();
+  scan.turns = in.turns();
+  scan.resize(in.ranges()->size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    algo::unpack_beam(scan, i, in.ranges()->Get(static_cast<flatbuffers::uoffset_t>(i)));
+  }
+}
+
+template <typename T>
+void check_enum(T value, T max, const char* what) {
+  if (value > max) throw WireError(std::string("The frame has an unknown ") + what + ".");
+}
+
+void read_observation(const fb::Frame& f, algo::Observation& o) {
+  o.clear_sensors();
+  o.stamp = f.stamp();
+  check_enum(f.halt(), fb::Halt_MAX, "halt");
+  o.halt = static_cast<algo::Halt>(f.halt());
+  const fb::Odometry& odometry = *f.odometry();
+  o.odometry = {f.odometry_stamp().value_or(o.stamp),
+                from_wire(odometry.pose()),
+                from_wire(odometry.twist())};
+  if (f.scans() != nullptr) {
+    for (const fb::LaserScan* scan : *f.scans()) read_scan(*scan, o.scans.append());
+  }
+  const auto read_ring = [](const auto* wire, algo::Recycled<algo::RangeReading>& ring) {
+    if (wire == nullptr) return;
+    check_alignment(*wire);
+    for (const fb::RangeReading* r : *wire) {
+      check_enum(r->status(), fb::BeamStatus_MAX, "beam status");
+      ring.push_back({from_wire(r->mount()),
+                      r->stamp(),
+                      r->range(),
+                      r->range_max(),
+                      static_cast<algo::Beam>(r->status())});
+    }
+  };
+  read_ring(f.sonar(), o.sonar);
+  read_ring(f.infrared(), o.infrared);
+  if (f.bumpers() != nullptr) {
+    check_alignment(*f.bumpers());
+    for (const fb::Bumper* r : *f.bumpers()) {
+      o.bumpers.push_back({from_wire(r->mount()), r->stamp(), r->pressed()});
+    }
+  }
+  if (const auto* g = f.gyro()) o.gyro = {f.gyro_stamp().value_or(o.stamp), g->rate()};
+  if (const auto* i = f.inclinometer()) {
+    o.inclinometer = {f.inclinometer_stamp().value_or(o.stamp), i->roll(), i->pitch()};
+  }
+  if (const auto* e = f.encoders()) {
+    o.encoders = {f.encoders_stamp().value_or(o.stamp), e->left(), e->right()};
+  }
+}
+
+std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
+  if (n == nullptr) return std::nullopt;
+  return algo::Nearest{n->beam(), from_wire(n->point()), n->distance()};
+}
+
+void read_grid(const fb::Grid& wire, algo::GridLayer& grid) {
+  if (wire.corner() == nullptr || wire.cells() == nullptr || wire.columns() == 0 ||
+      wire.cells()->size() % wire.columns() != 0) {
+    throw WireError("The grid in the frame lacks a corner or a part of a row.");
+  }
+  grid.corner_W = from_wire(*wire.corner());
+  grid.cell = wire.cell();
+  grid.columns = wire.columns();
+  grid.rows = wire.cells()->size() / wire.columns();
+  grid.cells.assign(wire.cells()->begin(), wire.cells()->end());
+}
+
+/// What a controller without a strip weighed.
+void read_weighing(const fb::Frame& f, algo::ControlOutput& out) {
+  if (f.plan() != nullptr) {
+    check_alignment(*f.plan());
+    for (const fb::Vec2f* p : *f.plan()) out.plan_W.push_back(from_wire(*p));
+  }
+  if (f.candidates() != nullptr) {
+    check_alignment(*f.candidates());
+    for (const fb::Candidate* c : *f.candidates()) {
+      out.candidates.push_back(
+          {{c->v(), c->omega()}, c->horizon(), c->cost(), c->allowed(), c->chosen()});
+    }
+  }
+  if (f.histogram() != nullptr) {
+    out.histogram.assign(f.histogram()->begin(), f.histogram()->end());
+  }
+  out.histogram_threshold = f.histogram_threshold();
+  if (f.grid() != nullptr) read_grid(*f.grid(), out.grid);
+  if (f.tracks() != nullptr) {
+    check_alignment(*f.tracks());
+    for (const fb::Track* k : *f.tracks()) {
+      out.tracks.push_back(
+          {from_wire(k->position()), from_wire(k->velocity()), k->radius(), 0, k->unseen()});
+    }
+  }
+}
+
+void read_output(const fb::Frame& f, algo::Telemetry& t) {
+  algo::ControlOutput& out = t.output;
+  out = {};
+  if (f.strip() != nullptr) {
+    check_alignment(*f.strip());
+    for (const fb::Vec2f* p : *f.strip()) out.strip.push_back({from_wire(*p), {0, 0}, {0, 0}});
+  }
+  if (const auto* forces = f.forces()) {
+    out.internal_W = from_wire(forces->internal());
+    out.external_left_W = from_wire(forces->external_left());
+    out.external_right_W = from_wire(forces->external_right());
+    out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
+    if (const auto* push = f.side_push()) out.elastic_W += from_wire(*push);
+  }
+  if (out.strip.size() > 1) {
+    algo::Node& pass = out.strip[1];
+    out.pass_W = pass.position_W;
+    pass.internal_W = out.internal_W;
+    pass.external_W = out.elastic_W - out.internal_W;
+  }
+  const std::int8_t side = f.decision()->side();
+  out.side = static_cast<algo::Side>(side > 0 ? 1 : (side < 0 ? -1 : 0));
+  out.side_since = f.side_since();
+  read_weighing(f, out);
+  t.scene.fresh = !t.observation.scans.empty();
+  t.scene.left = read_nearest(f.left());
+  t.scene.right = read_nearest(f.right());
+}
+
+}  // namespace
+
+void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
+  // FlatBuffers reads doubles in place; a frame from the middle of a message may lie anywhere.
+  constexpr std::size_t kAlignment = alignof(double);
+  if (reinterpret_cast<std::uintptr_t>(bytes.data()) % kAlignment != 0) {
+    const std::vector<std::byte> aligned(bytes.begin(), bytes.end());
+    decode_frame(aligned, t);
+    return;
+  }
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  flatbuffers::Verifier verifier(data, bytes.size());
+  if (!fb::VerifyFrameBuffer(verifier)) throw WireError("The bytes are not a telemetry frame.");
+  const fb::Frame& f = *fb::GetFrame(data);
+  if (f.odometry() == nullptr || f.command() == nullptr || f.decision() == nullptr) {
+    throw WireError("The frame lacks its odometry, command or decision.");
+  }
+  const fb::Decision& decision = *f.decision();
+  check_enum(decision.hold(), fb::Hold_MAX, "hold");
+  check_enum(decision.mission(), fb::Mission_MAX, "mission");
+  check_enum(decision.behaviour(), fb::Behaviour_MAX, "behaviour");
+
+  t.tick = f.tick();
+  t.requests.clear();
+  if (f.requests() != nullptr) {
+    for (const fb::RequestBox* box : *f.requests()) t.requests.push_back(read_request(*box));
+  }
+  read_observation(f, t.observation);
+  t.ground_truth.reset();
+  if (const auto* g = f.truth()) {
+    t.ground_truth = {.pose = from_wire(g->pose()),
+                      .obstacle_distance = g->obstacle_distance(),
+                      .clearance = g->clearance(),
+                      .collided = f.collided()};
+  }
+  t.goal.reset();
+  if (const auto* goal = f.goal()) {
+    t.goal = algo::SetGoal{from_wire(*goal), std::nullopt};
+    if (const auto heading = f.goal_heading()) t.goal->heading = *heading;
+  }
+  t.goals_ahead.clear();
+  if (f.goals_ahead() != nullptr) {
+    for (const fb::Vec2f* p : *f.goals_ahead()) t.goals_ahead.push_back({from_wire(*p), {}});
+  }
+  read_output(f, t);
+  t.command = {from_wire(*f.command())};
+  t.hold = static_cast<algo::Hold>(decision.hold());
+  t.mission = static_cast<algo::Mission>(decision.mission());
+  t.behaviour = static_cast<algo::BehaviourId>(decision.behaviour());
+  t.clearance = decision.clearance();
+}
+
+}  // namespace server

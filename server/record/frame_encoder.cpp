@@ -1,0 +1,389 @@
+// server/record/frame_encoder.cpp: one function per part of the frame, in the order of
+// telemetry.fbs.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "telemetry_generated.h"
+
+#include "algo/explain.hpp"
+#include "server/record/frame_codec.hpp"
+
+namespace server {
+namespace {
+
+namespace fb = tautline::wire;
+using Builder = flatbuffers::FlatBufferBuilder;
+template <typename T>
+using Offset = flatbuffers::Offset<T>;
+
+fb::Vec2 to_wire(const algo::Vec2& v) {
+  return {v.x(), v.y()};
+}
+fb::Vec2f to_float(const algo::Vec2& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y())};
+}
+fb::Pose2 to_wire(const algo::Pose2& p) {
+  return {p.x, p.y, p.heading};
+}
+fb::Twist2 to_wire(const algo::Twist2& t) {
+  return {t.v, t.omega};
+}
+fb::Pose2f to_float(const algo::Pose2& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.heading)};
+}
+fb::RangeReading to_wire(const algo::RangeReading& r) {
+  return {to_wire(r.mount_R), r.stamp, r.range, r.range_max, static_cast<fb::BeamStatus>(r.status)};
+}
+fb::Bumper to_wire(const algo::BumperReading& b) {
+  return {b.stamp, to_float(b.mount_R), b.pressed};
+}
+fb::Nearest to_wire(const algo::Nearest& n) {
+  return {to_float(n.point_W), static_cast<float>(n.distance), n.beam};
+}
+fb::Vec2f to_wire(const algo::SetGoal& goal) {
+  return to_float(goal.position_W);
+}
+fb::Vec2f to_wire(const algo::Node& n) {
+  return to_float(n.position_W);
+}
+
+fb::Track to_wire(const algo::Track& track) {
+  return {to_float(track.position_W),
+          to_float(track.velocity_W),
+          static_cast<float>(track.radius),
+          static_cast<float>(track.unseen)};
+}
+
+fb::Candidate to_wire(const algo::Candidate& c) {
+  return {static_cast<float>(c.twist.v),
+          static_cast<float>(c.twist.omega),
+          static_cast<float>(c.horizon),
+          static_cast<float>(c.cost),
+          c.allowed,
+          c.chosen};
+}
+
+Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
+  fb::ShapeKind kind{};
+  fb::Vec2 size{};
+  std::vector<fb::Vec2> points;
+  std::visit(
+      [&](const auto& shape) {
+        using S = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<S, algo::Cylinder>) {
+          kind = fb::ShapeKind_Cylinder;
+          size = {shape.radius, 0};
+        } else if constexpr (std::is_same_v<S, algo::Box>) {
+          kind = fb::ShapeKind_Box;
+          size = {shape.length, shape.width};
+        } else if constexpr (std::is_same_v<S, algo::Polygon>) {
+          kind = fb::ShapeKind_Polygon;
+          for (const algo::Vec2& p : shape.points) points.push_back(to_wire(p));
+        } else {
+          kind = fb::ShapeKind_Wall;
+          size = {shape.length, shape.thickness};
+        }
+      },
+      o.shape);
+  const auto point_vector =
+      points.empty() ? 0 : b.CreateVectorOfStructs(points.data(), points.size());
+  const fb::Pose2 pose = to_wire(o.pose_W);
+  return fb::CreateObstacle(
+      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular);
+}
+
+Offset<fb::SetGoal> write_goal(Builder& b, const algo::SetGoal& goal) {
+  const fb::Vec2 position = to_wire(goal.position_W);
+  return fb::CreateSetGoal(b, &position, goal.heading.value_or(0), goal.heading.has_value());
+}
+
+struct RequestWriter {
+  Builder& b;
+  using Written = std::pair<fb::Request, Offset<void>>;
+
+  Written operator()(const algo::SetGoal& r) const {
+    return {fb::Request_SetGoal, write_goal(b, r).Union()};
+  }
+  Written operator()(const algo::AddGoal& r) const {
+    return {fb::Request_AddGoal, fb::CreateAddGoal(b, write_goal(b, r.goal)).Union()};
+  }
+  Written operator()(const algo::ClearGoal&) const {
+    return {fb::Request_ClearGoal, fb::CreateClearGoal(b).Union()};
+  }
+  Written operator()(const algo::AddObstacle& r) const {
+    return {fb::Request_AddObstacle,
+            fb::CreateAddObstacle(b, write_obstacle(b, r.obstacle)).Union()};
+  }
+  Written operator()(const algo::MoveObstacle& r) const {
+    const fb::Pose2 pose = to_wire(r.pose_W);
+    return {fb::Request_MoveObstacle, fb::CreateMoveObstacle(b, r.id, &pose).Union()};
+  }
+  Written operator()(const algo::RemoveObstacle& r) const {
+    return {fb::Request_RemoveObstacle, fb::CreateRemoveObstacle(b, r.id).Union()};
+  }
+  Written operator()(const algo::Joystick& r) const {
+    return {fb::Request_Joystick, fb::CreateJoystick(b, r.forward, r.turn).Union()};
+  }
+  Written operator()(const algo::Stop& r) const {
+    return {fb::Request_Stop, fb::CreateStop(b, r.engaged).Union()};
+  }
+  Written operator()(const algo::SetParameter& r) const {
+    const std::string_view name = algo::info(r.parameter).name;
+    const auto text = b.CreateString(name.data(), name.size());
+    return {fb::Request_SetParameter, fb::CreateSetParameter(b, text, r.value).Union()};
+  }
+};
+
+Offset<fb::LaserScan> write_scan(Builder& b, const algo::LaserScan& scan) {
+  std::uint16_t* samples = nullptr;
+  const auto ranges = b.CreateUninitializedVector(scan.size(), &samples);
+  algo::pack_beams(scan, {samples, scan.size()});
+  const fb::Pose2 mount = to_wire(scan.mount_R);
+  fb::LaserScanBuilder out(b);
+  out.add_stamp(scan.stamp);
+  if (scan.mount_R != algo::Pose2{}) out.add_mount(&mount);
+  out.add_angle_min(scan.angle_min);
+  out.add_angle_increment(scan.angle_increment);
+  out.add_range_max(scan.range_max);
+  out.add_turn_period(scan.turn_period);
+  out.add_turns(scan.turns);
+  out.add_ranges(ranges);
+  return out.Finish();
+}
+
+template <typename Wire, typename List>
+Offset<flatbuffers::Vector<const Wire*>> write_structs(Builder& b, const List& list) {
+  if (list.empty()) return 0;
+  // Not CreateUninitializedVectorOfStructs(), which takes a struct's size for its alignment.
+  return b.CreateVectorOfStructs<Wire>(list.size(),
+                                       [&](std::size_t i, Wire* out) { *out = to_wire(list[i]); });
+}
+
+Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
+    Builder& b, const algo::Recycled<algo::Request>& requests) {
+  if (requests.empty()) return 0;
+  std::vector<Offset<fb::RequestBox>> boxes;
+  for (const algo::Request& request : requests) {
+    const auto [type, offset] = std::visit(RequestWriter{b}, request);
+    boxes.push_back(fb::CreateRequestBox(b, type, offset));
+  }
+  return b.CreateVector(boxes);
+}
+
+Offset<flatbuffers::Vector<const fb::Vec2f*>> write_path(Builder& b,
+                                                         const algo::Recycled<algo::Vec2>& path) {
+  if (path.empty()) return 0;
+  fb::Vec2f* out = nullptr;
+  const auto vector = b.CreateUninitializedVectorOfStructs(path.size(), &out);
+  for (const algo::Vec2& p : path) *out++ = to_float(p);
+  return vector;
+}
+
+Offset<fb::Grid> write_grid(Builder& b, const algo::GridLayer& grid) {
+  if (grid.cells.empty()) return 0;
+  const auto cells = b.CreateVector(grid.cells);
+  const fb::Vec2f corner = to_float(grid.corner_W);
+  return fb::CreateGrid(b, &corner, static_cast<float>(grid.cell), grid.columns, cells);
+}
+
+/// What the side choice adds to the forces: what is left of the elastic force without them. Less
+/// than a float resolves of them is the rounding of their sum, which would come and go each time
+/// that a frame is read and written.
+algo::Vec2 side_push_of(const algo::ControlOutput& out) {
+  constexpr double kResolution = 0x1p-24;
+  const algo::Vec2 others =
+      out.internal_W.cwiseAbs() + out.external_left_W.cwiseAbs() + out.external_right_W.cwiseAbs();
+  algo::Vec2 push = out.elastic_W - out.internal_W - out.external_left_W - out.external_right_W;
+  for (const Eigen::Index axis : {0, 1}) {
+    if (std::abs(push[axis]) <= kResolution * others[axis]) push[axis] = 0;
+  }
+  return push;
+}
+
+struct FrameWriter {
+  fb::FrameBuilder frame;
+  const algo::Telemetry& t;
+
+  void sensors();
+  void decision();
+  void stamps();
+};
+
+// Structs live inside the table: the locals only have to outlive their add_ call.
+void FrameWriter::sensors() {
+  const algo::Observation& o = t.observation;
+  const fb::Odometry odometry(to_wire(o.odometry.pose), to_wire(o.odometry.twist));
+  frame.add_odometry(&odometry);
+  if (o.gyro) {
+    const fb::YawGyro gyro(o.gyro->rate);
+    frame.add_gyro(&gyro);
+  }
+  if (o.inclinometer) {
+    const fb::Inclinometer inclinometer(o.inclinometer->roll, o.inclinometer->pitch);
+    frame.add_inclinometer(&inclinometer);
+  }
+  if (o.encoders) {
+    const fb::Encoders encoders(o.encoders->left, o.encoders->right);
+    frame.add_encoders(&encoders);
+  }
+  if (t.ground_truth) {
+    const algo::GroundTruth& g = *t.ground_truth;
+    const fb::GroundTruth truth(
+        to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
+    frame.add_truth(&truth);
+    frame.add_collided(g.collided);
+  }
+}
+
+void FrameWriter::decision() {
+  const algo::ControlOutput& out = t.output;
+  const fb::Twist2 command = to_wire(t.command.base);
+  frame.add_command(&command);
+  const fb::Decision decision(static_cast<float>(t.clearance),
+                              static_cast<fb::Hold>(t.hold),
+                              static_cast<fb::Mission>(t.mission),
+                              static_cast<fb::Behaviour>(t.behaviour),
+                              static_cast<std::int8_t>(out.side));
+  frame.add_decision(&decision);
+  frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
+  if (t.goal) {
+    const fb::Vec2f goal = to_float(t.goal->position_W);
+    frame.add_goal(&goal);
+    if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
+  }
+  if (!out.strip.empty()) {
+    const fb::Forces forces(
+        to_float(out.internal_W), to_float(out.external_left_W), to_float(out.external_right_W));
+    frame.add_forces(&forces);
+    const algo::Vec2 push = side_push_of(out);
+    const fb::Vec2f side_push = to_float(push);
+    if (push != algo::Vec2{0, 0}) frame.add_side_push(&side_push);
+  }
+  if (out.side != algo::Side::None) frame.add_side_since(out.side_since);
+  if (t.scene.left) {
+    const fb::Nearest left = to_wire(*t.scene.left);
+    frame.add_left(&left);
+  }
+  if (t.scene.right) {
+    const fb::Nearest right = to_wire(*t.scene.right);
+    frame.add_right(&right);
+  }
+  if (t.hold == algo::Hold::StaleScan && t.scene.scan.size() > 0) {
+    frame.add_newest_scan(t.scene.scan.stamp);
+  }
+}
+
+/// Only those that are not the frame's own.
+void FrameWriter::stamps() {
+  const algo::Observation& o = t.observation;
+  if (o.odometry.stamp != o.stamp) frame.add_odometry_stamp(o.odometry.stamp);
+  if (o.encoders && o.encoders->stamp != o.stamp) frame.add_encoders_stamp(o.encoders->stamp);
+  if (o.gyro && o.gyro->stamp != o.stamp) frame.add_gyro_stamp(o.gyro->stamp);
+  if (o.inclinometer && o.inclinometer->stamp != o.stamp) {
+    frame.add_inclinometer_stamp(o.inclinometer->stamp);
+  }
+}
+
+/// Beams in 180 degrees, 0 where they do not go ccw or do not tell.
+std::uint32_t half_turn(const fb::LaserScan& scan) {
+  constexpr double kFinest = 1e-4;  // [rad]
+  if (!(scan.angle_increment() >= kFinest)) return 0;
+  return static_cast<std::uint32_t>(std::lround(std::numbers::pi / scan.angle_increment()));
+}
+
+}  // namespace
+
+std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
+  Builder& b = builder_;
+  b.Clear();
+  const algo::Observation& o = t.observation;
+
+  // Tables and vectors first: FlatBuffers writes from the leaves to the root.
+  scans_.clear();
+  for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
+  const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
+  const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
+  const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
+  const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
+  const auto requests = write_requests(b, t.requests);
+  const auto strip = write_structs<fb::Vec2f>(b, t.output.strip);
+  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
+  const auto plan = write_path(b, t.output.plan_W);
+  const auto candidates = write_structs<fb::Candidate>(b, t.output.candidates);
+  const auto histogram = t.output.histogram.empty() ? 0 : b.CreateVector(t.output.histogram);
+  const auto grid = write_grid(b, t.output.grid);
+  const auto tracks = write_structs<fb::Track>(b, t.output.tracks);
+  const bool own_words =
+      t.output.manner != algo::Manner::None && t.behaviour == algo::BehaviourId::Avoid;
+  const algo::Explanation words = own_words ? algo::explain(t) : algo::Explanation{};
+  const auto what = own_words ? b.CreateString(words.what) : 0;
+  const auto why = own_words ? b.CreateString(words.why) : 0;
+
+  FrameWriter writer{fb::FrameBuilder(b), t};
+  fb::FrameBuilder& frame = writer.frame;
+  frame.add_tick(t.tick);
+  frame.add_stamp(o.stamp);
+  if (!o.scans.empty()) frame.add_scans(scans);
+  if (!o.sonar.empty()) frame.add_sonar(sonar);
+  if (!o.infrared.empty()) frame.add_infrared(infrared);
+  if (!o.bumpers.empty()) frame.add_bumpers(bumpers);
+  if (!t.requests.empty()) frame.add_requests(requests);
+  if (!t.output.strip.empty()) frame.add_strip(strip);
+  writer.sensors();
+  writer.decision();
+  writer.stamps();
+  if (own_words) {
+    frame.add_what(what);
+    frame.add_why(why);
+  }
+  if (!t.goals_ahead.empty()) frame.add_goals_ahead(goals_ahead);
+  if (!t.output.plan_W.empty()) frame.add_plan(plan);
+  if (!t.output.candidates.empty()) frame.add_candidates(candidates);
+  if (!t.output.histogram.empty()) {
+    frame.add_histogram(histogram);
+    frame.add_histogram_threshold(static_cast<float>(t.output.histogram_threshold));
+  }
+  if (!t.output.grid.cells.empty()) frame.add_grid(grid);
+  if (!t.output.tracks.empty()) frame.add_tracks(tracks);
+  b.Finish(frame.Finish());
+
+  find_windows();
+  return std::as_bytes(std::span(b.GetBufferPointer(), b.GetSize()));
+}
+
+void FrameEncoder::find_windows() {
+  const std::uint8_t* bytes = builder_.GetBufferPointer();
+  const fb::Frame* frame = fb::GetFrame(bytes);
+  windows_.clear();
+  const auto add = [&](const std::uint8_t* data,
+                       std::uint32_t count,
+                       db::Window::Kind kind,
+                       std::uint32_t stride,
+                       std::uint32_t per_half_turn) {
+    windows_.push_back(
+        {static_cast<std::uint32_t>(data - bytes), count, kind, stride, per_half_turn});
+  };
+  if (const auto* scans = frame->scans()) {
+    for (const fb::LaserScan* scan : *scans) {
+      add(scan->ranges()->Data(),
+          scan->ranges()->size(),
+          db::Window::Kind::Samples,
+          1,
+          half_turn(*scan));
+    }
+  }
+  if (const auto* strip = frame->strip()) {
+    constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Vec2f) / sizeof(float));
+    add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats, 0);
+  }
+  std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
+    return a.offset < c.offset;
+  });
+}
+
+}  // namespace server

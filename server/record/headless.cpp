@@ -1,0 +1,61 @@
+// server/record/headless.cpp: the run loop without rings.
+#include "server/record/headless.hpp"
+
+#include <chrono>
+#include <span>
+
+#include "server/record/record_sink.hpp"
+#include "server/record/run_json.hpp"
+
+namespace server {
+namespace {
+
+std::uint64_t fnv1a(std::span<const std::byte> bytes, std::uint64_t hash) {
+  for (const std::byte b : bytes) {
+    hash ^= static_cast<std::uint64_t>(b);
+    hash *= 0x100000001b3ULL;
+  }
+  return hash;
+}
+
+}  // namespace
+
+HeadlessResult run_headless(const RunSpec& spec,
+                            algo::Robot& robot,
+                            const HeadlessOptions& options,
+                            const std::stop_token& stop) {
+  HeadlessResult result;
+  result.telemetry_hash = 0xcbf29ce484222325ULL;
+  const std::shared_ptr<FramePool> pool = FramePool::make<EncodedFrame>(kPoolFrames);
+  std::unique_ptr<RecordSink> sink;
+  if (options.record) sink = std::make_unique<RecordSink>(options.record);
+  algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
+  robot.set_pace({.paused = false, .speed = options.pace});
+  // A robot that waits for its time must not wait on when it is asked to end.
+  const std::stop_callback wake(stop, [&] { robot.set_pace({.paused = false, .speed = 0}); });
+
+  auto next_progress = std::chrono::steady_clock::now();
+  RunLinks links;
+  links.pool = pool.get();
+  links.record = sink.get();
+  links.observer = [&](const Frame& frame) {
+    if (options.hash_frames) {
+      result.telemetry_hash = fnv1a(encoded(frame).bytes(), result.telemetry_hash);
+    }
+    if (!options.progress || std::chrono::steady_clock::now() < next_progress) return;
+    next_progress = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
+    options.progress(frame.telemetry.observation.stamp, frame.telemetry.tick + 1);
+  };
+  const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
+  result.run = run(robot, pipeline, first_requests(spec), policy, links, stop);
+  if (result.run.outcome == algo::Outcome::Running) result.run.outcome = algo::Outcome::Stopped;
+  if (options.record) {
+    const bool cancelled = options.cancelled && options.cancelled();
+    db::RunEnd end = run_end(result.run, stop.stop_requested() && !cancelled);
+    if (cancelled) end.status = db::RunStatus::Cancelled;
+    options.record->close(std::move(end), result.run.metrics.ticks);
+  }
+  return result;
+}
+
+}  // namespace server

@@ -1,0 +1,402 @@
+// server/record/recorder.cpp: the database thread.
+#include "server/record/recorder.hpp"
+
+#include <algorithm>
+#include <exception>
+
+#include "server/run/io_thread.hpp"
+
+namespace server {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// How long the database thread sleeps when nobody rings: short against the commit interval, and
+// long enough to cost nothing. A ring that fills faster rings at half.
+constexpr milliseconds kNap{20};
+// What a stopping recorder waits for a store that is locked.
+constexpr milliseconds kLastPatience{2000};
+// Runs that began and ended while the store failed, and wait for it; older ones are then let go.
+constexpr std::size_t kMostWaiting = 64;
+// [bytes] of frames, not packed yet, that never make a commit due before its time.
+constexpr std::uint64_t kLeastUncommitted = std::uint64_t{1} << 20;
+// What one commit interval may spend on jobs that waited for the store.
+constexpr milliseconds kLaterTime{100};
+
+/// [bytes] that may be kept, as far as anybody knows at the start.
+std::uint64_t most_kept(const std::string& path, const RecorderOptions& options) {
+  const std::uint64_t limit = options.retention_bytes > 0 ? options.retention_bytes : UINT64_MAX;
+  const std::uint64_t disk = options.disk(path).total;
+  return disk > 0 ? std::min(limit, disk) : limit;
+}
+
+/// The write-ahead log is to be a small part of that.
+db::StoreOptions store_options(std::uint64_t most,
+                               const RecorderOptions& options,
+                               const std::shared_ptr<db::RunNumbers>& numbers) {
+  constexpr std::uint64_t kPageBytes = 4096;
+  constexpr std::uint64_t kFewestPages = 16;
+  db::StoreOptions store = options.store;
+  store.numbers = numbers;
+  store.log_pages = static_cast<std::uint32_t>(
+      std::clamp<std::uint64_t>(most / 16 / kPageBytes, kFewestPages, store.log_pages));
+  return store;
+}
+
+constexpr const char* kStopping = "The server is stopping; nothing more is recorded.";
+
+}  // namespace
+
+Recorder::Recorder(const std::string& path, RecorderOptions options)
+    : options_(std::move(options)),
+      most_uncommitted_(std::max(kLeastUncommitted, most_kept(path, options_) / 16)),
+      store_(path,
+             store_options(most_kept(path, options_), options_, numbers_),
+             db::RunStore::Closed{}) {
+  open_store();
+  interrupted_ = store_.interrupted();
+  takes_more_ = !ailment_;
+  publish();
+  thread_ = std::thread([this] { work(); });
+}
+
+Recorder::~Recorder() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  bell_->ring();
+  thread_.join();
+}
+
+std::shared_ptr<RunChannel> Recorder::begin(const db::NewRun& what) {
+  auto channel = std::make_shared<RunChannel>(
+      numbers_->take(), what, Keep::NewestHour, options_.ring_frames, bell_);
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw db::StoreError(kStopping);
+    arrivals_.push_back(channel);
+  }
+  bell_->ring();
+  return channel;
+}
+
+std::shared_ptr<RunChannel> Recorder::open(const db::NewRun& what) {
+  net::not_on_io_thread("Waiting for the run store");
+  return ask([&](db::RunStore& store) {
+    const db::RunId run = store.begin_run(what);
+    store.commit();
+    return add_channel(run, what);
+  });
+}
+
+std::shared_ptr<RunChannel> Recorder::open(db::RunId queued, const db::NewRun& what) {
+  net::not_on_io_thread("Waiting for the run store");
+  return ask([&](db::RunStore& store) {
+    db::RunId run = queued;
+    if (store.status_of(queued)) {
+      store.start_run(queued, what.started);
+    } else {
+      run = store.begin_run(what, queued);
+    }
+    store.commit();
+    return add_channel(run, what);
+  });
+}
+
+std::shared_ptr<RunChannel> Recorder::add_channel(db::RunId run, const db::NewRun& what) {
+  channels_.push_back(
+      std::make_shared<RunChannel>(run, what, Keep::Whole, options_.ring_frames, bell_));
+  return channels_.back();
+}
+
+void Recorder::post(Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw db::StoreError(kStopping);
+    jobs_.push_back(std::move(job));
+  }
+  bell_->ring();
+}
+
+void Recorder::post_when_well(Job job) {
+  post([this, job = std::move(job)](db::RunStore& /*store*/) { later_.push_back(job); });
+}
+
+bool Recorder::flush(milliseconds patience) {
+  const auto until = Clock::now() + patience;
+  for (;;) {
+    const bool done = ask([this](db::RunStore& /*store*/) {
+      take_arrivals();
+      take_frames();
+      end_closed();
+      commit();
+      const bool locked = ailment_ && ailment_->trouble == db::Trouble::Busy;
+      return !locked && std::ranges::none_of(channels_, [&](const auto& channel) {
+        return waits(*channel) && channel->ring_.read_available() > 0;
+      });
+    });
+    if (done || Clock::now() >= until) return done;
+    std::this_thread::sleep_for(kNap);
+  }
+}
+
+/// Runs `action`; a failing database costs what was not committed, not the thread.
+template <typename Action>
+void Recorder::guarded(const Action& action) {
+  try {
+    action();
+  } catch (const db::DatabaseError& error) {
+    store_.take_failure();
+    note_trouble(error);
+  } catch (const std::exception& error) {
+    report(error.what());
+  }
+}
+
+void Recorder::work() {
+  for (bool last = false; !last;) {
+    {
+      const std::lock_guard lock(mutex_);
+      last = stopping_;
+    }
+    // Nothing that goes wrong here may end the program: a robot may be on its way.
+    try {
+      work_once(last);
+    } catch (const std::exception& error) {
+      report(std::string("The record's thread: ") + error.what());
+    }
+  }
+  stop_all();
+}
+
+void Recorder::work_once(bool last) {
+  recover();
+  run_jobs();
+  take_arrivals();
+  take_frames();
+  end_closed();
+  if (Clock::now() >= commit_due_ || uncommitted_ > most_uncommitted_) {
+    run_later();
+    look_at_file();
+    commit();
+    make_room();
+    publish();
+  }
+  if (last) return;
+  bell_->wait_until(channels_.empty() ? commit_due_ : std::min(Clock::now() + kNap, commit_due_));
+}
+
+void Recorder::run_jobs() {
+  std::vector<Job> jobs;
+  {
+    const std::lock_guard lock(mutex_);
+    jobs.swap(jobs_);
+  }
+  for (const Job& job : jobs) {
+    guarded([&] {
+      job(store_);
+      store_.commit();
+    });
+    // ask() passes the error on to its caller, and yet it may have cost a recording.
+    if (const auto failure = store_.take_failure()) note_trouble(*failure);
+    // Many jobs must not make the frames that came meanwhile wait for their commit.
+    take_frames();
+    if (Clock::now() >= commit_due_) commit();
+  }
+}
+
+/// Many are committed together, and a slice at a time: ten thousand cancelled runs must not keep
+/// the frames waiting for as many commits. What fails is done again, all of the slice.
+void Recorder::run_later() {
+  const auto until = Clock::now() + kLaterTime;
+  std::size_t done = 0;
+  while (done < later_.size() && !ailment_ && Clock::now() < until) {
+    guarded([&] { later_[done](store_); });
+    ++done;
+    take_frames();
+  }
+  if (done == 0 || ailment_) return;
+  guarded([&] { store_.commit(); });
+  if (!ailment_) later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
+}
+
+/// Live runs that began meanwhile: their rows are written, and at once.
+void Recorder::take_arrivals() {
+  std::vector<std::shared_ptr<RunChannel>> arrivals;
+  {
+    const std::lock_guard lock(mutex_);
+    arrivals.swap(arrivals_);
+  }
+  for (auto& channel : arrivals) {
+    channels_.push_back(channel);
+    channel->unheard_ = ailment_.has_value();
+    if (ailment_ && ailment_->trouble != db::Trouble::Busy) channel->fail(ailment_->sentence);
+    if (full_) channel->fail(*full_);
+    guarded([&] {
+      if (ailment_) return;
+      resume(*channel);
+      store_.commit();
+    });
+  }
+  if (!arrivals.empty()) publish();
+}
+
+void Recorder::take_frames(std::size_t most) {
+  for (const auto& channel : channels_) take_frames(*channel, most);
+}
+
+/// A run to be kept whole that has ended: what its ring still holds is stored, room or not, so that
+/// it ends and can be deleted.
+bool Recorder::last_of_whole(const RunChannel& channel) const {
+  return channel.keep_ == Keep::Whole && options_.wait_for_room &&
+         channel.closed_.load(std::memory_order_acquire);
+}
+
+/// Whether the frames of a run stay in its ring for now.
+bool Recorder::waits(const RunChannel& channel) const {
+  if (ailment_) return ailment_->trouble == db::Trouble::Busy;
+  return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room && !last_of_whole(channel);
+}
+
+void Recorder::take_frames(RunChannel& channel, std::size_t most) {
+  // Only what is here now, so that one fast run does not keep the others and the commit waiting.
+  std::size_t left = std::min(channel.ring_.read_available(), most);
+  if (left == 0 || waits(channel)) return;
+  const bool stored = !full_ || last_of_whole(channel);
+  if (!ailment_ && stored && !channel.broken_) guarded([&] { store_.begin(); });
+  if (waits(channel)) return;  // locked: nothing has left the ring
+  for (; left > 0; --left) {
+    RunChannel::Pushed pushed{};
+    if (!channel.ring_.pop(pushed)) return;
+    const FrameHandle frame(pushed.frame);
+    keep(channel, *frame.get(), pushed.after_pause);
+  }
+}
+
+void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause) {
+  if (channel.broken_) return;
+  if (ailment_ || (full_ && !last_of_whole(channel))) {
+    channel.missing_ = {.cause = ailment_ ? db::GapCause::Failed : db::GapCause::Full,
+                        .sentence = without_folder(ailment_ ? ailment_->sentence : *full_)};
+    return;
+  }
+  guarded([&] {
+    try {
+      resume(channel);
+      const db::TickRow row = frame.row();
+      if (row.tick > channel.next_tick_) {
+        store_.note_gap(channel.run(), channel.gap_until(row.tick, after_pause));
+      }
+      store_.append_tick(channel.run(), row, frame.bytes(), frame.windows());
+      uncommitted_ += frame.bytes().size();
+      channel.next_tick_ = row.tick + 1;
+      channel.missing_.reset();
+    } catch (const db::DatabaseError&) {
+      throw;
+    } catch (const std::exception& error) {
+      // A frame that cannot be stored ends its own run and no other.
+      channel.broken_ = true;
+      channel.fail(error.what());
+      report(error.what());
+      store_.end_run(
+          channel.run(),
+          {.status = db::RunStatus::Failed, .outcome = "failed", .reason = error.what()});
+    }
+  });
+}
+
+/// Goes on with a run that the store does not record: in its row, or in a new one where that is
+/// gone.
+void Recorder::resume(RunChannel& channel) {
+  if (channel.broken_ || store_.recording(channel.run())) return;
+  channel.unheard_ = false;
+  if (const auto next = store_.resume_run(channel.run())) {
+    channel.next_tick_ = *next;
+    return;
+  }
+  channel.next_tick_ = 0;
+  channel.run_.store(store_.begin_run(channel.what_, channel.run()), std::memory_order_release);
+}
+
+/// Writes a run's end, after what is missing there. False when the store does not take it.
+bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks) {
+  bool ended = channel.broken_;
+  guarded([&] {
+    if (ended || ailment_) return;
+    resume(channel);
+    if (ticks > channel.next_tick_) {
+      store_.note_gap(channel.run(), channel.gap_until(ticks, channel.paused_));
+    }
+    store_.end_run(channel.run(), end);
+    store_.commit();
+    ended = true;
+  });
+  return ended;
+}
+
+void Recorder::end_closed() {
+  for (std::size_t i = 0; i < channels_.size();) {
+    RunChannel& channel = *channels_[i];
+    // In this order: whoever closed and then let go is seen to have closed, and what was pushed
+    // before close() is seen in the ring.
+    const bool held = channels_[i].use_count() > 1;
+    const bool closed = channel.closed_.load(std::memory_order_acquire);
+    const auto take_rest = [&] {
+      take_frames(channel);
+      return channel.ring_.read_available() == 0;
+    };
+    const db::RunEnd broken_off{.status = db::RunStatus::Failed,
+                                .outcome = "failed",
+                                .reason = "The run broke off without a result."};
+    if ((!closed && held) || !take_rest() ||
+        !end(channel, closed ? channel.end_ : broken_off, closed ? channel.ticks_ : 0)) {
+      ++i;
+      continue;
+    }
+    channels_.erase(channels_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  // Nothing of these is in the store, so nothing there stays without its end.
+  const auto over = [](const auto& channel) {
+    return channel->unheard_ && channel->closed_.load(std::memory_order_acquire);
+  };
+  while (std::ranges::count_if(channels_, over) > static_cast<std::ptrdiff_t>(kMostWaiting)) {
+    channels_.erase(std::ranges::find_if(channels_, over));
+  }
+}
+
+void Recorder::commit() {
+  commit_due_ = Clock::now() + options_.commit_interval;
+  uncommitted_ = 0;
+  if (!ailment_) guarded([&] { store_.commit(); });
+}
+
+void Recorder::stop_all() {
+  const auto until = Clock::now() + kLastPatience;
+  const auto end_all = [&] {
+    if (ailment_) ailment_->retry = {};
+    recover();
+    run_later();
+    take_arrivals();
+    take_frames();
+    end_closed();
+    return ailment_ ? ailment_->trouble != db::Trouble::Busy : later_.empty();
+  };
+  while (!end_all() && Clock::now() < until) std::this_thread::sleep_for(kNap);
+  full_.reset();  // what is still in a ring is all there will be
+  for (const auto& channel : channels_) {
+    take_frames(*channel);
+    end(*channel,
+        {.status = db::RunStatus::Interrupted,
+         .outcome = "stopped",
+         .reason = "The server was stopped in the middle of this run."},
+        0);
+    channel->fail("The server was stopped.");
+    channel->over_.store(true, std::memory_order_release);
+  }
+  commit();
+  channels_.clear();
+}
+
+}  // namespace server

@@ -1,0 +1,245 @@
+// server/record/recorder.hpp: the database thread: takes frames from control threads, writes them
+// once a second, and does whatever else needs the writing connection.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <future>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "db/records.hpp"
+#include "db/run_store.hpp"
+#include "server/record/disk_space.hpp"
+#include "server/record/record_status.hpp"
+#include "server/record/run_channel.hpp"
+
+namespace server {
+
+namespace detail {
+
+/// What a job returned or threw, on its way to another thread. A failure travels as its sentence:
+/// an exception object shared by two threads is more than this needs.
+template <typename Result>
+struct Answer {
+  using Value = std::conditional_t<std::is_void_v<Result>, std::monostate, Result>;
+  std::optional<Value> value{};
+  std::string problem{};
+  std::optional<db::Trouble> trouble{};  // the database's
+
+  Result take() {
+    if (!value && trouble) throw db::DatabaseError(problem, *trouble);
+    if (!value) throw db::StoreError(problem);
+    if constexpr (!std::is_void_v<Result>) return std::move(*value);
+  }
+};
+
+template <typename Result, typename F>
+Answer<Result> answer_of(F& job, db::RunStore& store) {
+  Answer<Result> answer{};
+  try {
+    if constexpr (std::is_void_v<Result>) {
+      job(store);
+      store.commit();
+      answer.value.emplace();
+    } else {
+      Result result = job(store);
+      store.commit();
+      answer.value.emplace(std::move(result));
+    }
+  } catch (const db::DatabaseError& error) {
+    answer.problem = error.what();
+    answer.trouble = error.trouble();
+  } catch (const std::exception& error) {
+    answer.problem = error.what();
+  }
+  return answer;
+}
+
+}  // namespace detail
+
+struct RecorderOptions {
+  db::StoreOptions store{};
+  std::uint64_t retention_bytes = std::uint64_t{2} << 30;  // 0: what the disk has
+  /// Delete the oldest finished runs when there is no room. Else finished runs are never deleted.
+  bool evict_oldest = false;
+  /// Without room a run to be kept whole waits until somebody makes some; else it goes on with a
+  /// gap.
+  bool wait_for_room = true;
+  double live_span = 3600;  // [s] run clock that a live run keeps
+  double least_span = 60;   // [s] the least it keeps when there is no room for that
+  /// A little under the second that may be lost, because packing and a slow disk come on top.
+  std::chrono::milliseconds commit_interval{900};
+  std::chrono::milliseconds retry_interval{1000};  // how often a failed store is tried again
+  std::size_t ring_frames = 1024;
+  std::function<DiskSpace(const std::string&)> disk = disk_space;
+  /// Told in a sentence what was deleted for room and what went wrong. Database thread.
+  std::function<void(const std::string&)> report{};
+};
+
+/// Owns the database thread and the writing connection; lives from the server's start to its end.
+///
+/// Threads: all of it may be called from any thread but the database thread itself; open(), ask()
+/// and flush() wait for it. The control thread's steady state touches its RunChannel only. Jobs
+/// and reports run on the database thread.
+///
+/// All channels share one transaction, committed once per commit_interval, when a run opens or
+/// ends, and after a job. A store that is locked keeps the frames waiting in their rings. One that
+/// fails costs what was not committed; from then on frames are dropped, the store is tried again
+/// once per retry_interval, and the runs go on where it is well, in a new file when the old one was
+/// deleted or, being damaged, had to be set aside.
+class Recorder {
+ public:
+  /// Opens the store, in which unfinished runs become interrupted. Throws db::StoreError when it
+  /// may not be written or is no run store. A store that is damaged is set aside for a new one; one
+  /// that is locked, or on a full disk, is opened later.
+  explicit Recorder(const std::string& path, RecorderOptions options = {});
+  /// Writes what was pushed; runs that are still open end as interrupted.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// The runs found unfinished when the store was opened.
+  const std::vector<db::RunId>& interrupted() const { return interrupted_; }
+
+  /// Begins a live run, of which the newest hour is kept; waits for nothing. Its row is written as
+  /// soon as the store takes it.
+  std::shared_ptr<RunChannel> begin(const db::NewRun& what);
+  /// Begins a run to be kept whole and commits it. Throws db::StoreError with the reason, such as a
+  /// full disk.
+  std::shared_ptr<RunChannel> open(const db::NewRun& what);
+  /// The same for a queued run; `what.started` is when it starts. Begins it anew when its row went
+  /// with a store that was set aside.
+  std::shared_ptr<RunChannel> open(db::RunId queued, const db::NewRun& what);
+
+  using Job = std::function<void(db::RunStore&)>;
+  /// Runs `job` on the database thread and commits. What it throws goes to `report`.
+  void post(Job job);
+  /// The same, again and again until the database takes it.
+  void post_when_well(Job job);
+
+  /// The same as post(), and gives back what `job` returns, after the commit. What it throws comes
+  /// back as a db::StoreError (db::DatabaseError stays one) with the same sentence.
+  template <typename F>
+  auto ask(F job) -> std::invoke_result_t<F&, db::RunStore&> {
+    using Result = std::invoke_result_t<F&, db::RunStore&>;
+    // The caller waits, so `job` stays; the promise must outlive the call that answers it.
+    const auto promise = std::make_shared<std::promise<detail::Answer<Result>>>();
+    auto answer = promise->get_future();
+    post([promise, &job](db::RunStore& store) {
+      promise->set_value(detail::answer_of<Result>(job, store));
+    });
+    return answer.get().take();
+  }
+
+  /// Returns when all that was pushed, closed and posted before is committed or the store has
+  /// failed. False when it is still locked, or without room, after about `patience`.
+  bool flush(std::chrono::milliseconds patience = std::chrono::seconds(2));
+
+  /// Whether a run that begins now would be recorded.
+  bool takes_more() const { return takes_more_.load(); }
+
+  /// How the newest live run's record is doing, as of the last commit.
+  RecordStatus status() const;
+  /// Counts the changes of status() and of what news there is: cheap to look at.
+  std::uint64_t revision() const { return revision_.load(); }
+  /// What was reported since the last call, without the folder of the store.
+  std::vector<std::string> take_news();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  /// What ails the store, as long as it does.
+  struct Ailment {
+    db::Trouble trouble = db::Trouble::Failed;
+    std::string sentence{};
+    Clock::time_point since{};
+    Clock::time_point retry{};
+  };
+
+  void open_store();
+  std::shared_ptr<RunChannel> add_channel(db::RunId run, const db::NewRun& what);
+  void work();
+  void work_once(bool last);
+  void run_jobs();
+  void run_later();
+  void take_arrivals();
+  void take_frames(std::size_t most = SIZE_MAX);
+  void take_frames(RunChannel& channel, std::size_t most = SIZE_MAX);
+  void keep(RunChannel& channel, const RecordedFrame& frame, bool after_pause);
+  void resume(RunChannel& channel);
+  bool last_of_whole(const RunChannel& channel) const;
+  bool waits(const RunChannel& channel) const;
+  void end_closed();
+  bool end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks);
+  void commit();
+  void stop_all();
+  template <typename Action>
+  void guarded(const Action& action);
+
+  // recorder_health.cpp
+  void note_trouble(const db::DatabaseError& error);
+  void look_at_file();
+  void set_aside();
+  void recover();
+  void publish();
+  std::string state_sentence(RecordKind kind, const RunChannel* live) const;
+  RunChannel* live_channel() const;
+  void report(const std::string& sentence);
+  std::string without_folder(std::string sentence) const;
+
+  // recorder_room.cpp
+  void make_room();
+  bool sweep(Clock::time_point until);
+  bool evict();
+  bool drop_live(double span);
+  bool must_free(Clock::time_point until);
+  void judge_room(bool more_to_come);
+  std::int64_t room();
+
+  RecorderOptions options_{};
+  /// [bytes] of frames, not packed, after which a commit does not wait for its time: a fast run
+  /// must not fill a small disk between two looks at the room.
+  std::uint64_t most_uncommitted_;
+  std::shared_ptr<detail::Doorbell> bell_ = std::make_shared<detail::Doorbell>();
+  std::shared_ptr<db::RunNumbers> numbers_ = std::make_shared<db::RunNumbers>();
+  db::RunStore store_;  // the database thread's, once it runs
+  std::vector<db::RunId> interrupted_{};
+
+  // The database thread's.
+  std::vector<std::shared_ptr<RunChannel>> channels_{};
+  std::vector<Job> later_{};  // until the database takes them
+  std::optional<Ailment> ailment_{};
+  std::optional<std::string> full_{};  // why there is no room, as a sentence
+  std::string evicted_{};              // what was deleted for room, as a sentence
+  std::string room_problem_{};         // why no room could be made, as it was last reported
+  std::uint64_t evicted_runs_ = 0;
+  std::uint64_t used_ = 0;                                             // [bytes] at the last commit
+  std::int64_t room_left_ = std::numeric_limits<std::int64_t>::min();  // [bytes] at the last look
+  std::uint64_t uncommitted_ = 0;  // [bytes] of frames since then, not packed
+  Clock::time_point commit_due_{};
+  Clock::time_point set_aside_{};
+
+  std::atomic<bool> takes_more_{false};
+  std::atomic<std::uint64_t> revision_{0};
+  mutable std::mutex mutex_{};
+  std::vector<Job> jobs_{};                              // guarded by mutex_
+  std::vector<std::shared_ptr<RunChannel>> arrivals_{};  // guarded by mutex_
+  bool stopping_ = false;                                // guarded by mutex_
+  RecordStatus status_{};                                // guarded by mutex_
+  std::vector<std::string> news_{};                      // guarded by mutex_
+  std::thread thread_{};                                 // last: it uses all of the above
+};
+
+}  // namespace server

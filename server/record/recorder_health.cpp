@@ -1,0 +1,213 @@
+// server/record/recorder_health.cpp: a store that fails, how it is mended, and what people are
+// told.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "server/record/recorder.hpp"
+
+namespace server {
+
+namespace {
+
+using std::chrono::milliseconds;
+
+// A store that is locked is looked at again so soon.
+constexpr milliseconds kBusyRetry{20};
+// Locked for longer than that is worth a word: a backup holds a store for moments.
+constexpr milliseconds kBusyNotable{1000};
+// A new store that is damaged too says that the disk is: it is not set aside, one after another.
+constexpr std::chrono::minutes kSetAsideAgain{1};
+constexpr std::size_t kMostNews = 100;
+// A store that has filled its disk is opened again when so many bytes are free.
+constexpr std::uint64_t kToWorkWith = std::uint64_t{4} << 20;
+constexpr std::uintmax_t kPage = 4096;
+
+/// Whether a file that is no database may have been one. A text that somebody gave for one by
+/// mistake is hardly ever a whole number of pages long.
+bool was_database(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return !error && bytes > 0 && bytes % kPage == 0;
+}
+
+}  // namespace
+
+void Recorder::open_store() {
+  try {
+    store_.open();
+  } catch (const db::DatabaseError& error) {
+    const bool damaged = error.trouble() == db::Trouble::Damaged;
+    if (error.trouble() == db::Trouble::Refused || (damaged && !was_database(store_.path()))) throw;
+    note_trouble(error);
+    recover();
+  }
+}
+
+/// What was not committed is gone; from now on frames are dropped, or wait when it is only locked.
+void Recorder::note_trouble(const db::DatabaseError& error) {
+  const auto now = Clock::now();
+  const bool busy = error.trouble() == db::Trouble::Busy;
+  if (!busy && (!ailment_ || ailment_->sentence != error.what())) report(error.what());
+  ailment_ = {.trouble = error.trouble(),
+              .sentence = error.what(),
+              .since = ailment_ ? ailment_->since : now,
+              .retry = now + (busy ? kBusyRetry : options_.retry_interval)};
+  if (busy) return;
+  takes_more_ = false;
+  for (const auto& channel : channels_) {
+    channel->fail(error.what());
+    channel->missing_ = {.cause = db::GapCause::Failed, .sentence = without_folder(error.what())};
+  }
+  if (error.trouble() == db::Trouble::Damaged) set_aside();
+}
+
+void Recorder::set_aside() {
+  const auto now = Clock::now();
+  if (set_aside_ != Clock::time_point{} && now - set_aside_ < kSetAsideAgain) return;
+  try {
+    const std::time_t wall = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    const std::string name = store_.set_aside(fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(wall)));
+    report(fmt::format("The damaged run store was set aside as {}, and a new one is begun.", name));
+    set_aside_ = now;
+    ailment_->retry = now;
+  } catch (const db::DatabaseError& error) {
+    report(error.what());
+  }
+}
+
+/// A file that was deleted or replaced takes no more runs that anybody could read.
+void Recorder::look_at_file() {
+  if (!store_.is_open() || store_.in_place()) return;
+  note_trouble(db::DatabaseError(
+      "The run store " + store_.path() + " was deleted or replaced: a new one is begun.",
+      db::Trouble::Failed));
+  ailment_->retry = {};
+  recover();
+}
+
+/// Tries again whether the store is well, and goes on with every run if so.
+void Recorder::recover() {
+  if (!ailment_ || Clock::now() < ailment_->retry) return;
+  const Ailment was = *ailment_;
+  const bool busy = was.trouble == db::Trouble::Busy;
+  try {
+    if (was.trouble == db::Trouble::Full) {
+      const DiskSpace disk = options_.disk(store_.path());
+      // Little is enough to delete runs with; whether there is room to record is judged after.
+      if (disk.free < std::min(disk.reserve(), kToWorkWith)) {
+        ailment_->retry = Clock::now() + options_.retry_interval;
+        return;
+      }
+    }
+    if (!busy || !store_.is_open()) store_.open();
+    store_.begin();
+    for (const auto& channel : channels_) resume(*channel);
+    store_.commit();
+  } catch (const db::DatabaseError& error) {
+    store_.take_failure();
+    note_trouble(error);
+    return;
+  }
+  ailment_.reset();
+  takes_more_ = !full_;
+  for (const auto& channel : channels_) {
+    if (!full_) channel->recover();
+  }
+  if (!busy) report("The run store takes writes again: the record goes on.");
+  publish();
+}
+
+RunChannel* Recorder::live_channel() const {
+  const auto live = std::find_if(channels_.rbegin(), channels_.rend(), [](const auto& channel) {
+    return channel->keep() == Keep::NewestHour;
+  });
+  return live == channels_.rend() ? nullptr : live->get();
+}
+
+std::string Recorder::state_sentence(RecordKind kind, const RunChannel* live) const {
+  switch (kind) {
+    case RecordKind::Failed:
+      return without_folder(ailment_->sentence) +
+             " What happens now is not recorded; the record goes on by itself.";
+    case RecordKind::Full:
+      return *full_;
+    case RecordKind::Paused:
+      return "Nothing happens: the record pauses, and goes on with the next request.";
+    default:
+      break;
+  }
+  const auto span = live != nullptr ? store_.span(live->run()) : db::RunStore::Span{};
+  if (span.from <= 0) return "Every tick is kept.";
+  if (!live->dropped_) {
+    return fmt::format("This store holds the run from {:.0f} s on.", std::ceil(span.from));
+  }
+  const double minutes = (span.to - span.from) / 60;
+  if (span.to - span.from >= options_.live_span * 0.99) {
+    return fmt::format("The newest {:.0f} min of this run are kept.", minutes);
+  }
+  return fmt::format("The newest {:.0f} min of this run are kept: there is no room for more.",
+                     std::max(1.0, minutes));
+}
+
+/// Brings up to date what status() gives.
+void Recorder::publish() {
+  const RunChannel* live = live_channel();
+  RecordStatus now{.kind = RecordKind::Recording, .limit = options_.retention_bytes};
+  const bool notable = ailment_ && (ailment_->trouble != db::Trouble::Busy ||
+                                    Clock::now() - ailment_->since > kBusyNotable);
+  if (notable) {
+    now.kind = RecordKind::Failed;
+  } else if (full_) {
+    now.kind = RecordKind::Full;
+  } else if (live != nullptr && live->paused_) {
+    now.kind = RecordKind::Paused;
+  }
+  now.sentence = state_sentence(now.kind, live);
+  now.bytes = used_;
+  if (live != nullptr) now.kept_from = store_.span(live->run()).from;
+  now.deleted = evicted_;
+  if (now.kept_from > 0 && live->dropped_) {
+    if (!now.deleted.empty()) now.deleted += ' ';
+    now.deleted += fmt::format("The first {:.0f} min of this run went for newer ticks.",
+                               std::floor(now.kept_from / 60));
+  }
+  const std::lock_guard lock(mutex_);
+  if (now == status_) return;
+  status_ = std::move(now);
+  ++revision_;
+}
+
+RecordStatus Recorder::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+std::vector<std::string> Recorder::take_news() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(news_, {});
+}
+
+/// Sentences name the file by its path, which is the host's business alone.
+std::string Recorder::without_folder(std::string sentence) const {
+  const std::filesystem::path path(store_.path());
+  const std::string folder = path.parent_path().string() + "/";
+  for (std::size_t at = sentence.find(folder); folder.size() > 1 && at != std::string::npos;
+       at = sentence.find(folder, at)) {
+    sentence.erase(at, folder.size());
+  }
+  return sentence;
+}
+
+void Recorder::report(const std::string& sentence) {
+  if (options_.report) options_.report(sentence);
+  const std::lock_guard lock(mutex_);
+  if (news_.size() >= kMostNews) return;  // nobody listens
+  news_.push_back(without_folder(sentence));
+  ++revision_;
+}
+
+}  // namespace server

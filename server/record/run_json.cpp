@@ -1,0 +1,164 @@
+// server/record/run_json.cpp: runs as rows and documents.
+#include "server/record/run_json.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "server/record/record_sink.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/paths.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/version.hpp"
+
+namespace server {
+
+using nlohmann::json;
+
+json to_json(const algo::Metrics& m) {
+  json out = {{"ticks", m.ticks},
+              {"time", m.time},
+              {"path_length", m.path_length},
+              {"intrusion", m.intrusion},
+              {"infringed_time", m.infringed_time},
+              {"turning", m.turning},
+              {"via_points", m.via_points},
+              {"collided", m.collided}};
+  out["min_clearance"] = std::isfinite(m.min_clearance) ? json(m.min_clearance) : json(nullptr);
+  return out;
+}
+
+std::string wall_time() {
+  const auto now = std::chrono::system_clock::now();
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(now)),
+                     ms.count() % 1000);
+}
+
+db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
+  db::NewRun row;
+  row.scenario = spec.scenario.name;
+  row.document = dump_json(run_document(spec, robot));
+  row.controller = spec.scenario.controller;
+  row.filter = spec.scenario.filter;
+  row.vehicle = vehicle_of(spec);
+  row.seed = spec.seed;
+  row.parameters = to_json(spec.parameters).dump();
+  row.version = kVersion;
+  row.started = wall_time();
+  return row;
+}
+
+db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace) {
+  db::NewRun row = new_run(spec, robot);
+  json document = run_document(spec, robot);
+  document["pace"] = pace;
+  row.document = dump_json(document);
+  return row;
+}
+
+db::RunEnd run_end(const RunResult& result, bool cut) {
+  db::RunEnd end;
+  end.status =
+      result.outcome == algo::Outcome::Failed ? db::RunStatus::Failed : db::RunStatus::Finished;
+  end.outcome = algo::name(result.outcome);
+  end.reason = result.reason;
+  json metrics = to_json(result.metrics);
+  metrics["outcome"] = algo::name(result.outcome);
+  end.metrics = metrics.dump();
+  end.lost_ticks = result.lost_ticks;
+  if (cut && result.outcome == algo::Outcome::Stopped) {
+    end.status = db::RunStatus::Interrupted;
+    end.reason = "The program was stopped in the middle of this run.";
+  }
+  return end;
+}
+
+db::TickRow tick_row(const algo::Telemetry& t) {
+  const algo::Pose2& pose = t.observation.odometry.pose;
+  return {.tick = t.tick,
+          .t = t.observation.stamp,
+          .x = pose.x,
+          .y = pose.y,
+          .heading = pose.heading,
+          .v = t.command.base.v,
+          .omega = t.command.base.omega,
+          .clearance = t.clearance,
+          .hold = static_cast<std::uint8_t>(t.hold),
+          .behaviour = static_cast<std::uint8_t>(t.behaviour)};
+}
+
+RecorderOptions recorder_options() {
+  RecorderOptions options;
+  options.ring_frames = kRecordRing;
+  // Only a server is told how much to keep, and has somebody who could make room.
+  options.retention_bytes = 0;
+  options.wait_for_room = false;
+  options.report = [](const std::string& sentence) { spdlog::warn(sentence); };
+  return options;
+}
+
+json to_json(const db::RunRow& row) {
+  const auto parsed = [](const std::string& text) {
+    return text.empty() ? json(nullptr) : json::parse(text, nullptr, false);
+  };
+  json out = {{"id", row.id},
+              {"status", db::to_string(row.status)},
+              {"outcome", row.outcome},
+              {"reason", without_folders(row.reason)},
+              {"scenario", row.what.scenario},
+              {"controller", row.what.controller},
+              {"filter", row.what.filter},
+              {"vehicle", row.what.vehicle},
+              {"seed", row.what.seed},
+              {"parameters", parsed(row.what.parameters)},
+              {"version", row.what.version},
+              {"started", row.what.started},
+              {"ticks", row.ticks},
+              {"time", row.time},
+              {"lost_ticks", row.lost_ticks},
+              {"bytes", row.bytes},
+              {"metrics", parsed(row.metrics)}};
+  if (!row.gaps.empty()) out["gaps"] = json::array();
+  for (const db::Gap& gap : row.gaps) {
+    out["gaps"].push_back({{"first_tick", gap.first_tick},
+                           {"last_tick", gap.last_tick},
+                           {"cause", db::to_string(gap.cause)},
+                           {"sentence", gap.sentence}});
+  }
+  if (!row.what.document.empty()) out["document"] = parsed(row.what.document);
+  return out;
+}
+
+const db::CsvNames& csv_names() {
+  static const db::CsvNames names = [] {
+    db::CsvNames out;
+    for (int i = 0; i <= static_cast<int>(algo::Hold::Dazzled); ++i) {
+      out.holds.emplace_back(algo::name(static_cast<algo::Hold>(i)));
+    }
+    for (int i = 0; i <= static_cast<int>(algo::BehaviourId::Manual); ++i) {
+      out.behaviours.emplace_back(algo::name(static_cast<algo::BehaviourId>(i)));
+    }
+    return out;
+  }();
+  return names;
+}
+
+json to_json(const db::TickRow& row) {
+  return {{"tick", row.tick},
+          {"t", row.t},
+          {"x", row.x},
+          {"y", row.y},
+          {"heading", row.heading},
+          {"v", row.v},
+          {"omega", row.omega},
+          {"clearance", row.clearance},
+          {"hold", algo::name(static_cast<algo::Hold>(row.hold))},
+          {"behaviour", algo::name(static_cast<algo::BehaviourId>(row.behaviour))}};
+}
+
+}  // namespace server

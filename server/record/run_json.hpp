@@ -1,0 +1,43 @@
+// server/record/run_json.hpp: runs as rows for the database and as documents for people.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "algo/metrics.hpp"
+#include "db/records.hpp"
+#include "db/run_reader.hpp"
+#include "server/record/recorder.hpp"
+#include "server/run/run_spec.hpp"
+#include "server/run/runner.hpp"
+
+namespace server {
+
+/// A clearance without any obstacle is null: JSON knows no infinity.
+nlohmann::json to_json(const algo::Metrics& metrics);
+
+/// The row that begins a run: enough to run it again.
+db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
+/// The same of a run with nobody at it: its document has the `pace` too, with which it can be run
+/// again from its start.
+db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace);
+/// The row's end. A run ended by a person is finished all the same; its outcome says `stopped`.
+/// One that was `cut` by the end of the program before it came to an outcome is interrupted.
+db::RunEnd run_end(const RunResult& result, bool cut = false);
+db::TickRow tick_row(const algo::Telemetry& t);
+
+/// Options every recorder of this program shares; what it reports goes to the log.
+RecorderOptions recorder_options();
+
+/// A run as GET /api/v1/runs lists it; with its document when the row holds one.
+nlohmann::json to_json(const db::RunRow& row);
+nlohmann::json to_json(const db::TickRow& row);
+
+/// Words for the hold and behaviour columns of an export.
+const db::CsvNames& csv_names();
+
+/// [UTC] now as ISO 8601 with milliseconds.
+std::string wall_time();
+
+}  // namespace server

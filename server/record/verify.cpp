@@ -1,0 +1,184 @@
+// server/record/verify.cpp: replay of the record.
+#include "server/record/verify.hpp"
+
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "algo/pipeline/pipeline.hpp"
+#include "server/record/frame_codec.hpp"
+#include "server/record/run_json.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/run_spec.hpp"
+
+namespace server {
+namespace {
+
+struct Decided {
+  algo::Command command{};
+  algo::Hold hold{};
+  algo::Mission mission{};
+  bool operator==(const Decided&) const = default;
+};
+
+Decided decided(const algo::Telemetry& t) {
+  return {t.command, t.hold, t.mission};
+}
+
+/// As they were: what today's program would refuse was accepted once.
+algo::Parameters stored_parameters(const db::RunRow& row) {
+  algo::Parameters out;
+  const nlohmann::json values = parse_json(row.what.parameters, kOwnDocument);
+  for (const auto& [name, value] : values.items()) {
+    const auto parameter = algo::find_parameter(name);
+    if (!parameter) {
+      throw std::runtime_error(
+          fmt::format("Run {} used a parameter '{}', which this program has not.", row.id, name));
+    }
+    out.set(*parameter, value.get<double>());
+  }
+  return out;
+}
+
+algo::Pipeline pipeline_of(const db::RunRow& row) {
+  const nlohmann::json document = parse_json(row.what.document, kOwnDocument);
+  const algo::RobotSpec spec = robot_spec_from_json(document.at("robot"));
+  const auto filter = algo::find_filter(row.what.filter);
+  if (!filter) throw std::runtime_error(fmt::format("Run {} used an unknown filter.", row.id));
+  algo::PipelineConfig config;
+  config.controller = row.what.controller;
+  config.filter = *filter;
+  config.parameters = stored_parameters(row);
+  return {config, spec};
+}
+
+/// Not a number, which a clearance without a return is, is the same as itself.
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+/// Of the columns the frame keeps only the clearance as a float.
+bool same(const db::TickRow& a, const db::TickRow& b) {
+  return a.tick == b.tick && same(a.t, b.t) && same(a.x, b.x) && same(a.y, b.y) &&
+         same(a.heading, b.heading) && same(a.v, b.v) && same(a.omega, b.omega) &&
+         same(static_cast<float>(a.clearance), static_cast<float>(b.clearance)) &&
+         a.hold == b.hold && a.behaviour == b.behaviour;
+}
+
+/// Feeds the frames of one run, in order, to a pipeline of its own.
+class Comparison {
+ public:
+  explicit Comparison(const db::RunRow& row) : row_(row), pipeline_(pipeline_of(row)) {}
+
+  /// Up to `limit` ticks from `from` on. Returns the tick to go on with, or nothing.
+  std::optional<std::uint64_t> read(db::RunReader& reader, std::uint64_t from, std::size_t limit) {
+    rows_.clear();
+    const auto next =
+        reader.frames(row_.id, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
+          decode_frame(frame, t_);
+          rows_.push_back(tick_row(t_));
+          compare();
+        });
+    compare_rows(reader.ticks(row_.id, from, rows_.size()).ticks);
+    return next;
+  }
+  const Verification& result() const { return result_; }
+
+ private:
+  void compare() {
+    ++result_.ticks;
+    if (result_.difference || result_.incomplete) return;
+    // What the pipeline knew at a tick that is missing cannot be had again.
+    if (t_.tick != result_.compared) {
+      result_.incomplete = why_missing(result_.compared, t_.tick - 1);
+      return;
+    }
+    if (t_.tick == 0) pipeline_.reset(t_.observation.odometry.pose);
+    const Decided stored = decided(t_);
+    pipeline_.tick(t_);
+    ++result_.compared;
+    if (decided(t_) == stored) return;
+    result_.difference =
+        fmt::format("Tick {}: stored v {:.17g} omega {:.17g}, now v {:.17g} omega {:.17g}.",
+                    t_.tick,
+                    stored.command.base.v,
+                    stored.command.base.omega,
+                    t_.command.base.v,
+                    t_.command.base.omega);
+  }
+
+  void compare_rows(const std::vector<db::TickRow>& stored) {
+    for (std::size_t i = 0; i < rows_.size() && !result_.difference; ++i) {
+      if (i < stored.size() && same(stored[i], rows_[i])) continue;
+      result_.difference = fmt::format("Tick {}: the row of its columns is {}.",
+                                       rows_[i].tick,
+                                       i < stored.size() && stored[i].tick == rows_[i].tick
+                                           ? "not what its frame says"
+                                           : "missing");
+    }
+  }
+
+  std::string why_missing(std::uint64_t first, std::uint64_t last) const {
+    std::string why;
+    for (const db::Gap& gap : row_.gaps) {
+      if (gap.first_tick <= last && gap.last_tick >= first) why = gap.sentence;
+    }
+    return fmt::format(
+        "Ticks {} to {} are missing from the record{} What follows them cannot be "
+        "compared.",
+        first,
+        last,
+        why.empty() ? "." : ": " + why);
+  }
+
+  const db::RunRow& row_;
+  algo::Pipeline pipeline_;
+  algo::Telemetry t_{};
+  std::vector<db::TickRow> rows_{};  // of the frames just read
+  Verification result_{};
+};
+
+}  // namespace
+
+std::optional<std::string> incompleteness(db::RunReader& reader,
+                                          const db::RunRow& row,
+                                          std::uint64_t ticks) {
+  const auto now = reader.get(row.id);
+  if (!now) return fmt::format("Run {} was deleted while it was read.", row.id);
+  if (row.status == db::RunStatus::Recording || row.status == db::RunStatus::Queued) {
+    return fmt::format("Run {} is still {}.", row.id, db::to_string(row.status));
+  }
+  if (row.status == db::RunStatus::Interrupted) return row.reason;
+  if (row.status == db::RunStatus::Cancelled) return fmt::format("Run {} was cancelled.", row.id);
+  if (row.status == db::RunStatus::Failed) {
+    return fmt::format("Run {} failed: {}", row.id, row.reason);
+  }
+  for (const db::Gap& gap : now->gaps) {
+    if (gap.cause == db::GapCause::Pause) continue;
+    return fmt::format(
+        "Ticks {} to {} are not in the record: {}", gap.first_tick, gap.last_tick, gap.sentence);
+  }
+  if (row.lost_ticks > 0) return fmt::format("{} ticks of the run were lost.", row.lost_ticks);
+  if (ticks != row.ticks) {
+    return fmt::format("Only {} of the run's {} ticks could be read.", ticks, row.ticks);
+  }
+  return std::nullopt;
+}
+
+Verification verify_run(db::RunReader& reader, db::RunId run) {
+  const auto row = reader.get(run);
+  if (!row) throw std::runtime_error(fmt::format("There is no run {}.", run));
+  Comparison comparison(*row);
+  std::optional<std::uint64_t> from = 0;
+  while (from && !comparison.result().difference) from = comparison.read(reader, *from, 1024);
+  Verification result = comparison.result();
+  if (!result.difference && !result.incomplete) {
+    result.incomplete = incompleteness(reader, *row, result.ticks);
+  }
+  return result;
+}
+
+}  // namespace server

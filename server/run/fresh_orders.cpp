@@ -1,0 +1,51 @@
+// server/run/fresh_orders.cpp: what is refused, and what ends.
+#include "server/run/fresh_orders.hpp"
+
+#include <utility>
+#include <variant>
+
+namespace server {
+namespace {
+
+bool is_goal(const algo::Request& request) {
+  return std::holds_alternative<algo::SetGoal>(request) ||
+         std::holds_alternative<algo::AddGoal>(request);
+}
+
+}  // namespace
+
+bool FreshOrders::notice(std::uint32_t arming) {
+  return std::exchange(arming_, arming) != arming && (goal_ || stick_);
+}
+
+std::optional<std::string> FreshOrders::refusal(const algo::Request& request, double now) {
+  const auto* stick = std::get_if<algo::Joystick>(&request);
+  const bool pushed = stick != nullptr && *stick != algo::Joystick{};
+  if (stick != nullptr && !pushed) held_at_ = -std::numeric_limits<double>::infinity();
+  if (!pushed && !is_goal(request)) return std::nullopt;
+  const char* why = nullptr;
+  if (stopped_) {
+    why = "This robot is stopped. Release Stop first, then send it off.";
+  } else if (arming_ == 0) {
+    why = "The motors are off. Arm the robot first, then send it off.";
+  } else if (pushed && now - held_at_ < kLetGo) {
+    why = "The stick was held before the robot was armed or released. Let go of it first.";
+  }
+  if (why == nullptr) return std::nullopt;
+  if (pushed) held_at_ = now;
+  return why;
+}
+
+bool FreshOrders::accept(const algo::Request& request) {
+  if (is_goal(request)) goal_ = true;
+  if (std::holds_alternative<algo::ClearGoal>(request)) goal_ = false;
+  if (const auto* stick = std::get_if<algo::Joystick>(&request))
+    stick_ = *stick != algo::Joystick{};
+  if (const auto* stop = std::get_if<algo::Stop>(&request)) {
+    stopped_ = stop->engaged;
+    return stopped_ && (goal_ || stick_);
+  }
+  return false;
+}
+
+}  // namespace server

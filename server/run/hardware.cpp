@@ -1,0 +1,106 @@
+// server/run/hardware.cpp: specs and documents of real hardware.
+#include "server/run/hardware.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "algo/parameters.hpp"
+#include "drivers/lms200_scan.hpp"
+#include "drivers/scanner.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+/// `wanted` within what the parameter's table allows.
+double allowed(algo::Parameter parameter, double wanted) {
+  const algo::ParameterInfo& info = algo::info(parameter);
+  return std::clamp(wanted, info.min, info.max);
+}
+
+/// [s] How old the newest scan may be, or the newest reading of a robot that has sonar alone. The
+/// robot halts by its scanner's own period as it is; this is the second wall behind that, wide
+/// enough for the rate to which a scanner may have to fall back.
+double scan_timeout(const drivers::RobotFile& file) {
+  constexpr double kSonar = 0.5;  // [s] a ring of eight takes 0.32
+  if (!file.spec.has_laser) return kSonar;
+  double longest = 0;
+  for (const drivers::LaserEntry& laser : file.lasers) {
+    const unsigned baud = std::min(laser.setup.baud, drivers::lms200::kFallbackRate);
+    const double period = drivers::lms200::scan_period(laser.setup.variant, baud);
+    // From its stamp on: it is on the line for a good part of its period, and a tick may pass.
+    const double under_way =
+        drivers::lms200::transfer_time(drivers::lms200::scan_bytes(laser.setup.variant), baud);
+    longest = std::max(longest, drivers::blind_time(period) + under_way + file.spec.period);
+  }
+  return longest;
+}
+
+json to_json(const drivers::DeviceReport& device) {
+  json facts = json::object();
+  for (const auto& [name, value] : device.facts) facts[name] = value;
+  return {{"name", device.name},
+          {"port", device.port},
+          {"well", device.well},
+          {"sentence", device.sentence},
+          {"remarks", device.remarks},
+          {"facts", std::move(facts)}};
+}
+
+json to_json(const drivers::LatenessHistogram& lateness) {
+  json buckets = json::array();
+  const auto& counts = lateness.counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool last = i == drivers::LatenessHistogram::kLimits.size();
+    json below = nullptr;
+    if (!last) below = drivers::LatenessHistogram::kLimits[i];
+    buckets.push_back({{"below", std::move(below)}, {"ticks", counts[i]}});
+  }
+  return {
+      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
+}
+
+}  // namespace
+
+RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOverrides& overrides) {
+  const drivers::RobotFile& file = robot->file();
+  sim::Scenario scenario;
+  scenario.name = file.spec.name;
+  scenario.title = "Real hardware";
+  // Its name alone: everybody who may look at the robot reads it.
+  scenario.description = "Described in " + std::filesystem::path(file.path).filename().string();
+  scenario.period = file.spec.period;
+  scenario.controller = file.controller;
+  scenario.filter = file.filter;
+  if (!file.spec.has_laser) {
+    scenario.lasers.clear();
+    scenario.sonar.emplace();
+  }
+  using algo::Parameter;
+  // The robot's own limits hold in any case; controllers should plan by them too.
+  scenario.parameters = {
+      {Parameter::MaxSpeed, allowed(Parameter::MaxSpeed, file.limits.speed)},
+      {Parameter::MaxTurnRate, allowed(Parameter::MaxTurnRate, file.limits.turn)},
+      {Parameter::ScanTimeout, allowed(Parameter::ScanTimeout, scan_timeout(file))}};
+  RunSpec spec = make_spec(std::move(scenario), overrides);
+  spec.hardware = std::move(robot);
+  return spec;
+}
+
+json to_json(const drivers::HardwareReport& report) {
+  json devices = json::array();
+  for (const drivers::DeviceReport& device : report.devices) devices.push_back(to_json(device));
+  return {{"armed", report.armed},
+          {"halt", algo::name(report.halt)},
+          {"trouble", report.trouble},
+          {"devices", std::move(devices)},
+          {"warnings", report.warnings},
+          {"real_time", report.real_time},
+          {"memory_locked", report.memory_locked},
+          {"lateness", to_json(report.lateness)},
+          {"missed_periods", report.missed_periods}};
+}
+
+}  // namespace server

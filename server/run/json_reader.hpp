@@ -1,0 +1,61 @@
+// server/run/json_reader.hpp: reads fields out of untrusted JSON; every complaint says where and
+// what.
+#pragma once
+
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+namespace server {
+
+/// A document that does not say what it must. what() is "obstacles/2/radius: must be above 0".
+class DocumentError : public std::runtime_error {
+ public:
+  DocumentError(const std::string& path, const std::string& complaint)
+      : std::runtime_error((path.empty() ? "document" : path) + ": " + complaint) {}
+};
+
+struct NumberRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+
+/// One JSON object under inspection. Holds references: the document must outlive it.
+class JsonReader {
+ public:
+  /// Throws DocumentError when `value` is not an object.
+  JsonReader(const nlohmann::json& value, std::string path);
+
+  /// Throws when a field is not among `known`: a misspelt field must not pass in silence.
+  void only(std::initializer_list<std::string_view> known) const;
+
+  bool has(std::string_view key) const;  // present and not null
+  double number(std::string_view key, NumberRange range = {}) const;
+  double number_or(std::string_view key, double fallback, NumberRange range = {}) const;
+  std::uint64_t whole(std::string_view key, std::uint64_t max) const;
+  std::uint64_t whole_or(std::string_view key, std::uint64_t fallback, std::uint64_t max) const;
+  std::string text(std::string_view key, std::size_t max_length = 4096) const;
+  std::string text_or(std::string_view key, std::string fallback) const;
+  bool flag_or(std::string_view key, bool fallback) const;
+  JsonReader object(std::string_view key) const;
+  const nlohmann::json& array(std::string_view key, std::size_t max_size) const;
+  const nlohmann::json& raw() const { return value_; }
+  std::string at(std::string_view key) const;  // path of a field
+  [[noreturn]] void fail(std::string_view key, const std::string& complaint) const;
+
+ private:
+  const nlohmann::json& field(std::string_view key) const;
+
+  const nlohmann::json& value_;
+  std::string path_;
+};
+
+/// A finite number at `path`. Throws DocumentError.
+double finite_number(const nlohmann::json& value, const std::string& path, NumberRange range = {});
+
+}  // namespace server

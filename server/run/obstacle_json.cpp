@@ -1,0 +1,147 @@
+// server/run/obstacle_json.cpp: one reader a shape.
+#include "server/run/obstacle_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "server/run/json_reader.hpp"
+#include "server/run/pose_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr std::size_t kMaxPolygonPoints = 256;
+
+void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
+  in.only({"id",
+           "type",
+           "from",
+           "to",
+           "x",
+           "y",
+           "heading",
+           "length",
+           "thickness",
+           "height",
+           "reflectivity",
+           "specular"});
+  algo::Wall wall{in.number_or("length", 0), in.number_or("thickness", 0.1)};
+  if (in.has("from") || in.has("to")) {
+    const algo::Vec2 from = point_from_json(in.array("from", 2), in.at("from"));
+    const algo::Vec2 to = point_from_json(in.array("to", 2), in.at("to"));
+    const algo::Vec2 along = to - from;
+    const algo::Vec2 middle = (from + to) / 2;
+    wall.length = along.norm();
+    obstacle.pose_W = {middle.x(), middle.y(), std::atan2(along.y(), along.x())};
+  } else {
+    obstacle.pose_W = pose_from_json(in, 0);
+  }
+  obstacle.shape = wall;
+}
+
+/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its
+/// middle.
+void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
+  in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
+  algo::Polygon polygon;
+  const json& points = in.array("points", kMaxPolygonPoints);
+  algo::Vec2 sum{0, 0};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    polygon.points.push_back(point_from_json(points[i], fmt::format("{}/{}", in.at("points"), i)));
+    sum += polygon.points.back();
+  }
+  if (in.has("x") || in.has("y") || in.has("heading")) {
+    obstacle.pose_W = pose_from_json(in, 0);  // the points are in the obstacle's own frame
+  } else if (!points.empty()) {
+    const algo::Vec2 middle = sum / static_cast<double>(points.size());
+    for (algo::Vec2& p : polygon.points) p -= middle;
+    obstacle.pose_W = {middle.x(), middle.y(), 0};
+  }
+  // A clockwise outline means the same shape: turn it round rather than turn it down.
+  double twice_area = 0;
+  for (std::size_t i = 0; i < polygon.points.size(); ++i) {
+    const algo::Vec2& a = polygon.points[i];
+    const algo::Vec2& b = polygon.points[(i + 1) % polygon.points.size()];
+    twice_area += a.x() * b.y() - a.y() * b.x();
+  }
+  if (twice_area < 0) std::reverse(polygon.points.begin(), polygon.points.end());
+  obstacle.shape = std::move(polygon);
+}
+
+}  // namespace
+
+algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
+  const JsonReader in(value, path);
+  algo::Obstacle obstacle;
+  obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, kMaxObstacleId));
+  const std::string type = in.text("type");
+  if (type == "cylinder") {
+    in.only({"id", "type", "x", "y", "heading", "radius", "height", "reflectivity", "specular"});
+    obstacle.pose_W = pose_from_json(in, 0);
+    obstacle.shape = algo::Cylinder{in.number("radius")};
+  } else if (type == "box") {
+    in.only({"id",
+             "type",
+             "x",
+             "y",
+             "heading",
+             "length",
+             "width",
+             "height",
+             "reflectivity",
+             "specular"});
+    obstacle.pose_W = pose_from_json(in, 0);
+    obstacle.shape = algo::Box{in.number("length"), in.number("width")};
+  } else if (type == "polygon") {
+    read_polygon(in, obstacle);
+  } else if (type == "wall") {
+    read_wall(in, obstacle);
+  } else {
+    in.fail("type", fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
+  }
+  obstacle.height = in.number_or("height", obstacle.height);
+  obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
+  obstacle.specular = in.flag_or("specular", false);
+  if (const auto complaint = algo::defect(obstacle)) throw DocumentError(path, *complaint);
+  return obstacle;
+}
+
+json to_json(const algo::Obstacle& o) {
+  json out = {{"id", o.id},
+              {"x", o.pose_W.x},
+              {"y", o.pose_W.y},
+              {"heading", o.pose_W.heading},
+              {"height", o.height},
+              {"reflectivity", o.reflectivity},
+              {"specular", o.specular}};
+  std::visit(
+      [&](const auto& shape) {
+        using S = std::decay_t<decltype(shape)>;
+        if constexpr (std::is_same_v<S, algo::Cylinder>) {
+          out["type"] = "cylinder";
+          out["radius"] = shape.radius;
+        } else if constexpr (std::is_same_v<S, algo::Box>) {
+          out["type"] = "box";
+          out["length"] = shape.length;
+          out["width"] = shape.width;
+        } else if constexpr (std::is_same_v<S, algo::Polygon>) {
+          out["type"] = "polygon";
+          out["points"] = json::array();
+          for (const algo::Vec2& p : shape.points) out["points"].push_back({p.x(), p.y()});
+        } else {
+          out["type"] = "wall";
+          out["length"] = shape.length;
+          out["thickness"] = shape.thickness;
+        }
+      },
+      o.shape);
+  return out;
+}
+
+}  // namespace server

@@ -1,0 +1,47 @@
+// server/run/pose_json.cpp: one reader and one writer each.
+#include "server/run/pose_json.hpp"
+
+#include <string_view>
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+double angle_or(const JsonReader& in, std::string_view key, double fallback) {
+  return algo::wrap_angle(in.number_or(key, fallback, {-1e6, 1e6}));
+}
+
+}  // namespace
+
+algo::Vec2 point_from_json(const json& value, const std::string& path) {
+  if (!value.is_array() || value.size() != 2) {
+    throw DocumentError(path, "must be a point [x, y] in metres");
+  }
+  return {finite_number(value[0], path + "/0", kCoordinate),
+          finite_number(value[1], path + "/1", kCoordinate)};
+}
+
+algo::Pose2 pose_from_json(const JsonReader& in, double heading) {
+  return {
+      in.number("x", kCoordinate), in.number("y", kCoordinate), angle_or(in, "heading", heading)};
+}
+
+algo::SetGoal goal_from_json(const JsonReader& in) {
+  algo::SetGoal goal;
+  goal.position_W = {in.number("x", kCoordinate), in.number("y", kCoordinate)};
+  if (in.has("heading")) goal.heading = angle_or(in, "heading", 0);
+  return goal;
+}
+
+json to_json(const algo::Pose2& pose) {
+  return {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
+}
+
+json to_json(const algo::SetGoal& goal) {
+  json out = {{"x", goal.position_W.x()}, {"y", goal.position_W.y()}};
+  out["heading"] = goal.heading ? json(*goal.heading) : json(nullptr);
+  return out;
+}
+
+}  // namespace server

@@ -1,0 +1,27 @@
+// server/run/pose_json.hpp: points, poses and goals as JSON: metres and radians.
+#pragma once
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "algo/request.hpp"
+#include "algo/types.hpp"
+#include "server/run/json_reader.hpp"
+
+namespace server {
+
+constexpr NumberRange kCoordinate{-1e5, 1e5};  // [m]
+
+/// [x, y]. All of them throw DocumentError naming the field.
+algo::Vec2 point_from_json(const nlohmann::json& value, const std::string& path);
+
+/// {"x","y","heading"?}; `heading` [rad] where none is given.
+algo::Pose2 pose_from_json(const JsonReader& in, double heading);
+nlohmann::json to_json(const algo::Pose2& pose);
+
+/// {"x","y","heading"?}: without a heading any will do.
+algo::SetGoal goal_from_json(const JsonReader& in);
+nlohmann::json to_json(const algo::SetGoal& goal);
+
+}  // namespace server

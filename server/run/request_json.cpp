@@ -1,0 +1,69 @@
+// server/run/request_json.cpp: one branch a kind.
+#include "server/run/request_json.hpp"
+
+#include <string>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "server/run/json_reader.hpp"
+#include "server/run/obstacle_json.hpp"
+#include "server/run/pose_json.hpp"
+
+namespace server {
+
+algo::Request request_from_json(const nlohmann::json& value) {
+  const JsonReader in(value, "");
+  const std::string type = in.text("type");
+  if (type == "set_goal") {
+    in.only({"type", "x", "y", "heading"});
+    return goal_from_json(in);
+  }
+  if (type == "add_goal") {
+    in.only({"type", "x", "y", "heading"});
+    return algo::AddGoal{goal_from_json(in)};
+  }
+  if (type == "clear_goal") {
+    in.only({"type"});
+    return algo::ClearGoal{};
+  }
+  if (type == "add_obstacle") {
+    in.only({"type", "obstacle"});
+    return algo::AddObstacle{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
+  }
+  if (type == "move_obstacle") {
+    in.only({"type", "id", "x", "y", "heading"});
+    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId)),
+                              pose_from_json(in, 0)};
+  }
+  if (type == "remove_obstacle") {
+    in.only({"type", "id"});
+    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId))};
+  }
+  if (type == "joystick") {
+    in.only({"type", "forward", "turn"});
+    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1})};
+  }
+  if (type == "stop") {
+    in.only({"type", "engaged"});
+    return algo::Stop{in.flag_or("engaged", true)};
+  }
+  if (type == "set_parameter") {
+    in.only({"type", "name", "value"});
+    const std::string name = in.text("name");
+    const auto parameter = algo::find_parameter(name);
+    if (!parameter) in.fail("name", fmt::format("there is no parameter '{}'", name));
+    return algo::SetParameter{*parameter, in.number("value")};
+  }
+  in.fail("type",
+          fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "
+                      "add_obstacle, move_obstacle, remove_obstacle, joystick, stop, set_parameter",
+                      type));
+}
+
+bool is_stop(const algo::Request& request) {
+  const auto* stop = std::get_if<algo::Stop>(&request);
+  return stop != nullptr && stop->engaged;
+}
+
+}  // namespace server

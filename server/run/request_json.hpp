@@ -1,0 +1,16 @@
+// server/run/request_json.hpp: what a client asks of a session, as JSON (docs/interfaces.md).
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "algo/request.hpp"
+
+namespace server {
+
+/// {"type":"set_goal","x":1,"y":2} and the like; throws DocumentError.
+algo::Request request_from_json(const nlohmann::json& value);
+
+/// True for a Stop that engages, false for its release and for anything else.
+bool is_stop(const algo::Request& request);
+
+}  // namespace server

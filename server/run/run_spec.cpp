@@ -1,0 +1,200 @@
+// server/run/run_spec.cpp: the one place that knows every robot and controller by name.
+#include "server/run/run_spec.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/controllers.hpp"
+#include "server/run/hardware.hpp"
+#include "server/run/io_thread.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/scenario_json.hpp"
+#include "sim/replay.hpp"
+#include "sim/world.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // what JSON numbers hold exactly
+
+void check_choices(const sim::Scenario& scenario) {
+  const auto controllers = algo::controller_table();
+  if (std::none_of(controllers.begin(), controllers.end(), [&](const auto& c) {
+        return c.name == scenario.controller;
+      })) {
+    std::string known;
+    for (const auto& c : controllers) known += fmt::format(" {}", c.name);
+    throw DocumentError("controller",
+                        fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
+  }
+  const auto by_sonar = [&](const auto& c) { return c.name == scenario.controller && c.by_sonar; };
+  if (!sim::has_laser(scenario) && std::ranges::none_of(controllers, by_sonar)) {
+    std::string fit;
+    for (const auto& c : controllers) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
+    throw DocumentError(
+        "controller",
+        fmt::format(
+            "'{}' needs a laser; with a sonar ring alone there are{}", scenario.controller, fit));
+  }
+  if (!algo::find_filter(scenario.filter)) {
+    throw DocumentError("filter",
+                        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none",
+                                    scenario.filter));
+  }
+}
+
+}  // namespace
+
+RunOverrides overrides_from_json(const json& body) {
+  const JsonReader in(body, "");
+  RunOverrides out;
+  if (in.has("controller")) out.controller = in.text("controller", 64);
+  if (in.has("filter")) out.filter = in.text("filter", 64);
+  if (in.has("vehicle")) out.vehicle = in.text("vehicle", 64);
+  if (in.has("seed")) out.seed = in.whole("seed", kMaxSeed);
+  if (in.has("parameters")) out.parameters = in.object("parameters").raw();
+  return out;
+}
+
+double pace_from_json(const json& body, const char* key, double fallback) {
+  const JsonReader in(body, "");
+  const double pace = in.number_or(key, fallback, {0, 1000});
+  if (pace > 0 && pace < 0.01) in.fail(key, "must be 0, as fast as it goes, or at least 0.01");
+  return pace;
+}
+
+RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
+  if (overrides.controller) scenario.controller = *overrides.controller;
+  if (overrides.filter) scenario.filter = *overrides.filter;
+  if (overrides.vehicle) {
+    if (*overrides.vehicle != "bullet" && *overrides.vehicle != "kinematic") {
+      throw DocumentError(
+          "vehicle",
+          fmt::format("'{}' is unknown; known are bullet, kinematic", *overrides.vehicle));
+    }
+    const bool bullet = *overrides.vehicle == "bullet";
+    scenario.vehicle = bullet ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
+  }
+  check_choices(scenario);
+  RunSpec spec;
+  spec.parameters =
+      parameters_from_json(overrides.parameters, "parameters", parameters_of(scenario));
+  if (const auto complaint = algo::refusal(scenario.controller, spec.parameters)) {
+    throw DocumentError("parameters", *complaint);
+  }
+  spec.seed = overrides.seed.value_or(1);
+  // The document of the run must tell the whole story: parameters included.
+  scenario.parameters.clear();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    if (spec.parameters[p.id] != p.initial) {
+      scenario.parameters.emplace_back(p.id, spec.parameters[p.id]);
+    }
+  }
+  spec.scenario = std::move(scenario);
+  return spec;
+}
+
+const char* source_of(const RunSpec& spec) {
+  if (spec.hardware) return "hardware";
+  return spec.scenario.log.empty() ? "simulation" : "replay";
+}
+
+const char* vehicle_of(const RunSpec& spec) {
+  if (spec.hardware) return "hardware";
+  if (!spec.scenario.log.empty()) return "log";
+  return spec.scenario.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic";
+}
+
+std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
+  net::not_on_io_thread("Building a world");
+  if (spec.hardware) return std::make_unique<HardwareRun>(spec.hardware);
+  if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
+  return std::make_unique<sim::World>(spec.scenario, spec.seed);
+}
+
+algo::PipelineConfig pipeline_config(const RunSpec& spec) {
+  return {.controller = spec.scenario.controller,
+          .filter = *algo::find_filter(spec.scenario.filter),
+          .parameters = spec.parameters};
+}
+
+std::vector<algo::Request> first_requests(const RunSpec& spec) {
+  if (!spec.scenario.goal || !spec.scenario.log.empty()) return {};
+  std::vector<algo::Request> requests;
+  const auto then = [&](const algo::SetGoal& goal) {
+    if (requests.empty()) {
+      requests.emplace_back(goal);
+    } else {
+      requests.emplace_back(algo::AddGoal{goal});
+    }
+  };
+  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) then(waypoint);
+  then(*spec.scenario.goal);
+  return requests;
+}
+
+double time_limit(const RunSpec& spec) {
+  if (!spec.scenario.log.empty()) return 0;
+  if (spec.scenario.time_limit > 0) return spec.scenario.time_limit;
+  if (!spec.scenario.goal) return 60.0;
+  double way = 0;
+  algo::Vec2 from_W = spec.scenario.start.position();
+  const auto on_to = [&](const algo::SetGoal& goal) {
+    way += (goal.position_W - from_W).norm();
+    from_W = goal.position_W;
+  };
+  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) on_to(waypoint);
+  on_to(*spec.scenario.goal);
+  return std::max(1.0, 5.0 * way / spec.parameters[algo::Parameter::MaxSpeed]);
+}
+
+json to_json(const algo::RobotSpec& robot) {
+  return {{"name", robot.name},
+          {"radius", robot.radius},
+          {"half_length", robot.half_length},
+          {"half_width", robot.half_width},
+          {"half_track", robot.half_track},
+          {"period", robot.period},
+          {"max_v", robot.max_v},
+          {"max_omega", robot.max_omega},
+          {"max_acceleration", robot.max_acceleration},
+          {"max_angular_acceleration", robot.max_angular_acceleration},
+          {"command_delay", robot.command_delay},
+          {"has_laser", robot.has_laser},
+          {"editable", robot.editable},
+          {"paceable", robot.paceable},
+          {"drives", robot.drives}};
+}
+
+/// Without limits: what a run was accepted with is read as it is.
+algo::RobotSpec robot_spec_from_json(const json& value) {
+  const JsonReader in(value, "robot");
+  algo::RobotSpec robot;
+  robot.name = in.text("name", SIZE_MAX);
+  robot.radius = in.number("radius");
+  robot.half_length = in.number_or("half_length", 0);
+  robot.half_width = in.number_or("half_width", 0);
+  robot.half_track = in.number("half_track");
+  robot.period = in.number("period");
+  robot.max_v = in.number("max_v");
+  robot.max_omega = in.number("max_omega");
+  robot.max_acceleration = in.number("max_acceleration");
+  robot.max_angular_acceleration = in.number("max_angular_acceleration");
+  robot.command_delay = in.number_or("command_delay", 0);
+  robot.has_laser = in.flag_or("has_laser", true);
+  robot.editable = in.flag_or("editable", false);
+  robot.paceable = in.flag_or("paceable", false);
+  robot.drives = in.flag_or("drives", false);
+  return robot;
+}
+
+json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
+  return {
+      {"scenario", to_json(spec.scenario)}, {"source", source_of(spec)}, {"robot", to_json(robot)}};
+}
+
+}  // namespace server

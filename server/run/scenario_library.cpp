@@ -1,0 +1,170 @@
+// server/run/scenario_library.cpp: built-in worlds come from sim/worlds, embedded at build time.
+#include "server/run/scenario_library.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "server/run/embedded_worlds.hpp"
+#include "server/run/io_thread.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/scenario_json.hpp"
+
+namespace server {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = LibraryError::Kind;
+
+std::mutex writing;  // two savers must not share a draft
+
+sim::Scenario parse(const std::string& text, const std::string& where) {
+  try {
+    return scenario_from_json(parse_json(text, kOwnDocument));
+  } catch (const std::exception& e) {
+    throw LibraryError(Kind::Unreadable, fmt::format("{}: {}", where, e.what()));
+  }
+}
+
+/// @param shown  the file as it is named to people: visitors need not know where it lies
+std::string read_file(const fs::path& path, const std::string& shown) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw LibraryError(Kind::NotFound, fmt::format("Cannot read {}.", shown));
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+const EmbeddedWorld* find_embedded(const std::string& name) {
+  for (const EmbeddedWorld& world : embedded_worlds()) {
+    if (world.name == name) return &world;
+  }
+  return nullptr;
+}
+
+sim::Scenario log_scenario(const fs::path& path) {
+  sim::Scenario s;
+  s.name = path.stem().string();
+  s.title = "Log " + path.filename().string();
+  s.description = "A recorded laser log, replayed through the same pipeline.";
+  s.robot = "log";
+  s.log = path.string();
+  return s;
+}
+
+template <typename F>
+void for_each_file(const fs::path& folder, const char* extension, F visit) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_regular_file(error) && entry.path().extension() == extension &&
+        valid_scenario_name(entry.path().stem().string())) {
+      paths.push_back(entry.path());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  for (const fs::path& path : paths) visit(path);
+}
+
+}  // namespace
+
+ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs)
+    : own_(std::move(own)), logs_(std::move(logs)) {}
+
+std::vector<ScenarioEntry> ScenarioLibrary::list() const {
+  net::not_on_io_thread("Listing scenarios");
+  std::vector<ScenarioEntry> entries;
+  for (const EmbeddedWorld& world : embedded_worlds()) {
+    const sim::Scenario s = parse(std::string(world.json), std::string(world.name));
+    entries.push_back({s.name, s.title, s.description, true, false});
+  }
+  for_each_file(own_, ".json", [&](const fs::path& path) {
+    try {
+      const std::string shown = path.filename().string();
+      const sim::Scenario s = parse(read_file(path, shown), shown);
+      entries.push_back({path.stem().string(), s.title, s.description, false, false});
+    } catch (const LibraryError& e) {
+      entries.push_back({path.stem().string(), path.stem().string(), e.what(), false, false});
+    }
+  });
+  for_each_file(logs_, ".log", [&](const fs::path& path) {
+    const sim::Scenario s = log_scenario(path);
+    entries.push_back({s.name, s.title, s.description, true, true});
+  });
+  return entries;
+}
+
+sim::Scenario ScenarioLibrary::load(const std::string& name) const {
+  net::not_on_io_thread("Reading a scenario");
+  if (const EmbeddedWorld* world = find_embedded(name)) {
+    return parse(std::string(world->json), name);
+  }
+  if (valid_scenario_name(name)) {
+    std::error_code error;
+    const fs::path own = own_ / (name + ".json");
+    if (!own_.empty() && fs::is_regular_file(own, error)) {
+      const std::string shown = own.filename().string();
+      return parse(read_file(own, shown), shown);
+    }
+    const fs::path log = logs_ / (name + ".log");
+    if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
+  }
+  std::string known;
+  for (const ScenarioEntry& entry : list()) known += (known.empty() ? "" : ", ") + entry.name;
+  throw LibraryError(Kind::NotFound,
+                     fmt::format("There is no scenario '{}'. Known are {}.", name, known));
+}
+
+void ScenarioLibrary::save(const sim::Scenario& scenario) const {
+  if (!valid_scenario_name(scenario.name)) {
+    throw LibraryError(
+        Kind::BadName,
+        fmt::format("'{}' is no name: 1 to 64 of the characters a-z, 0-9, _ and -", scenario.name));
+  }
+  if (find_embedded(scenario.name) != nullptr) {
+    throw LibraryError(
+        Kind::Builtin,
+        fmt::format("'{}' is built in and cannot be changed; save it under another name.",
+                    scenario.name));
+  }
+  net::not_on_io_thread("Saving a scenario");
+  const std::string text = dump_json(to_json(scenario)) + '\n';
+  parse(text, scenario.name);  // what could not be loaded again is not kept
+  const std::lock_guard lock(writing);
+  std::error_code error;
+  fs::create_directories(own_, error);
+  // Written beside and renamed, so that a full disk cannot leave half a scenario behind.
+  const fs::path target = own_ / (scenario.name + ".json");
+  const fs::path draft = own_ / (scenario.name + ".json.new");
+  std::ofstream out(draft, std::ios::binary);
+  out << text;
+  out.close();
+  if (out) fs::rename(draft, target, error);
+  if (!out || error) {
+    throw LibraryError(Kind::Unreadable,
+                       fmt::format("Cannot write {}.", target.filename().string()));
+  }
+}
+
+void ScenarioLibrary::remove(const std::string& name) const {
+  if (find_embedded(name) != nullptr) {
+    throw LibraryError(Kind::Builtin, fmt::format("'{}' is built in and cannot be deleted.", name));
+  }
+  net::not_on_io_thread("Deleting a scenario");
+  const std::lock_guard lock(writing);
+  std::error_code error;
+  if (!valid_scenario_name(name) || !fs::remove(own_ / (name + ".json"), error)) {
+    throw LibraryError(Kind::NotFound, fmt::format("You have no scenario '{}' of your own.", name));
+  }
+}
+
+sim::Scenario ScenarioLibrary::from_file(const fs::path& path) {
+  if (path.extension() == ".log") return log_scenario(path);
+  return parse(read_file(path, path.string()), path.string());
+}
+
+}  // namespace server

@@ -1,0 +1,58 @@
+// server/run/scenario_library.hpp: the scenarios a server knows: built in, the user's own, and
+// logs.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "sim/scenario.hpp"
+
+namespace server {
+
+/// A scenario that is not there, may not be changed, or does not read. what() is a sentence.
+class LibraryError : public std::runtime_error {
+ public:
+  enum class Kind { NotFound, Builtin, BadName, Unreadable };
+  LibraryError(Kind kind, const std::string& sentence)
+      : std::runtime_error(sentence), kind_(kind) {}
+  Kind kind() const { return kind_; }
+
+ private:
+  Kind kind_;
+};
+
+struct ScenarioEntry {
+  std::string name{};
+  std::string title{};
+  std::string description{};
+  bool builtin = false;
+  bool is_log = false;  // a recorded log to replay instead of a world
+};
+
+/// Reads its folders anew on each call: people edit them. Any thread, but never the io thread.
+class ScenarioLibrary {
+ public:
+  /// `own`: folder for the user's *.json, made on the first save; `logs`: folder of CARMEN *.log
+  /// files. Either may be empty: none.
+  ScenarioLibrary(std::filesystem::path own, std::filesystem::path logs);
+
+  std::vector<ScenarioEntry> list() const;
+  /// Throws LibraryError, or DocumentError when a file does not say what it must.
+  sim::Scenario load(const std::string& name) const;
+  /// Writes the user's own; throws LibraryError on a built-in name or an unwritable folder.
+  void save(const sim::Scenario& scenario) const;
+  void remove(const std::string& name) const;
+
+  /// A scenario from a file of its own, or a log when it ends in .log (command line only: a name
+  /// from the network is never used as a path).
+  static sim::Scenario from_file(const std::filesystem::path& path);
+
+ private:
+  std::filesystem::path own_;
+  std::filesystem::path logs_;
+};
+
+}  // namespace server

@@ -1,0 +1,152 @@
+// server/run/sensor_json.cpp: one reader and one writer each.
+#include "server/run/sensor_json.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "algo/units.hpp"
+#include "sim/gyro_model.hpp"
+#include "sim/infrared_model.hpp"
+#include "sim/sonar_model.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+/// Short numbers for whole degrees; 1e-9 degrees are no difference.
+double in_degrees(double angle) {
+  return std::round(angle / algo::units::kRadiansPerDegree * 1e9) / 1e9;
+}
+
+algo::Pose2 mount_from_json(const JsonReader& in) {
+  constexpr NumberRange kOnHull{-10, 10};  // [m]
+  return {in.number("x", kOnHull),
+          in.number("y", kOnHull),
+          algo::wrap_angle(in.number_or("heading", 0, {-100, 100}))};
+}
+
+sim::SonarConfig sonar_from_json(const JsonReader& in) {
+  in.only({"count",
+           "field_deg",
+           "cone_deg",
+           "ping",
+           "range_min",
+           "range_max",
+           "noise",
+           "incidence_deg",
+           "height"});
+  sim::SonarConfig sonar;
+  const auto degrees = [&](std::string_view key, double fallback) {
+    const double initial = fallback / algo::units::kRadiansPerDegree;
+    return in.number_or(key, initial, {0, 360}) * algo::units::kRadiansPerDegree;
+  };
+  sonar.count = static_cast<std::uint32_t>(in.whole_or("count", sonar.count, 64));
+  sonar.field = degrees("field_deg", sonar.field);
+  sonar.cone = degrees("cone_deg", sonar.cone);
+  sonar.ping = in.number_or("ping", sonar.ping);
+  sonar.range_min = in.number_or("range_min", sonar.range_min);
+  sonar.range_max = in.number_or("range_max", sonar.range_max);
+  sonar.noise = in.number_or("noise", sonar.noise);
+  sonar.incidence = degrees("incidence_deg", sonar.incidence);
+  sonar.height = in.number_or("height", sonar.height);
+  if (const auto complaint = sim::defect(sonar)) throw DocumentError("sonar", *complaint);
+  return sonar;
+}
+
+json to_json(const sim::SonarConfig& sonar) {
+  return {{"count", sonar.count},
+          {"field_deg", in_degrees(sonar.field)},
+          {"cone_deg", in_degrees(sonar.cone)},
+          {"ping", sonar.ping},
+          {"range_min", sonar.range_min},
+          {"range_max", sonar.range_max},
+          {"noise", sonar.noise},
+          {"incidence_deg", in_degrees(sonar.incidence)},
+          {"height", sonar.height}};
+}
+
+sim::InfraredConfig infrared_from_json(const JsonReader& in, const std::string& path) {
+  in.only({"mount", "height", "beams", "field_deg", "period", "range_min", "range_max", "noise"});
+  sim::InfraredConfig scanner;
+  if (in.has("mount")) scanner.mount_R = mount_from_json(in.object("mount"));
+  scanner.height = in.number_or("height", scanner.height);
+  scanner.beams = static_cast<std::uint32_t>(in.whole_or("beams", scanner.beams, 361));
+  const double field = scanner.field / algo::units::kRadiansPerDegree;
+  scanner.field = in.number_or("field_deg", field, {0, 360}) * algo::units::kRadiansPerDegree;
+  scanner.period = in.number_or("period", scanner.period);
+  scanner.range_min = in.number_or("range_min", scanner.range_min);
+  scanner.range_max = in.number_or("range_max", scanner.range_max);
+  scanner.noise = in.number_or("noise", scanner.noise);
+  if (const auto complaint = sim::defect(scanner)) throw DocumentError(path, *complaint);
+  return scanner;
+}
+
+json to_json(const sim::InfraredConfig& scanner) {
+  return {
+      {"mount",
+       {{"x", scanner.mount_R.x}, {"y", scanner.mount_R.y}, {"heading", scanner.mount_R.heading}}},
+      {"height", scanner.height},
+      {"beams", scanner.beams},
+      {"field_deg", in_degrees(scanner.field)},
+      {"period", scanner.period},
+      {"range_min", scanner.range_min},
+      {"range_max", scanner.range_max},
+      {"noise", scanner.noise}};
+}
+
+/// `false`: none; an object: one with those errors; absent: as the vehicle has it.
+void read_gyro(const JsonReader& in, sim::Scenario& scenario) {
+  if (!in.has("gyro")) return;
+  if (in.raw()["gyro"].is_boolean()) {
+    scenario.has_gyro = in.flag_or("gyro", true);
+    return;
+  }
+  const JsonReader gyro = in.object("gyro");
+  gyro.only({"bias", "bias_walk", "noise"});
+  sim::GyroConfig config;
+  config.bias = gyro.number_or("bias", config.bias);
+  config.bias_walk = gyro.number_or("bias_walk", config.bias_walk);
+  config.noise = gyro.number_or("noise", config.noise);
+  if (const auto complaint = sim::defect(config)) throw DocumentError("gyro", *complaint);
+  scenario.gyro = config;
+}
+
+}  // namespace
+
+void read_sensors(const JsonReader& in, sim::Scenario& scenario) {
+  if (in.has("sonar")) scenario.sonar = sonar_from_json(in.object("sonar"));
+  if (in.has("infrared")) {
+    const json& list = in.array("infrared", 4);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::string path = fmt::format("infrared/{}", i);
+      scenario.infrared.push_back(infrared_from_json({list[i], path}, path));
+    }
+  }
+  read_gyro(in, scenario);
+  scenario.bumpers = static_cast<std::uint32_t>(in.whole_or("bumpers", scenario.bumpers, 8));
+  scenario.encoders = in.flag_or("encoders", scenario.encoders);
+  const std::string localization = in.text_or("localization", "encoders");
+  if (localization != "encoders" && localization != "gyro") {
+    in.fail("localization", "must be \"encoders\" or \"gyro\"");
+  }
+  scenario.localization =
+      localization == "gyro" ? sim::Localization::Gyro : sim::Localization::Encoders;
+}
+
+void write_sensors(const sim::Scenario& s, nlohmann::json& out) {
+  if (s.sonar) out["sonar"] = to_json(*s.sonar);
+  for (const sim::InfraredConfig& scanner : s.infrared) out["infrared"].push_back(to_json(scanner));
+  if (!s.has_gyro) out["gyro"] = false;
+  if (s.has_gyro && s.gyro) {
+    out["gyro"] = {
+        {"bias", s.gyro->bias}, {"bias_walk", s.gyro->bias_walk}, {"noise", s.gyro->noise}};
+  }
+  if (s.bumpers != 1) out["bumpers"] = s.bumpers;
+  if (!s.encoders) out["encoders"] = false;
+  if (s.localization == sim::Localization::Gyro) out["localization"] = "gyro";
+}
+
+}  // namespace server

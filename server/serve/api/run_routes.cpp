@@ -1,0 +1,313 @@
+// server/serve/api/run_routes.cpp: experiments in, records out.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "server/record/run_json.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/paths.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/api/api.hpp"
+#include "server/serve/api/reply.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr std::uint64_t kMaxRepeats = 10'000;
+
+db::RunId run_id(const net::Request& request) {
+  const std::string& text = request.params.at("id");
+  if (text.empty() || text.size() > 18 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    throw DocumentError("id", fmt::format("'{}' is not a run's number", text));
+  }
+  return std::stoll(text);
+}
+
+net::Response no_such_run(db::RunId run) {
+  return net::problem(404, "Not found", fmt::format("There is no run {}.", run));
+}
+
+db::RunFilter filter_of(const net::Request& request) {
+  db::RunFilter filter;
+  const auto get = [&](const char* key) -> std::optional<std::string> {
+    const auto it = request.query.find(key);
+    if (it == request.query.end() || it->second.empty()) return std::nullopt;
+    return it->second;
+  };
+  filter.scenario = get("scenario");
+  filter.controller = get("controller");
+  filter.outcome = get("outcome");
+  if (const auto status = get("status")) {
+    filter.status = db::find_status(*status);
+    if (!filter.status) {
+      throw DocumentError("status",
+                          fmt::format("'{}' is unknown; known are queued, recording, finished, "
+                                      "interrupted, cancelled, failed",
+                                      *status));
+    }
+  }
+  return filter;
+}
+
+/// Appends `item` to a list in JSON.
+void append_item(std::string& list, const json& item) {
+  if (list.size() > 1) list += ',';
+  list += dump_json(item);
+}
+
+/// {"items":[...],"next":...} and `more`, the fields after those.
+net::Response page_response(std::string list, const json& next, const std::string& more = "") {
+  return net::json_response(
+      200, "{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
+}
+
+net::Response list_runs(ApiContext& context, const net::Request& request, Worker& worker) {
+  std::optional<db::RunId> cursor;
+  if (request.query.contains("cursor")) {
+    cursor = static_cast<db::RunId>(number_of(request, "cursor", 0));
+  }
+  const bool first_page = !cursor;
+  const db::RunFilter filter = filter_of(request);
+  db::RunReader& reader = worker.runs();
+  const std::size_t room = context.room.page();
+  std::string list = "[";
+  for (std::size_t left = limit_of(request, 50, 500); left > 0 && list.size() < room; --left) {
+    const db::RunPage page = reader.list(filter, 1, cursor);
+    cursor = page.next;
+    for (const db::RunRow& row : page.runs) append_item(list, to_json(row));
+    if (!cursor) break;
+  }
+  return page_response(std::move(list),
+                       cursor ? json(std::to_string(*cursor)) : json(nullptr),
+                       first_page ? fmt::format(",\"total\":{}", reader.count(filter)) : "");
+}
+
+Experiment experiment_from_json(const ApiContext& context, const json& body) {
+  const JsonReader in(body, "");
+  in.only({"scenario", "controller", "filter", "vehicle", "parameters", "seed", "repeats", "pace"});
+  sim::Scenario scenario = body.contains("scenario") && body["scenario"].is_object()
+                               ? scenario_from_json(body["scenario"])
+                               : context.library.load(in.text("scenario", 64));
+  Experiment experiment;
+  experiment.spec = make_spec(std::move(scenario), overrides_from_json(body));
+  experiment.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
+  if (experiment.repeats == 0) in.fail("repeats", "must be at least 1");
+  experiment.pace = pace_from_json(body, "pace", 0);
+  return experiment;
+}
+
+void start_runs(ApiContext& context, const net::Request& request, const net::Responder& respond) {
+  const auto accepted = [respond](const std::vector<db::RunId>& runs, const std::string& failure) {
+    if (runs.empty()) {
+      respond(net::problem(503, "The record is not available", without_folders(failure)));
+      return;
+    }
+    net::Response response = json_response(202, {{"runs", runs}});
+    response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
+    respond(std::move(response));
+  };
+  if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
+    respond(net::problem(
+        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+  }
+}
+
+void delete_run(ApiContext& context, const net::Request& request, const net::Responder& respond) {
+  const db::RunId run = run_id(request);
+  context.recorder.post([&context, run, respond](db::RunStore& store) {
+    net::Response response;
+    response.status = 204;
+    try {
+      switch (store.delete_run(run)) {
+        case db::RunStore::Deletion::Deleted:
+          store.commit();
+          break;
+        case db::RunStore::Deletion::NotFound:
+          response = no_such_run(run);
+          break;
+        case db::RunStore::Deletion::StillRecording:
+          response = net::problem(409, "Still recording", "Cancel or end the run first.");
+          break;
+      }
+    } catch (const db::DatabaseError&) {
+      // A disk that is full must not keep what somebody wants to be rid of.
+      context.recorder.post_when_well([run](db::RunStore& later) { later.delete_run(run); });
+      response = json_response(
+          202, {{"ok", true}, {"detail", "It goes as soon as the store takes writes again."}});
+    } catch (const std::exception& e) {
+      response = net::problem(503, "The record is not available", without_folders(e.what()));
+    }
+    context.post_to_io([respond, response = std::move(response)] { respond(response); });
+  });
+}
+
+/// Runs a run that was cut again from its start, under its own number.
+void resume_run(ApiContext& context,
+                const net::Request& request,
+                Worker& worker,
+                const net::Responder& respond) {
+  const db::RunId run = run_id(request);
+  const auto row = worker.runs().get(run);
+  if (!row) {
+    respond(no_such_run(run));
+    return;
+  }
+  const json document = parse_json(row->what.document, kOwnDocument);
+  if (!document.contains("pace")) {
+    respond(net::problem(409,
+                         "Driven live",
+                         "People drove this run, which cannot be run again by itself: load its "
+                         "scenario and drive it."));
+    return;
+  }
+  RunOverrides overrides;
+  overrides.seed = row->what.seed;
+  RunSpec spec = make_spec(document.value("source", "") == "replay"
+                               ? context.library.load(row->what.scenario)
+                               : scenario_from_json(document.at("scenario")),
+                           overrides);
+  const bool taken = context.experiments.resume(
+      run,
+      std::move(spec),
+      document.at("pace").get<double>(),
+      row->what.document.size(),
+      [run, respond](const std::string& refusal) {
+        respond(refusal.empty() ? json_response(202, {{"runs", {run}}})
+                                : net::problem(409, "Not resumed", refusal));
+      });
+  if (!taken) {
+    respond(net::problem(
+        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+  }
+}
+
+net::Response list_ticks(ApiContext& context, const net::Request& request, Worker& worker) {
+  constexpr std::size_t kRows = 250;  // between two looks at the room
+  const db::RunId run = run_id(request);
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  std::optional<std::uint64_t> next = number_of(request, "from", 0);
+  std::size_t left = limit_of(request, 1000, 10'000);
+  const std::size_t room = context.room.page();
+  std::string list = "[";
+  while (next && left > 0 && list.size() < room) {
+    const db::TickPage page = reader.ticks(run, *next, std::min(left, kRows));
+    for (const db::TickRow& row : page.ticks) append_item(list, to_json(row));
+    left -= page.ticks.size();
+    next = page.next;
+  }
+  return page_response(std::move(list), next ? json(*next) : json(nullptr));
+}
+
+/// Each frame as u32 little-endian length + bytes.
+net::Response list_frames(ApiContext& context, const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  std::string body;
+  const auto append = [&](std::uint64_t /*tick*/, std::span<const std::byte> frame) {
+    const auto size = static_cast<std::uint32_t>(frame.size());
+    for (int shift = 0; shift < 32; shift += 8) {
+      body.push_back(static_cast<char>((size >> shift) & 0xFF));
+    }
+    body.append(reinterpret_cast<const char*>(frame.data()), frame.size());
+  };
+  std::optional<std::uint64_t> next = number_of(request, "from", 0);
+  const std::size_t room = context.room.page();
+  for (std::size_t left = limit_of(request, 1000, 5000); left > 0 && body.size() < room; --left) {
+    next = reader.frames(run, *next, 1, append);
+    if (!next) break;
+  }
+  net::Response response;
+  response.content_type = "application/octet-stream";
+  if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
+  response.body = std::make_shared<const std::string>(std::move(body));
+  return response;
+}
+
+net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
+  constexpr std::size_t kLines = 1000;  // of a slice: some 100 kB
+  const db::RunId run = run_id(request);
+  if (!worker.runs().get(run)) return no_such_run(run);
+  const auto next = std::make_shared<std::optional<std::uint64_t>>(0);
+  const auto make = [run, next](Worker& at_work) {
+    std::string slice;
+    if (!*next) return slice;
+    const std::uint64_t from = **next;
+    if (from == 0) slice = db::RunReader::csv_header();
+    const std::size_t before = slice.size();
+    *next = at_work.runs().csv(run, from, kLines, slice, csv_names());
+    if (from > 0 && slice.size() == before) throw db::StoreError("The run was deleted meanwhile.");
+    return slice;
+  };
+  net::Response response;
+  response.content_type = "text/csv; charset=utf-8";
+  response.headers.push_back(
+      {"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
+  response.stream = std::make_shared<WorkerStream>(context, make);
+  return response;
+}
+
+net::Response cancel_run(ApiContext& context, const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  if (context.experiments.cancel(run)) return json_response(202, {{"ok", true}});
+  if (!worker.runs().get(run)) return no_such_run(run);
+  return net::problem(409, "Not running", "The run is neither queued nor running.");
+}
+
+net::Response get_run(const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  const auto row = worker.runs().get(run);
+  return row ? json_response(200, to_json(*row)) : no_such_run(run);
+}
+
+net::Response get_metrics(const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  auto row = worker.runs().get(run);
+  if (!row) return no_such_run(run);
+  row->what.document.clear();
+  return json_response(200, to_json(*row).at("metrics"));
+}
+
+}  // namespace
+
+void add_run_routes(net::Router& router, ApiContext& context) {
+  using Make = net::Response (*)(ApiContext&, const net::Request&, Worker&);
+  const auto made = [&context](Make make) {
+    return made_on_worker(context, [&context, make](const net::Request& request, Worker& worker) {
+      return make(context, request, worker);
+    });
+  };
+  router.add(
+      "POST",
+      "/api/v1/runs",
+      on_worker(context,
+                [&context](const net::Request& request, Worker&, const net::Responder& respond) {
+                  start_runs(context, request, respond);
+                }));
+  router.add("GET", "/api/v1/runs", made(list_runs));
+  router.add("GET", "/api/v1/runs/{id}", made_on_worker(context, get_run));
+  router.add("DELETE",
+             "/api/v1/runs/{id}",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               delete_run(context, request, respond);
+             }));
+  router.add("POST", "/api/v1/runs/{id}/cancel", made(cancel_run));
+  router.add(
+      "POST",
+      "/api/v1/runs/{id}/resume",
+      on_worker(
+          context,
+          [&context](const net::Request& request, Worker& worker, const net::Responder& respond) {
+            resume_run(context, request, worker, respond);
+          }));
+  router.add("GET", "/api/v1/runs/{id}/metrics", made_on_worker(context, get_metrics));
+  router.add("GET", "/api/v1/runs/{id}/ticks", made(list_ticks));
+  router.add("GET", "/api/v1/runs/{id}/frames", made(list_frames));
+  router.add("GET", "/api/v1/runs/{id}/csv", made(export_csv));
+}
+
+}  // namespace server

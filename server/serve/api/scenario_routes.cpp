@@ -1,0 +1,65 @@
+// server/serve/api/scenario_routes.cpp: scenarios by name; only one's own can be changed.
+#include "server/run/json_reader.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/api/api.hpp"
+#include "server/serve/api/reply.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+json to_json(const ScenarioEntry& entry) {
+  return {{"name", entry.name},
+          {"title", entry.title},
+          {"description", entry.description},
+          {"builtin", entry.builtin},
+          {"kind", entry.is_log ? "log" : "world"}};
+}
+
+}  // namespace
+
+void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
+  make_robot(make_spec(scenario, {}));
+  context.library.save(scenario);
+}
+
+void add_scenario_routes(net::Router& router, ApiContext& context) {
+  router.add(
+      "GET", "/api/v1/scenarios", made_on_worker(context, [&context](const net::Request&, Worker&) {
+        json items = json::array();
+        for (const ScenarioEntry& entry : context.library.list()) {
+          items.push_back(to_json(entry));
+        }
+        return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
+      }));
+  router.add("GET",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
+               return json_response(
+                   200, server::to_json(context.library.load(request.params.at("name"))));
+             }));
+  router.add("PUT",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
+               json body = body_json(request);
+               const std::string name = request.params.at("name");
+               if (body.is_object() && !body.contains("name")) body["name"] = name;
+               const sim::Scenario scenario = scenario_from_json(body);
+               if (scenario.name != name) {
+                 throw DocumentError("name", "differs from the name in the path");
+               }
+               keep_scenario(context, scenario);
+               return json_response(200, server::to_json(scenario));
+             }));
+  router.add("DELETE",
+             "/api/v1/scenarios/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
+               context.library.remove(request.params.at("name"));
+               net::Response response;
+               response.status = 204;
+               return response;
+             }));
+}
+
+}  // namespace server

@@ -1,0 +1,318 @@
+// server/serve/api/session_routes.cpp: the live session: goal, obstacles, parameters, control.
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "server/run/hardware.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/obstacle_json.hpp"
+#include "server/run/pose_json.hpp"
+#include "server/run/request_json.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/api/api.hpp"
+#include "server/serve/api/reply.hpp"
+#include "server/serve/session_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+void busy(const net::Responder& respond) {
+  net::Response response =
+      net::problem(503, "Busy", "More is waiting to be done than this robot can take. Try again.");
+  response.headers.push_back({"Retry-After", "1"});
+  respond(std::move(response));
+}
+
+/// The session as it is then, or why the present run goes on.
+SessionLoader::Done answer_when_loaded(ApiContext& context, const net::Responder& respond) {
+  return [&context, respond](const std::exception_ptr& failure) {
+    if (failure) {
+      respond(problem_of(failure));
+    } else {
+      respond(json_response(200, state_json(context.session)));
+    }
+  };
+}
+
+/// Submits and answers once the control thread has, a Stop at once: `status`, or 409 with the
+/// reason.
+void submit_and_reply(ApiContext& context,
+                      algo::Request request,
+                      const net::Responder& respond,
+                      int status = 200) {
+  const auto id = std::make_shared<std::uint32_t>(0);
+  const bool stop = is_stop(request);
+  const std::optional<std::string> trouble = context.session.trouble_with(request);
+  const auto given = context.session.submit(
+      std::move(request),
+      [&context, respond, id, status, stop, trouble](const std::optional<std::string>& refusal) {
+        if (refusal) {
+          respond(net::problem(409, "Refused", *refusal));
+          return;
+        }
+        json body = accepted_json(context.session, stop);
+        if (*id != 0) body["id"] = *id;
+        if (trouble) body["warning"] = *trouble;
+        respond(json_response(status, body));
+      });
+  if (!given) {
+    busy(respond);
+    return;
+  }
+  *id = *given;
+}
+
+std::uint32_t obstacle_id(const net::Request& request) {
+  const std::string& text = request.params.at("id");
+  if (text.empty() || text.size() > 9 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    throw DocumentError("id", fmt::format("'{}' is not an obstacle's number", text));
+  }
+  return static_cast<std::uint32_t>(std::stoul(text));
+}
+
+json obstacle_list(const Session& session) {
+  json items = json::array();
+  for (const algo::Obstacle& o : session.state().obstacles) items.push_back(to_json(o));
+  return {{"items", std::move(items)}, {"next", nullptr}};
+}
+
+/// The values of `body` in an order in which each is allowed beside those before it; empty when
+/// there is none.
+std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters now) {
+  std::vector<algo::SetParameter> left;
+  for (const auto& [name, value] : body.items()) {
+    if (const auto p = algo::find_parameter(name)) left.push_back({*p, value.get<double>()});
+  }
+  std::vector<algo::SetParameter> order;
+  while (!left.empty()) {
+    const auto next = std::find_if(left.begin(), left.end(), [&](const auto& set) {
+      return !algo::refusal(now, set.parameter, set.value);
+    });
+    if (next == left.end()) return {};
+    now.set(next->parameter, next->value);
+    order.push_back(*next);
+    left.erase(next);
+  }
+  return order;
+}
+
+/// All values are checked together before the first is submitted.
+void patch_parameters(ApiContext& context, const json& body, const net::Responder& respond) {
+  const algo::Parameters& now = context.session.state().parameters;
+  parameters_from_json(body, "", now);
+  const std::vector<algo::SetParameter> order = in_safe_order(body, now);
+  if (order.empty()) {
+    respond(body.empty() ? json_response(200, to_json(now))
+                         : net::problem(409, "Refused", "Change these one at a time."));
+    return;
+  }
+  const auto left = std::make_shared<std::size_t>(order.size());
+  const auto refused = std::make_shared<std::string>();
+  for (const algo::SetParameter& set : order) {
+    const auto given = context.session.submit(
+        set, [&context, respond, left, refused](const std::optional<std::string>& refusal) {
+          if (refusal) *refused = *refusal;
+          if (--*left > 0) return;
+          respond(refused->empty() ? json_response(200, to_json(context.session.state().parameters))
+                                   : net::problem(409, "Refused", *refused));
+        });
+    if (!given) {
+      busy(respond);
+      return;
+    }
+  }
+}
+
+void control(ApiContext& context, const json& body, const net::Responder& respond) {
+  const JsonReader in(body, "");
+  const std::string action = in.text("action", 32);
+  Session& session = context.session;
+  if (action == "pause" || action == "step" || action == "speed") {
+    if (const auto refusal = session.pace_refusal()) {
+      respond(net::problem(409, "Refused", *refusal));
+      return;
+    }
+  }
+  if (action == "load") {
+    json load = body;
+    load.erase("action");
+    if (!load_from_json(context, load, answer_when_loaded(context, respond))) busy(respond);
+    return;
+  } else if (action == "step") {
+    in.only({"action", "ticks"});
+    session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
+  } else if (action == "speed") {
+    in.only({"action", "speed"});
+    in.number("speed");
+    session.set_speed(pace_from_json(body, "speed", 1));
+  } else if (action == "stop" || action == "release") {
+    in.only({"action"});
+    submit_and_reply(context, algo::Stop{action == "stop"}, respond);
+    return;
+  } else if (action == "arm" || action == "disarm") {
+    in.only({"action"});
+    if (const auto refusal = session.arm(action == "arm")) {
+      respond(net::problem(409, "Refused", *refusal));
+      return;
+    }
+  } else if (action == "play" || action == "pause") {
+    in.only({"action"});
+    session.pause(action == "pause");
+  } else if (action == "reset") {
+    in.only({"action"});
+    if (!context.loader.reset(answer_when_loaded(context, respond))) busy(respond);
+    return;
+  } else {
+    in.fail("action",
+            fmt::format("'{}' is unknown; known are play, pause, step, speed, reset, stop, "
+                        "release, arm, disarm, load",
+                        action));
+  }
+  respond(json_response(200, state_json(session)));
+}
+
+void save_scenario(ApiContext& context, const json& body, const net::Responder& respond) {
+  const JsonReader in(body, "");
+  in.only({"name", "title"});
+  const std::string name = in.text("name", 64);
+  if (!context.session.state().spec.scenario.log.empty()) {
+    respond(net::problem(409, "Refused", "A recorded log is playing: there is no world to save."));
+    return;
+  }
+  const sim::Scenario scenario = context.session.as_scenario(name, in.text_or("title", name));
+  answer_from_worker(context, respond, [&context, scenario](Worker&) {
+    keep_scenario(context, scenario);
+    net::Response response = json_response(201, to_json(scenario));
+    response.headers.push_back({"Location", "/api/v1/scenarios/" + scenario.name});
+    return response;
+  });
+}
+
+/// A goal as the body, to be taken as a request of `type`.
+net::Handler goal_route(ApiContext& context, const char* type) {
+  return guarded([&context, type](const net::Request& request, const net::Responder& respond) {
+    json body = body_json(request);
+    JsonReader(body, "").only({"x", "y", "heading"});
+    body["type"] = type;
+    submit_and_reply(context, request_from_json(body), respond);
+  });
+}
+
+}  // namespace
+
+bool load_from_json(ApiContext& context, const json& body, SessionLoader::Done done) {
+  const JsonReader in(body, "");
+  in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
+  const RunOverrides overrides = overrides_from_json(body);
+  std::optional<std::string> name;
+  if (in.has("scenario")) name = in.text("scenario", 64);
+  if (const auto& hardware = context.session.state().spec.hardware) {
+    if (name && *name != hardware->spec().name) {
+      in.fail("scenario",
+              "cannot be loaded: this server drives real hardware. Start another for simulation");
+    }
+    const auto plan = [hardware, overrides] {
+      return [hardware, overrides] { return hardware_spec(hardware, overrides); };
+    };
+    return context.loader.load(plan, std::move(done));
+  }
+  const auto plan = [&context, name, overrides]() -> SessionLoader::Make {
+    sim::Scenario now;
+    if (!name) now = context.session.state().spec.scenario;
+    return [&library = context.library, name, now, overrides] {
+      return make_spec(name ? library.load(*name) : now, overrides);
+    };
+  };
+  return context.loader.load(plan, std::move(done));
+}
+
+void add_session_routes(net::Router& router, ApiContext& context) {
+  // A script that looks on may be a cron job; one that asks for something is there.
+  const auto route = [&](const std::string& method, const char* pattern, net::Handler handler) {
+    router.add(
+        method,
+        pattern,
+        [&context, looks_on = method == "GET", handler = std::move(handler)](
+            const net::Request& request, const net::Responder& respond) {
+          if (!looks_on) context.session.watch().script_sign(OperatorWatch::Clock::now());
+          handler(request, respond);
+        },
+        kRequestBytes);
+  };
+  route("POST", "/api/v1/session/watch", immediate([](const net::Request& request) {
+          if (!request.body.empty()) JsonReader(body_json(request), "").only({});
+          return json_response(200, {{"ok", true}});
+        }));
+  router.add("POST",
+             "/api/v1/session/goal/check",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               if (context.session.may_look_at_goals()) {
+                 respond(json_response(200, goal_check_json(context.session, body_json(request))));
+               } else {
+                 busy(respond);
+               }
+             }),
+             kRequestBytes);
+  route("GET", "/api/v1/session", immediate([&context](const net::Request&) {
+          return json_response(200, session_json(context.session));
+        }));
+  route("POST",
+        "/api/v1/session/requests",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          submit_and_reply(context, request_from_json(body_json(request)), respond);
+        }));
+  route("PUT", "/api/v1/session/goal", goal_route(context, "set_goal"));
+  route("POST", "/api/v1/session/goal", goal_route(context, "add_goal"));
+  route("DELETE",
+        "/api/v1/session/goal",
+        guarded([&context](const net::Request&, const net::Responder& respond) {
+          submit_and_reply(context, algo::ClearGoal{}, respond);
+        }));
+  route("GET", "/api/v1/session/obstacles", immediate([&context](const net::Request&) {
+          return json_response(200, obstacle_list(context.session));
+        }));
+  route("POST",
+        "/api/v1/session/obstacles",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
+          submit_and_reply(context, std::move(add), respond, 201);
+        }));
+  route("PUT",
+        "/api/v1/session/obstacles/{id}",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          json body = body_json(request);
+          JsonReader(body, "").only({"x", "y", "heading"});
+          body["type"] = "move_obstacle";
+          body["id"] = obstacle_id(request);
+          submit_and_reply(context, request_from_json(body), respond);
+        }));
+  route("DELETE",
+        "/api/v1/session/obstacles/{id}",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          submit_and_reply(context, algo::RemoveObstacle{obstacle_id(request)}, respond);
+        }));
+  route("GET", "/api/v1/session/parameters", immediate([&context](const net::Request&) {
+          return json_response(200, to_json(context.session.state().parameters));
+        }));
+  route("PATCH",
+        "/api/v1/session/parameters",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          patch_parameters(context, body_json(request), respond);
+        }));
+  route("POST",
+        "/api/v1/session/control",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          control(context, body_json(request), respond);
+        }));
+  route("POST",
+        "/api/v1/session/scenario",
+        guarded([&context](const net::Request& request, const net::Responder& respond) {
+          save_scenario(context, body_json(request), respond);
+        }));
+}
+
+}  // namespace server

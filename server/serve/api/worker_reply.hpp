@@ -1,0 +1,70 @@
+// server/serve/api/worker_reply.hpp: answers that are made on a worker, bounded in bytes.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "server/serve/net/http.hpp"
+#include "server/serve/net/router.hpp"
+#include "server/serve/workers.hpp"
+
+namespace server {
+
+struct ApiContext;
+
+/// A handler that runs on a worker, where it may read, wait and build. It answers now or later,
+/// from any thread; what it throws becomes a problem document.
+net::Handler on_worker(
+    ApiContext& context,
+    std::function<void(const net::Request&, Worker&, const net::Responder&)> handler);
+
+/// Answers `respond` with what `make` makes on a worker.
+void answer_from_worker(ApiContext& context,
+                        const net::Responder& respond,
+                        std::function<net::Response(Worker&)> make);
+
+/// The same as on_worker() for a handler that answers before it returns.
+net::Handler made_on_worker(ApiContext& context,
+                            std::function<net::Response(const net::Request&, Worker&)> handler);
+
+/// What answers made on workers may hold in memory, all clients together, until they are sent. A
+/// page of runs, ticks or frames ends with the item that fills it and says where the next one
+/// begins; while many clients take their pages slowly, pages get shorter. Any thread.
+class PageRoom {
+ public:
+  /// [bytes] after which a page of now ends.
+  std::size_t page() const;
+  /// The page as a body; it counts until it has been sent.
+  net::Payload hold(std::string page);
+  /// The answer, its body counted; 503 when it is large and there is no room for it.
+  net::Response admit(net::Response answer);
+
+ private:
+  static constexpr std::size_t kPage = std::size_t{4} << 20;
+  static constexpr std::size_t kLeast = std::size_t{64} << 10;
+  static constexpr std::size_t kAll = std::size_t{64} << 20;
+
+  std::shared_ptr<std::atomic<std::size_t>> held_ = std::make_shared<std::atomic<std::size_t>>(0);
+};
+
+/// A body whose slices are made on workers, each when the client has taken the one before.
+class WorkerStream final : public net::BodyStream,
+                           public std::enable_shared_from_this<WorkerStream> {
+ public:
+  /// Makes the next slice, empty after the last; throws when the rest cannot be made. Calls never
+  /// overlap, but may come from different workers.
+  using Make = std::function<std::string(Worker&)>;
+
+  WorkerStream(ApiContext& context, Make make) : context_(context), make_(std::move(make)) {}
+  void next(std::function<void(Slice)> give) override;
+
+ private:
+  ApiContext& context_;
+  Make make_;
+};
+
+}  // namespace server

@@ -1,0 +1,46 @@
+// server/serve/app.hpp: the serving program: one session, its record, and the doors to both.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "server/run/run_spec.hpp"
+#include "server/serve/net/server.hpp"
+
+namespace server {
+
+struct AppOptions {
+  net::ServerOptions net{};
+  std::filesystem::path database{};
+  std::filesystem::path scenarios{};  // the user's own
+  std::filesystem::path logs{};       // CARMEN logs offered as scenarios
+  std::uint64_t keep_bytes = std::uint64_t{2} << 30;
+  bool evict_oldest = false;      // finished runs may be deleted for room
+  bool require_record = false;    // a tick that is not recorded ends the live run
+  RunSpec first{};                // loaded at the start
+  bool armed = false;             // hardware: its motors on as soon as its devices are well
+  bool unattended = false;        // hardware: drives on though nobody is there to stop it
+  std::function<bool()> ended{};  // asked some hundred times a second: true ends run()
+};
+
+class App {
+ public:
+  /// Opens the database, binds the port and loads the first scenario. Throws std::exception with a
+  /// sentence.
+  explicit App(AppOptions options);
+  ~App();
+  App(const App&) = delete;
+  App& operator=(const App&) = delete;
+
+  std::string url() const;
+  void run();   // until AppOptions::ended or stop()
+  void stop();  // from any thread
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace server

@@ -1,0 +1,373 @@
+// server/serve/bridge.cpp: what goes out on which channel, and what comes in on which topic.
+#include "server/serve/bridge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+#include "server/record/encoded_frame.hpp"
+#include "server/run/json_limits.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/paths.hpp"
+#include "server/run/request_json.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/operator_watch.hpp"
+#include "server/serve/scene_json.hpp"
+#include "server/serve/session_json.hpp"
+
+namespace server {
+namespace {
+
+using foxglove::ChannelId;
+using foxglove::ClientId;
+using foxglove::ServiceReply;
+using nlohmann::json;
+constexpr std::chrono::milliseconds kPathPeriod{500};  // the whole path is sent each time
+constexpr int kStateShare = 9;  // times what publishing the state took, until the next
+constexpr const char* kBusy = "More is waiting to be done than this robot can take. Try again.";
+
+std::shared_ptr<const std::string> shared(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+double yaw_of(const JsonReader& q) {
+  const double x = q.number("x"), y = q.number("y"), z = q.number("z"), w = q.number("w");
+  return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+}
+
+/// The same limits as over REST.
+algo::Request goal_at(const JsonReader& position, std::optional<double> heading) {
+  json goal = {{"type", "set_goal"}, {"x", position.number("x")}, {"y", position.number("y")}};
+  if (heading) goal["heading"] = *heading;
+  return request_from_json(goal);
+}
+
+/// geometry_msgs/PoseStamped.
+algo::Request goal_from_pose(const json& message) {
+  const JsonReader pose = JsonReader(message, "").object("pose");
+  std::optional<double> heading;
+  if (pose.has("orientation")) heading = yaw_of(pose.object("orientation"));
+  return goal_at(pose.object("position"), heading);
+}
+
+/// geometry_msgs/PointStamped.
+algo::Request goal_from_point(const json& message) {
+  return goal_at(JsonReader(message, "").object("point"), std::nullopt);
+}
+
+/// geometry_msgs/Twist in m/s and rad/s, as a share of the robot's limits.
+algo::Joystick stick_from_twist(const json& message, const algo::RobotSpec& robot) {
+  const JsonReader in(message, "");
+  const double v = in.object("linear").number("x");
+  const double omega = in.object("angular").number("z");
+  const auto share = [](double value, double limit) {
+    return limit > 0 ? std::clamp(value / limit, -1.0, 1.0) : 0.0;
+  };
+  return {share(v, robot.max_v), share(omega, robot.max_omega)};
+}
+
+std::function<void(std::exception_ptr)> answer_when_loaded(const ServiceReply& reply) {
+  return [reply](const std::exception_ptr& failure) {
+    if (!failure) {
+      reply.success({{"ok", true}});
+      return;
+    }
+    try {
+      std::rethrow_exception(failure);
+    } catch (const std::exception& e) {
+      reply.failure(without_folders(e.what()));
+    }
+  };
+}
+
+}  // namespace
+
+std::vector<foxglove::Parameter> Bridge::Gains::list() const {
+  std::vector<foxglove::Parameter> out;
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    out.push_back({std::string(p.name), shown_[p.id], "float64"});
+  }
+  const sim::Scenario& scenario = bridge_.session_.state().spec.scenario;
+  out.push_back({"controller", scenario.controller, ""});
+  out.push_back({"filter", scenario.filter, ""});
+  out.push_back({"scenario", scenario.name, ""});
+  return out;
+}
+
+std::string Bridge::Gains::set(const std::string& name, const json& value) {
+  const auto parameter = algo::find_parameter(name);
+  if (!parameter) {
+    const bool read_only = name == "controller" || name == "filter" || name == "scenario";
+    return read_only ? "'" + name + "' is read only here: call the service /load."
+                     : "There is no parameter '" + name + "'.";
+  }
+  if (!value.is_number()) return "'" + name + "' takes a number.";
+  const double wanted = value.get<double>();
+  if (const auto why = algo::refusal(shown_, *parameter, wanted)) return *why;
+  ++on_their_way_;
+  shown_.set(*parameter, wanted);
+  const auto given = bridge_.session_.submit(
+      algo::SetParameter{*parameter, wanted}, [this](const std::optional<std::string>& refusal) {
+        --on_their_way_;
+        follow();
+        if (refusal) {
+          bridge_.hub_.announce(foxglove::StatusLevel::Warning, *refusal);
+          bridge_.hub_.parameters_changed();
+        }
+      });
+  if (given) return {};
+  --on_their_way_;
+  follow();
+  return kBusy;
+}
+
+void Bridge::Gains::follow() {
+  if (on_their_way_ == 0) shown_ = bridge_.session_.state().parameters;
+}
+
+Bridge::Bridge(Session& session, Loads loads) : session_(session), loads_(std::move(loads)) {
+  hub_.set_parameters(gains_);
+  add_channels();
+  add_services();
+  add_topics();
+  session_.on_frame = [this](const FrameRef& frame) { publish_frame(frame); };
+  session_.on_change = [this] { state_changed(); };
+  session_.on_log = [this](LogLevel level, const std::string& text) {
+    const double stamp = static_cast<double>(now_ns()) * 1e-9;
+    hub_.publish_event(log_, now_ns(), shared(log_json(stamp, level, without_folders(text))));
+  };
+}
+
+std::uint64_t Bridge::now_ns() const {
+  if (!session_.newest()) return 0;
+  const double stamp = session_.newest()->telemetry.observation.stamp;
+  return static_cast<std::uint64_t>(std::max(0.0, stamp) * 1e9);
+}
+
+void Bridge::add_channels() {
+  // Encoded only while somebody subscribes: of each frame, and of the newest for who comes later.
+  const auto drawn = [this](const char* topic,
+                            const char* schema,
+                            std::function<std::string(const algo::Telemetry&)> encode,
+                            const FrameRef& newest) {
+    return hub_.add_channel({topic, schema, [this, &newest, encode = std::move(encode)] {
+                               return newest ? foxglove::Stamped{now_ns(),
+                                                                 shared(encode(newest->telemetry))}
+                                             : foxglove::Stamped{};
+                             }});
+  };
+  const FrameRef& newest = session_.newest();
+  telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
+  state_ = hub_.add_channel({"/state", "tautline.State"});
+  scan_ = drawn("/scan", "foxglove.LaserScan", laser_scan_json, session_.newest_scan());
+  tf_ = drawn("/tf", "foxglove.FrameTransforms", transforms_json, newest);
+  odom_ = drawn("/odom", "foxglove.Odometry", odometry_json, newest);
+  strip_ = drawn("/strip", "foxglove.SceneUpdate", strip_json, newest);
+  forces_ = drawn("/forces", "foxglove.SceneUpdate", forces_json, newest);
+  obstacles_ = hub_.add_channel({"/obstacles", "foxglove.SceneUpdate"});
+  goal_ = drawn("/goal", "foxglove.PoseInFrame", goal_json, newest);
+  trajectory_ = drawn(
+      "/trajectory",
+      "foxglove.PosesInFrame",
+      [this](const algo::Telemetry& t) { return session_.path().message(t.observation.stamp); },
+      newest);
+  log_ = hub_.add_channel({"/log", "foxglove.Log"});
+}
+
+void Bridge::sign_of(ClientId client) {
+  session_.watch().page_sign(client, OperatorWatch::Clock::now());
+}
+
+void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& reply) {
+  sign_of(client);
+  const auto id = std::make_shared<std::uint32_t>(0);
+  const bool stop = is_stop(request);
+  const std::optional<std::string> trouble = session_.trouble_with(request);
+  const auto given =
+      session_.submit(std::move(request),
+                      [this, reply, id, stop, trouble](const std::optional<std::string>& refusal) {
+                        if (refusal) {
+                          reply.failure(*refusal);
+                          return;
+                        }
+                        json body = accepted_json(session_, stop);
+                        if (*id != 0) body["id"] = *id;
+                        if (trouble) body["warning"] = *trouble;
+                        reply.success(body);
+                      });
+  if (given) {
+    *id = *given;
+  } else {
+    reply.failure(kBusy);
+  }
+}
+
+void Bridge::add_services() {
+  // Each throws what is wrong with its request; the hub makes that the call's failure.
+  const auto add = [this](const char* name, std::function<void(const json&)> action) {
+    hub_.add_service(
+        name, [action = std::move(action)](ClientId, const json& body, const ServiceReply& reply) {
+          action(body);
+          reply.success({{"ok", true}});
+        });
+  };
+  hub_.add_service("/request",
+                   [this](ClientId client, const json& body, const ServiceReply& reply) {
+                     submit(client, request_from_json(body), reply);
+                   });
+  hub_.add_service("/watch", [this](ClientId client, const json& body, const ServiceReply& reply) {
+    JsonReader(body, "").only({});
+    sign_of(client);
+    reply.success({{"ok", true}});
+  });
+  hub_.add_service("/check_goal", [this](ClientId, const json& body, const ServiceReply& reply) {
+    if (!session_.may_look_at_goals()) {
+      reply.failure(kBusy);
+      return;
+    }
+    reply.success(goal_check_json(session_, body));
+  });
+  hub_.add_service("/load", [this](ClientId, const json& body, const ServiceReply& reply) {
+    if (!loads_.load(body, answer_when_loaded(reply))) reply.failure(kBusy);
+  });
+  hub_.add_service("/reset", [this](ClientId, const json&, const ServiceReply& reply) {
+    if (!loads_.reset(answer_when_loaded(reply))) reply.failure(kBusy);
+  });
+  const auto heed_pace = [this] {
+    if (const auto refusal = session_.pace_refusal()) throw std::runtime_error(*refusal);
+  };
+  add("/pause", [this, heed_pace](const json&) {
+    heed_pace();
+    session_.pause(true);
+  });
+  add("/play", [this](const json&) { session_.pause(false); });
+  add("/arm", [this](const json& body) {
+    const JsonReader in(body, "");
+    in.only({"armed"});
+    if (!in.has("armed")) in.fail("armed", "must be true or false");
+    if (const auto refusal = session_.arm(in.flag_or("armed", false))) {
+      throw std::runtime_error(*refusal);
+    }
+  });
+  add("/step", [this, heed_pace](const json& body) {
+    heed_pace();
+    const JsonReader in(body, "");
+    session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
+  });
+  add("/speed", [this, heed_pace](const json& body) {
+    heed_pace();
+    JsonReader(body, "").number("speed");
+    session_.set_speed(pace_from_json(body, "speed", 1));
+  });
+}
+
+/// A refusal found out later goes to the status line of the client that asked.
+std::string Bridge::hand_over(ClientId client, algo::Request request) {
+  sign_of(client);
+  if (const auto trouble = session_.trouble_with(request)) hub_.warn(client, *trouble);
+  const bool stick = std::holds_alternative<algo::Joystick>(request);
+  const auto given = session_.submit(
+      std::move(request), [this, client, stick](const std::optional<std::string>& refusal) {
+        if (refusal) say_refusal(client, stick, *refusal);
+      });
+  return given ? std::string() : std::string(kBusy);
+}
+
+/// A stick is published many times a second: once in a while is enough.
+void Bridge::say_refusal(ClientId client, bool stick, const std::string& refusal) {
+  constexpr std::chrono::seconds kEvery{3};
+  const auto now = std::chrono::steady_clock::now();
+  if (stick) {
+    const auto [said, first] = stick_refused_.try_emplace(client, now);
+    if (!first && now - said->second < kEvery) return;
+    said->second = now;
+  }
+  hub_.warn(client, refusal);
+}
+
+void Bridge::add_topics() {
+  for (const char* topic : {"/goal_pose", "/move_base_simple/goal"}) {
+    hub_.on_publish(topic, [this](ClientId client, const json& message) {
+      return hand_over(client, goal_from_pose(message));
+    });
+  }
+  hub_.on_publish("/clicked_point", [this](ClientId client, const json& message) {
+    return hand_over(client, goal_from_point(message));
+  });
+  hub_.on_publish("/cmd_vel", [this](ClientId client, const json& message) {
+    return hand_over(client, stick_from_twist(message, session_.state().robot));
+  });
+  hub_.on_publish("/edits", [this](ClientId client, const json& message) {
+    return hand_over(client, request_from_json(message));
+  });
+  hub_.on_client_gone([this](ClientId client) {
+    session_.watch().page_gone(client);
+    stick_refused_.erase(client);
+  });
+  hub_.on_publisher_gone([this](ClientId, const std::string& topic) {
+    // A driver who leaves lets go of the stick.
+    if (topic == "/cmd_vel") session_.submit(algo::Joystick{}, {});
+  });
+}
+
+void Bridge::publish_frame(const FrameRef& frame) {
+  const algo::Telemetry& t = frame->telemetry;
+  const std::uint64_t time_ns = now_ns();
+  // Whether or not somebody watches: whoever opens the page while time stands still wants the last.
+  const auto bytes = encoded(*frame).bytes();
+  hub_.publish(
+      telemetry_, time_ns, shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  const auto publish = [&](ChannelId channel, auto encode) {
+    if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));
+  };
+  if (t.scene.fresh) publish(scan_, [&] { return laser_scan_json(t); });
+  publish(tf_, [&] { return transforms_json(t); });
+  publish(odom_, [&] { return odometry_json(t); });
+  publish(strip_, [&] { return strip_json(t); });
+  publish(forces_, [&] { return forces_json(t); });
+  publish(goal_, [&] { return goal_json(t); });
+  const PathTrail& path = session_.path();
+  const auto now = std::chrono::steady_clock::now();
+  if (path.changes() != path_published_ && now - path_sent_ >= kPathPeriod) {
+    path_published_ = path.changes();
+    path_sent_ = now;
+    publish(trajectory_, [&] { return path.message(t.observation.stamp); });
+  }
+  hub_.broadcast_time(time_ns, now);
+}
+
+void Bridge::state_changed() {
+  state_waits_ = true;
+  flush();
+}
+
+/// The state of a world of two thousand obstacles takes milliseconds to write: changes that follow
+/// each other closely are told together, so that this takes a tenth of the io thread's time at
+/// most.
+void Bridge::flush() {
+  const auto begin = std::chrono::steady_clock::now();
+  if (!state_waits_ || begin < state_due_) return;
+  state_waits_ = false;
+  publish_state();
+  const auto end = std::chrono::steady_clock::now();
+  state_due_ = end + kStateShare * (end - begin);
+}
+
+void Bridge::publish_state() {
+  const std::uint64_t time_ns = now_ns();
+  hub_.publish(state_, time_ns, shared(dump_json(state_json(session_))));
+  hub_.publish(
+      obstacles_,
+      time_ns,
+      shared(obstacles_json(static_cast<double>(time_ns) * 1e-9, session_.state().obstacles)));
+  if (told_parameters_ != session_.state().parameters) {
+    told_parameters_ = session_.state().parameters;
+    gains_.follow();
+    hub_.parameters_changed();
+  }
+}
+
+}  // namespace server

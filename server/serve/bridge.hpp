@@ -1,0 +1,80 @@
+// server/serve/bridge.hpp: a session on the Foxglove protocol: channels out; goals, edits, gains
+// in.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "server/serve/foxglove/hub.hpp"
+#include "server/serve/session.hpp"
+
+namespace server {
+
+class Bridge {
+ public:
+  /// Carry out a `/load` document and a reset; either throws or tells `done` what went wrong.
+  using Done = std::function<void(std::exception_ptr)>;
+  struct Loads {
+    std::function<bool(const nlohmann::json&, Done)> load{};  // false: too many wait
+    std::function<bool(Done)> reset{};
+  };
+  Bridge(Session& session, Loads loads);
+
+  foxglove::Hub& hub() { return hub_; }
+
+  /// Publishes the state when it has changed and its turn has come; call it often.
+  void flush();
+
+ private:
+  /// The session's tunables as protocol parameters.
+  class Gains final : public foxglove::ParameterSource {
+   public:
+    explicit Gains(Bridge& bridge) : bridge_(bridge) {}
+    std::vector<foxglove::Parameter> list() const override;
+    std::string set(const std::string& name, const nlohmann::json& value) override;
+    /// Takes over what the session has now; values still on their way keep showing.
+    void follow();
+
+   private:
+    Bridge& bridge_;
+    algo::Parameters shown_{};
+    std::size_t on_their_way_ = 0;
+  };
+
+  void add_channels();
+  void add_services();
+  void add_topics();
+  void publish_frame(const FrameRef& frame);
+  void publish_state();
+  void state_changed();
+  void submit(foxglove::ClientId client,
+              algo::Request request,
+              const foxglove::ServiceReply& reply);
+  std::string hand_over(foxglove::ClientId client, algo::Request request);
+  void sign_of(foxglove::ClientId client);
+  void say_refusal(foxglove::ClientId client, bool stick, const std::string& refusal);
+  std::uint64_t now_ns() const;
+
+  Session& session_;
+  Loads loads_;
+  foxglove::Hub hub_{};
+  Gains gains_{*this};
+  algo::Parameters told_parameters_{};
+  bool state_waits_ = false;
+  std::chrono::steady_clock::time_point state_due_{};  // when it may be published again
+  std::size_t path_published_ = 0;
+  std::map<foxglove::ClientId, std::chrono::steady_clock::time_point> stick_refused_{};
+  std::chrono::steady_clock::time_point path_sent_{};
+
+  foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
+                      forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
+};
+
+}  // namespace server

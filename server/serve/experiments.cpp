@@ -1,0 +1,300 @@
+// server/serve/experiments.cpp: the background worker.
+#include "server/serve/experiments.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "server/record/record_sink.hpp"
+#include "server/record/run_json.hpp"
+#include "server/serve/workers.hpp"
+
+namespace server {
+namespace {
+
+// Between two slices of a batch the database thread takes the frames of live runs.
+constexpr std::chrono::milliseconds kSliceTime{10};
+constexpr std::size_t kSlice = 200;  // runs
+// How often the queue looks whether the store takes runs again.
+constexpr std::chrono::milliseconds kStoreRetry{200};
+
+}  // namespace
+
+/// Counts the world of a batch, given the size of its text. False when there is no room for it.
+bool Experiments::Batch::hold(std::size_t document_bytes) {
+  constexpr std::size_t kFixed = 4096;
+  constexpr std::size_t kTimes = 6;  // as measured: a world in memory against its text
+  bytes = kFixed + kTimes * document_bytes;
+  return held.fetch_add(bytes) + bytes <= kMaxBytes;
+}
+
+Experiments::Experiments(Recorder& recorder)
+    : recorder_(recorder), worker_([this](const std::stop_token& stop) { work(stop); }) {}
+
+Experiments::~Experiments() {
+  stop();
+  worker_.request_stop();
+  {
+    const std::lock_guard lock(mutex_);
+    stop_running_.request_stop();
+  }
+  wake_.notify_all();
+}
+
+void Experiments::stop() {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  wake_.wait(lock, [this] { return arriving_ == 0; });
+}
+
+void Experiments::arrived(std::size_t runs) {
+  {
+    const std::lock_guard lock(mutex_);
+    arriving_ -= runs;
+  }
+  wake_.notify_all();
+}
+
+bool Experiments::start(Experiment experiment, Accepted accepted) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_ || queue_.size() + arriving_ + experiment.repeats > kMaxWaiting) return false;
+    arriving_ += experiment.repeats;
+  }
+  const auto batch = std::make_shared<Batch>(held_);
+  batch->experiment = std::move(experiment);
+  batch->accepted = std::move(accepted);
+  try {
+    // A world that cannot be built is refused now, not in the background; its spec goes in the row.
+    const RunSpec& spec = batch->experiment.spec;
+    batch->row = headless_run(spec, make_robot(spec)->spec(), batch->experiment.pace);
+    if (!batch->hold(batch->row.document.size())) {
+      arrived(batch->experiment.repeats);
+      return false;
+    }
+    insert_slice(batch);
+  } catch (...) {
+    arrived(batch->experiment.repeats);
+    throw;
+  }
+  return true;
+}
+
+void Experiments::insert_slice(const std::shared_ptr<Batch>& batch) {
+  recorder_.post([this, batch](db::RunStore& store) {
+    try {
+      insert(store, *batch);
+      if (batch->runs.size() < batch->experiment.repeats) {
+        insert_slice(batch);
+      } else {
+        queue(batch);
+      }
+    } catch (const std::exception& e) {
+      give_up(*batch, e.what());
+    }
+  });
+}
+
+void Experiments::insert(db::RunStore& store, Batch& batch) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) throw db::StoreError("The server is stopping; nothing more is queued.");
+  }
+  if (!recorder_.takes_more()) throw db::StoreError(recorder_.status().sentence);
+  const std::size_t before = batch.runs.size();
+  const std::size_t end = std::min<std::size_t>(before + kSlice, batch.experiment.repeats);
+  const auto until = std::chrono::steady_clock::now() + kSliceTime;
+  try {
+    do {
+      batch.row.seed = batch.experiment.spec.seed + batch.runs.size();
+      batch.runs.push_back(store.queue_run(batch.row));
+    } while (batch.runs.size() < end && std::chrono::steady_clock::now() < until);
+    store.commit();
+  } catch (...) {
+    batch.runs.resize(before);  // the others are in the store
+    throw;
+  }
+}
+
+void Experiments::queue(const std::shared_ptr<Batch>& batch) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t i = 0; i < batch->runs.size(); ++i) {
+      queue_.push_back({batch, batch->experiment.spec.seed + i, batch->runs[i]});
+    }
+  }
+  batch->row = {};  // its document is in the store now
+  batch->accepted(batch->runs, {});
+  arrived(batch->experiment.repeats);
+}
+
+/// All or none: what is in the store already is cancelled, a slice at a time as it came.
+void Experiments::give_up(const Batch& batch, const std::string& why) {
+  Recorder& recorder = recorder_;
+  batch.accepted({}, why);
+  arrived(batch.experiment.repeats);  // stop() may return from here on, and this object go
+  for (std::size_t begin = 0; begin < batch.runs.size(); begin += kSlice) {
+    const auto from = batch.runs.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto left = static_cast<std::size_t>(batch.runs.end() - from);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(kSlice, left));
+    // Whatever ended the batch may keep the store from taking this too: nobody else would.
+    recorder.post_when_well([runs = std::vector<db::RunId>(from, to), why](db::RunStore& store) {
+      for (const db::RunId run : runs) {
+        if (store.status_of(run) != db::RunStatus::Queued) continue;
+        store.end_run(run,
+                      {.status = db::RunStatus::Cancelled, .outcome = "stopped", .reason = why});
+      }
+    });
+  }
+}
+
+bool Experiments::cancel(db::RunId run) {
+  const std::lock_guard lock(mutex_);
+  if (running_ == run) {
+    cancelled_ = true;
+    stop_running_.request_stop();
+    return true;
+  }
+  const auto it =
+      std::find_if(queue_.begin(), queue_.end(), [run](const Job& job) { return job.run == run; });
+  if (it == queue_.end()) return false;
+  queue_.erase(it);
+  end_later(run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});
+  return true;
+}
+
+bool Experiments::resume(db::RunId run,
+                         RunSpec spec,
+                         double pace,
+                         std::size_t document_bytes,
+                         std::function<void(const std::string&)> resumed) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_ || queue_.size() + arriving_ >= kMaxWaiting) return false;
+    ++arriving_;
+  }
+  const auto batch = std::make_shared<Batch>(held_);
+  batch->experiment = {.spec = std::move(spec), .pace = pace};
+  if (!batch->hold(document_bytes)) {
+    arrived(1);
+    return false;
+  }
+  try {
+    recorder_.post([this, run, batch, resumed = std::move(resumed)](db::RunStore& store) {
+      const std::string refusal = requeue(store, run);
+      if (refusal.empty()) {
+        const std::lock_guard lock(mutex_);
+        queue_.push_back({batch, batch->experiment.spec.seed, run, true});
+      }
+      resumed(refusal);
+      arrived(1);
+    });
+  } catch (...) {
+    arrived(1);
+    throw;
+  }
+  return true;
+}
+
+/// Why the run cannot be queued again; "" when it is.
+std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
+  try {
+    if (!store.requeue_run(run)) return "The run is neither interrupted nor cancelled nor failed.";
+    store.commit();
+    return "";
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+}
+
+void Experiments::work(const std::stop_token& stop) {
+  stand_back();
+  while (!stop.stop_requested()) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, stop, [this] { return !queue_.empty(); });
+      // Without a store that takes it, a run would be over and nobody could see how it went.
+      while (!stop.stop_requested() && !recorder_.takes_more()) {
+        wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
+      }
+      if (stop.stop_requested()) return;
+      if (queue_.empty()) continue;  // cancelled meanwhile
+      job = std::move(queue_.front());
+      queue_.pop_front();
+      running_ = job.run;
+      cancelled_ = false;
+      stop_running_ = {};
+    }
+    const bool begun = execute(job);
+    std::unique_lock lock(mutex_);
+    running_ = 0;
+    if (begun || stop.stop_requested()) continue;
+    if (cancelled_) {
+      end_later(job.run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});
+      continue;
+    }
+    queue_.push_front(std::move(job));
+    wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
+  }
+}
+
+/// Ends a queued run as soon as the store takes it. Unless it went with a damaged store.
+void Experiments::end_later(db::RunId run, db::RunEnd end) {
+  recorder_.post_when_well([run, end = std::move(end)](db::RunStore& store) {
+    if (store.status_of(run) == db::RunStatus::Queued) store.end_run(run, end);
+  });
+}
+
+RunSpec Experiments::spec_of(const Job& job) {
+  RunSpec spec = job.batch->experiment.spec;
+  spec.seed = job.seed;
+  return spec;
+}
+
+/// False when the store does not take the run just now.
+bool Experiments::execute(const Job& job) {
+  HeadlessOptions options;
+  const RunSpec spec = spec_of(job);
+  options.pace = job.batch->experiment.pace;
+  std::unique_ptr<algo::Robot> robot;
+  const auto fail = [&](const char* why) {
+    end_later(job.run, {.status = db::RunStatus::Failed, .outcome = "failed", .reason = why});
+    return true;
+  };
+  try {
+    while (job.again &&
+           recorder_.ask([&](db::RunStore& store) { return store.clear_run(job.run); })) {
+    }
+  } catch (const db::DatabaseError& e) {
+    // What is damaged there concerns this run alone; the next ones must not wait for it.
+    return e.trouble() == db::Trouble::Damaged && fail(e.what());
+  }
+  try {
+    robot = make_robot(spec);
+    options.record = recorder_.open(job.run, headless_run(spec, robot->spec(), options.pace));
+  } catch (const db::DatabaseError&) {
+    return false;
+  } catch (const std::exception& e) {
+    return fail(e.what());
+  }
+  std::stop_token stop;
+  {
+    const std::lock_guard lock(mutex_);
+    stop = stop_running_.get_token();
+  }
+  options.cancelled = [this] {
+    const std::lock_guard lock(mutex_);
+    return cancelled_;
+  };
+  try {
+    run_headless(spec, *robot, options, stop);
+  } catch (const std::exception& e) {
+    options.record->close(
+        {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()});
+  }
+  return true;
+}
+
+}  // namespace server

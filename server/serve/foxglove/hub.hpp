@@ -1,0 +1,187 @@
+// server/serve/foxglove/hub.hpp: channels, subscriptions, parameters and services of all Foxglove
+// clients.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "server/serve/foxglove/protocol.hpp"
+#include "server/serve/net/websocket.hpp"
+
+namespace server::foxglove {
+
+using ClientId = std::uint32_t;   // net::WsClient::id()
+using ChannelId = std::uint32_t;  // from 1, in order of add_channel
+using net::Payload;
+
+/// Where the hub reads and writes parameters.
+class ParameterSource {
+ public:
+  virtual ~ParameterSource() = default;
+  /// All parameters with the values clients should see, those just set included.
+  virtual std::vector<Parameter> list() const = 0;
+  /// Sets one. @return why it is refused, as a sentence; empty when it is taken
+  virtual std::string set(const std::string& name, const nlohmann::json& value) = 0;
+};
+
+/// Answers one service call, at once or later, io thread only. The first answer counts; a client
+/// that has gone is no error. When the last copy goes unused the call fails with a sentence.
+class ServiceReply {
+ public:
+  ServiceReply(std::shared_ptr<net::WsClient> client,
+               std::uint32_t service_id,
+               std::uint32_t call_id);
+  void success(const nlohmann::json& answer) const;
+  void failure(std::string_view sentence) const;
+
+ private:
+  struct Call;
+  std::shared_ptr<Call> call_;
+};
+
+/// A service handler: reads the request, answers now or keeps `reply` for later. An exception
+/// becomes a failure with its what().
+using ServiceHandler =
+    std::function<void(ClientId, const nlohmann::json& request, const ServiceReply& reply)>;
+
+/// Takes what a client published. @return why it is refused, as a sentence; empty when it is taken
+using PublishHandler = std::function<std::string(ClientId, const nlohmann::json& message)>;
+
+/// A message with its time on the run clock.
+struct Stamped {
+  std::uint64_t t_ns = 0;
+  Payload payload{};
+};
+
+/// Every channel is latched: a newly subscribed client gets the newest message at once, so that it
+/// sees the scene of a robot at rest.
+struct ChannelSpec {
+  std::string topic{};
+  std::string schema_name{};  // one of schemas.hpp
+  /// For a channel that is encoded only while somebody subscribes: makes the newest message for the
+  /// first subscriber, or nothing (a null payload). Without it the last one published is kept.
+  std::function<Stamped()> newest{};
+};
+
+struct HubOptions {
+  std::string name = "Tautline";
+  /// Viewers start afresh when it changes; empty: one made up for the life of this hub.
+  std::string session_id{};
+  /// A viewer shows its click-drag goal tool only for a server that names a ROS distribution.
+  std::map<std::string, std::string> metadata{{"ROS_DISTRO", "humble"}};
+};
+
+/// Io thread only. Must live as long as the net::Server its endpoint was added to. What a client
+/// does wrong is answered by a status message and never ends its connection.
+class Hub {
+ public:
+  explicit Hub(HubOptions options = {});
+  ~Hub();
+  Hub(const Hub&) = delete;
+  Hub& operator=(const Hub&) = delete;
+
+  /// The endpoint to give to the server.
+  net::WsEndpoint endpoint(std::string path);
+
+  // ---- setting up, before the first client
+  /// Throws std::invalid_argument when the topic is there already, std::out_of_range on an unknown
+  /// schema. Encoding follows from the schema: JSON Schema "json", else "flatbuffer".
+  ChannelId add_channel(const ChannelSpec& spec);
+  void add_service(std::string name, ServiceHandler handler);
+  void on_publish(std::string topic, PublishHandler handler);
+  /// `source` must outlive the hub.
+  void set_parameters(ParameterSource& source) { parameters_ = &source; }
+  /// A client withdrew what it publishes on `topic`, or went away.
+  void on_publisher_gone(std::function<void(ClientId, const std::string& topic)> callback);
+  void on_client_gone(std::function<void(ClientId)> callback);
+
+  // ---- sending
+  /// True while somebody subscribes. A channel with ChannelSpec::newest is encoded only then.
+  bool wanted(ChannelId channel) const;
+  /// State-like data: each client gets the newest it can take. `t_ns` is the run clock.
+  void publish(ChannelId channel, std::uint64_t t_ns, Payload payload);
+  /// Log-like data: a slow client gets the newest kEventRing of them and a status for the rest.
+  void publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload);
+  static constexpr std::size_t kEventRing = 64;
+  /// Tells all clients the run clock, ten times a second at most by `now`.
+  void broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_point now);
+  /// Sends the current values of `names` (empty: all) to whoever asked for updates of them.
+  void parameters_changed(std::span<const std::string> names = {});
+  /// A status message to one client, for instance a refusal found out later.
+  void warn(ClientId client, std::string_view sentence);
+  /// A status message to everybody; one with the same non-empty `id` replaces the former.
+  void announce(StatusLevel level, std::string_view sentence, std::string_view id = {});
+
+  const std::vector<Channel>& channels() const { return channels_; }
+  std::size_t clients() const { return clients_.size(); }
+
+ private:
+  struct Client {
+    std::shared_ptr<net::WsClient> socket{};
+    std::map<std::uint32_t, ChannelId> subscriptions{};  // by the client's subscription id
+    std::map<std::uint32_t, std::string> publishing{};   // topic by the client's channel id
+    bool all_parameters = false;
+    std::set<std::string> parameters{};
+    bool dropping_events = false;
+  };
+  struct Subscriber {
+    Client* client = nullptr;
+    std::uint32_t subscription_id = 0;
+  };
+  struct ChannelState {
+    std::function<Stamped()> newest{};
+    Stamped last{};
+    std::vector<Subscriber> subscribers{};
+  };
+
+  void opened(const std::shared_ptr<net::WsClient>& socket);
+  void closed(ClientId id);
+  void text(ClientId id, std::string_view message);
+  void binary(ClientId id, std::string_view message);
+
+  void handle(Client& client, const Subscribe& op);
+  void handle(Client& client, const Unsubscribe& op);
+  void handle(Client& client, const ClientAdvertise& op);
+  void handle(Client& client, const ClientUnadvertise& op);
+  void handle(Client& client, const GetParameters& op);
+  void handle(Client& client, const SetParameters& op);
+  void handle(Client& client, const SubscribeParameterUpdates& op);
+  void handle(Client& client, const UnsubscribeParameterUpdates& op);
+  void handle(Client& client, const ClientMessage& message);
+  void handle(Client& client, const ServiceRequest& request);
+
+  ChannelState& state(ChannelId channel);
+  void subscribe(Client& client, const Subscription& subscription);
+  void remove_subscriber(const Client& client, ChannelId channel);
+  std::vector<Parameter> values(std::span<const std::string> names) const;
+  static constexpr std::uint32_t kTimeKey = 0xFFFFFFFF;  // send slot; channels use their id
+  static void send(Client& client, std::string message);
+  static void complain(Client& client, StatusLevel level, std::string_view sentence);
+
+  ServerInfo info_{};
+  std::vector<Channel> channels_{};     // id = index + 1
+  std::vector<ChannelState> states_{};  // same order
+  std::vector<Service> services_{};     // id = index + 1
+  std::vector<ServiceHandler> service_handlers_{};
+  std::map<std::string, PublishHandler> publish_handlers_{};
+  ParameterSource* parameters_ = nullptr;
+  std::function<void(ClientId, const std::string&)> publisher_gone_{};
+  std::function<void(ClientId)> client_gone_{};
+  std::map<ClientId, Client> clients_{};
+  std::optional<std::chrono::steady_clock::time_point> time_sent_{};
+  std::optional<std::uint64_t> time_ns_{};  // the run clock as last told
+};
+
+}  // namespace server::foxglove

@@ -1,0 +1,319 @@
+// server/serve/foxglove/protocol.cpp: every field and every length of a client is checked before
+// use.
+#include "server/serve/foxglove/protocol.hpp"
+
+#include <limits>
+#include <utility>
+
+#include "server/run/json_limits.hpp"
+
+namespace server::foxglove {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::byte kMessageData{0x01};
+constexpr std::byte kTime{0x02};
+constexpr std::byte kServiceResponse{0x03};
+constexpr char kClientMessage = 0x01;
+constexpr char kServiceRequest = 0x02;
+
+// ---- reading JSON fields; `where` names the place for the sentence
+
+const json& field(const json& object, const char* name, const std::string& where) {
+  if (!object.is_object()) throw ProtocolError(where + " must be an object");
+  const auto found = object.find(name);
+  if (found == object.end()) throw ProtocolError(where + " lacks '" + name + "'");
+  return *found;
+}
+
+std::uint32_t as_u32(const json& value, const std::string& what) {
+  if (!value.is_number_unsigned() ||
+      value.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
+    throw ProtocolError(what + " must be an integer from 0 to 4294967295");
+  }
+  return value.get<std::uint32_t>();
+}
+
+std::string as_text(const json& value, const std::string& what) {
+  if (!value.is_string()) throw ProtocolError(what + " must be a text");
+  return value.get<std::string>();
+}
+
+const json& as_list(const json& value, const std::string& what) {
+  if (!value.is_array()) throw ProtocolError(what + " must be a list");
+  return value;
+}
+
+std::string optional_text(const json& object, const char* name, const std::string& where) {
+  const auto found = object.find(name);
+  if (found == object.end() || found->is_null()) return {};
+  return as_text(*found, where + ": '" + name + "'");
+}
+
+std::vector<std::uint32_t> id_list(const json& op, const char* name, const std::string& where) {
+  std::vector<std::uint32_t> ids;
+  for (const json& value : as_list(field(op, name, where), where + ": '" + name + "'")) {
+    ids.push_back(as_u32(value, where + ": each of '" + name + "'"));
+  }
+  return ids;
+}
+
+std::vector<std::string> name_list(const json& op, const std::string& where) {
+  std::vector<std::string> names;
+  for (const json& value :
+       as_list(field(op, "parameterNames", where), where + ": 'parameterNames'")) {
+    names.push_back(as_text(value, where + ": each of 'parameterNames'"));
+  }
+  return names;
+}
+
+std::optional<std::string> request_id(const json& op, const std::string& where) {
+  const auto found = op.find("id");
+  if (found == op.end() || found->is_null()) return std::nullopt;
+  return as_text(*found, where + ": 'id'");
+}
+
+// ---- one function per op
+
+Subscribe parse_subscribe(const json& op) {
+  Subscribe out;
+  for (const json& item :
+       as_list(field(op, "subscriptions", "subscribe"), "subscribe: 'subscriptions'")) {
+    out.subscriptions.push_back(
+        {as_u32(field(item, "id", "subscribe: a subscription"), "subscribe: 'id'"),
+         as_u32(field(item, "channelId", "subscribe: a subscription"), "subscribe: 'channelId'")});
+  }
+  return out;
+}
+
+ClientAdvertise parse_advertise(const json& op) {
+  ClientAdvertise out;
+  for (const json& item : as_list(field(op, "channels", "advertise"), "advertise: 'channels'")) {
+    ClientChannel channel;
+    channel.id = as_u32(field(item, "id", "advertise: a channel"), "advertise: 'id'");
+    channel.topic = as_text(field(item, "topic", "advertise: a channel"), "advertise: 'topic'");
+    channel.encoding =
+        as_text(field(item, "encoding", "advertise: a channel"), "advertise: 'encoding'");
+    channel.schema_name = optional_text(item, "schemaName", "advertise");
+    out.channels.push_back(std::move(channel));
+  }
+  return out;
+}
+
+SetParameters parse_set_parameters(const json& op) {
+  SetParameters out;
+  for (const json& item :
+       as_list(field(op, "parameters", "setParameters"), "setParameters: 'parameters'")) {
+    Parameter parameter;
+    parameter.name =
+        as_text(field(item, "name", "setParameters: a parameter"), "setParameters: 'name'");
+    if (item.contains("value")) parameter.value = item["value"];
+    parameter.type = optional_text(item, "type", "setParameters");
+    out.parameters.push_back(std::move(parameter));
+  }
+  out.id = request_id(op, "setParameters");
+  return out;
+}
+
+/// What is valid v1 but not offered here: say so, rather than "unknown".
+bool is_known_but_unsupported(const std::string& op) {
+  return op == "subscribeConnectionGraph" || op == "unsubscribeConnectionGraph" ||
+         op == "fetchAsset";
+}
+
+// ---- little-endian integers
+
+template <typename Unsigned>
+void put(std::byte* to, Unsigned value) {
+  for (std::size_t i = 0; i < sizeof value; ++i) {
+    to[i] = static_cast<std::byte>((value >> (8 * i)) & 0xFFu);
+  }
+}
+
+std::uint32_t take_u32(std::string_view& bytes, const char* what) {
+  if (bytes.size() < 4) {
+    throw ProtocolError(std::string("a binary message ends before its ") + what);
+  }
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  }
+  bytes.remove_prefix(4);
+  return value;
+}
+
+template <typename T>
+json json_list(std::span<const T> values) {
+  json list = json::array();
+  for (const T& value : values) list.push_back(value);
+  return list;
+}
+
+json parameter_json(const Parameter& parameter) {
+  json out = {{"name", parameter.name}};
+  if (!parameter.value.is_null()) out["value"] = parameter.value;
+  if (!parameter.type.empty()) out["type"] = parameter.type;
+  return out;
+}
+
+json service_json(const Service& service) {
+  const auto message = [](const std::string& name, const std::string& schema) {
+    return json{{"encoding", "json"},
+                {"schemaName", name},
+                {"schemaEncoding", "jsonschema"},
+                {"schema", schema}};
+  };
+  return {{"id", service.id},
+          {"name", service.name},
+          {"type", service.type},
+          {"request", message(service.type + ".Request", service.request_schema)},
+          {"response", message(service.type + ".Response", service.response_schema)},
+          {"requestSchema", service.request_schema},
+          {"responseSchema", service.response_schema}};
+}
+
+}  // namespace
+
+ClientText parse_text(std::string_view text) {
+  json op;
+  try {
+    op = parse_json(text);
+  } catch (const JsonError& error) {
+    throw ProtocolError(error.what());
+  }
+  const std::string name = as_text(field(op, "op", "a text message"), "'op'");
+  if (name == "subscribe") return parse_subscribe(op);
+  if (name == "unsubscribe") return Unsubscribe{id_list(op, "subscriptionIds", name)};
+  if (name == "advertise") return parse_advertise(op);
+  if (name == "unadvertise") return ClientUnadvertise{id_list(op, "channelIds", name)};
+  if (name == "getParameters") return GetParameters{name_list(op, name), request_id(op, name)};
+  if (name == "setParameters") return parse_set_parameters(op);
+  if (name == "subscribeParameterUpdates") return SubscribeParameterUpdates{name_list(op, name)};
+  if (name == "unsubscribeParameterUpdates") {
+    return UnsubscribeParameterUpdates{name_list(op, name)};
+  }
+  if (is_known_but_unsupported(name)) {
+    throw ProtocolError("the op '" + name + "' is not among this server's capabilities");
+  }
+  throw ProtocolError("the op '" + name.substr(0, 100) + "' is unknown");
+}
+
+ClientBinary parse_binary(std::string_view bytes) {
+  if (bytes.empty()) throw ProtocolError("a binary message is empty");
+  const char opcode = bytes.front();
+  bytes.remove_prefix(1);
+  if (opcode == kClientMessage) {
+    const std::uint32_t channel_id = take_u32(bytes, "channel id");
+    return ClientMessage{channel_id, bytes};
+  }
+  if (opcode == kServiceRequest) {
+    ServiceRequest request;
+    request.service_id = take_u32(bytes, "service id");
+    request.call_id = take_u32(bytes, "call id");
+    const std::uint32_t length = take_u32(bytes, "encoding length");
+    if (length > bytes.size()) {
+      throw ProtocolError("a service request names an encoding of " + std::to_string(length) +
+                          " bytes but has only " + std::to_string(bytes.size()) + " left");
+    }
+    request.encoding = bytes.substr(0, length);
+    request.payload = bytes.substr(length);
+    return request;
+  }
+  throw ProtocolError("the binary opcode " +
+                      std::to_string(static_cast<unsigned>(static_cast<unsigned char>(opcode))) +
+                      " is unknown");
+}
+
+std::string server_info(const ServerInfo& info) {
+  return dump_json(
+      {{"op", "serverInfo"},
+       {"name", info.name},
+       {"capabilities", {"clientPublish", "time", "parameters", "parametersSubscribe", "services"}},
+       {"supportedEncodings", json::array({"json"})},
+       {"metadata", info.metadata},
+       {"sessionId", info.session_id}});
+}
+
+std::string advertise(std::span<const Channel> channels) {
+  json list = json::array();
+  for (const Channel& channel : channels) {
+    list.push_back({{"id", channel.id},
+                    {"topic", channel.topic},
+                    {"encoding", channel.encoding},
+                    {"schemaName", channel.schema_name},
+                    {"schema", channel.schema},
+                    {"schemaEncoding", channel.schema_encoding}});
+  }
+  return dump_json({{"op", "advertise"}, {"channels", list}});
+}
+
+std::string unadvertise(std::span<const std::uint32_t> channel_ids) {
+  return dump_json({{"op", "unadvertise"}, {"channelIds", json_list(channel_ids)}});
+}
+
+std::string status(StatusLevel level, std::string_view message, std::string_view id) {
+  json out = {{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}};
+  if (!id.empty()) out["id"] = id;
+  return dump_json(out);
+}
+
+std::string remove_status(std::span<const std::string> status_ids) {
+  return dump_json({{"op", "removeStatus"}, {"statusIds", json_list(status_ids)}});
+}
+
+std::string parameter_values(std::span<const Parameter> parameters,
+                             const std::optional<std::string>& id) {
+  json list = json::array();
+  for (const Parameter& parameter : parameters) list.push_back(parameter_json(parameter));
+  json out = {{"op", "parameterValues"}, {"parameters", list}};
+  if (id) out["id"] = *id;
+  return dump_json(out);
+}
+
+std::string advertise_services(std::span<const Service> services) {
+  json list = json::array();
+  for (const Service& service : services) list.push_back(service_json(service));
+  return dump_json({{"op", "advertiseServices"}, {"services", list}});
+}
+
+std::string unadvertise_services(std::span<const std::uint32_t> service_ids) {
+  return dump_json({{"op", "unadvertiseServices"}, {"serviceIds", json_list(service_ids)}});
+}
+
+std::string service_call_failure(std::uint32_t service_id,
+                                 std::uint32_t call_id,
+                                 std::string_view message) {
+  return dump_json({{"op", "serviceCallFailure"},
+                    {"serviceId", service_id},
+                    {"callId", call_id},
+                    {"message", message}});
+}
+
+MessageHeader message_header(std::uint32_t subscription_id, std::uint64_t t_ns) {
+  MessageHeader out{kMessageData};
+  put(out.data() + 1, subscription_id);
+  put(out.data() + 5, t_ns);
+  return out;
+}
+
+TimeMessage time_message(std::uint64_t t_ns) {
+  TimeMessage out{kTime};
+  put(out.data() + 1, t_ns);
+  return out;
+}
+
+std::string service_response(std::uint32_t service_id,
+                             std::uint32_t call_id,
+                             std::string_view encoding,
+                             std::string_view payload) {
+  std::array<std::byte, 13> head{kServiceResponse};
+  put(head.data() + 1, service_id);
+  put(head.data() + 5, call_id);
+  put(head.data() + 9, static_cast<std::uint32_t>(encoding.size()));
+  std::string out(reinterpret_cast<const char*>(head.data()), head.size());
+  out.append(encoding).append(payload);
+  return out;
+}
+
+}  // namespace server::foxglove

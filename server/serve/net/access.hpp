@@ -1,0 +1,105 @@
+// server/serve/net/access.hpp: who may talk to the server: Host, Origin, token and login cookie.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/serve/net/http.hpp"
+#include "server/serve/net/logins.hpp"
+#include "server/serve/net/proxy.hpp"
+
+namespace server::net {
+
+struct AccessOptions {
+  std::string token{};                         // empty: none asked for
+  bool insecure = false;                       // beyond loopback without a token
+  std::vector<std::string> allow_hosts{};      // "robot.lan" or "robot.lan:8081"
+  std::vector<std::string> allow_origins{};    // "https://viewer.example"
+  std::vector<std::string> trusted_proxies{};  // "127.0.0.1", "172.17.0.0/16"
+  /// API paths that answer without the token, for health checks.
+  std::vector<std::string> open_paths{"/api/v1/healthz"};
+};
+
+/// Decides about one request from its head alone. The rules, in order of checking:
+/// - Host names this server: a loopback name, the address the connection arrived at, or an
+///   allowed host (421). A web page can point its own name at 127.0.0.1, but not change Host.
+/// - Origin, on upgrades and everything that is not GET, HEAD or OPTIONS: equal to the scheme the
+///   client uses + "://" + Host, or listed; absent (not a browser) only from loopback, for a login,
+///   with the token, or when insecure (403).
+/// - Token, where one is set: Bearer or login cookie for /api and every upgrade (401; 429 for an
+///   address that has guessed too often). The page itself is served without, so that it can ask for
+///   the token.
+class Access {
+ public:
+  using Log = std::function<void(std::string_view)>;
+
+  /// Throws std::invalid_argument on a token shorter than 16 characters or a proxy that is no
+  /// address. `log` is told of logins and of guesses.
+  explicit Access(AccessOptions options, Log log = {});
+
+  /// Fills in the request's peer, loopback and https: its sender's, seen from this connection.
+  void identify(Request& request, const Address& peer) const;
+  bool is_proxy(const Address& peer) const { return proxies_.contains(peer); }
+
+  /// @param local_address  address of this end of the connection
+  /// @param protected_path false for what anyone may read: static files
+  /// @return the refusal, or nothing when the request may pass
+  std::optional<Response> refuse(const Request& request,
+                                 std::string_view local_address,
+                                 bool upgrade,
+                                 bool protected_path,
+                                 Clock::time_point now);
+
+  /// Whether a request that may pass is one of somebody who may drive, and does: not of a visitor
+  /// who looks, logs in or asks for the health.
+  bool may_drive(const Request& request, bool upgrade, bool api) const;
+
+  bool token_required() const { return !options_.token.empty(); }
+
+  /// The body of POST /api/v1/login: {"token":"..."}. Right: 204 and a cookie; wrong: 401, or 429
+  /// after too many.
+  Response login(const Request& request, Clock::time_point now);
+  /// Ends the login of the request's cookie: 204 and the cookie taken back.
+  Response logout(const Request& request);
+  static constexpr std::string_view kLoginPath = "/api/v1/login";
+  static constexpr std::string_view kLogoutPath = "/api/v1/logout";
+  static constexpr std::string_view kCookie = "tautline_session";
+
+  /// The login the request's cookie belongs to, counted as used; empty for none.
+  std::string login_of(const Request& request, Clock::time_point now);
+  /// Counts a login as used: something opened with it is still open.
+  void keep_login(std::string_view id, Clock::time_point now) { logins_.keep(id, now); }
+  /// A header that lengthens the life of the request's cookie, where that is due.
+  std::optional<Header> renewal(const Request& request, Clock::time_point now);
+  /// To be called now and then: tells the log of guesses it has not been told of.
+  void sweep(Clock::time_point now);
+
+ private:
+  enum class Credential { None, Wrong, Right };
+  struct Presented {
+    Credential credential = Credential::None;
+    std::optional<std::chrono::seconds> wait{};  // of a wrong one, where it comes too often
+  };
+
+  bool needs_token(const Request& request) const;
+  bool host_allowed(std::string_view host, std::string_view local_address) const;
+  bool origin_allowed(const Request& request, bool login, bool authorized) const;
+  Response foreign_origin(const Request& request) const;
+  Presented look_at(const Request& request, Clock::time_point now);
+  Presented look_at(std::string_view token, const Address& from, Clock::time_point now);
+  void log(const std::string& line) const;
+
+  AccessOptions options_;
+  Log log_;
+  TrustedProxies proxies_;
+  LoginSessions logins_{};
+  GuessThrottle guesses_{Clock::now()};
+};
+
+/// True for loopback names and addresses: localhost, 127.x.y.z, ::1.
+bool is_loopback_name(std::string_view host);
+
+}  // namespace server::net

@@ -1,0 +1,100 @@
+// server/serve/net/server.hpp: HTTP and WebSocket on one port and one thread, Beast kept out of
+// sight.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "server/serve/net/access.hpp"
+#include "server/serve/net/router.hpp"
+#include "server/serve/net/websocket.hpp"
+
+namespace server::net {
+
+struct Limits {
+  std::size_t connections = 2048;             // fewer where the system allows fewer files
+  std::size_t connections_per_address = 256;  // an IPv6 /64 is one address
+  std::size_t connections_kept = 64;          // of all, for this machine and those who drive
+  std::size_t header_bytes = 8192;
+  std::size_t body_bytes = 1u << 20;
+  std::size_t frame_bytes = 1u << 20;       // of one WebSocket message
+  std::size_t control_messages = 1024;      // unsent control messages of one client
+  std::size_t control_bytes = 4u << 20;     // their bytes
+  std::size_t unsent_kernel_bytes = 32768;  // frames a slow client has in the kernel: stale ones
+};
+
+struct Timeouts {
+  std::chrono::milliseconds header{10'000};       // from first byte (or connect) to complete header
+  std::chrono::milliseconds body{30'000};         // complete body; also a response, plus its size
+  std::chrono::milliseconds idle{60'000};         // between two requests
+  std::chrono::milliseconds ws_silence{30'000};   // WebSocket: without a sign of life, dropped
+  std::chrono::milliseconds ws_ping{15'000};      // pinged whenever nothing was heard for so long
+  std::chrono::milliseconds ws_stalled{300'000};  // one write that does not move, peer alive
+  std::chrono::milliseconds closing{2'000};       // closing handshakes and lingering closes
+};
+
+struct ServerOptions {
+  std::string address = "127.0.0.1";  // an IP address or "localhost"
+  std::uint16_t port = 8080;          // 0: any free one, see Server::port()
+  AccessOptions access{};
+  std::filesystem::path web_root{};  // the built page; empty: none
+  Limits limits{};
+  Timeouts timeouts{};
+  /// Runs a job on another thread: files are read there. Empty: on the io thread.
+  std::function<void(std::function<void()>)> offload{};
+  /// Told of everything worth a log line, on the io thread. May be empty.
+  std::function<void(std::string_view)> log{};
+};
+
+/// The server could not be set up; what() says why and what to do.
+class ServerError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Everything runs on the thread that calls run(): handlers, callbacks, timers. Only post() and
+/// stop() may be called from other threads. Add routes and endpoints before run().
+class Server {
+ public:
+  /// Opens the port, so that port() is known and clients may already connect; they are answered
+  /// from run() on. Throws ServerError: address not usable, port taken, or an address beyond
+  /// loopback without a token or insecure.
+  explicit Server(ServerOptions options);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  Router& router();
+  const Router& router() const;
+  void add(WsEndpoint endpoint);
+
+  std::uint16_t port() const;
+  /// "http://127.0.0.1:8080/", with the real port.
+  std::string url() const;
+
+  /// Serves until stop(), then tells WebSocket clients (1001) and closes everything. Every
+  /// on_open has had its on_close when this returns.
+  void run();
+  void stop();
+  /// Runs `fn` on the io thread, soon.
+  void post(std::function<void()> fn);
+  /// Runs `fn` on the io thread every `period` > 0, by absolute deadlines; missed ones are skipped.
+  /// Call before run() or on the io thread. An exception from `fn` is logged.
+  void every(std::chrono::milliseconds period, std::function<void()> fn);
+
+  /// Open connections, HTTP and WebSocket. Io thread only.
+  std::size_t connections() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace server::net

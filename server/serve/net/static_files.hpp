@@ -1,0 +1,29 @@
+// server/serve/net/static_files.hpp: the built page from its folder, and nothing else from the
+// disk.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "server/serve/net/http.hpp"
+
+namespace server::net {
+
+class StaticFiles {
+ public:
+  /// `root` may be empty: then every path answers 404 and says that no page is served.
+  explicit StaticFiles(std::filesystem::path root);
+
+  /// The file at request.path, "/" being index.html; 304 when If-None-Match names it already.
+  /// 404 for what is not there, for folders, hidden files and every path that would leave the
+  /// root, by "..", backslash or symbolic link; 405 for other methods than GET and HEAD.
+  Response get(const Request& request) const;
+
+ private:
+  std::filesystem::path root_;  // canonical, or empty
+};
+
+/// Content type by file name extension; application/octet-stream when unknown.
+std::string_view mime_type(std::string_view extension);
+
+}  // namespace server::net

@@ -1,0 +1,26 @@
+// server/serve/net/upgrade.hpp: the hand-over from HTTP to WebSocket. Internal to server/net,
+// included by the two translation units that know Beast.
+#pragma once
+
+#include <string>
+#include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+
+#include "server/serve/net/core.hpp"
+
+namespace server::net {
+
+using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
+
+/// Answers an upgrade that has passed every check and serves the WebSocket from there on.
+void start_websocket(Core& core,
+                     Socket socket,
+                     const UpgradeRequest& request,
+                     const WsEndpoint& endpoint,
+                     std::string subprotocol,
+                     std::string peer,
+                     std::string login);
+
+}  // namespace server::net

@@ -1,0 +1,476 @@
+// server/serve/session.cpp: the io thread's side of a run.
+#include "server/serve/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "algo/explain.hpp"
+#include "server/record/run_json.hpp"
+#include "server/run/request_json.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/goal_check.hpp"
+
+namespace server {
+namespace {
+
+constexpr std::size_t kMaxPending = 900;  // fewer than the ring of replies holds
+constexpr double kAtRest = 0.01;          // [m/s], [rad/s] below what odometry resolves
+constexpr std::chrono::milliseconds kFresh{500};
+
+}  // namespace
+
+Session::Session(Recorder* recorder) : recorder_(recorder) {
+  state_.record.sentence = "This server keeps no record.";
+  if (recorder != nullptr) state_.record = recorder->status();
+}
+
+PreparedRun Session::prepare(RunSpec spec) {
+  std::unique_ptr<algo::Robot> robot = make_robot(spec);
+  std::shared_ptr<RunChannel> channel;
+  if (recorder_ != nullptr) channel = recorder_->begin(new_run(spec, robot->spec()));
+  auto live = std::make_unique<LiveRun>(
+      spec, std::move(robot), std::move(channel), watch_, require_record_);
+  return {std::move(spec), std::move(live)};
+}
+
+void Session::load(RunSpec spec) {
+  PreparedRun next = prepare(std::move(spec));  // may throw: nothing has changed yet
+  end();
+  begin(std::move(next));
+}
+
+void Session::begin(PreparedRun next) {
+  const RunSpec& spec = next.spec;
+  state_.robot = next.live->robot().spec();
+  set_goals(std::nullopt);
+  state_.obstacles = spec.scenario.obstacles;
+  state_.parameters = spec.parameters;
+  state_.outcome = algo::Outcome::Running;
+  state_.lost_ticks = 0;
+  state_.missed_periods = 0;
+  state_.problem.reset();
+  state_.hardware.reset();
+  state_.running = true;
+  path_.clear();
+  newest_.reset();
+  newest_scan_.reset();
+  told_mission_ = algo::Mission::Idle;
+  told_hold_ = algo::Hold::None;
+  next_obstacle_ = 1;
+
+  std::vector<algo::Request> first = first_requests(spec);
+  if (state_.stop) first.push_back(algo::Stop{true});
+  for (const algo::Request& request : first) adopt(request);
+  state_.spec = spec;
+  live_ = std::move(next.live);
+  live_->robot().set_pace(state_.pace);
+  live_->start(std::move(first));
+  changed();
+}
+
+std::unique_ptr<LiveRun> Session::part() {
+  if (!live_) return nullptr;
+  live_->ask_to_end();
+  newest_.reset();
+  newest_scan_.reset();
+  state_.running = false;
+  std::unique_ptr<LiveRun> last = std::move(live_);
+  answer_the_rest();
+  return last;
+}
+
+void Session::end(bool cut) {
+  if (live_ && cut) live_->cut();
+  part().reset();
+}
+
+/// What the run did not get round to is answered here, so that nobody waits for ever.
+void Session::answer_the_rest() {
+  const std::map<std::uint64_t, Pending> rest = std::exchange(pending_, {});
+  for (const auto& [ticket, pending] : rest) {
+    if (!pending.answer) continue;
+    if (std::holds_alternative<algo::Stop>(pending.request) && ticket > stop_ticket_) {
+      adopt(pending.request);  // a release
+      pending.answer(std::nullopt);
+    } else {
+      pending.answer("The run ended before this could be done.");
+    }
+  }
+}
+
+/// One that neither an obstacle nor one on its way has. The ids of those removed come last.
+std::uint32_t Session::free_obstacle_id() {
+  const auto taken = [this](std::uint32_t id) {
+    const auto on_its_way = [id](const auto& entry) {
+      const auto* add = std::get_if<algo::AddObstacle>(&entry.second.request);
+      return add != nullptr && add->obstacle.id == id;
+    };
+    return std::any_of(state_.obstacles.begin(),
+                       state_.obstacles.end(),
+                       [id](const auto& o) { return o.id == id; }) ||
+           std::any_of(pending_.begin(), pending_.end(), on_its_way);
+  };
+  std::uint32_t id = next_obstacle_;
+  while (taken(id)) id = id % kMaxObstacleId + 1;
+  next_obstacle_ = id % kMaxObstacleId + 1;
+  return id;
+}
+
+std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answer) {
+  std::uint32_t id = 0;
+  if (auto* add = std::get_if<algo::AddObstacle>(&request)) {
+    if (add->obstacle.id == 0) add->obstacle.id = free_obstacle_id();
+    id = add->obstacle.id;
+  }
+  const bool stop = is_stop(request);
+  const bool release = !stop && std::holds_alternative<algo::Stop>(request);
+  const std::uint64_t ticket = next_ticket_++;
+  if (stop) {
+    engage_stop(ticket, answer);
+    return id;
+  }
+  if (!live_ || live_->finished()) {
+    if (release) {
+      adopt(request);
+      changed();
+    }
+    if (answer && release) answer(std::nullopt);
+    if (answer && !release) answer("The run is over. Reset or load a scenario first.");
+    return id;
+  }
+  // A Stop that found the ring full comes after all that is in it; nothing may come in between.
+  if (release && live_->rings.stop_now.load()) return std::nullopt;
+  if (pending_.size() >= kMaxPending || !live_->rings.requests.push({ticket, request})) {
+    return std::nullopt;
+  }
+  pending_.emplace(ticket, Pending{std::move(request), std::move(answer)});
+  return id;
+}
+
+void Session::engage_stop(std::uint64_t ticket, const Answer& answer) {
+  stop_ticket_ = ticket;
+  if (live_ && !live_->rings.requests.push({ticket, algo::Stop{true}})) {
+    live_->rings.stop_now.store(true);
+  }
+  const bool news = !std::exchange(state_.stop, true);
+  if (answer) answer(std::nullopt);  // before people are told of it: Stop waits for nothing
+  if (news) changed();
+}
+
+bool Session::standing() const {
+  if (!newest_) return false;
+  // Of real devices an old tick proves nothing.
+  const auto age = std::chrono::steady_clock::now() - newest_came_;
+  if (state_.spec.hardware && age > kFresh) return false;
+  const algo::Telemetry& t = newest_->telemetry;
+  const algo::Twist2& moving = t.observation.odometry.twist;
+  return t.command.base == algo::Twist2{} && std::abs(moving.v) < kAtRest &&
+         std::abs(moving.omega) < kAtRest;
+}
+
+void Session::apply_pace() {
+  if (live_) live_->robot().set_pace(state_.pace);
+  state_.pace.single_steps = 0;
+  changed();
+}
+
+std::optional<std::string> Session::arm(bool on) {
+  drivers::SerialRobot* robot = state_.spec.hardware.get();
+  if (robot == nullptr) return "This robot is simulated: it has no motors to switch on.";
+  std::optional<std::string> refusal;
+  if (!on) {
+    arm_when_ready_ = false;
+    robot->disarm("Somebody has disarmed it.");
+  } else if (!state_.running) {
+    refusal = "The run is over. Reset first.";
+  } else {
+    refusal = robot->arm();
+  }
+  if (!refusal) log(LogLevel::Warning, on ? "The motors are armed." : "The motors are disarmed.");
+  state_.hardware = robot->report();
+  changed();
+  return refusal;
+}
+
+std::optional<std::string> Session::pace_refusal() const {
+  if (state_.spec.hardware == nullptr) return std::nullopt;
+  return "This robot is real: its time cannot be paused, stepped or sped up. Press Stop to stop "
+         "it.";
+}
+
+void Session::pause(bool paused) {
+  state_.pace.paused = paused;
+  apply_pace();
+}
+
+void Session::set_speed(double times_real_time) {
+  state_.pace.speed = times_real_time;
+  apply_pace();
+}
+
+void Session::single_step(std::uint32_t ticks) {
+  state_.pace.paused = true;
+  state_.pace.single_steps = ticks;
+  apply_pace();
+}
+
+void Session::poll() {
+  count_watchers();
+  watch_record();
+  if (!live_) return;
+  drain_replies();
+  drain_frames();
+  watch_run();
+  watch_hardware();
+}
+
+/// How full the store is changes at every commit; people are told when that means something else.
+void Session::watch_record() {
+  if (recorder_ == nullptr || recorder_->revision() == record_seen_) return;
+  record_seen_ = recorder_->revision();
+  for (const std::string& news : recorder_->take_news()) log(LogLevel::Warning, news);
+  const RecordStatus was = std::exchange(state_.record, recorder_->status());
+  const RecordStatus& now = state_.record;
+  if (was.kind != now.kind || was.sentence != now.sentence || was.deleted != now.deleted) changed();
+}
+
+/// People are told at once of what moves or stops the robot, of the rest once a second.
+void Session::watch_hardware() {
+  using std::chrono::milliseconds;
+  drivers::SerialRobot* robot = state_.spec.hardware.get();
+  const auto now = std::chrono::steady_clock::now();
+  if (robot == nullptr || now - hardware_seen_ < milliseconds(100)) return;
+  hardware_seen_ = now;
+  drivers::HardwareReport report = robot->report();
+  if (arm_when_ready_ && report.halt == algo::Halt::Disarmed) {
+    arm_when_ready_ = false;
+    if (const auto refusal = arm(true)) log(LogLevel::Warning, *refusal);
+    return;
+  }
+  const bool news = !state_.hardware || state_.hardware->armed != report.armed ||
+                    state_.hardware->halt != report.halt;
+  if (news && !report.trouble.empty()) log(LogLevel::Warning, report.trouble);
+  if (!news && now - hardware_told_ < milliseconds(1000)) return;
+  hardware_told_ = now;
+  state_.hardware = std::move(report);
+  changed();
+}
+
+void Session::count_watchers() {
+  const Watchers watchers = watch_.watchers(OperatorWatch::Clock::now());
+  if (watchers == state_.watchers) return;
+  state_.watchers = watchers;
+  changed();
+}
+
+void Session::drain_replies() {
+  bool different = false;
+  live_->rings.replies.consume_all([&](const Reply& reply) {
+    if (reply.ticket == kGoalsCleared) {
+      set_goals(std::nullopt);
+      log(LogLevel::Info, "The goals are cleared: the robot was disarmed or stopped.");
+      different = true;
+      return;
+    }
+    const auto it = pending_.find(reply.ticket);
+    if (it == pending_.end()) return;
+    const Pending pending = std::move(it->second);
+    pending_.erase(it);
+    if (reply.refusal) {
+      // A stick is pushed many times a second; who pushes it is told.
+      const bool stick = std::holds_alternative<algo::Joystick>(pending.request);
+      if (!stick) log(LogLevel::Warning, "Refused: " + *reply.refusal);
+    } else if (!std::holds_alternative<algo::Stop>(pending.request) ||
+               reply.ticket > stop_ticket_) {  // a release from before the newest Stop is void
+      adopt(pending.request);
+      different = different || !std::holds_alternative<algo::Joystick>(pending.request);
+    }
+    if (pending.answer) pending.answer(reply.refusal);
+  });
+  if (different) changed();
+}
+
+/// Brings the mirror up to date with a request the control thread has accepted.
+void Session::adopt(const algo::Request& request) {
+  const auto find = [&](std::uint32_t id) {
+    return std::find_if(state_.obstacles.begin(), state_.obstacles.end(), [id](const auto& o) {
+      return o.id == id;
+    });
+  };
+  std::visit(
+      [&](const auto& r) {
+        using R = std::decay_t<decltype(r)>;
+        if constexpr (std::is_same_v<R, algo::SetGoal>) {
+          set_goals(r);
+        } else if constexpr (std::is_same_v<R, algo::AddGoal>) {
+          if (state_.goal) {
+            state_.goals_ahead.push_back(r.goal);
+          } else {
+            set_goals(r.goal);
+          }
+        } else if constexpr (std::is_same_v<R, algo::ClearGoal>) {
+          set_goals(std::nullopt);
+        } else if constexpr (std::is_same_v<R, algo::AddObstacle>) {
+          state_.obstacles.push_back(r.obstacle);
+        } else if constexpr (std::is_same_v<R, algo::MoveObstacle>) {
+          if (const auto it = find(r.id); it != state_.obstacles.end()) it->pose_W = r.pose_W;
+        } else if constexpr (std::is_same_v<R, algo::RemoveObstacle>) {
+          if (const auto it = find(r.id); it != state_.obstacles.end()) state_.obstacles.erase(it);
+        } else if constexpr (std::is_same_v<R, algo::Stop>) {
+          state_.stop = r.engaged;
+        } else if constexpr (std::is_same_v<R, algo::SetParameter>) {
+          state_.parameters.set(r.parameter, r.value);
+        } else {
+          static_assert(std::is_same_v<R, algo::Joystick>);
+          if (r != algo::Joystick{} && state_.goal) {  // taking the stick cancels the goal
+            set_goals(std::nullopt);
+            changed();
+          }
+        }
+      },
+      request);
+}
+
+void Session::set_goals(const std::optional<algo::SetGoal>& goal) {
+  state_.goal = goal;
+  state_.goals_ahead.clear();
+}
+
+/// Moves on in the mirror when the robot has: a frame may be older than what was asked for since.
+void Session::follow_goal(const algo::Telemetry& t) {
+  if (t.goal == state_.goal) return;
+  auto& ahead = state_.goals_ahead;
+  const auto found = std::find(ahead.begin(), ahead.end(), t.goal);
+  if (found == ahead.end()) return;
+  state_.goal = *found;
+  ahead.erase(ahead.begin(), found + 1);
+  log(LogLevel::Info, "A waypoint is reached; the next goal is set.");
+  changed();
+}
+
+void Session::drain_frames() {
+  FrameRef latest;
+  live_->rings.stream.consume_all([&](const FrameRef& frame) {
+    const algo::Telemetry& t = frame->telemetry;
+    const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+    path_.add(pose);
+    narrate(t);
+    follow_goal(t);
+    if (t.scene.fresh) newest_scan_ = frame;
+    latest = frame;
+  });
+  if (!latest) return;
+  newest_ = latest;
+  newest_came_ = std::chrono::steady_clock::now();
+  if (on_frame) on_frame(latest);
+}
+
+/// Says in the log what changed for the robot, once per change.
+void Session::narrate(const algo::Telemetry& t) {
+  if (t.hold == told_hold_ && t.mission == told_mission_) return;
+  const bool held = t.hold != algo::Hold::None && t.hold != told_hold_;
+  const bool notable = t.mission != told_mission_ &&
+                       (t.mission == algo::Mission::Arrived || t.mission == algo::Mission::Stuck);
+  told_hold_ = t.hold;
+  told_mission_ = t.mission;
+  if (!held && !notable) return;
+  const algo::Explanation words = algo::explain(t);
+  log(held || t.mission == algo::Mission::Stuck ? LogLevel::Warning : LogLevel::Info,
+      words.what + ". " + words.why);
+}
+
+void Session::watch_run() {
+  const bool ended = state_.running && live_->finished();
+  const algo::Outcome outcome = ended ? live_->result().outcome : live_->outcome();
+  if (ended) {
+    state_.running = false;
+    drain_replies();
+    answer_the_rest();
+    state_.lost_ticks = live_->result().lost_ticks;
+    state_.missed_periods = live_->result().missed_periods;
+    if (outcome == algo::Outcome::Failed) {
+      state_.problem = live_->result().reason;
+      log(LogLevel::Error, "The run broke off: " + live_->result().reason);
+    }
+  }
+  if (ended || outcome != state_.outcome) {
+    state_.outcome = outcome;
+    // The row says at once how a run that goes on has come out so far.
+    if (!ended && recorder_ != nullptr && live_->id() != 0) {
+      recorder_->post(
+          [run = live_->id(), outcome, metrics = live_->metrics()](db::RunStore& store) {
+            if (!store.recording(run)) return;
+            const bool over = outcome != algo::Outcome::Running;
+            store.set_result(run, algo::name(outcome), "", over ? to_json(metrics).dump() : "");
+          });
+    }
+    changed();
+  }
+}
+
+std::optional<std::string> Session::trouble_with(const algo::Request& request) {
+  constexpr int kShare = 10;  // of this thread's time goes into looks at goals: a tenth
+  const auto* add = std::get_if<algo::AddGoal>(&request);
+  const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
+  if (asked == nullptr || !may_look_at_goals()) return std::nullopt;
+  const auto began = std::chrono::steady_clock::now();
+  std::optional<std::string> trouble = trouble_with_goal(*asked);
+  const auto ended = std::chrono::steady_clock::now();
+  next_look_ = ended + (kShare - 1) * (ended - began);
+  return trouble;
+}
+
+std::optional<std::string> Session::trouble_with_goal(const algo::SetGoal& goal) const {
+  if (state_.spec.hardware) {
+    if (!newest_scan_) return std::nullopt;
+    const algo::Telemetry& t = newest_scan_->telemetry;
+    return goal_trouble(state_.robot, goal, t.observation.odometry.pose, t.scene.scan);
+  }
+  if (!newest_) return std::nullopt;
+  const std::vector<sim::ObstaclePath>& paths = state_.spec.scenario.paths;
+  std::vector<algo::Obstacle> standing;
+  std::ranges::copy_if(
+      state_.obstacles, std::back_inserter(standing), [&](const algo::Obstacle& obstacle) {
+        return std::ranges::none_of(paths, [&](const auto& p) { return p.id == obstacle.id; });
+      });
+  const algo::Telemetry& t = newest_->telemetry;
+  const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
+  return goal_trouble(state_.robot, goal, pose, standing);
+}
+
+sim::Scenario Session::as_scenario(const std::string& name, const std::string& title) const {
+  sim::Scenario out = state_.spec.scenario;
+  out.name = name;
+  out.title = title;
+  out.goal = state_.goal;
+  out.waypoints.clear();
+  if (!state_.goals_ahead.empty()) {
+    out.waypoints.push_back(*state_.goal);
+    out.waypoints.insert(
+        out.waypoints.end(), state_.goals_ahead.begin(), state_.goals_ahead.end() - 1);
+    out.goal = state_.goals_ahead.back();
+  }
+  out.obstacles = state_.obstacles;
+  out.parameters.clear();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    if (state_.parameters[p.id] != p.initial) {
+      out.parameters.emplace_back(p.id, state_.parameters[p.id]);
+    }
+  }
+  return out;
+}
+
+void Session::changed() const {
+  if (on_change) on_change();
+}
+
+void Session::log(LogLevel level, const std::string& text) const {
+  if (on_log) on_log(level, text);
+}
+
+}  // namespace server

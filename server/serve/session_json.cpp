@@ -1,0 +1,119 @@
+// server/serve/session_json.cpp: documents about a session.
+#include "server/serve/session_json.hpp"
+
+#include "algo/explain.hpp"
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/controllers.hpp"
+#include "server/run/hardware.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/paths.hpp"
+#include "server/run/pose_json.hpp"
+#include "server/run/scenario_json.hpp"
+
+namespace server {
+
+using nlohmann::json;
+
+json state_json(const Session& session) {
+  const SessionState& s = session.state();
+  json obstacles = json::array();
+  for (const algo::Obstacle& o : s.obstacles) obstacles.push_back(to_json(o));
+  json out = {
+      {"run",
+       {{"id", session.run_id()},
+        {"status", s.running ? "recording" : "finished"},
+        {"outcome", algo::name(s.outcome)}}},
+      {"source", source_of(s.spec)},
+      {"scenario", to_json(s.spec.scenario)},
+      {"controller", s.spec.scenario.controller},
+      {"filter", s.spec.scenario.filter},
+      {"vehicle", vehicle_of(s.spec)},
+      {"seed", s.spec.seed},
+      {"robot", to_json(s.robot)},
+      {"pace", {{"paused", s.pace.paused}, {"speed", s.pace.speed}}},
+      {"stop", s.stop},
+      {"goal", nullptr},
+      {"goals_ahead", json::array()},
+      {"obstacles", std::move(obstacles)},
+      {"parameters", to_json(s.parameters)},
+      {"lost_ticks", s.lost_ticks},
+      {"missed_periods", s.missed_periods},
+      {"problem", nullptr},
+      {"record", to_json(s.record)},
+      {"hardware", nullptr},
+      {"watchers", s.watchers.pages + (s.watchers.scripts ? 1U : 0U)},
+      {"watched_by_script", s.watchers.scripts},
+  };
+  if (s.goal) out["goal"] = to_json(*s.goal);
+  for (const algo::SetGoal& goal : s.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
+  if (s.problem) out["problem"] = without_folders(*s.problem);
+  if (s.hardware) out["hardware"] = to_json(*s.hardware);
+  return out;
+}
+
+json session_json(const Session& session) {
+  json out = state_json(session);
+  if (!session.newest()) return out;
+  const algo::Telemetry& t = session.newest()->telemetry;
+  const algo::Pose2& pose = t.observation.odometry.pose;
+  const algo::Explanation words = algo::explain(t);
+  out["tick"] = t.tick;
+  out["stamp"] = t.observation.stamp;
+  out["pose"] = {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
+  out["command"] = {{"v", t.command.base.v}, {"omega", t.command.base.omega}};
+  out["clearance"] = t.clearance;
+  out["mission"] = algo::name(t.mission);
+  out["hold"] = algo::name(t.hold);
+  out["behaviour"] = algo::name(t.behaviour);
+  out["what"] = words.what;
+  out["why"] = words.why;
+  return out;
+}
+
+json goal_check_json(Session& session, const json& goal) {
+  const JsonReader in(goal, "");
+  in.only({"x", "y", "heading"});
+  json out = {{"ok", true}, {"trouble", nullptr}};
+  if (const auto trouble = session.trouble_with(goal_from_json(in))) out["trouble"] = *trouble;
+  return out;
+}
+
+json accepted_json(const Session& session, bool stop) {
+  json body = {{"ok", true}};
+  if (stop) body["stop"] = session.standing() ? "standing" : "commanded";
+  return body;
+}
+
+json catalog_json() {
+  const auto entries = [](const auto& table) {
+    json list = json::array();
+    for (const auto& entry : table) {
+      list.push_back({{"name", entry.name}, {"label", entry.label}, {"help", entry.help}});
+    }
+    return list;
+  };
+  json parameters = json::array();
+  for (const algo::ParameterInfo& p : algo::parameter_table()) {
+    parameters.push_back({{"name", p.name},
+                          {"label", p.label},
+                          {"unit", p.unit},
+                          {"min", p.min},
+                          {"max", p.max},
+                          {"step", p.step},
+                          {"initial", p.initial},
+                          {"help", p.help}});
+  }
+  json vehicles = json::array();
+  vehicles.push_back({{"name", "bullet"},
+                      {"label", "Bullet"},
+                      {"help", "Rigid-body physics with wheel slip and acceleration limits."}});
+  vehicles.push_back({{"name", "kinematic"},
+                      {"label", "Kinematic"},
+                      {"help", "Goes exactly as told: fast, and the paper's conditions."}});
+  return {{"controllers", entries(algo::controller_table())},
+          {"filters", entries(algo::filter_table())},
+          {"vehicles", std::move(vehicles)},
+          {"parameters", std::move(parameters)}};
+}
+
+}  // namespace server

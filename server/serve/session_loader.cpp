@@ -1,0 +1,59 @@
+// server/serve/session_loader.cpp: worker, io thread, worker, io thread: prepare, part, wait,
+// begin.
+#include "server/serve/session_loader.hpp"
+
+#include <utility>
+
+namespace server {
+
+bool SessionLoader::load(Plan plan, Done done) {
+  if (loads_.size() >= kMaxWaiting) return false;
+  loads_.push_back({std::move(plan), std::move(done)});
+  if (loads_.size() == 1) begin_first();
+  return true;
+}
+
+bool SessionLoader::reset(Done done) {
+  return load([this] { return [spec = session_.state().spec] { return spec; }; }, std::move(done));
+}
+
+void SessionLoader::begin_first() {
+  workers_.post([this, make = loads_.front().plan()](Worker&) {
+    auto next = std::make_shared<PreparedRun>();
+    std::exception_ptr failure;
+    try {
+      *next = session_.prepare(make());
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    // Moved: the exception goes to the io thread, with nobody else who could let go of it.
+    to_io_([this, next, failure = std::move(failure)] {
+      if (failure) {
+        finish(failure);
+      } else {
+        prepared(next);
+      }
+    });
+  });
+}
+
+void SessionLoader::prepared(const std::shared_ptr<PreparedRun>& next) {
+  std::shared_ptr<LiveRun> last = session_.part();
+  // Moved: letting go of it waits for its last tick, which the io thread must not.
+  workers_.post([this, last = std::move(last), next](Worker&) mutable {
+    last.reset();
+    to_io_([this, next] {
+      session_.begin(std::move(*next));
+      finish(nullptr);
+    });
+  });
+}
+
+void SessionLoader::finish(std::exception_ptr failure) {
+  const Load load = std::move(loads_.front());
+  loads_.pop_front();
+  if (load.done) load.done(std::move(failure));
+  if (!loads_.empty()) begin_first();
+}
+
+}  // namespace server

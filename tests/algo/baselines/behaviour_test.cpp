@@ -1,0 +1,163 @@
+// tests/algo/baselines/behaviour_test.cpp: what the literature says of the comparison controllers:
+// where each reaches the goal, and where each does not.
+#include <numbers>
+#include <ostream>
+#include <set>
+
+#include "tests/algo/baselines/drive.hpp"
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::Manner;
+using baselines::Drive;
+using baselines::Outcome;
+using baselines::Vec2;
+
+const Vec2 kGoal{6, 0};
+
+/// A post beside the line to the goal that the hull would hit.
+worlds::World post(double off_line) {
+  return {{{{3, off_line}, 0.3}}, {}};
+}
+
+std::vector<Vec2> box(double x0, double y0, double x1, double y1) {
+  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
+}
+
+/// Open towards the robot, 3 m wide and 1.5 m deep, between it and the goal.
+worlds::World dead_end() {
+  return {{}, {box(3, -1.5, 3.2, 1.5), box(1.5, 1.5, 3.2, 1.7), box(1.5, -1.7, 3.2, -1.5)}};
+}
+
+class EveryRival : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryRival, ReachesAGoalInTheOpen) {
+  const Outcome outcome = Drive(GetParam(), {}, {4, 1}).run();
+  EXPECT_EQ(outcome.name, "reached");
+  EXPECT_LT(outcome.path, 4.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Baselines,
+    EveryRival,
+    ::testing::Values(
+        "go_to_goal", "edge_detection", "potential_field", "certainty_grid", "vff", "vfh", "dwa"),
+    [](const auto& about) { return about.param; });
+
+class EveryAvoider : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryAvoider, PassesAPostBesideItsLine) {
+  const Outcome outcome = Drive(GetParam(), post(0.5), kGoal).run();
+  EXPECT_EQ(outcome.name, "reached");
+  EXPECT_GT(outcome.clearance, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Baselines,
+    EveryAvoider,
+    ::testing::Values("edge_detection", "potential_field", "certainty_grid", "vff", "vfh", "dwa"),
+    [](const auto& about) { return about.param; });
+
+TEST(Baselines, GoToGoalHitsWhatStandsInItsWay) {
+  EXPECT_EQ(Drive("go_to_goal", post(0), kGoal).run().name, "collided");
+}
+
+/// Forces that cancel head-on: Koren and Borenstein's own objection to force fields. The VFF, whose
+/// cells are never quite symmetric, comes past this one.
+TEST(Baselines, ThePotentialFieldComesToRestBeforeAPostOnItsLine) {
+  const Outcome outcome = Drive("potential_field", post(0), kGoal).run();
+  EXPECT_EQ(outcome.name, "out_of_time");
+  EXPECT_NEAR(outcome.end.x(), 3 - 0.3 - 0.64, 0.01);  // where the forces balance
+  EXPECT_LT(outcome.late_path, 0.01);
+}
+
+/// A local minimum: none of these knows more than what is near.
+TEST(Baselines, LocalMethodsAreTrappedInADeadEnd) {
+  for (const char* name : {"potential_field", "vff", "vfh", "dwa"}) {
+    const Outcome outcome = Drive(name, dead_end(), kGoal).run(60);
+    EXPECT_EQ(outcome.name, "out_of_time") << name;
+    EXPECT_LT(outcome.end.x(), 3) << name;
+    EXPECT_GT(outcome.clearance, 0) << name;
+  }
+}
+
+TEST(Baselines, TheCertaintyGridFindsTheWayOutOfADeadEnd) {
+  bool replanned_back = false;
+  const Outcome outcome = Drive("certainty_grid", dead_end(), kGoal)
+                              .watch([&](const algo::ControlOutput& out) {
+                                for (const Vec2& point : out.plan_W) {
+                                  replanned_back = replanned_back || std::abs(point.y()) > 1.7;
+                                }
+                              })
+                              .run();
+  EXPECT_EQ(outcome.name, "reached");
+  EXPECT_TRUE(replanned_back);
+}
+
+TEST(Baselines, WithoutAnyWayTheCertaintyGridStopsAndSaysSo) {
+  const worlds::World cell{{},
+                           {box(-1.2, -1.2, 1.2, -1.1),
+                            box(-1.2, 1.1, 1.2, 1.2),
+                            box(1.1, -1.2, 1.2, 1.2),
+                            box(-1.2, -1.2, -1.1, 1.2)}};
+  Manner last = Manner::None;
+  const Outcome outcome = Drive("certainty_grid", cell, kGoal)
+                              .watch([&](const algo::ControlOutput& out) { last = out.manner; })
+                              .run(40);
+  EXPECT_EQ(outcome.name, "out_of_time");
+  EXPECT_EQ(last, Manner::NoPlan);
+  EXPECT_GT(outcome.clearance, 0);
+}
+
+/// It stands still for half a second at each scan it takes, and only then.
+TEST(Baselines, EdgeDetectionStopsToTakeItsScans) {
+  int standing = 0;
+  int longest = 0;
+  int scans = 0;
+  const Outcome outcome = Drive("edge_detection", post(0), kGoal)
+                              .watch([&](const algo::ControlOutput& out) {
+                                const bool stands = out.manner == Manner::TakingScan;
+                                if (stands && standing == 0) ++scans;
+                                standing = stands ? standing + 1 : 0;
+                                longest = std::max(longest, standing);
+                                EXPECT_EQ(stands, out.twist == algo::Twist2{});
+                              })
+                              .run();
+  EXPECT_EQ(outcome.name, "reached");
+  EXPECT_GE(scans, 1);
+  EXPECT_EQ(longest, 10);  // of 50 ms
+}
+
+TEST(Baselines, TheDynamicWindowChoosesWhatItCanReachAndStop) {
+  algo::Twist2 before;
+  const Outcome outcome = Drive("dwa", post(0), kGoal)
+                              .watch([&](const algo::ControlOutput& out) {
+                                int chosen = 0;
+                                for (const algo::Candidate& each : out.candidates) {
+                                  if (!each.chosen) continue;
+                                  ++chosen;
+                                  EXPECT_TRUE(each.allowed);
+                                  EXPECT_EQ(each.twist, out.twist);
+                                }
+                                EXPECT_EQ(chosen, 1);
+                              })
+                              .run();
+  EXPECT_EQ(outcome.name, "reached");
+  EXPECT_GE(outcome.clearance, 0.04);  // its margin of 5 cm, less what it drives in a tick
+}
+
+/// A rectangle passes lengthwise where the circle about it does not.
+TEST(Baselines, TheDynamicWindowKnowsRectangles) {
+  const worlds::World gap{{}, {box(2, 0.32, 4, 9), box(2, -9, 4, -0.32)}};
+  Drive disc("dwa", gap, kGoal);
+  disc.spec().radius = 0.3327;
+  EXPECT_NE(disc.run(60).name, "reached");
+  Drive rectangle("dwa", gap, kGoal);
+  rectangle.spec().radius = 0.3327;
+  rectangle.spec().half_length = 0.254;
+  rectangle.spec().half_width = 0.215;
+  EXPECT_EQ(rectangle.run(60).name, "reached");
+}
+
+}  // namespace

@@ -1,0 +1,274 @@
+// tests/algo/pipeline/pipeline_test.cpp: one tick after the other: what reaches the motors, and
+// why.
+#include "algo/pipeline/pipeline.hpp"
+
+#include <limits>
+#include <string>
+
+#include "tests/algo/allocations.hpp"
+#include <gtest/gtest.h>
+
+#include "algo/explain.hpp"
+
+namespace algo {
+namespace {
+
+RobotSpec disc() {
+  RobotSpec spec;
+  spec.name = "disc";
+  spec.radius = 0.35;
+  spec.period = 0.025;
+  spec.max_v = 0.5;
+  spec.max_omega = 1.0;
+  spec.max_acceleration = 0.5;
+  spec.drives = true;
+  return spec;
+}
+
+struct PipelineTest : ::testing::Test {
+  PipelineTest() { pipeline.reset({}); }
+  /// One tick with a scan of free beams, but for `obstacle` straight ahead [m] when it is given.
+  const Telemetry& tick(double obstacle = 0,
+                        bool with_scan = true,
+                        bool dazzled = false,
+                        std::size_t cone = 0) {
+    t.observation.clear_sensors();
+    t.observation.stamp = 0.025 * static_cast<double>(ticks++);
+    t.observation.odometry.stamp = t.observation.stamp;
+    if (with_scan) {
+      LaserScan& scan = t.observation.scans.append();
+      scan.stamp = t.observation.stamp;
+      scan.angle_min = -std::numbers::pi / 2;
+      scan.angle_increment = std::numbers::pi / 360;
+      scan.range_max = 8.191;
+      scan.resize(361);
+      for (std::size_t i = 0; i < 361; ++i) scan.set_free(i);
+      for (std::size_t i = 0; dazzled && i < 361; ++i) scan.set_invalid(i, algo::BeamCode::Dazzled);
+      for (std::size_t i = 0; i < cone; ++i) {
+        scan.set_invalid(180 - cone / 2 + i, algo::BeamCode::Dazzled);
+      }
+      for (std::size_t i = 170; obstacle > 0 && i <= 190; ++i) scan.set_ok(i, obstacle);
+    }
+    pipeline.tick(t);
+    t.requests.clear();
+    return t;
+  }
+  void ask(const Request& request) { t.requests.push_back(request); }
+
+  Pipeline pipeline{{}, disc()};
+  Telemetry t{};
+  int ticks = 0;
+};
+
+TEST_F(PipelineTest, RestsWithoutAGoalAndDrivesWithOne) {
+  EXPECT_EQ(tick().command, Command{});
+  EXPECT_EQ(t.behaviour, BehaviourId::Rest);
+  ask(SetGoal{{3, 0}, std::nullopt});
+  EXPECT_GT(tick().command.base.v, 0);
+  EXPECT_EQ(t.behaviour, BehaviourId::Avoid);
+  EXPECT_EQ(t.mission, Mission::Driving);
+}
+
+TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(tick(0, false).hold, Hold::None) << i;  // 8 x 25 ms = 0.2 s
+  EXPECT_EQ(tick(0, false).hold, Hold::StaleScan);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_EQ(t.mission, Mission::Held);
+  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_GT(t.command.base.v, 0);
+}
+
+TEST_F(PipelineTest, ABlindedScanIsNone) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  for (int i = 0; i < 8; ++i) tick(0, true, true);
+  EXPECT_EQ(tick(0, true, true).hold, Hold::Dazzled);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_NE(algo::explain(t).why.find("blinded"), std::string::npos);
+  EXPECT_EQ(tick().hold, Hold::None);
+}
+
+TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_EQ(tick(0, true, false, 20).hold, Hold::Dazzled);
+  EXPECT_EQ(t.command, Command{});
+  EXPECT_EQ(t.mission, Mission::Held);
+  EXPECT_NE(algo::explain(t).why.find("dazzled"), std::string::npos);
+  EXPECT_EQ(tick(0, false).hold, Hold::Dazzled);  // no newer scan
+  EXPECT_EQ(tick(0, true, false, 2).hold, Hold::None);
+}
+
+TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
+  Pipeline pipeline({.controller = "vff"}, disc());
+  pipeline.reset({});
+  Telemetry t;
+  t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  int brought = 0;
+  const auto run = [&](int from, int to, bool changing) {
+    for (int tick = from; tick < to; ++tick) {
+      t.observation.clear_sensors();
+      t.observation.stamp = 0.025 * tick;
+      LaserScan& scan = t.observation.scans.append();
+      scan.stamp = t.observation.stamp;
+      scan.angle_min = -0.1;
+      scan.angle_increment = 0.1;
+      scan.range_max = 8;
+      scan.resize(3);
+      for (std::size_t i = 0; i < 3; ++i) {
+        scan.set_free(i);
+        if (changing) scan.set_ok(i, 1.0 + 0.005 * tick);
+      }
+      pipeline.tick(t);
+      t.requests.clear();
+      brought += t.output.grid.cells.empty() ? 0 : 1;
+    }
+  };
+  run(0, 200, true);  // 5 s
+  EXPECT_NEAR(brought, 10, 1);
+  brought = 0;
+  run(200, 800, false);  // 15 s, nothing new but the last returns
+  EXPECT_GE(brought, 3);
+  EXPECT_LE(brought, 4);
+}
+
+/// One tick of a robot that has a sonar ring and no scanner; the sonar ahead pings in each fourth.
+struct SonarPipeline {
+  explicit SonarPipeline(const char* controller)
+      : pipeline({.controller = controller}, without_laser()) {
+    pipeline.reset({});
+    t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  }
+  static RobotSpec without_laser() {
+    RobotSpec spec = disc();
+    spec.has_laser = false;
+    return spec;
+  }
+  const Telemetry& tick(bool ping) {
+    t.observation.clear_sensors();
+    t.observation.stamp = 0.025 * static_cast<double>(ticks++);
+    if (ping) {
+      t.observation.sonar.push_back({{0.35, 0, 0}, t.observation.stamp, 1.65, 5.0, Beam::Ok});
+    }
+    pipeline.tick(t);
+    t.requests.clear();
+    return t;
+  }
+
+  Pipeline pipeline;
+  Telemetry t{};
+  int ticks = 0;
+};
+
+TEST(PipelineBySonar, ItsStampsCountAndGoStale) {
+  for (const char* controller : {"vff", "vfh", "certainty_grid", "potential_field"}) {
+    SonarPipeline robot(controller);
+    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << "nothing has come yet";
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_EQ(robot.tick(i % 4 == 0).hold, Hold::None) << controller << ' ' << i;
+    }
+    EXPECT_GT(robot.t.command.base.v, 0) << controller;
+    EXPECT_NEAR(robot.t.clearance, 1.65, 1e-12) << controller;
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(robot.tick(false).hold, Hold::None) << i;
+    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << controller;
+    EXPECT_EQ(robot.t.command, Command{});
+    EXPECT_EQ(robot.tick(true).hold, Hold::None) << controller;
+  }
+}
+
+TEST(PipelineBySonar, AControllerThatNeedsALaserIsHeld) {
+  for (const char* controller : {"modified", "dwa", "edge_detection"}) {
+    SonarPipeline robot(controller);
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(robot.tick(true).hold, Hold::StaleScan) << controller;
+  }
+}
+
+/// A scanner that has not reported yet is no licence to drive by sonar.
+TEST(PipelineBySonar, ARobotWithALaserWaitsForIt) {
+  Pipeline pipeline({.controller = "vff"}, disc());
+  Telemetry t;
+  t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  t.observation.sonar.push_back({{0.35, 0, 0}, 0, 1.65, 5.0, Beam::Ok});
+  pipeline.tick(t);
+  EXPECT_EQ(t.hold, Hold::StaleScan);
+}
+
+TEST_F(PipelineTest, StopIsLatchedAndSurvivesANewGoal) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  ask(Stop{true});
+  EXPECT_EQ(tick().command, Command{});
+  ask(SetGoal{{4, 0}, std::nullopt});
+  EXPECT_EQ(tick().hold, Hold::Stopped);
+  ask(Stop{false});
+  EXPECT_GT(tick().command.base.v, 0);
+}
+
+TEST_F(PipelineTest, ASilentDriverLeavesARobotThatStandsStill) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  ask(Joystick{0.5, 0});
+  EXPECT_EQ(tick().behaviour, BehaviourId::Manual);
+  EXPECT_DOUBLE_EQ(t.command.base.v, 0.25);
+  EXPECT_FALSE(t.goal);
+  int live = 1;
+  while (tick().behaviour == BehaviourId::Manual) ++live;
+  EXPECT_EQ(live, 20);  // 0.5 s of 25 ms
+  EXPECT_EQ(t.command, Command{});
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(tick().command, Command{});
+}
+
+TEST_F(PipelineTest, ACentredStickDoesNotCancelTheGoal) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  ask(Joystick{0, 0});
+  tick();
+  EXPECT_TRUE(t.goal);
+}
+
+TEST_F(PipelineTest, ClearanceCountsEveryBeam) {
+  EXPECT_NEAR(tick(2.0).clearance, 1.65, 1e-12);
+  EXPECT_NEAR(tick().clearance, 8.191 - 0.35, 1e-12);
+}
+
+TEST_F(PipelineTest, NotANumberNeverReachesTheMotors) {
+  ask(SetGoal{{3, 0}, std::nullopt});
+  tick();
+  t.observation.odometry.pose.x = std::numeric_limits<double>::quiet_NaN();
+  pipeline.tick(t);
+  EXPECT_EQ(t.hold, Hold::NotFinite);
+  EXPECT_EQ(t.command, Command{});
+}
+
+TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
+  EXPECT_FALSE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 0.5}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 50}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::StripStep, 0.6}));  // S >= K_r d_safe
+  EXPECT_TRUE(pipeline.refusal(Joystick{1.5, 0}));
+  EXPECT_TRUE(pipeline.refusal(SetGoal{{std::numeric_limits<double>::infinity(), 0}, {}}));
+  RobotSpec log = disc();
+  log.drives = false;
+  EXPECT_TRUE((Pipeline{{}, log}.refusal(SetGoal{{1, 0}, {}})));
+}
+
+/// With K_c = 1 the via point that is kept never settles.
+TEST_F(PipelineTest, RefusesFullContractionOfAViaThatIsKept) {
+  const SetParameter full{Parameter::ContractionGain, 1.0};
+  EXPECT_FALSE(pipeline.refusal(full));
+  const Pipeline kept({.controller = "via_kept"}, disc());
+  const auto reason = kept.refusal(full);
+  ASSERT_TRUE(reason);
+  EXPECT_NE(reason->find("k_c must be below 1"), std::string::npos) << *reason;
+  EXPECT_FALSE(kept.refusal(SetParameter{Parameter::ContractionGain, 0.95}));
+}
+
+TEST_F(PipelineTest, ASteadyTickAllocatesNothing) {
+  ask(SetGoal{{100, 0}, std::nullopt});
+  for (int i = 0; i < 50; ++i) tick(2.0);
+  const auto before = allocations::count();
+  for (int i = 0; i < 500; ++i) tick(i % 2 == 0 ? 2.0 : 1.2);
+  EXPECT_EQ(allocations::count(), before);
+}
+
+}  // namespace
+}  // namespace algo

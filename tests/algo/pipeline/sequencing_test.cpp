@@ -1,0 +1,105 @@
+// tests/algo/pipeline/sequencing_test.cpp: idle, driving, arrived, stuck; and the stuck rule's
+// window.
+#include "algo/pipeline/sequencing.hpp"
+
+#include <gtest/gtest.h>
+
+namespace algo {
+namespace {
+
+constexpr double kPeriod = 0.05;
+
+TEST(StuckDetector, WindowIsTwentySecondsOrEightHundredMillimetresOfTravel) {
+  EXPECT_DOUBLE_EQ(StuckDetector::window(0.1), 20.0);   // 0.8 / 0.1 = 8 s, so 20
+  EXPECT_DOUBLE_EQ(StuckDetector::window(0.02), 40.0);  // 0.8 / 0.02
+}
+
+TEST(StuckDetector, SaysStuckOnceTheWholeWindowLiesWithinSixtyMillimetres) {
+  StuckDetector detector;
+  detector.reset(kPeriod);
+  // 20 s of 0.05 s = 400 earlier positions; the 401st call is the first that may say stuck.
+  for (int i = 0; i < 400; ++i) ASSERT_FALSE(detector.update({0, 0}, 0.1)) << i;
+  EXPECT_TRUE(detector.update({0.059, 0}, 0.1));
+  EXPECT_FALSE(detector.update({0.061, 0}, 0.1));
+}
+
+TEST(StuckDetector, AMovingRobotIsNeverStuck) {
+  StuckDetector detector;
+  detector.reset(kPeriod);
+  for (int i = 0; i < 2000; ++i) {
+    ASSERT_FALSE(detector.update({0.1 * kPeriod * i, 0}, 0.1));  // 0.1 m/s
+  }
+}
+
+struct SequencerTest : ::testing::Test {
+  SequencerTest() { sequencer.reset(kPeriod); }
+  Sequencer sequencer{};
+  Parameters parameters{};
+};
+
+TEST_F(SequencerTest, IdleWithoutAGoal) {
+  EXPECT_EQ(sequencer.update({}, parameters), Mission::Idle);
+}
+
+TEST_F(SequencerTest, ArrivesWithinReachAndStaysArrived) {
+  sequencer.set_goal(SetGoal{.position_W = {1, 0}});
+  EXPECT_EQ(sequencer.update({0.89, 0, 0}, parameters), Mission::Driving);  // 0.11 m > 0.10 m
+  EXPECT_EQ(sequencer.update({0.91, 0, 0}, parameters), Mission::Arrived);
+  EXPECT_EQ(sequencer.update({0.5, 0, 0}, parameters), Mission::Arrived);
+  sequencer.set_goal(SetGoal{.position_W = {2, 0}});
+  EXPECT_EQ(sequencer.update({0.91, 0, 0}, parameters), Mission::Driving);
+}
+
+TEST_F(SequencerTest, AWantedHeadingMustBeReachedToo) {
+  sequencer.set_goal(SetGoal{.position_W = {1, 0}, .heading = 1.0});
+  EXPECT_EQ(sequencer.update({1, 0, 0.9}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.update({1, 0, 0.96}, parameters), Mission::Arrived);
+}
+
+TEST_F(SequencerTest, GoesOnFromGoalToGoalAndArrivesAtTheLast) {
+  sequencer.add_goal({.position_W = {1, 0}});  // the first, as there is none
+  sequencer.add_goal({.position_W = {2, 0}, .heading = 1.0});
+  sequencer.add_goal({.position_W = {2, 0.05}});
+  EXPECT_EQ(sequencer.update({0.5, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goals_ahead().size(), 2U);
+  EXPECT_EQ(sequencer.update({0.95, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goal(), (SetGoal{.position_W = {2, 0}, .heading = 1.0}));
+  EXPECT_EQ(sequencer.update({2, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goals_ahead().size(), 1U);
+  // Within reach of both that are left.
+  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Arrived);
+  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(2, 0.05)});
+  sequencer.add_goal({.position_W = {3, 0}});
+  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(3, 0)});
+}
+
+TEST_F(SequencerTest, ANewGoalTakesThePlaceOfAllThereAre) {
+  sequencer.add_goal({.position_W = {1, 0}});
+  sequencer.add_goal({.position_W = {2, 0}});
+  sequencer.set_goal(SetGoal{.position_W = {0, 5}});
+  EXPECT_TRUE(sequencer.goals_ahead().empty());
+  sequencer.add_goal({.position_W = {2, 0}});
+  sequencer.set_goal(std::nullopt);
+  EXPECT_EQ(sequencer.update({}, parameters), Mission::Idle);
+}
+
+TEST_F(SequencerTest, StuckUntilItGetsAway) {
+  sequencer.set_goal(SetGoal{.position_W = {5, 0}});
+  Mission mission = Mission::Driving;
+  for (int i = 0; i < 500; ++i) mission = sequencer.update({1, 0, 0}, parameters);
+  EXPECT_EQ(mission, Mission::Stuck);
+  EXPECT_EQ(sequencer.update({1.05, 0, 0}, parameters), Mission::Stuck);
+  EXPECT_EQ(sequencer.update({1.2, 0, 0}, parameters), Mission::Driving);
+}
+
+TEST_F(SequencerTest, AHeldRobotIsNotStuck) {
+  sequencer.set_goal(SetGoal{.position_W = {5, 0}});
+  for (int i = 0; i < 2000; ++i) {
+    sequencer.interrupt();
+    ASSERT_EQ(sequencer.update({1, 0, 0}, parameters), Mission::Driving);
+  }
+}
+
+}  // namespace
+}  // namespace algo

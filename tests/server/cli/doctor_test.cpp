@@ -1,0 +1,118 @@
+// tests/server/cli/doctor_test.cpp: what the doctor makes of ports that are not there, and of
+// spikes; a scan as a line of a log.
+#include "server/cli/doctor.hpp"
+
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "server/cli/carmen_line.hpp"
+#include "server/emulate/emulation.hpp"
+#include "sim/replay.hpp"
+
+namespace server {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(Doctor, PortsThatAreNotThereAreBadAndComeWithAdvice) {
+  const drivers::RobotFile file = drivers::parse_robot(R"(name = "none"
+hull = { radius = 0.3 }
+[[laser]]
+port = "/dev/no_such_laser"
+[base]
+type = "pioneer"
+port = "/dev/no_such_base"
+track = 0.33
+)",
+                                                       "none.toml");
+  std::vector<Finding> findings;
+  EXPECT_FALSE(examine(file, {}, [&](const Finding& f) { findings.push_back(f); }));
+  std::vector<Finding> bad;
+  for (const Finding& f : findings) {
+    if (f.verdict == Verdict::Bad) bad.push_back(f);
+  }
+  ASSERT_EQ(bad.size(), 2U);
+  EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
+  EXPECT_EQ(bad[1].device, "base");
+  for (const Finding& f : bad) EXPECT_NE(f.advice, "");
+}
+
+/// What is said of an emulated scanner after `command`, and that not all is well.
+std::string bad_words_after(const std::string& command) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("tautline_doctor_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  emulate::EmulationOptions options;
+  options.scanner_links = {folder / "scanner"};
+  emulate::Emulation emulation(options);
+  emulation.start();
+  emulation.command(command);
+  const drivers::RobotFile file = drivers::parse_robot(
+      "name = \"a\"\nhull = { radius = 0.3 }\n[[laser]]\nport = \"" +
+          (folder / "scanner").string() +
+          "\"\n[base]\ntype = \"pioneer\"\nport = \"/dev/no_such_base\"\ntrack = 0.33\n",
+      "a.toml");
+  std::string bad;
+  const auto listen = [&bad](const Finding& f) {
+    if (f.verdict == Verdict::Bad && f.device == "laser 1") bad += f.sentence + "\n";
+    EXPECT_THAT(f.sentence, Not(HasSubstr("% of the beams meet something")));
+  };
+  EXPECT_FALSE(examine(file, {.measuring = 0.5}, listen));
+  fs::remove_all(folder);
+  return bad;
+}
+
+TEST(Doctor, ADazzledScannerIsNeverWell) {
+  EXPECT_THAT(bad_words_after("dazzle on"), HasSubstr("It is blinded"));
+  EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
+}
+
+TEST(Doctor, SpikesStandAloneAgainstBothNeighbours) {
+  EXPECT_EQ(count_spikes({2, 2, 2, 2}), 0U);
+  EXPECT_EQ(count_spikes({2, 1, 2, 2}), 1U);
+  EXPECT_EQ(count_spikes({2, 2, 4, 4}), 0U);  // an edge
+  EXPECT_EQ(count_spikes({}), 0U);
+}
+
+TEST(Doctor, WheelsThatGoAnotherWayThanToldAreNotWell) {
+  EXPECT_TRUE(drove_as_told(0.05, 0.05));
+  EXPECT_TRUE(drove_as_told(-0.05, -0.045));
+  EXPECT_FALSE(drove_as_told(0.05, -0.05));  // reversed
+  EXPECT_FALSE(drove_as_told(0.05, 0.1));    // four counts a line taken for two
+  EXPECT_FALSE(drove_as_told(0.05, 0.037));  // a gear of 26 taken for one of 19
+  EXPECT_FALSE(drove_as_told(0.05, 0));
+}
+
+/// A scan written, and read by those who replay logs.
+TEST(CarmenLine, IsReadBack) {
+  for (const double field : {180.0, 100.0}) {
+    algo::LaserScan scan;
+    scan.resize(101);
+    scan.range_max = 8.191;
+    scan.angle_min = -field / 2 * std::numbers::pi / 180;
+    scan.angle_increment = field / 100 * std::numbers::pi / 180;
+    for (std::size_t i = 0; i < 101; ++i) scan.set_ok(i, 1.0 + 0.001 * static_cast<double>(i));
+    scan.set_free(7);
+    std::istringstream log(carmen_line(scan, "lab", 1000.5, 0.5) + "\n");
+    sim::Replay replay(log, "test");
+    algo::Observation seen;
+    replay.reset(seen);
+    ASSERT_EQ(seen.scans.size(), 1U);
+    const algo::LaserScan& back = seen.scans[0];
+    EXPECT_NEAR(back.angle_min, scan.angle_min, 1e-5);
+    EXPECT_NEAR(back.angle_increment, scan.angle_increment, 1e-5);
+    EXPECT_DOUBLE_EQ(back.ranges[100], 1.1);
+    EXPECT_NE(back.status[7], algo::Beam::Ok);
+  }
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,54 @@
+// tests/server/lab/soak_test.cpp: random worlds, their truth, and a few of them driven.
+#include "server/lab/soak/soak.hpp"
+
+#include <gtest/gtest.h>
+
+#include "server/lab/soak/random_world.hpp"
+#include "server/run/scenario_json.hpp"
+#include "sim/obstacle_set.hpp"
+
+namespace server::soak {
+namespace {
+
+TEST(RandomWorld, IsTheSameForTheSameSeedAndAValidScenario) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    const sim::Scenario world = random_world(seed, "strip");
+    EXPECT_EQ(to_json(world), to_json(random_world(seed, "strip")));
+    EXPECT_EQ(to_json(scenario_from_json(to_json(world))), to_json(world)) << seed;
+    sim::ObstacleSet set;
+    for (const algo::Obstacle& obstacle : world.obstacles) set.add(obstacle);
+    EXPECT_GT(set.distance(world.start.position()), 0.4);
+  }
+  EXPECT_NE(to_json(random_world(1, "strip")), to_json(random_world(2, "strip")));
+}
+
+TEST(RandomWorld, AClosedDoorIsNoWay) {
+  sim::Scenario world;
+  algo::Obstacle wall;
+  wall.id = 1;
+  wall.pose_W = {0, 0, 1.5707963};
+  wall.shape = algo::Wall{20, 0.1};
+  world.obstacles.push_back(wall);
+  EXPECT_FALSE(reachable(world, {-2, 0}, {2, 0}, 0.35, 0.1));
+  EXPECT_TRUE(reachable(world, {-2, 0}, {-3, 3}, 0.35, 0.1));
+  world.obstacles[0].shape = algo::Wall{8, 0.1};  // it ends within the room
+  EXPECT_TRUE(reachable(world, {-2, 0}, {2, 0}, 0.35, 0.1));
+}
+
+TEST(Soak, NothingThatMustNotHappenDoes) {
+  for (const Outcome& o : run_worlds({.worlds = 3})) {
+    EXPECT_FALSE(is_fault(o.ending)) << o.seed << ": " << name(o.ending) << ", " << o.why;
+    EXPECT_GE(o.min_clearance, 0);
+  }
+}
+
+/// It backed, in these, into what its scanner had never looked at.
+TEST(Soak, WorldsWhereTheRobotOnceBackedIntoTheUnseen) {
+  for (const std::uint64_t seed : {227U, 350U, 509U}) {
+    const Outcome o = run_world(seed, "strip");
+    EXPECT_EQ(o.ending, Ending::Reached) << seed << ": " << o.why;
+  }
+}
+
+}  // namespace
+}  // namespace server::soak

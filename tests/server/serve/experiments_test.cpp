@@ -1,0 +1,133 @@
+// tests/server/serve/experiments_test.cpp: queued runs when the program ends and when there is no
+// room.
+#include "server/serve/experiments.hpp"
+
+#include <atomic>
+#include <future>
+#include <optional>
+
+#include "tests/server/record/recorder_fixture.hpp"
+#include <gmock/gmock.h>
+
+#include "server/record/record_sink.hpp"
+#include "server/record/run_json.hpp"
+#include "server/record/verify.hpp"
+#include "server/run/scenario_library.hpp"
+
+namespace server {
+namespace {
+
+using db::RunReader;
+using db::RunStatus;
+using testing::HasSubstr;
+
+RunSpec case1() {
+  RunOverrides kinematic;
+  kinematic.vehicle = "kinematic";
+  return make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
+}
+
+class ExperimentsTest : public test::RecorderFiles {
+ protected:
+  static std::vector<db::RunId> start(Experiments& experiments, const Experiment& experiment) {
+    std::promise<std::vector<db::RunId>> runs;
+    experiments.start(experiment, [&](std::vector<db::RunId> given, const std::string& failure) {
+      EXPECT_EQ(failure, "");
+      runs.set_value(std::move(given));
+    });
+    return runs.get_future().get();
+  }
+  static std::string refused(Experiments& experiments, const Experiment& experiment) {
+    std::promise<std::string> why;
+    experiments.start(experiment, [&](const std::vector<db::RunId>&, const std::string& failure) {
+      why.set_value(failure);
+    });
+    return why.get_future().get();
+  }
+  static std::string resume(Experiments& experiments, db::RunId run) {
+    std::promise<std::string> refusal;
+    experiments.resume(
+        run, case1(), 0, 1000, [&](const std::string& why) { refusal.set_value(why); });
+    return refusal.get_future().get();
+  }
+  bool comes_to(db::RunId run, RunStatus status) {
+    RunReader reader(path);
+    return comes([&] { return get(reader, run).status == status; });
+  }
+};
+
+TEST_F(ExperimentsTest, RunsThatWereCutAreInterruptedAndRunAgainUnderTheirNumbers) {
+  std::vector<db::RunId> runs;
+  {
+    Recorder recorder(path, recorder_options());
+    Experiments experiments(recorder);
+    runs = start(experiments, {.spec = case1(), .repeats = 2, .pace = 0.5});
+    ASSERT_EQ(runs.size(), 2u);
+    ASSERT_TRUE(comes_to(runs[0], RunStatus::Recording));
+    RunReader reader(path);
+    ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
+  }
+  Recorder recorder(path, recorder_options());
+  Experiments experiments(recorder);
+  RunReader reader(path);
+  for (const db::RunId run : runs) {
+    EXPECT_EQ(get(reader, run).status, RunStatus::Interrupted);
+    EXPECT_THAT(get(reader, run).reason, HasSubstr("stopped"));
+    EXPECT_EQ(resume(experiments, run), "");
+  }
+  for (const db::RunId run : runs) {
+    ASSERT_TRUE(comes_to(run, RunStatus::Finished));
+    EXPECT_EQ(get(reader, run).outcome, "reached");
+    const Verification verification = verify_run(reader, run);
+    EXPECT_EQ(verification.difference, std::nullopt);
+    EXPECT_EQ(verification.incomplete, std::nullopt);
+    EXPECT_EQ(verification.ticks, get(reader, run).ticks);
+    EXPECT_THAT(resume(experiments, run), HasSubstr("neither interrupted"));
+  }
+}
+
+TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
+  std::atomic<std::uint64_t> free = 100 << 20;
+  RecorderOptions options = recorder_options();
+  options.wait_for_room = true;
+  options.commit_interval = std::chrono::milliseconds(5);
+  options.disk = [&](const std::string&) { return DiskSpace{.free = free, .total = 160 << 20}; };
+  Recorder recorder(path, std::move(options));
+  Experiments experiments(recorder);
+  const auto runs = start(experiments, {.spec = case1(), .repeats = 3, .pace = 4});
+  RunReader reader(path);
+  ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
+  free = 0;
+  ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
+  EXPECT_THAT(refused(experiments, {.spec = case1()}), HasSubstr("almost full"));
+  // The one at work has ticks that wait for room: it ends all the same.
+  for (const db::RunId run : {runs[0], runs[1]}) {
+    EXPECT_TRUE(experiments.cancel(run));
+    EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
+    EXPECT_EQ(recorder.ask([&](db::RunStore& store) { return store.delete_run(run); }),
+              db::RunStore::Deletion::Deleted);
+  }
+  EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
+  free = 100 << 20;
+  EXPECT_TRUE(comes_to(runs[2], RunStatus::Finished));
+  EXPECT_EQ(verify_run(reader, runs[2]).incomplete, std::nullopt);
+}
+
+TEST_F(ExperimentsTest, LargeWorldsThatWaitAreCountedInBytes) {
+  Recorder recorder(path, recorder_options());
+  Experiments experiments(recorder);
+  Experiment large{.spec = case1(), .pace = 0.1};
+  for (std::uint32_t id = 100; id < 1900; ++id) {
+    algo::Obstacle thing{.id = id, .shape = algo::Cylinder{.radius = 0.1}};
+    thing.pose_W = {20.0 + id, 0, 0};
+    large.spec.scenario.obstacles.push_back(thing);
+  }
+  std::size_t taken = 0;
+  while (taken < 2000 && experiments.start(large, [](const auto&, const auto&) {})) ++taken;
+  EXPECT_GT(taken, 20U);
+  EXPECT_LT(taken, 1000U);
+  EXPECT_TRUE(experiments.start({.spec = case1()}, [](const auto&, const auto&) {}));
+}
+
+}  // namespace
+}  // namespace server

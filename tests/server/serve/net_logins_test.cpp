@@ -1,0 +1,118 @@
+// tests/server/serve/net_logins_test.cpp: guesses and cookies on a clock of the test's own.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "server/serve/net/logins.hpp"
+
+namespace server::net {
+namespace {
+
+using namespace std::chrono_literals;
+
+Address at(const std::string& text) {
+  return Address::parse(text).value();
+}
+
+TEST(NetGuesses, TenAtOnceAndOneEveryFiveSeconds) {
+  Clock::time_point now{};
+  GuessThrottle throttle(now);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait) << i;
+  EXPECT_EQ(5s, throttle.wrong(at("10.0.0.1"), now).wait);
+  EXPECT_EQ(5s, throttle.wrong(at("10.0.0.1"), now).wait);
+  now += 5s;
+  EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait);
+  EXPECT_TRUE(throttle.wrong(at("10.0.0.1"), now).wait);
+  EXPECT_FALSE(throttle.wrong(at("10.0.0.2"), now).wait) << "another visitor";
+  now += 10min;  // no more than ten are ever saved up
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait) << i;
+  EXPECT_TRUE(throttle.wrong(at("10.0.0.1"), now).wait);
+}
+
+TEST(NetGuesses, OneWhoGuessesFasterThanAPersonCanIsNotLookedAt) {
+  Clock::time_point now{};
+  GuessThrottle throttle(now);
+  int looked_at = 0;
+  for (int i = 0; i < 10'000; ++i, now += 1ms) {  // ten seconds of a thousand guesses a second
+    if (throttle.may_look(at("10.0.0.1"), now)) ++looked_at;
+    throttle.wrong(at("10.0.0.1"), now);
+  }
+  EXPECT_LE(looked_at, 50 + 10 * 10 + 1);
+  EXPECT_TRUE(throttle.may_look(at("10.0.0.2"), now));
+  now += 1s;
+  EXPECT_TRUE(throttle.may_look(at("10.0.0.1"), now));
+}
+
+TEST(NetGuesses, AnIpv6VisitorHasOneAccountAndManyAddressesNoMoreMemory) {
+  Clock::time_point now{};
+  GuessThrottle throttle(now);
+  for (int i = 0; i < 10; ++i) throttle.wrong(at("2001:db8:0:1::" + std::to_string(i)), now);
+  EXPECT_TRUE(throttle.wrong(at("2001:db8:0:1::99"), now).wait);
+  EXPECT_EQ(1u, throttle.addresses());
+  for (int i = 0; i < 20'000; ++i) {
+    throttle.wrong(at("10." + std::to_string(i >> 16) + '.' + std::to_string(i >> 8 & 255) + '.' +
+                      std::to_string(i & 255)),
+                   now);
+  }
+  EXPECT_EQ(GuessThrottle::kAddresses, throttle.addresses());
+  EXPECT_TRUE(throttle.wrong(at("192.0.2.1"), now).wait) << "beyond them all share one account";
+  EXPECT_TRUE(throttle.may_look(at("192.0.2.2"), now)) << "the right token still passes";
+  now += 1min;
+  EXPECT_FALSE(throttle.wrong(at("192.0.2.1"), now).wait) << "those who stopped are forgotten";
+}
+
+TEST(NetGuesses, TheLogHasALineAMinuteForEachAddressAndNotTooManyForAll) {
+  Clock::time_point now{};
+  GuessThrottle throttle(now);
+  EXPECT_EQ("A wrong token came from 10.0.0.1.", throttle.wrong(at("10.0.0.1"), now).line);
+  for (int i = 0; i < 30; ++i) EXPECT_EQ("", throttle.wrong(at("10.0.0.1"), now).line);
+  EXPECT_EQ("", throttle.overdue(now));
+  now += 60s;
+  EXPECT_EQ("30 wrong tokens came from 10.0.0.1.", throttle.overdue(now));
+  EXPECT_EQ("", throttle.overdue(now));
+  int lines = 0;
+  for (int i = 0; i < 200; ++i) {
+    if (!throttle.wrong(at("10.0.1." + std::to_string(i)), now).line.empty()) ++lines;
+  }
+  EXPECT_LE(lines, 20);
+  now += 60s;
+  EXPECT_EQ("Somebody at 10.0.0.9 has logged in.", throttle.right(at("10.0.0.9"), now));
+}
+
+TEST(NetLoginSessions, LiveWhileTheyAreUsed) {
+  Clock::time_point now{};
+  LoginSessions logins;
+  const std::string id = logins.open(now);
+  EXPECT_EQ(32u, id.size());
+  now += LoginSessions::kIdle;
+  EXPECT_TRUE(logins.use(id, now));
+  EXPECT_FALSE(logins.use("", now));
+  EXPECT_FALSE(logins.use(id.substr(1), now));
+  now += LoginSessions::kIdle - 1s;
+  logins.keep(id, now);  // a WebSocket is open
+  now += 2s;
+  EXPECT_TRUE(logins.use(id, now));
+  EXPECT_TRUE(logins.renew(id, now));
+  EXPECT_FALSE(logins.renew(id, now + 1h));
+  now += LoginSessions::kIdle + 1s;
+  EXPECT_FALSE(logins.use(id, now));
+  logins.keep(id, now - 2 * LoginSessions::kIdle);
+}
+
+TEST(NetLoginSessions, OfTooManyTheOneUsedLongestAgoGoes) {
+  Clock::time_point now{};
+  LoginSessions logins;
+  const std::string driver = logins.open(now);
+  const std::string idle = logins.open(now);
+  for (int i = 0; i < 100; ++i) {
+    now += 1s;
+    logins.keep(driver, now);
+    logins.open(now);
+  }
+  EXPECT_EQ(64u, logins.size());
+  EXPECT_TRUE(logins.use(driver, now));
+  EXPECT_FALSE(logins.use(idle, now));
+}
+
+}  // namespace
+}  // namespace server::net
