@@ -105,8 +105,8 @@ verb_fmt() {
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
-    asan) targets=(test_algo test_sim test_drivers test_db test_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
-    tsan) targets=(test_server test_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
+    asan) targets=(tests_algo tests_sim tests_drivers tests_db tests_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
+    tsan) targets=(tests_server tests_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac
   need clang-16 libclang-rt-16-dev
