@@ -33,9 +33,7 @@ bool finite(const LaserScan& scan) {
 }  // namespace
 
 bool all_finite(const ControlInput& in, const Parameters& parameters) {
-  for (const ParameterInfo& about : parameter_table()) {
-    if (!std::isfinite(parameters[about.id])) return false;
-  }
+  if (!parameters.all_finite()) return false;
   if (in.goal && !in.goal->position_W.allFinite()) return false;
   if (in.goal && in.goal->heading && !std::isfinite(*in.goal->heading)) return false;
   const Odometry& odometry = in.odometry;
@@ -49,27 +47,18 @@ Twist2 drive_along(const Pose2& pose_W,
                    double bearing_W,
                    double speed,
                    const Parameters& parameters) {
-  const double w_max = parameters[Parameter::MaxTurnRate];
+  const double w_max = parameters[kMaxTurnRate];
   const double turn = wrap_angle(bearing_W - pose_W.heading);
-  const double w = parameters[Parameter::HeadingGain] * turn;
+  const double w = parameters[kHeadingGain] * turn;
   return {speed * std::max(0.0, std::cos(turn)), std::clamp(w, -w_max, w_max)};
-}
-
-Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters) {
-  const Vec2 e = pass_W - pose_W.position();
-  const double length = e.norm();
-  if (!(length > 0)) return {};
-  const double v_max = parameters[Parameter::MaxSpeed];
-  const double v = std::min(v_max, length * v_max / parameters[Parameter::StripStep]);
-  return drive_along(pose_W, std::atan2(e.y(), e.x()), v, parameters);
 }
 
 Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters) {
   if (!goal.heading) return {};
   const double error = wrap_angle(*goal.heading - pose_W.heading);
   if (std::abs(error) < kHeadingReach) return {};
-  const double limit = parameters[Parameter::MaxTurnRate];
-  return {0, std::clamp(parameters[Parameter::HeadingGain] * error, -limit, limit)};
+  const double limit = parameters[kMaxTurnRate];
+  return {0, std::clamp(parameters[kHeadingGain] * error, -limit, limit)};
 }
 
 }  // namespace algo

@@ -1,9 +1,21 @@
 // algo/gate.hpp: the last word before the motors: zero command, and why.
 #pragma once
 
+#include "algo/parameters.hpp"
 #include "algo/telemetry.hpp"
 
 namespace algo {
+
+inline constexpr ParameterInfo kScanTimeout{
+    .name = "gate.scan_timeout",
+    .label = "Scan timeout",
+    .unit = "s",
+    .min = 0.05,
+    .max = 2.0,
+    .step = 0.05,
+    .initial = 0.2,
+    .help = "The robot is held when its newest scan is older than this.",
+    .alias = "scan_timeout"};
 
 struct GateInput {
   bool stopped = false;  // Stop is latched

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/driving.hpp"
+
 namespace algo {
 namespace {
 
@@ -48,7 +50,7 @@ void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
   const Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
   const double distance =
       t.ground_truth ? t.ground_truth->obstacle_distance : t.clearance + radius_;
-  const double d_safe = parameters[Parameter::SafetyDistance];
+  const double d_safe = parameters[kSafetyDistance];
   const double clearance = t.ground_truth ? t.ground_truth->clearance : t.clearance;
   metrics_.min_clearance = std::min(metrics_.min_clearance, clearance);
   metrics_.intrusion = std::max(metrics_.intrusion, d_safe - distance);

@@ -1,36 +1,19 @@
-// algo/parameters.hpp: every tunable number with its name, unit and limits, in one table that the
-// page's sliders, REST, Foxglove parameters and `--set` all read.
+// algo/parameters.hpp: tunable numbers. Each is declared beside the component that reads it; the
+// page's sliders, REST, Foxglove parameters, `--set` and the documents are the union of them.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace algo {
 
-enum class Parameter : std::uint8_t {
-  ContractionGain,  // K_c
-  RepulsionGain,    // K_r
-  SafetyDistance,   // d_safe
-  StripStep,        // S
-  MaxSpeed,         // v_max
-  MaxTurnRate,      // w_max
-  HeadingGain,
-  GoalReach,
-  FilterHalfWidth,  // N
-  ScanTimeout,
-  JoystickTimeout,
-  NearestGoal,
-};
-constexpr std::size_t kParameterCount = 12;
-
+/// One tunable number, with static storage: its address is its identity.
 struct ParameterInfo {
-  Parameter id{};
-  std::string_view name{};   // "k_r": REST, --set, Foxglove
+  std::string_view name{};   // "strip.k_r": its component's name, then its own
   std::string_view label{};  // "Repulsion K_r": for people
   std::string_view unit{};   // "m", "m/s", "" for a bare number
   double min = 0;
@@ -38,31 +21,48 @@ struct ParameterInfo {
   double step = 0;  // a slider's step; whole numbers only where it is 1
   double initial = 0;
   std::string_view help{};
+  std::string_view alias{};  // "k_r": the older name, without the component
+
+  /// How documents spell it; both names are understood.
+  constexpr std::string_view key() const { return alias.empty() ? name : alias; }
 };
 
-/// The table, in the order of Parameter.
-std::span<const ParameterInfo> parameter_table();
-const ParameterInfo& info(Parameter parameter);
-std::optional<Parameter> find_parameter(std::string_view name);
+/// The parameters that one component reads.
+using ParameterList = std::span<const ParameterInfo* const>;
 
+/// Values of parameters, each at its initial one until it is set.
 class Parameters {
  public:
-  Parameters();  // every one at its initial value
-  double operator[](Parameter p) const { return values_[static_cast<std::size_t>(p)]; }
+  struct Setting {
+    const ParameterInfo* parameter = nullptr;
+    double value = 0;
+  };
+
+  Parameters() = default;
+  Parameters(std::initializer_list<Setting> settings) : settings_(settings) {}
+
+  double operator[](const ParameterInfo& parameter) const {
+    for (const Setting& setting : settings_) {
+      if (setting.parameter == &parameter) return setting.value;
+    }
+    return parameter.initial;
+  }
   /// Sets without a check; use refusal() first for values from outside.
-  void set(Parameter p, double value) { values_[static_cast<std::size_t>(p)] = value; }
-  bool operator==(const Parameters&) const = default;
+  void set(const ParameterInfo& parameter, double value);
+  /// Those that were set, in the order in which each was first.
+  std::span<const Setting> settings() const { return settings_; }
+  bool all_finite() const;
+  /// The same value of every parameter, however it came to be.
+  bool operator==(const Parameters& other) const;
 
  private:
-  std::array<double, kParameterCount> values_{};
+  std::vector<Setting> settings_{};
 };
 
-/// Why `value` cannot be given to `parameter` while the others are as in `now`, as a sentence;
-/// nothing when it can. Refuses what is out of limits, not finite, and S >= K_r d_safe, with which
-/// the strip can be pushed into an obstacle (equations.md D, consequence 2).
-std::optional<std::string> refusal(const Parameters& now, Parameter parameter, double value);
+/// Why `value` is out of the parameter's limits, as a sentence; nothing when it is not.
+std::optional<std::string> limit_refusal(const ParameterInfo& parameter, double value);
 
-/// The same for a whole set, such as a scenario's.
-std::optional<std::string> refusal(const Parameters& all);
+/// "0.6" rather than "0.600000", with a unit behind it where there is one.
+std::string with_unit(double value, std::string_view unit);
 
 }  // namespace algo

@@ -50,8 +50,8 @@ struct Stop {
   bool operator==(const Stop&) const = default;
 };
 struct SetParameter {
-  Parameter parameter{};
-  double value = 0;  // in the parameter's unit
+  const ParameterInfo* parameter = nullptr;  // never null in a request that is carried out
+  double value = 0;                          // in the parameter's unit
   bool operator==(const SetParameter&) const = default;
 };
 

@@ -334,7 +334,7 @@ RobotFile read(const toml::table& table, const std::string& name) {
   }
   spec.period = top.number_or("period", 0.05, {0.01, 0.2});
   robot.controller = top.text_or("controller", robot.controller);
-  check_known(top, "controller", robot.controller, algo::controller_table());
+  check_known(top, "controller", robot.controller, algo::builtin_controllers().entries());
   robot.filter = top.text_or("filter", robot.filter);
   check_known(top, "filter", robot.filter, algo::filter_table());
   read_hull(top.table("hull"), spec);

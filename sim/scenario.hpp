@@ -142,7 +142,7 @@ struct Scenario {
   Localization localization = Localization::Encoders;
   std::string controller = "modified";
   std::string filter = "pseudomedian";
-  std::vector<std::pair<algo::Parameter, double>> parameters{};  // where not initial
+  algo::Parameters parameters{};
   double time_limit = 0;  // [s] run clock for headless runs; 0 = 5 x straight line / v_max
   std::string log{};      // path of a CARMEN log to replay instead of a world
 };

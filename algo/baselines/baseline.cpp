@@ -34,7 +34,7 @@ void Baseline::update(const ControlInput& in, const Parameters& parameters, Cont
   if (goal_W_ && *goal_W_ != goal_W(in)) retarget();
   goal_W_ = goal_W(in);
   const Pose2& pose = in.odometry.pose;
-  if ((*goal_W_ - pose.position()).norm() < parameters[Parameter::GoalReach]) {
+  if ((*goal_W_ - pose.position()).norm() < parameters[kGoalReach]) {
     out.pass_W = *goal_W_;
     out.twist = turn_to(pose, *in.goal, parameters);
     return;

@@ -67,19 +67,23 @@ class CertaintyGrid {
 };
 
 /// Plans with A* on the grid five times a second [D] and follows the path: occupied cells are kept
-/// off by the hull and 5 cm, unknown ones count as free. A goal beyond the grid is sought at its
-/// border; without a way the robot drives to where it is nearest to the goal, and stands when it is
-/// too near to something already.
+/// off by the hull and a margin, unknown ones count as free. A goal beyond the grid is sought at
+/// its border; without a way the robot drives to where it is nearest to the goal, and stands when
+/// it is too near to something already.
 class CertaintyGridPlanner final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void retarget() override { planned_at_.reset(); }
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
-  void plan(const ControlInput& in);
-  void fill_costs(double radius);
+  void plan(const ControlInput& in, double margin);
+  void fill_costs(double hard);
   bool too_near(const Vec2& robot_W) const;
   void open_way_out(const Vec2& robot_W);
   GridCell place(Cell c) const;
-  Vec2 next_point(const Vec2& p_W) const;
+  Vec2 next_point(const Vec2& p_W, double ahead) const;
 
   CertaintyGrid grid_{};
   NewPicture is_new_{};

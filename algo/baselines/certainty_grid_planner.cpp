@@ -1,5 +1,6 @@
 // algo/baselines/certainty_grid_planner.cpp: from the map to costs, a path, and a twist along it.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "algo/baselines/certainty_grid.hpp"
@@ -9,16 +10,37 @@ namespace {
 
 constexpr double kReplanPeriod = 0.2;  // [s] [D]
 constexpr double kOccupied = 0.25;     // [D] certainty from which a cell is kept off
-constexpr double kMargin = 0.05;       // [m] [D] kept beyond the hull
 constexpr double kComfort = 0.3;       // [m] [D] beyond the margin cells still cost more
 constexpr float kNearCost = 3;         // [D] what a cell at the margin costs on top
 constexpr float kWayOutCost = 10;      // [D] of a cell under the robot that is too near
 constexpr double kWayOut = 0.3;        // [m] [D] round the robot where such cells are not blocked
-constexpr double kLookAhead = 0.4;     // [m] [D] to the point of the path that is driven to
 constexpr std::size_t kCells =
     static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
 
+constexpr ParameterInfo kMargin{.name = "certainty_grid.margin",
+                                .label = "Margin",
+                                .unit = "m",
+                                .min = 0,
+                                .max = 0.5,
+                                .step = 0.01,
+                                .initial = 0.05,
+                                .help = "Room that the path keeps beyond the hull."};
+constexpr ParameterInfo kLookAhead{.name = "certainty_grid.look_ahead",
+                                   .label = "Look ahead",
+                                   .unit = "m",
+                                   .min = 0.1,
+                                   .max = 2,
+                                   .step = 0.05,
+                                   .initial = 0.4,
+                                   .help = "How far ahead on its path the robot aims."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+    {&kMargin, &kLookAhead, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
+
 }  // namespace
+
+ParameterList CertaintyGridPlanner::parameters() {
+  return kParameters;
+}
 
 void CertaintyGridPlanner::forget() {
   grid_.clear();
@@ -41,11 +63,10 @@ bool CertaintyGridPlanner::too_near(const Vec2& robot_W) const {
   return view.blocked(place(grid_.cell_of(robot_W)));
 }
 
-/// 1 in the open, more near occupied cells, blocked where the hull of `radius` would touch them.
-void CertaintyGridPlanner::fill_costs(double radius) {
+/// 1 in the open, more near occupied cells, blocked within `hard` [m] of one.
+void CertaintyGridPlanner::fill_costs(double hard) {
   constexpr int kSide = CertaintyGrid::kSide;
   constexpr double kCell = CertaintyGrid::kCell;
-  const double hard = radius + kMargin;
   const int reach = static_cast<int>(std::ceil((hard + kComfort) / kCell));
   std::fill(costs_.begin(), costs_.end(), 1.0F);
   const CostGrid view{kSide, kSide, costs_};
@@ -85,9 +106,9 @@ void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
   }
 }
 
-void CertaintyGridPlanner::plan(const ControlInput& in) {
+void CertaintyGridPlanner::plan(const ControlInput& in, double margin) {
   const Vec2 p = in.odometry.pose.position();
-  fill_costs(in.spec->radius);
+  fill_costs(in.spec->radius + margin);
   const bool trapped = too_near(p);
   if (trapped) open_way_out(p);
   Vec2 aim = goal_W(in);
@@ -111,13 +132,12 @@ void CertaintyGridPlanner::plan(const ControlInput& in) {
   path_W_.back() = aim;
 }
 
-/// The point of the path kLookAhead on from its point nearest to the robot.
-Vec2 CertaintyGridPlanner::next_point(const Vec2& p_W) const {
+/// The point of the path `ahead` [m] on from its point nearest to the robot.
+Vec2 CertaintyGridPlanner::next_point(const Vec2& p_W, double ahead) const {
   const auto nearest = std::ranges::min_element(
       path_W_, {}, [&](const Vec2& point) { return (point - p_W).squaredNorm(); });
-  const auto next = std::find_if(nearest, path_W_.end(), [&](const Vec2& point) {
-    return (point - p_W).norm() >= kLookAhead;
-  });
+  const auto next = std::find_if(
+      nearest, path_W_.end(), [&](const Vec2& point) { return (point - p_W).norm() >= ahead; });
   return next == path_W_.end() ? path_W_.back() : *next;
 }
 
@@ -127,15 +147,15 @@ void CertaintyGridPlanner::steer(const ControlInput& in,
   grid_.sense(in, is_new_);
   grid_.show(out.grid);
   if (!planned_at_ || in.stamp - *planned_at_ >= kReplanPeriod) {
-    plan(in);
+    plan(in, parameters[kMargin]);
     planned_at_ = in.stamp;
   }
   out.manner = reaches_ ? Manner::Planned : Manner::NoPlan;
   for (const Vec2& point : path_W_) out.plan_W.push_back(point);
   const Vec2 p = in.odometry.pose.position();
-  const Vec2 next = next_point(p);
+  const Vec2 next = next_point(p, parameters[kLookAhead]);
   if ((next - p).norm() < CertaintyGrid::kCell / 2) return;  // as near as it gets
-  steer_along(in, bearing_W(p, next), parameters[Parameter::MaxSpeed], parameters, out);
+  steer_along(in, bearing_W(p, next), parameters[kMaxSpeed], parameters, out);
   out.pass_W = next;
 }
 

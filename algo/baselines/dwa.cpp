@@ -15,13 +15,50 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kInterval = 0.25;  // [s] the paper's control interval
 constexpr int kSpeeds = 9;          // [D] samples of the window
 constexpr int kTurns = 21;          // [D]
-constexpr double kMargin = 0.05;    // [m] [D] kept beyond the hull
 constexpr double kFarthest = 3.0;   // [m] [D] more room than this is no better
 constexpr double kShown = 1.5;      // [s] [D] of each candidate that is drawn
-constexpr double kHeadingWeight = 0.4;
-constexpr double kRoomWeight = 0.4;
-constexpr double kSpeedWeight = 0.2;
 constexpr std::size_t kBearings = 180;
+
+constexpr ParameterInfo kMargin{.name = "dwa.margin",
+                                .label = "Margin",
+                                .unit = "m",
+                                .min = 0,
+                                .max = 0.5,
+                                .step = 0.01,
+                                .initial = 0.05,
+                                .help = "Room that the window keeps beyond the hull."};
+constexpr ParameterInfo kHeadingWeight{.name = "dwa.heading_weight",
+                                       .label = "Heading weight",
+                                       .unit = "",
+                                       .min = 0,
+                                       .max = 1,
+                                       .step = 0.05,
+                                       .initial = 0.4,
+                                       .help = "What a heading towards the goal is worth."};
+constexpr ParameterInfo kRoomWeight{.name = "dwa.room_weight",
+                                    .label = "Room weight",
+                                    .unit = "",
+                                    .min = 0,
+                                    .max = 1,
+                                    .step = 0.05,
+                                    .initial = 0.4,
+                                    .help = "What free way ahead is worth."};
+constexpr ParameterInfo kSpeedWeight{.name = "dwa.speed_weight",
+                                     .label = "Speed weight",
+                                     .unit = "",
+                                     .min = 0,
+                                     .max = 1,
+                                     .step = 0.05,
+                                     .initial = 0.2,
+                                     .help = "What speed is worth."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>({&kHeadingWeight,
+                                                                  &kRoomWeight,
+                                                                  &kSpeedWeight,
+                                                                  &kMargin,
+                                                                  &kMaxSpeed,
+                                                                  &kMaxTurnRate,
+                                                                  &kHeadingGain,
+                                                                  &kGoalReach});
 
 double full_turn(double angle) {
   const double wrapped = wrap_angle(angle);
@@ -129,8 +166,8 @@ bool admissible(const Twist2& twist, const ArcRoom& room, const RobotSpec& spec,
 DynamicWindow dynamic_window(const Twist2& now,
                              const RobotSpec& spec,
                              const Parameters& parameters) {
-  const double v_max = parameters[Parameter::MaxSpeed];
-  const double w_max = parameters[Parameter::MaxTurnRate];
+  const double v_max = parameters[kMaxSpeed];
+  const double w_max = parameters[kMaxTurnRate];
   const double dv = spec.max_acceleration * kInterval;
   const double dw = spec.max_angular_acceleration * kInterval;
   return {std::clamp(now.v - dv, 0.0, v_max),
@@ -144,7 +181,8 @@ double dwa_objective(const Pose2& pose_W,
                      const Twist2& twist,
                      const ArcRoom& room,
                      double v_max,
-                     const RobotSpec& spec) {
+                     const RobotSpec& spec,
+                     const DwaWeights& weights) {
   const Pose2 there = integrate_arc(pose_W, twist, kInterval);
   const double brake = spec.max_angular_acceleration > 0
                            ? twist.omega * std::abs(twist.omega) / 2 / spec.max_angular_acceleration
@@ -152,7 +190,11 @@ double dwa_objective(const Pose2& pose_W,
   const double off = wrap_angle(bearing_W(there.position(), goal_W) - there.heading - brake);
   const double heading = 1 - std::abs(off) / std::numbers::pi;
   const double dist = std::min(room.distance, kFarthest) / kFarthest;
-  return kHeadingWeight * heading + kRoomWeight * dist + kSpeedWeight * twist.v / v_max;
+  return weights.heading * heading + weights.room * dist + weights.speed * twist.v / v_max;
+}
+
+ParameterList Dwa::parameters() {
+  return kParameters;
 }
 
 void Dwa::forget() {
@@ -184,11 +226,14 @@ void Dwa::gather(const ControlInput& in, double reach) {
 
 void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
   const RobotSpec& spec = *in.spec;
-  const double length = spec.half_length > 0 ? spec.half_length + kMargin : 0;
-  const Hull hull{spec.radius + kMargin, length, spec.half_width + kMargin};
+  const double margin = parameters[kMargin];
+  const double length = spec.half_length > 0 ? spec.half_length + margin : 0;
+  const Hull hull{spec.radius + margin, length, spec.half_width + margin};
   gather(in, kFarthest + hull.radius + hull.half_length + hull.half_width);
-  const double v_max = parameters[Parameter::MaxSpeed];
+  const double v_max = parameters[kMaxSpeed];
   const DynamicWindow window = dynamic_window(in.odometry.twist, spec, parameters);
+  const DwaWeights weights{
+      parameters[kHeadingWeight], parameters[kRoomWeight], parameters[kSpeedWeight]};
   const double reaction = in.dt + spec.command_delay;
 
   std::optional<std::size_t> best;
@@ -201,7 +246,8 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
       each.horizon = kShown;
       const ArcRoom room = arc_room(hull, each.twist, points_R_);
       each.allowed = admissible(each.twist, room, spec, reaction);
-      each.cost = 1 - dwa_objective(in.odometry.pose, goal_W(in), each.twist, room, v_max, spec);
+      each.cost =
+          1 - dwa_objective(in.odometry.pose, goal_W(in), each.twist, room, v_max, spec, weights);
       const bool better = !best || each.cost < out.candidates[*best].cost;
       if (each.allowed && better) best = out.candidates.size() - 1;
     }

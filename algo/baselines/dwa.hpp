@@ -47,18 +47,31 @@ DynamicWindow dynamic_window(const Twist2& now,
                              const RobotSpec& spec,
                              const Parameters& parameters);
 
-/// G = 0.4 heading + 0.4 dist + 0.2 velocity [D], each of 0..1. heading = 1 - |angle to the goal| /
-/// pi at the pose the twist leads to in one interval and then braking the turn; dist the room, 1
-/// from 3 m on [D]; velocity = v / v_max. The paper smooths the sum over the window; this does not.
-/// With most of the weight on the heading, the robot stops facing a post on its line.
+/// What heading, room and speed are worth in the objective.
+struct DwaWeights {
+  double heading = 0;
+  double room = 0;
+  double speed = 0;
+};
+
+/// G = heading + dist + velocity, each of 0..1 times its weight (0.4, 0.4, 0.2 [D]). heading = 1 -
+/// |angle to the goal| / pi at the pose the twist leads to in one interval and then braking the
+/// turn; dist the room, 1 from 3 m on [D]; velocity = v / v_max. The paper smooths the sum over the
+/// window; this does not. With most of the weight on the heading, the robot stops facing a post on
+/// its line.
 double dwa_objective(const Pose2& pose_W,
                      const Vec2& goal_W,
                      const Twist2& twist,
                      const ArcRoom& room,
                      double v_max,
-                     const RobotSpec& spec);
+                     const RobotSpec& spec,
+                     const DwaWeights& weights);
 
 class Dwa final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void gather(const ControlInput& in, double reach);

@@ -1,6 +1,7 @@
 // algo/baselines/edge_detection.cpp: edges, and the states drive, stand, pass.
 #include "algo/baselines/edge_detection.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,6 +14,9 @@ constexpr double kJump = 0.3;          // [m] [D]
 constexpr double kAside = 0.45;        // [m] [D]
 constexpr double kStandingTime = 0.5;  // [s] [D]
 constexpr double kViaReach = 0.1;      // [m] [D] the via point counts as reached
+
+constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+    {&kSafetyDistance, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 /// The first edge from `beam` on, going left (step +1) or right (step -1).
 std::optional<Edge> first_edge(const LaserScan& scan, std::size_t beam, int step) {
@@ -29,6 +33,10 @@ std::optional<Edge> first_edge(const LaserScan& scan, std::size_t beam, int step
 }
 
 }  // namespace
+
+ParameterList EdgeDetection::parameters() {
+  return kParameters;
+}
 
 EdgePair bounding_edges(const LaserScan& scan, std::size_t beam) {
   return {first_edge(scan, beam, 1), first_edge(scan, beam, -1)};
@@ -54,7 +62,7 @@ void EdgeDetection::retarget() {
 /// The beam that hits what stands in the lane to the goal, if anything does.
 std::optional<std::size_t> EdgeDetection::blocking_beam(const ControlInput& in,
                                                         const Parameters& parameters) {
-  const double reach = parameters[Parameter::SafetyDistance] + in.spec->radius;
+  const double reach = parameters[kSafetyDistance] + in.spec->radius;
   const SideInput input{
       in.stamp, in.odometry.pose, goal_W(in), reach, in.spec->radius, &in.scene->scan};
   return lane_.update(input, {0, 0}).blocked_beam;
@@ -102,7 +110,7 @@ void EdgeDetection::steer(const ControlInput& in,
   out.manner = via_W_ ? Manner::ToEdge : Manner::ToGoal;
   const Vec2 target = via_W_.value_or(goal_W(in));
   const double bearing = bearing_W(pose.position(), target);
-  steer_along(in, bearing, parameters[Parameter::MaxSpeed], parameters, out);
+  steer_along(in, bearing, parameters[kMaxSpeed], parameters, out);
   out.pass_W = target;
 }
 

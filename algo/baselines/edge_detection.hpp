@@ -32,6 +32,10 @@ Vec2 beside_edge(const Pose2& pose_W, const LaserScan& scan, const Edge& edge, S
 /// 0.5 s [D], takes the newest scan, and drives beside the edge that makes the shorter way to the
 /// goal [D]; there it looks at the lane again. Without an edge it drives at the goal.
 class EdgeDetection final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void retarget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;

@@ -6,7 +6,7 @@ namespace algo {
 void GoToGoal::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
   out.manner = Manner::ToGoal;
   const double bearing = bearing_W(in.odometry.pose.position(), goal_W(in));
-  steer_along(in, bearing, parameters[Parameter::MaxSpeed], parameters, out);
+  steer_along(in, bearing, parameters[kMaxSpeed], parameters, out);
 }
 
 }  // namespace algo

@@ -2,6 +2,7 @@
 #include "algo/baselines/potential_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "algo/baselines/returns.hpp"
@@ -33,7 +34,32 @@ class NearestOfEach {
   std::vector<Vec2>& points_W_;
 };
 
+constexpr ParameterInfo kPull{
+    .name = "potential_field.attraction",
+    .label = "Attraction k_a",
+    .unit = "1/m",
+    .min = 0.1,
+    .max = 10,
+    .step = 0.1,
+    .initial = 1.0,
+    .help = "How strongly the goal pulls, for each metre of its distance."};
+constexpr ParameterInfo kPush{
+    .name = "potential_field.repulsion",
+    .label = "Repulsion eta",
+    .unit = "m2",
+    .min = 0.0,
+    .max = 5,
+    .step = 0.05,
+    .initial = 0.5,
+    .help = "How strongly each obstacle within the safety distance pushes."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+    {&kPull, &kPush, &kSafetyDistance, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
+
 }  // namespace
+
+ParameterList PotentialField::parameters() {
+  return kParameters;
+}
 
 Vec2 attraction(const PotentialSettings& settings, const Vec2& p_W, const Vec2& goal_W) {
   const Vec2 pull = settings.k_a * (goal_W - p_W);
@@ -82,18 +108,16 @@ void PotentialField::steer(const ControlInput& in,
                            ControlOutput& out) {
   out.manner = Manner::Pushed;
   PotentialSettings settings;
-  settings.rho_0 = parameters[Parameter::SafetyDistance] + in.spec->radius;
+  settings.k_a = parameters[kPull];
+  settings.eta = parameters[kPush];
+  settings.rho_0 = parameters[kSafetyDistance] + in.spec->radius;
   const Vec2 p = in.odometry.pose.position();
   Vec2 force = attraction(settings, p, goal_W(in));
   nearest_points(in, obstacles_W_);
   for (const Vec2& obstacle : obstacles_W_) force += repulsion(settings, p, obstacle);
   if (!(force.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
   const double share = std::min(1.0, force.norm() / settings.f_max);
-  steer_along(in,
-              std::atan2(force.y(), force.x()),
-              share * parameters[Parameter::MaxSpeed],
-              parameters,
-              out);
+  steer_along(in, std::atan2(force.y(), force.x()), share * parameters[kMaxSpeed], parameters, out);
 }
 
 }  // namespace algo

@@ -9,12 +9,12 @@
 
 namespace algo {
 
-/// [D] All of them: the papers leave them open. With these a robot of 0.35 m comes to rest 0.64 m
-/// (centre to surface) before a single post on its line.
+/// [D] All of them: the papers leave them open. With the parameters' initial values a robot of
+/// 0.35 m comes to rest 0.64 m (centre to surface) before a single post on its line.
 struct PotentialSettings {
-  double k_a = 1.0;  // [1/m] with force as a bare number
+  double k_a = 0;    // [1/m] with force as a bare number
   double f_max = 1;  // largest pull; infinite: not limited
-  double eta = 0.5;  // [m2]
+  double eta = 0;    // [m2]
   double rho_0 = 0;  // [m] beyond it nothing pushes
 };
 
@@ -29,6 +29,10 @@ Vec2 repulsion(const PotentialSettings& settings, const Vec2& p_W, const Vec2& o
 /// pushes from its nearest point. Otherwise a wall of a hundred beams would push like a hundred
 /// posts. Sonar readings are an obstacle each.
 class PotentialField final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
 

@@ -2,19 +2,40 @@
 #include "algo/baselines/vff.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace algo {
 namespace {
 
 // [D] A post of six certain cells face-on balances the goal at sqrt(6 15 F_cr / F_ct) = 6.7 cells.
-constexpr double kRepulsion = 0.5;   // F_cr
-constexpr double kAttraction = 1.0;  // F_ct
+constexpr ParameterInfo kRepulsion{.name = "vff.repulsion",
+                                   .label = "Repulsion F_cr",
+                                   .unit = "",
+                                   .min = 0,
+                                   .max = 5,
+                                   .step = 0.05,
+                                   .initial = 0.5,
+                                   .help = "How strongly each certain cell pushes."};
+constexpr ParameterInfo kAttraction{.name = "vff.attraction",
+                                    .label = "Attraction F_ct",
+                                    .unit = "",
+                                    .min = 0.1,
+                                    .max = 5,
+                                    .step = 0.05,
+                                    .initial = 1.0,
+                                    .help = "How strongly the goal pulls."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+    {&kRepulsion, &kAttraction, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 // [D] Share of v_max that is always left. The law stands still before the faintest push from
 // straight ahead, for good: nothing else then changes.
 constexpr double kCreep = 0.1;
 
 }  // namespace
+
+ParameterList Vff::parameters() {
+  return kParameters;
+}
 
 VffForces vff_forces(
     const HistogramGrid& grid, const Vec2& robot_W, const Vec2& goal_W, double f_cr, double f_ct) {
@@ -48,10 +69,11 @@ void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   grid_.sense(in, is_new_);
   grid_.show(out.grid);
   const Pose2& pose = in.odometry.pose;
-  const VffForces forces = vff_forces(grid_, pose.position(), goal_W(in), kRepulsion, kAttraction);
+  const VffForces forces = vff_forces(
+      grid_, pose.position(), goal_W(in), parameters[kRepulsion], parameters[kAttraction]);
   const Vec2 sum = forces.sum();
   if (!(sum.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
-  const double v_max = parameters[Parameter::MaxSpeed];
+  const double v_max = parameters[kMaxSpeed];
   const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
   steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);
 }

@@ -24,6 +24,10 @@ VffForces vff_forces(
 double vff_speed(const Vec2& repulsion_W, double heading, double v_max);
 
 class Vff final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
 

@@ -2,16 +2,33 @@
 #include "algo/baselines/vfh.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
 namespace algo {
 namespace {
 
-constexpr int kSmoothing = 5;         // l
-constexpr int kWide = 18;             // s_max [sectors]
-constexpr double kThreshold = 300;    // [D] free below it
-constexpr double kStandstill = 3000;  // [D] h_m: at this density ahead the robot stands
+constexpr int kSmoothing = 5;  // l
+constexpr int kWide = 18;      // s_max [sectors]
+constexpr ParameterInfo kThreshold{.name = "vfh.threshold",
+                                   .label = "Threshold",
+                                   .unit = "",
+                                   .min = 10,
+                                   .max = 5000,
+                                   .step = 10,
+                                   .initial = 300,
+                                   .help = "A sector below this density is free."};
+constexpr ParameterInfo kStandstill{.name = "vfh.standstill",
+                                    .label = "Standstill h_m",
+                                    .unit = "",
+                                    .min = 100,
+                                    .max = 20000,
+                                    .step = 100,
+                                    .initial = 3000,
+                                    .help = "At this density straight ahead the robot stands."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+    {&kThreshold, &kStandstill, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 int cyclic(int k) {
   return (k % kSectors + kSectors) % kSectors;
@@ -42,6 +59,10 @@ int steer_through(const Valley& valley, int target) {
 }
 
 }  // namespace
+
+ParameterList Vfh::parameters() {
+  return kParameters;
+}
 
 int sector_of(double bearing) {
   const double turned = bearing < 0 ? bearing + 2 * std::numbers::pi : bearing;
@@ -106,19 +127,20 @@ void Vfh::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const Pose2& pose = in.odometry.pose;
   const PolarDensity density = smooth(polar_density(grid_, pose.position()));
   out.histogram.assign(density.begin(), density.end());
-  out.histogram_threshold = kThreshold;
+  const double threshold = parameters[kThreshold];
+  out.histogram_threshold = threshold;
 
   const double to_goal = bearing_W(pose.position(), goal_W(in));
   const int target = sector_of(to_goal);
-  const auto sector = steering_sector(density, kThreshold, target);
+  const auto sector = steering_sector(density, threshold, target);
   if (!sector) {  // stops and turns until a way opens
     out.manner = Manner::Walled;
-    out.twist = {0, parameters[Parameter::MaxTurnRate]};
+    out.twist = {0, parameters[kMaxTurnRate]};
     return;
   }
   out.manner = Manner::Valley;
   const double ahead = density[static_cast<std::size_t>(sector_of(pose.heading))];
-  const double speed = vfh_speed(ahead, kStandstill, parameters[Parameter::MaxSpeed]);
+  const double speed = vfh_speed(ahead, parameters[kStandstill], parameters[kMaxSpeed]);
   // In a free sector the goal itself, not the middle of its sector.
   const double bearing = *sector == target ? to_goal : sector_centre(*sector);
   steer_along(in, bearing, speed, parameters, out);

@@ -39,6 +39,10 @@ std::optional<int> steering_sector(const PolarDensity& smoothed, double threshol
 double vfh_speed(double density_ahead, double h_m, double v_max);
 
 class Vfh final : public Baseline {
+ public:
+  static ParameterList parameters();
+
+ private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
 

@@ -9,6 +9,7 @@
 
 #include "algo/filter/filter_kernels.hpp"
 #include "algo/laser_scan.hpp"
+#include "algo/parameters.hpp"
 
 namespace algo {
 
@@ -24,6 +25,17 @@ struct FilterInfo {
 /// All filters, the papers' own first.
 std::span<const FilterInfo> filter_table();
 std::optional<FilterKind> find_filter(std::string_view name);
+
+inline constexpr ParameterInfo kFilterHalfWidth{
+    .name = "filter.half_width",
+    .label = "Filter half width N",
+    .unit = "",
+    .min = 0.0,
+    .max = 10.0,
+    .step = 1.0,
+    .initial = 1.0,
+    .help = "The scan filter looks at N beams on either side; 0 switches it off.",
+    .alias = "filter_half_width"};
 
 /// Filters whole scans. Keeps its buffers: give each pipeline one of its own.
 class ScanFilter {

@@ -7,15 +7,14 @@
 #include <utility>
 
 #include "algo/driving.hpp"
+#include "algo/strip/strip_law.hpp"
 
 namespace algo {
 namespace {
 
 constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
-constexpr double kBreak = 0.02;       // [m] a strip may be narrower than what was planned
-constexpr double kPlanEvery = 0.25;   // [s]
-constexpr int kExpansions = 400;      // of the planner a tick
-constexpr int kExpansionsNow = 1200;  // when there is no strip to follow
+constexpr int kExpansions = 400;                             // of the planner a tick
+constexpr int kExpansionsNow = 1200;                         // when there is no strip to follow
 constexpr double kOtherShare = 0.9;   // of the present cost that another must stay below,
 constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal,
 constexpr double kNearerTaken = 0.1;  // or so much where something stands on that,
@@ -44,12 +43,44 @@ constexpr double kGives = 0.08;        // [m] by which the strip stays inside it
 constexpr double kDrawEvery = 0.5;     // [s]
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
 
+constexpr ParameterInfo kBreakRoom{
+    .name = "full_strip.break_room",
+    .label = "Break room",
+    .unit = "m",
+    .min = 0.0,
+    .max = 0.05,
+    .step = 0.005,
+    .initial = 0.02,
+    .help = "How much narrower the strip may become than what was planned before it breaks."};
+constexpr ParameterInfo kPlanPeriod{.name = "full_strip.plan_period",
+                                    .label = "Planning period",
+                                    .unit = "s",
+                                    .min = 0.1,
+                                    .max = 5.0,
+                                    .step = 0.05,
+                                    .initial = 0.25,
+                                    .help = "Time between two searches for a way over the map."};
+constexpr auto kParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
+                                                                  &kContractionGain,
+                                                                  &kSafetyDistance,
+                                                                  &kBreakRoom,
+                                                                  &kPlanPeriod,
+                                                                  &kNearestGoal,
+                                                                  &kMaxSpeed,
+                                                                  &kMaxTurnRate,
+                                                                  &kHeadingGain,
+                                                                  &kGoalReach});
+
 /// Whether a return lies in the robot's very centre: what drives it there is past saving.
 bool stands_on_a_return(const Scene& scene) {
   return (scene.left && scene.left->distance <= 0) || (scene.right && scene.right->distance <= 0);
 }
 
 }  // namespace
+
+ParameterList FullStripController::parameters() {
+  return kParameters;
+}
 
 FullStripController::FullStripController(bool among_moving) : among_moving_(among_moving) {}
 
@@ -84,15 +115,17 @@ double FullStripController::least_clearance() const {
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
   if (!stage_.hull().is_of(*in.spec)) stage_.set_hull(HullCheck(*in.spec));
-  limits_ = {std::min(parameters[Parameter::MaxSpeed], in.spec->max_v),
-             std::min(parameters[Parameter::MaxTurnRate], in.spec->max_omega),
+  limits_ = {std::min(parameters[kMaxSpeed], in.spec->max_v),
+             std::min(parameters[kMaxTurnRate], in.spec->max_omega),
              in.spec->max_acceleration,
              in.spec->max_angular_acceleration};
-  settings_.contraction = parameters[Parameter::ContractionGain];
-  settings_.repulsion = parameters[Parameter::RepulsionGain];
-  settings_.rest_distance = std::min(
-      parameters[Parameter::SafetyDistance] + stage_.hull().half_width() - 0.215, LocalMap::kReach);
-  settings_.least_clearance = least_clearance() - kBreak;
+  settings_.contraction = parameters[kContractionGain];
+  settings_.repulsion = parameters[kRepulsionGain];
+  settings_.rest_distance =
+      std::min(parameters[kSafetyDistance] + stage_.hull().half_width() - 0.215, LocalMap::kReach);
+  break_room_ = parameters[kBreakRoom];
+  plan_period_ = parameters[kPlanPeriod];
+  settings_.least_clearance = least_clearance() - break_room_;
 }
 
 /// Enters a new scan into the map, each beam from where the robot was when it was fired.
@@ -140,7 +173,7 @@ void FullStripController::ease_last_leg(const Vec2& here_W) {
   settings_.rest_distance = std::min(settings_.rest_distance, room);
 }
 
-/// The deliberative layer: one piece of a search each tick, a new search every kPlanEvery.
+/// The deliberative layer: one piece of a search each tick, a new search every plan_period_.
 void FullStripController::plan(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
   if (planner_.state() != Planner::State::Searching && in.stamp >= next_plan_) {
@@ -152,7 +185,7 @@ void FullStripController::plan(const ControlInput& in) {
     const bool try_tight = !tight_since_ || in.stamp - *tight_since_ < time_for(kTryTight);
     planner_.start(map_, here, *goal_W_, least_clearance(), try_tight);
     if (planner_.goal_tight() && !tight_since_) tight_since_ = in.stamp;
-    next_plan_ = in.stamp + kPlanEvery;
+    next_plan_ = in.stamp + plan_period_;
   }
   if (planner_.state() != Planner::State::Searching) return;
   const bool urgent = strip_.empty() || broken_at_ >= 0;
@@ -182,7 +215,7 @@ void FullStripController::take_plan(const ControlInput& in) {
   rival_.lay(path_W_);
   rival_.follow(in.odometry.pose.position());
   StripSettings settings = settings_;
-  settings.least_clearance = least_clearance() - kBreak;
+  settings.least_clearance = least_clearance() - break_room_;
   rival_.relax(map_, settings, kSweepsNew);
   if (rival_.broken_at(map_, settings) >= 0) {
     // Relaxed out of its way: take the plan as it is.
@@ -210,9 +243,8 @@ double FullStripController::left(const NodeStrip& strip) const {
 
 /// Whether something stands on the goal and the robot comes no nearer, or must not try.
 bool FullStripController::ends_here(const ControlInput& in, const Parameters& parameters) const {
-  if (!goal_taken_ || strip_.empty() || left(strip_) < parameters[Parameter::GoalReach])
-    return false;
-  if (parameters[Parameter::NearestGoal] == 0) return true;
+  if (!goal_taken_ || strip_.empty() || left(strip_) < parameters[kGoalReach]) return false;
+  if (parameters[kNearestGoal] == 0) return true;
   const Vec2& end_W = strip_.nodes()[strip_.nodes().size() - 1].position_W;
   return (end_W - in.odometry.pose.position()).norm() < kAtEnd;
 }
@@ -223,7 +255,7 @@ void FullStripController::stretch(const ControlInput& in) {
   strip_.follow(in.odometry.pose.position());
   strip_.relax(map_, settings_, kSweeps);
   StripSettings narrow = settings_;
-  narrow.least_clearance = stage_.hull().half_width() + kRoom.back() - kBreak;
+  narrow.least_clearance = stage_.hull().half_width() + kRoom.back() - break_room_;
   broken_at_ = strip_.broken_at(map_, narrow);
   if (broken_at_ >= 0) next_plan_ = std::min(next_plan_, in.stamp);
 }
@@ -392,7 +424,7 @@ Twist2 FullStripController::drive(const ControlInput& in,
   if (broken_at_ >= 0) stage.stop_at = std::max(0.0, broken_at_ - kStopShort);
 
   const double to_goal = (in.goal->position_W - in.odometry.pose.position()).norm();
-  if (to_goal < parameters[Parameter::GoalReach]) {
+  if (to_goal < parameters[kGoalReach]) {
     manner_ = Manner::None;
     progress_at_ = in.stamp;
     return stage_.proven(stage, turn_to(in.odometry.pose, *in.goal, parameters), out)

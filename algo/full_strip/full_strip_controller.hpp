@@ -20,8 +20,23 @@
 
 namespace algo {
 
+inline constexpr ParameterInfo kNearestGoal{
+    .name = "full_strip.nearest_goal",
+    .label = "Goal taken: go near",
+    .unit = "",
+    .min = 0.0,
+    .max = 1.0,
+    .step = 1.0,
+    .initial = 1.0,
+    .help =
+        "What the full strip does when something stands on its goal: 1 drives to the nearest "
+        "free place, 0 stops where it finds out.",
+    .alias = "nearest_goal"};
+
 class FullStripController final : public Controller {
  public:
+  static ParameterList parameters();
+
   /// `among_moving`: things that move are tracked and the beam search gives way to them.
   explicit FullStripController(bool among_moving = false);
 
@@ -71,6 +86,8 @@ class FullStripController final : public Controller {
   double way_since_ = 0;    // [s]
   StripSettings settings_{};
   MotionLimits limits_{};
+  double break_room_ = 0;   // [m] the strip may be narrower than what was planned
+  double plan_period_ = 0;  // [s]
 
   std::optional<Vec2> goal_W_{};
   std::size_t level_ = 0;  // of the planner's clearance, 0 the widest

@@ -16,141 +16,159 @@
 #include "algo/baselines/vfh.hpp"
 #include "algo/full_strip/full_strip_controller.hpp"
 #include "algo/strip/elastic_strip_controller.hpp"
+#include "algo/strip/strip_law.hpp"
 
 namespace algo {
 namespace {
 
-using Made = std::unique_ptr<Controller>;
-
-struct Entry {
-  ControllerInfo about{};
-  Made (*make)() = nullptr;
-};
-
-template <ForceLaw law, Sides sides, bool choose_side, bool keep_via = false>
-Made strip() {
-  return std::make_unique<ElasticStripController>(StripReading{law, sides, choose_side, keep_via});
+std::function<std::unique_ptr<Controller>()> strip(ForceLaw law,
+                                                   Sides sides,
+                                                   bool choose_side,
+                                                   bool keep_via = false) {
+  return [reading = StripReading{law, sides, choose_side, keep_via}] {
+    return std::make_unique<ElasticStripController>(reading);
+  };
 }
 
 template <typename Type>
-Made made() {
+std::unique_ptr<Controller> made() {
   return std::make_unique<Type>();
-}
-
-constexpr auto kEntries = std::to_array<Entry>({
-    {{"modified",
-      "Modified strip with side choice",
-      "Both sides push, without a jump, and on a blocked line the strip chooses a side. Keeps the "
-      "most clearance; needs about 2 m between obstacles."},
-     strip<ForceLaw::C1, Sides::Both, true>},
-    {{"original",
-      "Original strip",
-      "The nearest obstacle point pushes (Eq. 7). Gets stuck head-on and enters the safety "
-      "circle."},
-     strip<ForceLaw::Original, Sides::Nearest, false>},
-    {{"original_side",
-      "Original strip with side choice",
-      "As the original, and on a blocked line the strip chooses a side. Reaches the most goals, "
-      "closest to obstacles."},
-     strip<ForceLaw::Original, Sides::Nearest, true>},
-    {{"modified_published",
-      "Modified strip as published",
-      "Both sides push by Eq. 13-14 as printed, limited at its pole."},
-     strip<ForceLaw::Published, Sides::Both, false>},
-    {{"modified_linear",
-      "Modified strip, linear part",
-      "Eq. 13-14 without the second branch: nothing pushes beyond the safety distance."},
-     strip<ForceLaw::Linear, Sides::Both, false>},
-    {{"modified_c1",
-      "Modified strip, continuous",
-      "Both sides push by a law without a jump, and no side is chosen. Gets stuck head-on."},
-     strip<ForceLaw::C1, Sides::Both, false>},
-    {{"via_kept",
-      "Modified strip, via kept",
-      "As the modified strip, and the via point of the tick before is pulled onto the line by "
-      "K_c: the only one in which K_c acts."},
-     strip<ForceLaw::C1, Sides::Both, true, true>},
-    {{"strip",
-      "Full elastic strip",
-      "Many nodes on a map of the scans, laid anew by a planner where they break, and a velocity "
-      "stage that proves every command before it is given. Our extension."},
-     [] { return Made(std::make_unique<FullStripController>()); }},
-    {{"strip_moving",
-      "Full elastic strip among moving things",
-      "As the full strip, and what moves is tracked in the scans; a search in space and time gives "
-      "way to it. An experiment: of the moving obstacles it is measured on it still meets many."},
-     [] { return Made(std::make_unique<FullStripController>(true)); }},
-    {{"go_to_goal",
-      "Straight to the goal",
-      "Sees nothing and drives at the goal: what every other controller must do better than.",
-      true},
-     made<GoToGoal>},
-    {{"edge_detection",
-      "Edge detection",
-      "Stops before an obstacle, looks for its edges and drives past one of them (as in Borenstein "
-      "and Koren 1988)."},
-     made<EdgeDetection>},
-    {{"potential_field",
-      "Potential field",
-      "The goal pulls, each obstacle pushes from its nearest point (Khatib 1986). Comes to rest "
-      "where they cancel.",
-      true},
-     made<PotentialField>},
-    {{"certainty_grid",
-      "Certainty grid with A*",
-      "Maps what is surely empty or occupied (Moravec and Elfes 1985) and follows the least-cost "
-      "path over the map.",
-      true},
-     made<CertaintyGridPlanner>},
-    {{"vff",
-      "Virtual force field",
-      "Cells that returned readings push, the goal pulls (Borenstein and Koren 1989). Comes to "
-      "rest where they cancel.",
-      true},
-     made<Vff>},
-    {{"vfh",
-      "Vector field histogram",
-      "Steers through the free valley of a polar histogram nearest to the goal (Borenstein and "
-      "Koren 1991).",
-      true},
-     made<Vfh>},
-    {{"dwa",
-      "Dynamic window",
-      "Of the speeds it can reach and stop, takes the best by heading, clearance and speed (Fox, "
-      "Burgard and Thrun 1997). Knows no way but the arc ahead."},
-     made<Dwa>},
-});
-
-constexpr auto kTable = [] {
-  std::array<ControllerInfo, kEntries.size()> table{};
-  std::ranges::transform(kEntries, table.begin(), &Entry::about);
-  return table;
-}();
-
-}  // namespace
-
-std::span<const ControllerInfo> controller_table() {
-  return kTable;
 }
 
 /// A via point that is kept follows pass' = end + F_ext + K_c (chord - pass): its error changes
 /// sign at each tick and shrinks by the factor K_c, with K_c = 1 never.
-std::optional<std::string> refusal(std::string_view name, const Parameters& parameters) {
-  if (name != "via_kept" || parameters[Parameter::ContractionGain] < 1) return std::nullopt;
+std::optional<std::string> via_kept_refusal(const Parameters& parameters) {
+  if (parameters[kContractionGain] < 1) return std::nullopt;
   return "k_c must be below 1 with the controller via_kept: at 1 its via point swings from side to "
          "side and never settles";
 }
 
-std::unique_ptr<Controller> make_controller(std::string_view name) {
-  for (const Entry& entry : kEntries) {
-    if (entry.about.name == name) return entry.make();
-  }
+std::vector<ControllerInfo> builtin() {
+  return {
+      {.name = "modified",
+       .label = "Modified strip with side choice",
+       .help = "Both sides push, without a jump, and on a blocked line the strip chooses a side. "
+               "Keeps the most clearance; needs about 2 m between obstacles.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::C1, Sides::Both, true)},
+      {.name = "original",
+       .label = "Original strip",
+       .help = "The nearest obstacle point pushes (Eq. 7). Gets stuck head-on and enters the "
+               "safety circle.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::Original, Sides::Nearest, false)},
+      {.name = "original_side",
+       .label = "Original strip with side choice",
+       .help = "As the original, and on a blocked line the strip chooses a side. Reaches the most "
+               "goals, closest to obstacles.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::Original, Sides::Nearest, true)},
+      {.name = "modified_published",
+       .label = "Modified strip as published",
+       .help = "Both sides push by Eq. 13-14 as printed, limited at its pole.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::Published, Sides::Both, false)},
+      {.name = "modified_linear",
+       .label = "Modified strip, linear part",
+       .help = "Eq. 13-14 without the second branch: nothing pushes beyond the safety distance.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::Linear, Sides::Both, false)},
+      {.name = "modified_c1",
+       .label = "Modified strip, continuous",
+       .help =
+           "Both sides push by a law without a jump, and no side is chosen. Gets stuck head-on.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::C1, Sides::Both, false)},
+      {.name = "via_kept",
+       .label = "Modified strip, via kept",
+       .help = "As the modified strip, and the via point of the tick before is pulled onto the "
+               "line by K_c: the only one in which K_c acts.",
+       .parameters = kStripParameters,
+       .make = strip(ForceLaw::C1, Sides::Both, true, true),
+       .refusal = via_kept_refusal},
+      {.name = "strip",
+       .label = "Full elastic strip",
+       .help = "Many nodes on a map of the scans, laid anew by a planner where they break, and a "
+               "velocity stage that proves every command before it is given. Our extension.",
+       .parameters = FullStripController::parameters(),
+       .make = made<FullStripController>},
+      {.name = "strip_moving",
+       .label = "Full elastic strip among moving things",
+       .help = "As the full strip, and what moves is tracked in the scans; a search in space and "
+               "time gives way to it. An experiment: of the moving obstacles it is measured on it "
+               "still meets many.",
+       .parameters = FullStripController::parameters(),
+       .make = [] { return std::make_unique<FullStripController>(true); }},
+      {.name = "go_to_goal",
+       .label = "Straight to the goal",
+       .help =
+           "Sees nothing and drives at the goal: what every other controller must do better than.",
+       .by_sonar = true,
+       .parameters = kDrivingParameters,
+       .make = made<GoToGoal>},
+      {.name = "edge_detection",
+       .label = "Edge detection",
+       .help = "Stops before an obstacle, looks for its edges and drives past one of them (as in "
+               "Borenstein and Koren 1988).",
+       .parameters = EdgeDetection::parameters(),
+       .make = made<EdgeDetection>},
+      {.name = "potential_field",
+       .label = "Potential field",
+       .help = "The goal pulls, each obstacle pushes from its nearest point (Khatib 1986). Comes "
+               "to rest where they cancel.",
+       .by_sonar = true,
+       .parameters = PotentialField::parameters(),
+       .make = made<PotentialField>},
+      {.name = "certainty_grid",
+       .label = "Certainty grid with A*",
+       .help = "Maps what is surely empty or occupied (Moravec and Elfes 1985) and follows the "
+               "least-cost path over the map.",
+       .by_sonar = true,
+       .parameters = CertaintyGridPlanner::parameters(),
+       .make = made<CertaintyGridPlanner>},
+      {.name = "vff",
+       .label = "Virtual force field",
+       .help = "Cells that returned readings push, the goal pulls (Borenstein and Koren 1989). "
+               "Comes to rest where they cancel.",
+       .by_sonar = true,
+       .parameters = Vff::parameters(),
+       .make = made<Vff>},
+      {.name = "vfh",
+       .label = "Vector field histogram",
+       .help = "Steers through the free valley of a polar histogram nearest to the goal "
+               "(Borenstein and Koren 1991).",
+       .by_sonar = true,
+       .parameters = Vfh::parameters(),
+       .make = made<Vfh>},
+      {.name = "dwa",
+       .label = "Dynamic window",
+       .help = "Of the speeds it can reach and stop, takes the best by heading, clearance and "
+               "speed (Fox, Burgard and Thrun 1997). Knows no way but the arc ahead.",
+       .parameters = Dwa::parameters(),
+       .make = made<Dwa>},
+  };
+}
+
+}  // namespace
+
+const ControllerInfo* ControllerCatalogue::find(std::string_view name) const {
+  const auto found = std::ranges::find(entries_, name, &ControllerInfo::name);
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+const ControllerInfo& ControllerCatalogue::at(std::string_view name) const {
+  if (const ControllerInfo* found = find(name)) return *found;
   std::string known;
-  for (const ControllerInfo& each : kTable) {
+  for (const ControllerInfo& each : entries_) {
     known += (known.empty() ? "" : ", ") + std::string(each.name);
   }
   throw std::invalid_argument("no controller is called '" + std::string(name) + "'; there are " +
                               known);
+}
+
+const ControllerCatalogue& builtin_controllers() {
+  static const ControllerCatalogue catalogue(builtin());
+  return catalogue;
 }
 
 }  // namespace algo

@@ -1,11 +1,13 @@
-// algo/pipeline/controllers.hpp: the table of all controllers.
+// algo/pipeline/controllers.hpp: the catalogue of controllers: the readings of the elastic strip,
+// and their baselines.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "algo/controller.hpp"
 #include "algo/parameters.hpp"
@@ -17,14 +19,29 @@ struct ControllerInfo {
   std::string_view label{};  // for people
   std::string_view help{};
   bool by_sonar = false;  // drives a robot that has a sonar ring and no laser
+  ParameterList parameters{};
+  std::function<std::unique_ptr<Controller>()> make{};
+  /// Why it cannot run with these values, as a sentence; nothing when it can. May be empty.
+  std::function<std::optional<std::string>(const Parameters&)> refusal{};
 };
 
-std::span<const ControllerInfo> controller_table();
+/// The controllers that a run may choose from. A value: whoever makes pipelines may add to it.
+class ControllerCatalogue {
+ public:
+  ControllerCatalogue() = default;
+  explicit ControllerCatalogue(std::vector<ControllerInfo> entries)
+      : entries_(std::move(entries)) {}
 
-/// Why the controller `name` cannot run with `parameters`, as a sentence; nothing when it can.
-std::optional<std::string> refusal(std::string_view name, const Parameters& parameters);
+  const std::vector<ControllerInfo>& entries() const { return entries_; }
+  /// Null when none is called so.
+  const ControllerInfo* find(std::string_view name) const;
+  /// Throws std::invalid_argument naming the known ones.
+  const ControllerInfo& at(std::string_view name) const;
 
-/// Throws std::invalid_argument naming the known ones.
-std::unique_ptr<Controller> make_controller(std::string_view name);
+ private:
+  std::vector<ControllerInfo> entries_{};
+};
+
+const ControllerCatalogue& builtin_controllers();
 
 }  // namespace algo

@@ -11,7 +11,7 @@
 #include "algo/gate.hpp"
 #include "algo/geometry.hpp"
 #include "algo/perceive.hpp"
-#include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
 
 namespace algo {
 namespace {
@@ -62,16 +62,16 @@ bool within_unit(double axis) {
 
 }  // namespace
 
-Pipeline::Pipeline(const PipelineConfig& config, const RobotSpec& spec)
+Pipeline::Pipeline(const PipelineConfig& config,
+                   const RobotSpec& spec,
+                   const ControllerCatalogue& controllers)
     : spec_(spec),
-      controller_(config.controller),
+      controller_(controllers.at(config.controller)),
       filter_kind_(config.filter),
       initial_parameters_(config.parameters) {
   if (spec.drives) coordinator_.add(std::make_unique<ManualBehaviour>());
-  coordinator_.add(std::make_unique<AvoidBehaviour>(make_controller(config.controller)));
-  by_sonar_ = !spec.has_laser && std::ranges::any_of(controller_table(), [&](const auto& about) {
-    return about.by_sonar && about.name == config.controller;
-  });
+  coordinator_.add(std::make_unique<AvoidBehaviour>(controller_.make()));
+  by_sonar_ = !spec.has_laser && controller_.by_sonar;
   const double delay = spec.period > 0 ? std::round(spec.command_delay / spec.period) : 0;
   under_way_.resize(static_cast<std::size_t>(delay));
   reset({});
@@ -117,10 +117,11 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
 }
 
 std::optional<std::string> Pipeline::refusal(const Parameters& now, const SetParameter& set) const {
-  if (auto reason = algo::refusal(now, set.parameter, set.value)) return reason;
+  if (auto reason = algo::refusal(now, *set.parameter, set.value)) return reason;
+  if (!controller_.refusal) return std::nullopt;
   Parameters then = now;
-  then.set(set.parameter, set.value);
-  return algo::refusal(controller_, then);
+  then.set(*set.parameter, set.value);
+  return controller_.refusal(then);
 }
 
 void Pipeline::tick(Telemetry& t) {
@@ -136,21 +137,22 @@ void Pipeline::tick(Telemetry& t) {
 }
 
 void Pipeline::apply(const Request& request) {
-  std::visit(Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
-                        [&](const AddGoal& add) { sequencer_.add_goal(add.goal); },
-                        [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
-                        [&](const Joystick& stick) {
-                          // Whoever takes the stick takes over: a silent driver must leave a robot
-                          // that stands still, not one that drives off to an old goal.
-                          if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
-                          joystick_ = stick;
-                          joystick_ticks_ = static_cast<std::uint64_t>(
-                              std::ceil(parameters_[Parameter::JoystickTimeout] / spec_.period));
-                        },
-                        [&](const Stop& stop) { stopped_ = stop.engaged; },
-                        [&](const SetParameter& set) { parameters_.set(set.parameter, set.value); },
-                        [](const auto&) {}},  // obstacle edits were carried out by the robot
-             request);
+  std::visit(
+      Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
+                 [&](const AddGoal& add) { sequencer_.add_goal(add.goal); },
+                 [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
+                 [&](const Joystick& stick) {
+                   // Whoever takes the stick takes over: a silent driver must leave a robot
+                   // that stands still, not one that drives off to an old goal.
+                   if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
+                   joystick_ = stick;
+                   joystick_ticks_ = static_cast<std::uint64_t>(
+                       std::ceil(parameters_[kJoystickTimeout] / spec_.period));
+                 },
+                 [&](const Stop& stop) { stopped_ = stop.engaged; },
+                 [&](const SetParameter& set) { parameters_.set(*set.parameter, set.value); },
+                 [](const auto&) {}},  // obstacle edits were carried out by the robot
+      request);
 }
 
 void Pipeline::sense(Telemetry& t) {
@@ -158,7 +160,7 @@ void Pipeline::sense(Telemetry& t) {
   merge_.take(t.observation);
   scene_.fresh = front != nullptr;
   if (front != nullptr) {
-    const int half_width = static_cast<int>(parameters_[Parameter::FilterHalfWidth]);
+    const int half_width = static_cast<int>(parameters_[kFilterHalfWidth]);
     filter_.apply(filter_kind_, half_width, *front, scene_.scan);
     blinded_ = blinded(*front);
     if (!blinded_) scan_stamp_ = front->stamp;
@@ -230,7 +232,7 @@ void Pipeline::control(Telemetry& t) {
 void Pipeline::hold(Telemetry& t) {
   GateInput in;
   in.stopped = stopped_;
-  in.scan_timeout = parameters_[Parameter::ScanTimeout];
+  in.scan_timeout = parameters_[kScanTimeout];
   in.scan_stamp = scan_stamp_;
   in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algo/filter/filter.hpp"
+#include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/reactive.hpp"
 #include "algo/pipeline/sequencing.hpp"
 #include "algo/sensor_merge.hpp"
@@ -25,7 +26,9 @@ struct PipelineConfig {
 class Pipeline {
  public:
   /// Throws std::invalid_argument on an unknown controller.
-  Pipeline(const PipelineConfig& config, const RobotSpec& spec);
+  Pipeline(const PipelineConfig& config,
+           const RobotSpec& spec,
+           const ControllerCatalogue& controllers = builtin_controllers());
 
   /// Starts over with the robot at rest at `start_W`.
   void reset(const Pose2& start_W);
@@ -53,7 +56,7 @@ class Pipeline {
   bool manual() const;
 
   RobotSpec spec_{};
-  std::string controller_{};
+  ControllerInfo controller_{};
   FilterKind filter_kind_{};
   Parameters initial_parameters_{};
   Parameters parameters_{};

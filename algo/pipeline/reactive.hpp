@@ -58,7 +58,7 @@ class Behaviour {
   virtual Proposal propose(const Resource& resource, ControlOutput& output) = 0;
 };
 
-/// Drives to the goal with a controller of controller_table().
+/// Drives to the goal with a controller of the catalogue.
 class AvoidBehaviour final : public Behaviour {
  public:
   explicit AvoidBehaviour(std::unique_ptr<Controller> controller);
@@ -69,6 +69,17 @@ class AvoidBehaviour final : public Behaviour {
  private:
   std::unique_ptr<Controller> controller_;
 };
+
+inline constexpr ParameterInfo kJoystickTimeout{
+    .name = "manual.joystick_timeout",
+    .label = "Joystick timeout",
+    .unit = "s",
+    .min = 0.1,
+    .max = 2.0,
+    .step = 0.1,
+    .initial = 0.5,
+    .help = "The robot stops when the stick has been silent for this long.",
+    .alias = "joystick_timeout"};
 
 /// Follows the driver's stick as far as its guard lets it.
 class ManualBehaviour final : public Behaviour {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algo/parameters.hpp"
+#include "algo/driving.hpp"
 
 namespace algo {
 namespace {
@@ -29,7 +29,7 @@ double StuckDetector::window(double v_max) {
 
 void StuckDetector::reset(double period) {
   period_ = period;
-  const double longest = window(info(Parameter::MaxSpeed).min);
+  const double longest = window(kMaxSpeed.min);
   ring_.assign(static_cast<std::size_t>(longest / period) + 2, Vec2{0, 0});
   next_ = 0;
   count_ = 0;
@@ -83,13 +83,13 @@ void Sequencer::go_on() {
 Mission Sequencer::update(const Pose2& pose_W, const Parameters& parameters) {
   if (mission_ == Mission::Arrived && !ahead_.empty()) go_on();
   if (!goal_ || mission_ == Mission::Arrived) return mission_;
-  while (at_goal(*goal_, pose_W, parameters[Parameter::GoalReach])) {
+  while (at_goal(*goal_, pose_W, parameters[kGoalReach])) {
     if (ahead_.empty()) return mission_ = Mission::Arrived;
     go_on();
   }
 
   const Vec2 position_W = pose_W.position();
-  if (stuck_.update(position_W, parameters[Parameter::MaxSpeed])) {
+  if (stuck_.update(position_W, parameters[kMaxSpeed])) {
     if (mission_ != Mission::Stuck) stuck_at_W_ = position_W;
     mission_ = Mission::Stuck;
   } else if (mission_ == Mission::Stuck && (position_W - stuck_at_W_).norm() > kStuckRadius) {

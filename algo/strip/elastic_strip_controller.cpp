@@ -1,6 +1,8 @@
 // algo/strip/elastic_strip_controller.cpp: one tick of the strip.
 #include "algo/strip/elastic_strip_controller.hpp"
 
+#include "algo/strip/strip_law.hpp"
+
 namespace algo {
 
 struct ElasticStripController::Strip {
@@ -26,7 +28,7 @@ void ElasticStripController::follow_goal(const SetGoal& goal) {
 /// Half a step to the via and half a step on, so that |end - start| = min(S, D).
 ElasticStripController::Strip ElasticStripController::lay_strip(
     const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const {
-  const double half_step = parameters[Parameter::StripStep] / 2;
+  const double half_step = parameters[kStripStep] / 2;
   Strip strip;
   strip.start_W = start_W;
   strip.via_W = get_posi(start_W, goal_W, half_step, 1.0).position();
@@ -83,12 +85,12 @@ void ElasticStripController::update(const ControlInput& in,
   const SetGoal& goal = *in.goal;
   follow_goal(goal);
   const Pose2& pose = in.odometry.pose;
-  const double reach = parameters[Parameter::SafetyDistance] + in.spec->radius;
+  const double reach = parameters[kSafetyDistance] + in.spec->radius;
   const ForceSettings settings{
-      reading_.law, reach, parameters[Parameter::RepulsionGain], parameters[Parameter::StripStep]};
+      reading_.law, reach, parameters[kRepulsionGain], parameters[kStripStep]};
 
   const Strip strip = lay_strip(pose.position(), goal.position_W, parameters);
-  const double k_c = parameters[Parameter::ContractionGain];
+  const double k_c = parameters[kContractionGain];
   out.internal_W = internal_force(strip.start_W, strip.via_W, strip.end_W, k_c);
   const bool free_to_move = push(in, settings, out);
   out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
@@ -102,8 +104,8 @@ void ElasticStripController::update(const ControlInput& in,
 
   const double to_goal = (goal.position_W - pose.position()).norm();
   if (!free_to_move) return;
-  out.twist = to_goal < parameters[Parameter::GoalReach] ? turn_to(pose, goal, parameters)
-                                                         : drive_to(pose, out.pass_W, parameters);
+  out.twist = to_goal < parameters[kGoalReach] ? turn_to(pose, goal, parameters)
+                                               : drive_to(pose, out.pass_W, parameters);
 }
 
 }  // namespace algo

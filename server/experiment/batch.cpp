@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
 #include "server/experiment/parallel.hpp"
 #include "server/run/frame_pool.hpp"
 #include "server/run/runner.hpp"
@@ -17,10 +18,10 @@ RunFigures run_once(const RunSpec& spec, bool keep_track) {
   robot->set_pace({.paused = false, .speed = 0});
   algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
   PathRecorder path(robot->spec().radius, robot->spec().period);
-  StandingRecorder standing({.v_max = spec.parameters[algo::Parameter::MaxSpeed],
-                             .omega_max = spec.parameters[algo::Parameter::MaxTurnRate]},
-                            robot->spec().period);
-  const double safety_distance = spec.parameters[algo::Parameter::SafetyDistance];
+  StandingRecorder standing(
+      {.v_max = spec.parameters[algo::kMaxSpeed], .omega_max = spec.parameters[algo::kMaxTurnRate]},
+      robot->spec().period);
+  const double safety_distance = spec.parameters[algo::kSafetyDistance];
 
   RunFigures figures;
   const std::shared_ptr<FramePool> pool = FramePool::make(2);  // the present tick and the next

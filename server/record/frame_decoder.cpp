@@ -5,6 +5,7 @@
 
 #include "telemetry_generated.h"
 
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/record/frame_codec.hpp"
 
 namespace server {
@@ -83,9 +84,9 @@ algo::SetGoal read_goal(const fb::SetGoal& goal) {
 
 algo::SetParameter read_parameter(const fb::SetParameter& r) {
   const std::string name = r.name() == nullptr ? "" : r.name()->str();
-  const auto parameter = algo::find_parameter(name);
-  if (!parameter) throw WireError("The frame sets an unknown parameter '" + name + "'.");
-  return {*parameter, r.value()};
+  const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+  if (parameter == nullptr) throw WireError("The frame sets an unknown parameter '" + name + "'.");
+  return {parameter, r.value()};
 }
 
 algo::Request read_request(const fb::RequestBox& box) {

@@ -133,7 +133,7 @@ struct RequestWriter {
     return {fb::Request_Stop, fb::CreateStop(b, r.engaged).Union()};
   }
   Written operator()(const algo::SetParameter& r) const {
-    const std::string_view name = algo::info(r.parameter).name;
+    const std::string_view name = r.parameter->key();
     const auto text = b.CreateString(name.data(), name.size());
     return {fb::Request_SetParameter, fb::CreateSetParameter(b, text, r.value).Union()};
   }

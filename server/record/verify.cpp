@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/pipeline.hpp"
 #include "server/record/frame_codec.hpp"
 #include "server/record/run_json.hpp"
@@ -34,8 +35,8 @@ algo::Parameters stored_parameters(const db::RunRow& row) {
   algo::Parameters out;
   const nlohmann::json values = parse_json(row.what.parameters, kOwnDocument);
   for (const auto& [name, value] : values.items()) {
-    const auto parameter = algo::find_parameter(name);
-    if (!parameter) {
+    const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+    if (parameter == nullptr) {
       throw std::runtime_error(
           fmt::format("Run {} used a parameter '{}', which this program has not.", row.id, name));
     }

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "algo/parameters.hpp"
+#include "algo/driving.hpp"
+#include "algo/gate.hpp"
 #include "drivers/lms200_scan.hpp"
 #include "drivers/scanner.hpp"
 
@@ -15,9 +16,8 @@ namespace {
 using nlohmann::json;
 
 /// `wanted` within what the parameter's table allows.
-double allowed(algo::Parameter parameter, double wanted) {
-  const algo::ParameterInfo& info = algo::info(parameter);
-  return std::clamp(wanted, info.min, info.max);
+double allowed(const algo::ParameterInfo& parameter, double wanted) {
+  return std::clamp(wanted, parameter.min, parameter.max);
 }
 
 /// [s] How old the newest scan may be, or the newest reading of a robot that has sonar alone. The
@@ -78,12 +78,10 @@ RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOver
     scenario.lasers.clear();
     scenario.sonar.emplace();
   }
-  using algo::Parameter;
   // The robot's own limits hold in any case; controllers should plan by them too.
-  scenario.parameters = {
-      {Parameter::MaxSpeed, allowed(Parameter::MaxSpeed, file.limits.speed)},
-      {Parameter::MaxTurnRate, allowed(Parameter::MaxTurnRate, file.limits.turn)},
-      {Parameter::ScanTimeout, allowed(Parameter::ScanTimeout, scan_timeout(file))}};
+  scenario.parameters = {{&algo::kMaxSpeed, allowed(algo::kMaxSpeed, file.limits.speed)},
+                         {&algo::kMaxTurnRate, allowed(algo::kMaxTurnRate, file.limits.turn)},
+                         {&algo::kScanTimeout, allowed(algo::kScanTimeout, scan_timeout(file))}};
   RunSpec spec = make_spec(std::move(scenario), overrides);
   spec.hardware = std::move(robot);
   return spec;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/pose_json.hpp"
@@ -51,9 +52,9 @@ algo::Request request_from_json(const nlohmann::json& value) {
   if (type == "set_parameter") {
     in.only({"type", "name", "value"});
     const std::string name = in.text("name");
-    const auto parameter = algo::find_parameter(name);
-    if (!parameter) in.fail("name", fmt::format("there is no parameter '{}'", name));
-    return algo::SetParameter{*parameter, in.number("value")};
+    const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+    if (parameter == nullptr) in.fail("name", fmt::format("there is no parameter '{}'", name));
+    return algo::SetParameter{parameter, in.number("value")};
   }
   in.fail("type",
           fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "server/run/hardware.hpp"
@@ -22,19 +23,17 @@ using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // what JSON numbers hold exactly
 
 void check_choices(const sim::Scenario& scenario) {
-  const auto controllers = algo::controller_table();
-  if (std::none_of(controllers.begin(), controllers.end(), [&](const auto& c) {
-        return c.name == scenario.controller;
-      })) {
+  const algo::ControllerCatalogue& catalogue = algo::builtin_controllers();
+  const algo::ControllerInfo* const controller = catalogue.find(scenario.controller);
+  if (controller == nullptr) {
     std::string known;
-    for (const auto& c : controllers) known += fmt::format(" {}", c.name);
+    for (const auto& c : catalogue.entries()) known += fmt::format(" {}", c.name);
     throw DocumentError("controller",
                         fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
   }
-  const auto by_sonar = [&](const auto& c) { return c.name == scenario.controller && c.by_sonar; };
-  if (!sim::has_laser(scenario) && std::ranges::none_of(controllers, by_sonar)) {
+  if (!sim::has_laser(scenario) && !controller->by_sonar) {
     std::string fit;
-    for (const auto& c : controllers) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
+    for (const auto& c : catalogue.entries()) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
     throw DocumentError(
         "controller",
         fmt::format(
@@ -81,19 +80,14 @@ RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
   }
   check_choices(scenario);
   RunSpec spec;
-  spec.parameters =
-      parameters_from_json(overrides.parameters, "parameters", parameters_of(scenario));
-  if (const auto complaint = algo::refusal(scenario.controller, spec.parameters)) {
+  spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
+  const auto& refusal = algo::builtin_controllers().at(scenario.controller).refusal;
+  if (const auto complaint = refusal ? refusal(spec.parameters) : std::nullopt) {
     throw DocumentError("parameters", *complaint);
   }
   spec.seed = overrides.seed.value_or(1);
   // The document of the run must tell the whole story: parameters included.
-  scenario.parameters.clear();
-  for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    if (spec.parameters[p.id] != p.initial) {
-      scenario.parameters.emplace_back(p.id, spec.parameters[p.id]);
-    }
-  }
+  scenario.parameters = spec.parameters;
   spec.scenario = std::move(scenario);
   return spec;
 }
@@ -149,7 +143,7 @@ double time_limit(const RunSpec& spec) {
   };
   for (const algo::SetGoal& waypoint : spec.scenario.waypoints) on_to(waypoint);
   on_to(*spec.scenario.goal);
-  return std::max(1.0, 5.0 * way / spec.parameters[algo::Parameter::MaxSpeed]);
+  return std::max(1.0, 5.0 * way / spec.parameters[algo::kMaxSpeed]);
 }
 
 json to_json(const algo::RobotSpec& robot) {

@@ -129,7 +129,7 @@ std::optional<std::string> Run::refusal_of(const algo::Request& request) {
 void Run::accept(const algo::Request& request) {
   pending_.push_back(request);
   if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
-    accepted_.set(set->parameter, set->value);
+    accepted_.set(*set->parameter, set->value);
   }
   if (links_.arming && orders_.accept(request)) void_orders();
 }

@@ -10,6 +10,7 @@
 
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/sequencing.hpp"
 #include "algo/units.hpp"
 #include "server/run/json_reader.hpp"
@@ -163,10 +164,7 @@ void read_choices(const JsonReader& in, sim::Scenario& scenario) {
   }
   scenario.vehicle = vehicle == "bullet" ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
   scenario.controller = in.text_or("controller", scenario.controller);
-  const auto controllers = algo::controller_table();
-  if (std::none_of(controllers.begin(), controllers.end(), [&](const auto& c) {
-        return c.name == scenario.controller;
-      })) {
+  if (algo::builtin_controllers().find(scenario.controller) == nullptr) {
     in.fail("controller", fmt::format("'{}' is unknown", scenario.controller));
   }
   scenario.filter = in.text_or("filter", scenario.filter);
@@ -174,13 +172,8 @@ void read_choices(const JsonReader& in, sim::Scenario& scenario) {
     in.fail("filter", fmt::format("'{}' is unknown", scenario.filter));
   }
   if (in.has("parameters")) {
-    const JsonReader given = in.object("parameters");
-    const algo::Parameters all = parameters_from_json(given.raw(), in.at("parameters"), {});
-    for (const algo::ParameterInfo& parameter : algo::parameter_table()) {
-      if (given.has(parameter.name)) {
-        scenario.parameters.emplace_back(parameter.id, all[parameter.id]);
-      }
-    }
+    scenario.parameters =
+        parameters_from_json(in.object("parameters").raw(), in.at("parameters"), {});
   }
 }
 
@@ -193,8 +186,8 @@ bool valid_scenario_name(std::string_view name) {
 
 json to_json(const algo::Parameters& parameters) {
   json out = json::object();
-  for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    out[std::string(p.name)] = parameters[p.id];
+  for (const algo::ParameterInfo* p : algo::parameter_table()) {
+    out[std::string(p->key())] = parameters[*p];
   }
   return out;
 }
@@ -205,17 +198,11 @@ algo::Parameters parameters_from_json(const json& value,
   const JsonReader in(value, path);
   algo::Parameters out = base;
   for (const auto& [name, unused] : value.items()) {
-    const auto parameter = algo::find_parameter(name);
-    if (!parameter) in.fail(name, "there is no such parameter");
+    const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+    if (parameter == nullptr) in.fail(name, "there is no such parameter");
     out.set(*parameter, in.number(name));
   }
   if (const auto complaint = algo::refusal(out)) throw DocumentError(path, *complaint);
-  return out;
-}
-
-algo::Parameters parameters_of(const sim::Scenario& scenario) {
-  algo::Parameters out;
-  for (const auto& [parameter, value] : scenario.parameters) out.set(parameter, value);
   return out;
 }
 
@@ -281,8 +268,8 @@ json to_json(const sim::Scenario& s) {
               {"obstacles", json::array()}};
   if (s.goal) out["goal"] = to_json(*s.goal);
   for (const algo::SetGoal& waypoint : s.waypoints) out["waypoints"].push_back(to_json(waypoint));
-  for (const auto& [parameter, value] : s.parameters) {
-    out["parameters"][std::string(algo::info(parameter).name)] = value;
+  for (const auto& [parameter, value] : s.parameters.settings()) {
+    if (value != parameter->initial) out["parameters"][std::string(parameter->key())] = value;
   }
   for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(laser_to_json(laser));
   write_sensors(s, out);

@@ -28,9 +28,6 @@ algo::Parameters parameters_from_json(const nlohmann::json& value,
                                       const std::string& path,
                                       const algo::Parameters& base);
 
-/// The scenario's parameters on top of the initial ones.
-algo::Parameters parameters_of(const sim::Scenario& scenario);
-
 /// Whether `name` may name a scenario: [a-z0-9_-], 1 to 64 characters.
 bool valid_scenario_name(std::string_view name);
 

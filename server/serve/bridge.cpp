@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/record/encoded_frame.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
@@ -87,8 +88,8 @@ std::function<void(std::exception_ptr)> answer_when_loaded(const ServiceReply& r
 
 std::vector<foxglove::Parameter> Bridge::Gains::list() const {
   std::vector<foxglove::Parameter> out;
-  for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    out.push_back({std::string(p.name), shown_[p.id], "float64"});
+  for (const algo::ParameterInfo* p : algo::parameter_table()) {
+    out.push_back({std::string(p->key()), shown_[*p], "float64"});
   }
   const sim::Scenario& scenario = bridge_.session_.state().spec.scenario;
   out.push_back({"controller", scenario.controller, ""});
@@ -98,8 +99,8 @@ std::vector<foxglove::Parameter> Bridge::Gains::list() const {
 }
 
 std::string Bridge::Gains::set(const std::string& name, const json& value) {
-  const auto parameter = algo::find_parameter(name);
-  if (!parameter) {
+  const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+  if (parameter == nullptr) {
     const bool read_only = name == "controller" || name == "filter" || name == "scenario";
     return read_only ? "'" + name + "' is read only here: call the service /load."
                      : "There is no parameter '" + name + "'.";
@@ -110,7 +111,7 @@ std::string Bridge::Gains::set(const std::string& name, const json& value) {
   ++on_their_way_;
   shown_.set(*parameter, wanted);
   const auto given = bridge_.session_.submit(
-      algo::SetParameter{*parameter, wanted}, [this](const std::optional<std::string>& refusal) {
+      algo::SetParameter{parameter, wanted}, [this](const std::optional<std::string>& refusal) {
         --on_their_way_;
         follow();
         if (refusal) {

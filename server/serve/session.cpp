@@ -324,7 +324,7 @@ void Session::adopt(const algo::Request& request) {
         } else if constexpr (std::is_same_v<R, algo::Stop>) {
           state_.stop = r.engaged;
         } else if constexpr (std::is_same_v<R, algo::SetParameter>) {
-          state_.parameters.set(r.parameter, r.value);
+          state_.parameters.set(*r.parameter, r.value);
         } else {
           static_assert(std::is_same_v<R, algo::Joystick>);
           if (r != algo::Joystick{} && state_.goal) {  // taking the stick cancels the goal
@@ -456,12 +456,7 @@ sim::Scenario Session::as_scenario(const std::string& name, const std::string& t
     out.goal = state_.goals_ahead.back();
   }
   out.obstacles = state_.obstacles;
-  out.parameters.clear();
-  for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    if (state_.parameters[p.id] != p.initial) {
-      out.parameters.emplace_back(p.id, state_.parameters[p.id]);
-    }
-  }
+  out.parameters = state_.parameters;
   return out;
 }
 

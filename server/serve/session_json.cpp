@@ -4,6 +4,7 @@
 #include "algo/explain.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
@@ -85,23 +86,33 @@ json accepted_json(const Session& session, bool stop) {
 }
 
 json catalog_json() {
-  const auto entries = [](const auto& table) {
-    json list = json::array();
-    for (const auto& entry : table) {
-      list.push_back({{"name", entry.name}, {"label", entry.label}, {"help", entry.help}});
-    }
-    return list;
+  const auto keys = [](algo::ParameterList list) {
+    json names = json::array();
+    for (const algo::ParameterInfo* p : list) names.push_back(p->key());
+    return names;
   };
+  json controllers = json::array();
+  for (const algo::ControllerInfo& c : algo::builtin_controllers().entries()) {
+    controllers.push_back({{"name", c.name},
+                           {"label", c.label},
+                           {"help", c.help},
+                           {"parameters", keys(c.parameters)}});
+  }
+  json filters = json::array();
+  for (const algo::FilterInfo& f : algo::filter_table()) {
+    filters.push_back({{"name", f.name}, {"label", f.label}, {"help", f.help}});
+  }
   json parameters = json::array();
-  for (const algo::ParameterInfo& p : algo::parameter_table()) {
-    parameters.push_back({{"name", p.name},
-                          {"label", p.label},
-                          {"unit", p.unit},
-                          {"min", p.min},
-                          {"max", p.max},
-                          {"step", p.step},
-                          {"initial", p.initial},
-                          {"help", p.help}});
+  for (const algo::ParameterInfo* p : algo::parameter_table()) {
+    parameters.push_back({{"name", p->key()},
+                          {"full_name", p->name},
+                          {"label", p->label},
+                          {"unit", p->unit},
+                          {"min", p->min},
+                          {"max", p->max},
+                          {"step", p->step},
+                          {"initial", p->initial},
+                          {"help", p->help}});
   }
   json vehicles = json::array();
   vehicles.push_back({{"name", "bullet"},
@@ -110,9 +121,10 @@ json catalog_json() {
   vehicles.push_back({{"name", "kinematic"},
                       {"label", "Kinematic"},
                       {"help", "Goes exactly as told: fast, and the paper's conditions."}});
-  return {{"controllers", entries(algo::controller_table())},
-          {"filters", entries(algo::filter_table())},
+  return {{"controllers", std::move(controllers)},
+          {"filters", std::move(filters)},
           {"vehicles", std::move(vehicles)},
+          {"common_parameters", keys(algo::common_parameters())},
           {"parameters", std::move(parameters)}};
 }
 

@@ -27,7 +27,7 @@ inline sim::Scenario room_scenario(std::uint32_t obstacles,
 /// Pipeline of the papers' filter with N = 2.
 inline algo::Pipeline make_pipeline(const algo::RobotSpec& spec) {
   algo::PipelineConfig config;
-  config.parameters.set(algo::Parameter::FilterHalfWidth, 2);
+  config.parameters.set(algo::kFilterHalfWidth, 2);
   return {config, spec};
 }
 

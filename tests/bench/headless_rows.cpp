@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "algo/strip/strip_law.hpp"
 #include "db/run_reader.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/scenario_library.hpp"
@@ -96,7 +97,7 @@ double run_once(Pass& pass, sim::Vehicle vehicle, std::uint64_t& seen) {
   sim::Scenario scenario = room_scenario(20, vehicle, {full_laser()});
   // Slow enough to be on its way all the time.
   scenario.goal = algo::SetGoal{{4.3, 4.3}, std::nullopt};
-  scenario.parameters = {{algo::Parameter::MaxSpeed, 0.01}, {algo::Parameter::FilterHalfWidth, 2}};
+  scenario.parameters = {{&algo::kMaxSpeed, 0.01}, {&algo::kFilterHalfWidth, 2}};
   Program program(scenario);
   program.send("PUT", "/scenarios/w20", server::to_json(scenario));
   WsReaders reader(program.port(), 1, 0);

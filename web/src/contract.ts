@@ -106,11 +106,13 @@ export interface ParameterInfo {
   initial: number;
   help?: string;
 }
+export interface Controller extends Choice { parameters?: string[] }
 export interface Catalog {
-  controllers: Choice[];
+  controllers: Controller[];
   filters: Choice[];
   vehicles: Choice[];
   parameters: ParameterInfo[];
+  common_parameters?: string[]; // read whichever controller drives
 }
 
 export interface ScenarioItem {

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "algo/filter/filter.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
 #include "server/run/json_reader.hpp"
 
@@ -13,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 using namespace algo::units;
-using algo::Parameter;
 
 constexpr std::size_t kMaxWorlds = 10'000;
 constexpr std::size_t kMaxObstacles = 5000;
@@ -166,13 +167,13 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
   scenario.controller = conditions.controller;
   if (scenario.controller.empty()) scenario.controller = moving ? "strip_moving" : "strip";
   scenario.filter = "median";
-  scenario.parameters = {{Parameter::ContractionGain, 0.4},
-                         {Parameter::RepulsionGain, 0.6},
-                         {Parameter::SafetyDistance, 0.75},
-                         {Parameter::MaxSpeed, 2.0},
-                         {Parameter::MaxTurnRate, *scenario.drive.max_omega},
-                         {Parameter::GoalReach, std::min(0.3, world.goal_radius)},
-                         {Parameter::FilterHalfWidth, 2}};
+  scenario.parameters = {{&algo::kContractionGain, 0.4},
+                         {&algo::kRepulsionGain, 0.6},
+                         {&algo::kSafetyDistance, 0.75},
+                         {&algo::kMaxSpeed, 2.0},
+                         {&algo::kMaxTurnRate, *scenario.drive.max_omega},
+                         {&algo::kGoalReach, std::min(0.3, world.goal_radius)},
+                         {&algo::kFilterHalfWidth, 2}};
   scenario.time_limit = 100;
   return scenario;
 }

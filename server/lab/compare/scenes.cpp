@@ -39,7 +39,7 @@ std::string label(const Contestant& contestant) {
 }
 
 std::vector<Contestant> contestants(std::span<const std::string> only) {
-  const auto table = algo::controller_table();
+  const auto table = algo::builtin_controllers().entries();
   for (const std::string& name : only) {
     const auto* const end = table.data() + table.size();
     if (std::find_if(table.data(), end, [&](const auto& c) { return c.name == name; }) == end) {

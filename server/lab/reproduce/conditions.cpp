@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "algo/filter/filter.hpp"
+#include "algo/strip/strip_law.hpp"
 namespace server::reproduce {
 namespace {
-
-using algo::Parameter;
 
 /// Every beam from the pose at the tick; uniform noise on returns only, none on the others. Ranges
 /// come in whole millimetres, as from the device: the one thing the prototype had not.
@@ -44,15 +44,15 @@ sim::Scenario scenario_of(const PaperFile& file,
   scenario.goal = algo::SetGoal{layout.goal_W, std::nullopt};
   scenario.obstacles = layout.obstacles;
   scenario.filter = common.filter;
-  scenario.parameters = {{Parameter::ContractionGain, layout.contraction_gain},
-                         {Parameter::RepulsionGain, layout.repulsion_gain},
-                         {Parameter::SafetyDistance, common.safety_distance},
-                         {Parameter::StripStep, common.strip_step},
-                         {Parameter::MaxSpeed, layout.v_max},
-                         {Parameter::MaxTurnRate, common.max_turn_rate},
-                         {Parameter::HeadingGain, common.heading_gain},
-                         {Parameter::GoalReach, common.arrival_radius},
-                         {Parameter::FilterHalfWidth, common.filter_half_width}};
+  scenario.parameters = {{&algo::kContractionGain, layout.contraction_gain},
+                         {&algo::kRepulsionGain, layout.repulsion_gain},
+                         {&algo::kSafetyDistance, common.safety_distance},
+                         {&algo::kStripStep, common.strip_step},
+                         {&algo::kMaxSpeed, layout.v_max},
+                         {&algo::kMaxTurnRate, common.max_turn_rate},
+                         {&algo::kHeadingGain, common.heading_gain},
+                         {&algo::kGoalReach, common.arrival_radius},
+                         {&algo::kFilterHalfWidth, static_cast<double>(common.filter_half_width)}};
   scenario.time_limit = std::max(1e-3, common.time_limit_factor * way.norm() / layout.v_max);
   return scenario;
 }

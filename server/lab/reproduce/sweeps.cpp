@@ -7,16 +7,18 @@
 
 #include <fmt/format.h>
 
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/parameter_table.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 
 namespace server::reproduce {
 namespace {
 
 using algo::Outcome;
-using algo::Parameter;
 
 struct Plan {
-  Parameter parameter{};
+  const algo::ParameterInfo* parameter = nullptr;
   const char* name = "";
   std::vector<double> values{};  // SI
   std::vector<const char*> readings{};
@@ -204,28 +206,28 @@ std::vector<Plan> plans() {
   const char* clearance =
       "least clearance [mm] and outcome: r reached, s stuck, t out of time, C "
       "collided; * refused elsewhere, since S >= K_r d_safe";
-  return {{Parameter::RepulsionGain,
+  return {{&algo::kRepulsionGain,
            "K_r",
            {0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0},
            {"original", "modified_published", "modified"},
            clearance_cell,
            clearance,
            judge_repulsion},
-          {Parameter::SafetyDistance,
+          {&algo::kSafetyDistance,
            "d_safe",
            {0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2},
            {"original", "modified_published", "modified"},
            clearance_cell,
            clearance,
            judge_safety_distance},
-          {Parameter::ContractionGain,
+          {&algo::kContractionGain,
            "K_c",
            {0.0, 0.2, 0.4, 0.6, 0.8, 1.0},
            {"original", "modified", "via_kept"},
            strip_cell,
            "path [mm] / deviation of the share of the strip before its via point, and outcome",
            judge_contraction},
-          {Parameter::FilterHalfWidth,
+          {&algo::kFilterHalfWidth,
            "N",
            {0, 1, 2, 3, 5},
            {"original", "modified"},
@@ -280,7 +282,7 @@ std::vector<Sweep> run_sweeps(const PaperFile& file,
         line.reading = reading;
         for (const double each : plan.values) {
           RunSpec spec = make_run(file, layout, reading, kPaper, first_seed);
-          spec.parameters.set(plan.parameter, each);
+          spec.parameters.set(*plan.parameter, each);
           line.refused.push_back(algo::refusal(spec.parameters).has_value());
           jobs.push_back({layout.name, reading, std::move(spec), seeds});
         }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "algo/driving.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/random.hpp"
 
@@ -96,7 +97,7 @@ sim::Scenario random_world(std::uint64_t seed, const std::string& controller) {
     scenario.start = place(random, kHalf - kHull);
   } while (set.distance(scenario.start.position()) < kHull + kClear);
   scenario.goal = algo::SetGoal{place(random, kHalf - 0.2).position(), std::nullopt};
-  scenario.parameters = {{algo::Parameter::MaxSpeed, 0.5}};
+  scenario.parameters = {{&algo::kMaxSpeed, 0.5}};
   return scenario;
 }
 

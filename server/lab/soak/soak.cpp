@@ -6,6 +6,7 @@
 #include <limits>
 #include <mutex>
 
+#include "algo/driving.hpp"
 #include "algo/explain.hpp"
 #include "algo/pipeline/pipeline.hpp"
 #include "server/experiment/parallel.hpp"
@@ -78,7 +79,7 @@ class Watch {
                                  spec_.scenario.start.position(),
                                  spec_.scenario.goal->position_W,
                                  robot->spec().radius + kToSpare,
-                                 spec_.parameters[algo::Parameter::GoalReach]);
+                                 spec_.parameters[algo::kGoalReach]);
     algo::Pipeline pipeline(pipeline_config(spec_), robot->spec());
     algo::Telemetry t;
     robot->reset(t.observation);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
@@ -85,15 +86,15 @@ json obstacle_list(const Session& session) {
 std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters now) {
   std::vector<algo::SetParameter> left;
   for (const auto& [name, value] : body.items()) {
-    if (const auto p = algo::find_parameter(name)) left.push_back({*p, value.get<double>()});
+    if (const auto* p = algo::find_parameter(name)) left.push_back({p, value.get<double>()});
   }
   std::vector<algo::SetParameter> order;
   while (!left.empty()) {
     const auto next = std::find_if(left.begin(), left.end(), [&](const auto& set) {
-      return !algo::refusal(now, set.parameter, set.value);
+      return !algo::refusal(now, *set.parameter, set.value);
     });
     if (next == left.end()) return {};
-    now.set(next->parameter, next->value);
+    now.set(*next->parameter, next->value);
     order.push_back(*next);
     left.erase(next);
   }

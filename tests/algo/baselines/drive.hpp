@@ -11,6 +11,7 @@
 #include "tests/algo/worlds.hpp"
 
 #include "algo/diff_drive.hpp"
+#include "algo/driving.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
 
@@ -33,7 +34,9 @@ using Sense = std::function<void(const algo::Pose2&, const worlds::World&, algo:
 class Drive {
  public:
   Drive(const std::string& controller, worlds::World world, const Vec2& goal)
-      : world_(std::move(world)), controller_(algo::make_controller(controller)), goal_(goal) {
+      : world_(std::move(world)),
+        controller_(algo::builtin_controllers().at(controller).make()),
+        goal_(goal) {
     controller_->reset(pose_);
   }
 
@@ -55,7 +58,7 @@ class Drive {
       outcome.end = pose_.position();
       const double room = hull_clearance();
       outcome.clearance = std::min(outcome.clearance, room);
-      if ((goal_ - pose_.position()).norm() < parameters_[algo::Parameter::GoalReach]) {
+      if ((goal_ - pose_.position()).norm() < parameters_[algo::kGoalReach]) {
         return named("reached", outcome);
       }
       if (room < 0) return named("collided", outcome);

@@ -68,7 +68,7 @@ TEST(Baseline, ASonarReadingThatIsNotFiniteGivesZero) {
   algo::Scene scene;
   algo::RobotSpec spec;
   spec.radius = 0.35;
-  for (const algo::ControllerInfo& about : algo::controller_table()) {
+  for (const algo::ControllerInfo& about : algo::builtin_controllers().entries()) {
     if (!about.by_sonar) continue;
     algo::Observation observation;
     observation.sonar.push_back({{0.35, 0, 0}, 1, 2.0, 5.0, algo::Beam::Ok});
@@ -77,7 +77,7 @@ TEST(Baseline, ASonarReadingThatIsNotFiniteGivesZero) {
     in.observation = &observation;
     in.spec = &spec;
     in.goal = algo::SetGoal{{4, 0}, std::nullopt};
-    const auto controller = algo::make_controller(about.name);
+    const auto controller = algo::builtin_controllers().at(about.name).make();
     controller->reset({});
     algo::ControlOutput out;
     controller->update(in, {}, out);

@@ -8,12 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "algo/diff_drive.hpp"
+#include "algo/driving.hpp"
 #include "algo/perceive.hpp"
 
 namespace {
 
 using algo::Manner;
-using algo::Parameter;
 using algo::Vec2;
 
 /// A robot that does what it is told, among posts.
@@ -61,7 +61,7 @@ struct Drive {
 
 TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
   Drive drive;
-  drive.parameters.set(Parameter::MaxSpeed, 0.04);
+  drive.parameters.set(algo::kMaxSpeed, 0.04);
   drive.controller.reset({});
   for (int k = 0; k < 1000; ++k) {
     drive.tick({3, 0});
@@ -73,8 +73,8 @@ TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
 
 TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
   Drive drive;
-  drive.parameters.set(Parameter::MaxSpeed, 0.05);
-  drive.parameters.set(Parameter::MaxTurnRate, 0.3);
+  drive.parameters.set(algo::kMaxSpeed, 0.05);
+  drive.parameters.set(algo::kMaxTurnRate, 0.3);
   for (int i = 0; i < 16; ++i) {
     const double bearing = 2 * 3.14159265 * i / 16;
     drive.world.circles.push_back({0.62 * algo::direction(bearing), 0.12});
@@ -91,7 +91,7 @@ TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
 
 TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
   Drive drive;
-  drive.parameters.set(Parameter::MaxSpeed, 0.5);
+  drive.parameters.set(algo::kMaxSpeed, 0.5);
   drive.world.circles.push_back({{15, 0.1}, 0.3});
   drive.controller.reset({});
   for (int k = 0; k < 2400 && drive.pose.x < 39; ++k) drive.tick({40, 0});
@@ -104,7 +104,7 @@ TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
 TEST(FullStrip, ReachesAGoalAtTheEdgeOfItsMap) {
   for (const double far : {12.2, 12.4, 12.5, 12.6, 12.7, 12.8, 13.0}) {
     Drive drive;
-    drive.parameters.set(Parameter::MaxSpeed, 0.5);
+    drive.parameters.set(algo::kMaxSpeed, 0.5);
     drive.controller.reset({});
     const Vec2 goal(far, 0);
     for (int k = 0; k < 900 && (drive.pose.position() - goal).norm() > 0.09; ++k) drive.tick(goal);
@@ -115,7 +115,7 @@ TEST(FullStrip, ReachesAGoalAtTheEdgeOfItsMap) {
 TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
   for (const double near : {1.0, 0.0}) {
     Drive drive;
-    drive.parameters.set(Parameter::NearestGoal, near);
+    drive.parameters.set(algo::kNearestGoal, near);
     drive.world.circles = {{{4, 0.05}, 0.4}};
     drive.controller.reset({});
     for (int k = 0; k < 600; ++k) drive.tick({4, 0});
@@ -160,8 +160,8 @@ TEST(FullStrip, AGoalWithoutRoomStaysRefused) {
 /// has, and no more.
 TEST(FullStrip, GoesNoNearerToAPostThanTheGoalLies) {
   Drive drive;
-  drive.parameters.set(Parameter::SafetyDistance, 1.0);
-  drive.parameters.set(Parameter::MaxSpeed, 0.2);
+  drive.parameters.set(algo::kSafetyDistance, 1.0);
+  drive.parameters.set(algo::kMaxSpeed, 0.2);
   drive.world.circles = {{{1.2, 0.35}, 0.1}};
   const Vec2 goal(2, 0);
   const double lies = worlds::surface_distance(goal, drive.world);
@@ -220,7 +220,7 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
   drive.spec.half_length = 0.35;
   drive.spec.half_width = 0.22;
   drive.spec.radius = std::hypot(0.35, 0.22);
-  drive.parameters.set(Parameter::MaxSpeed, 0.4);
+  drive.parameters.set(algo::kMaxSpeed, 0.4);
   drive.controller.reset({});
   for (int k = 0; k < 100; ++k) drive.tick({1.5, 0});
   ASSERT_EQ(drive.twist, algo::Twist2{});
@@ -243,8 +243,8 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
 /// with it.
 TEST(FullStrip, DoesNotSway) {
   Drive drive;
-  drive.parameters.set(Parameter::MaxSpeed, 0.5);
-  drive.parameters.set(Parameter::SafetyDistance, 0.75);
+  drive.parameters.set(algo::kMaxSpeed, 0.5);
+  drive.parameters.set(algo::kSafetyDistance, 0.75);
   for (int i = 0; i < 6; ++i) {
     const double side = i % 2 == 0 ? 1 : -1;
     drive.world.circles.push_back({{1.5 + 1.4 * i, 0.75 * side}, 0.2});

@@ -16,12 +16,12 @@
 #include "algo/filter/filter.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
 
 namespace {
 
 using Json = nlohmann::json;
-using algo::Parameter;
 using algo::Vec2;
 using namespace algo::units;
 
@@ -70,19 +70,21 @@ struct Outcome {
 class Drive {
  public:
   Drive(const Json& about, const std::string& controller, std::uint64_t seed)
-      : world_(world_of(about)), controller_(algo::make_controller(controller)), random_(seed) {
+      : world_(world_of(about)),
+        controller_(algo::builtin_controllers().at(controller).make()),
+        random_(seed) {
     goal_ = point_mm(about.at("goal"));
     v_max_ = about.at("v_max").get<double>() / 1000;
     dt_ = v_max_ == 0.04 ? 0.1 : 0.05;
     const Json& common = paper().at("common");
-    parameters_.set(Parameter::ContractionGain, about.at("K_c"));
-    parameters_.set(Parameter::RepulsionGain, about.at("K_r"));
-    parameters_.set(Parameter::MaxSpeed, v_max_);
-    parameters_.set(Parameter::SafetyDistance, common.at("d_safe").get<double>() / 1000);
-    parameters_.set(Parameter::StripStep, common.at("strip_step_S").get<double>() / 1000);
-    parameters_.set(Parameter::MaxTurnRate, common.at("w_max"));
-    parameters_.set(Parameter::HeadingGain, common.at("heading_gain"));
-    parameters_.set(Parameter::GoalReach, common.at("arrival_radius").get<double>() / 1000);
+    parameters_.set(algo::kContractionGain, about.at("K_c"));
+    parameters_.set(algo::kRepulsionGain, about.at("K_r"));
+    parameters_.set(algo::kMaxSpeed, v_max_);
+    parameters_.set(algo::kSafetyDistance, common.at("d_safe").get<double>() / 1000);
+    parameters_.set(algo::kStripStep, common.at("strip_step_S").get<double>() / 1000);
+    parameters_.set(algo::kMaxTurnRate, common.at("w_max"));
+    parameters_.set(algo::kHeadingGain, common.at("heading_gain"));
+    parameters_.set(algo::kGoalReach, common.at("arrival_radius").get<double>() / 1000);
     pose_.heading = std::atan2(goal_.y(), goal_.x());
     track_.push_back(pose_.position());
     controller_->reset(pose_);
@@ -92,8 +94,7 @@ class Drive {
     const double limit = 5 * goal_.norm() / v_max_;
     for (std::size_t tick = 0;; ++tick) {
       outcome_.time = static_cast<double>(tick) * dt_;
-      if ((goal_ - pose_.position()).norm() < parameters_[Parameter::GoalReach])
-        return end("reached");
+      if ((goal_ - pose_.position()).norm() < parameters_[algo::kGoalReach]) return end("reached");
       if (outcome_.time >= limit) return end("out_of_time");
       sense();
       move(decide());

@@ -12,15 +12,16 @@
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/driving.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
 
 namespace {
 
 using algo::ControlInput;
 using algo::ControlOutput;
-using algo::Parameter;
 using algo::Parameters;
 using algo::Scene;
 using algo::Side;
@@ -82,7 +83,7 @@ bool same(const ControlOutput& a, const ControlOutput& b) {
 class EveryController : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<algo::Controller> make() const {
-    auto made = algo::make_controller(GetParam());
+    auto made = algo::builtin_controllers().at(GetParam()).make();
     made->reset({});
     return made;
   }
@@ -149,9 +150,8 @@ TEST_P(EveryController, AnyNumberThatIsNotFiniteGivesZero) {
       [](Situation& s, double x) { s.scene.scan.mount_R.x = x; },
       [](Situation& s, double x) { s.scene.scan.mount_R.heading = x; },
   };
-  for (std::size_t p = 0; p < algo::kParameterCount; ++p) {
-    spoils.emplace_back(
-        [p](Situation& s, double x) { s.parameters.set(static_cast<Parameter>(p), x); });
+  for (const algo::ParameterInfo* p : algo::parameter_table()) {
+    spoils.emplace_back([p](Situation& s, double x) { s.parameters.set(*p, x); });
   }
   for (std::size_t k = 0; k < spoils.size(); ++k) {
     for (const double bad : {kNan, kInf, -kInf}) {
@@ -257,8 +257,8 @@ TEST_P(EveryController, StaysWithinItsSpeeds) {
     Situation s({anywhere(random), anywhere(random), anywhere(random)});
     s.in.stamp = k;
     s.in.goal = algo::SetGoal{{anywhere(random), anywhere(random)}, anywhere(random)};
-    s.parameters.set(Parameter::MaxSpeed, 0.7);
-    s.parameters.set(Parameter::MaxTurnRate, 0.6);
+    s.parameters.set(algo::kMaxSpeed, 0.7);
+    s.parameters.set(algo::kMaxTurnRate, 0.6);
     controller->update(s.in, s.parameters, out);
     ASSERT_GE(out.twist.v, 0);  // the strip never drives backwards, where nothing is seen
     ASSERT_LE(out.twist.v, 0.7);
@@ -272,9 +272,9 @@ TEST_P(EveryController, ParametersActAtOnce) {
   const auto controller = make();
   ControlOutput slow;
   ControlOutput fast;
-  s.parameters.set(Parameter::MaxSpeed, 0.1);
+  s.parameters.set(algo::kMaxSpeed, 0.1);
   controller->update(s.in, s.parameters, slow);
-  s.parameters.set(Parameter::MaxSpeed, 0.2);
+  s.parameters.set(algo::kMaxSpeed, 0.2);
   controller->reset({});
   controller->update(s.in, s.parameters, fast);
   EXPECT_GT(slow.twist.v, 0);
@@ -308,7 +308,7 @@ TEST_P(EveryController, AllocatesNothingWhenWarm) {
 
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  for (const auto& info : algo::controller_table()) all.emplace_back(info.name);
+  for (const auto& info : algo::builtin_controllers().entries()) all.emplace_back(info.name);
   return all;
 }
 
@@ -337,7 +337,7 @@ TEST(ControllerTable, HoldsTheReadingsWithLabelAndHelp) {
   const auto all = names();
   EXPECT_EQ(std::set<std::string>(all.begin(), all.end()), wanted);
   EXPECT_EQ(all.size(), wanted.size());
-  for (const auto& info : algo::controller_table()) {
+  for (const auto& info : algo::builtin_controllers().entries()) {
     EXPECT_FALSE(info.label.empty()) << info.name;
     EXPECT_FALSE(info.help.empty()) << info.name;
   }
@@ -345,7 +345,7 @@ TEST(ControllerTable, HoldsTheReadingsWithLabelAndHelp) {
 
 TEST(ControllerTable, AnUnknownNameIsAnsweredWithTheKnownOnes) {
   try {
-    algo::make_controller("modfied");
+    algo::builtin_controllers().at("modfied").make();
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     const std::string what = error.what();

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/explain.hpp"
+#include "algo/strip/strip_law.hpp"
 
 namespace algo {
 namespace {
@@ -241,9 +242,9 @@ TEST_F(PipelineTest, NotANumberNeverReachesTheMotors) {
 }
 
 TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
-  EXPECT_FALSE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 0.5}));
-  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::RepulsionGain, 50}));
-  EXPECT_TRUE(pipeline.refusal(SetParameter{Parameter::StripStep, 0.6}));  // S >= K_r d_safe
+  EXPECT_FALSE(pipeline.refusal(SetParameter{&algo::kRepulsionGain, 0.5}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{&algo::kRepulsionGain, 50}));
+  EXPECT_TRUE(pipeline.refusal(SetParameter{&algo::kStripStep, 0.6}));  // S >= K_r d_safe
   EXPECT_TRUE(pipeline.refusal(Joystick{1.5, 0}));
   EXPECT_TRUE(pipeline.refusal(SetGoal{{std::numeric_limits<double>::infinity(), 0}, {}}));
   RobotSpec log = disc();
@@ -253,13 +254,13 @@ TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
 
 /// With K_c = 1 the via point that is kept never settles.
 TEST_F(PipelineTest, RefusesFullContractionOfAViaThatIsKept) {
-  const SetParameter full{Parameter::ContractionGain, 1.0};
+  const SetParameter full{&algo::kContractionGain, 1.0};
   EXPECT_FALSE(pipeline.refusal(full));
   const Pipeline kept({.controller = "via_kept"}, disc());
   const auto reason = kept.refusal(full);
   ASSERT_TRUE(reason);
   EXPECT_NE(reason->find("k_c must be below 1"), std::string::npos) << *reason;
-  EXPECT_FALSE(kept.refusal(SetParameter{Parameter::ContractionGain, 0.95}));
+  EXPECT_FALSE(kept.refusal(SetParameter{&algo::kContractionGain, 0.95}));
 }
 
 TEST_F(PipelineTest, ASteadyTickAllocatesNothing) {

@@ -10,6 +10,7 @@
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/strip/strip.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
 
 namespace {
@@ -64,12 +65,12 @@ Tick run(const std::string& controller, const Json& vector) {
   in.spec = &spec;
   in.dt = 0.05;
   algo::Parameters parameters;
-  parameters.set(algo::Parameter::SafetyDistance, 1000_mm);
-  parameters.set(algo::Parameter::RepulsionGain, vector.at("Kr"));
-  parameters.set(algo::Parameter::StripStep, vector.at("S").get<double>() * golden::kMm);
+  parameters.set(algo::kSafetyDistance, 1000_mm);
+  parameters.set(algo::kRepulsionGain, vector.at("Kr"));
+  parameters.set(algo::kStripStep, vector.at("S").get<double>() * golden::kMm);
   worlds::scan_world(in.odometry.pose, world, 8000_mm, tick.scene.scan);
   algo::perceive(in.odometry.pose, tick.scene);
-  const auto subject = algo::make_controller(controller);
+  const auto subject = algo::builtin_controllers().at(controller).make();
   subject->reset(in.odometry.pose);
   subject->update(in, parameters, tick.out);
   return tick;

@@ -197,8 +197,8 @@ TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
   for (const auto& [without, with] : pairs) {
     algo::ControlOutput plain;
     algo::ControlOutput chosen;
-    algo::make_controller(without)->update(in, parameters, plain);
-    algo::make_controller(with)->update(in, parameters, chosen);
+    algo::builtin_controllers().at(without).make()->update(in, parameters, plain);
+    algo::builtin_controllers().at(with).make()->update(in, parameters, chosen);
     EXPECT_EQ(plain.side, Side::None);
     EXPECT_EQ(plain.blocked_beam, -1);
     EXPECT_EQ(chosen.side, Side::Right);
@@ -223,7 +223,7 @@ TEST(SideChoice, AnotherGoalForgetsTheSide) {
   in.goal = algo::SetGoal{{4, 0}, std::nullopt};
   in.spec = &spec;
   algo::ControlOutput out;
-  const auto controller = algo::make_controller("modified");
+  const auto controller = algo::builtin_controllers().at("modified").make();
   controller->update(in, {}, out);
   EXPECT_EQ(out.side, Side::Right);
   in.goal = algo::SetGoal{{0, 4}, std::nullopt};  // nothing in that way

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/strip/elastic_strip_controller.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
 
 namespace {

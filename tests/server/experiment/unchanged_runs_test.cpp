@@ -22,6 +22,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "algo/driving.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/telemetry.hpp"
 #include "server/experiment/parallel.hpp"
@@ -168,7 +169,7 @@ std::vector<std::pair<double, algo::Request>> script(const algo::Pose2& start_W)
   return {{3.0, algo::AddObstacle{post}},
           {4.0, algo::Stop{true}},
           {4.5, algo::Stop{false}},
-          {5.0, algo::SetParameter{algo::Parameter::MaxSpeed, 0.35}},
+          {5.0, algo::SetParameter{&algo::kMaxSpeed, 0.35}},
           {15.0, algo::Joystick{.forward = 0.5, .turn = -0.4}},
           {15.5, algo::Joystick{}}};
 }
@@ -238,7 +239,7 @@ TEST(UnchangedRuns, SenseAskCommandAndHoldWhatTheyDid) {
   };
   std::vector<Job> jobs;
   for (const auto& entry : library.list()) {
-    for (const auto& controller : algo::controller_table()) {
+    for (const auto& controller : algo::builtin_controllers().entries()) {
       jobs.push_back({entry.name, std::string(controller.name)});
     }
   }

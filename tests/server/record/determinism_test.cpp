@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "algo/strip/strip_law.hpp"
 #include "server/record/headless.hpp"
 #include "server/record/record_sink.hpp"
 #include "server/record/run_json.hpp"
@@ -135,8 +136,8 @@ TEST_F(RecordedRun, FedBackWithEditsStickAndStopItGivesTheSameCommands) {
   const algo::Obstacle obstacle{.id = 9, .pose_W = {1.0, -1.0, 0}, .shape = algo::Cylinder{0.2}};
   const std::multimap<std::uint64_t, algo::Request> script{
       {50, algo::AddObstacle{obstacle}},
-      {100, algo::SetParameter{algo::Parameter::RepulsionGain, 0.5}},
-      {100, algo::SetParameter{algo::Parameter::MaxSpeed, 0.3}},
+      {100, algo::SetParameter{&algo::kRepulsionGain, 0.5}},
+      {100, algo::SetParameter{&algo::kMaxSpeed, 0.3}},
       {150, algo::MoveObstacle{9, {1.5, -1.0, 0.3}}},
       {200, algo::Stop{true}},
       {240, algo::Stop{false}},

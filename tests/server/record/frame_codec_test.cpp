@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "algo/strip/strip_law.hpp"
+
 namespace server {
 namespace {
 
@@ -53,7 +55,7 @@ algo::Telemetry full_telemetry() {
   t.requests.push_back(algo::RemoveObstacle{7});
   t.requests.push_back(algo::Joystick{0.5, -0.25});
   t.requests.push_back(algo::Stop{false});
-  t.requests.push_back(algo::SetParameter{algo::Parameter::RepulsionGain, 0.45});
+  t.requests.push_back(algo::SetParameter{&algo::kRepulsionGain, 0.45});
   t.ground_truth = algo::GroundTruth{{1, 2, 3}, 0.75, 0.5, true};
   t.goal = algo::SetGoal{{3.5, 5.0}, std::nullopt};
   t.goals_ahead.push_back({{1, 2}, std::nullopt});

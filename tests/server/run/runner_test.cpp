@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "algo/strip/strip_law.hpp"
+
 namespace server {
 namespace {
 
@@ -140,7 +142,7 @@ TEST_F(RunnerTest, AnswersRequestsAndRecordsOnlyWhatWasAccepted) {
   robot.paused_steps = 3;
   rings.requests.push({1, algo::Stop{true}});
   rings.requests.push({2, algo::RemoveObstacle{9}});
-  rings.requests.push({3, algo::SetParameter{algo::Parameter::RepulsionGain, 99.0}});
+  rings.requests.push({3, algo::SetParameter{&algo::kRepulsionGain, 99.0}});
   std::vector<std::size_t> recorded;
   links.observer = [&](const Frame& frame) {
     recorded.push_back(frame.telemetry.requests.size());

@@ -97,13 +97,22 @@ function short(filters: Choice[]): Choice[] {
   return filters.map((f) => (f.name === "none" ? { ...f, label: "None" } : f));
 }
 
-const kFirst = ["k_r", "k_c", "safety_distance", "strip_step"];
+const kShown = 4; // gains at once; the others on demand
+
+/** The parameters that the chosen controller reads, its own first, then those that always count. */
+function read_by(catalog: Catalog, name: string): ParameterInfo[] {
+  const own = catalog.controllers.find((c) => c.name === name)?.parameters;
+  if (!own) return catalog.parameters;
+  const wanted = [...own, ...(catalog.common_parameters ?? [])];
+  return wanted.map((key) => catalog.parameters.find((p) => p.name === key))
+    .filter((p): p is ParameterInfo => p !== undefined);
+}
 
 function Gains(props: { session: SessionState; catalog: Catalog }): JSX.Element {
   const { session, catalog } = props;
-  const first = kFirst.map((name) => catalog.parameters.find((p) => p.name === name))
-    .filter((p): p is ParameterInfo => p !== undefined);
-  const rest = catalog.parameters.filter((p) => !kFirst.includes(p.name));
+  const all = read_by(catalog, session.controller);
+  const first = all.slice(0, kShown);
+  const rest = all.slice(kShown);
   const [more, set_more] = useState(false);
   return (
     <section>

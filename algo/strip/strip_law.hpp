@@ -1,0 +1,68 @@
+// algo/strip/strip_law.hpp: the parameters of the elastic strips, what must hold between them, and
+// the driving law of the strip of three points.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "algo/driving.hpp"
+#include "algo/parameters.hpp"
+
+namespace algo {
+
+inline constexpr ParameterInfo kContractionGain{
+    .name = "strip.k_c",
+    .label = "Contraction K_c",
+    .unit = "",
+    .min = 0.0,
+    .max = 1.0,
+    .step = 0.05,
+    .initial = 0.8,
+    .help =
+        "How strongly the strip pulls a via point onto the straight line. A strip of three "
+        "points moves by it only where its via point is kept, which needs it below 1.",
+    .alias = "k_c"};
+inline constexpr ParameterInfo kRepulsionGain{
+    .name = "strip.k_r",
+    .label = "Repulsion K_r",
+    .unit = "",
+    .min = 0.05,
+    .max = 1.0,
+    .step = 0.05,
+    .initial = 0.6,
+    .help = "How strongly obstacles push the strip away. Larger keeps more distance.",
+    .alias = "k_r"};
+inline constexpr ParameterInfo kStripStep{
+    .name = "strip.step",
+    .label = "Strip step S",
+    .unit = "m",
+    .min = 0.05,
+    .max = 0.6,
+    .step = 0.01,
+    .initial = 0.2,
+    .help =
+        "How far ahead the strip's end is set towards the goal. Must stay below K_r times the "
+        "safety distance, or the goal's pull can win over an obstacle's push.",
+    .alias = "strip_step"};
+
+/// What the strips of three points read.
+inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
+                                                                              &kContractionGain,
+                                                                              &kSafetyDistance,
+                                                                              &kStripStep,
+                                                                              &kMaxSpeed,
+                                                                              &kMaxTurnRate,
+                                                                              &kHeadingGain,
+                                                                              &kGoalReach});
+
+/// Why these values do not go together, as a sentence: S >= K_r d_safe, with which the strip can be
+/// pushed into an obstacle. Head-on it balances at a body clearance of d_safe - S / K_r
+/// (equations.md D, consequence 2).
+std::optional<std::string> strip_refusal(const Parameters& parameters);
+
+/// The twist towards `pass_W`: e = pass - p, along e at v = min(v_max, |e| v_max / S); zero for
+/// e = 0 (equations.md D).
+Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters);
+
+}  // namespace algo
