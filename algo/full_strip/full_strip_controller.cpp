@@ -121,8 +121,7 @@ void FullStripController::prepare(const ControlInput& in, const Parameters& para
              in.spec->max_angular_acceleration};
   settings_.contraction = parameters[kContractionGain];
   settings_.repulsion = parameters[kRepulsionGain];
-  settings_.rest_distance =
-      std::min(parameters[kSafetyDistance] + stage_.hull().half_width() - 0.215, LocalMap::kReach);
+  settings_.rest_distance = std::min(parameters[kSafetyDistance], LocalMap::kReach);
   break_room_ = parameters[kBreakRoom];
   plan_period_ = parameters[kPlanPeriod];
   settings_.least_clearance = least_clearance() - break_room_;

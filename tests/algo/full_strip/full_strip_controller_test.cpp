@@ -225,8 +225,8 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
   for (int k = 0; k < 100; ++k) drive.tick({1.5, 0});
   ASSERT_EQ(drive.twist, algo::Twist2{});
   const double nose = drive.pose.x + 0.35;
-  drive.world.circles = {{{nose + 0.055, 0.2}, 0.02}, {{nose + 0.055, -0.2}, 0.02}};
-  drive.world.circles.push_back({{nose + 0.055, 0}, 0.02});
+  drive.world.circles = {{{nose + 0.045, 0.2}, 0.02}, {{nose + 0.045, -0.2}, 0.02}};
+  drive.world.circles.push_back({{nose + 0.045, 0}, 0.02});
   double run = 0;
   double longest = 0;
   for (int k = 0; k < 200; ++k) {
