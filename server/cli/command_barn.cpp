@@ -9,6 +9,7 @@
 
 #include "algo/controller.hpp"
 #include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
 #include "server/lab/barn/barn_run.hpp"
 #include "server/run/scenario_json.hpp"
 
@@ -24,30 +25,19 @@ struct BarnCommand {
   std::vector<std::uint64_t> only{};
   bool as_json = false;
   std::string scenarios{};
+  std::string rows{};
   barn::Options options{};
 };
 
-std::string_view name(barn::Ending ending) {
-  switch (ending) {
-    case barn::Ending::Success:
-      return "success";
-    case barn::Ending::Collision:
-      return "collision";
-    case barn::Ending::Timeout:
-      return "timeout";
-  }
-  return "timeout";
-}
-
-std::string_view name(barn::Contact contact) {
+std::string_view name(experiment::Contact contact) {
   switch (contact) {
-    case barn::Contact::None:
+    case experiment::Contact::None:
       return "none";
-    case barn::Contact::Avoidable:
+    case experiment::Contact::Avoidable:
       return "avoidable";
-    case barn::Contact::Unavoidable:
+    case experiment::Contact::Unavoidable:
       return "unavoidable";
-    case barn::Contact::Jumped:
+    case experiment::Contact::Jumped:
       return "jumped";
   }
   return "none";
@@ -70,38 +60,22 @@ json result_json(const barn::Result& result) {
               {"contacts_after_jump", sum.jumped},
               {"outcomes", json::array()}};
   for (const barn::Run& run : result.runs) {
-    out["outcomes"].push_back({{"world", run.world},
-                               {"seed", run.seed},
-                               {"outcome", name(run.ending)},
-                               {"contact", name(run.contact)},
-                               {"time_s", run.time},
-                               {"score", run.score},
-                               {"min_clearance_m", run.min_clearance},
-                               {"path_m", run.path_length},
-                               {"end", {run.end.x, run.end.y, run.end.heading}}});
+    out["outcomes"].push_back(
+        {{"world", run.world},
+         {"seed", run.seed},
+         {"outcome", algo::name(run.row.outcome)},
+         {"contact", name(run.contact())},
+         {"time_s", run.row["barn_time_s"]},
+         {"score", run.row["barn_score"]},
+         {"min_clearance_m", run.row["min_clearance_m"]},
+         {"path_m", run.row["path_m"]},
+         {"end", {run.row["end_x_m"], run.row["end_y_m"], run.row["end_heading_rad"]}}});
   }
   return out;
 }
 
 void print_table(const barn::Result& result) {
-  fmt::print("{:>6} {:>5} {:>10} {:>8} {:>7} {:>10} {:>8}\n",
-             "world",
-             "seed",
-             "outcome",
-             "time s",
-             "score",
-             "nearest m",
-             "path m");
-  for (const barn::Run& run : result.runs) {
-    fmt::print("{:>6} {:>5} {:>10} {:>8.2f} {:>7.4f} {:>10.3f} {:>8.2f}\n",
-               run.world,
-               run.seed,
-               name(run.ending),
-               run.time,
-               run.score,
-               run.min_clearance,
-               run.path_length);
-  }
+  fmt::print("{}", to_text(runs_table(result)));
   const barn::Summary sum = summarise(result);
   fmt::print("\nPublic BARN worlds, our simulator, the official score formula: no rank.\n");
   fmt::print("worlds {}, runs {}\n", sum.worlds, sum.runs);
@@ -157,11 +131,12 @@ int execute(BarnCommand command) {
   barn::Result result;
   {
     ProgressLine progress;
-    command.options.progress = [&](std::size_t done, std::size_t all) {
+    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
       progress.show(fmt::format("{} of {} runs", done, all));
     };
     result = run_worlds(worlds, command.options);
   }
+  if (!command.rows.empty()) write_table(rows_table(result), command.rows);
   if (command.as_json) {
     fmt::print("{}\n", result_json(result).dump(2));
   } else {
@@ -198,8 +173,8 @@ void add_barn_command(CLI::App& app, int& status) {
                    command->options.conditions.phase,
                    "[s] Where moving obstacles are on their way when a run begins (default 0)")
       ->check(CLI::Range(0.0, 1e6));
-  barn->add_option("--workers", command->options.workers, "0 (default): one a core")
-      ->check(CLI::Range(0, 256));
+  add_pool_options(*barn, command->options.pool, "--workers");
+  add_rows_option(*barn, command->rows);
   barn->add_option("--world", command->only, "Only these numbers");
   barn->add_option("--scenarios",
                    command->scenarios,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
 #include "server/lab/compare/report.hpp"
 
 namespace server {
@@ -14,6 +15,7 @@ struct CompareCommand {
   compare::Options options{};
   std::vector<std::string> parts{};
   bool as_json = false;
+  std::string rows{};
   std::string markdown{};
 };
 
@@ -32,6 +34,7 @@ int execute(CompareCommand command) {
     };
     comparison = compare::compare(command.options);
   }
+  if (!command.rows.empty()) write_table(rows_table(comparison), command.rows);
   if (!command.markdown.empty()) compare::write_markdown(comparison, command.markdown);
   if (command.as_json) {
     fmt::print("{}\n", compare::to_json(comparison).dump(2));
@@ -52,6 +55,12 @@ void add_compare_command(CLI::App& app, int& status) {
   compare->add_option("--controller",
                       command->options.only,
                       "Only these, on the worlds and before the bottlenecks; may be given again");
+  compare
+      ->add_option("--judge",
+                   command->options.judges,
+                   "Also this judge: its columns stand in the details; may be given again")
+      ->check(judge_name());
+  add_rows_option(*compare, command->rows);
   compare->add_option("--seeds", command->options.seeds, "Runs of each row (default 3)")
       ->check(CLI::Range(1, 1000));
   compare->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")

@@ -42,9 +42,9 @@ int execute_filter_study(const Options& options) {
 constexpr std::size_t kSweepSeeds = 3;
 
 int execute(Options options) {
-  const reproduce::PaperFile file = options.scenarios.empty()
-                                        ? reproduce::embedded_paper_file()
-                                        : reproduce::read_paper_file(options.scenarios);
+  const reproduce::StudyFile file = options.scenarios.empty()
+                                        ? reproduce::embedded_study_file()
+                                        : reproduce::read_study_file(options.scenarios);
   options.study.full_simulator = !options.paper_only;
   const std::size_t sweep_seeds = std::min(options.study.seeds, kSweepSeeds);
   reproduce::Study study;
@@ -60,8 +60,9 @@ int execute(Options options) {
           file,
           sweep_seeds,
           options.study.first_seed,
-          options.study.threads,
-          [&](std::size_t done, std::size_t all) { options.study.progress("sweeps", done, all); });
+          {.threads = options.study.threads, .progress = [&](std::size_t done, std::size_t all) {
+             options.study.progress("sweeps", done, all);
+           }});
     }
   }
   if (!options.markdown.empty()) {
@@ -89,7 +90,7 @@ void add_reproduce_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "reproduce", "Run the papers' scenarios with every reading and say which claims hold");
-  command->add_option("--scenarios", options->scenarios, "Another file of layouts and limits")
+  command->add_option("--scenarios", options->scenarios, "Another file of scenarios and limits")
       ->type_name("FILE");
   command->add_option("--seeds", options->study.seeds, "Runs of each row (default 10)")
       ->check(CLI::Range(1, 1000));

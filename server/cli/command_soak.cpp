@@ -1,6 +1,5 @@
 // server/cli/command_soak.cpp: `tautline soak`: random worlds in search of what must never happen.
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -8,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
 #include "server/lab/soak/random_world.hpp"
 #include "server/lab/soak/soak.hpp"
 #include "server/run/scenario_json.hpp"
@@ -18,44 +18,33 @@ namespace {
 struct SoakCommand {
   std::string scenario{};
   bool list = false;
+  std::string rows{};
   soak::Options options{};
 };
 
 /// Faults, or with `all` everything but the goals reached.
-void print_worlds(const std::vector<soak::Outcome>& outcomes, bool all) {
-  for (const soak::Outcome& o : outcomes) {
-    if (!is_fault(o.ending) && (!all || o.ending == soak::Ending::Reached)) continue;
+void print_worlds(const std::vector<soak::World>& worlds, bool all) {
+  for (const soak::World& world : worlds) {
+    const experiment::Row& row = world.row;
+    if (!soak::is_fault(row) && (!all || row.outcome == algo::Outcome::Reached)) continue;
     fmt::print("world {}: {}{} after {:.1f} s at ({:.2f}, {:.2f}): {}\n",
-               o.seed,
-               name(o.ending),
-               o.has_way ? ", though there is a way," : "",
-               o.time,
-               o.end.x,
-               o.end.y,
-               o.why);
+               world.seed,
+               soak::ending(row),
+               world.has_way ? ", though there is a way," : "",
+               row["time_s"],
+               row["end_x_m"],
+               row["end_y_m"],
+               row.reason);
   }
 }
 
-void print_table(const std::vector<soak::Outcome>& outcomes) {
-  using soak::Ending;
-  fmt::print("{:>14} {:>8} {:>17} {:>14}\n", "", "worlds", "with a way there", "without");
-  for (const Ending ending : {Ending::Reached,
-                              Ending::GaveReason,
-                              Ending::OutOfTime,
-                              Ending::Silent,
-                              Ending::Collision,
-                              Ending::NotFinite}) {
-    std::array<std::ptrdiff_t, 2> count{};
-    for (const bool has_way : {false, true}) {
-      count.at(has_way ? 1 : 0) = std::ranges::count_if(outcomes, [&](const soak::Outcome& o) {
-        return o.ending == ending && o.has_way == has_way;
-      });
-    }
-    fmt::print(
-        "{:>14} {:>8} {:>17} {:>14}\n", name(ending), count[0] + count[1], count[1], count[0]);
-  }
-  const auto nearest = std::ranges::min_element(outcomes, {}, &soak::Outcome::min_clearance);
-  fmt::print("least clearance {:.3f} m, in world {}\n", nearest->min_clearance, nearest->seed);
+void print_table(const std::vector<soak::World>& worlds) {
+  fmt::print("{}", to_text(endings_table(worlds)));
+  if (worlds.empty()) return;
+  const auto nearest = std::ranges::min_element(
+      worlds, {}, [](const soak::World& world) { return world.row["min_clearance_m"]; });
+  fmt::print(
+      "least clearance {:.3f} m, in world {}\n", nearest->row["min_clearance_m"], nearest->seed);
 }
 
 int execute(SoakCommand command) {
@@ -67,18 +56,19 @@ int execute(SoakCommand command) {
     if (!out) throw std::runtime_error("cannot write " + command.scenario);
     return kReached;
   }
-  std::vector<soak::Outcome> outcomes;
+  std::vector<soak::World> worlds;
   {
     ProgressLine progress;
-    command.options.progress = [&](std::size_t done, std::size_t all) {
+    command.options.pool.progress = [&](std::size_t done, std::size_t all) {
       progress.show(fmt::format("{} of {} worlds", done, all));
     };
-    outcomes = run_worlds(command.options);
+    worlds = run_worlds(command.options);
   }
-  print_worlds(outcomes, command.list);
-  print_table(outcomes);
-  const bool fault =
-      std::ranges::any_of(outcomes, [](const soak::Outcome& o) { return is_fault(o.ending); });
+  if (!command.rows.empty()) write_table(rows_table(worlds), command.rows);
+  print_worlds(worlds, command.list);
+  print_table(worlds);
+  const bool fault = std::ranges::any_of(
+      worlds, [](const soak::World& world) { return soak::is_fault(world.row); });
   return fault ? kNotHeld : kReached;
 }
 
@@ -95,8 +85,8 @@ void add_soak_command(CLI::App& app, int& status) {
   soak->add_option("--first-seed", command->options.first_seed, "The first world (default 1)")
       ->check(CLI::Range(0, 1'000'000'000));
   soak->add_option("--controller", command->options.controller, "Default: strip");
-  soak->add_option("--workers", command->options.workers, "0 (default): one a core")
-      ->check(CLI::Range(0, 256));
+  add_pool_options(*soak, command->options.pool, "--workers");
+  add_rows_option(*soak, command->rows);
   soak->add_flag("--list", command->list, "List every world whose goal was not reached");
   soak->add_option("--scenario",
                    command->scenario,

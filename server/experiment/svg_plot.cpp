@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace server::reproduce {
+namespace server::experiment {
 namespace {
 
 constexpr double kLineHeight = 18;  // [px]
@@ -130,4 +130,4 @@ std::string SvgPlot::document(std::string_view title) const {
       body_);
 }
 
-}  // namespace server::reproduce
+}  // namespace server::experiment

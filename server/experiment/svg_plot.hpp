@@ -8,7 +8,7 @@
 
 #include "algo/types.hpp"
 
-namespace server::reproduce {
+namespace server::experiment {
 
 /// Cells of a grid side by side in a row.
 struct CellRun {
@@ -59,4 +59,4 @@ class SvgPlot {
 /// `text` with what XML reserves written as entities.
 std::string escaped(std::string_view text);
 
-}  // namespace server::reproduce
+}  // namespace server::experiment

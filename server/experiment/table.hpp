@@ -1,10 +1,15 @@
-// server/experiment/table.hpp: rows and columns of text, for the terminal and for Markdown.
+// server/experiment/table.hpp: rows and columns of text in the forms that people and programs read.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
-namespace server::reproduce {
+#include <nlohmann/json.hpp>
+
+namespace server::experiment {
+
+struct Row;
 
 struct Table {
   std::vector<std::string> header{};
@@ -16,5 +21,25 @@ struct Table {
 std::string to_text(const Table& table);
 /// A pipe table, with the blank line that must follow it.
 std::string to_markdown(const Table& table);
+/// RFC 4180: commas, CRLF, quotes where a cell needs them.
+std::string to_csv(const Table& table);
+/// A tabular of its own, with what TeX reserves escaped.
+std::string to_latex(const Table& table);
+/// A list of objects by the titles. A cell right of the words that is a number is one; an empty
+/// cell and what is not finite is null.
+nlohmann::json to_json(const Table& table);
 
-}  // namespace server::reproduce
+/// The table in the form that the ending of `path` names: .txt, .md, .csv, .tex, .json. Throws
+/// std::invalid_argument for another ending and std::runtime_error when it cannot be written.
+void write_table(const Table& table, const std::string& path);
+/// Whether write_table() knows the ending.
+bool is_table_file(std::string_view path);
+
+/// Adds a run to a table whose rows are runs: `labels` under `titles`, outcome, reason, and every
+/// figure in full. The first run gives the header.
+void add_run(Table& table,
+             const std::vector<std::string>& titles,
+             std::vector<std::string> labels,
+             const Row& row);
+
+}  // namespace server::experiment

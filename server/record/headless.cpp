@@ -26,15 +26,23 @@ HeadlessResult run_headless(const RunSpec& spec,
                             const std::stop_token& stop) {
   HeadlessResult result;
   result.telemetry_hash = 0xcbf29ce484222325ULL;
-  const std::shared_ptr<FramePool> pool = FramePool::make<EncodedFrame>(kPoolFrames);
+  const bool encodes = options.record != nullptr || options.hash_frames;
+  constexpr std::size_t kNowAndNext = 2;  // frames in use where nobody keeps one
+  const std::shared_ptr<FramePool> pool =
+      encodes ? FramePool::make<EncodedFrame>(kPoolFrames) : FramePool::make(kNowAndNext);
   std::unique_ptr<RecordSink> sink;
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
   algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
   robot.set_pace({.paused = false, .speed = options.pace});
+  std::stop_source over;
   // A robot that waits for its time must not wait on when it is asked to end.
-  const std::stop_callback wake(stop, [&] { robot.set_pace({.paused = false, .speed = 0}); });
+  const std::stop_callback wake(stop, [&] {
+    over.request_stop();
+    robot.set_pace({.paused = false, .speed = 0});
+  });
 
   auto next_progress = std::chrono::steady_clock::now();
+  std::optional<Ending> ending;
   RunLinks links;
   links.pool = pool.get();
   links.record = sink.get();
@@ -42,13 +50,22 @@ HeadlessResult run_headless(const RunSpec& spec,
     if (options.hash_frames) {
       result.telemetry_hash = fnv1a(encoded(frame).bytes(), result.telemetry_hash);
     }
+    if (options.watch) ending = options.watch(frame.telemetry);
+    if (ending) over.request_stop();
     if (!options.progress || std::chrono::steady_clock::now() < next_progress) return;
     next_progress = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
     options.progress(frame.telemetry.observation.stamp, frame.telemetry.tick + 1);
   };
-  const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
-  result.run = run(robot, pipeline, first_requests(spec), policy, links, stop);
-  if (result.run.outcome == algo::Outcome::Running) result.run.outcome = algo::Outcome::Stopped;
+  const RunPolicy policy{.until_outcome = !options.until_watch,
+                         .time_limit = options.until_watch ? 0 : time_limit(spec)};
+  result.run = run(robot, pipeline, first_requests(spec), policy, links, over.get_token());
+  if (ending) {
+    result.run.outcome = ending->outcome;
+    result.run.reason = std::move(ending->reason);
+  } else if (result.run.outcome == algo::Outcome::Running ||
+             (options.until_watch && stop.stop_requested())) {
+    result.run.outcome = algo::Outcome::Stopped;
+  }
   if (options.record) {
     const bool cancelled = options.cancelled && options.cancelled();
     db::RunEnd end = run_end(result.run, stop.stop_requested() && !cancelled);

@@ -1,108 +1,15 @@
-// server/lab/barn/barn_run.cpp: the benchmark's clock, ending and score.
+// server/lab/barn/barn_run.cpp: worlds as trials, and what their rows come to.
 #include "server/lab/barn/barn_run.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <ctime>
-#include <limits>
-#include <mutex>
 
-#include "server/experiment/parallel.hpp"
-#include "server/run/run_spec.hpp"
+#include <fmt/format.h>
 
 namespace server::barn {
 namespace {
 
-constexpr double kMoved = 0.1;         // [m] from the start: the clock begins
-constexpr double kTimeLimit = 100;     // [s] of that clock
-constexpr double kPatience = 60;       // [s] for a robot that never moves
-constexpr double kOptimalSpeed = 2.0;  // [m/s]
-constexpr std::size_t kTrail = 80;     // moments remembered: 4 s
-
-/// s = OT / clip(AT, low OT, 8 OT).
-double score_of(const World& world, double time, double low) {
-  const double optimal = world.optimal_length / kOptimalSpeed;
-  return optimal / std::clamp(time, low * optimal, 8 * optimal);
-}
-
-/// [s] That this thread has had a core: what else runs on the machine does not count.
-double cpu_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-class Trial {
- public:
-  Trial(const World& world, const Options& options, std::uint64_t seed)
-      : world_(world), spec_(make_spec(scenario_of(world, options.conditions), {})) {
-    spec_.seed = seed;
-    run_.world = world.id;
-    run_.seed = seed;
-    run_.min_clearance = std::numeric_limits<double>::infinity();
-  }
-
-  Run execute(std::vector<float>& tick_us) {
-    const std::unique_ptr<algo::Robot> robot = make_robot(spec_);
-    robot->set_pace({.paused = false, .speed = 0});
-    algo::Pipeline pipeline(pipeline_config(spec_), robot->spec());
-    algo::Telemetry t;
-    robot->reset(t.observation);
-    pipeline.reset(t.observation.odometry.pose);
-    for (const algo::Request& request : first_requests(spec_)) t.requests.push_back(request);
-    while (true) {
-      const double begin = cpu_time();
-      pipeline.tick(t);
-      tick_us.push_back(static_cast<float>((cpu_time() - begin) * 1e6));
-      t.requests.clear();
-      robot->step(t.command, t.observation);
-      const algo::GroundTruth truth = *robot->ground_truth();
-      remember(t.observation, truth);
-      if (judge(truth, t.observation.stamp)) break;
-    }
-    if (run_.ending == Ending::Collision && !world_.paths.empty()) {
-      run_.contact = judge_contact(spec_.scenario, robot->spec(), trail_);
-    }
-    return run_;
-  }
-
- private:
-  void remember(const algo::Observation& observation, const algo::GroundTruth& truth) {
-    if (world_.paths.empty()) return;
-    if (trail_.size() == kTrail) trail_.erase(trail_.begin());
-    trail_.push_back({observation.stamp, truth.pose, observation.odometry.twist});
-  }
-
-  /// Whether the run is over.
-  bool judge(const algo::GroundTruth& truth, double stamp) {
-    const algo::Vec2 at_W = truth.pose.position();
-    run_.path_length += (at_W - run_.end.position()).norm() * (ticks_++ > 0 ? 1 : 0);
-    run_.end = truth.pose;
-    run_.min_clearance = std::min(run_.min_clearance, truth.clearance);
-    if (!moved_at_ && (at_W - world_.start.position()).norm() > kMoved) moved_at_ = stamp;
-    run_.time = moved_at_ ? stamp - *moved_at_ : 0;
-    if (truth.collided) {
-      run_.ending = Ending::Collision;
-      return true;
-    }
-    if ((at_W - world_.goal).norm() < world_.goal_radius) {
-      run_.ending = Ending::Success;
-      run_.score = score_of(world_, run_.time, 2);
-      run_.score_quarter = score_of(world_, run_.time, 4);
-      return true;
-    }
-    run_.ending = Ending::Timeout;
-    return moved_at_ ? run_.time >= kTimeLimit : stamp >= kPatience;
-  }
-
-  const World& world_;
-  RunSpec spec_{};
-  Run run_{};
-  std::optional<double> moved_at_{};  // [s] run clock
-  std::uint64_t ticks_ = 0;
-  std::vector<Moment> trail_{};  // the last seconds, for the oracle
-};
+using algo::Outcome;
+using experiment::Contact;
 
 double quantile(std::vector<float> values, double share) {
   if (values.empty()) return 0;
@@ -113,21 +20,37 @@ double quantile(std::vector<float> values, double share) {
 
 }  // namespace
 
+Contact Run::contact() const {
+  return static_cast<Contact>(static_cast<int>(row["contact"]));
+}
+
+experiment::Trial trial_of(const World& world, const Conditions& conditions, std::uint64_t seed) {
+  experiment::Trial trial{.name = fmt::format("world {}, seed {}", world.id, seed),
+                          .spec = make_spec(scenario_of(world, conditions), {}),
+                          .judges = {{.name = "metrics"},
+                                     {.name = "barn_score",
+                                      .settings = {{"goal_radius", world.goal_radius},
+                                                   {"optimal_length", world.optimal_length}}},
+                                     {.name = "contact"},
+                                     {.name = "place"}},
+                          .until = "barn_score",
+                          .time_ticks = true};
+  trial.spec.seed = seed;
+  return trial;
+}
+
 Result run_worlds(const std::vector<World>& worlds, const Options& options) {
-  Result result;
-  result.worlds = worlds.size();
-  result.runs.resize(worlds.size() * options.repeats);
-  std::mutex mutex;  // of the ticks and of progress
-  std::size_t done = 0;
-  in_parallel(result.runs.size(), options.workers, [&](std::size_t i) {
-    const World& world = worlds[i / options.repeats];
-    std::vector<float> tick_us;
-    result.runs[i] =
-        Trial(world, options, options.first_seed + i % options.repeats).execute(tick_us);
-    const std::lock_guard lock(mutex);
-    result.tick_us.insert(result.tick_us.end(), tick_us.begin(), tick_us.end());
-    if (options.progress) options.progress(++done, result.runs.size());
-  });
+  const auto world_of = [&](std::size_t i) -> const World& { return worlds[i / options.repeats]; };
+  const auto seed_of = [&](std::size_t i) { return options.first_seed + i % options.repeats; };
+  std::vector<experiment::Row> rows = run_trials(
+      worlds.size() * options.repeats,
+      [&](std::size_t i) { return trial_of(world_of(i), options.conditions, seed_of(i)); },
+      options.pool);
+  Result result{.worlds = worlds.size()};
+  for (experiment::Row& row : rows) {
+    const std::size_t i = options.pool.shard.job(result.runs.size());
+    result.runs.push_back({world_of(i).id, seed_of(i), std::move(row)});
+  }
   return result;
 }
 
@@ -136,16 +59,19 @@ Summary summarise(const Result& result) {
   sum.worlds = result.worlds;
   sum.runs = result.runs.size();
   double times = 0;
+  std::vector<float> tick_us;
   for (const Run& run : result.runs) {
-    sum.success += run.ending == Ending::Success ? 1 : 0;
-    sum.collisions += run.ending == Ending::Collision ? 1 : 0;
-    sum.timeouts += run.ending == Ending::Timeout ? 1 : 0;
-    sum.avoidable += run.contact == Contact::Avoidable ? 1U : 0U;
-    sum.unavoidable += run.contact == Contact::Unavoidable ? 1U : 0U;
-    sum.jumped += run.contact == Contact::Jumped ? 1U : 0U;
-    sum.score += run.score;
-    sum.score_quarter += run.score_quarter;
-    if (run.ending == Ending::Success) times += run.time;
+    const bool success = run.row.outcome == Outcome::Reached;
+    sum.success += success ? 1 : 0;
+    sum.collisions += run.row.outcome == Outcome::Collided ? 1 : 0;
+    sum.timeouts += run.row.outcome == Outcome::OutOfTime ? 1 : 0;
+    sum.avoidable += run.contact() == Contact::Avoidable ? 1U : 0U;
+    sum.unavoidable += run.contact() == Contact::Unavoidable ? 1U : 0U;
+    sum.jumped += run.contact() == Contact::Jumped ? 1U : 0U;
+    sum.score += run.row["barn_score"];
+    sum.score_quarter += run.row["barn_score_quarter"];
+    if (success) times += run.row["barn_time_s"];
+    tick_us.insert(tick_us.end(), run.row.tick_us.begin(), run.row.tick_us.end());
   }
   sum.mean_time = sum.success > 0 ? times / sum.success : 0;
   const auto runs = static_cast<double>(std::max<std::size_t>(1, sum.runs));
@@ -153,9 +79,37 @@ Summary summarise(const Result& result) {
        {&sum.success, &sum.collisions, &sum.timeouts, &sum.score, &sum.score_quarter}) {
     *mean /= runs;
   }
-  sum.tick_us_p50 = quantile(result.tick_us, 0.5);
-  sum.tick_us_p99 = quantile(result.tick_us, 0.99);
+  sum.tick_us_p50 = quantile(tick_us, 0.5);
+  sum.tick_us_p99 = quantile(tick_us, 0.99);
   return sum;
+}
+
+experiment::Table runs_table(const Result& result) {
+  experiment::Table table{
+      .header = {"world", "seed", "outcome", "time s", "score", "nearest m", "path m"},
+      .rows = {},
+      .words = 3};
+  for (const Run& run : result.runs) {
+    table.rows.push_back({fmt::format("{}", run.world),
+                          fmt::format("{}", run.seed),
+                          std::string(algo::name(run.row.outcome)),
+                          fmt::format("{:.2f}", run.row["barn_time_s"]),
+                          fmt::format("{:.4f}", run.row["barn_score"]),
+                          fmt::format("{:.3f}", run.row["min_clearance_m"]),
+                          fmt::format("{:.2f}", run.row["path_m"])});
+  }
+  return table;
+}
+
+experiment::Table rows_table(const Result& result) {
+  experiment::Table table;
+  for (const Run& run : result.runs) {
+    add_run(table,
+            {"world", "seed"},
+            {fmt::format("{}", run.world), fmt::format("{}", run.seed)},
+            run.row);
+  }
+  return table;
 }
 
 }  // namespace server::barn

@@ -1,16 +1,17 @@
 // server/lab/compare/comparison.cpp: which runs are made.
 #include "server/lab/compare/comparison.hpp"
 
+#include <algorithm>
 #include <array>
 
-#include "server/experiment/batch.hpp"
+#include "server/experiment/series.hpp"
 #include "server/lab/compare/layouts.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 
 namespace server::compare {
 namespace {
 
-using reproduce::RowJob;
+using experiment::SeriesPlan;
 
 struct Kind {
   std::size_t obstacles = 0;
@@ -22,49 +23,59 @@ constexpr std::array<Kind, 3> kKinds{{{2, 0.6}, {3, 0.3}, {4, 0.3}}};
 constexpr std::array<const char*, 5> kStrips{
     {"strip", "original", "original_side", "modified", "modified_published"}};
 
-std::vector<Row> run_scenes(const std::vector<sim::Scenario>& scenes,
-                            const std::vector<Contestant>& all,
-                            const Options& options,
-                            const char* what) {
-  std::vector<RowJob> jobs;
+experiment::PoolOptions pool(const Options& options, const char* what) {
+  return {.threads = options.threads, .progress = [&options, what](auto done, auto all) {
+            if (options.progress) options.progress(what, done, all);
+          }};
+}
+
+std::vector<experiment::JudgeChoice> judges_of(const Options& options) {
+  std::vector<experiment::JudgeChoice> judges = experiment::common_judges();
+  for (const std::string& name : options.judges) {
+    const bool there = std::ranges::count(judges, name, &experiment::JudgeChoice::name) > 0;
+    if (!there) judges.push_back({.name = name});
+  }
+  return judges;
+}
+
+std::vector<Series> run_scenes(const std::vector<sim::Scenario>& scenes,
+                               const std::vector<Contestant>& all,
+                               const Options& options,
+                               const char* what) {
+  std::vector<SeriesPlan> plans;
   for (const Contestant& contestant : all) {
     for (const sim::Scenario& scene : scenes) {
-      jobs.push_back({scene.name,
-                      label(contestant),
-                      make_run(scene, contestant, options.first_seed),
-                      options.seeds});
+      plans.push_back({scene.name,
+                       label(contestant),
+                       make_run(scene, contestant, options.first_seed),
+                       options.seeds});
     }
   }
-  return run_rows(jobs, options.threads, [&](std::size_t done, std::size_t count) {
-    if (options.progress) options.progress(what, done, count);
-  });
+  return run_series(plans, judges_of(options), pool(options, what));
 }
 
 LayoutSet run_layouts(const Kind& kind, const Options& options) {
-  const reproduce::PaperFile file = reproduce::embedded_paper_file();
-  std::vector<RowJob> paper;
-  std::vector<RowJob> full;
+  const reproduce::PaperConditions conditions = reproduce::embedded_study_file().conditions;
+  std::vector<SeriesPlan> paper;
+  std::vector<SeriesPlan> full;
   for (const char* const name : kStrips) {
     const std::string controller(name);
     for (std::size_t i = 1; i <= options.layouts; ++i) {
-      const reproduce::Layout layout = random_layout(kind.obstacles, kind.repulsion_gain, i);
-      const auto job = [&](const reproduce::Conditions& conditions) -> RowJob {
+      const sim::Scenario layout = random_layout(kind.obstacles, kind.repulsion_gain, i);
+      const auto plan = [&](const reproduce::Conditions& under) -> SeriesPlan {
         return {layout.name,
                 controller,
-                reproduce::make_run(file, layout, controller, conditions, options.first_seed),
+                reproduce::make_run(conditions, layout, controller, under, options.first_seed),
                 options.layout_seeds};
       };
-      paper.push_back(job(reproduce::kPaper));
-      if (controller == kStrips.front()) full.push_back(job(reproduce::kFullSimulator));
+      paper.push_back(plan(reproduce::kPaper));
+      if (controller == kStrips.front()) full.push_back(plan(reproduce::kFullSimulator));
     }
   }
-  const auto progress = [&](std::size_t done, std::size_t count) {
-    if (options.progress) options.progress("random layouts", done, count);
+  const auto run = [&](const std::vector<SeriesPlan>& plans) {
+    return run_series(plans, experiment::common_judges(), pool(options, "random layouts"));
   };
-  return {kind.obstacles,
-          kind.repulsion_gain,
-          run_rows(paper, options.threads, progress),
-          run_rows(full, options.threads, progress)};
+  return {kind.obstacles, kind.repulsion_gain, run(paper), run(full)};
 }
 
 }  // namespace
@@ -88,10 +99,10 @@ Comparison compare(const Options& options) {
   return out;
 }
 
-std::vector<const Row*> rows_of(const std::vector<Row>& rows, const std::string& label) {
-  std::vector<const Row*> own;
-  for (const Row& row : rows) {
-    if (row.reading == label) own.push_back(&row);
+std::vector<const Series*> rows_of(const std::vector<Series>& rows, const std::string& label) {
+  std::vector<const Series*> own;
+  for (const Series& row : rows) {
+    if (row.controller == label) own.push_back(&row);
   }
   return own;
 }
@@ -99,8 +110,8 @@ std::vector<const Row*> rows_of(const std::vector<Row>& rows, const std::string&
 LayoutResult strip_on_layouts(const std::vector<LayoutSet>& sets) {
   LayoutResult result;
   for (const LayoutSet& set : sets) {
-    for (const std::vector<Row>* rows : {&set.paper, &set.full}) {
-      for (const Row* row : rows_of(*rows, kStrips.front())) {
+    for (const std::vector<Series>* rows : {&set.paper, &set.full}) {
+      for (const Series* row : rows_of(*rows, kStrips.front())) {
         result.runs += row->runs.size();
         result.reached += count(*row, algo::Outcome::Reached);
         result.collided += count(*row, algo::Outcome::Collided);

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "server/experiment/figures.hpp"
+#include "server/experiment/series.hpp"
 #include "server/lab/compare/findings.hpp"
 #include "server/lab/compare/scenes.hpp"
 
 namespace server::compare {
 
-using reproduce::Row;
+using experiment::Series;
 
 struct Options {
   std::size_t seeds = 3;  // runs of each row
@@ -21,7 +21,9 @@ struct Options {
   std::size_t layouts = 150;        // random ones of each kind
   std::size_t layout_seeds = 2;     // runs of each
   std::vector<std::string> only{};  // these controllers; empty: all
-  bool worlds = true;               // which parts are run
+  /// More judges of the worlds and the bottlenecks: their columns stand in the details.
+  std::vector<std::string> judges{};
+  bool worlds = true;  // which parts are run
   bool bottlenecks = true;
   bool random_layouts = true;
   unsigned threads = 0;  // 0: one a core
@@ -34,15 +36,15 @@ struct LayoutSet {
   std::size_t obstacles = 0;
   double repulsion_gain = 0;
   /// Paper conditions; a row a layout, for one controller after the other.
-  std::vector<Row> paper{};
-  std::vector<Row> full{};  // `strip` alone in the full simulator
+  std::vector<Series> paper{};
+  std::vector<Series> full{};  // `strip` alone in the full simulator
 };
 
 struct Comparison {
   Options options{};
   std::vector<std::string> labels{};  // of the contestants
-  std::vector<Row> worlds{};          // a world a row, for one contestant after the other
-  std::vector<Row> bottlenecks{};     // a gap a row, likewise
+  std::vector<Series> worlds{};       // a world a row, for one contestant after the other
+  std::vector<Series> bottlenecks{};  // a gap a row, likewise
   std::vector<LayoutSet> layouts{};
   std::vector<Finding> findings{};  // of the sources' claims, where their runs were made
 };
@@ -51,7 +53,7 @@ struct Comparison {
 Comparison compare(const Options& options);
 
 /// The rows of one contestant, in the order of the scenes.
-std::vector<const Row*> rows_of(const std::vector<Row>& rows, const std::string& label);
+std::vector<const Series*> rows_of(const std::vector<Series>& rows, const std::string& label);
 
 /// `strip` on all layouts under both conditions: at least 99 % of the runs reach, none collides.
 struct LayoutResult {

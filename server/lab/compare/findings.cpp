@@ -12,10 +12,10 @@ namespace server::compare {
 namespace {
 
 using algo::Outcome;
-using reproduce::count;
-using reproduce::find_row;
-using reproduce::Row;
-using reproduce::RunFigures;
+using experiment::count;
+using experiment::find_series;
+using experiment::Row;
+using experiment::Series;
 
 /// What the thesis names, by each of its sensors. Edge detection has no reading by sonar here.
 struct Method {
@@ -31,7 +31,7 @@ const std::array<Method, 4>& methods() {
   return kMethods;
 }
 
-bool is_trapped(const RunFigures& run) {
+bool is_trapped(const Row& run) {
   return run.outcome == Outcome::Stuck || run.outcome == Outcome::OutOfTime;
 }
 
@@ -43,41 +43,41 @@ struct Pausing {
   double pause_time = 0;  // [s]
   double pauses = 0;
   double share() const { return time > 0 ? pause_time / time : 0; }
-  void add(const RunFigures& run) {
+  void add(const Row& run) {
     ++runs;
-    paused_runs += run.standing.pauses > 0 ? 1U : 0U;
-    time += run.metrics.time;
-    pause_time += run.standing.pause_time;
-    pauses += run.standing.pauses;
+    paused_runs += run["pauses"] > 0 ? 1U : 0U;
+    time += run["time_s"];
+    pause_time += run["pause_s"];
+    pauses += run["pauses"];
   }
 };
 
 /// Worlds where the straight way to the goal ends in an obstacle.
-std::vector<std::string> blocked_worlds(std::span<const Row> worlds) {
+std::vector<std::string> blocked_worlds(std::span<const Series> worlds) {
   std::vector<std::string> names;
-  for (const Row& row : worlds) {
+  for (const Series& row : worlds) {
     const bool blocked = count(row, Outcome::Collided) == row.runs.size();
-    if (row.reading == "go_to_goal" && blocked) names.push_back(row.layout);
+    if (row.controller == "go_to_goal" && blocked) names.push_back(row.scenario);
   }
   return names;
 }
 
 /// The runs of one contestant in the worlds `names` that were not trapped.
-Pausing pausing_in(std::span<const Row> worlds,
+Pausing pausing_in(std::span<const Series> worlds,
                    const std::vector<std::string>& names,
                    const std::string& contestant) {
   Pausing sum;
   for (const std::string& name : names) {
-    const Row* row = find_row(worlds, name, contestant);
+    const Series* row = find_series(worlds, name, contestant);
     if (row == nullptr) continue;
-    for (const RunFigures& run : row->runs) {
+    for (const Row& run : row->runs) {
       if (!is_trapped(run)) sum.add(run);
     }
   }
   return sum;
 }
 
-void judge_edge_detection(std::span<const Row> worlds, std::vector<Finding>& findings) {
+void judge_edge_detection(std::span<const Series> worlds, std::vector<Finding>& findings) {
   const std::vector<std::string> names = blocked_worlds(worlds);
   const Pausing own = pausing_in(worlds, names, "edge_detection");
   if (own.runs == 0) return;
@@ -115,17 +115,17 @@ void judge_edge_detection(std::span<const Row> worlds, std::vector<Finding>& fin
   findings.push_back(std::move(finding));
 }
 
-void judge_vff(std::span<const Row> worlds, std::vector<Finding>& findings) {
+void judge_vff(std::span<const Series> worlds, std::vector<Finding>& findings) {
   std::size_t runs = 0;
   std::size_t on_the_move = 0;
   std::size_t stuck = 0;
   Pausing sum;
-  for (const Row& row : worlds) {
-    if (row.reading != "vff" && row.reading != "vff by sonar") continue;
+  for (const Series& row : worlds) {
+    if (row.controller != "vff" && row.controller != "vff by sonar") continue;
     stuck += count(row, Outcome::Stuck);
-    for (const RunFigures& run : row.runs) {
+    for (const Row& run : row.runs) {
       ++runs;
-      on_the_move += run.standing.pauses == 0 && run.outcome != Outcome::Stuck ? 1U : 0U;
+      on_the_move += run["pauses"] == 0 && run.outcome != Outcome::Stuck ? 1U : 0U;
       sum.add(run);
     }
   }
@@ -172,7 +172,7 @@ std::string passage_text(const std::string& contestant, const Passage& passage) 
                             passage.collided);
 }
 
-void judge_bottlenecks(std::span<const Row> bottlenecks,
+void judge_bottlenecks(std::span<const Series> bottlenecks,
                        const Method& method,
                        std::vector<Finding>& findings) {
   std::size_t sensors = 0;
@@ -214,12 +214,12 @@ std::string_view name(Verdict verdict) {
   return "not reproduced";
 }
 
-Passage passage_of(std::span<const Row> bottlenecks, std::string_view contestant) {
+Passage passage_of(std::span<const Series> bottlenecks, std::string_view contestant) {
   const std::vector<double> gaps = bottleneck_gaps();
   Passage passage;
-  for (const Row& row : bottlenecks) {
-    if (row.reading != contestant) continue;
-    const auto gap = std::ranges::find(gaps, row.layout, bottleneck_name);
+  for (const Series& row : bottlenecks) {
+    if (row.controller != contestant) continue;
+    const auto gap = std::ranges::find(gaps, row.scenario, bottleneck_name);
     if (gap == gaps.end()) continue;
     const std::size_t reached = count(row, Outcome::Reached);
     const std::size_t trapped = count(row, Outcome::Stuck) + count(row, Outcome::OutOfTime);
@@ -238,7 +238,7 @@ Passage passage_of(std::span<const Row> bottlenecks, std::string_view contestant
   return passage;
 }
 
-std::vector<Finding> judge(std::span<const Row> worlds, std::span<const Row> bottlenecks) {
+std::vector<Finding> judge(std::span<const Series> worlds, std::span<const Series> bottlenecks) {
   std::vector<Finding> findings;
   judge_edge_detection(worlds, findings);
   judge_vff(worlds, findings);

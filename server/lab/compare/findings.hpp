@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "server/experiment/figures.hpp"
+#include "server/experiment/series.hpp"
 
 namespace server::compare {
 
@@ -25,8 +25,8 @@ struct Finding {
 
 /// The findings whose runs are there. `worlds` and `bottlenecks`: a row a scene and contestant, the
 /// bottlenecks of one contestant in rising order of their gaps.
-std::vector<Finding> judge(std::span<const reproduce::Row> worlds,
-                           std::span<const reproduce::Row> bottlenecks);
+std::vector<Finding> judge(std::span<const experiment::Series> worlds,
+                           std::span<const experiment::Series> bottlenecks);
 
 /// What the rows of one contestant before the bottlenecks come to.
 struct Passage {
@@ -37,6 +37,6 @@ struct Passage {
   std::vector<double> traps{};  // [m] gaps before which every run was trapped: stuck or out of time
   bool trapped_sometimes() const { return stuck + out_of_time > 0; }
 };
-Passage passage_of(std::span<const reproduce::Row> bottlenecks, std::string_view contestant);
+Passage passage_of(std::span<const experiment::Series> bottlenecks, std::string_view contestant);
 
 }  // namespace server::compare

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "sim/random.hpp"
 
 namespace server::compare {
@@ -93,14 +95,15 @@ double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b) {
   return nearest;
 }
 
-reproduce::Layout random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index) {
-  reproduce::Layout layout;
+sim::Scenario random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index) {
+  sim::Scenario layout;
   layout.name = fmt::format("random-{}-{:04d}", obstacles, index);
-  layout.source = fmt::format("Random layout {} of {} obstacles", index, obstacles);
-  layout.goal_W = kGoal;
-  layout.contraction_gain = 0.6;
-  layout.repulsion_gain = repulsion_gain;
-  layout.v_max = 0.1;
+  layout.title = fmt::format("Random layout {} of {} obstacles", index, obstacles);
+  layout.start.heading = std::atan2(kGoal.y(), kGoal.x());
+  layout.goal = algo::SetGoal{kGoal, std::nullopt};
+  layout.parameters = {{&algo::kContractionGain, 0.6},
+                       {&algo::kRepulsionGain, repulsion_gain},
+                       {&algo::kMaxSpeed, 0.1}};
   sim::Random random(index, kPurpose + obstacles);
   while (layout.obstacles.empty() || std::ranges::none_of(layout.obstacles, in_lane)) {
     layout.obstacles = draw_all(random, obstacles);

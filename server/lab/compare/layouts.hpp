@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "algo/obstacle.hpp"
-#include "server/lab/reproduce/paper_file.hpp"
+#include "server/lab/reproduce/study_file.hpp"
 
 namespace server::compare {
 
@@ -21,6 +21,6 @@ constexpr double kLaneHalf = 0.35;  // [m] the hull's radius: half the robot's w
 double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b);
 
 /// Layout number `index` of `obstacles` (1 or more): K_c 0.6, `repulsion_gain` K_r, 100 mm/s.
-reproduce::Layout random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index);
+sim::Scenario random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index);
 
 }  // namespace server::compare

@@ -13,41 +13,33 @@ namespace server::compare {
 namespace {
 
 using algo::Outcome;
+using experiment::all_reach;
+using experiment::count;
+using experiment::figure;
+using experiment::find_series;
+using experiment::Table;
 using nlohmann::json;
-using reproduce::common_outcome;
-using reproduce::count;
-using reproduce::figure;
-using reproduce::find_metric;
-using reproduce::find_row;
-using reproduce::Table;
+using reproduce::kMillimetres;
 
-double value(const Row& row, std::string_view metric) {
-  return figure(row, *find_metric(metric));
-}
-
-bool reaches(const Row& row) {
-  return common_outcome(row) == Outcome::Reached;
-}
-
-bool keeps_circle(const Row& row) {
-  return value(row, "safety_depth_mm") <= 0;
+bool keeps_circle(const Series& row) {
+  return figure(row, "safety_depth_m") <= 0;
 }
 
 /// The names of the scenes, each once, in the order of the rows.
-std::vector<std::string> scenes_of(const std::vector<Row>& rows) {
+std::vector<std::string> scenes_of(const std::vector<Series>& rows) {
   std::vector<std::string> names;
-  for (const Row& row : rows) {
-    if (row.reading != rows.front().reading) break;
-    names.push_back(row.layout);
+  for (const Series& row : rows) {
+    if (row.controller != rows.front().controller) break;
+    names.push_back(row.scenario);
   }
   return names;
 }
 
 /// The contestants of the rows, each once, in their order.
-std::vector<std::string> readings_of(const std::vector<Row>& rows) {
+std::vector<std::string> readings_of(const std::vector<Series>& rows) {
   std::vector<std::string> names;
-  for (const Row& row : rows) {
-    if (names.empty() || names.back() != row.reading) names.push_back(row.reading);
+  for (const Series& row : rows) {
+    if (names.empty() || names.back() != row.controller) names.push_back(row.controller);
   }
   return names;
 }
@@ -57,23 +49,23 @@ std::string number(double value, int digits) {
 }
 
 /// "65 / 0.34", or "2 reached, 1 stuck".
-std::string world_cell(const Row& row) {
-  if (!reaches(row)) return outcomes_text(row);
+std::string world_cell(const Series& row) {
+  if (!all_reach(row)) return outcomes_text(row);
   return fmt::format(
-      "{:.0f} / {}", value(row, "time_s"), number(value(row, "min_clearance_mm") / 1000, 2));
+      "{:.0f} / {}", figure(row, "time_s"), number(figure(row, "min_clearance_m"), 2));
 }
 
-std::vector<std::string> layouts_line(const std::vector<const Row*>& rows, std::string name) {
+std::vector<std::string> layouts_line(const std::vector<const Series*>& rows, std::string name) {
   std::size_t runs = 0, reached = 0, stuck = 0, late = 0, collided = 0, always = 0, kept = 0;
   double nearest = std::numeric_limits<double>::infinity();
-  for (const Row* row : rows) {
+  for (const Series* row : rows) {
     runs += row->runs.size();
     reached += count(*row, Outcome::Reached);
     stuck += count(*row, Outcome::Stuck);
     late += count(*row, Outcome::OutOfTime);
     collided += count(*row, Outcome::Collided);
-    nearest = std::min(nearest, value(*row, "min_clearance_mm"));
-    if (!reaches(*row)) continue;
+    nearest = std::min(nearest, figure(*row, "min_clearance_m") * kMillimetres);
+    if (!all_reach(*row)) continue;
     ++always;
     kept += keeps_circle(*row) ? 1U : 0U;
   }
@@ -87,12 +79,12 @@ std::vector<std::string> layouts_line(const std::vector<const Row*>& rows, std::
           number(nearest, 0)};
 }
 
-json rows_json(const std::vector<Row>& rows) {
+json rows_json(const std::vector<Series>& rows) {
   json all = json::array();
-  for (const Row& row : rows) {
-    all.push_back({{"scenario", row.layout},
-                   {"controller", row.reading},
-                   {"metrics", reproduce::metrics_json(row)}});
+  for (const Series& row : rows) {
+    all.push_back({{"scenario", row.scenario},
+                   {"controller", row.controller},
+                   {"metrics", experiment::figures_json(row)}});
   }
   return all;
 }
@@ -104,7 +96,8 @@ Table worlds_table(const Comparison& comparison) {
   for (const std::string& scene : scenes_of(comparison.worlds)) table.header.push_back(scene);
   for (const std::string& contestant : comparison.labels) {
     std::vector<std::string> line{contestant};
-    for (const Row* row : rows_of(comparison.worlds, contestant)) line.push_back(world_cell(*row));
+    for (const Series* row : rows_of(comparison.worlds, contestant))
+      line.push_back(world_cell(*row));
     table.rows.push_back(std::move(line));
   }
   return table;
@@ -122,18 +115,27 @@ Table details_table(const Comparison& comparison) {
                          "in pauses s"},
               .rows = {},
               .words = 3};
+  std::vector<experiment::Column> more;  // of the judges that were asked for
+  for (const std::string& judge : comparison.options.judges) {
+    const auto columns = experiment::find_judge(judge).columns;
+    more.insert(more.end(), columns.begin(), columns.end());
+  }
+  for (const experiment::Column& column : more) table.header.emplace_back(column.name);
   for (const std::string& scene : scenes_of(comparison.worlds)) {
     for (const std::string& contestant : comparison.labels) {
-      const Row& row = *find_row(comparison.worlds, scene, contestant);
+      const Series& row = *find_series(comparison.worlds, scene, contestant);
       table.rows.push_back({scene,
                             contestant,
                             outcomes_text(row),
-                            number(value(row, "time_s"), 1),
-                            number(value(row, "min_clearance_mm"), 0),
-                            number(value(row, "path_mm"), 0),
-                            number(value(row, "standing_s"), 1),
-                            number(value(row, "pauses"), 1),
-                            number(value(row, "pause_s"), 2)});
+                            number(figure(row, "time_s"), 1),
+                            number(figure(row, "min_clearance_m") * kMillimetres, 0),
+                            number(figure(row, "path_m") * kMillimetres, 0),
+                            number(figure(row, "standing_s"), 1),
+                            number(figure(row, "pauses"), 1),
+                            number(figure(row, "pause_s"), 2)});
+      for (const experiment::Column& column : more) {
+        table.rows.back().push_back(number(figure(row, column.name), column.digits));
+      }
     }
   }
   return table;
@@ -147,7 +149,7 @@ Table bottlenecks_table(const Comparison& comparison) {
   }
   for (const std::string& contestant : comparison.labels) {
     std::vector<std::string> line{contestant};
-    for (const Row* row : rows_of(comparison.bottlenecks, contestant)) {
+    for (const Series* row : rows_of(comparison.bottlenecks, contestant)) {
       line.push_back(outcome_letters(*row));
     }
     const Passage passage = passage_of(comparison.bottlenecks, contestant);
@@ -194,20 +196,37 @@ Table beside_original_table(const LayoutSet& set) {
   for (const std::string& controller : readings_of(set.paper)) {
     if (controller == "original") continue;
     std::size_t both = 0, entered = 0, kept = 0, less = 0, faster = 0;
-    for (const Row* row : rows_of(set.paper, controller)) {
-      const Row& original = *find_row(set.paper, row->layout, "original");
-      if (!reaches(*row) || !reaches(original)) continue;
+    for (const Series* row : rows_of(set.paper, controller)) {
+      const Series& original = *find_series(set.paper, row->scenario, "original");
+      if (!all_reach(*row) || !all_reach(original)) continue;
       ++both;
       entered += keeps_circle(original) ? 0U : 1U;
       kept += keeps_circle(*row) ? 1U : 0U;
-      less += value(*row, "turning_rad") < value(original, "turning_rad") ? 1U : 0U;
-      faster += value(*row, "time_s") < value(original, "time_s") ? 1U : 0U;
+      less += figure(*row, "turning_rad") < figure(original, "turning_rad") ? 1U : 0U;
+      faster += figure(*row, "time_s") < figure(original, "time_s") ? 1U : 0U;
     }
     std::vector<std::string> line{controller};
     for (const std::size_t layouts : {both, entered, kept, less, faster}) {
       line.push_back(std::to_string(layouts));
     }
     table.rows.push_back(std::move(line));
+  }
+  return table;
+}
+
+Table rows_table(const Comparison& comparison) {
+  Table table;
+  for (const std::vector<Series>* all : {&comparison.worlds, &comparison.bottlenecks}) {
+    for (const Series& series : *all) {
+      for (std::size_t i = 0; i < series.runs.size(); ++i) {
+        add_run(table,
+                {"scenario", "controller", "seed"},
+                {series.scenario,
+                 series.controller,
+                 fmt::format("{}", comparison.options.first_seed + i)},
+                series.runs[i]);
+      }
+    }
   }
   return table;
 }

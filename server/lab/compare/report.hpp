@@ -11,14 +11,17 @@
 namespace server::compare {
 
 /// A contestant a line, a world a column: mean seconds / least clearance [m], or how it ended.
-reproduce::Table worlds_table(const Comparison& comparison);
+experiment::Table worlds_table(const Comparison& comparison);
 /// A world and a contestant a line, with all figures.
-reproduce::Table details_table(const Comparison& comparison);
+experiment::Table details_table(const Comparison& comparison);
 /// A contestant a line, a gap a column.
-reproduce::Table bottlenecks_table(const Comparison& comparison);
+experiment::Table bottlenecks_table(const Comparison& comparison);
 /// A controller a line; then how those that reach fare beside the original strip.
-reproduce::Table layouts_table(const LayoutSet& set);
-reproduce::Table beside_original_table(const LayoutSet& set);
+experiment::Table layouts_table(const LayoutSet& set);
+experiment::Table beside_original_table(const LayoutSet& set);
+
+/// A run of the worlds and the bottlenecks a line, with every figure.
+experiment::Table rows_table(const Comparison& comparison);
 
 std::string to_text(const Comparison& comparison);
 nlohmann::json to_json(const Comparison& comparison);

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "algo/pipeline/controllers.hpp"
-#include "server/lab/reproduce/paper_file.hpp"
+#include "server/lab/reproduce/study_file.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server::compare {
@@ -60,8 +60,8 @@ std::vector<Contestant> contestants(std::span<const std::string> only) {
 std::vector<sim::Scenario> canonical_scenes() {
   const ScenarioLibrary built_in("", "");
   std::vector<sim::Scenario> scenes;
-  for (const reproduce::Layout& layout : reproduce::embedded_paper_file().layouts) {
-    scenes.push_back(built_in.load(layout.name));
+  for (const sim::Scenario& each : reproduce::embedded_study_file().scenarios) {
+    scenes.push_back(built_in.load(each.name));
   }
   return scenes;
 }

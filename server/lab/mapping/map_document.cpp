@@ -14,7 +14,7 @@
 namespace server::mapping {
 namespace {
 
-using reproduce::Table;
+using experiment::Table;
 
 constexpr std::string_view kBegin = "<!-- maps: made by the program, not by hand -->\n";
 constexpr std::string_view kEnd = "<!-- end of the maps -->\n";

@@ -10,7 +10,7 @@ namespace {
 
 using algo::OccupancyMap;
 using algo::Vec2;
-using reproduce::CellRun;
+using experiment::CellRun;
 
 constexpr double kWidth = 900;        // [px]
 constexpr int kMostColumns = 800;     // of cells in the picture; a larger map is drawn coarser
@@ -110,7 +110,7 @@ std::string draw_map(const Recording& log,
   const Vec2 low_W = map.corner_W() + map.cell_edge() * Vec2(part.left, part.bottom);
   const Vec2 high_W = low_W + cell * Vec2(columns, rows);
   constexpr const char* kPath = "stroke=\"#3f88c5\" stroke-width=\"1\"";
-  reproduce::SvgPlot plot(low_W, high_W, kWidth, 1);
+  experiment::SvgPlot plot(low_W, high_W, kWidth, 1);
   plot.cells(low_W, cell, runs_of(shades, columns, Shade::Free), "#e4e4df");
   plot.cells(low_W, cell, runs_of(shades, columns, Shade::Wall), "#1c1c1c");
   plot.polyline(thinned(path_W), kPath);

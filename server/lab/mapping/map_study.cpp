@@ -2,14 +2,13 @@
 #include "server/lab/mapping/map_study.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <ctime>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
-#include "server/experiment/parallel.hpp"
+#include "server/experiment/pool.hpp"
 #include "sim/drive_errors.hpp"
 #include "sim/replay.hpp"
 
@@ -87,15 +86,13 @@ MapStudy study_map(Recording log, const MapOptions& options) {
   if (options.match) {
     study.log_cells = wall_cells(study.log.scans, study.log.path_W, study.log.path_W);
   }
-  std::atomic<std::size_t> done{0};
-  in_parallel(options.seeds, options.threads, [&](std::size_t i) {
+  const experiment::PoolOptions pool{.threads = options.threads, .progress = options.progress};
+  for_each(options.seeds, pool, [&](std::size_t i, const std::stop_token& /*stop*/) {
     MapRun& run = study.runs[i];
     run.seed = options.first_seed + i;
     run.odometry_W = sim::reported_path(study.log.path_W, options.errors, run.seed);
     run.odometry = path_error(study.log.path_W, run.odometry_W);
     if (options.match) match_run(study.log, run);
-    ++done;
-    if (options.progress) options.progress(done, options.seeds);
   });
   return study;
 }

@@ -1,4 +1,4 @@
-// server/lab/reproduce/accept.cpp: one Check for every field of accept and accept_compare.
+// server/lab/reproduce/accept.cpp: one Check for every limit of the file.
 #include "server/lab/reproduce/accept.hpp"
 
 #include <algorithm>
@@ -8,80 +8,78 @@
 namespace server::reproduce {
 namespace {
 
+/// A figure as the papers' tables have it: lengths in millimetres.
+struct PaperUnit {
+  std::string name{};
+  double factor = 1;
+};
+PaperUnit paper_unit(const std::string& figure) {
+  const bool length = figure.ends_with("_m") && !figure.ends_with("_per_m");
+  return length ? PaperUnit{figure.substr(0, figure.size() - 1) + "mm", kMillimetres}
+                : PaperUnit{figure, 1};
+}
+
 std::string number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-class Judge {
- public:
-  explicit Judge(std::vector<Check>& checks) : checks_(checks) {}
+void check_bound(const Limit& limit, const Series& series, Check& check) {
+  const PaperUnit unit = paper_unit(limit.figure);
+  const bool at_least = limit.at_least.has_value();
+  const double bound = at_least ? *limit.at_least : *limit.at_most;
+  const double value = figure_against(series, limit.figure, at_least);
+  check.asked = fmt::format(
+      "{} at {} {}", unit.name, at_least ? "least" : "most", number(bound * unit.factor));
+  check.figure = number(value * unit.factor);
+  check.held = at_least ? value >= bound : value <= bound;
+}
 
-  void judge(const Layout& layout,
-             const Acceptance& accept,
-             std::span<const Row> rows,
-             const char* suffix) {
-    Check check{.layout = layout.name, .subject = accept.reading + suffix};
-    const Row* row = find_row(rows, layout.name, accept.reading);
-    if (row == nullptr) return add(check, "a run", "none", false);
-    if (accept.outcome) {
-      add(check,
-          fmt::format("all {}", algo::name(*accept.outcome)),
-          outcomes_text(*row),
-          common_outcome(*row) == accept.outcome);
-    }
-    if (accept.collisions) {
-      const std::size_t collided = count(*row, algo::Outcome::Collided);
-      add(check,
-          fmt::format("collisions {}", *accept.collisions),
-          fmt::format("{}", collided),
-          collided == *accept.collisions);
-    }
-    for (const Limit& limit : accept.limits) {
-      const double value = figure_against(*row, *find_metric(limit.metric), limit.at_least);
-      add(check,
-          fmt::format(
-              "{} at {} {}", limit.metric, limit.at_least ? "least" : "most", number(limit.value)),
-          number(value),
-          limit.at_least ? value >= limit.value : value <= limit.value);
-    }
+void check_below(const Limit& limit, const Series& lower, const Series* higher, Check& check) {
+  const PaperUnit unit = paper_unit(limit.figure);
+  check.asked = unit.name;
+  if (higher == nullptr) {
+    check.figure = "none";
+    return;
   }
+  const double a = figure(lower, limit.figure);
+  const double b = figure(*higher, limit.figure);
+  check.figure = fmt::format("{} < {}", number(a * unit.factor), number(b * unit.factor));
+  check.held = a < b;
+}
 
-  void compare(const Layout& layout, const Comparison& comparison, std::span<const Row> rows) {
-    Check check{.layout = layout.name,
-                .subject = fmt::format("{} < {}", comparison.lower, comparison.higher)};
-    const Row* lower = find_row(rows, layout.name, comparison.lower);
-    const Row* higher = find_row(rows, layout.name, comparison.higher);
-    if (lower == nullptr || higher == nullptr) return add(check, "two runs", "none", false);
-    const MetricInfo& metric = *find_metric(comparison.metric);
-    const double a = figure(*lower, metric);
-    const double b = figure(*higher, metric);
-    add(check, comparison.metric, fmt::format("{} < {}", number(a), number(b)), a < b);
+Check check_limit(const Limit& limit, std::span<const Series> all) {
+  Check check{.scenario = limit.scenario, .subject = limit.controller, .figure = "none"};
+  if (!limit.below.empty()) check.subject += " < " + limit.below;
+  if (limit.noise_free) check.subject += ", noise-free";
+  const Series* const series = find_series(all, limit.scenario, limit.controller);
+  if (series == nullptr) {
+    check.asked = "a run";
+  } else if (limit.outcome) {
+    check.asked = fmt::format("all {}", algo::name(*limit.outcome));
+    check.figure = outcomes_text(*series);
+    check.held = common_outcome(*series) == limit.outcome;
+  } else if (limit.collisions) {
+    const std::size_t collided = count(*series, algo::Outcome::Collided);
+    check.asked = fmt::format("collisions {}", *limit.collisions);
+    check.figure = fmt::format("{}", collided);
+    check.held = collided == *limit.collisions;
+  } else if (!limit.below.empty()) {
+    check_below(limit, *series, find_series(all, limit.scenario, limit.below), check);
+  } else {
+    check_bound(limit, *series, check);
   }
-
- private:
-  void add(Check check, std::string asked, std::string figure, bool held) {
-    check.asked = std::move(asked);
-    check.figure = std::move(figure);
-    check.held = held;
-    checks_.push_back(std::move(check));
-  }
-
-  std::vector<Check>& checks_;
-};
+  return check;
+}
 
 }  // namespace
 
-std::vector<Check> evaluate(const PaperFile& file,
-                            std::span<const Row> paper,
-                            std::span<const Row> noise_free) {
+std::vector<Check> evaluate(const StudyFile& file,
+                            std::span<const Series> paper,
+                            std::span<const Series> noise_free) {
   std::vector<Check> checks;
-  Judge judge(checks);
-  for (const Layout& layout : file.layouts) {
-    for (const Acceptance& accept : layout.accept) judge.judge(layout, accept, paper, "");
-    for (const Comparison& each : layout.accept_compare) judge.compare(layout, each, paper);
-    for (const Acceptance& accept : layout.accept_noise_free) {
-      judge.judge(layout, accept, noise_free, ", noise-free");
-    }
+  checks.reserve(file.limits.size());
+  for (const Limit& limit : file.limits) {
+    checks.push_back(check_limit(limit, limit.noise_free ? noise_free : paper));
   }
   return checks;
 }

@@ -9,19 +9,11 @@ namespace {
 
 using algo::Outcome;
 
-double value(const Row& row, std::string_view metric) {
-  return figure(row, *find_metric(metric));
-}
-
-bool reaches(const Row& row) {
-  return common_outcome(row) == Outcome::Reached;
-}
-
 /// `original` and one reading of the modified strip on the same layout.
-using Condition = bool (*)(const Row& original, const Row& modified);
+using Condition = bool (*)(const Series& original, const Series& modified);
 
 struct Statement {
-  std::string_view layouts{};  // names, each between blanks
+  std::string_view scenarios{};  // names, each between blanks
   const char* text = "";
   Condition holds = nullptr;
 };
@@ -29,29 +21,31 @@ struct Statement {
 constexpr auto kStatements = std::to_array<Statement>({
     {" case1 ",
      "the original strip is stuck, the modified one reaches the goal",
-     [](const Row& original, const Row& modified) {
-       return common_outcome(original) == Outcome::Stuck && reaches(modified);
+     [](const Series& original, const Series& modified) {
+       return common_outcome(original) == Outcome::Stuck && all_reach(modified);
      }},
     {" case2 case3 case4 exp1 exp2 exp3 exp4 ",
      "both strips reach the goal",
-     [](const Row& original, const Row& modified) {
-       return reaches(original) && reaches(modified);
+     [](const Series& original, const Series& modified) {
+       return all_reach(original) && all_reach(modified);
      }},
     {" case3 case4 exp2 exp3 exp4 ",
      "the original strip enters the safety circle, the modified one does not",
-     [](const Row& original, const Row& modified) {
-       return reaches(modified) && value(original, "safety_depth_mm") > 0 &&
-              value(modified, "safety_depth_mm") <= 0;
+     [](const Series& original, const Series& modified) {
+       return all_reach(modified) && figure(original, "safety_depth_m") > 0 &&
+              figure(modified, "safety_depth_m") <= 0;
      }},
     {" case2 case3 case4 ",
      "the modified strip's path is smoother: it reaches with less turning",
-     [](const Row& original, const Row& modified) {
-       return reaches(modified) && value(modified, "turning_rad") < value(original, "turning_rad");
+     [](const Series& original, const Series& modified) {
+       return all_reach(modified) &&
+              figure(modified, "turning_rad") < figure(original, "turning_rad");
      }},
     {" case3 case4 ",
      "the modified strip reaches with fewer control points",
-     [](const Row& original, const Row& modified) {
-       return reaches(modified) && value(modified, "via_points") < value(original, "via_points");
+     [](const Series& original, const Series& modified) {
+       return all_reach(modified) &&
+              figure(modified, "via_points") < figure(original, "via_points");
      }},
 });
 
@@ -64,10 +58,10 @@ constexpr std::array<Reading, 4> kModified{{{"modified_published", true},
                                             {"modified_c1", false},
                                             {"modified", false}}};
 
-Claim judge(std::span<const Row> rows, const Row& original, const Statement& statement) {
-  Claim claim{.layout = original.layout, .text = statement.text};
+Claim judge(std::span<const Series> rows, const Series& original, const Statement& statement) {
+  Claim claim{.scenario = original.scenario, .text = statement.text};
   for (const Reading& reading : kModified) {
-    const Row* modified = find_row(rows, original.layout, reading.name);
+    const Series* modified = find_series(rows, original.scenario, reading.name);
     if (modified == nullptr || !statement.holds(original, *modified)) continue;
     claim.held_by.emplace_back(reading.name);
     if (reading.as_printed) {
@@ -93,12 +87,12 @@ std::string_view name(Verdict verdict) {
   return "not reproduced";
 }
 
-std::vector<Claim> judge_claims(std::span<const Row> rows) {
+std::vector<Claim> judge_claims(std::span<const Series> rows) {
   std::vector<Claim> claims;
-  for (const Row& row : rows) {
-    if (row.reading != "original") continue;
+  for (const Series& row : rows) {
+    if (row.controller != "original") continue;
     for (const Statement& statement : kStatements) {
-      if (statement.layouts.find(" " + row.layout + " ") == std::string_view::npos) continue;
+      if (statement.scenarios.find(" " + row.scenario + " ") == std::string_view::npos) continue;
       claims.push_back(judge(rows, row, statement));
     }
   }

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "server/experiment/figures.hpp"
+#include "server/experiment/series.hpp"
 
 namespace server::reproduce {
+
+using experiment::Series;
 
 enum class Verdict : std::uint8_t {
   Reproduced,         // by a reading of Eq. 13-14 as printed
@@ -17,14 +19,14 @@ enum class Verdict : std::uint8_t {
 std::string_view name(Verdict verdict);
 
 struct Claim {
-  std::string layout{};
+  std::string scenario{};
   std::string text{};
   Verdict verdict = Verdict::NotReproduced;
   std::vector<std::string> held_by{};  // readings of the modified strip
 };
 
-/// The claims on those layouts of Nong 2008 that are among `rows`. A claim about the modified strip
-/// is tried with each reading of it.
-std::vector<Claim> judge_claims(std::span<const Row> rows);
+/// The claims on those scenarios of Nong 2008 that are among `rows`. A claim about the modified
+/// strip is tried with each reading of it.
+std::vector<Claim> judge_claims(std::span<const Series> rows);
 
 }  // namespace server::reproduce

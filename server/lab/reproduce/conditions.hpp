@@ -1,11 +1,11 @@
-// server/lab/reproduce/conditions.hpp: one layout, one reading, one seed as a run.
+// server/lab/reproduce/conditions.hpp: one scenario, one reading, one seed as a run.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "server/lab/reproduce/paper_file.hpp"
+#include "server/lab/reproduce/study_file.hpp"
 #include "server/run/run_spec.hpp"
 
 namespace server::reproduce {
@@ -21,15 +21,15 @@ constexpr Conditions kPaper{};
 constexpr Conditions kNoiseFree{.noise = false};
 constexpr Conditions kFullSimulator{.base = true, .scanner = true, .fast_period = true};
 
-/// Throws std::exception with a sentence when the layout cannot be run so.
-RunSpec make_run(const PaperFile& file,
-                 const Layout& layout,
+/// Throws std::exception with a sentence when the scenario cannot be run so.
+RunSpec make_run(const PaperConditions& paper,
+                 const sim::Scenario& scenario,
                  std::string_view reading,
                  const Conditions& conditions,
                  std::uint64_t seed);
 
-/// Builds the world of every layout once, so that what cannot be run is said before anything is.
-/// Throws std::runtime_error naming the layout.
-void check_layouts(const PaperFile& file);
+/// Builds the world of every scenario once, so that what cannot be run is said before anything is.
+/// Throws std::runtime_error naming the scenario.
+void check_scenarios(const StudyFile& file);
 
 }  // namespace server::reproduce

@@ -26,7 +26,7 @@ constexpr std::array<Change, 3> kChanges{{
 }};
 
 /// The outcome of most runs; the better one of equals.
-Outcome usual(const Row& row) {
+Outcome usual(const Series& row) {
   Outcome best = Outcome::Reached;
   for (const Outcome outcome : {Outcome::Stuck, Outcome::OutOfTime, Outcome::Collided}) {
     if (count(row, outcome) > count(row, best)) best = outcome;
@@ -34,14 +34,14 @@ Outcome usual(const Row& row) {
   return best;
 }
 
-bool same_outcomes(const Row& a, const Row& b) {
+bool same_outcomes(const Series& a, const Series& b) {
   const auto same = [&](Outcome outcome) { return count(a, outcome) == count(b, outcome); };
   return same(Outcome::Reached) && same(Outcome::Stuck) && same(Outcome::OutOfTime) &&
          same(Outcome::Collided);
 }
 
 /// The runs that end otherwise than most of the paper's.
-std::size_t ends_otherwise(const Row& row, const Row& paper) {
+std::size_t ends_otherwise(const Series& row, const Series& paper) {
   return row.runs.size() - count(row, usual(paper));
 }
 
@@ -51,7 +51,7 @@ std::string capital(std::string sentence) {
 }
 
 /// Which change alone is enough, seen in the runs of `tried` (under each of kChanges).
-std::string cause(const Row& paper, std::span<const Row> tried) {
+std::string cause(const Series& paper, std::span<const Series> tried) {
   if (ends_otherwise(tried[0], paper) > 0) {
     return capital(
         fmt::format("{} alone is enough, which the other changes include.", kChanges[0].name));
@@ -65,33 +65,37 @@ std::string cause(const Row& paper, std::span<const Row> tried) {
                        : capital(fmt::format("{} alone is enough.", names));
 }
 
-double nearest_surface(const Layout& layout, const algo::Vec2& p_W) {
+double nearest_surface(const sim::Scenario& scenario, const algo::Vec2& p_W) {
   double nearest = std::numeric_limits<double>::infinity();
-  for (const algo::Obstacle& obstacle : layout.obstacles) {
+  for (const algo::Obstacle& obstacle : scenario.obstacles) {
     nearest = std::min(nearest, algo::signed_distance(obstacle, p_W));
   }
   return nearest;
 }
 
 /// Where the stuck runs stand, on average.
-std::string place(const PaperConditions& common, const Layout& layout, const Row& row) {
+std::string place(const PaperConditions& conditions,
+                  const sim::Scenario& scenario,
+                  const Series& row) {
+  const algo::Vec2 goal_W = scenario.goal->position_W;
   const std::size_t stuck = count(row, Outcome::Stuck);
   if (stuck == 0) return {};
   double to_goal = 0;
   double to_surface = 0;
-  for (const RunFigures& run : row.runs) {
+  for (const experiment::Row& run : row.runs) {
     if (run.outcome != Outcome::Stuck) continue;
-    to_goal += (run.end_W - layout.goal_W).norm() / static_cast<double>(stuck);
-    to_surface += nearest_surface(layout, run.end_W) / static_cast<double>(stuck);
+    const algo::Vec2 end_W{run["end_x_m"], run["end_y_m"]};
+    to_goal += (end_W - goal_W).norm() / static_cast<double>(stuck);
+    to_surface += nearest_surface(scenario, end_W) / static_cast<double>(stuck);
   }
-  const double goal_to_surface = nearest_surface(layout, layout.goal_W);
-  const double reach = common.safety_distance + kHullRadius;
+  const double goal_to_surface = nearest_surface(scenario, goal_W);
+  const double reach = conditions.safety_distance + kHullRadius;
   return fmt::format(
       " The stuck runs truly stand {:.3f} m from the goal (arrival, by the robot's odometry: {:g} "
       "m) and {:.2f} m from the nearest surface; the goal lies {:.2f} m from one, {} the {:.2f} m "
       "in which obstacles push linearly.",
       to_goal,
-      common.arrival_radius,
+      conditions.arrival_radius,
       to_surface,
       goal_to_surface,
       goal_to_surface < reach ? "within" : "outside",
@@ -99,11 +103,11 @@ std::string place(const PaperConditions& common, const Layout& layout, const Row
 }
 
 /// `tried`: the row under each of kChanges.
-std::string explain(const PaperConditions& common,
-                    const Layout& layout,
-                    const Row& paper,
-                    const Row& full,
-                    std::span<const Row> tried) {
+std::string explain(const PaperConditions& conditions,
+                    const sim::Scenario& scenario,
+                    const Series& paper,
+                    const Series& full,
+                    std::span<const Series> tried) {
   std::string figures;
   for (std::size_t i = 0; i < kChanges.size(); ++i) {
     figures += fmt::format(
@@ -111,44 +115,45 @@ std::string explain(const PaperConditions& common,
   }
   return fmt::format("{}{} With one change at a time: {}.",
                      cause(paper, tried),
-                     place(common, layout, full),
+                     place(conditions, scenario, full),
                      figures);
 }
 
 }  // namespace
 
-std::vector<Difference> explain_differences(const PaperFile& file,
-                                            std::span<const Row> paper,
-                                            std::span<const Row> full,
+std::vector<Difference> explain_differences(const StudyFile& file,
+                                            std::span<const Series> paper,
+                                            std::span<const Series> full,
                                             std::uint64_t first_seed,
-                                            unsigned threads,
-                                            const Progress& progress) {
+                                            const experiment::PoolOptions& pool) {
+  const auto scenario_of = [&](const Series& series) -> const sim::Scenario& {
+    return *std::ranges::find(file.scenarios, series.scenario, &sim::Scenario::name);
+  };
   std::vector<std::size_t> differing;
-  std::vector<RowJob> jobs;
+  std::vector<experiment::SeriesPlan> plans;
   for (std::size_t i = 0; i < std::min(paper.size(), full.size()); ++i) {
     if (same_outcomes(paper[i], full[i])) continue;
     differing.push_back(i);
-    const Layout& layout = *std::ranges::find(file.layouts, paper[i].layout, &Layout::name);
+    const sim::Scenario& scenario = scenario_of(paper[i]);
+    const std::string& reading = paper[i].controller;
     for (const Change& change : kChanges) {
-      jobs.push_back({layout.name,
-                      paper[i].reading,
-                      make_run(file, layout, paper[i].reading, change.conditions, first_seed),
-                      paper[i].runs.size()});
+      plans.push_back({scenario.name,
+                       reading,
+                       make_run(file.conditions, scenario, reading, change.conditions, first_seed),
+                       paper[i].runs.size()});
     }
   }
-  const std::vector<Row> tried = run_rows(jobs, threads, progress);
+  const std::vector<Series> tried = run_series(plans, experiment::common_judges(), pool);
   std::vector<Difference> differences;
   for (std::size_t k = 0; k < differing.size(); ++k) {
-    const Row& a = paper[differing[k]];
-    const Row& b = full[differing[k]];
+    const Series& a = paper[differing[k]];
+    const Series& b = full[differing[k]];
     const auto own = std::span(tried).subspan(k * kChanges.size(), kChanges.size());
-    differences.push_back(
-        {a.layout,
-         a.reading,
-         outcomes_text(a),
-         outcomes_text(b),
-         explain(
-             file.common, *std::ranges::find(file.layouts, a.layout, &Layout::name), a, b, own)});
+    differences.push_back({a.scenario,
+                           a.controller,
+                           outcomes_text(a),
+                           outcomes_text(b),
+                           explain(file.conditions, scenario_of(a), a, b, own)});
   }
   return differences;
 }

@@ -6,27 +6,28 @@
 #include <string>
 #include <vector>
 
-#include "server/experiment/batch.hpp"
+#include "server/experiment/series.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 
 namespace server::reproduce {
 
+using experiment::Series;
+
 struct Difference {
-  std::string layout{};
-  std::string reading{};
+  std::string scenario{};
+  std::string controller{};
   std::string paper{};  // outcomes
   std::string full{};
   std::string explanation{};
 };
 
-/// For every layout and reading whose outcomes differ, the run is done again with one change at a
+/// For every scenario and reading whose outcomes differ, the run is done again with one change at a
 /// time: the 26 ms tick, the base, the scanner. The explanation says which of them alone lead to
 /// the full simulator's outcomes; it is a statement about these runs, nothing more.
-std::vector<Difference> explain_differences(const PaperFile& file,
-                                            std::span<const Row> paper,
-                                            std::span<const Row> full,
+std::vector<Difference> explain_differences(const StudyFile& file,
+                                            std::span<const Series> paper,
+                                            std::span<const Series> full,
                                             std::uint64_t first_seed,
-                                            unsigned threads,
-                                            const Progress& progress);
+                                            const experiment::PoolOptions& pool);
 
 }  // namespace server::reproduce

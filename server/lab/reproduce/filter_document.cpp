@@ -17,7 +17,7 @@ namespace {
 constexpr std::string_view kBegin = "<!-- filter study: made by the program, not by hand -->\n";
 constexpr std::string_view kEnd = "<!-- end of the filter study -->\n";
 
-using reproduce::Table;
+using experiment::Table;
 
 std::string percent(double share) {
   return fmt::format("{:.1f} %", 100 * share);

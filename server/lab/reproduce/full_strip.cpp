@@ -11,20 +11,12 @@ namespace {
 
 using algo::Outcome;
 
-double value(const Row& row, std::string_view metric) {
-  return figure(row, *find_metric(metric));
-}
-
-bool reaches(const Row& row) {
-  return common_outcome(row) == Outcome::Reached;
-}
-
-std::string cell(const Row& row) {
-  if (!reaches(row)) return outcomes_text(row);
+std::string cell(const Series& row) {
+  if (!all_reach(row)) return outcomes_text(row);
   return fmt::format("{:.2f} / {:.2f} / {:.0f}",
-                     value(row, "turning_rad"),
-                     value(row, "curv2_e-3_rad2_per_mm"),
-                     value(row, "time_s"));
+                     figure(row, "turning_rad"),
+                     figure(row, "bending_rad2_per_m"),
+                     figure(row, "time_s"));
 }
 
 /// "turns less in 40 of 45 (not: case2 original, ...)".
@@ -36,62 +28,64 @@ std::string part(const char* words, const std::vector<std::string>& against, std
 
 }  // namespace
 
-Depths least_depths(const PaperFile& file) {
+Depths least_depths(const StudyFile& file) {
+  const PaperConditions& paper = file.conditions;
   Depths depths;
-  for (const Layout& layout : file.layouts) {
-    double room = file.common.safety_distance;
-    for (const algo::Obstacle& obstacle : layout.obstacles) {
-      room = std::min({room,
-                       signed_distance(obstacle, file.common.start.position()),
-                       signed_distance(obstacle, layout.goal_W) + file.common.arrival_radius});
+  for (const sim::Scenario& scenario : file.scenarios) {
+    double room = paper.safety_distance;
+    for (const algo::Obstacle& obstacle : scenario.obstacles) {
+      room =
+          std::min({room,
+                    signed_distance(obstacle, scenario.start.position()),
+                    signed_distance(obstacle, scenario.goal->position_W) + paper.arrival_radius});
     }
-    depths[layout.name] = (file.common.safety_distance - room) * 1000;
+    depths[scenario.name] = paper.safety_distance - room;
   }
   return depths;
 }
 
-StripBeside strip_beside(std::span<const Row> strip,
-                         std::span<const Row> readings,
+StripBeside strip_beside(std::span<const Series> strip,
+                         std::span<const Series> readings,
                          const Depths& least) {
   StripBeside out;
-  for (const Row& row : strip) {
-    if (!reaches(row)) out.not_reached.push_back(row.layout);
-    const double depth = value(row, "safety_depth_mm");
+  for (const Series& row : strip) {
+    if (!all_reach(row)) out.not_reached.push_back(row.scenario);
+    const double depth = figure(row, "safety_depth_m");
     if (depth > 0) {
-      const auto asked = least.find(row.layout);
+      const auto asked = least.find(row.scenario);
       const bool must = asked != least.end() && asked->second > 0;
       out.entered.push_back(fmt::format("{} by {:.0f} mm{}",
-                                        row.layout,
-                                        depth,
+                                        row.scenario,
+                                        depth * kMillimetres,
                                         must ? fmt::format(" ({:.0f} mm at least, its goal being "
                                                            "that near)",
-                                                           asked->second)
+                                                           asked->second * kMillimetres)
                                              : ""));
     }
   }
-  for (const Row& row : readings) {
-    const Row* own = find_row(strip, row.layout, kFullStrip);
-    if (own == nullptr || !reaches(*own) || !reaches(row)) continue;
+  for (const Series& row : readings) {
+    const Series* own = find_series(strip, row.scenario, kFullStrip);
+    if (own == nullptr || !all_reach(*own) || !all_reach(row)) continue;
     ++out.rows;
     const auto compare = [&](std::string_view metric, std::vector<std::string>& against) {
-      if (!(value(*own, metric) < value(row, metric))) {
-        against.push_back(row.layout + " " + row.reading);
+      if (!(figure(*own, metric) < figure(row, metric))) {
+        against.push_back(row.scenario + " " + row.controller);
       }
     };
     compare("turning_rad", out.turns_less);
-    compare("curv2_e-3_rad2_per_mm", out.bends_less);
+    compare("bending_rad2_per_m", out.bends_less);
     compare("time_s", out.faster);
   }
   return out;
 }
 
-Table strip_table(std::span<const Row> strip, std::span<const Row> readings) {
+Table strip_table(std::span<const Series> strip, std::span<const Series> readings) {
   Table table{.header = {"scenario", std::string(kFullStrip)}, .rows = {}, .words = 1};
-  for (const Row& own : strip) {
-    std::vector<std::string> line{own.layout, cell(own)};
-    for (const Row& row : readings) {
-      if (row.layout != own.layout) continue;
-      if (table.rows.empty()) table.header.push_back(row.reading);
+  for (const Series& own : strip) {
+    std::vector<std::string> line{own.scenario, cell(own)};
+    for (const Series& row : readings) {
+      if (row.scenario != own.scenario) continue;
+      if (table.rows.empty()) table.header.push_back(row.controller);
       line.push_back(cell(row));
     }
     table.rows.push_back(std::move(line));

@@ -13,8 +13,6 @@
 namespace server::reproduce {
 namespace {
 
-constexpr double kMillimetres = 1000;
-
 std::string conditions_text(const PaperConditions& common, const Study& study) {
   std::string text = fmt::format(
       "{} runs a row, seeds {} to {}. The published obstacle positions are lost; the layouts were "
@@ -81,15 +79,15 @@ std::string strip_text(const Study& study) {
                     to_markdown(strip_table(study.strip_full, study.full)));
 }
 
-std::string pictures_text(const PaperFile& file, const std::string& folder) {
+std::string pictures_text(const StudyFile& file, const std::string& folder) {
   std::string text = "Paths of the first run of each row of table A.\n\n";
-  for (const Layout& layout : file.layouts) {
+  for (const sim::Scenario& scenario : file.scenarios) {
     text += fmt::format("**{}.** {}\n\n![The path of each reading in {}]({}/{}.svg)\n\n",
-                        layout.name,
-                        layout.expect,
-                        layout.name,
+                        scenario.name,
+                        scenario.description,
+                        scenario.name,
                         folder,
-                        layout.name);
+                        scenario.name);
   }
   return text;
 }
@@ -102,11 +100,11 @@ void write_file(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-std::vector<Section> study_sections(const PaperFile& file,
+std::vector<Section> study_sections(const StudyFile& file,
                                     const Study& study,
                                     const std::string& pictures) {
   std::vector<Section> sections;
-  sections.push_back({"Conditions", conditions_text(file.common, study)});
+  sections.push_back({"Conditions", conditions_text(file.conditions, study)});
   if (!study.claims.empty()) {
     sections.push_back({"What the sources claim", claims_text(study)});
   }
@@ -163,15 +161,16 @@ std::string to_markdown(std::span<const Section> sections) {
 }
 
 void write_reproduction(const std::string& path,
-                        const PaperFile& file,
+                        const StudyFile& file,
                         const Study& study,
                         std::span<const Section> sections) {
   const std::filesystem::path pictures = std::filesystem::path(path).parent_path() / kPictures;
   std::error_code error;
   std::filesystem::create_directories(pictures, error);
   if (error) throw std::runtime_error(pictures.string() + ": " + error.message());
-  for (const Layout& layout : file.layouts) {
-    write_file(pictures / (layout.name + ".svg"), draw_paths(file, layout, study.paper));
+  for (const sim::Scenario& scenario : file.scenarios) {
+    write_file(pictures / (scenario.name + ".svg"),
+               draw_paths(file.conditions, scenario, study.paper));
   }
   write_file(path, to_markdown(sections));
 }

@@ -18,7 +18,7 @@ struct Section {
 
 /// Conditions, claims, both tables, the limits, the differences; the pictures are linked as
 /// `pictures`/NAME.svg.
-std::vector<Section> study_sections(const PaperFile& file,
+std::vector<Section> study_sections(const StudyFile& file,
                                     const Study& study,
                                     const std::string& pictures);
 Section sweeps_section(std::span<const Sweep> sweeps, std::size_t seeds);
@@ -29,7 +29,7 @@ std::string to_markdown(std::span<const Section> sections);
 /// Writes the document to `path` and the pictures beside it in pictures/reproduction/. Throws
 /// std::runtime_error with the path that cannot be written.
 void write_reproduction(const std::string& path,
-                        const PaperFile& file,
+                        const StudyFile& file,
                         const Study& study,
                         std::span<const Section> sections);
 

@@ -12,6 +12,8 @@ namespace server::reproduce {
 namespace {
 
 using algo::Vec2;
+using experiment::Series;
+using experiment::SvgPlot;
 constexpr double kWidth = 560;     // [px]
 constexpr double kEdge = 0.6;      // [m] of free plane about what is drawn
 constexpr double kSpacing = 0.03;  // [m] between the points of a path that are drawn
@@ -43,19 +45,19 @@ struct Bounds {
   }
 };
 
-Bounds bounds_of(const PaperFile& file, const Layout& layout, std::span<const Row> rows) {
+Bounds bounds_of(const sim::Scenario& scenario, std::span<const Series> rows) {
   Bounds bounds;
-  bounds.add(file.common.start.position());
-  bounds.add(layout.goal_W);
-  for (const algo::Obstacle& obstacle : layout.obstacles) {
+  bounds.add(scenario.start.position());
+  bounds.add(scenario.goal->position_W);
+  for (const algo::Obstacle& obstacle : scenario.obstacles) {
     for (const Vec2& p_W : algo::outline_W(obstacle)) bounds.add(p_W);
     if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
       bounds.add(obstacle.pose_W.position() + Vec2(cylinder->radius, cylinder->radius));
       bounds.add(obstacle.pose_W.position() - Vec2(cylinder->radius, cylinder->radius));
     }
   }
-  for (const Row& row : rows) {
-    if (row.layout != layout.name) continue;
+  for (const Series& row : rows) {
+    if (row.scenario != scenario.name) continue;
     for (const Vec2& p_W : row.runs.front().track_W) bounds.add(p_W);
   }
   bounds.low_W -= Vec2(kEdge, kEdge);
@@ -63,37 +65,39 @@ Bounds bounds_of(const PaperFile& file, const Layout& layout, std::span<const Ro
   return bounds;
 }
 
-void draw_scene(const PaperFile& file, const Layout& layout, SvgPlot& plot) {
+void draw_scene(const PaperConditions& paper, const sim::Scenario& scenario, SvgPlot& plot) {
   constexpr const char* kSolid = "fill=\"#b8b8b8\" stroke=\"#555555\"";
-  for (const algo::Obstacle& obstacle : layout.obstacles) {
+  for (const algo::Obstacle& obstacle : scenario.obstacles) {
     if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
       plot.circle(obstacle.pose_W.position(), cylinder->radius, kSolid);
     } else {
       plot.polygon(algo::outline_W(obstacle), kSolid);
     }
   }
-  plot.circle(file.common.start.position(),
+  plot.circle(scenario.start.position(),
               kHullRadius,
               "fill=\"none\" stroke=\"#555555\" stroke-dasharray=\"3 3\"");
-  plot.circle(layout.goal_W, file.common.arrival_radius, "fill=\"none\" stroke=\"#111111\"");
-  plot.text(file.common.start.position() + Vec2(0, -kHullRadius - 0.15), "start");
-  plot.text(layout.goal_W + Vec2(0.15, 0.15), "goal");
+  plot.circle(scenario.goal->position_W, paper.arrival_radius, "fill=\"none\" stroke=\"#111111\"");
+  plot.text(scenario.start.position() + Vec2(0, -kHullRadius - 0.15), "start");
+  plot.text(scenario.goal->position_W + Vec2(0.15, 0.15), "goal");
 }
 
 }  // namespace
 
-std::string draw_paths(const PaperFile& file, const Layout& layout, std::span<const Row> rows) {
-  const Bounds bounds = bounds_of(file, layout, rows);
+std::string draw_paths(const PaperConditions& paper,
+                       const sim::Scenario& scenario,
+                       std::span<const Series> rows) {
+  const Bounds bounds = bounds_of(scenario, rows);
   SvgPlot plot(bounds.low_W, bounds.high_W, kWidth, readings().size());
-  draw_scene(file, layout, plot);
+  draw_scene(paper, scenario, plot);
   for (std::size_t i = 0; i < readings().size(); ++i) {
-    const Row* row = find_row(rows, layout.name, readings()[i]);
+    const Series* row = find_series(rows, scenario.name, readings()[i]);
     if (row == nullptr) continue;
     plot.polyline(thinned(row->runs.front().track_W), kStyles[i]);
     plot.legend(kStyles[i],
                 fmt::format("{}: {}", readings()[i], algo::name(row->runs.front().outcome)));
   }
-  return plot.document(fmt::format("{}: the path of each reading", layout.name));
+  return plot.document(fmt::format("{}: the path of each reading", scenario.name));
 }
 
 }  // namespace server::reproduce

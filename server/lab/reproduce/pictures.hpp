@@ -4,13 +4,15 @@
 #include <span>
 #include <string>
 
-#include "server/experiment/figures.hpp"
-#include "server/lab/reproduce/paper_file.hpp"
+#include "server/experiment/series.hpp"
+#include "server/lab/reproduce/study_file.hpp"
 
 namespace server::reproduce {
 
-/// An SVG document: the obstacles, start and goal of `layout`, and of every row of it the path of
+/// An SVG document: the obstacles, start and goal of `scenario`, and of every row of it the path of
 /// its first run.
-std::string draw_paths(const PaperFile& file, const Layout& layout, std::span<const Row> rows);
+std::string draw_paths(const PaperConditions& paper,
+                       const sim::Scenario& scenario,
+                       std::span<const experiment::Series> rows);
 
 }  // namespace server::reproduce

@@ -13,16 +13,17 @@ namespace {
 
 using nlohmann::json;
 
-std::string cell(const Row& row, const char* metric, int digits) {
-  const double value = figure(row, *find_metric(metric));
+std::string cell(const Series& row, std::string_view column, int digits, double factor = 1) {
+  const double value = figure(row, column) * factor;
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
-json rows_json(std::span<const Row> rows) {
+json rows_json(std::span<const Series> rows) {
   json all = json::array();
-  for (const Row& row : rows) {
-    all.push_back(
-        {{"scenario", row.layout}, {"reading", row.reading}, {"metrics", metrics_json(row)}});
+  for (const Series& row : rows) {
+    all.push_back({{"scenario", row.scenario},
+                   {"reading", row.controller},
+                   {"metrics", experiment::figures_json(row)}});
   }
   return all;
 }
@@ -30,7 +31,7 @@ json rows_json(std::span<const Row> rows) {
 json claims_json(std::span<const Claim> claims) {
   json all = json::array();
   for (const Claim& claim : claims) {
-    all.push_back({{"scenario", claim.layout},
+    all.push_back({{"scenario", claim.scenario},
                    {"claim", claim.text},
                    {"verdict", name(claim.verdict)},
                    {"held_by", claim.held_by}});
@@ -40,16 +41,7 @@ json claims_json(std::span<const Claim> claims) {
 
 }  // namespace
 
-json metrics_json(const Row& row) {
-  json metrics = json::object();
-  for (const MetricInfo& metric : metric_table()) {
-    const double value = figure(row, metric);
-    metrics[std::string(metric.name)] = std::isfinite(value) ? json(value) : json(nullptr);
-  }
-  return metrics;
-}
-
-Table rows_table(std::span<const Row> rows) {
+Table rows_table(std::span<const Series> rows) {
   Table table{.header = {"scenario",
                          "reading",
                          "outcome",
@@ -62,14 +54,14 @@ Table rows_table(std::span<const Row> rows) {
                          "time s"},
               .rows = {},
               .words = 3};
-  for (const Row& row : rows) {
-    table.rows.push_back({row.layout,
-                          row.reading,
+  for (const Series& row : rows) {
+    table.rows.push_back({row.scenario,
+                          row.controller,
                           outcomes_text(row),
-                          cell(row, "path_mm", 0),
-                          cell(row, "min_clearance_mm", 0),
+                          cell(row, "path_m", 0, kMillimetres),
+                          cell(row, "min_clearance_m", 0, kMillimetres),
                           cell(row, "safety_infringed_s", 1),
-                          cell(row, "safety_depth_mm", 0),
+                          cell(row, "safety_depth_m", 0, kMillimetres),
                           cell(row, "turning_rad", 2),
                           cell(row, "via_points", 1),
                           cell(row, "time_s", 1)});
@@ -81,7 +73,7 @@ Table checks_table(std::span<const Check> checks) {
   Table table{.header = {"scenario", "reading", "asked", "found", ""}, .rows = {}, .words = 5};
   for (const Check& check : checks) {
     table.rows.push_back(
-        {check.layout, check.subject, check.asked, check.figure, check.held ? "held" : "FAILED"});
+        {check.scenario, check.subject, check.asked, check.figure, check.held ? "held" : "FAILED"});
   }
   return table;
 }
@@ -95,7 +87,7 @@ Table claims_table(const Study& study) {
   Table table{.header = {"case", "claim", "by table A"}, .rows = {}, .words = 4};
   if (!study.full_claims.empty()) table.header.emplace_back("by table B");
   for (std::size_t i = 0; i < study.claims.size(); ++i) {
-    table.rows.push_back({study.claims[i].layout, study.claims[i].text, words(study.claims[i])});
+    table.rows.push_back({study.claims[i].scenario, study.claims[i].text, words(study.claims[i])});
     if (!study.full_claims.empty()) table.rows.back().push_back(words(study.full_claims[i]));
   }
   return table;
@@ -104,20 +96,20 @@ Table claims_table(const Study& study) {
 Table differences_table(std::span<const Difference> differences) {
   Table table{.header = {"scenario", "reading", "A", "B", "why"}, .rows = {}, .words = 5};
   for (const Difference& each : differences) {
-    table.rows.push_back({each.layout, each.reading, each.paper, each.full, each.explanation});
+    table.rows.push_back({each.scenario, each.controller, each.paper, each.full, each.explanation});
   }
   return table;
 }
 
-std::size_t collisions(std::span<const Row> rows) {
+std::size_t collisions(std::span<const Series> rows) {
   std::size_t sum = 0;
-  for (const Row& row : rows) sum += count(row, algo::Outcome::Collided);
+  for (const Series& row : rows) sum += count(row, algo::Outcome::Collided);
   return sum;
 }
 
-std::size_t runs(std::span<const Row> rows) {
+std::size_t runs(std::span<const Series> rows) {
   std::size_t sum = 0;
-  for (const Row& row : rows) sum += row.runs.size();
+  for (const Series& row : rows) sum += row.runs.size();
   return sum;
 }
 
@@ -147,8 +139,8 @@ std::string to_text(const Study& study) {
                                       : "\nRows that end otherwise than under A\n\n";
     for (const Difference& each : study.differences) {
       text += fmt::format("{}, {}: A {}, B {}. {}\n",
-                          each.layout,
-                          each.reading,
+                          each.scenario,
+                          each.controller,
                           each.paper,
                           each.full,
                           each.explanation);
@@ -173,7 +165,7 @@ std::string to_text(const Study& study) {
 json to_json(const Study& study) {
   json checks = json::array();
   for (const Check& check : study.checks) {
-    checks.push_back({{"scenario", check.layout},
+    checks.push_back({{"scenario", check.scenario},
                       {"subject", check.subject},
                       {"asked", check.asked},
                       {"found", check.figure},
@@ -181,8 +173,8 @@ json to_json(const Study& study) {
   }
   json differences = json::array();
   for (const Difference& each : study.differences) {
-    differences.push_back({{"scenario", each.layout},
-                           {"reading", each.reading},
+    differences.push_back({{"scenario", each.scenario},
+                           {"reading", each.controller},
                            {"paper", each.paper},
                            {"full", each.full},
                            {"explanation", each.explanation}});
@@ -222,7 +214,7 @@ json to_json(std::span<const Sweep> sweeps) {
   for (const Sweep& sweep : sweeps) {
     json lines = json::array();
     for (const SweepLine& line : sweep.lines) {
-      lines.push_back({{"scenario", line.layout},
+      lines.push_back({{"scenario", line.scenario},
                        {"reading", line.reading},
                        {"refused", line.refused},
                        {"rows", rows_json(line.rows)}});

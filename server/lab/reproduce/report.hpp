@@ -12,21 +12,19 @@
 
 namespace server::reproduce {
 
-/// A layout and a reading a line: outcomes, path, clearance, intrusion, turning, via points, time.
-Table rows_table(std::span<const Row> rows);
+/// A scenario and a reading a line: outcomes, path, clearance, intrusion, turning, via points,
+/// time.
+Table rows_table(std::span<const Series> rows);
 Table checks_table(std::span<const Check> checks);
 /// Verdict and readings by table A, and by table B when it was made.
 Table claims_table(const Study& study);
 Table differences_table(std::span<const Difference> differences);
 
-std::size_t collisions(std::span<const Row> rows);
-std::size_t runs(std::span<const Row> rows);
+std::size_t collisions(std::span<const Series> rows);
+std::size_t runs(std::span<const Series> rows);
 
 /// "117 of 118 limits held."
 std::string checks_sentence(std::span<const Check> checks);
-
-/// Every metric of a row by its name; a clearance without obstacles is null.
-nlohmann::json metrics_json(const Row& row);
 
 /// What `tautline reproduce` prints, but for the last sentence.
 std::string to_text(const Study& study);

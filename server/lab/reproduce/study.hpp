@@ -28,11 +28,11 @@ struct StudyOptions {
 struct Study {
   std::size_t seeds = 0;
   std::uint64_t first_seed = 0;
-  std::vector<Row> paper{};       // table A: every layout with every reading
-  std::vector<Row> noise_free{};  // one run each, where the file asks for it
-  std::vector<Row> full{};        // table B
-  std::vector<Row> strip{};       // our full strip under the conditions of table A
-  std::vector<Row> strip_full{};  // and of table B
+  std::vector<Series> paper{};       // table A: every scenario with every reading
+  std::vector<Series> noise_free{};  // one run each, where the file asks for it
+  std::vector<Series> full{};        // table B
+  std::vector<Series> strip{};       // our full strip under the conditions of table A
+  std::vector<Series> strip_full{};  // and of table B
   Depths least_depths{};
   std::vector<Check> checks{};
   std::vector<Claim> claims{};       // by table A
@@ -41,13 +41,14 @@ struct Study {
 };
 
 /// Same file and seeds, same study, however many threads. Throws std::exception with a sentence.
-Study run_study(const PaperFile& file, const StudyOptions& options);
+Study run_study(const StudyFile& file, const StudyOptions& options);
 
-/// One row a layout and controller. `seeds` runs each from `first_seed` on.
-std::vector<RowJob> row_jobs(const PaperFile& file,
-                             const Conditions& conditions,
-                             std::size_t seeds,
-                             std::uint64_t first_seed,
-                             std::span<const std::string_view> controllers = readings());
+/// A series a scenario and controller. `seeds` runs each from `first_seed` on.
+std::vector<experiment::SeriesPlan> series_plans(
+    const StudyFile& file,
+    const Conditions& conditions,
+    std::size_t seeds,
+    std::uint64_t first_seed,
+    std::span<const std::string_view> controllers = readings());
 
 }  // namespace server::reproduce

@@ -1,12 +1,14 @@
-// server/lab/reproduce/sweeps.cpp: the values, the runs and the rules of the verdicts.
+// server/lab/reproduce/sweeps.cpp: the runs and the rules of the verdicts.
 #include "server/lab/reproduce/sweeps.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "algo/strip/strip_law.hpp"
@@ -17,41 +19,34 @@ namespace {
 
 using algo::Outcome;
 
-struct Plan {
+/// What the sources say of a parameter, and how a sweep of it is read.
+struct Reading {
   const algo::ParameterInfo* parameter = nullptr;
   const char* name = "";
-  std::vector<double> values{};  // SI
-  std::vector<const char*> readings{};
-  std::function<std::string(const Row&)> cell{};
+  std::string (*cell)(const Series&) = nullptr;
   const char* legend = "";
-  void (*judge)(Sweep&, double tolerance) = nullptr;
+  void (*judge)(Sweep&, double tolerance_mm) = nullptr;
 };
 
-double value(const Row& row, std::string_view metric) {
-  return figure(row, *find_metric(metric));
+double millimetres(const Series& row, std::string_view column) {
+  return figure(row, column) * kMillimetres;
 }
 
-double mean(const Row& row, double PathFigures::*member) {
-  double sum = 0;
-  for (const RunFigures& run : row.runs) sum += run.path.*member;
-  return sum / static_cast<double>(row.runs.size());
+std::string clearance_cell(const Series& row) {
+  return fmt::format("{:.0f} {}", millimetres(row, "min_clearance_m"), outcome_letters(row));
 }
 
-std::string clearance_cell(const Row& row) {
-  return fmt::format("{:.0f} {}", value(row, "min_clearance_mm"), outcome_letters(row));
-}
-
-std::string strip_cell(const Row& row) {
+std::string strip_cell(const Series& row) {
   return fmt::format("{:.0f} / {:.3f} {}",
-                     value(row, "path_mm"),
-                     mean(row, &PathFigures::share_deviation),
+                     millimetres(row, "path_m"),
+                     figure(row, "strip_share_deviation"),
                      outcome_letters(row));
 }
 
-std::string turning_cell(const Row& row) {
+std::string turning_cell(const Series& row) {
   return fmt::format("{:.0f} / {:.2f} {}",
-                     value(row, "min_clearance_mm"),
-                     value(row, "turning_rad"),
+                     millimetres(row, "min_clearance_m"),
+                     figure(row, "turning_rad"),
                      outcome_letters(row));
 }
 
@@ -63,7 +58,7 @@ std::string verdict_of(std::size_t held, std::size_t all) {
 std::vector<double> clearances(const SweepLine& line) {
   std::vector<double> out;
   out.reserve(line.rows.size());
-  for (const Row& row : line.rows) out.push_back(value(row, "min_clearance_mm"));
+  for (const Series& row : line.rows) out.push_back(millimetres(row, "min_clearance_m"));
   return out;
 }
 
@@ -80,7 +75,7 @@ Rising rising_lines(const Sweep& sweep, double tolerance_mm) {
     if (rises(clearances(line), tolerance_mm)) {
       ++out.lines;
     } else {
-      others.push_back(line.layout + " " + line.reading);
+      others.push_back(line.scenario + " " + line.reading);
     }
   }
   out.text = fmt::format("{} of {} lines rise", out.lines, sweep.lines.size());
@@ -150,10 +145,8 @@ void judge_safety_distance(Sweep& sweep, double tolerance_mm) {
 /// Whether F_int is ever more than rounding.
 bool acts(const SweepLine& line) {
   constexpr double kRounding = 1e-9;  // [m]
-  return std::ranges::any_of(line.rows, [](const Row& row) {
-    return std::ranges::any_of(
-        row.runs, [](const RunFigures& run) { return run.path.largest_internal > kRounding; });
-  });
+  return std::ranges::any_of(
+      line.rows, [](const Series& row) { return figure(row, "internal_force_m") > kRounding; });
 }
 
 void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
@@ -170,8 +163,8 @@ void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
   for (const SweepLine& line : sweep.lines) {
     if (!acts(line)) continue;
     ++active;
-    const double first = mean(line.rows.front(), &PathFigures::share_deviation);
-    const double last = mean(line.rows.back(), &PathFigures::share_deviation);
+    const double first = figure(line.rows.front(), "strip_share_deviation");
+    const double last = figure(line.rows.back(), "strip_share_deviation");
     if (last < first) ++held;
     reached += count(line.rows.back(), Outcome::Reached);
     collided += count(line.rows.back(), Outcome::Collided);
@@ -202,53 +195,51 @@ void judge_filter(Sweep& sweep, double /*tolerance_mm*/) {
   sweep.because = fmt::format("N changes the least clearance by at most {:.0f} mm.", most);
 }
 
-std::vector<Plan> plans() {
-  const char* clearance =
-      "least clearance [mm] and outcome: r reached, s stuck, t out of time, C "
-      "collided; * refused elsewhere, since S >= K_r d_safe";
-  return {{&algo::kRepulsionGain,
-           "K_r",
-           {0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0},
-           {"original", "modified_published", "modified"},
-           clearance_cell,
-           clearance,
-           judge_repulsion},
-          {&algo::kSafetyDistance,
-           "d_safe",
-           {0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2},
-           {"original", "modified_published", "modified"},
-           clearance_cell,
-           clearance,
-           judge_safety_distance},
-          {&algo::kContractionGain,
-           "K_c",
-           {0.0, 0.2, 0.4, 0.6, 0.8, 1.0},
-           {"original", "modified", "via_kept"},
-           strip_cell,
-           "path [mm] / deviation of the share of the strip before its via point, and outcome",
-           judge_contraction},
-          {&algo::kFilterHalfWidth,
-           "N",
-           {0, 1, 2, 3, 5},
-           {"original", "modified"},
-           turning_cell,
-           "least clearance [mm] / turning [rad], and outcome",
-           judge_filter}};
+constexpr const char* kClearance =
+    "least clearance [mm] and outcome: r reached, s stuck, t out of time, C collided; * refused "
+    "elsewhere, since S >= K_r d_safe";
+
+constexpr auto kReadings = std::to_array<Reading>({
+    {&algo::kRepulsionGain, "K_r", clearance_cell, kClearance, judge_repulsion},
+    {&algo::kSafetyDistance, "d_safe", clearance_cell, kClearance, judge_safety_distance},
+    {&algo::kContractionGain,
+     "K_c",
+     strip_cell,
+     "path [mm] / deviation of the share of the strip before its via point, and outcome",
+     judge_contraction},
+    {&algo::kFilterHalfWidth,
+     "N",
+     turning_cell,
+     "least clearance [mm] / turning [rad], and outcome",
+     judge_filter},
+});
+
+void judge_nothing(Sweep& sweep, double /*tolerance_mm*/) {
+  sweep.claim = "(The sources claim nothing that is tried here.)";
+  sweep.rule = "None.";
+  sweep.verdict = "no claim";
+  sweep.because = "These are figures only.";
 }
 
-void tabulate(Sweep& sweep, const Plan& plan) {
-  sweep.legend = plan.legend;
+Reading reading_of(const algo::ParameterInfo& parameter) {
+  const auto* const found = std::ranges::find(kReadings, &parameter, &Reading::parameter);
+  if (found != kReadings.end()) return *found;
+  return {&parameter, parameter.key().data(), clearance_cell, kClearance, judge_nothing};
+}
+
+void tabulate(Sweep& sweep, const Reading& reading) {
+  sweep.legend = reading.legend;
   sweep.table.words = 2;
   sweep.table.header = {"scenario", "reading"};
   for (const double each : sweep.values) {
     const bool first = sweep.table.header.size() == sweep.table.words;
-    sweep.table.header.push_back(first ? fmt::format("{} = {:g}", plan.name, each)
+    sweep.table.header.push_back(first ? fmt::format("{} = {:g}", reading.name, each)
                                        : fmt::format("{:g}", each));
   }
   for (const SweepLine& line : sweep.lines) {
-    std::vector<std::string> cells{line.layout, line.reading};
+    std::vector<std::string> cells{line.scenario, line.reading};
     for (std::size_t i = 0; i < line.rows.size(); ++i) {
-      cells.push_back(plan.cell(line.rows[i]) + (line.refused[i] ? " *" : ""));
+      cells.push_back(reading.cell(line.rows[i]) + (line.refused[i] ? " *" : ""));
     }
     sweep.table.rows.push_back(std::move(cells));
   }
@@ -263,43 +254,41 @@ bool rises(const std::vector<double>& figures, double tolerance) {
   return !figures.empty() && figures.back() > figures.front() + tolerance;
 }
 
-std::vector<Sweep> run_sweeps(const PaperFile& file,
+std::vector<Sweep> run_sweeps(const StudyFile& file,
                               std::size_t seeds,
                               std::uint64_t first_seed,
-                              unsigned threads,
-                              const Progress& progress) {
-  const std::vector<Plan> all = plans();
+                              const experiment::PoolOptions& pool) {
   std::vector<Sweep> sweeps;
-  std::vector<RowJob> jobs;
-  for (const Plan& plan : all) {
+  std::vector<experiment::SeriesPlan> plans;
+  for (const SweepPlan& asked : file.sweeps) {
     Sweep& sweep = sweeps.emplace_back();
-    sweep.parameter = plan.name;
-    sweep.values = plan.values;
-    for (const Layout& layout : file.layouts) {
-      for (const char* reading : plan.readings) {
+    sweep.parameter = reading_of(*asked.parameter).name;
+    sweep.values = asked.values;
+    for (const sim::Scenario& scenario : file.scenarios) {
+      for (const std::string& reading : asked.controllers) {
         SweepLine& line = sweep.lines.emplace_back();
-        line.layout = layout.name;
+        line.scenario = scenario.name;
         line.reading = reading;
-        for (const double each : plan.values) {
-          RunSpec spec = make_run(file, layout, reading, kPaper, first_seed);
-          spec.parameters.set(*plan.parameter, each);
+        for (const double each : asked.values) {
+          RunSpec spec = make_run(file.conditions, scenario, reading, kPaper, first_seed);
+          spec.parameters.set(*asked.parameter, each);
           line.refused.push_back(algo::refusal(spec.parameters).has_value());
-          jobs.push_back({layout.name, reading, std::move(spec), seeds});
+          plans.push_back({scenario.name, reading, std::move(spec), seeds});
         }
       }
     }
   }
-  std::vector<Row> rows = run_rows(jobs, threads, progress);
-  auto next = rows.begin();
-  constexpr double kMillimetres = 1000;
-  for (std::size_t i = 0; i < all.size(); ++i) {
+  std::vector<Series> rows = run_series(plans, experiment::common_judges(), pool);
+  auto next = std::make_move_iterator(rows.begin());
+  for (std::size_t i = 0; i < sweeps.size(); ++i) {
     for (SweepLine& line : sweeps[i].lines) {
       const auto end = next + static_cast<std::ptrdiff_t>(line.refused.size());
-      line.rows.assign(std::make_move_iterator(next), std::make_move_iterator(end));
+      line.rows.assign(next, end);
       next = end;
     }
-    all[i].judge(sweeps[i], file.common.noise * kMillimetres);
-    tabulate(sweeps[i], all[i]);
+    const Reading reading = reading_of(*file.sweeps[i].parameter);
+    reading.judge(sweeps[i], file.conditions.noise * kMillimetres);
+    tabulate(sweeps[i], reading);
   }
   return sweeps;
 }

@@ -1,21 +1,24 @@
-// server/lab/reproduce/sweeps.hpp: one parameter at a time over all layouts, for what the sources
+// server/lab/reproduce/sweeps.hpp: one parameter at a time over all scenarios, for what the sources
 // say the parameters do.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "server/experiment/batch.hpp"
+#include "server/experiment/series.hpp"
 #include "server/experiment/table.hpp"
-#include "server/lab/reproduce/paper_file.hpp"
+#include "server/lab/reproduce/study_file.hpp"
 
 namespace server::reproduce {
 
-/// One layout with one reading, once for each value.
+using experiment::Series;
+using experiment::Table;
+
+/// One scenario with one reading, once for each value.
 struct SweepLine {
-  std::string layout{};
+  std::string scenario{};
   std::string reading{};
-  std::vector<Row> rows{};      // a value each
+  std::vector<Series> rows{};   // a value each
   std::vector<bool> refused{};  // elsewhere this program refuses that value here
 };
 
@@ -31,13 +34,13 @@ struct Sweep {
   std::string legend{};  // what a cell says
 };
 
-/// K_c, K_r, d_safe and N under the paper's conditions. Values that are refused elsewhere
+/// The sweeps of the file under the papers' conditions; those of K_c, K_r, d_safe and N are held
+/// against what the sources say of them. Values that are refused elsewhere
 /// (S >= K_r d_safe) are run all the same: that is where the collisions are.
-std::vector<Sweep> run_sweeps(const PaperFile& file,
+std::vector<Sweep> run_sweeps(const StudyFile& file,
                               std::size_t seeds,
                               std::uint64_t first_seed,
-                              unsigned threads,
-                              const Progress& progress);
+                              const experiment::PoolOptions& pool);
 
 /// Whether `figures`, one a value, rise: none below the one before by more than `tolerance`, and
 /// the last above the first by more than it.

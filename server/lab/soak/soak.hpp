@@ -2,46 +2,43 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "algo/types.hpp"
+#include "server/experiment/table.hpp"
+#include "server/experiment/trial.hpp"
 
 namespace server::soak {
-
-enum class Ending : std::uint8_t {
-  Reached,
-  GaveReason,  // stands, and says why
-  OutOfTime,   // still under way
-  Silent,      // stands, and does not say why: never
-  Collision,   // never
-  NotFinite,   // never
-};
-std::string_view name(Ending ending);
-bool is_fault(Ending ending);
 
 struct Options {
   std::uint64_t worlds = 1000;
   std::uint64_t first_seed = 1;
   std::string controller = "strip";
-  unsigned workers = 0;  // 0: one a core
-  std::function<void(std::size_t done, std::size_t all)> progress{};
+  experiment::PoolOptions pool{};
 };
 
-struct Outcome {
+/// One world: until the goal, until the robot has stood for long, or 300 s. The figures are those
+/// of the judges `metrics`, `silence` and `place`; the reason is what the robot said last.
+struct World {
   std::uint64_t seed = 0;
-  Ending ending = Ending::OutOfTime;
-  bool has_way = false;      // in truth, with 10 cm to spare
-  double time = 0;           // [s]
-  double min_clearance = 0;  // [m] hull to surface
-  algo::Pose2 end{};
-  std::string why{};  // what it said last
+  bool has_way = false;  // in truth, with 10 cm to spare
+  experiment::Row row{};
 };
 
-/// One world: until the goal, until it has stood for long, or 300 s.
-Outcome run_world(std::uint64_t seed, const std::string& controller);
-/// In the order of the seeds, whatever the workers.
-std::vector<Outcome> run_worlds(const Options& options);
+/// How it ended, as the table counts it: "reached", "gave a reason", "out of time", and what must
+/// never be: "silent", "collision", "not finite".
+std::string_view ending(const experiment::Row& row);
+bool is_fault(const experiment::Row& row);
+
+experiment::Trial trial_of(std::uint64_t seed, const std::string& controller);
+
+/// In the order of the seeds, whatever the threads; those of the shard.
+std::vector<World> run_worlds(const Options& options);
+
+/// An ending a line, and in how many worlds it came.
+experiment::Table endings_table(const std::vector<World>& worlds);
+/// A world a line with every figure.
+experiment::Table rows_table(const std::vector<World>& worlds);
 
 }  // namespace server::soak

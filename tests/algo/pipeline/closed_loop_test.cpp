@@ -1,5 +1,5 @@
 // tests/algo/pipeline/closed_loop_test.cpp: the controllers drive the layouts of
-// server/lab/reproduce/paper.json under that file's own conditions: kinematic robot, flat-time
+// tests/golden/paper.json under that file's own conditions: kinematic robot, flat-time
 // noisy scan, its tick, its metrics.
 #include <cmath>
 #include <fstream>
@@ -27,7 +27,7 @@ using namespace algo::units;
 
 const Json& paper() {
   static const Json loaded = [] {
-    std::ifstream file(tests::folder().parent_path() / "server/lab/reproduce/paper.json");
+    std::ifstream file(tests::folder().parent_path() / "tests/golden/paper.json");
     return Json::parse(file);
   }();
   return loaded;

@@ -25,7 +25,7 @@
 #include "algo/driving.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/telemetry.hpp"
-#include "server/experiment/parallel.hpp"
+#include "server/experiment/pool.hpp"
 #include "server/run/run_spec.hpp"
 #include "server/run/runner.hpp"
 #include "server/run/scenario_library.hpp"
@@ -246,7 +246,7 @@ TEST(UnchangedRuns, SenseAskCommandAndHoldWhatTheyDid) {
   ASSERT_GT(jobs.size(), 100U);
   std::mutex mutex;
   nlohmann::json found = nlohmann::json::object();
-  server::in_parallel(jobs.size(), 0, [&](std::size_t i) {
+  server::experiment::for_each(jobs.size(), {}, [&](std::size_t i, const std::stop_token&) {
     const Job& job = jobs[i];
     std::string text;
     for (const std::uint64_t seed : {1U, 2U}) {

@@ -11,6 +11,7 @@
 namespace server::barn {
 namespace {
 
+using algo::Outcome;
 using nlohmann::json;
 
 json lane() {
@@ -99,15 +100,18 @@ TEST(BarnRun, ScoresByTheOfficialFormula) {
   Options options;
   options.conditions.vehicle = sim::Vehicle::Kinematic;
   options.repeats = 2;
-  options.workers = 2;
+  options.pool.threads = 2;
   const Result result = run_worlds(worlds, options);
   ASSERT_EQ(result.runs.size(), 2U);
   for (const auto& run : result.runs) {
-    EXPECT_EQ(run.ending, Ending::Success);
+    EXPECT_EQ(run.row.outcome, Outcome::Reached);
     const double optimal = 6.0 / 2;
-    EXPECT_DOUBLE_EQ(run.score, optimal / std::clamp(run.time, 2 * optimal, 8 * optimal));
-    EXPECT_DOUBLE_EQ(run.score_quarter, optimal / std::clamp(run.time, 4 * optimal, 8 * optimal));
-    EXPECT_NEAR(run.path_length, 5, 0.3);  // to 1 m before the goal
+    const double time = run.row["barn_time_s"];
+    const double score = run.row["barn_score"];
+    const double quarter = run.row["barn_score_quarter"];
+    EXPECT_DOUBLE_EQ(score, optimal / std::clamp(time, 2 * optimal, 8 * optimal));
+    EXPECT_DOUBLE_EQ(quarter, optimal / std::clamp(time, 4 * optimal, 8 * optimal));
+    EXPECT_NEAR(run.row["path_m"], 5, 0.3);  // to 1 m before the goal
   }
   const Summary sum = summarise(result);
   EXPECT_EQ(sum.success, 1);
@@ -120,7 +124,13 @@ TEST(BarnRun, ScoresByTheOfficialFormula) {
 TEST(BarnRun, RatesAreFractionsOfOne) {
   Result result;
   result.runs.resize(600);
-  for (auto& run : result.runs) run.ending = Ending::Success;
+  for (auto& run : result.runs) {
+    run.row = {.outcome = Outcome::Reached,
+               .figures = {{"contact", 0.0},
+                           {"barn_time_s", 1.0},
+                           {"barn_score", 0.5},
+                           {"barn_score_quarter", 0.25}}};
+  }
   EXPECT_EQ(summarise(result).success, 1);
 }
 
@@ -131,8 +141,8 @@ TEST(BarnRun, ACollisionScoresNothing) {
   options.conditions.controller = "go_to_goal";
   options.conditions.vehicle = sim::Vehicle::Kinematic;
   const Result result = run_worlds(worlds_from_json(document), options);
-  EXPECT_EQ(result.runs[0].ending, Ending::Collision);
-  EXPECT_EQ(result.runs[0].score, 0);
+  EXPECT_EQ(result.runs[0].row.outcome, Outcome::Collided);
+  EXPECT_EQ(result.runs[0].row["barn_score"], 0);
   EXPECT_EQ(summarise(result).collisions, 1);
 }
 
@@ -141,43 +151,44 @@ TEST(BarnRun, TheSameSeedGivesTheSameRunWhateverTheWorkers) {
   Options options;
   options.conditions.stress = true;
   options.repeats = 3;
-  options.workers = 1;
+  options.pool.threads = 1;
   const Result alone = run_worlds(worlds, options);
-  options.workers = 3;
+  options.pool.threads = 3;
   const Result together = run_worlds(worlds, options);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(alone.runs[i].time, together.runs[i].time);
-    EXPECT_EQ(alone.runs[i].end, together.runs[i].end);
+    EXPECT_EQ(alone.runs[i].row.figures, together.runs[i].row.figures);
   }
 }
 
-/// A cylinder that comes at 1 m/s towards the origin, where the robot stands or drives.
-sim::Scenario oncoming() {
-  sim::Scenario scenario = scenario_of(worlds_from_json(crossing()).at(0), {});
-  scenario.paths[0].keys = {{0, {10, 0}}, {20, {-10, 0}}};
-  return scenario;
+TEST(BarnRun, AShardHasItsOwnWorldsAndSeeds) {
+  json document = lane();
+  document["worlds"].push_back(document["worlds"][0]);
+  document["worlds"][1]["id"] = 9;
+  Options options;
+  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  options.repeats = 2;
+  options.pool.shard = {.index = 1, .count = 2};
+  const Result result = run_worlds(worlds_from_json(document), options);
+  ASSERT_EQ(result.runs.size(), 2U);
+  EXPECT_EQ(result.runs[0].world, 7U);
+  EXPECT_EQ(result.runs[1].world, 9U);
+  for (const auto& run : result.runs) EXPECT_EQ(run.seed, 2U);
+  const experiment::Table table = rows_table(result);
+  EXPECT_EQ(table.rows[1][0], "9");
+  EXPECT_EQ(table.rows[1][2], "reached");
 }
 
-TEST(Oracle, WhoStandsInTheWayCouldHaveDrivenOn) {
-  const algo::RobotSpec spec{.radius = 0.35,
-                             .max_v = 1,
-                             .max_omega = 2,
-                             .max_acceleration = 2,
-                             .max_angular_acceleration = 4};
-  std::vector<Moment> trail;
-  for (int k = 0; k <= 60; ++k) trail.push_back({6.15 + 0.05 * k, {0, 0, 1.57}, {}});
-  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Avoidable);
-  // Who can hardly move could not.
-  algo::RobotSpec lame = spec;
-  lame.max_v = lame.max_omega = 0.01;
-  EXPECT_EQ(judge_contact(oncoming(), lame, trail), Contact::Unavoidable);
-}
-
-TEST(Oracle, AnObstacleThatJumpedIsNobodysFault) {
-  const algo::RobotSpec spec{.radius = 0.35, .max_v = 1, .max_omega = 2, .max_acceleration = 2};
-  std::vector<Moment> trail;
-  for (int k = 0; k <= 60; ++k) trail.push_back({18.0 + 0.05 * k, {9.1, 0, 0}, {}});
-  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Jumped);
+/// It stands in the way of what comes, and the contact is judged with the rest.
+TEST(BarnRun, AContactWithWhatMovesIsJudgedWithHindsight) {
+  json document = crossing();
+  document["worlds"][0]["obstacles"][0]["keys"] = {{0, 8, 0}, {10, -8, 0}, {20, 8, 0}};
+  Options options;
+  options.conditions.controller = "go_to_goal";
+  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  const Result result = run_worlds(worlds_from_json(document), options);
+  EXPECT_EQ(result.runs[0].row.outcome, Outcome::Collided);
+  EXPECT_EQ(result.runs[0].contact(), experiment::Contact::Avoidable);
+  EXPECT_EQ(summarise(result).avoidable, 1U);
 }
 
 }  // namespace

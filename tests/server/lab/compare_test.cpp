@@ -18,7 +18,7 @@ namespace {
 
 using algo::Outcome;
 using algo::Vec2;
-using reproduce::RunFigures;
+using experiment::Row;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -115,7 +115,7 @@ TEST(SurfaceGap, BetweenCylindersAndBoxes) {
 TEST(RandomLayouts, KeepTheirGapsAndBlockTheWay) {
   for (const std::size_t obstacles : {2U, 3U, 4U}) {
     for (std::size_t i = 1; i <= 40; ++i) {
-      const reproduce::Layout layout = random_layout(obstacles, 0.3, i);
+      const sim::Scenario layout = random_layout(obstacles, 0.3, i);
       ASSERT_EQ(layout.obstacles.size(), obstacles);
       bool blocks = false;
       for (std::size_t a = 0; a < obstacles; ++a) {
@@ -123,10 +123,10 @@ TEST(RandomLayouts, KeepTheirGapsAndBlockTheWay) {
           EXPECT_GE(surface_gap(layout.obstacles[a], layout.obstacles[b]), kFreeGap);
         }
         EXPECT_GE(signed_distance(layout.obstacles[a], {0, 0}), kFreeRoom);
-        EXPECT_GE(signed_distance(layout.obstacles[a], layout.goal_W), kFreeRoom);
+        EXPECT_GE(signed_distance(layout.obstacles[a], layout.goal->position_W), kFreeRoom);
       }
       for (int step = 0; step <= 1000; ++step) {
-        const Vec2 p = layout.goal_W * (step / 1000.0);
+        const Vec2 p = layout.goal->position_W * (step / 1000.0);
         blocks = blocks || nearest_surface(layout.obstacles, p) < kLaneHalf;
       }
       EXPECT_TRUE(blocks) << layout.name;
@@ -143,19 +143,17 @@ TEST(RandomLayouts, TheSameNumberIsTheSameLayout) {
 // ---- the verdicts ------------------------------------------------------------------------------
 
 /// A run of 100 s with `pauses` pauses of 0.5 s.
-RunFigures ended(Outcome outcome, std::uint32_t pauses = 0) {
-  RunFigures run{.outcome = outcome};
-  run.metrics.time = 100;
-  run.standing = {.time = 0.5 * pauses, .pause_time = 0.5 * pauses, .pauses = pauses};
-  return run;
+Row ended(Outcome outcome, double pauses = 0) {
+  return {.outcome = outcome,
+          .figures = {{"time_s", 100.0}, {"pauses", pauses}, {"pause_s", 0.5 * pauses}}};
 }
 
-Row row(const char* scene, const char* contestant, std::vector<RunFigures> runs) {
+Series row(const char* scene, const char* contestant, std::vector<Row> runs) {
   return {scene, contestant, std::move(runs)};
 }
 
 /// The bottlenecks of `contestant`, one run each: a letter a gap.
-void add_bottlenecks(std::vector<Row>& rows, const char* contestant, std::string_view letters) {
+void add_bottlenecks(std::vector<Series>& rows, const char* contestant, std::string_view letters) {
   const std::vector<double> gaps = bottleneck_gaps();
   for (std::size_t i = 0; i < letters.size(); ++i) {
     const Outcome outcome = letters[i] == 'r'   ? Outcome::Reached
@@ -174,7 +172,7 @@ const Finding& about(const std::vector<Finding>& findings, const std::string& wo
 }
 
 TEST(Passage, TheSmallestGapFromWhichAllAreReached) {
-  std::vector<Row> rows;
+  std::vector<Series> rows;
   add_bottlenecks(rows, "vff", "srCtrrrrr");
   add_bottlenecks(rows, "vfh", "rrrrrrrrs");
   const Passage vff = passage_of(rows, "vff");
@@ -191,7 +189,7 @@ TEST(Passage, TheSmallestGapFromWhichAllAreReached) {
 }
 
 TEST(Findings, BottlenecksTrapWhatIsStuckBySomeGapInEveryRun) {
-  std::vector<Row> rows;
+  std::vector<Series> rows;
   add_bottlenecks(rows, "vff", "ssrrrrrrr");
   add_bottlenecks(rows, "vff by sonar", "ttrrrrrrr");
   add_bottlenecks(rows, "potential_field", "srrrrrrrr");
@@ -207,12 +205,12 @@ TEST(Findings, BottlenecksTrapWhatIsStuckBySomeGapInEveryRun) {
 }
 
 struct PausingWorlds : ::testing::Test {
-  std::vector<Row> rows{row("case1", "go_to_goal", {ended(Outcome::Collided)}),
-                        row("case2", "go_to_goal", {ended(Outcome::Reached)}),
-                        row("case1", "edge_detection", {ended(Outcome::Reached, 2)}),
-                        row("case2", "edge_detection", {ended(Outcome::Reached, 0)}),
-                        row("case1", "vff", {ended(Outcome::Reached, 1)}),
-                        row("case2", "vff", {ended(Outcome::Reached)})};
+  std::vector<Series> rows{row("case1", "go_to_goal", {ended(Outcome::Collided)}),
+                           row("case2", "go_to_goal", {ended(Outcome::Reached)}),
+                           row("case1", "edge_detection", {ended(Outcome::Reached, 2)}),
+                           row("case2", "edge_detection", {ended(Outcome::Reached, 0)}),
+                           row("case1", "vff", {ended(Outcome::Reached, 1)}),
+                           row("case2", "vff", {ended(Outcome::Reached)})};
   Verdict edge() { return about(judge(rows, {}), "Edge detection").verdict; }
   Verdict vff() { return about(judge(rows, {}), "VFF").verdict; }
 };
@@ -243,7 +241,7 @@ TEST(Findings, WithoutRunsThereIsNothingToSay) {
 
 TEST(StripOnLayouts, NinetyNineOfAHundredAndNoCollision) {
   LayoutSet set;
-  set.paper = {row("random-2-0001", "strip", std::vector<RunFigures>(99, ended(Outcome::Reached))),
+  set.paper = {row("random-2-0001", "strip", std::vector<Row>(99, ended(Outcome::Reached))),
                row("random-2-0001", "original", {ended(Outcome::Collided)})};
   set.full = {row("random-2-0001", "strip", {ended(Outcome::Stuck)})};
   EXPECT_TRUE(strip_on_layouts({set}).held());
@@ -272,6 +270,7 @@ TEST(Compare, TheBlindOneFromEndToEnd) {
   options.layout_seeds = 1;
   options.only = {"go_to_goal"};
   options.worlds = false;
+  options.judges = {"barn_score", "metrics"};
   options.threads = 2;
   const Comparison comparison = compare(options);
   EXPECT_THAT(comparison.labels, ElementsAre("go_to_goal", "go_to_goal by sonar"));
@@ -283,6 +282,12 @@ TEST(Compare, TheBlindOneFromEndToEnd) {
   const nlohmann::json document = to_json(comparison);
   EXPECT_EQ(document["bottlenecks"].size(), 18U);
   EXPECT_EQ(document["random_layouts"][2]["obstacles"], 4);
+  // A judge that was asked for adds its columns, and one that is there already none.
+  EXPECT_GT(document["bottlenecks"][0]["metrics"]["barn_score"], 0.0);
+  const experiment::Table rows = rows_table(comparison);
+  EXPECT_EQ(rows.rows.size(), 18U);
+  EXPECT_EQ(std::ranges::count(rows.header, "time_s"), 1);
+  EXPECT_EQ(std::ranges::count(rows.header, "barn_time_s"), 1);
 
   const auto folder =
       std::filesystem::temp_directory_path() / ("tautline_compare_" + std::to_string(::getpid()));

@@ -1,49 +1,50 @@
-// tests/server/lab/reproduce_test.cpp: the file, the figures, the limits and one scenario end to
-// end.
-#include <cmath>
+// tests/server/lab/reproduce_test.cpp: the file, the limits and one scenario end to end.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "server/experiment/svg_plot.hpp"
+#include "algo/driving.hpp"
+#include "algo/strip/strip_law.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 #include "server/lab/reproduce/full_strip.hpp"
 #include "server/lab/reproduce/markdown.hpp"
 #include "server/lab/reproduce/pictures.hpp"
-#include "server/lab/reproduce/triangulate.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/scenario_library.hpp"
 
 namespace server::reproduce {
 namespace {
 
 using algo::Outcome;
+using experiment::Row;
 using nlohmann::json;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 json paper() {
-  return json::parse(embedded_paper());
+  return json::parse(embedded_study());
 }
 
-/// The paper's conditions with one short layout: 1 m to the goal, nothing in the way.
+/// The papers' conditions with one short scenario: 1 m to the goal, nothing in the way.
 json short_file() {
   json file = paper();
   file["scenarios"] = json::array({{{"name", "free"},
-                                    {"goal", {1000, 0}},
-                                    {"K_c", 0.8},
-                                    {"K_r", 0.6},
-                                    {"v_max", 200},
-                                    {"obstacles", json::array()}}});
+                                    {"goal", {{"x", 1}, {"y", 0}}},
+                                    {"parameters", {{"k_c", 0.8}, {"k_r", 0.6}, {"v_max", 0.2}}}}});
+  file["limits"] = json::array();
+  file["sweeps"] = json::array();
   return file;
 }
 
 std::string complaint(const json& file) {
   try {
-    paper_file_from_json(file);
+    study_file_from_json(file);
   } catch (const DocumentError& e) {
     return e.what();
   }
@@ -58,30 +59,47 @@ std::string complaint_with(const char* pointer, const json& value) {
 
 // ---- the file ----------------------------------------------------------------------------------
 
-TEST(PaperFile, TheEmbeddedOneIsReadInSi) {
-  const PaperFile file = embedded_paper_file();
-  EXPECT_EQ(file.layouts.size(), 9u);
-  EXPECT_DOUBLE_EQ(file.common.period, 0.05);
-  ASSERT_TRUE(file.common.slow);
-  EXPECT_DOUBLE_EQ(file.common.slow->v_max, 0.04);
-  EXPECT_DOUBLE_EQ(file.common.slow->period, 0.1);
-  EXPECT_DOUBLE_EQ(file.common.noise, 0.015);
-  EXPECT_DOUBLE_EQ(file.common.range_max, 8.0);
-  EXPECT_EQ(file.common.filter, "pseudomedian");
-  EXPECT_EQ(file.common.filter_half_width, 1);
-  EXPECT_DOUBLE_EQ(file.common.time_limit_factor, 5);
-  const Layout& case3 = file.layouts[2];
+TEST(StudyFile, TheEmbeddedOneIsRead) {
+  const StudyFile file = embedded_study_file();
+  EXPECT_EQ(file.scenarios.size(), 9u);
+  EXPECT_DOUBLE_EQ(file.conditions.period, 0.05);
+  ASSERT_TRUE(file.conditions.slow);
+  EXPECT_DOUBLE_EQ(file.conditions.slow->v_max, 0.04);
+  EXPECT_DOUBLE_EQ(file.conditions.slow->period, 0.1);
+  EXPECT_DOUBLE_EQ(file.conditions.noise, 0.015);
+  EXPECT_DOUBLE_EQ(file.conditions.range_max, 8.0);
+  EXPECT_EQ(file.conditions.filter, "pseudomedian");
+  EXPECT_EQ(file.conditions.filter_half_width, 1);
+  EXPECT_DOUBLE_EQ(file.conditions.time_limit_factor, 5);
+  const sim::Scenario& case3 = file.scenarios[2];
   EXPECT_EQ(case3.name, "case3");
-  EXPECT_DOUBLE_EQ(case3.goal_W.x(), 5.0);
-  EXPECT_DOUBLE_EQ(case3.repulsion_gain, 0.3);
+  EXPECT_DOUBLE_EQ(case3.goal->position_W.x(), 5.0);
+  EXPECT_DOUBLE_EQ(case3.parameters[algo::kRepulsionGain], 0.3);
   EXPECT_EQ(case3.obstacles.size(), 3u);
-  EXPECT_EQ(case3.accept.size(), 3u);
-  EXPECT_EQ(case3.accept_compare.size(), 3u);
+  EXPECT_EQ(file.limits.size(), 154u);
+  const auto of_case3 = [](const Limit& limit) { return limit.scenario == "case3"; };
+  EXPECT_EQ(std::ranges::count_if(file.limits, of_case3), 20);
+  ASSERT_EQ(file.sweeps.size(), 4u);
+  EXPECT_EQ(file.sweeps[1].parameter, algo::kSafetyDistance);
+  EXPECT_THAT(file.sweeps[1].values, ElementsAre(0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2));
 }
 
-TEST(PaperFile, BecomesARunUnderThePapersConditions) {
-  const PaperFile file = embedded_paper_file();
-  const RunSpec spec = make_run(file, file.layouts[4], "original", kPaper, 7);  // exp1, 40 mm/s
+/// The nine scenes are built in as well, for the page: the same world, twice written down.
+TEST(StudyFile, ItsScenariosAreTheBuiltInOnes) {
+  const ScenarioLibrary library("", "");
+  for (const sim::Scenario& ours : embedded_study_file().scenarios) {
+    const sim::Scenario built_in = library.load(ours.name);
+    EXPECT_EQ(ours.obstacles, built_in.obstacles) << ours.name;
+    EXPECT_EQ(ours.goal->position_W, built_in.goal->position_W) << ours.name;
+    EXPECT_EQ(ours.start, built_in.start) << ours.name;
+    EXPECT_EQ(ours.parameters, built_in.parameters) << ours.name;
+  }
+}
+
+TEST(StudyFile, BecomesARunUnderThePapersConditions) {
+  const StudyFile file = embedded_study_file();
+  const RunSpec spec =
+      make_run(file.conditions, file.scenarios[4], "original", kPaper, 7);  // exp1, 40 mm/s
   EXPECT_EQ(spec.scenario.vehicle, sim::Vehicle::Kinematic);
   EXPECT_DOUBLE_EQ(spec.scenario.period, 0.1);
   EXPECT_DOUBLE_EQ(spec.scenario.time_limit, 5 * 2.0 / 0.04);
@@ -93,16 +111,16 @@ TEST(PaperFile, BecomesARunUnderThePapersConditions) {
   EXPECT_DOUBLE_EQ(laser.noise, 0.015);
   EXPECT_EQ(laser.bias, 0);
   EXPECT_EQ(laser.dropout, 0);
-  const RunSpec quiet = make_run(file, file.layouts[0], "original", kNoiseFree, 1);
+  const RunSpec quiet = make_run(file.conditions, file.scenarios[0], "original", kNoiseFree, 1);
   EXPECT_EQ(quiet.scenario.lasers[0].noise, 0);
   EXPECT_DOUBLE_EQ(quiet.scenario.period, 0.05);
-  const RunSpec full = make_run(file, file.layouts[0], "original", kFullSimulator, 1);
+  const RunSpec full = make_run(file.conditions, file.scenarios[0], "original", kFullSimulator, 1);
   EXPECT_EQ(full.scenario.vehicle, sim::Vehicle::Bullet);
   EXPECT_DOUBLE_EQ(full.scenario.period, 0.026);
   EXPECT_TRUE(full.scenario.lasers[0].rolling);
 }
 
-TEST(PaperFile, AMalformedOneSaysWhere) {
+TEST(StudyFile, AMalformedOneSaysWhere) {
   json file = paper();
   file["extra"] = 1;
   EXPECT_THAT(complaint(file), HasSubstr("unknown field 'extra'"));
@@ -113,202 +131,85 @@ TEST(PaperFile, AMalformedOneSaysWhere) {
   file["scenarios"][1]["name"] = "case1";
   EXPECT_EQ(complaint(file), "scenarios/1/name: 'case1' is used twice");
 
-  EXPECT_THAT(complaint_with("/scenarios/2/K_r", "much"), HasSubstr("scenarios/2/K_r: must be a"));
+  EXPECT_THAT(complaint_with("/scenarios/2/parameters/k_r", "much"),
+              HasSubstr("scenarios/2: para"));
   EXPECT_THAT(complaint_with("/scenarios/0/obstacles/0/radius", -1), HasSubstr("obstacles/0"));
   EXPECT_THAT(complaint_with("/scenarios/0/obstacles/0/colour", "red"), HasSubstr("'colour'"));
-  EXPECT_THAT(complaint_with("/scenarios/0/goal", {1, 2, 3}), HasSubstr("scenarios/0/goal"));
-  EXPECT_THAT(complaint_with("/common/dt", "fast"), HasSubstr("common/dt: 'fast' must begin as"));
-  EXPECT_THAT(complaint_with("/common/lidar/beams", 181), HasSubstr("this program has 361 only"));
-  EXPECT_THAT(complaint_with("/common/d_r", 1000), HasSubstr("must be d_safe + 350 = 1350"));
+  EXPECT_THAT(complaint_with("/scenarios/0/goal", {1, 2, 3}), HasSubstr("scenarios/0: goal"));
+  EXPECT_THAT(complaint_with("/conditions/period", "fast"),
+              HasSubstr("conditions/period: must be"));
+  EXPECT_THAT(complaint_with("/conditions/period", 0.5),
+              HasSubstr("conditions/period: is 0.5, must"));
+  EXPECT_THAT(complaint_with("/conditions/filter", "soft"), HasSubstr("'soft' is unknown"));
   EXPECT_THAT(complaint_with("/scenarios", json::array()), HasSubstr("has no entries"));
-  EXPECT_THAT(complaint_with("/scenarios/0/accept/best", json::object()),
-              HasSubstr("scenarios/0/accept/best: is no reading"));
-  EXPECT_THAT(complaint_with("/scenarios/0/accept/modified/speed_at_most", 1),
-              HasSubstr("scenarios/0/accept/modified/speed_at_most: must be"));
-  EXPECT_THAT(complaint_with("/scenarios/0/accept/modified/outcome", "lost"),
-              HasSubstr("'lost' is unknown"));
-  EXPECT_THAT(complaint_with("/scenarios/1/accept_compare/0/metric", "beauty"),
-              HasSubstr("accept_compare/0/metric: 'beauty' is no metric"));
+  EXPECT_THAT(complaint_with("/limits/3/controller", "best"),
+              HasSubstr("limits/3/controller: 'best' is no reading"));
+  EXPECT_THAT(complaint_with("/limits/3/scenario", "case9"),
+              HasSubstr("limits/3/scenario: no scenario"));
+  EXPECT_THAT(complaint_with("/limits/2/figure", "speed"),
+              HasSubstr("limits/2/figure: 'speed' is no column"));
+  EXPECT_THAT(complaint_with("/limits/2/at_most", 1), HasSubstr("must have one of at_least"));
+  EXPECT_THAT(complaint_with("/limits/2/outcome", "stuck"), HasSubstr("must be asked one of"));
+  EXPECT_THAT(complaint_with("/limits/0/outcome", "lost"), HasSubstr("'lost' is unknown"));
+  EXPECT_THAT(complaint_with("/sweeps/0/parameter", "beauty"), HasSubstr("'beauty' is unknown"));
+  EXPECT_THAT(complaint_with("/sweeps/0/values", {1}), HasSubstr("sweeps/0/values: must be two"));
 }
 
-TEST(PaperFile, ALayoutThatCannotBeRunIsSaidBeforeAnyRun) {
+TEST(StudyFile, AScenarioThatCannotBeRunIsSaidBeforeAnyRun) {
   json overlapping = paper();
   overlapping["scenarios"][1]["obstacles"][0] = {
-      {"type", "cylinder"}, {"x", 300}, {"y", 0}, {"radius", 100}};
+      {"id", 1}, {"type", "cylinder"}, {"x", 0.3}, {"y", 0}, {"radius", 0.1}};
   EXPECT_THAT(
-      [&] { check_layouts(paper_file_from_json(overlapping)); },
+      [&] { check_scenarios(study_file_from_json(overlapping)); },
       ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("scenarios/1 (case2): Obstacle 1")));
-  json unsafe = paper();  // S = 200 = K_r d_safe
-  unsafe["scenarios"][0]["K_r"] = 0.2;
-  EXPECT_THAT([&] { check_layouts(paper_file_from_json(unsafe)); },
+  StudyFile unsafe = embedded_study_file();
+  unsafe.conditions.safety_distance = 0.3;  // S = 0.2 > K_r d_safe = 0.18
+  EXPECT_THAT([&] { check_scenarios(unsafe); },
               ::testing::ThrowsMessage<std::runtime_error>(HasSubstr("strip_step")));
 }
 
-TEST(PaperFile, APolygonMaySayItsFirstVertexAgain) {
-  json file = paper();
-  json& points = file["scenarios"][8]["obstacles"][0]["points"];
-  points.push_back(points[0]);
-  const PaperFile read = paper_file_from_json(file);
-  EXPECT_EQ(algo::outline_W(read.layouts[8].obstacles[0]).size(), 4u);
+Row run_of(Outcome outcome, double time, double path, double clearance, double depth) {
+  return {.outcome = outcome,
+          .figures = {{"time_s", time},
+                      {"path_m", path},
+                      {"min_clearance_m", clearance},
+                      {"safety_depth_m", depth},
+                      {"turning_rad", 0.0},
+                      {"bending_rad2_per_m", 0.0}}};
 }
 
-TEST(PaperFile, APolygonMayHaveANotch) {
-  // An L of three unit squares: area 3, its inner corner at (1, 1) free on one side.
-  const std::vector<algo::Vec2> outline{{0, 0}, {0, 2}, {1, 2}, {1, 1}, {2, 1}, {2, 0}};
-  const auto parts = convex_parts(outline);
-  ASSERT_TRUE(parts);
-  double area = 0;
-  for (const auto& part : *parts) {
-    ASSERT_EQ(part.size(), 3u);
-    const algo::Vec2 a = part[1] - part[0];
-    const algo::Vec2 b = part[2] - part[0];
-    EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0);
-    area += (a.x() * b.y() - a.y() * b.x()) / 2;
+void set(Row& run, std::string_view column, double value) {
+  for (auto& [name, figure] : run.figures) {
+    if (name == column) figure = value;
   }
-  EXPECT_DOUBLE_EQ(area, 3);
-  EXPECT_FALSE(convex_parts({{0, 0}, {1, 1}, {1, 0}, {0, 1}}));  // a bow tie
-  EXPECT_FALSE(convex_parts({{0, 0}, {1, 1}, {2, 2}}));
-
-  json file = paper();
-  json& points = file["scenarios"][8]["obstacles"][0]["points"];
-  points = {{2000, 2000}, {3000, 2000}, {3000, 3000}, {2500, 2500}, {2000, 3000}};
-  const PaperFile read = paper_file_from_json(file);
-  ASSERT_EQ(read.layouts[8].obstacles.size(), 3u);
-  double nearest = 10;
-  for (const algo::Obstacle& part : read.layouts[8].obstacles) {
-    nearest = std::min(nearest, algo::signed_distance(part, {2.5, 2.9}));
-  }
-  // In the notch: to the edge from (2.5, 2.5) at 45 degrees, 0.4 sin 45.
-  EXPECT_NEAR(nearest, 0.4 / std::numbers::sqrt2, 1e-9);
-  points = {{2000, 2000}, {3000, 3000}, {3000, 2000}, {2000, 3000}};
-  EXPECT_THAT(complaint(file), HasSubstr("obstacles/0/points: must be the outline of a solid"));
 }
 
-// ---- the figures -------------------------------------------------------------------------------
-
-struct PathFiguresTest : ::testing::Test {
-  void at(double x, double y, double distance) {
-    algo::Telemetry t;
-    t.ground_truth = algo::GroundTruth{{x, y, 0}, distance, distance - 0.35, false};
-    recorder.add(t, 1.0);
-  }
-  PathRecorder recorder{0.35, 0.1};
-};
-
-TEST_F(PathFiguresTest, BodyCircleIsMeasuredFromTheHull) {
-  at(0, 0, 1.30);  // the start is no tick gone by, but it is as deep as it is: 1.35 - 1.30
-  at(0.1, 0, 1.20);
-  at(0.2, 0, 1.10);
-  at(0.3, 0, 1.40);
-  EXPECT_NEAR(recorder.figures().body_intrusion, 0.25, 1e-12);      // 1.35 - 1.10
-  EXPECT_NEAR(recorder.figures().body_infringed_time, 0.2, 1e-12);  // two ticks
-}
-
-TEST_F(PathFiguresTest, BendingIsSquaredTurnOverTheLaterSegment) {
-  // East 0.1 m, then north 0.2 m: (pi/2)^2 / 0.2; then 45 degrees on over 0.1 sqrt 2.
-  at(0, 0, 5), at(0.1, 0, 5), at(0.1, 0.2, 5), at(0, 0.3, 5);
-  const double quarter = std::numbers::pi / 2;
-  const double eighth = std::numbers::pi / 4;
-  EXPECT_NEAR(recorder.figures().bending,
-              quarter * quarter / 0.2 + eighth * eighth / (0.1 * std::numbers::sqrt2),
-              1e-9);
-}
-
-TEST_F(PathFiguresTest, StepsBelowFiftyMillimetresAreMerged) {
-  // 30 mm and 30 mm east count as one segment of 60 mm; the jog of 10 mm north is not kept.
-  at(0, 0, 5), at(0.03, 0, 5), at(0.06, 0, 5), at(0.06, 0.01, 5), at(0.12, 0, 5);
-  EXPECT_NEAR(recorder.figures().bending, 0, 1e-12);
-}
-
-TEST(PathFigures, ShareOfTheStripBeforeItsVia) {
-  PathRecorder recorder(0.35, 0.1);
-  const auto tick = [&](double via, double push) {
-    algo::Telemetry t;
-    t.ground_truth = algo::GroundTruth{{0, 0, 0}, 2, 1.65, false};
-    for (const double x : {0.0, via, 0.2}) t.output.strip.append().position_W = {x, 0};
-    t.output.external_left_W = {0, push};
-    recorder.add(t, 1.0);
-  };
-  tick(0.1, 1), tick(0.15, 1), tick(0.05, 1);  // shares 0.5, 0.75, 0.25
-  tick(0.0, 0);                                // nothing pushes: not counted
-  EXPECT_NEAR(recorder.figures().share_mean, 0.5, 1e-12);
-  EXPECT_NEAR(recorder.figures().share_deviation, 0.25, 1e-12);
-}
-
-TEST(Standing, APauseIsARestThatTheRobotDrivesOnFrom) {
-  // At most 1 m/s and 1 rad/s, ticks of 0.05 s: at rest below 2.5 mm and 2.5 mrad a tick.
-  StandingRecorder recorder({.v_max = 1, .omega_max = 1}, 0.05);
-  algo::Pose2 pose{};
-  const auto ticks = [&](int count, double v, double omega) {
-    for (int i = 0; i < count; ++i) {
-      pose = {pose.x + 0.05 * v, pose.y, pose.heading + 0.05 * omega};
-      algo::Telemetry t;
-      t.ground_truth = algo::GroundTruth{pose, 2, 1.65, false};
-      recorder.add(t);
-    }
-  };
-  ticks(1, 0, 0);                        // the start
-  ticks(10, 0.01, 0);                    // 0.5 s of rest before the first motion: no pause
-  ticks(5, 1, 0), ticks(4, 0.01, 0);     // 0.2 s of rest
-  ticks(5, 0, 1), ticks(1, 0, 0);        // turning is no rest; 0.05 s is no pause
-  ticks(5, 0.1, 0), ticks(20, 0, 0.01);  // creeping is no rest; the last rest has no end
-  EXPECT_EQ(recorder.figures().pauses, 1U);
-  EXPECT_NEAR(recorder.figures().pause_time, 0.2, 1e-9);
-  EXPECT_NEAR(recorder.figures().time, 0.5 + 0.2 + 0.05 + 1.0, 1e-9);
-}
-
-RunFigures run_of(Outcome outcome, double time, double path, double clearance, double depth) {
-  RunFigures figures{.outcome = outcome};
-  figures.metrics.time = time;
-  figures.metrics.path_length = path;
-  figures.metrics.min_clearance = clearance;
-  figures.metrics.intrusion = depth;
-  return figures;
-}
-
-Row two_runs(const char* reading) {
+Series two_runs(const char* reading) {
   return {
       "case1",
       reading,
       {run_of(Outcome::Reached, 10, 4.0, 0.70, 0.01), run_of(Outcome::Stuck, 20, 5.0, 0.60, 0.05)}};
 }
 
-TEST(Figures, MeansWorstAndLeastAsTheFileDefinesThem) {
-  const Row row = two_runs("modified");
-  const auto value = [&](const char* metric) { return figure(row, *find_metric(metric)); };
-  EXPECT_DOUBLE_EQ(value("time_s"), 15);
-  EXPECT_DOUBLE_EQ(value("path_mm"), 4500);
-  EXPECT_DOUBLE_EQ(value("min_clearance_mm"), 600);
-  EXPECT_DOUBLE_EQ(value("safety_depth_mm"), 50);
-  EXPECT_DOUBLE_EQ(value("reached"), 1);
-  EXPECT_DOUBLE_EQ(value("runs"), 2);
-  EXPECT_EQ(outcomes_text(row), "1 reached, 1 stuck");
-  EXPECT_FALSE(common_outcome(row));
-  // "Holds for every seed": an upper limit is held against the largest clearance.
-  EXPECT_DOUBLE_EQ(figure_against(row, *find_metric("min_clearance_mm"), false), 700);
-  EXPECT_DOUBLE_EQ(figure_against(row, *find_metric("min_clearance_mm"), true), 600);
-}
-
 // ---- the limits --------------------------------------------------------------------------------
 
-Layout layout_asking(const Acceptance& accept) {
-  Layout layout{.name = "case1"};
-  layout.accept = {accept};
-  return layout;
-}
-
 TEST(Accept, ALimitThatFailsIsSaidWithItsFigure) {
-  PaperFile file;
-  file.layouts = {layout_asking({.reading = "modified",
-                                 .outcome = Outcome::Reached,
-                                 .collisions = 0,
-                                 .limits = {{"path_mm", false, 4500},
-                                            {"path_mm", false, 4499},
-                                            {"min_clearance_mm", true, 600},
-                                            {"min_clearance_mm", true, 601}}})};
-  const std::vector<Row> rows{two_runs("modified")};
+  const auto asked = [](Limit limit) {
+    limit.scenario = "case1";
+    limit.controller = "modified";
+    return limit;
+  };
+  StudyFile file;
+  file.limits = {asked({.outcome = Outcome::Reached}),
+                 asked({.collisions = 0}),
+                 asked({.figure = "path_m", .at_most = 4.5}),
+                 asked({.figure = "path_m", .at_most = 4.499}),
+                 asked({.figure = "min_clearance_m", .at_least = 0.6}),
+                 asked({.figure = "min_clearance_m", .at_least = 0.601}),
+                 asked({.noise_free = true, .outcome = Outcome::Reached})};
+  const std::vector<Series> rows{two_runs("modified")};
   const std::vector<Check> checks = evaluate(file, rows, {});
-  ASSERT_EQ(checks.size(), 6u);
+  ASSERT_EQ(checks.size(), 7u);
   EXPECT_FALSE(checks[0].held);  // one of two is stuck
   EXPECT_EQ(checks[0].figure, "1 reached, 1 stuck");
   EXPECT_TRUE(checks[1].held);
@@ -318,34 +219,37 @@ TEST(Accept, ALimitThatFailsIsSaidWithItsFigure) {
   EXPECT_EQ(checks[3].figure, "4500");
   EXPECT_TRUE(checks[4].held);
   EXPECT_FALSE(checks[5].held);
+  EXPECT_FALSE(checks[6].held);  // there is no run without noise
+  EXPECT_EQ(checks[6].subject, "modified, noise-free");
   EXPECT_FALSE(all_held(checks));
 }
 
 TEST(Accept, AComparisonIsStrict) {
-  PaperFile file;
-  file.layouts = {{.name = "case1"}};
-  file.layouts[0].accept_compare = {{"time_s", "modified", "original"}};
-  std::vector<Row> rows{two_runs("modified"), two_runs("original")};
+  StudyFile file;
+  file.limits = {
+      {.scenario = "case1", .controller = "modified", .figure = "time_s", .below = "original"}};
+  std::vector<Series> rows{two_runs("modified"), two_runs("original")};
   EXPECT_FALSE(all_held(evaluate(file, rows, {})));  // equal is not lower
-  rows[1].runs[0].metrics.time = 10.1;
+  set(rows[1].runs[0], "time_s", 10.1);
   EXPECT_TRUE(all_held(evaluate(file, rows, {})));
+  EXPECT_EQ(evaluate(file, rows, {})[0].subject, "modified < original");
   rows.pop_back();
   EXPECT_FALSE(all_held(evaluate(file, rows, {})));  // nothing to compare with
 }
 
 TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
   const auto row = [](const char* reading, Outcome outcome) {
-    return Row{"case1", reading, {run_of(outcome, 1, 1, 1, 0)}};
+    return Series{"case1", reading, {run_of(outcome, 1, 1, 1, 0)}};
   };
-  std::vector<Row> rows{row("original", Outcome::Stuck),
-                        row("modified_published", Outcome::Stuck),
-                        row("modified_linear", Outcome::Stuck),
-                        row("modified_c1", Outcome::Stuck),
-                        row("modified", Outcome::Reached)};
+  std::vector<Series> rows{row("original", Outcome::Stuck),
+                           row("modified_published", Outcome::Stuck),
+                           row("modified_linear", Outcome::Stuck),
+                           row("modified_c1", Outcome::Stuck),
+                           row("modified", Outcome::Reached)};
   std::vector<Claim> claims = judge_claims(rows);
   ASSERT_EQ(claims.size(), 1u);
   EXPECT_EQ(claims[0].verdict, Verdict::OnlyWithExtension);
-  EXPECT_THAT(claims[0].held_by, ::testing::ElementsAre("modified"));
+  EXPECT_THAT(claims[0].held_by, ElementsAre("modified"));
   rows[1].runs[0].outcome = Outcome::Reached;
   EXPECT_EQ(judge_claims(rows)[0].verdict, Verdict::Reproduced);
   rows[0].runs[0].outcome = Outcome::Reached;  // the original is not stuck: nothing of it holds
@@ -354,29 +258,29 @@ TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
 
 /// exp1's goal is 773 mm from the cylinder, and a run may end 100 mm beyond it.
 TEST(FullStrip, IsNotBlamedForWhereAGoalLies) {
-  const Depths least = least_depths(embedded_paper_file());
-  EXPECT_NEAR(least.at("exp1"), 127, 1);
+  const Depths least = least_depths(embedded_study_file());
+  EXPECT_NEAR(least.at("exp1"), 0.127, 0.001);
   EXPECT_EQ(least.at("case1"), 0);
-  const Row row{"exp1", "strip", {run_of(Outcome::Reached, 1, 1, 1, 0.159)}};
+  const Series row{"exp1", "strip", {run_of(Outcome::Reached, 1, 1, 1, 0.159)}};
   EXPECT_THAT(strip_sentences(strip_beside({&row, 1}, {}, least)),
               HasSubstr("exp1 by 159 mm (127 mm at least"));
 }
 
 TEST(FullStrip, IsHeldAgainstTheReadingsThatReach) {
   const auto row = [](const char* reading, Outcome outcome, double turning, double time) {
-    Row made{"case1", reading, {run_of(outcome, time, 1, 1, 0)}};
-    made.runs[0].metrics.turning = turning;
-    made.runs[0].path.bending = turning;
+    Series made{"case1", reading, {run_of(outcome, time, 1, 1, 0)}};
+    set(made.runs[0], "turning_rad", turning);
+    set(made.runs[0], "bending_rad2_per_m", turning);
     return made;
   };
-  std::vector<Row> strip{row("strip", Outcome::Reached, 2, 50)};
-  const std::vector<Row> readings{row("original", Outcome::Stuck, 0, 10),
-                                  row("modified", Outcome::Reached, 3, 80),
-                                  row("via_kept", Outcome::Reached, 1, 50)};
+  std::vector<Series> strip{row("strip", Outcome::Reached, 2, 50)};
+  const std::vector<Series> readings{row("original", Outcome::Stuck, 0, 10),
+                                     row("modified", Outcome::Reached, 3, 80),
+                                     row("via_kept", Outcome::Reached, 1, 50)};
   const StripBeside beside = strip_beside(strip, readings);
   EXPECT_EQ(beside.rows, 2u);
-  EXPECT_THAT(beside.turns_less, ::testing::ElementsAre("case1 via_kept"));
-  EXPECT_THAT(beside.faster, ::testing::ElementsAre("case1 via_kept"));  // equal is not faster
+  EXPECT_THAT(beside.turns_less, ElementsAre("case1 via_kept"));
+  EXPECT_THAT(beside.faster, ElementsAre("case1 via_kept"));  // equal is not faster
   EXPECT_THAT(strip_sentences(beside), HasSubstr("turns less in 1 of 2 (not: case1 via_kept)"));
   EXPECT_EQ(strip_table(strip, readings).rows[0][2], "1 stuck");
   strip[0].runs[0].outcome = Outcome::Collided;
@@ -396,13 +300,17 @@ TEST(Sweeps, RisingAllowsTheNoiseAtAStepAndWantsMoreInAll) {
 
 TEST(Study, OneScenarioEndToEnd) {
   json file = short_file();
-  file["scenarios"][0]["accept"] = {{"modified",
-                                     {{"outcome", "reached"},
-                                      {"collisions", 0},
-                                      {"time_s_at_most", 6},
-                                      {"path_mm_at_most", 1000}}}};
-  file["scenarios"][0]["accept_noise_free"] = {{"original", {{"outcome", "reached"}}}};
-  const PaperFile read = paper_file_from_json(file);
+  const auto asked = [](const char* controller, json limit) {
+    limit["scenario"] = "free";
+    limit["controller"] = controller;
+    return limit;
+  };
+  file["limits"] = {asked("modified", {{"outcome", "reached"}}),
+                    asked("modified", {{"collisions", 0}}),
+                    asked("modified", {{"figure", "time_s"}, {"at_most", 6}}),
+                    asked("modified", {{"figure", "path_m"}, {"at_most", 1}}),
+                    asked("original", {{"outcome", "reached"}, {"noise_free", true}})};
+  const StudyFile read = study_file_from_json(file);
   Study study = run_study(read, {.seeds = 2, .full_simulator = true, .threads = 2});
   EXPECT_EQ(study.paper.size(), readings().size());
   EXPECT_EQ(study.noise_free.size(), readings().size());
@@ -412,16 +320,16 @@ TEST(Study, OneScenarioEndToEnd) {
   EXPECT_EQ(study.strip_full.size(), 1u);
   EXPECT_EQ(study.checks.size(), 5u);
   EXPECT_TRUE(all_held(study.checks)) << to_text(study);
-  const Row& modified = *find_row(study.paper, "free", "modified");
+  const Series& modified = *find_series(study.paper, "free", "modified");
   EXPECT_EQ(outcomes_text(modified), "2 reached");
   // Straight on at 200 mm/s until within 100 mm of 1000 mm, in steps of 10 mm; slower within S.
-  EXPECT_NEAR(modified.runs[0].metrics.path_length, 0.905, 0.01);
+  EXPECT_NEAR(modified.runs[0]["path_m"], 0.905, 0.01);
   EXPECT_GT(modified.runs[0].track_W.size(), 80u);
   EXPECT_TRUE(modified.runs[1].track_W.empty());
-  EXPECT_TRUE(to_json(study)["paper_conditions"][0]["metrics"]["min_clearance_mm"].is_null());
+  EXPECT_TRUE(to_json(study)["paper_conditions"][0]["metrics"]["min_clearance_m"].is_null());
 
-  file["scenarios"][0]["accept"]["modified"]["path_mm_at_most"] = 100;
-  study.checks = evaluate(paper_file_from_json(file), study.paper, study.noise_free);
+  file["limits"][3]["at_most"] = 0.1;
+  study.checks = evaluate(study_file_from_json(file), study.paper, study.noise_free);
   EXPECT_FALSE(all_held(study.checks));
   EXPECT_THAT(to_text(study), HasSubstr("FAILED"));
 }
@@ -429,7 +337,8 @@ TEST(Study, OneScenarioEndToEnd) {
 TEST(Study, DoesNotDependOnTheNumberOfThreads) {
   json file = paper();
   file["scenarios"] = json::array({file["scenarios"][4]});  // exp1
-  const PaperFile read = paper_file_from_json(file);
+  file["limits"] = json::array();
+  const StudyFile read = study_file_from_json(file);
   const auto text = [&](unsigned threads) {
     return to_json(run_study(read, {.seeds = 2, .full_simulator = false, .threads = threads}))
         .dump();
@@ -438,7 +347,7 @@ TEST(Study, DoesNotDependOnTheNumberOfThreads) {
 }
 
 TEST(Markdown, WritesTheDocumentAndAPictureOfEachLayout) {
-  const PaperFile file = paper_file_from_json(short_file());
+  const StudyFile file = study_file_from_json(short_file());
   const Study study = run_study(file, {.seeds = 1, .full_simulator = false});
   const auto folder =
       std::filesystem::temp_directory_path() / ("tautline_reproduce_" + std::to_string(::getpid()));
@@ -459,18 +368,6 @@ TEST(Markdown, WritesTheDocumentAndAPictureOfEachLayout) {
   EXPECT_THAT(picture, HasSubstr("<svg xmlns="));
   EXPECT_THAT(picture, HasSubstr("modified: reached"));
   std::filesystem::remove_all(folder);
-}
-
-TEST(SvgPlot, PutsMetresUpsideUpAndEscapesWords) {
-  // 2 m x 1 m on 220 px with 10 px of margin: 100 px a metre; y = 1 is at the top margin.
-  SvgPlot plot({0, 0}, {2, 1}, 220, 0);
-  plot.circle({1, 1}, 0.5, "fill=\"none\"");
-  const std::vector<algo::Vec2> line{{0, 0}, {2, 0.5}};
-  plot.polyline(line, "stroke=\"red\"");
-  const std::string document = plot.document("a < b & c");
-  EXPECT_THAT(document, HasSubstr("<circle cx=\"110.0\" cy=\"10.0\" r=\"50.0\""));
-  EXPECT_THAT(document, HasSubstr("points=\"10.0,110.0 210.0,60.0\""));
-  EXPECT_THAT(document, HasSubstr("<title>a &lt; b &amp; c</title>"));
 }
 
 }  // namespace

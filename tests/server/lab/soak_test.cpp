@@ -36,18 +36,38 @@ TEST(RandomWorld, AClosedDoorIsNoWay) {
 }
 
 TEST(Soak, NothingThatMustNotHappenDoes) {
-  for (const Outcome& o : run_worlds({.worlds = 3})) {
-    EXPECT_FALSE(is_fault(o.ending)) << o.seed << ": " << name(o.ending) << ", " << o.why;
-    EXPECT_GE(o.min_clearance, 0);
+  const std::vector<World> worlds = run_worlds({.worlds = 3});
+  for (const World& world : worlds) {
+    EXPECT_FALSE(is_fault(world.row))
+        << world.seed << ": " << ending(world.row) << ", " << world.row.reason;
+    EXPECT_GE(world.row["min_clearance_m"], 0);
   }
+  const experiment::Table table = endings_table(worlds);
+  int counted = 0;
+  for (const auto& line : table.rows) counted += std::stoi(line[1]);
+  EXPECT_EQ(counted, 3);
 }
 
 /// It backed, in these, into what its scanner had never looked at.
 TEST(Soak, WorldsWhereTheRobotOnceBackedIntoTheUnseen) {
   for (const std::uint64_t seed : {227U, 350U, 509U}) {
-    const Outcome o = run_world(seed, "strip");
-    EXPECT_EQ(o.ending, Ending::Reached) << seed << ": " << o.why;
+    const experiment::Row row = run_trial(trial_of(seed, "strip"));
+    EXPECT_EQ(ending(row), "reached") << seed << ": " << row.reason;
   }
+}
+
+TEST(Soak, EachFaultHasItsName) {
+  const auto row = [](algo::Outcome outcome, double silent, double not_finite) {
+    return experiment::Row{.outcome = outcome,
+                           .figures = {{"silent", silent}, {"not_finite", not_finite}}};
+  };
+  EXPECT_EQ(ending(row(algo::Outcome::Stuck, 0, 0)), "gave a reason");
+  EXPECT_EQ(ending(row(algo::Outcome::Stuck, 1, 0)), "silent");
+  EXPECT_EQ(ending(row(algo::Outcome::OutOfTime, 0, 0)), "out of time");
+  EXPECT_FALSE(is_fault(row(algo::Outcome::OutOfTime, 0, 0)));
+  EXPECT_TRUE(is_fault(row(algo::Outcome::Stuck, 1, 0)));
+  EXPECT_TRUE(is_fault(row(algo::Outcome::Collided, 0, 0)));
+  EXPECT_TRUE(is_fault(row(algo::Outcome::Failed, 0, 1)));
 }
 
 }  // namespace

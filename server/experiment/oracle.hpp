@@ -1,4 +1,4 @@
-// server/lab/barn/oracle.hpp: whether a contact with something that moves could have been avoided.
+// server/experiment/oracle.hpp: whether a contact with something that moves could have been avoided.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 #include "algo/robot.hpp"
 #include "sim/scenario.hpp"
 
-namespace server::barn {
+namespace server::experiment {
 
 /// The robot at one tick, as it truly was.
 struct Moment {
@@ -31,4 +31,4 @@ Contact judge_contact(const sim::Scenario& scenario,
                       const algo::RobotSpec& spec,
                       const std::vector<Moment>& trail);
 
-}  // namespace server::barn
+}  // namespace server::experiment

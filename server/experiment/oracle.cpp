@@ -1,5 +1,5 @@
-// server/lab/barn/oracle.cpp: the motions tried with hindsight.
-#include "server/lab/barn/oracle.hpp"
+// server/experiment/oracle.cpp: the motions tried with hindsight.
+#include "server/experiment/oracle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "algo/full_strip/motion.hpp"
 #include "sim/obstacle_set.hpp"
 
-namespace server::barn {
+namespace server::experiment {
 namespace {
 
 constexpr double kBefore = 3;      // [s] before the contact the motions begin
@@ -103,4 +103,4 @@ Contact judge_contact(const sim::Scenario& scenario,
   return avoidable ? Contact::Avoidable : Contact::Unavoidable;
 }
 
-}  // namespace server::barn
+}  // namespace server::experiment

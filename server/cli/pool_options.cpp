@@ -1,0 +1,60 @@
+// server/cli/pool_options.cpp: threads, shard, rows and judges.
+#include "server/cli/pool_options.hpp"
+
+#include <exception>
+
+#include "server/cli/cli.hpp"
+#include "server/experiment/judge.hpp"
+#include "server/experiment/table.hpp"
+
+namespace server {
+namespace {
+
+/// What `check` throws, as the complaint of an option.
+template <typename Check>
+std::string complaint(const Check& check) {
+  try {
+    check();
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+void add_pool_options(CLI::App& command,
+                      experiment::PoolOptions& pool,
+                      const std::string& threads) {
+  command.add_option(threads, pool.threads, "0 (default): one a core")->check(CLI::Range(0, 256));
+  command
+      .add_option_function<std::string>(
+          "--shard",
+          [&pool](const std::string& text) { pool.shard = experiment::shard_from_text(text); },
+          "Only each Nth run, from number I (0 is the first) on: the shards of all I give, "
+          "interleaved, the whole")
+      ->check([](const std::string& text) {
+        return complaint([&] { experiment::shard_from_text(text); });
+      })
+      ->type_name("I/N");
+}
+
+void add_rows_option(CLI::App& command, std::string& file) {
+  command.add_option("--rows", file, "Also write every run with every figure there")
+      ->check(file_to_write())
+      ->check([](const std::string& path) -> std::string {
+        return experiment::is_table_file(path)
+                   ? ""
+                   : path + ": must end in .txt, .md, .csv, .tex or .json";
+      })
+      ->type_name("FILE");
+}
+
+CLI::Validator judge_name() {
+  const auto check = [](const std::string& name) {
+    return complaint([&] { experiment::find_judge(name); });
+  };
+  return {check, ""};
+}
+
+}  // namespace server

@@ -1,0 +1,19 @@
+// server/cli/pool_options.hpp: options of the commands that run many trials.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "server/experiment/pool.hpp"
+
+namespace server {
+
+/// `threads` ("--workers") and --shard.
+void add_pool_options(CLI::App& command, experiment::PoolOptions& pool, const std::string& threads);
+/// --rows FILE: every run with every figure.
+void add_rows_option(CLI::App& command, std::string& file);
+/// The name of a judge.
+CLI::Validator judge_name();
+
+}  // namespace server

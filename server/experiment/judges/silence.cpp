@@ -1,0 +1,112 @@
+// server/experiment/judges/silence.cpp: whether a robot that stands says why.
+#include <cmath>
+#include <optional>
+
+#include "algo/explain.hpp"
+#include "server/experiment/judge.hpp"
+
+namespace server::experiment::judges {
+namespace {
+
+constexpr double kTimeLimit = 300;  // [s]
+constexpr double kStands = 20;      // [s] without way or turn: it stands
+constexpr double kWay = 0.05;       // [m]
+constexpr double kTurn = 0.2;       // [rad]
+
+constexpr Column kColumns[] = {
+    {"silent", Aggregate::Sum, 0},     // 1: it stood for 20 s and gave no reason
+    {"not_finite", Aggregate::Sum, 0}  // 1: a command was not a number
+};
+
+bool finite(const algo::Telemetry& t) {
+  return std::isfinite(t.output.twist.v) && std::isfinite(t.output.twist.omega) &&
+         std::isfinite(t.command.base.v) && std::isfinite(t.command.base.omega) &&
+         t.hold != algo::Hold::NotFinite;
+}
+
+/// What a robot may say while it stands. All else promises motion.
+bool gives_reason(const algo::Telemetry& t) {
+  if (t.mission == algo::Mission::Stuck || t.mission == algo::Mission::Held) return true;
+  switch (t.output.manner) {
+    case algo::Manner::NoWay:
+    case algo::Manner::GoalTaken:
+    case algo::Manner::Blocked:
+    case algo::Manner::NoPlan:
+    case algo::Manner::Walled:
+    case algo::Manner::NoWindow:
+    case algo::Manner::Cornered:
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// How long the robot has been where it is.
+class Stand {
+ public:
+  double seconds(const algo::Pose2& pose, double stamp) {
+    const bool moved = (pose.position() - at_.position()).norm() > kWay ||
+                       std::abs(algo::wrap_angle(pose.heading - at_.heading)) > kTurn;
+    if (moved || since_ < 0) {
+      at_ = pose;
+      since_ = stamp;
+    }
+    return stamp - since_;
+  }
+
+ private:
+  algo::Pose2 at_{};
+  double since_ = -1;  // [s]
+};
+
+/// Ends a run when the robot arrives, collides, stands for 20 s or has driven for 300 s, with what
+/// it said last as the reason.
+class Silence final : public Judge {
+ public:
+  explicit Silence(const JudgedRun& /*run*/) {}
+
+  void see(const algo::Telemetry& t) override {
+    if (!t.ground_truth || ending_) return;
+    const double stamp = t.observation.stamp;
+    reason_ = gives_reason(t) ? stamp : reason_;
+    not_finite_ = !finite(t);
+    if (not_finite_) return end(algo::Outcome::Failed, t);
+    if (t.ground_truth->collided) return end(algo::Outcome::Collided, t);
+    if (t.mission == algo::Mission::Arrived) return end(algo::Outcome::Reached, t);
+    if (stand_.seconds(t.ground_truth->pose, stamp) > kStands) {
+      // Said at some time while it stood: between two attempts it may speak of the attempt.
+      silent_ = stamp - reason_ >= kStands;
+      return end(algo::Outcome::Stuck, t);
+    }
+    if (stamp > kTimeLimit) end(algo::Outcome::OutOfTime, t);
+  }
+
+  void write(std::span<double> row) const override {
+    row[0] = silent_ ? 1 : 0;
+    row[1] = not_finite_ ? 1 : 0;
+  }
+
+  std::optional<Ending> ending() const override { return ending_; }
+
+ private:
+  void end(algo::Outcome outcome, const algo::Telemetry& t) {
+    ending_ = Ending{outcome, algo::explain(t).why};
+  }
+
+  Stand stand_{};
+  double reason_ = -kStands;  // [s] when it last gave one
+  bool silent_ = false;
+  bool not_finite_ = false;
+  std::optional<Ending> ending_{};
+};
+
+}  // namespace
+
+JudgeInfo silence() {
+  return {.help = "Whether the robot stood still without saying why, or commanded no number",
+          .columns = kColumns,
+          .make = make_judge<Silence>,
+          .ends = true};
+}
+
+}  // namespace server::experiment::judges

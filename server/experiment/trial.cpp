@@ -1,0 +1,155 @@
+// server/experiment/trial.cpp: the judges round one headless run.
+#include "server/experiment/trial.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <optional>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace server::experiment {
+namespace {
+
+/// [s] That this thread has had a core: what else runs on the machine does not count.
+double cpu_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// The robot itself, with a clock: from each observation to the question for the truth, which the
+/// loop asks right after the control tick.
+class TimedRobot final : public algo::Robot {
+ public:
+  TimedRobot(std::unique_ptr<algo::Robot> robot, std::vector<float>& tick_us)
+      : robot_(std::move(robot)), tick_us_(tick_us) {}
+
+  const algo::RobotSpec& spec() const override { return robot_->spec(); }
+  void reset(algo::Observation& observation) override {
+    robot_->reset(observation);
+    begin_ = cpu_time();
+  }
+  bool step(const algo::Command& command, algo::Observation& observation) override {
+    const bool stepped = robot_->step(command, observation);
+    begin_ = cpu_time();
+    return stepped;
+  }
+  void stop() noexcept override { robot_->stop(); }
+  std::optional<std::string> edit(const algo::Request& request) override {
+    return robot_->edit(request);
+  }
+  std::optional<algo::GroundTruth> ground_truth() const override {
+    tick_us_.push_back(static_cast<float>((cpu_time() - begin_) * 1e6));
+    return robot_->ground_truth();
+  }
+  void set_pace(const algo::Pace& pace) override { robot_->set_pace(pace); }
+  std::uint64_t missed_periods() const override { return robot_->missed_periods(); }
+
+ private:
+  std::unique_ptr<algo::Robot> robot_;
+  std::vector<float>& tick_us_;
+  double begin_ = 0;  // [s]
+};
+
+/// The judges of one trial, each before its columns.
+class Bench {
+ public:
+  Bench(const Trial& trial, const algo::RobotSpec& robot) {
+    for (const JudgeChoice& choice : trial.judges) {
+      const JudgeInfo& info = find_judge(choice.name);
+      for (const auto& [name, value] : choice.settings) {
+        if (std::ranges::find(info.settings, name) == info.settings.end()) {
+          throw std::invalid_argument(
+              fmt::format("the judge '{}' has no setting '{}'", info.name, name));
+        }
+      }
+      seats_.push_back({&info, info.make({trial.spec, robot, choice.settings})});
+      if (choice.name == trial.until && info.ends) until_ = seats_.back().judge.get();
+    }
+    if (!trial.until.empty() && until_ == nullptr) {
+      throw std::invalid_argument(
+          fmt::format("no judge '{}' of the trial has an ending of its own", trial.until));
+    }
+  }
+
+  std::optional<Ending> see(const algo::Telemetry& t) {
+    for (const Seat& seat : seats_) seat.judge->see(t);
+    return until_ != nullptr ? until_->ending() : std::nullopt;
+  }
+
+  std::vector<Row::Figure> figures() const {
+    std::vector<Row::Figure> all;
+    for (const Seat& seat : seats_) {
+      std::vector<double> values(seat.info->columns.size());
+      seat.judge->write(values);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        all.emplace_back(seat.info->columns[i].name, values[i]);
+      }
+    }
+    return all;
+  }
+
+ private:
+  struct Seat {
+    const JudgeInfo* info = nullptr;
+    std::unique_ptr<Judge> judge{};
+  };
+  std::vector<Seat> seats_{};
+  const Judge* until_ = nullptr;
+};
+
+}  // namespace
+
+double Row::operator[](std::string_view column) const {
+  const auto found = std::ranges::find(figures, column, &Figure::first);
+  if (found == figures.end()) {
+    throw std::out_of_range(fmt::format("no judge wrote '{}'", column));
+  }
+  return found->second;
+}
+
+Row run_trial(const Trial& trial, const TrialOptions& options) {
+  Row row;
+  std::unique_ptr<algo::Robot> robot = make_robot(trial.spec);
+  Bench bench(trial, robot->spec());
+  HeadlessOptions headless{
+      .pace = options.pace, .cancelled = options.cancelled, .until_watch = !trial.until.empty()};
+  if (options.record) headless.record = options.record(robot->spec());
+  if (trial.time_ticks) robot = std::make_unique<TimedRobot>(std::move(robot), row.tick_us);
+  bool judged = false;
+  headless.watch = [&](const algo::Telemetry& t) {
+    if (trial.keep_track && t.ground_truth) {
+      row.track_W.push_back(t.ground_truth->pose.position());
+    }
+    std::optional<Ending> ending = bench.see(t);
+    judged = ending.has_value();
+    return ending;
+  };
+  HeadlessResult result = run_headless(trial.spec, *robot, headless, options.stop);
+  row.outcome = result.run.outcome;
+  row.reason = std::move(result.run.reason);
+  row.broken = row.outcome == algo::Outcome::Failed && !judged;
+  row.figures = bench.figures();
+  return row;
+}
+
+std::vector<Row> run_trials(std::size_t count,
+                            const std::function<Trial(std::size_t)>& trial,
+                            const PoolOptions& options) {
+  std::vector<Row> rows(options.shard.share(count), Row{.outcome = algo::Outcome::Stopped});
+  for_each(count, options, [&](std::size_t i, const std::stop_token& stop) {
+    const Trial each = trial(i);
+    Row row;
+    try {
+      row = run_trial(each, {.stop = stop});
+    } catch (const std::exception& e) {
+      throw std::runtime_error(fmt::format("{}: {}", each.name, e.what()));
+    }
+    if (row.broken) throw std::runtime_error(fmt::format("{}: {}", each.name, row.reason));
+    rows[i / options.shard.count] = std::move(row);
+  });
+  return rows;
+}
+
+}  // namespace server::experiment

@@ -1,0 +1,296 @@
+// tests/server/experiment/judge_test.cpp: each judge on ticks made by hand, and the table of all.
+#include "server/experiment/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "algo/driving.hpp"
+#include "server/experiment/oracle.hpp"
+
+namespace server::experiment {
+namespace {
+
+using algo::Outcome;
+
+/// A judge of a run of ticks that a test makes.
+class Watched {
+ public:
+  explicit Watched(const char* judge, Settings settings = {}) : settings_(std::move(settings)) {
+    info_ = &find_judge(judge);
+    spec.parameters.set(&algo::kSafetyDistance, 1.0);
+    spec.parameters.set(&algo::kMaxSpeed, 1.0);
+    spec.parameters.set(&algo::kMaxTurnRate, 1.0);
+    robot.radius = 0.35;
+    robot.period = 0.1;
+  }
+
+  /// The next tick, one period after the last.
+  void see(algo::Telemetry t) {
+    if (!judge_) judge_ = info_->make({spec, robot, settings_});
+    t.tick = ticks_;
+    t.observation.stamp = robot.period * static_cast<double>(ticks_++);
+    judge_->see(t);
+  }
+  /// The same, of a robot at `pose` with an obstacle `distance` from its centre.
+  void at(const algo::Pose2& pose, double distance, bool collided = false) {
+    algo::Telemetry t;
+    t.ground_truth = algo::GroundTruth{pose, distance, distance - robot.radius, collided};
+    see(std::move(t));
+  }
+
+  double operator[](std::string_view column) const {
+    std::vector<double> row(info_->columns.size());
+    judge_->write(row);
+    const auto found = std::ranges::find(info_->columns, column, &Column::name);
+    return row.at(static_cast<std::size_t>(found - info_->columns.begin()));
+  }
+  std::optional<Ending> ending() const { return judge_->ending(); }
+
+  RunSpec spec{};
+  algo::RobotSpec robot{};
+
+ private:
+  const JudgeInfo* info_ = nullptr;
+  Settings settings_{};
+  std::unique_ptr<Judge> judge_{};
+  std::uint64_t ticks_ = 0;
+};
+
+TEST(Judges, HaveNamesAndColumnsOfTheirOwn) {
+  std::set<std::string_view> columns;
+  std::string_view last;
+  for (const JudgeInfo& judge : judge_table()) {
+    EXPECT_LT(last, judge.name);
+    last = judge.name;
+    EXPECT_NE(judge.help, "") << judge.name;
+    ASSERT_FALSE(judge.columns.empty()) << judge.name;
+    for (const Column& column : judge.columns) {
+      EXPECT_TRUE(columns.insert(column.name).second) << column.name;
+      EXPECT_EQ(find_column(column.name), &column);
+    }
+  }
+  EXPECT_EQ(find_judge("standing").name, "standing");
+  EXPECT_EQ(find_column("beauty"), nullptr);
+  EXPECT_THROW(find_judge("beauty"), std::invalid_argument);
+}
+
+// ---- path --------------------------------------------------------------------------------------
+
+TEST(PathJudge, BodyCircleIsMeasuredFromTheHull) {
+  Watched path("path");
+  path.at({0, 0, 0},
+          1.30);  // the start is no tick gone by, but it is as deep as it is: 1.35 - 1.30
+  path.at({0.1, 0, 0}, 1.20);
+  path.at({0.2, 0, 0}, 1.10);
+  path.at({0.3, 0, 0}, 1.40);
+  EXPECT_NEAR(path["body_depth_m"], 0.25, 1e-12);     // 1.35 - 1.10
+  EXPECT_NEAR(path["body_infringed_s"], 0.2, 1e-12);  // two ticks
+}
+
+TEST(PathJudge, BendingIsSquaredTurnOverTheLaterSegment) {
+  // East 0.1 m, then north 0.2 m: (pi/2)^2 / 0.2; then 45 degrees on over 0.1 sqrt 2.
+  Watched path("path");
+  path.at({0, 0, 0}, 5), path.at({0.1, 0, 0}, 5), path.at({0.1, 0.2, 0}, 5);
+  path.at({0, 0.3, 0}, 5);
+  const double quarter = std::numbers::pi / 2;
+  const double eighth = std::numbers::pi / 4;
+  EXPECT_NEAR(path["bending_rad2_per_m"],
+              quarter * quarter / 0.2 + eighth * eighth / (0.1 * std::numbers::sqrt2),
+              1e-9);
+}
+
+TEST(PathJudge, StepsBelowFiftyMillimetresAreMerged) {
+  // 30 mm and 30 mm east count as one segment of 60 mm; the jog of 10 mm north is not kept.
+  Watched path("path");
+  path.at({0, 0, 0}, 5), path.at({0.03, 0, 0}, 5), path.at({0.06, 0, 0}, 5);
+  path.at({0.06, 0.01, 0}, 5), path.at({0.12, 0, 0}, 5);
+  EXPECT_NEAR(path["bending_rad2_per_m"], 0, 1e-12);
+}
+
+TEST(PathJudge, ShareOfTheStripBeforeItsVia) {
+  Watched path("path");
+  const auto tick = [&](double via, double push) {
+    algo::Telemetry t;
+    t.ground_truth = algo::GroundTruth{{0, 0, 0}, 2, 1.65, false};
+    for (const double x : {0.0, via, 0.2}) t.output.strip.append().position_W = {x, 0};
+    t.output.external_left_W = {0, push};
+    path.see(std::move(t));
+  };
+  tick(0.1, 1), tick(0.15, 1), tick(0.05, 1);  // shares 0.5, 0.75, 0.25
+  tick(0.0, 0);                                // nothing pushes: not counted
+  EXPECT_NEAR(path["strip_share"], 0.5, 1e-12);
+  EXPECT_NEAR(path["strip_share_deviation"], 0.25, 1e-12);
+}
+
+// ---- standing ----------------------------------------------------------------------------------
+
+TEST(StandingJudge, APauseIsARestThatTheRobotDrivesOnFrom) {
+  // At most 1 m/s and 1 rad/s, ticks of 0.05 s: at rest below 2.5 mm and 2.5 mrad a tick.
+  Watched standing("standing");
+  standing.robot.period = 0.05;
+  algo::Pose2 pose{};
+  const auto ticks = [&](int count, double v, double omega) {
+    for (int i = 0; i < count; ++i) {
+      pose = {pose.x + 0.05 * v, pose.y, pose.heading + 0.05 * omega};
+      standing.at(pose, 2);
+    }
+  };
+  ticks(1, 0, 0);                        // the start
+  ticks(10, 0.01, 0);                    // 0.5 s of rest before the first motion: no pause
+  ticks(5, 1, 0), ticks(4, 0.01, 0);     // 0.2 s of rest
+  ticks(5, 0, 1), ticks(1, 0, 0);        // turning is no rest; 0.05 s is no pause
+  ticks(5, 0.1, 0), ticks(20, 0, 0.01);  // creeping is no rest; the last rest has no end
+  EXPECT_EQ(standing["pauses"], 1);
+  EXPECT_NEAR(standing["pause_s"], 0.2, 1e-9);
+  EXPECT_NEAR(standing["standing_s"], 0.5 + 0.2 + 0.05 + 1.0, 1e-9);
+}
+
+// ---- metrics and place -------------------------------------------------------------------------
+
+TEST(MetricsJudge, MeasuresAgainstTheSafetyDistanceOfTheRun) {
+  Watched metrics("metrics");
+  metrics.at({0, 0, 0}, 2), metrics.at({0.1, 0, 0}, 0.9), metrics.at({0.2, 0, 0}, 0.8);
+  EXPECT_NEAR(metrics["path_m"], 0.2, 1e-12);
+  EXPECT_NEAR(metrics["time_s"], 0.2, 1e-12);
+  EXPECT_NEAR(metrics["safety_depth_m"], 0.2, 1e-12);
+  EXPECT_NEAR(metrics["safety_infringed_s"], 0.2, 1e-12);
+  EXPECT_NEAR(metrics["min_clearance_m"], 0.45, 1e-12);
+}
+
+TEST(PlaceJudge, IsTheLastTruePoseOrUnknown) {
+  Watched place("place");
+  place.see({});
+  EXPECT_TRUE(std::isnan(place["end_x_m"]));
+  place.at({1, 2, 0.5}, 3);
+  EXPECT_EQ(place["end_x_m"], 1);
+  EXPECT_EQ(place["end_y_m"], 2);
+  EXPECT_EQ(place["end_heading_rad"], 0.5);
+}
+
+// ---- barn_score --------------------------------------------------------------------------------
+
+struct BarnScoreTest : ::testing::Test {
+  BarnScoreTest() {
+    barn.spec.scenario.goal = algo::SetGoal{{6, 0}, std::nullopt};
+    barn.robot.period = 1;
+  }
+  Watched barn{"barn_score", {{"optimal_length", 2.0}}};  // at 2 m/s: 1 s
+};
+
+TEST_F(BarnScoreTest, ItsClockBeginsATenthOfAMetreFromTheStart) {
+  barn.at({0, 0, 0}, 9), barn.at({0.05, 0, 0}, 9), barn.at({0.2, 0, 0}, 9);  // at 2 s
+  barn.at({2, 0, 0}, 9), barn.at({4, 0, 0}, 9);
+  EXPECT_FALSE(barn.ending());
+  barn.at({5.1, 0, 0}, 9);  // at 5 s, within 1 m of the goal
+  ASSERT_TRUE(barn.ending());
+  EXPECT_EQ(barn.ending()->outcome, Outcome::Reached);
+  EXPECT_EQ(barn["barn_time_s"], 3);
+  EXPECT_DOUBLE_EQ(barn["barn_score"], 1.0 / 3);          // OT / AT, within 2 OT and 8 OT
+  EXPECT_DOUBLE_EQ(barn["barn_score_quarter"], 1.0 / 4);  // AT counts as 4 OT at least
+}
+
+TEST_F(BarnScoreTest, AContactScoresNothing) {
+  barn.at({0, 0, 0}, 9), barn.at({5.5, 0, 0}, 0, true);
+  EXPECT_EQ(barn.ending()->outcome, Outcome::Collided);
+  EXPECT_EQ(barn["barn_score"], 0);
+}
+
+TEST_F(BarnScoreTest, ARobotThatNeverMovesIsGivenAMinute) {
+  for (int second = 0; second < 60; ++second) barn.at({0, 0, 0}, 9);
+  EXPECT_FALSE(barn.ending());
+  barn.at({0, 0, 0}, 9);
+  EXPECT_EQ(barn.ending()->outcome, Outcome::OutOfTime);
+  EXPECT_EQ(barn["barn_time_s"], 0);
+}
+
+// ---- contact -----------------------------------------------------------------------------------
+
+TEST(ContactJudge, SpeaksOfWhatMovesOnly) {
+  for (const bool moves : {true, false}) {
+    Watched contact("contact");
+    contact.robot = {.radius = 0.35,
+                     .period = 0.05,
+                     .max_v = 1,
+                     .max_omega = 2,
+                     .max_acceleration = 2,
+                     .max_angular_acceleration = 4};
+    algo::Obstacle cylinder{.id = 1, .shape = algo::Cylinder{.radius = 0.5}};
+    cylinder.pose_W = {10, 0, 0};
+    contact.spec.scenario.obstacles.push_back(cylinder);
+    sim::ObstaclePath path;
+    path.id = 1;
+    path.period = 20;
+    path.keys = {{0, {10, 0}}, {20, {-10, 0}}};
+    if (moves) contact.spec.scenario.paths.push_back(path);
+    for (int k = 0; k <= 183; ++k) contact.at({0, 0, 1.57}, 5, k == 183);  // it arrives at 9.15 s
+    EXPECT_EQ(contact["contact"], static_cast<double>(moves ? Contact::Avoidable : Contact::None));
+  }
+}
+
+// ---- silence -----------------------------------------------------------------------------------
+
+struct SilenceTest : ::testing::Test {
+  SilenceTest() { silence.robot.period = 1; }
+  /// A second at `x`.
+  void tick(double x, algo::Manner manner, algo::Mission mission = algo::Mission::Driving) {
+    algo::Telemetry t;
+    t.ground_truth = algo::GroundTruth{{x, 0, 0}, 5, 4.65, collided};
+    t.output.manner = manner;
+    t.output.twist.v = speed;
+    t.mission = mission;
+    silence.see(std::move(t));
+  }
+  Watched silence{"silence"};
+  bool collided = false;
+  double speed = 0;
+};
+
+TEST_F(SilenceTest, StandingWithoutAReasonIsSilent) {
+  for (int second = 0; second <= 20; ++second) tick(0, algo::Manner::Following);
+  EXPECT_FALSE(silence.ending());
+  tick(0, algo::Manner::Following);
+  ASSERT_TRUE(silence.ending());
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Stuck);
+  EXPECT_EQ(silence["silent"], 1);
+}
+
+TEST_F(SilenceTest, AReasonGivenMeanwhileIsEnough) {
+  for (int second = 0; second <= 21; ++second) {
+    tick(0, second == 12 ? algo::Manner::NoWay : algo::Manner::Following);
+  }
+  ASSERT_TRUE(silence.ending());
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Stuck);
+  EXPECT_NE(silence.ending()->reason, "");
+  EXPECT_EQ(silence["silent"], 0);
+}
+
+TEST_F(SilenceTest, WhoMovesMayKeepSilent) {
+  for (int second = 0; second <= 300; ++second) tick(0.1 * second, algo::Manner::Following);
+  EXPECT_FALSE(silence.ending());
+  tick(31, algo::Manner::Following);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::OutOfTime);
+  EXPECT_EQ(silence["silent"], 0);
+}
+
+TEST_F(SilenceTest, ArrivalContactAndWhatIsNoNumberEndIt) {
+  tick(0, algo::Manner::Following, algo::Mission::Arrived);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Reached);
+  silence = Watched("silence");
+  collided = true;
+  tick(0, algo::Manner::Following);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Collided);
+  silence = Watched("silence");
+  speed = std::nan("");
+  tick(0, algo::Manner::Following);
+  EXPECT_EQ(silence.ending()->outcome, Outcome::Failed);
+  EXPECT_EQ(silence["not_finite"], 1);
+}
+
+}  // namespace
+}  // namespace server::experiment

@@ -1,0 +1,47 @@
+// tests/server/experiment/oracle_test.cpp: contacts that could have been avoided, and those that
+// not.
+#include "server/experiment/oracle.hpp"
+
+#include <gtest/gtest.h>
+
+namespace server::experiment {
+namespace {
+
+/// A cylinder that comes at 1 m/s towards the origin, where the robot stands or drives.
+sim::Scenario oncoming() {
+  sim::Scenario scenario;
+  algo::Obstacle cylinder{.id = 1, .shape = algo::Cylinder{.radius = 0.5}};
+  cylinder.pose_W = {10, 0, 0};
+  scenario.obstacles.push_back(cylinder);
+  sim::ObstaclePath path;
+  path.id = 1;
+  path.period = 20;
+  path.keys = {{0, {10, 0}}, {20, {-10, 0}}};
+  scenario.paths.push_back(path);
+  return scenario;
+}
+
+TEST(Oracle, WhoStandsInTheWayCouldHaveDrivenOn) {
+  const algo::RobotSpec spec{.radius = 0.35,
+                             .max_v = 1,
+                             .max_omega = 2,
+                             .max_acceleration = 2,
+                             .max_angular_acceleration = 4};
+  std::vector<Moment> trail;
+  for (int k = 0; k <= 60; ++k) trail.push_back({6.15 + 0.05 * k, {0, 0, 1.57}, {}});
+  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Avoidable);
+  // Who can hardly move could not.
+  algo::RobotSpec lame = spec;
+  lame.max_v = lame.max_omega = 0.01;
+  EXPECT_EQ(judge_contact(oncoming(), lame, trail), Contact::Unavoidable);
+}
+
+TEST(Oracle, AnObstacleThatJumpedIsNobodysFault) {
+  const algo::RobotSpec spec{.radius = 0.35, .max_v = 1, .max_omega = 2, .max_acceleration = 2};
+  std::vector<Moment> trail;
+  for (int k = 0; k <= 60; ++k) trail.push_back({18.0 + 0.05 * k, {9.1, 0, 0}, {}});
+  EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Jumped);
+}
+
+}  // namespace
+}  // namespace server::experiment

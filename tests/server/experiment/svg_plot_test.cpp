@@ -1,0 +1,25 @@
+// tests/server/experiment/svg_plot_test.cpp: metres to pixels, and words within XML.
+#include "server/experiment/svg_plot.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace server::experiment {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(SvgPlot, PutsMetresUpsideUpAndEscapesWords) {
+  // 2 m x 1 m on 220 px with 10 px of margin: 100 px a metre; y = 1 is at the top margin.
+  SvgPlot plot({0, 0}, {2, 1}, 220, 0);
+  plot.circle({1, 1}, 0.5, "fill=\"none\"");
+  const std::vector<algo::Vec2> line{{0, 0}, {2, 0.5}};
+  plot.polyline(line, "stroke=\"red\"");
+  const std::string document = plot.document("a < b & c");
+  EXPECT_THAT(document, HasSubstr("<circle cx=\"110.0\" cy=\"10.0\" r=\"50.0\""));
+  EXPECT_THAT(document, HasSubstr("points=\"10.0,110.0 210.0,60.0\""));
+  EXPECT_THAT(document, HasSubstr("<title>a &lt; b &amp; c</title>"));
+}
+
+}  // namespace
+}  // namespace server::experiment
