@@ -1,4 +1,4 @@
-// server/serve/experiments.cpp: the background worker.
+// server/serve/experiments.cpp: the queue that feeds the pool.
 #include "server/serve/experiments.hpp"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <exception>
 #include <utility>
 
-#include "server/record/record_sink.hpp"
+#include "server/experiment/trial.hpp"
 #include "server/record/run_json.hpp"
 #include "server/serve/workers.hpp"
 
@@ -29,15 +29,16 @@ bool Experiments::Batch::hold(std::size_t document_bytes) {
   return held.fetch_add(bytes) + bytes <= kMaxBytes;
 }
 
-Experiments::Experiments(Recorder& recorder)
-    : recorder_(recorder), worker_([this](const std::stop_token& stop) { work(stop); }) {}
+Experiments::Experiments(Recorder& recorder, unsigned threads)
+    : recorder_(recorder),
+      pool_(threads, [this](const std::stop_token& stop) { return take(stop); }) {}
 
 Experiments::~Experiments() {
   stop();
-  worker_.request_stop();
+  pool_.request_stop();
   {
     const std::lock_guard lock(mutex_);
-    stop_running_.request_stop();
+    for (const auto& [run, running] : running_) running->stop.request_stop();
   }
   wake_.notify_all();
 }
@@ -151,9 +152,9 @@ void Experiments::give_up(const Batch& batch, const std::string& why) {
 
 bool Experiments::cancel(db::RunId run) {
   const std::lock_guard lock(mutex_);
-  if (running_ == run) {
-    cancelled_ = true;
-    stop_running_.request_stop();
+  if (const auto at_work = running_.find(run); at_work != running_.end()) {
+    at_work->second->cancelled = true;
+    at_work->second->stop.request_stop();
     return true;
   }
   const auto it =
@@ -208,36 +209,39 @@ std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
   }
 }
 
-void Experiments::work(const std::stop_token& stop) {
+/// The next run of the queue as a job; waits for one, and for a store that takes it.
+experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
   stand_back();
-  while (!stop.stop_requested()) {
-    Job job;
-    {
-      std::unique_lock lock(mutex_);
-      wake_.wait(lock, stop, [this] { return !queue_.empty(); });
-      // Without a store that takes it, a run would be over and nobody could see how it went.
-      while (!stop.stop_requested() && !recorder_.takes_more()) {
-        wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
-      }
-      if (stop.stop_requested()) return;
-      if (queue_.empty()) continue;  // cancelled meanwhile
-      job = std::move(queue_.front());
-      queue_.pop_front();
-      running_ = job.run;
-      cancelled_ = false;
-      stop_running_ = {};
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_.wait(lock, stop, [this] { return !queue_.empty(); });
+    // Without a store that takes it, a run would be over and nobody could see how it went.
+    while (!stop.stop_requested() && !recorder_.takes_more()) {
+      wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
     }
-    const bool begun = execute(job);
-    std::unique_lock lock(mutex_);
-    running_ = 0;
-    if (begun || stop.stop_requested()) continue;
-    if (cancelled_) {
-      end_later(job.run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});
-      continue;
-    }
-    queue_.push_front(std::move(job));
-    wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
+    if (stop.stop_requested()) return {};
+    if (queue_.empty()) continue;  // cancelled meanwhile
+    Job job = std::move(queue_.front());
+    queue_.pop_front();
+    auto running = std::make_shared<Running>();
+    running_[job.run] = running;
+    return [this, job = std::move(job), running = std::move(running), stop] {
+      work_off(job, *running, stop);
+    };
   }
+}
+
+void Experiments::work_off(const Job& job, Running& running, const std::stop_token& stop) {
+  const bool begun = execute(job, running);
+  std::unique_lock lock(mutex_);
+  running_.erase(job.run);
+  if (begun || stop.stop_requested()) return;
+  if (running.cancelled) {
+    end_later(job.run, {.status = db::RunStatus::Cancelled, .outcome = "stopped"});
+    return;
+  }
+  queue_.push_front(job);
+  wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
 }
 
 /// Ends a queued run as soon as the store takes it. Unless it went with a damaged store.
@@ -254,14 +258,9 @@ RunSpec Experiments::spec_of(const Job& job) {
 }
 
 /// False when the store does not take the run just now.
-bool Experiments::execute(const Job& job) {
-  HeadlessOptions options;
-  const RunSpec spec = spec_of(job);
-  options.pace = job.batch->experiment.pace;
-  std::unique_ptr<algo::Robot> robot;
-  const auto fail = [&](const char* why) {
-    end_later(job.run, {.status = db::RunStatus::Failed, .outcome = "failed", .reason = why});
-    return true;
+bool Experiments::execute(const Job& job, Running& running) {
+  const auto failed = [](const std::exception& e) -> db::RunEnd {
+    return {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()};
   };
   try {
     while (job.again &&
@@ -269,30 +268,32 @@ bool Experiments::execute(const Job& job) {
     }
   } catch (const db::DatabaseError& e) {
     // What is damaged there concerns this run alone; the next ones must not wait for it.
-    return e.trouble() == db::Trouble::Damaged && fail(e.what());
+    if (e.trouble() != db::Trouble::Damaged) return false;
+    end_later(job.run, failed(e));
+    return true;
   }
-  try {
-    robot = make_robot(spec);
-    options.record = recorder_.open(job.run, headless_run(spec, robot->spec(), options.pace));
-  } catch (const db::DatabaseError&) {
-    return false;
-  } catch (const std::exception& e) {
-    return fail(e.what());
-  }
-  std::stop_token stop;
-  {
+  const double pace = job.batch->experiment.pace;
+  const experiment::Trial trial{.spec = spec_of(job)};
+  std::shared_ptr<RunChannel> record;
+  experiment::TrialOptions options{.stop = running.stop.get_token(), .pace = pace};
+  options.record = [&](const algo::RobotSpec& robot) {
+    record = recorder_.open(job.run, headless_run(trial.spec, robot, pace));
+    return record;
+  };
+  options.cancelled = [&] {
     const std::lock_guard lock(mutex_);
-    stop = stop_running_.get_token();
-  }
-  options.cancelled = [this] {
-    const std::lock_guard lock(mutex_);
-    return cancelled_;
+    return running.cancelled;
   };
   try {
-    run_headless(spec, *robot, options, stop);
+    run_trial(trial, options);
   } catch (const std::exception& e) {
-    options.record->close(
-        {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()});
+    if (record) {
+      record->close(failed(e));
+    } else if (dynamic_cast<const db::DatabaseError*>(&e) != nullptr) {
+      return false;
+    } else {
+      end_later(job.run, failed(e));
+    }
   }
   return true;
 }

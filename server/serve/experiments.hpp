@@ -6,13 +6,14 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include "server/record/headless.hpp"
+#include "server/experiment/pool.hpp"
 #include "server/record/recorder.hpp"
 #include "server/run/run_spec.hpp"
 
@@ -24,10 +25,10 @@ struct Experiment {
   double pace = 0;            // times real time; 0 = as fast as it goes
 };
 
-/// Queues runs in the database and works them off on a thread of its own, so that neither the io
-/// thread nor a live robot waits. While the store takes no more runs the queue waits; runs of it
-/// can be cancelled all the same. A restart leaves them `interrupted`, to be taken up again by
-/// resume().
+/// Queues runs in the database and works them off on a pool of its own, as trials without judges,
+/// so that neither the io thread nor a live robot waits. While the store takes no more runs the
+/// queue waits; runs of it can be cancelled all the same. A restart leaves them `interrupted`, to
+/// be taken up again by resume().
 class Experiments {
  public:
   using Accepted =
@@ -37,8 +38,10 @@ class Experiments {
   /// [bytes] of the worlds that wait to be run, which repeats share.
   static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
-  explicit Experiments(Recorder& recorder);
-  ~Experiments();  // the run at work is interrupted, queued ones stay behind
+  /// One thread as a rule: a core is then left to the io thread, which carries Stop, and to live
+  /// robots.
+  explicit Experiments(Recorder& recorder, unsigned threads = 1);
+  ~Experiments();  // the runs at work are interrupted, queued ones stay behind
 
   /// Takes no more, and returns when nothing of it is under way on the db thread: batches that are
   /// half queued are given up.
@@ -86,6 +89,12 @@ class Experiments {
     bool again = false;  // ticks of an earlier time are to be cleared away
   };
 
+  /// A run at work.
+  struct Running {
+    bool cancelled = false;
+    std::stop_source stop{};
+  };
+
   void insert_slice(const std::shared_ptr<Batch>& batch);
   void insert(db::RunStore& store, Batch& batch);
   void queue(const std::shared_ptr<Batch>& batch);
@@ -93,8 +102,9 @@ class Experiments {
   void arrived(std::size_t runs);
   static std::string requeue(db::RunStore& store, db::RunId run);
   static RunSpec spec_of(const Job& job);
-  void work(const std::stop_token& stop);
-  bool execute(const Job& job);
+  experiment::Pool::Job take(const std::stop_token& stop);
+  void work_off(const Job& job, Running& running, const std::stop_token& stop);
+  bool execute(const Job& job, Running& running);
   void end_later(db::RunId run, db::RunEnd end);
 
   Recorder& recorder_;
@@ -104,10 +114,8 @@ class Experiments {
   std::deque<Job> queue_{};
   std::size_t arriving_ = 0;  // accepted, but not yet in the queue
   bool stopping_ = false;
-  db::RunId running_ = 0;
-  bool cancelled_ = false;  // the running one
-  std::stop_source stop_running_{};
-  std::jthread worker_;
+  std::map<db::RunId, std::shared_ptr<Running>> running_{};
+  experiment::Pool pool_;  // last: it works with all the others
 };
 
 }  // namespace server

@@ -23,9 +23,9 @@ class Watched {
  public:
   explicit Watched(const char* judge, Settings settings = {}) : settings_(std::move(settings)) {
     info_ = &find_judge(judge);
-    spec.parameters.set(&algo::kSafetyDistance, 1.0);
-    spec.parameters.set(&algo::kMaxSpeed, 1.0);
-    spec.parameters.set(&algo::kMaxTurnRate, 1.0);
+    spec.parameters.set(algo::kSafetyDistance, 1.0);
+    spec.parameters.set(algo::kMaxSpeed, 1.0);
+    spec.parameters.set(algo::kMaxTurnRate, 1.0);
     robot.radius = 0.35;
     robot.period = 0.1;
   }

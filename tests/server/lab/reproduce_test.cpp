@@ -80,7 +80,7 @@ TEST(StudyFile, TheEmbeddedOneIsRead) {
   const auto of_case3 = [](const Limit& limit) { return limit.scenario == "case3"; };
   EXPECT_EQ(std::ranges::count_if(file.limits, of_case3), 20);
   ASSERT_EQ(file.sweeps.size(), 4u);
-  EXPECT_EQ(file.sweeps[1].parameter, algo::kSafetyDistance);
+  EXPECT_EQ(file.sweeps[1].parameter, &algo::kSafetyDistance);
   EXPECT_THAT(file.sweeps[1].values, ElementsAre(0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2));
 }
 

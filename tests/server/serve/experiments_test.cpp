@@ -113,6 +113,23 @@ TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
   EXPECT_EQ(verify_run(reader, runs[2]).incomplete, std::nullopt);
 }
 
+TEST_F(ExperimentsTest, SeveralThreadsWorkOffOneQueue) {
+  Recorder recorder(path, recorder_options());
+  Experiments experiments(recorder, 2);
+  const auto runs = start(experiments, {.spec = case1(), .repeats = 4, .pace = 0.5});
+  ASSERT_TRUE(comes_to(runs[0], RunStatus::Recording));
+  ASSERT_TRUE(comes_to(runs[1], RunStatus::Recording));
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
+  // Each is cancelled for itself, and the next takes its place.
+  EXPECT_TRUE(experiments.cancel(runs[1]));
+  EXPECT_TRUE(comes_to(runs[1], RunStatus::Cancelled));
+  EXPECT_TRUE(comes_to(runs[2], RunStatus::Recording));
+  EXPECT_EQ(get(reader, runs[0]).status, RunStatus::Recording);
+  for (const db::RunId run : {runs[0], runs[2], runs[3]}) EXPECT_TRUE(experiments.cancel(run));
+  for (const db::RunId run : runs) EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
+}
+
 TEST_F(ExperimentsTest, LargeWorldsThatWaitAreCountedInBytes) {
   Recorder recorder(path, recorder_options());
   Experiments experiments(recorder);
