@@ -1,4 +1,4 @@
-// server/experiment/svg_plot.hpp: a small picture of plane geometry as SVG text.
+// server/experiment/svg_plot.hpp: a small picture of plane geometry, in metres.
 #pragma once
 
 #include <span>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "algo/types.hpp"
+#include "server/experiment/svg_canvas.hpp"
 
 namespace server::experiment {
 
@@ -40,23 +41,18 @@ class SvgPlot {
   void legend(std::string_view style, std::string_view words);
 
   /// The document; `title` is what a screen reader says.
-  std::string document(std::string_view title) const;
+  std::string document(std::string_view title) const { return canvas_.document(title); }
 
  private:
   algo::Vec2 pixel(const algo::Vec2& p_W) const;
-  std::string points(std::span<const algo::Vec2> points_W) const;
+  std::vector<algo::Vec2> pixels(std::span<const algo::Vec2> points_W) const;
 
   algo::Vec2 low_W_{0, 0};
   algo::Vec2 high_W_{0, 0};
   double scale_ = 1;  // pixels a metre
-  double width_ = 0;
   double plot_height_ = 0;
-  double height_ = 0;
   std::size_t legend_lines_ = 0;  // written
-  std::string body_{};
+  SvgCanvas canvas_;
 };
-
-/// `text` with what XML reserves written as entities.
-std::string escaped(std::string_view text);
 
 }  // namespace server::experiment

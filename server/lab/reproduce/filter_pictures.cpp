@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "server/experiment/svg_canvas.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 
 namespace server {
 namespace {
+
+using experiment::SvgCanvas;
 
 constexpr double kPanelWidth = 440;
 constexpr double kPanelHeight = 190;
@@ -35,45 +38,33 @@ class Panel {
     return y_ + kPanelHeight - kBottom - part * (kPanelHeight - kTop - kBottom);
   }
 
-  std::string frame(std::string_view title) const {
-    std::string out = fmt::format(
-        "<text x=\"{:.0f}\" y=\"{:.0f}\" class=\"title\">{}</text>\n", x(0), y_ + kTop - 10, title);
+  void frame(std::string_view title, SvgCanvas& canvas) const {
+    canvas.text({x(0), y_ + kTop - 10}, title, "class=\"title\"");
     const double step = top_mm_ > 20000 ? 20000 : top_mm_ > 9000 ? 4000 : 2000;
     for (double mm = 0; mm <= top_mm_; mm += step) {
-      out += fmt::format(
-          "<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>"
-          "<text x=\"{:.0f}\" y=\"{:.1f}\" class=\"end\">{:.0f}</text>\n",
-          x(0),
-          y(mm),
-          x(static_cast<double>(beams_ - 1)),
-          x(0) - 5,
-          y(mm) + 4,
-          mm / 1000);
+      canvas.line({x(0), y(mm)}, {x(static_cast<double>(beams_ - 1)), y(mm)}, "class=\"grid\"");
+      canvas.text({x(0) - 5, y(mm) + 4}, fmt::format("{:.0f}", mm / 1000), "class=\"end\"");
     }
     for (std::size_t beam = 0; beam < beams_; beam += 90) {
-      out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"middle\">{}</text>\n",
-                         x(static_cast<double>(beam)),
-                         y(0) + 15,
-                         beam);
+      canvas.text(
+          {x(static_cast<double>(beam)), y(0) + 15}, fmt::format("{}", beam), "class=\"middle\"");
     }
-    return out;
   }
 
   /// A line with a gap wherever a value is not valid; `valid` empty: all are.
-  std::string line(const std::vector<double>& mm,
-                   const std::vector<std::uint8_t>& valid,
-                   std::string_view style) const {
-    std::string path;
+  void line(const ScanValues& scan, std::string_view attributes, SvgCanvas& canvas) const {
+    std::string steps;
     bool down = false;
-    for (std::size_t i = 0; i < mm.size(); ++i) {
-      if (!valid.empty() && valid[i] == 0) {
+    for (std::size_t i = 0; i < scan.mm.size(); ++i) {
+      if (!scan.valid.empty() && scan.valid[i] == 0) {
         down = false;
         continue;
       }
-      path += fmt::format("{}{:.1f} {:.1f}", down ? "L" : "M", x(static_cast<double>(i)), y(mm[i]));
+      steps += fmt::format(
+          "{}{:.1f} {:.1f}", down ? "L" : "M", x(static_cast<double>(i)), y(scan.mm[i]));
       down = true;
     }
-    return fmt::format("<path class=\"{}\" d=\"{}\"/>\n", style, path);
+    canvas.path(steps, attributes);
   }
 
  private:
@@ -82,24 +73,12 @@ class Panel {
   double top_mm_ = 1;
 };
 
-std::string begin(const std::string& title, std::size_t panels) {
-  const double width = kColumns * kPanelWidth;
-  const double height = kHead + std::ceil(static_cast<double>(panels) / kColumns) * kPanelHeight;
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-      "width=\"{0:.0f}\" height=\"{1:.0f}\" role=\"img\">\n<title>{2}</title>\n"
-      "<style>text{{font:12px system-ui,sans-serif;fill:#555}}"
-      ".head{{font-size:15px;font-weight:600;fill:#222}}.title{{font-weight:600;fill:#222}}"
-      ".end{{text-anchor:end}}.middle{{text-anchor:middle}}path{{fill:none}}"
-      ".grid{{stroke:#e6e6e6}}.before{{stroke:#e3a18c;stroke-width:1}}"
-      ".after{{stroke:#1a5fb4;stroke-width:1.4;stroke-linejoin:round}}</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-      "<text x=\"{3:.0f}\" y=\"24\" class=\"head\">{2}</text>\n",
-      width,
-      height,
-      title,
-      kLeft);
-}
+constexpr std::string_view kStyles =
+    "text{font:12px system-ui,sans-serif;fill:#555}"
+    ".head{font-size:15px;font-weight:600;fill:#222}.title{font-weight:600;fill:#222}"
+    ".end{text-anchor:end}.middle{text-anchor:middle}path{fill:none}"
+    ".grid{stroke:#e6e6e6}.before{stroke:#e3a18c;stroke-width:1}"
+    ".after{stroke:#1a5fb4;stroke-width:1.4;stroke-linejoin:round}";
 
 std::string panel_title(std::string_view filter, int half_width) {
   if (filter == "before") return "before; range in metres over beams";
@@ -107,28 +86,14 @@ std::string panel_title(std::string_view filter, int half_width) {
 }
 
 /// The axis' end: above the highest value, unless a few far ones would squash all others.
-double top_of(const std::vector<double>& mm, const std::vector<std::uint8_t>& valid) {
+double top_of(const ScanValues& scan) {
   std::vector<double> sorted{1000};
-  for (std::size_t i = 0; i < mm.size(); ++i) {
-    if (valid.empty() || valid[i] != 0) sorted.push_back(mm[i]);
+  for (std::size_t i = 0; i < scan.mm.size(); ++i) {
+    if (scan.valid.empty() || scan.valid[i] != 0) sorted.push_back(scan.mm[i]);
   }
   std::ranges::sort(sorted);
   const double most = sorted[(sorted.size() - 1) * 95 / 100];
   return std::ceil(std::min(sorted.back() * 1.03, 2 * most) / 500) * 500;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '<') {
-      out += "&lt;";
-    } else if (c == '&') {
-      out += "&amp;";
-    } else {
-      out += c;
-    }
-  }
-  return out;
 }
 
 std::string draw_panels(const std::string& title,
@@ -136,15 +101,17 @@ std::string draw_panels(const std::string& title,
                         const std::vector<ScanValues>& after,
                         int half_width) {
   const std::span<const StudyFilter> filters = study_filters_table();
-  std::string out = begin(title, filters.size());
-  const double top = top_of(before.mm, before.valid);
+  const double rows = std::ceil(static_cast<double>(filters.size()) / kColumns);
+  SvgCanvas canvas(kColumns * kPanelWidth, kHead + rows * kPanelHeight, kStyles);
+  canvas.text({kLeft, 24}, title, "class=\"head\"");
+  const double top = top_of(before);
   for (std::size_t k = 0; k < filters.size(); ++k) {
     const Panel panel(k, before.mm.size(), top);
-    out += panel.frame(panel_title(filters[k].name, half_width));
-    if (k > 0) out += panel.line(before.mm, before.valid, "before");
-    out += panel.line(after[k].mm, after[k].valid, "after");
+    panel.frame(panel_title(filters[k].name, half_width), canvas);
+    if (k > 0) panel.line(before, "class=\"before\"", canvas);
+    panel.line(after[k], "class=\"after\"", canvas);
   }
-  return out + "</svg>\n";
+  return canvas.document(title);
 }
 
 }  // namespace
@@ -163,7 +130,7 @@ std::vector<Picture> draw(const FilterStudy& study) {
   }
   const Example& example = study.example;
   out.push_back({.file = "filter-recording.svg",
-                 .svg = draw_panels("The scan with the most outliers of " + escaped(example.name),
+                 .svg = draw_panels("The scan with the most outliers of " + example.name,
                                     example.before,
                                     example.after,
                                     example.half_width)});

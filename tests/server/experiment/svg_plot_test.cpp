@@ -21,5 +21,19 @@ TEST(SvgPlot, PutsMetresUpsideUpAndEscapesWords) {
   EXPECT_THAT(document, HasSubstr("<title>a &lt; b &amp; c</title>"));
 }
 
+TEST(SvgCanvas, WritesShapesInPixelsWithClassesOfAStyleSheet) {
+  SvgCanvas canvas(100, 50, ".grid{stroke:#eee}");
+  canvas.line({0, 1.25}, {99.96, 1}, "class=\"grid\"");
+  canvas.path("M0 0L5 5", "class=\"grid\"");
+  canvas.text({3, 4}, "N < 3", "class=\"end\"");
+  const std::string document = canvas.document("Grid");
+  EXPECT_THAT(document, HasSubstr("viewBox=\"0 0 100 50\""));
+  EXPECT_THAT(document, HasSubstr("<style>.grid{stroke:#eee}</style>"));
+  EXPECT_THAT(document, HasSubstr("<line x1=\"0.0\" y1=\"1.2\" x2=\"100.0\" y2=\"1.0\" class"));
+  EXPECT_THAT(document, HasSubstr("<path class=\"grid\" d=\"M0 0L5 5\"/>"));
+  EXPECT_THAT(document, HasSubstr("<text x=\"3.0\" y=\"4.0\" class=\"end\">N &lt; 3</text>"));
+  EXPECT_THAT(SvgCanvas(1, 1).document("Empty"), testing::Not(HasSubstr("<style>")));
+}
+
 }  // namespace
 }  // namespace server::experiment
