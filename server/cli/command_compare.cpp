@@ -78,9 +78,13 @@ void add_compare_command(CLI::App& app, int& status) {
                    "controllers.md")
       ->type_name("DIR");
   compare->add_flag("--json", command->as_json, "Print JSON");
-  compare->footer(
-      "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer than 99 % "
-      "reached, or a collision.");
+  std::string footer = "Judges:\n";
+  for (const experiment::JudgeInfo& judge : experiment::judge_table()) {
+    footer += fmt::format("  {:<12}{}\n", judge.name, judge.help);
+  }
+  compare->footer(footer +
+                  "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer "
+                  "than 99 % reached, or a collision.");
   compare->callback([command, &status] { status = execute(*command); });
 }
 

@@ -151,6 +151,19 @@ TEST(StandingJudge, APauseIsARestThatTheRobotDrivesOnFrom) {
   EXPECT_NEAR(standing["standing_s"], 0.5 + 0.2 + 0.05 + 1.0, 1e-9);
 }
 
+// ---- backing -----------------------------------------------------------------------------------
+
+TEST(BackingJudge, MeasuresAlongTheHeadingAndCountsStretches) {
+  Watched backing("backing");
+  backing.at({0, 0, 0}, 5), backing.at({-0.04, 0, 0}, 5);  // 4 cm back: not yet a stretch
+  backing.at({0.1, 0, 0}, 5);
+  const double left = std::numbers::pi / 2;  // facing +y: back is -y
+  backing.at({0.1, 0, left}, 5), backing.at({0.1, -0.03, left}, 5);
+  backing.at({0.1, -0.06, left}, 5), backing.at({0.1, -0.09, left}, 5);
+  EXPECT_NEAR(backing["backing_m"], 0.04 + 0.09, 1e-12);
+  EXPECT_EQ(backing["backing_spells"], 1);
+}
+
 // ---- metrics and place -------------------------------------------------------------------------
 
 TEST(MetricsJudge, MeasuresAgainstTheSafetyDistanceOfTheRun) {

@@ -80,7 +80,7 @@ TEST(Trial, SaysWhatItsJudgesAreNot) {
   Trial trial = short_trial(0);
   trial.judges = {{.name = "beauty"}};
   EXPECT_THAT([&] { run_trial(trial); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("there are barn_score, ")));
+              ThrowsMessage<std::invalid_argument>(HasSubstr(", standing")));
   trial.judges = {{.name = "standing", .settings = {{"goal_radius", 1}}}};
   EXPECT_THAT([&] { run_trial(trial); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("no setting 'goal_radius'")));
