@@ -286,11 +286,12 @@ bool Experiments::execute(const Job& job, Running& running) {
   };
   try {
     run_trial(trial, options);
+  } catch (const db::DatabaseError& e) {
+    if (!record) return false;
+    record->close(failed(e));
   } catch (const std::exception& e) {
     if (record) {
       record->close(failed(e));
-    } else if (dynamic_cast<const db::DatabaseError*>(&e) != nullptr) {
-      return false;
     } else {
       end_later(job.run, failed(e));
     }

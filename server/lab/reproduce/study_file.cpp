@@ -70,12 +70,15 @@ PaperConditions read_conditions(const JsonReader& in) {
   return out;
 }
 
-std::string reading_name(const JsonReader& in, std::string_view key) {
-  std::string name = in.text(key, 64);
+std::string known_reading(const JsonReader& in, std::string_view key, std::string name) {
   if (std::ranges::find(kReadings, name) == kReadings.end()) {
     in.fail(key, fmt::format("'{}' is no reading; there are {}", name, fmt::join(kReadings, ", ")));
   }
   return name;
+}
+
+std::string reading_name(const JsonReader& in, std::string_view key) {
+  return known_reading(in, key, in.text(key, 64));
 }
 
 algo::Outcome read_outcome(const JsonReader& in) {
@@ -134,9 +137,11 @@ SweepPlan read_sweep(const JsonReader& in) {
   const std::string name = in.text("parameter", 64);
   plan.parameter = algo::find_parameter(name);
   if (plan.parameter == nullptr) in.fail("parameter", fmt::format("'{}' is unknown", name));
-  for (const json& each : in.array("controllers", kReadings.size())) {
-    const json one{{"controllers", each}};
-    plan.controllers.push_back(reading_name({one, in.at("")}, "controllers"));
+  const json& controllers = in.array("controllers", kReadings.size());
+  for (std::size_t i = 0; i < controllers.size(); ++i) {
+    const std::string at = fmt::format("controllers/{}", i);
+    if (!controllers[i].is_string()) in.fail(at, "must be text");
+    plan.controllers.push_back(known_reading(in, at, controllers[i]));
   }
   const json& values = in.array("values", kMaxValues);
   for (std::size_t i = 0; i < values.size(); ++i) {

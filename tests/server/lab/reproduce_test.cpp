@@ -152,6 +152,8 @@ TEST(StudyFile, AMalformedOneSaysWhere) {
   EXPECT_THAT(complaint_with("/limits/2/outcome", "stuck"), HasSubstr("must be asked one of"));
   EXPECT_THAT(complaint_with("/limits/0/outcome", "lost"), HasSubstr("'lost' is unknown"));
   EXPECT_THAT(complaint_with("/sweeps/0/parameter", "beauty"), HasSubstr("'beauty' is unknown"));
+  EXPECT_THAT(complaint_with("/sweeps/0/controllers/1", "best"),
+              HasSubstr("sweeps/0/controllers/1: 'best' is no reading"));
   EXPECT_THAT(complaint_with("/sweeps/0/values", {1}), HasSubstr("sweeps/0/values: must be two"));
 }
 
