@@ -80,12 +80,13 @@ void MetricsRecorder::follow_path(const Vec2& position_W) {
 void MetricsRecorder::count_via(const Telemetry& t, double influence) {
   const double left = t.scene.left ? t.scene.left->distance : influence;
   const double right = t.scene.right ? t.scene.right->distance : influence;
-  if (t.output.strip.empty() || std::min(left, right) >= influence) return;
+  const std::optional<Vec2>& pass_W = t.output.pass_W;
+  if (!pass_W || !t.output.measure("strip.length") || std::min(left, right) >= influence) return;
   if (counted_pass_W_) {
-    const Vec2 step = t.output.pass_W - *counted_pass_W_;
+    const Vec2 step = *pass_W - *counted_pass_W_;
     if (step.cwiseAbs().maxCoeff() < kViaSpacing) return;
   }
-  counted_pass_W_ = t.output.pass_W;
+  counted_pass_W_ = pass_W;
   ++metrics_.via_points;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "algo/observation.hpp"
+#include "algo/recycled.hpp"
 #include "algo/request.hpp"
 #include "algo/types.hpp"
 
@@ -51,6 +52,13 @@ struct GroundTruth {
   bool operator==(const GroundTruth&) const = default;
 };
 
+/// Where an obstacle stands that moves by itself; for display, as the truth.
+struct Moved {
+  std::uint32_t id = 0;
+  Pose2 pose_W{};
+  bool operator==(const Moved&) const = default;
+};
+
 /// How fast time runs; only a robot whose spec says `paceable` heeds it.
 struct Pace {
   bool paused = false;
@@ -80,6 +88,8 @@ class Robot {
   virtual std::optional<std::string> edit(const Request& request) = 0;
 
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
+  /// Overwrites `moved`, whose buffers stay.
+  virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
 
   /// May be called from any thread.
   virtual void set_pace(const Pace& /*pace*/) {}

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "algo/telemetry.hpp"
+#include "algo/layer.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -59,13 +59,10 @@ class RollingGrid {
     for (int k = 0; k < std::abs(dj); ++k) clear_row(dj > 0 ? before.j + side_ + k : next.j + k);
   }
 
-  /// What people see of it: byte(cell) for every cell.
+  /// What people see of it, as a layer of the kind Grid: byte(cell) for every cell.
   template <typename Byte>
-  void show(GridLayer& layer, Byte&& byte) const {
-    layer.corner_W = {first_.i * edge_, first_.j * edge_};
-    layer.cell = edge_;
-    layer.columns = static_cast<std::uint32_t>(side_);
-    layer.rows = layer.columns;
+  void show(Layer& layer, Byte&& byte) const {
+    put(layer, first_.i * edge_, first_.j * edge_, edge_, side_);
     layer.cells.resize(cells_.size());
     std::size_t at = 0;
     for (int j = first_.j; j < first_.j + side_; ++j) {

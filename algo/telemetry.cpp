@@ -83,27 +83,20 @@ std::string_view name(BehaviourId behaviour) {
   return "rest";
 }
 
+std::optional<double> ControlOutput::measure(std::string_view name) const {
+  for (const Measure& each : measures) {
+    if (each.name == name) return each.value;
+  }
+  return std::nullopt;
+}
+
 void ControlOutput::clear() {
   twist = {};
-  manner = Manner::None;
-  strip.clear();
-  internal_W = {0, 0};
-  external_left_W = {0, 0};
-  external_right_W = {0, 0};
-  elastic_W = {0, 0};
-  pass_W = {0, 0};
-  side = Side::None;
-  side_since = 0;
-  side_alpha = 0;
-  blocked_beam = -1;
-  tracks.clear();
-  plan_W.clear();
-  candidates.clear();
-  histogram.clear();
-  histogram_threshold = 0;
-  grid.columns = 0;
-  grid.rows = 0;
-  grid.cells.clear();
+  pass_W.reset();
+  waits = false;
+  state = 0;
+  measures.clear();
+  layers.clear();
 }
 
 }  // namespace algo

@@ -3,9 +3,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
-#include <vector>
 
+#include "algo/layer.hpp"
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
 #include "algo/request.hpp"
@@ -42,96 +43,33 @@ struct Scene {
   Recycled<Echo> echoes{};  // one a sonar, as they first came; empty on a robot with a scanner
 };
 
-/// One control point of the strip. Forces are displacements [m].
-struct Node {
-  Vec2 position_W{0, 0};
-  Vec2 internal_W{0, 0};
-  Vec2 external_W{0, 0};
-  bool operator==(const Node&) const = default;
+/// A number of a controller's method: plotted by the page, read by judges.
+struct Measure {
+  std::string_view name{};  // "strip.internal"; in static storage, as the unit
+  std::string_view unit{};  // "m"
+  double value = 0;
+  bool operator==(const Measure&) const = default;
 };
 
-enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
-
-/// A controller's grid as people see it: row-major from its corner, one byte a cell.
-struct GridLayer {
-  static constexpr std::uint8_t kUnknown = 255;  // else 0 free, 127 even, 254 occupied
-  Vec2 corner_W{0, 0};                           // [m] outer corner of cell (0, 0)
-  double cell = 0;                               // [m] edge
-  std::uint32_t columns = 0;                     // along W's x
-  std::uint32_t rows = 0;
-  // columns x rows. Empty: the controller keeps no grid, or this tick brings none (Pipeline).
-  std::vector<std::uint8_t> cells{};
-  bool operator==(const GridLayer&) const = default;
-};
-
-/// A motion that a controller weighed: constant twist held for `horizon`.
-struct Candidate {
-  Twist2 twist{};
-  double horizon = 0;    // [s]
-  double cost = 0;       // in the controller's own measure; less is better
-  bool allowed = false;  // passed the controller's collision test
-  bool chosen = false;
-  bool operator==(const Candidate&) const = default;
-};
-
-/// An obstacle seen moving.
-struct Track {
-  Vec2 position_W{0, 0};
-  Vec2 velocity_W{0, 0};  // [m/s]
-  double radius = 0;      // [m]
-  double age = 0;         // [s] since it was first seen
-  double unseen = 0;      // [s] since it was last seen
-  bool operator==(const Track&) const = default;
-};
-
-/// What a controller is about, for the sentences of explain().
-enum class Manner : std::uint8_t {
-  None,         // a strip of one via point speaks by its forces
-  ToGoal,       // straight, whatever is in between
-  TakingScan,   // standing still to look
-  ToEdge,       // past the edge of an obstacle
-  Pushed,       // the way is the sum of pull and pushes
-  Planned,      // along plan_W
-  NoPlan,       // no way over the grid
-  Valley,       // through a free valley of the histogram
-  Walled,       // no sector is free
-  Window,       // the chosen one of the candidates
-  NoWindow,     // no candidate is allowed
-  Following,    // along the strip of many nodes
-  Turning,      // on the spot, towards the strip
-  Maneuvering,  // to and fro in a narrow place
-  GivingWay,    // to what moves
-  Cornered,     // every motion would meet what moves
-  Escaping,     // out of too narrow a place
-  BackingOff,   // the way was blocked for long
-  NoWay,        // the map has no way to the goal
-  Blocked,      // nothing is free just now
-  GoalTaken,    // something stands on the goal, and this is as far as it goes
-};
-
-/// What a controller decided and why.
+/// What a controller decided, and what it shows of why.
 struct ControlOutput {
   Twist2 twist{};
-  Manner manner = Manner::None;
-  Recycled<Node> strip{};  // start .. end; the second is the pass point
-  Vec2 internal_W{0, 0};   // [m] F_int at the via point
-  Vec2 external_left_W{0, 0};
-  Vec2 external_right_W{0, 0};
-  Vec2 elastic_W{0, 0};    // [m] their sum, with the side choice's push
-  Vec2 pass_W{0, 0};       // where the base is sent
-  Side side = Side::None;  // the side on which the obstacle is passed
-  double side_since = 0;   // [s] run clock at which it was chosen
-  double side_alpha = 0;   // share of the side push, 0..1
-  std::int32_t blocked_beam = -1;
-  Recycled<Track> tracks{};
-  Recycled<Vec2> plan_W{};           // a deliberative layer's path, robot to goal
-  Recycled<Candidate> candidates{};  // what a velocity stage weighed
-  std::vector<float> histogram{};    // polar density by bearing in W, first sector from 0 ccw
-  double histogram_threshold = 0;    // sectors below it count as free
-  GridLayer grid{};
+  std::optional<Vec2> pass_W{};  // where the base is sent
+  bool waits = false;            // it may stand still now, for the reason that its words give
+  std::uint8_t state = 0;        // the controller's own; a change of it is worth new words at once
+  Recycled<Measure> measures{};
+  Recycled<Layer> layers{};
 
+  std::optional<double> measure(std::string_view name) const;
   /// Everything but the buffers, which are kept for the next tick.
   void clear();
+};
+
+/// One sentence for what the robot is doing and one for why, with the numbers.
+struct Explanation {
+  std::string what{};
+  std::string why{};
+  bool operator==(const Explanation&) const = default;
 };
 
 /// Why the gate replaced the command by zero.
@@ -163,10 +101,14 @@ struct Telemetry {
   Recycled<Request> requests{};  // applied before this tick, in order
   Observation observation{};
   std::optional<GroundTruth> ground_truth{};
+  Recycled<Moved> moved{};  // simulator only, as the truth
   Scene scene{};
   std::optional<SetGoal> goal{};
   Recycled<SetGoal> goals_ahead{};  // after that one, in order
   ControlOutput output{};
+  Recycled<Layer> layers{};  // what the pipeline shows besides the controller's
+  Explanation words{};       // the newest
+  bool words_fresh = false;  // they were said in this tick; the frame brings them only then
   Command command{};
   Hold hold = Hold::None;
   Mission mission = Mission::Idle;

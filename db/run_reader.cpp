@@ -117,11 +117,10 @@ void put_line(std::string& out, const TickRow& row, const CsvNames& names) {
 
 struct RunReader::Tables {
   explicit Tables(const std::string& path) : connection(open_for_reading(path)) {
-    const std::string of =
-        detail::shares_documents(connection) ? "coalesce(run.document, run.id)" : "run.id";
     get = connection.prepare("SELECT " + std::string(kRunColumns) +
-                             ", (SELECT text FROM document WHERE run = " + of +
-                             ") FROM run WHERE id = ? AND status <> 'deleted'");
+                             ", (SELECT text FROM document WHERE run ="
+                             " coalesce(run.document, run.id))"
+                             " FROM run WHERE id = ? AND status <> 'deleted'");
     // A deleted run is gone at once, though its ticks may take a while to be swept away.
     ticks = connection.prepare(
         "SELECT tick, t, x, y, heading, v, omega, clearance, hold, behaviour FROM tick"
@@ -133,11 +132,9 @@ struct RunReader::Tables {
         "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
         " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
         " ORDER BY first_tick LIMIT 1");
-    if (detail::has_gaps(connection)) {
-      gaps = connection.prepare(
-          "SELECT first_tick, last_tick, cause, sentence FROM gap"
-          " WHERE run = ? ORDER BY first_tick");
-    }
+    gaps = connection.prepare(
+        "SELECT first_tick, last_tick, cause, sentence FROM gap"
+        " WHERE run = ? ORDER BY first_tick");
   }
 
   Statement& listing(const RunFilter& filter, bool counting) {
@@ -159,7 +156,7 @@ struct RunReader::Tables {
 
   Connection connection;
   Statement get{}, ticks{}, exists{}, block{};
-  std::optional<Statement> gaps{};           // databases of older versions have none
+  Statement gaps{};
   std::map<unsigned, Statement> listings{};  // by which filters are set
 };
 
@@ -221,13 +218,12 @@ std::optional<RunRow> RunReader::get(RunId run) {
   if (!from.get.step()) return std::nullopt;
   RunRow row = row_of(from.get);
   row.what.document = from.get.text(17);
-  if (!from.gaps) return row;
-  const ResetLater reset_gaps(from.gaps->reset() << run);
-  while (from.gaps->step()) {
-    row.gaps.push_back({.first_tick = static_cast<std::uint64_t>(from.gaps->integer(0)),
-                        .last_tick = static_cast<std::uint64_t>(from.gaps->integer(1)),
-                        .cause = find_cause(from.gaps->text(2)).value_or(GapCause::Failed),
-                        .sentence = from.gaps->text(3)});
+  const ResetLater reset_gaps(from.gaps.reset() << run);
+  while (from.gaps.step()) {
+    row.gaps.push_back({.first_tick = static_cast<std::uint64_t>(from.gaps.integer(0)),
+                        .last_tick = static_cast<std::uint64_t>(from.gaps.integer(1)),
+                        .cause = find_cause(from.gaps.text(2)).value_or(GapCause::Failed),
+                        .sentence = from.gaps.text(3)});
   }
   return row;
 }

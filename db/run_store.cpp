@@ -42,7 +42,7 @@ Connection open_for_writing(const std::string& path, const StoreOptions& options
   if (options.max_pages > 0) {
     connection.execute("PRAGMA max_page_count = " + std::to_string(options.max_pages));
   }
-  detail::migrate(connection);
+  detail::set_up(connection);
   return connection;
 }
 
@@ -102,17 +102,18 @@ void RunStore::close() noexcept {
   lock_.reset();
 }
 
-std::string RunStore::set_aside(std::string_view stamp) {
+std::string RunStore::set_aside(std::string_view why, std::string_view stamp) {
   namespace fs = std::filesystem;
   std::error_code error;
   const fs::path file = fs::weakly_canonical(path_, error);  // where a symbolic link leads
   fs::path aside = file;
-  aside.replace_extension(".damaged-" + std::string(stamp) + file.extension().string());
+  aside.replace_extension('.' + std::string(why) + '-' + std::string(stamp) +
+                          file.extension().string());
   // Renamed under the lock, and before the connection closes, which would fold its log in.
   fs::rename(file, aside, error);
   if (error) {
-    throw DatabaseError("The damaged run store " + path_ + " could not be set aside (" +
-                        error.message() + ").");
+    throw DatabaseError("The run store " + path_ + " could not be set aside (" + error.message() +
+                        ").");
   }
   for (const char* beside : {"-wal", "-shm"}) {
     fs::rename(file.string() + beside, aside.string() + beside, error);  // there may be none

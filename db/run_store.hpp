@@ -55,9 +55,9 @@ class RunStore {
   void close() noexcept;
   /// False when the open file was deleted, renamed or replaced.
   bool in_place() const { return lock_ != nullptr && lock_->still_at(path_); }
-  /// Closes the store and renames its files to NAME.damaged-STAMP.db and so on. Returns the new
+  /// Closes the store and renames its files to NAME.WHY-STAMP.db and so on. Returns the new
   /// name. Throws DatabaseError when they cannot be renamed.
-  std::string set_aside(std::string_view stamp);
+  std::string set_aside(std::string_view why, std::string_view stamp);
   /// The error by which recordings were dropped since the last call, if any.
   std::optional<DatabaseError> take_failure();
 

@@ -1,7 +1,7 @@
-// db/schema.cpp: the tables and their history.
+// db/schema.cpp: the tables.
 #include "db/schema.hpp"
 
-#include <array>
+#include <cstdint>
 #include <string>
 
 namespace db::detail {
@@ -10,12 +10,14 @@ namespace {
 
 constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": tells our files from others
 
-// Step k brings version k to k + 1. Steps that have been released are never changed; a change of
-// the tables is a further step. SI units throughout.
-constexpr std::array kSteps = {
-    // 1: runs, their plain columns tick by tick, and the frames packed in blocks. The document is
-    // kept apart because the run row is rewritten at every commit.
-    R"(
+// The version counts the forms of the tables and of the frames in their blocks; a file of another
+// one is not read. 5: frames hold layers.
+constexpr std::int64_t kVersion = 5;
+
+// SI units throughout. A run with the same document as the one before it shares that one's, which
+// stays as long as a run has it: ten thousand repeats of a world would fill the store with copies.
+// It is kept apart because the run row is rewritten at every commit.
+constexpr const char* kTables = R"(
     CREATE TABLE run (
       id INTEGER PRIMARY KEY AUTOINCREMENT,
       status TEXT NOT NULL,
@@ -33,8 +35,12 @@ constexpr std::array kSteps = {
       time REAL NOT NULL DEFAULT 0,
       lost_ticks INTEGER NOT NULL DEFAULT 0,
       bytes INTEGER NOT NULL DEFAULT 0,
-      metrics TEXT NOT NULL DEFAULT ''
+      metrics TEXT NOT NULL DEFAULT '',
+      document INTEGER
     );
+    CREATE INDEX run_by_scenario ON run (scenario, id);
+    CREATE INDEX run_by_status ON run (status, id);
+    CREATE INDEX run_by_document ON run (document) WHERE document IS NOT NULL;
     CREATE TABLE document (run INTEGER PRIMARY KEY, text TEXT NOT NULL);
     CREATE TABLE tick (
       run INTEGER NOT NULL,
@@ -51,14 +57,6 @@ constexpr std::array kSteps = {
       frames BLOB NOT NULL,
       PRIMARY KEY (run, first_tick)
     );
-    )",
-    // 2: listing by scenario and finding what is not finished without reading every run.
-    R"(
-    CREATE INDEX run_by_scenario ON run (scenario, id);
-    CREATE INDEX run_by_status ON run (status, id);
-    )",
-    // 3: which ticks a run lacks, and why.
-    R"(
     CREATE TABLE gap (
       run INTEGER NOT NULL,
       first_tick INTEGER NOT NULL,
@@ -67,18 +65,7 @@ constexpr std::array kSteps = {
       sentence TEXT NOT NULL,
       PRIMARY KEY (run, first_tick)
     ) WITHOUT ROWID;
-    )",
-    // 4: a run with the same document as the one before it shares that one's, which stays as long
-    // as a run has it: ten thousand repeats of a world would fill the store with copies of it.
-    R"(
-    ALTER TABLE run ADD COLUMN document INTEGER;
-    CREATE INDEX run_by_document ON run (document) WHERE document IS NOT NULL;
-    )",
-};
-
-constexpr std::int64_t kOldestReadable = 2;
-constexpr std::int64_t kWithGaps = 3;
-constexpr std::int64_t kWithSharedDocuments = 4;
+)";
 
 std::int64_t version_of(const Connection& connection) {
   return connection.query_integer("PRAGMA user_version");
@@ -93,36 +80,38 @@ void refuse_foreign(const Connection& connection) {
   }
 }
 
-void refuse_newer(const Connection& connection) {
+/// Another version than ours, and no empty file.
+void refuse_others(const Connection& connection) {
   const std::int64_t version = version_of(connection);
-  if (version > schema_version()) {
-    throw StoreError("The run store " + connection.path() + " has version " +
-                     std::to_string(version) +
-                     ", written by a newer program; this one reads up to " +
-                     std::to_string(schema_version()) + ".");
+  if (version > kVersion) {
+    throw StoreError(
+        "The run store " + connection.path() + " has version " + std::to_string(version) +
+        ", written by a newer program; this one reads version " + std::to_string(kVersion) + ".");
+  }
+  if (version > 0 && version < kVersion) {
+    throw DatabaseError("The run store " + connection.path() + " has version " +
+                            std::to_string(version) +
+                            ", written by an older program; this one reads version " +
+                            std::to_string(kVersion) + ".",
+                        Trouble::Outdated);
   }
 }
 
 }  // namespace
 
-int schema_version() {
-  return static_cast<int>(kSteps.size());
-}
-
-void migrate(Connection& connection) {
+void set_up(Connection& connection) {
   refuse_foreign(connection);
-  refuse_newer(connection);
-  if (version_of(connection) == schema_version()) return;
+  refuse_others(connection);
+  if (version_of(connection) == kVersion) return;
   try {
     connection.execute("BEGIN IMMEDIATE");
-    // Again, now that no one else can migrate it in between.
-    refuse_newer(connection);
-    for (auto step = static_cast<std::size_t>(version_of(connection)); step < kSteps.size();
-         ++step) {
-      connection.execute(kSteps[step]);
+    // Again, now that no one else can set it up in between.
+    refuse_others(connection);
+    if (version_of(connection) != kVersion) {
+      connection.execute(kTables);
+      connection.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
+      connection.execute("PRAGMA user_version = " + std::to_string(kVersion));
     }
-    connection.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
-    connection.execute("PRAGMA user_version = " + std::to_string(schema_version()));
     connection.execute("COMMIT");
   } catch (...) {
     connection.roll_back();
@@ -132,19 +121,11 @@ void migrate(Connection& connection) {
 
 void require_readable(const Connection& connection) {
   refuse_foreign(connection);
-  refuse_newer(connection);
-  if (version_of(connection) < kOldestReadable) {
+  refuse_others(connection);
+  if (version_of(connection) != kVersion) {
     throw StoreError("The run store " + connection.path() +
-                     " is empty or of an older version; start the server on it once.");
+                     " is empty; start the server on it once.");
   }
-}
-
-bool has_gaps(const Connection& connection) {
-  return version_of(connection) >= kWithGaps;
-}
-
-bool shares_documents(const Connection& connection) {
-  return version_of(connection) >= kWithSharedDocuments;
 }
 
 }  // namespace db::detail

@@ -23,11 +23,12 @@ class StoreError : public std::runtime_error {
 
 /// What ails a database, as far as it decides what can be done about it.
 enum class Trouble : std::uint8_t {
-  Busy,     // another program holds it: nothing is lost, try again
-  Full,     // the disk is
-  Damaged,  // the file is, or it is no database
-  Refused,  // it may not be opened or written, or another server writes it
-  Failed,   // anything else, such as a disk that breaks
+  Busy,      // another program holds it: nothing is lost, try again
+  Full,      // the disk is
+  Damaged,   // the file is, or it is no database
+  Outdated,  // an older program wrote it
+  Refused,   // it may not be opened or written, or another server writes it
+  Failed,    // anything else, such as a disk that breaks
 };
 
 /// The database itself failed: disk full, not readable, locked by another program.

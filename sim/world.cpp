@@ -204,6 +204,15 @@ void World::follow_paths(double now) {
   }
 }
 
+void World::find_moved(algo::Recycled<algo::Moved>& moved) const {
+  moved.clear();
+  for (const ObstaclePath& path : scenario_.paths) {
+    if (const auto index = obstacles_.find(path.id)) {
+      moved.push_back({path.id, obstacles_[*index].pose_W});
+    }
+  }
+}
+
 void World::place(std::size_t index, const algo::Pose2& pose_W) {
   obstacles_.move(index, pose_W);
   vehicle_->moved(index, obstacles_[index]);

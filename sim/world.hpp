@@ -39,6 +39,7 @@ class World final : public algo::Robot {
   void stop() noexcept override { vehicle_->halt(); }
   std::optional<std::string> edit(const algo::Request& request) override;
   std::optional<algo::GroundTruth> ground_truth() const override;
+  void find_moved(algo::Recycled<algo::Moved>& moved) const override;
   void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
   std::uint64_t missed_periods() const override { return pacer_.missed(); }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "algo/baselines/returns.hpp"
+#include "algo/driving.hpp"
 
 namespace algo {
 namespace {
@@ -34,8 +35,8 @@ void Baseline::update(const ControlInput& in, const Parameters& parameters, Cont
   if (goal_W_ && *goal_W_ != goal_W(in)) retarget();
   goal_W_ = goal_W(in);
   const Pose2& pose = in.odometry.pose;
-  if ((*goal_W_ - pose.position()).norm() < parameters[kGoalReach]) {
-    out.pass_W = *goal_W_;
+  if ((*goal_W_ - pose.position()).norm() < parameters[algo::kGoalReach]) {
+    out.pass_W = goal_W_;
     out.twist = turn_to(pose, *in.goal, parameters);
     return;
   }
@@ -43,9 +44,23 @@ void Baseline::update(const ControlInput& in, const Parameters& parameters, Cont
   if (on_obstacle(*in.scene)) out.twist = {};
 }
 
+void Baseline::explain(const Telemetry& t, Explanation& words) const {
+  if (t.output.state == 0) {
+    say_driving(t, words);
+  } else {
+    tell(t, words);
+  }
+}
+
 double bearing_W(const Vec2& from_W, const Vec2& to_W) {
   const Vec2 way = to_W - from_W;
   return std::atan2(way.y(), way.x());
+}
+
+void tell_pushed(const Telemetry& t, Explanation& words) {
+  words.what = "Driving where pull and pushes lead";
+  say(words.why, "That is %.0f degrees off the goal. ", off_goal(t));
+  say_surroundings(t, words.why);
 }
 
 void steer_along(const ControlInput& in,

@@ -121,9 +121,9 @@ void CertaintyGrid::sense(const ControlInput& in, NewPicture& is_new) {
   }
 }
 
-void CertaintyGrid::show(GridLayer& layer) const {
+void CertaintyGrid::show(Layer& layer) const {
   cells_.show(layer, [](const Belief& belief) {
-    if (belief.empty == 0 && belief.occupied == 0) return GridLayer::kUnknown;
+    if (belief.empty == 0 && belief.occupied == 0) return kUnknownCell;
     return static_cast<std::uint8_t>(std::lround(127 + 127 * belief.value()));
   });
 }

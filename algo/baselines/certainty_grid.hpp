@@ -47,7 +47,7 @@ class CertaintyGrid {
   bool covers(Cell c) const { return cells_.covers(c); }
   /// O where O >= E, else -E: 1 surely occupied, -1 surely empty, 0 unknown.
   double certainty(Cell c) const;
-  void show(GridLayer& layer) const;
+  void show(Layer& layer) const;
 
  private:
   struct Belief {
@@ -78,12 +78,14 @@ class CertaintyGridPlanner final : public Baseline {
   void forget() override;
   void retarget() override { planned_at_.reset(); }
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
   void plan(const ControlInput& in, double margin);
   void fill_costs(double hard);
   bool too_near(const Vec2& robot_W) const;
   void open_way_out(const Vec2& robot_W);
   GridCell place(Cell c) const;
   Vec2 next_point(const Vec2& p_W, double ahead) const;
+  void show_plan(ControlOutput& out) const;
 
   CertaintyGrid grid_{};
   NewPicture is_new_{};

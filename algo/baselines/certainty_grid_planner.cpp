@@ -14,6 +14,16 @@ constexpr double kComfort = 0.3;       // [m] [D] beyond the margin cells still 
 constexpr float kNearCost = 3;         // [D] what a cell at the margin costs on top
 constexpr float kWayOutCost = 10;      // [D] of a cell under the robot that is too near
 constexpr double kWayOut = 0.3;        // [m] [D] round the robot where such cells are not blocked
+constexpr LayerInfo kGrid{.name = "certainty.grid",
+                          .label = "Certainty grid",
+                          .kind = LayerKind::Grid,
+                          .tone = Tone::External};
+constexpr LayerInfo kPlan{.name = "plan",
+                          .label = "Plan",
+                          .kind = LayerKind::Polyline,
+                          .tone = Tone::Plan,
+                          .style = LayerStyle::Dashed};
+enum State : std::uint8_t { kPlanned = 1, kNoPlan };
 constexpr std::size_t kCells =
     static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
 
@@ -145,18 +155,42 @@ void CertaintyGridPlanner::steer(const ControlInput& in,
                                  const Parameters& parameters,
                                  ControlOutput& out) {
   grid_.sense(in, is_new_);
-  grid_.show(out.grid);
+  Layer& grid = add_layer(out.layers, kGrid);
+  if (in.grids) grid_.show(grid);
   if (!planned_at_ || in.stamp - *planned_at_ >= kReplanPeriod) {
     plan(in, parameters[kMargin]);
     planned_at_ = in.stamp;
   }
-  out.manner = reaches_ ? Manner::Planned : Manner::NoPlan;
-  for (const Vec2& point : path_W_) out.plan_W.push_back(point);
+  out.state = reaches_ ? kPlanned : kNoPlan;
+  out.waits = !reaches_;
+  show_plan(out);
   const Vec2 p = in.odometry.pose.position();
   const Vec2 next = next_point(p, parameters[kLookAhead]);
   if ((next - p).norm() < CertaintyGrid::kCell / 2) return;  // as near as it gets
   steer_along(in, bearing_W(p, next), parameters[kMaxSpeed], parameters, out);
   out.pass_W = next;
+}
+
+void CertaintyGridPlanner::show_plan(ControlOutput& out) const {
+  Layer& plan = add_layer(out.layers, kPlan);
+  double length = 0;
+  for (std::size_t k = 0; k < path_W_.size(); ++k) {
+    put(plan, path_W_[k]);
+    if (k > 0) length += (path_W_[k] - path_W_[k - 1]).norm();
+  }
+  out.measures.push_back({"plan.length", "m", length});
+}
+
+void CertaintyGridPlanner::tell(const Telemetry& t, Explanation& words) const {
+  if (t.output.state == kNoPlan) {
+    words.what = "Looking for a way";
+    words.why = "No path over the grid reaches the goal; this one ends nearest to it.";
+    return;
+  }
+  words.what = "Following its plan";
+  say(words.why,
+      "The path over the grid is %.2f m long.",
+      t.output.measure("plan.length").value_or(0));
 }
 
 }  // namespace algo

@@ -15,9 +15,27 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kInterval = 0.25;  // [s] the paper's control interval
 constexpr int kSpeeds = 9;          // [D] samples of the window
 constexpr int kTurns = 21;          // [D]
-constexpr double kFarthest = 3.0;   // [m] [D] more room than this is no better
-constexpr double kShown = 1.5;      // [s] [D] of each candidate that is drawn
+constexpr int kMotions = kSpeeds * kTurns;
+constexpr double kFarthest = 3.0;  // [m] [D] more room than this is no better
+constexpr double kShown = 1.5;     // [s] [D] of each candidate that is drawn
 constexpr std::size_t kBearings = 180;
+constexpr LayerInfo kRefused{.name = "window.refused",
+                             .label = "Motions that cannot be stopped in time",
+                             .kind = LayerKind::Arcs,
+                             .frame = LayerFrame::Robot,
+                             .tone = Tone::Refused,
+                             .style = LayerStyle::Faint};
+constexpr LayerInfo kAllowed{.name = "window.allowed",
+                             .label = "Motions weighed",
+                             .kind = LayerKind::Arcs,
+                             .frame = LayerFrame::Robot,
+                             .tone = Tone::Muted};
+constexpr LayerInfo kChosen{.name = "window.chosen",
+                            .label = "Motion chosen",
+                            .kind = LayerKind::Arcs,
+                            .frame = LayerFrame::Robot,
+                            .tone = Tone::Accent};
+enum State : std::uint8_t { kWindow = 1, kNoWindow };
 
 constexpr ParameterInfo kMargin{.name = "dwa.margin",
                                 .label = "Margin",
@@ -236,28 +254,60 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
       parameters[kHeadingWeight], parameters[kRoomWeight], parameters[kSpeedWeight]};
   const double reaction = in.dt + spec.command_delay;
 
-  std::optional<std::size_t> best;
+  // Room for all of them in each: references to a layer do not outlive the next add_layer().
+  for (const LayerInfo* info : {&kRefused, &kAllowed, &kChosen}) {
+    add_layer(out.layers, *info).values.reserve(2 * kMotions);
+  }
+  Layer* const layers = out.layers.end() - 3;
+  Layer& refused = layers[0];
+  Layer& allowed = layers[1];
+  const auto show = [](Layer& layer, const Twist2& twist) {
+    put(layer, kShown * twist.v, kShown * twist.omega);
+  };
+  std::optional<Twist2> best;
+  double least = kInf;
+  int stoppable = 0;
   for (int i = 0; i < kSpeeds; ++i) {
     for (int k = 0; k < kTurns; ++k) {
-      Candidate& each = out.candidates.append();
-      each = {};
-      each.twist = {sample(window.v_from, window.v_to, i, kSpeeds),
-                    sample(window.omega_from, window.omega_to, k, kTurns)};
-      each.horizon = kShown;
-      const ArcRoom room = arc_room(hull, each.twist, points_R_);
-      each.allowed = admissible(each.twist, room, spec, reaction);
-      each.cost =
-          1 - dwa_objective(in.odometry.pose, goal_W(in), each.twist, room, v_max, spec, weights);
-      const bool better = !best || each.cost < out.candidates[*best].cost;
-      if (each.allowed && better) best = out.candidates.size() - 1;
+      const Twist2 twist{sample(window.v_from, window.v_to, i, kSpeeds),
+                         sample(window.omega_from, window.omega_to, k, kTurns)};
+      const ArcRoom room = arc_room(hull, twist, points_R_);
+      if (!admissible(twist, room, spec, reaction)) {
+        show(refused, twist);
+        continue;
+      }
+      show(allowed, twist);
+      ++stoppable;
+      const double cost =
+          1 - dwa_objective(in.odometry.pose, goal_W(in), twist, room, v_max, spec, weights);
+      if (best && !(cost < least)) continue;
+      best = twist;
+      least = cost;
     }
   }
+  out.measures.push_back({"window.allowed", "", static_cast<double>(stoppable)});
   out.pass_W = goal_W(in);
-  out.manner = best ? Manner::Window : Manner::NoWindow;
+  out.state = best ? kWindow : kNoWindow;
+  out.waits = !best;
   if (!best) return;  // nothing can be stopped in time: brake
-  out.candidates[*best].chosen = true;
-  out.twist = out.candidates[*best].twist;
+  show(layers[2], *best);
+  out.twist = *best;
   out.pass_W = integrate_arc(in.odometry.pose, out.twist, kShown).position();
+}
+
+void Dwa::tell(const Telemetry& t, Explanation& words) const {
+  if (t.output.state == kNoWindow) {
+    words.what = "Braking";
+    words.why = "No motion in reach could be stopped in time.";
+    return;
+  }
+  words.what = "Choosing among the speeds in reach";
+  say(words.why,
+      "%.0f of %d motions can be stopped in time; the best is %.2f m/s, %.2f rad/s.",
+      t.output.measure("window.allowed").value_or(0),
+      kMotions,
+      t.output.twist.v,
+      t.output.twist.omega);
 }
 
 }  // namespace algo

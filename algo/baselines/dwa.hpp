@@ -74,6 +74,7 @@ class Dwa final : public Baseline {
  private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
   void gather(const ControlInput& in, double reach);
 
   // The nearest return of every two degrees of bearing, in R.

@@ -97,9 +97,8 @@ void EdgeDetection::steer(const ControlInput& in,
   if (via_W_ && (*via_W_ - pose.position()).norm() < kViaReach) via_W_.reset();
   if (!via_W_) {
     if (const auto beam = blocking_beam(in, parameters)) {
-      out.blocked_beam = static_cast<std::int32_t>(*beam);
       if (wait(in.stamp)) {
-        out.manner = Manner::TakingScan;
+        out.state = kTakingScan;
         out.pass_W = goal_W(in);
         return;
       }
@@ -107,11 +106,30 @@ void EdgeDetection::steer(const ControlInput& in,
     }
     standing_since_.reset();
   }
-  out.manner = via_W_ ? Manner::ToEdge : Manner::ToGoal;
+  out.state = via_W_ ? kToEdge : kToGoal;
   const Vec2 target = via_W_.value_or(goal_W(in));
   const double bearing = bearing_W(pose.position(), target);
   steer_along(in, bearing, parameters[kMaxSpeed], parameters, out);
   out.pass_W = target;
+}
+
+void EdgeDetection::tell(const Telemetry& t, Explanation& words) const {
+  const Vec2 p = t.observation.odometry.pose.position();
+  switch (t.output.state) {
+    case kTakingScan:
+      words.what = "Standing still to take a scan";
+      words.why = "Something is in the lane to the goal; its edges are looked for at rest.";
+      break;
+    case kToEdge:
+      words.what = "Driving past an edge";
+      say(words.why,
+          "The point beside the obstacle's edge is %.2f m away.",
+          (t.output.pass_W.value_or(p) - p).norm());
+      break;
+    default:
+      say_driving(t, words);
+      words.what = "Driving straight to the goal";
+  }
 }
 
 }  // namespace algo

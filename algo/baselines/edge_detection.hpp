@@ -34,11 +34,14 @@ Vec2 beside_edge(const Pose2& pose_W, const LaserScan& scan, const Edge& edge, S
 class EdgeDetection final : public Baseline {
  public:
   static ParameterList parameters();
+  /// ControlOutput::state.
+  enum State : std::uint8_t { kTakingScan = 1, kToEdge, kToGoal };
 
  private:
   void forget() override;
   void retarget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
   std::optional<std::size_t> blocking_beam(const ControlInput& in, const Parameters& parameters);
   void choose(const ControlInput& in, std::size_t beam);
   bool wait(double stamp);

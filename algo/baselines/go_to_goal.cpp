@@ -4,9 +4,14 @@
 namespace algo {
 
 void GoToGoal::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
-  out.manner = Manner::ToGoal;
+  out.state = 1;
   const double bearing = bearing_W(in.odometry.pose.position(), goal_W(in));
   steer_along(in, bearing, parameters[kMaxSpeed], parameters, out);
+}
+
+void GoToGoal::tell(const Telemetry& t, Explanation& words) const {
+  say_driving(t, words);
+  words.what = "Driving straight to the goal";
 }
 
 }  // namespace algo

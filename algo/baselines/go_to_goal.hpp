@@ -9,6 +9,7 @@ namespace algo {
 class GoToGoal final : public Baseline {
   void forget() override {}
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
 };
 
 }  // namespace algo

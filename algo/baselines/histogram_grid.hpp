@@ -53,13 +53,19 @@ class HistogramGrid {
   }
 
   /// A cell that returned nothing is unknown: the grid knows no free ones.
-  void show(GridLayer& layer) const {
+  void show(const ControlInput& in, ControlOutput& out) const {
+    Layer& layer = add_layer(out.layers, kShown);
+    if (!in.grids) return;
     cells_.show(layer, [](std::uint8_t c) {
-      return c == 0 ? GridLayer::kUnknown : static_cast<std::uint8_t>(127 + c * 127 / kCertain);
+      return c == 0 ? kUnknownCell : static_cast<std::uint8_t>(127 + c * 127 / kCertain);
     });
   }
 
  private:
+  static constexpr LayerInfo kShown{.name = "histogram.grid",
+                                    .label = "Histogram grid",
+                                    .kind = LayerKind::Grid,
+                                    .tone = Tone::External};
   RollingGrid<std::uint8_t> cells_{kCell, kSide};
 };
 

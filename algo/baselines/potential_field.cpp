@@ -106,7 +106,7 @@ void PotentialField::forget() {
 void PotentialField::steer(const ControlInput& in,
                            const Parameters& parameters,
                            ControlOutput& out) {
-  out.manner = Manner::Pushed;
+  out.state = 1;
   PotentialSettings settings;
   settings.k_a = parameters[kPull];
   settings.eta = parameters[kPush];
@@ -118,6 +118,10 @@ void PotentialField::steer(const ControlInput& in,
   if (!(force.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
   const double share = std::min(1.0, force.norm() / settings.f_max);
   steer_along(in, std::atan2(force.y(), force.x()), share * parameters[kMaxSpeed], parameters, out);
+}
+
+void PotentialField::tell(const Telemetry& t, Explanation& words) const {
+  tell_pushed(t, words);
 }
 
 }  // namespace algo

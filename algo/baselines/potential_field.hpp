@@ -35,6 +35,7 @@ class PotentialField final : public Baseline {
  private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
 
   std::vector<Vec2> obstacles_W_{};
 };

@@ -65,9 +65,9 @@ void Vff::forget() {
 }
 
 void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
-  out.manner = Manner::Pushed;
+  out.state = 1;
   grid_.sense(in, is_new_);
-  grid_.show(out.grid);
+  grid_.show(in, out);
   const Pose2& pose = in.odometry.pose;
   const VffForces forces = vff_forces(
       grid_, pose.position(), goal_W(in), parameters[kRepulsion], parameters[kAttraction]);
@@ -76,6 +76,10 @@ void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const double v_max = parameters[kMaxSpeed];
   const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
   steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);
+}
+
+void Vff::tell(const Telemetry& t, Explanation& words) const {
+  tell_pushed(t, words);
 }
 
 }  // namespace algo

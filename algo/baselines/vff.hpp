@@ -30,6 +30,7 @@ class Vff final : public Baseline {
  private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
 
   HistogramGrid grid_{};
   NewPicture is_new_{};

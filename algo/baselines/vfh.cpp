@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "algo/driving.hpp"
+
 namespace algo {
 namespace {
 
@@ -29,6 +31,12 @@ constexpr ParameterInfo kStandstill{.name = "vfh.standstill",
                                     .help = "At this density straight ahead the robot stands."};
 constexpr auto kParameters = std::to_array<const ParameterInfo*>(
     {&kThreshold, &kStandstill, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
+
+constexpr LayerInfo kHistogram{.name = "histogram",
+                               .label = "Polar histogram",
+                               .kind = LayerKind::Polar,
+                               .tone = Tone::External};
+enum State : std::uint8_t { kThroughValley = 1, kWalled };
 
 int cyclic(int k) {
   return (k % kSectors + kSectors) % kSectors;
@@ -123,27 +131,45 @@ void Vfh::forget() {
 
 void Vfh::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
   grid_.sense(in, is_new_);
-  grid_.show(out.grid);
+  grid_.show(in, out);
   const Pose2& pose = in.odometry.pose;
   const PolarDensity density = smooth(polar_density(grid_, pose.position()));
-  out.histogram.assign(density.begin(), density.end());
   const double threshold = parameters[kThreshold];
-  out.histogram_threshold = threshold;
+  Layer& histogram = add_layer(out.layers, kHistogram);
+  histogram.level = static_cast<float>(threshold);
+  histogram.values.assign(density.begin(), density.end());
+  const auto free = std::ranges::count_if(density, [=](double h) { return h < threshold; });
+  out.measures.push_back({"histogram.free", "", static_cast<double>(free)});
 
   const double to_goal = bearing_W(pose.position(), goal_W(in));
   const int target = sector_of(to_goal);
   const auto sector = steering_sector(density, threshold, target);
   if (!sector) {  // stops and turns until a way opens
-    out.manner = Manner::Walled;
-    out.twist = {0, parameters[kMaxTurnRate]};
+    out.state = kWalled;
+    out.waits = true;
+    out.twist = {0, parameters[algo::kMaxTurnRate]};
     return;
   }
-  out.manner = Manner::Valley;
+  out.state = kThroughValley;
   const double ahead = density[static_cast<std::size_t>(sector_of(pose.heading))];
   const double speed = vfh_speed(ahead, parameters[kStandstill], parameters[kMaxSpeed]);
   // In a free sector the goal itself, not the middle of its sector.
   const double bearing = *sector == target ? to_goal : sector_centre(*sector);
   steer_along(in, bearing, speed, parameters, out);
+}
+
+void Vfh::tell(const Telemetry& t, Explanation& words) const {
+  if (t.output.state == kWalled) {
+    words.what = "Turning on the spot";
+    words.why = "No sector of the histogram is free.";
+    return;
+  }
+  words.what = "Steering through a free valley";
+  say(words.why,
+      "%.0f of %d sectors are free; the way is %.0f degrees off the goal.",
+      t.output.measure("histogram.free").value_or(0),
+      kSectors,
+      off_goal(t));
 }
 
 }  // namespace algo

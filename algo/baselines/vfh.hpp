@@ -45,6 +45,7 @@ class Vfh final : public Baseline {
  private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void tell(const Telemetry& t, Explanation& words) const override;
 
   HistogramGrid grid_{};
   NewPicture is_new_{};

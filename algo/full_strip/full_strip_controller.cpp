@@ -34,14 +34,11 @@ constexpr int kManeuverExpansions = 150;   // a tick
 constexpr double kManeuverMargin = 0.031;  // [m] of room on the way
 constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
 constexpr std::size_t kFarthest = 11;
-constexpr std::size_t kAim = 7;       // and where it is looked for
-constexpr double kOnStrip = 0.10;     // [m]
-constexpr double kAlongStrip = 0.35;  // [rad]
-constexpr std::size_t kMostWeighed = 32;
+constexpr std::size_t kAim = 7;                    // and where it is looked for
+constexpr double kOnStrip = 0.10;                  // [m]
+constexpr double kAlongStrip = 0.35;               // [rad]
 constexpr double kLastLeg = 2 * LocalMap::kReach;  // [m] to the goal
-constexpr double kGives = 0.08;        // [m] by which the strip stays inside its rest distance
-constexpr double kDrawEvery = 0.5;     // [s]
-constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
+constexpr double kGives = 0.08;  // [m] by which the strip stays inside its rest distance
 
 constexpr ParameterInfo kBreakRoom{
     .name = "full_strip.break_room",
@@ -99,8 +96,7 @@ void FullStripController::reset(const Pose2& start_W) {
   tight_since_.reset();
   broken_at_ = -1;
   next_plan_ = 0;
-  next_drawing_ = 0;
-  manner_ = Manner::None;
+  state_ = kNone;
   back_until_ = -1;
   escape_until_ = -1;
   placed_ = false;
@@ -279,7 +275,7 @@ double FullStripController::time_for(double patience) const {
 
 void FullStripController::watch_progress(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
-  const bool turning = manner_ == Manner::Turning && std::abs(in.odometry.twist.omega) > 0.1;
+  const bool turning = state_ == kTurning && std::abs(in.odometry.twist.omega) > 0.1;
   if ((here - way_W_).norm() > kStuckWay) {
     way_W_ = here;
     way_since_ = in.stamp;
@@ -299,8 +295,7 @@ void FullStripController::watch_progress(const ControlInput& in) {
 /// Among things that move, the beam search decides instead of the pursuit of the strip, which still
 /// tells the way to go.
 std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
-                                                    const ControlInput& in,
-                                                    ControlOutput& out) {
+                                                    const ControlInput& in) {
   SpaceTimeInput search;
   search.map = &map_;
   search.hull = &stage_.hull();
@@ -323,45 +318,43 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
     search.carrot_W = nodes[carrot].position_W;
     search.beyond = static_cast<double>(nodes.size() - 1 - carrot) * NodeStrip::kSpacing;
   }
-  const Twist2 twist = space_time_.search(search, out);
-  out.pass_W = search.carrot_W;
+  const Twist2 twist = space_time_.search(search, weighed_);
+  weighed_.pass_W = search.carrot_W;
   maneuver_.reset();
   progress_at_ = in.stamp;
   way_since_ = in.stamp;
-  manner_ = space_time_.clear() ? Manner::GivingWay : Manner::Cornered;
-  if (space_time_.clear() && twist.v > 0.1) manner_ = Manner::Following;
+  state_ = space_time_.clear() ? kGivingWay : kCornered;
+  if (space_time_.clear() && twist.v > 0.1) state_ = kFollowing;
   return twist;
 }
 
-Twist2 FullStripController::recover(const StageInput& stage,
-                                    const ControlInput& in,
-                                    ControlOutput& out) {
+Twist2 FullStripController::recover(const StageInput& stage, const ControlInput& in) {
   if (in.stamp < back_until_) {
-    if (const auto twist = stage_.back_off(stage, out)) {
-      manner_ = Manner::BackingOff;
+    if (const auto twist = stage_.back_off(stage, weighed_)) {
+      state_ = kBackingOff;
       return *twist;
     }
   }
   // An escape is held to its end: begun and given up each tick it would lead nowhere.
   if (in.stamp < escape_until_) {
-    if (stage_.still_escapes(stage, escape_, escape_until_ - in.stamp, out)) {
-      manner_ = Manner::Escaping;
+    if (stage_.still_escapes(stage, escape_, escape_until_ - in.stamp, weighed_)) {
+      state_ = kEscaping;
       return escape_;
     }
     escape_until_ = -1;
   }
   const bool still = std::abs(in.odometry.twist.v) < 0.05;
   if (still) {
-    if (const auto twist = stage_.escape(stage, out)) {
+    if (const auto twist = stage_.escape(stage, weighed_)) {
       escape_ = *twist;
       escape_until_ = in.stamp + VelocityStage::kEscape;
       maneuver_.reset();
       search_.reset();
-      manner_ = Manner::Escaping;
+      state_ = kEscaping;
       return escape_;
     }
   }
-  manner_ = no_way_ ? Manner::NoWay : Manner::Blocked;
+  state_ = no_way_ ? kNoWay : kBlocked;
   return {};
 }
 
@@ -397,12 +390,11 @@ void FullStripController::look_for_maneuver(const ControlInput& in) {
 
 /// The next command of the manoeuvre under way; nothing when it is over or no longer free.
 std::optional<Twist2> FullStripController::carry_on(const StageInput& stage,
-                                                    const ControlInput& in,
-                                                    ControlOutput& out) {
+                                                    const ControlInput& in) {
   const auto wanted = maneuver_.next(stage.state.pose_W, limits_);
   if (wanted) {
-    if (const auto twist = stage_.proven(stage, *wanted, out)) {
-      manner_ = Manner::Maneuvering;
+    if (const auto twist = stage_.proven(stage, *wanted, weighed_)) {
+      state_ = kManeuvering;
       return twist;
     }
   }
@@ -411,9 +403,7 @@ std::optional<Twist2> FullStripController::carry_on(const StageInput& stage,
   return std::nullopt;
 }
 
-Twist2 FullStripController::drive(const ControlInput& in,
-                                  const Parameters& parameters,
-                                  ControlOutput& out) {
+Twist2 FullStripController::drive(const ControlInput& in, const Parameters& parameters) {
   StageInput stage;
   stage.map = &map_;
   stage.strip = &strip_;
@@ -423,62 +413,49 @@ Twist2 FullStripController::drive(const ControlInput& in,
   if (broken_at_ >= 0) stage.stop_at = std::max(0.0, broken_at_ - kStopShort);
 
   const double to_goal = (in.goal->position_W - in.odometry.pose.position()).norm();
-  if (to_goal < parameters[kGoalReach]) {
-    manner_ = Manner::None;
+  if (to_goal < parameters[algo::kGoalReach]) {
+    state_ = kNone;
     progress_at_ = in.stamp;
-    return stage_.proven(stage, turn_to(in.odometry.pose, *in.goal, parameters), out)
+    return stage_.proven(stage, turn_to(in.odometry.pose, *in.goal, parameters), weighed_)
         .value_or(Twist2{});
   }
-  if (const auto twist = give_way(stage, in, out)) return *twist;
+  if (const auto twist = give_way(stage, in)) return *twist;
   if (ends_here(in, parameters)) {
-    manner_ = Manner::GoalTaken;
+    state_ = kGoalTaken;
     progress_at_ = in.stamp;
-    return stage_.proven(stage, {}, out).value_or(Twist2{});
+    return stage_.proven(stage, {}, weighed_).value_or(Twist2{});
   }
   watch_progress(in);
   if (std::max(back_until_, escape_until_) > in.stamp || strip_.empty()) {
-    return recover(stage, in, out);
+    return recover(stage, in);
   }
   if (maneuver_.active()) {
-    if (const auto twist = carry_on(stage, in, out)) return *twist;
+    if (const auto twist = carry_on(stage, in)) return *twist;
   }
-  if (const auto twist = stage_.follow(stage, out)) {
+  if (const auto twist = stage_.follow(stage, weighed_)) {
     const bool turning = twist->v == 0 && twist->omega != 0;
-    manner_ = turning ? Manner::Turning : Manner::Following;
+    state_ = turning ? kTurning : kFollowing;
     if (in.stamp - way_since_ > time_for(kPatience)) look_for_maneuver(in);
     if (*twist != Twist2{} || broken_at_ < 0) return *twist;
   } else {
     look_for_maneuver(in);
     if (maneuver_.active()) {
-      if (const auto way = carry_on(stage, in, out)) return *way;
+      if (const auto way = carry_on(stage, in)) return *way;
     }
     const bool searching = search_.state() == ManeuverSearch::State::Searching;
     if (searching && in.stamp < next_search_) {
-      manner_ = Manner::Blocked;
+      state_ = kBlocked;
       return {};
     }
   }
-  return recover(stage, in, out);
-}
-
-void FullStripController::report(const ControlInput& in, ControlOutput& out) {
-  const bool draw = in.stamp >= next_drawing_;
-  if (draw) next_drawing_ = in.stamp + kDrawEvery;
-  out.strip = strip_.nodes();
-  out.plan_W = path_W_;
-  out.manner = manner_;
-  out.tracks = tracker_.moving();
-  if (draw) map_.draw(in.odometry.pose.position(), kDrawn, out.grid);
+  return recover(stage, in);
 }
 
 void FullStripController::update(const ControlInput& in,
                                  const Parameters& parameters,
                                  ControlOutput& out) {
   out.clear();
-  // Room for the most it ever weighs, so that a tick which weighs more than those before it does
-  // not allocate.
-  while (out.candidates.size() < kMostWeighed) out.candidates.append();
-  out.candidates.clear();
+  weighed_.clear();
   if (!all_finite(in, parameters) || stands_on_a_return(*in.scene)) return;
   const auto delay = static_cast<std::size_t>(std::lround(in.spec->command_delay / in.dt));
   if (under_way_.size() != delay) under_way_.assign(delay, {});
@@ -487,7 +464,7 @@ void FullStripController::update(const ControlInput& in,
   if (!in.goal) {
     strip_.clear();
     goal_W_.reset();
-    manner_ = Manner::None;
+    state_ = kNone;
     remember({});
     return;
   }
@@ -510,7 +487,8 @@ void FullStripController::update(const ControlInput& in,
   ease_last_leg(in.odometry.pose.position());
   stretch(in);
   plan(in);
-  out.twist = drive(in, parameters, out);
+  out.twist = drive(in, parameters);
+  out.pass_W = weighed_.pass_W;
   remember(out.twist);
   report(in, out);
 }

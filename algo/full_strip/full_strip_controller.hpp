@@ -17,6 +17,7 @@
 #include "algo/full_strip/space_time.hpp"
 #include "algo/full_strip/tracker.hpp"
 #include "algo/full_strip/velocity_stage.hpp"
+#include "algo/full_strip/weighing.hpp"
 
 namespace algo {
 
@@ -42,6 +43,22 @@ class FullStripController final : public Controller {
 
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void explain(const Telemetry& t, Explanation& words) const override;
+
+  /// What it is about, for its words: ControlOutput::state.
+  enum State : std::uint8_t {
+    kNone,
+    kFollowing,    // along the strip
+    kTurning,      // on the spot, towards the strip
+    kManeuvering,  // to and fro in a narrow place
+    kGivingWay,    // to what moves
+    kCornered,     // every motion would meet what moves
+    kEscaping,     // out of too narrow a place
+    kBackingOff,   // the way was blocked for long
+    kNoWay,        // the map has no way to the goal
+    kBlocked,      // nothing is free just now
+    kGoalTaken,    // something stands on the goal, and this is as far as it goes
+  };
 
  private:
   void prepare(const ControlInput& in, const Parameters& parameters);
@@ -51,15 +68,11 @@ class FullStripController final : public Controller {
   void plan(const ControlInput& in);
   void take_plan(const ControlInput& in);
   void stretch(const ControlInput& in);
-  Twist2 drive(const ControlInput& in, const Parameters& parameters, ControlOutput& out);
+  Twist2 drive(const ControlInput& in, const Parameters& parameters);
   void look_for_maneuver(const ControlInput& in);
-  std::optional<Twist2> carry_on(const StageInput& stage,
-                                 const ControlInput& in,
-                                 ControlOutput& out);
-  std::optional<Twist2> give_way(const StageInput& stage,
-                                 const ControlInput& in,
-                                 ControlOutput& out);
-  Twist2 recover(const StageInput& stage, const ControlInput& in, ControlOutput& out);
+  std::optional<Twist2> carry_on(const StageInput& stage, const ControlInput& in);
+  std::optional<Twist2> give_way(const StageInput& stage, const ControlInput& in);
+  Twist2 recover(const StageInput& stage, const ControlInput& in);
   MotionState when_acting(const ControlInput& in) const;
   void remember(const Twist2& command);
   double time_for(double patience) const;
@@ -67,7 +80,10 @@ class FullStripController final : public Controller {
   double least_clearance() const;
   double left(const NodeStrip& strip) const;
   bool ends_here(const ControlInput& in, const Parameters& parameters) const;
-  void report(const ControlInput& in, ControlOutput& out);
+  void report(const ControlInput& in, ControlOutput& out) const;
+  void show_strip(ControlOutput& out) const;
+  void show_moving(ControlOutput& out) const;
+  void show_weighed(ControlOutput& out) const;
 
   bool among_moving_ = false;
   bool placed_ = false;  // the place of the start is entered into the map
@@ -96,7 +112,8 @@ class FullStripController final : public Controller {
   std::optional<double> tight_since_{};  // [s] the goal is tried for without room
   double broken_at_ = -1;                // [m] along the strip; negative: whole
   double next_plan_ = 0;                 // [s] run clock
-  Manner manner_ = Manner::None;
+  State state_ = kNone;
+  Weighing weighed_{};        // in this tick
   Vec2 progress_W_{0, 0};     // where the robot last made way
   double progress_at_ = 0;    // [s]
   double back_until_ = -1;    // [s]
@@ -104,7 +121,6 @@ class FullStripController final : public Controller {
   double escape_until_ = -1;  // [s]
 
   std::vector<Twist2> under_way_{};  // commands given that do not act yet, oldest first
-  double next_drawing_ = 0;          // [s] run clock
   Recycled<Vec2> path_W_{};          // the planner's, last found
 };
 

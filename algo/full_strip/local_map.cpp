@@ -238,19 +238,17 @@ Vec2 LocalMap::gradient(const Vec2& p_W) const {
   return slope / length;
 }
 
-void LocalMap::draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const {
+void LocalMap::draw(const Vec2& about_W, std::uint32_t side, Layer& out) const {
   const int half = static_cast<int>(side) / 2;
   const Vec2 p = (about_W - corner_W_) / kCell;
   const int left = std::clamp(static_cast<int>(p.x()) - half, 0, kSize - 2 * half);
   const int bottom = std::clamp(static_cast<int>(p.y()) - half, 0, kSize - 2 * half);
-  out.corner_W = corner_W_ + Vec2(left * kCell, bottom * kCell);
-  out.cell = kCell;
-  out.columns = static_cast<std::uint32_t>(2 * half);
-  out.rows = out.columns;
-  out.cells.resize(static_cast<std::size_t>(out.columns) * out.rows);
+  const auto columns = static_cast<std::size_t>(2 * half);
+  put(out, Vec2(corner_W_ + Vec2(left * kCell, bottom * kCell)), kCell, 2 * half);
+  out.cells.resize(columns * columns);
   for (int y = 0; y < 2 * half; ++y) {
     const std::uint8_t* from = &hits_[index(left, bottom + y)];
-    std::uint8_t* to = &out.cells[static_cast<std::size_t>(y) * out.columns];
+    std::uint8_t* to = &out.cells[static_cast<std::size_t>(y) * columns];
     for (int x = 0; x < 2 * half; ++x) to[x] = from[x] >= kOccupied ? 254 : 0;
   }
 }

@@ -12,7 +12,7 @@
 #include "algo/full_strip/seen_space.hpp"
 #include "algo/full_strip/tracker.hpp"
 #include "algo/laser_scan.hpp"
-#include "algo/telemetry.hpp"
+#include "algo/layer.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -97,7 +97,7 @@ class LocalMap {
   SeenSpace& seen() { return space_; }
 
   /// The part that people look at: `side` x `side` cells about the robot.
-  void draw(const Vec2& about_W, std::uint32_t side, GridLayer& out) const;
+  void draw(const Vec2& about_W, std::uint32_t side, Layer& out) const;
 
  private:
   /// Where in a cell its hits lie, from its middle.

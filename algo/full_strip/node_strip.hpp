@@ -5,10 +5,17 @@
 
 #include "algo/full_strip/local_map.hpp"
 #include "algo/recycled.hpp"
-#include "algo/telemetry.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
+
+/// One control point of the strip. Forces are displacements [m].
+struct Node {
+  Vec2 position_W{0, 0};
+  Vec2 internal_W{0, 0};
+  Vec2 external_W{0, 0};
+  bool operator==(const Node&) const = default;
+};
 
 struct StripSettings {
   double contraction = 0.4;     // K_c

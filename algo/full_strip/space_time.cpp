@@ -151,7 +151,7 @@ void SpaceTimeSearch::keep_best() {
   }
 }
 
-Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
+Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, Weighing& out) {
   near_tracks_.clear();
   near_speeds_.clear();
   const Vec2 here = in.state.pose_W.position();
@@ -174,7 +174,7 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, ControlOutput& out) {
   return clear_ ? closer : least_bad(in);
 }
 
-Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, ControlOutput& out) {
+Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, Weighing& out) {
   margin_share_ = margin_share;
   states_.assign(1, State{in.state, 0, 0, 0});
   Twist2 best{};
@@ -210,7 +210,7 @@ Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, C
   out.candidates.clear();
   for (std::size_t c = 0; c < kCommands; ++c) {
     const Twist2 twist = command(c, in.limits);
-    out.candidates.push_back({twist, kLevels[0], 0, alive[c], twist == best});
+    out.candidates.push_back({twist, kLevels[0], alive[c], twist == best});
   }
   return best;
 }

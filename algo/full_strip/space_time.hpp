@@ -9,8 +9,9 @@
 
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
+#include "algo/full_strip/weighing.hpp"
 #include "algo/recycled.hpp"
-#include "algo/telemetry.hpp"
+#include "algo/robot.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -37,7 +38,7 @@ class SpaceTimeSearch {
   static bool needed(const SpaceTimeInput& in, const NodeStrip& strip);
   /// The command of a motion that stays clear to the end; if there is none, of one that does so
   /// with less room; else the one that comes least near to anything.
-  Twist2 search(const SpaceTimeInput& in, ControlOutput& out);
+  Twist2 search(const SpaceTimeInput& in, Weighing& out);
   /// Whether the last answer stays clear to the end.
   bool clear() const { return clear_; }
 
@@ -48,7 +49,7 @@ class SpaceTimeSearch {
     double cost = 0;
     std::uint32_t first = 0;  // index of the first command
   };
-  Twist2 attempt(const SpaceTimeInput& in, double margin_share, ControlOutput& out);
+  Twist2 attempt(const SpaceTimeInput& in, double margin_share, Weighing& out);
   bool stops_clear(const SpaceTimeInput& in, const Twist2& twist, double room) const;
   Twist2 least_bad(const SpaceTimeInput& in) const;
   bool step(

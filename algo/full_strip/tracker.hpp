@@ -8,10 +8,19 @@
 
 #include "algo/laser_scan.hpp"
 #include "algo/recycled.hpp"
-#include "algo/telemetry.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
+
+/// An obstacle seen moving.
+struct Track {
+  Vec2 position_W{0, 0};
+  Vec2 velocity_W{0, 0};  // [m/s]
+  double radius = 0;      // [m]
+  double age = 0;         // [s] since it was first seen
+  double unseen = 0;      // [s] since it was last seen
+  bool operator==(const Track&) const = default;
+};
 
 /// A round body as thick as a person or more is taken for one that may move from its first scan on,
 /// until it has stood for a while. Anything else counts as moving only once it has gone somewhere

@@ -137,13 +137,13 @@ bool VelocityStage::admissible(const StageInput& in,
   return rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
 }
 
-std::optional<Twist2> VelocityStage::follow(const StageInput& in, ControlOutput& out) {
+std::optional<Twist2> VelocityStage::follow(const StageInput& in, Weighing& out) {
   profile(in);
   const auto attempt = [&](double share) -> std::optional<Twist2> {
     Twist2 first;
     Vec2 aim_W{0, 0};
     const bool allowed = admissible(in, share, first, aim_W);
-    out.candidates.push_back({first, kHorizon, 1 - share, allowed, allowed});
+    out.candidates.push_back({first, kHorizon, allowed, allowed});
     if (!allowed) return std::nullopt;
     out.pass_W = aim_W;
     return first;
@@ -156,7 +156,7 @@ std::optional<Twist2> VelocityStage::follow(const StageInput& in, ControlOutput&
 
 std::optional<Twist2> VelocityStage::proven(const StageInput& in,
                                             const Twist2& wanted,
-                                            ControlOutput& out) const {
+                                            Weighing& out) const {
   const double here = hull_.clearance(*in.map, in.state.pose_W);
   const double margin = std::min(kMargin, here) - kSlack;
   MotionState state = in.state;
@@ -167,7 +167,7 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
               hull_.clearance(*in.map, state.pose_W) >= margin;
   }
   allowed = allowed && rests_clear(*in.map, hull_, state, in.limits, in.dt, margin);
-  out.candidates.push_back({wanted, 2 * in.dt, 0, allowed, allowed});
+  out.candidates.push_back({wanted, 2 * in.dt, allowed, allowed});
   if (!allowed) return std::nullopt;
   return wanted;
 }
@@ -197,7 +197,7 @@ bool VelocityStage::holds(const StageInput& in,
   return false;
 }
 
-std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput& out) const {
+std::optional<Twist2> VelocityStage::escape(const StageInput& in, Weighing& out) const {
   constexpr double kV = 0.25;  // [m/s]
   constexpr double kW = 1.0;   // [rad/s]
   constexpr std::array<Twist2, 8> kPrimitives{
@@ -208,7 +208,7 @@ std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput&
     const Twist2 twist = within(primitive, in.limits);
     double gain = 0;
     const bool allowed = holds(in, twist, kEscape, gain);
-    out.candidates.push_back({twist, kEscape, -gain, allowed, false});
+    out.candidates.push_back({twist, kEscape, allowed, false});
     if (!allowed || gain <= most) continue;
     most = gain;
     best = twist;
@@ -219,19 +219,19 @@ std::optional<Twist2> VelocityStage::escape(const StageInput& in, ControlOutput&
 bool VelocityStage::still_escapes(const StageInput& in,
                                   const Twist2& twist,
                                   double horizon,
-                                  ControlOutput& out) const {
+                                  Weighing& out) const {
   double gain = 0;
   const bool allowed = holds(in, twist, horizon, gain);
-  out.candidates.push_back({twist, horizon, -gain, allowed, allowed});
+  out.candidates.push_back({twist, horizon, allowed, allowed});
   return allowed;
 }
 
-std::optional<Twist2> VelocityStage::back_off(const StageInput& in, ControlOutput& out) const {
+std::optional<Twist2> VelocityStage::back_off(const StageInput& in, Weighing& out) const {
   for (const double turn : {0.0, 0.8, -0.8}) {
     double gain = 0;
     const Twist2 twist = within({-kReverseSpeed, turn}, in.limits);
     const bool allowed = holds(in, twist, 0.5, gain);
-    out.candidates.push_back({twist, 0.5, -gain, allowed, allowed});
+    out.candidates.push_back({twist, 0.5, allowed, allowed});
     if (allowed) return twist;
   }
   return std::nullopt;

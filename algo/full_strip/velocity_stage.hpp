@@ -5,7 +5,7 @@
 
 #include "algo/full_strip/motion.hpp"
 #include "algo/full_strip/node_strip.hpp"
-#include "algo/telemetry.hpp"
+#include "algo/full_strip/weighing.hpp"
 
 namespace algo {
 
@@ -35,23 +35,21 @@ class VelocityStage {
 
   /// The fastest admissible command along the strip, nothing when there is none. Notes in `out`
   /// what was weighed and where the robot is sent.
-  std::optional<Twist2> follow(const StageInput& in, ControlOutput& out);
+  std::optional<Twist2> follow(const StageInput& in, Weighing& out);
 
   /// `wanted` when the robot can still be braked to rest after a tick of it.
-  std::optional<Twist2> proven(const StageInput& in,
-                               const Twist2& wanted,
-                               ControlOutput& out) const;
+  std::optional<Twist2> proven(const StageInput& in, const Twist2& wanted, Weighing& out) const;
 
   /// A way out of too narrow a place, to be held for kEscape: the primitive whose clearance grows
   /// most and never falls.
-  std::optional<Twist2> escape(const StageInput& in, ControlOutput& out) const;
+  std::optional<Twist2> escape(const StageInput& in, Weighing& out) const;
   /// Whether an escape under way may be held for `horizon` [s] more.
   bool still_escapes(const StageInput& in,
                      const Twist2& twist,
                      double horizon,
-                     ControlOutput& out) const;
+                     Weighing& out) const;
   /// Straight back, as far as it is free.
-  std::optional<Twist2> back_off(const StageInput& in, ControlOutput& out) const;
+  std::optional<Twist2> back_off(const StageInput& in, Weighing& out) const;
 
  private:
   static constexpr std::size_t kProfile = 28;  // nodes of the speed profile: 4 m

@@ -38,9 +38,11 @@ double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
   return least;
 }
 
-constexpr double kGridPeriod = 0.5;  // [s] between two grids in the telemetry, which are large
-constexpr double kGridRefresh =
-    5.0;  // [s] after which an unchanged one comes again, for latecomers
+constexpr LayerInfo kNearest{.name = "scan.nearest",
+                             .label = "Nearest return of each side",
+                             .kind = LayerKind::Points,
+                             .tone = Tone::External,
+                             .style = LayerStyle::Dashed};
 
 /// [m] To the nearest return of all beams: what stands abeam, outside of both sides, is close too,
 /// though it exerts no force.
@@ -67,10 +69,12 @@ Pipeline::Pipeline(const PipelineConfig& config,
                    const ControllerCatalogue& controllers)
     : spec_(spec),
       controller_(controllers.at(config.controller)),
-      filter_kind_(config.filter),
-      initial_parameters_(config.parameters) {
+      initial_parameters_(config.parameters),
+      sensing_(config.filter) {
   if (spec.drives) coordinator_.add(std::make_unique<ManualBehaviour>());
-  coordinator_.add(std::make_unique<AvoidBehaviour>(controller_.make()));
+  auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
+  avoiding_ = &avoid->controller();
+  coordinator_.add(std::move(avoid));
   by_sonar_ = !spec.has_laser && controller_.by_sonar;
   const double delay = spec.period > 0 ? std::round(spec.command_delay / spec.period) : 0;
   under_way_.resize(static_cast<std::size_t>(delay));
@@ -82,14 +86,15 @@ void Pipeline::reset(const Pose2& start_W) {
   coordinator_.reset(start_W);
   sequencer_.reset(spec_.period);
   scene_ = {};
-  merge_.reset();
+  sensing_.reset();
   scan_stamp_.reset();
   blinded_ = false;
   clearance_ = 0;
   joystick_ = {};
   joystick_ticks_ = 0;
   std::ranges::fill(under_way_, Twist2{});
-  grid_shown_at_.reset();
+  grids_.reset();
+  narrator_.reset();
   stopped_ = false;
   tick_ = 0;
 }
@@ -133,7 +138,7 @@ void Pipeline::tick(Telemetry& t) {
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
   remember(t.command.base);
-  thin_grid(t);
+  narrator_.tell(*avoiding_, t);
 }
 
 void Pipeline::apply(const Request& request) {
@@ -156,15 +161,11 @@ void Pipeline::apply(const Request& request) {
 }
 
 void Pipeline::sense(Telemetry& t) {
-  const LaserScan* front = front_scan(t.observation);
-  merge_.take(t.observation);
+  const LaserScan* front = sensing_.take(t.observation, parameters_, scene_.scan);
   scene_.fresh = front != nullptr;
   if (front != nullptr) {
-    const int half_width = static_cast<int>(parameters_[kFilterHalfWidth]);
-    filter_.apply(filter_kind_, half_width, *front, scene_.scan);
     blinded_ = blinded(*front);
     if (!blinded_) scan_stamp_ = front->stamp;
-    merge_.enter(t.observation.odometry.pose, t.observation.stamp, scene_.scan);
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
   } else {
@@ -177,6 +178,7 @@ void Pipeline::sense(Telemetry& t) {
   t.scene.echoes = scene_.echoes;
   t.scene.left = scene_.left;
   t.scene.right = scene_.right;
+  show_nearest(t);
 
   if (scene_.fresh) {
     clearance_ = spec_.half_length > 0 ? rectangle_clearance(scene_.scan, spec_)
@@ -202,6 +204,15 @@ void Pipeline::sense_sonar(Telemetry& t) {
   clearance_ = nearest - spec_.radius;
 }
 
+void Pipeline::show_nearest(Telemetry& t) const {
+  t.layers.clear();
+  Layer& nearest = add_layer(t.layers, kNearest);
+  nearest.values.reserve(4);
+  for (const auto& side : {scene_.left, scene_.right}) {
+    if (side) put(nearest, side->point_W);
+  }
+}
+
 bool Pipeline::manual() const {
   return joystick_ticks_ > 0;
 }
@@ -216,7 +227,7 @@ void Pipeline::control(Telemetry& t) {
   resource.dt = spec_.period;
   resource.observation = &t.observation;
   resource.scene = &scene_;
-  resource.merge = &merge_;
+  resource.merge = &sensing_.merge();
   resource.under_way = under_way_;
   resource.parameters = &parameters_;
   resource.spec = &spec_;
@@ -224,7 +235,9 @@ void Pipeline::control(Telemetry& t) {
   resource.mission = t.mission;
   resource.joystick = joystick_;
   resource.manual = manual();
+  resource.grids = grids_wanted_ && grids_.due(t.observation.stamp);
   const Decision decision = coordinator_.decide(resource, t.output);
+  if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);
   t.behaviour = decision.winner;
   t.command = actuate(decision.twist, spec_);
 }
@@ -249,23 +262,6 @@ void Pipeline::remember(const Twist2& command) {
   if (under_way_.empty()) return;
   std::ranges::rotate(under_way_, under_way_.begin() + 1);
   under_way_.back() = command;
-}
-
-/// People need a grid twice a second, and only when it is another.
-void Pipeline::thin_grid(Telemetry& t) {
-  GridLayer& grid = t.output.grid;
-  if (grid.cells.empty()) return;
-  const double age = t.observation.stamp - grid_shown_at_.value_or(-kGridRefresh);
-  // Written so that a stamp that is not a number lets it pass.
-  const bool due = !(age < kGridPeriod) && (!(age < kGridRefresh) || !(grid == shown_grid_));
-  if (due) {
-    shown_grid_ = grid;
-    grid_shown_at_ = t.observation.stamp;
-    return;
-  }
-  grid.columns = 0;
-  grid.rows = 0;
-  grid.cells.clear();
 }
 
 }  // namespace algo

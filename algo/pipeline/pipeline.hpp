@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/grid_thinning.hpp"
+#include "algo/pipeline/narrator.hpp"
 #include "algo/pipeline/reactive.hpp"
+#include "algo/pipeline/sensing.hpp"
 #include "algo/pipeline/sequencing.hpp"
-#include "algo/sensor_merge.hpp"
 #include "algo/telemetry.hpp"
 
 namespace algo {
@@ -43,6 +44,9 @@ class Pipeline {
   /// buffers have grown.
   void tick(Telemetry& t);
 
+  /// Whether grids are made for people to see, at most twice a second. Never changes a command.
+  void want_grids(bool wanted) { grids_wanted_ = wanted; }
+
   const Parameters& parameters() const { return parameters_; }
 
  private:
@@ -52,28 +56,28 @@ class Pipeline {
   void control(Telemetry& t);
   void hold(Telemetry& t);
   void remember(const Twist2& command);
-  void thin_grid(Telemetry& t);
+  void show_nearest(Telemetry& t) const;
   bool manual() const;
 
   RobotSpec spec_{};
   ControllerInfo controller_{};
-  FilterKind filter_kind_{};
   Parameters initial_parameters_{};
   Parameters parameters_{};
-  ScanFilter filter_{};
+  Sensing sensing_;
   BehaviourCoordinator coordinator_{};
+  const Controller* avoiding_ = nullptr;  // one of its behaviours'
   Sequencer sequencer_{};
   Scene scene_{};
-  SensorMerge merge_{};
   bool by_sonar_ = false;               // the ring stands in for the scanner
   std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
   bool blinded_ = false;                // the newest scan is
   double clearance_ = 0;                // [m] of the newest scan
   Joystick joystick_{};
-  std::uint64_t joystick_ticks_ = 0;       // ticks the stick's value still counts
-  std::vector<Twist2> under_way_{};        // commands given that do not act yet, oldest first
-  GridLayer shown_grid_{};                 // the newest that telemetry brought
-  std::optional<double> grid_shown_at_{};  // [s] run clock
+  std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
+  std::vector<Twist2> under_way_{};   // commands given that do not act yet, oldest first
+  GridThinning grids_{};
+  bool grids_wanted_ = false;
+  Narrator narrator_{};
   bool stopped_ = false;
   std::uint64_t tick_ = 0;
 };

@@ -31,6 +31,7 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   input.observation = in.observation;
   if (in.mission != Mission::Arrived) input.goal = in.goal;
   input.spec = in.spec;
+  input.grids = in.grids;
   controller_->update(input, *in.parameters, output);
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
 }

@@ -32,6 +32,7 @@ struct Resource {
   std::optional<SetGoal> goal{};
   Mission mission = Mission::Idle;
   Joystick joystick{};
+  bool grids = false;   // somebody wants to see them in this tick
   bool manual = false;  // a driver's stick is live
 };
 
@@ -62,6 +63,7 @@ class Behaviour {
 class AvoidBehaviour final : public Behaviour {
  public:
   explicit AvoidBehaviour(std::unique_ptr<Controller> controller);
+  const Controller& controller() const { return *controller_; }
   BehaviourId id() const override { return BehaviourId::Avoid; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;

@@ -1,9 +1,47 @@
 // algo/strip/elastic_strip_controller.cpp: one tick of the strip.
 #include "algo/strip/elastic_strip_controller.hpp"
 
+#include <initializer_list>
+#include <string_view>
+
+#include "algo/driving.hpp"
+#include "algo/explain.hpp"
 #include "algo/strip/strip_law.hpp"
 
 namespace algo {
+namespace {
+
+constexpr LayerInfo kStrip{
+    .name = "strip", .label = "Strip", .kind = LayerKind::Polyline, .tone = Tone::Accent};
+constexpr LayerInfo kAhead{.name = "strip.ahead",
+                           .label = "From the strip to the goal",
+                           .kind = LayerKind::Polyline,
+                           .tone = Tone::Accent,
+                           .style = LayerStyle::Dashed};
+constexpr LayerInfo kNodes{
+    .name = "strip.nodes", .label = "Pass point", .kind = LayerKind::Points, .tone = Tone::Accent};
+constexpr LayerInfo kInternal{.name = "strip.internal",
+                              .label = "Internal force",
+                              .kind = LayerKind::Arrows,
+                              .tone = Tone::Internal};
+constexpr LayerInfo kExternal{.name = "strip.external",
+                              .label = "External forces",
+                              .kind = LayerKind::Arrows,
+                              .tone = Tone::External};
+constexpr LayerInfo kPush{.name = "strip.push",
+                          .label = "Push to the chosen side",
+                          .kind = LayerKind::Arrows,
+                          .tone = Tone::External,
+                          .style = LayerStyle::Dashed};
+constexpr LayerInfo kElastic{.name = "strip.elastic",
+                             .label = "Elastic force",
+                             .kind = LayerKind::Arrows,
+                             .tone = Tone::Elastic};
+
+constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence,
+constexpr double kVisible = 1e-4;      // and a smaller one no arrow: F_int is often a rounding
+
+}  // namespace
 
 struct ElasticStripController::Strip {
   Vec2 start_W{0, 0};  // P^{j-1}
@@ -39,9 +77,7 @@ ElasticStripController::Strip ElasticStripController::lay_strip(
 
 /// The external force of each side, from the present pose. False when the robot stands on an
 /// obstacle point: then there is no direction away from it.
-bool ElasticStripController::push(const ControlInput& in,
-                                  const ForceSettings& settings,
-                                  ControlOutput& out) const {
+bool ElasticStripController::push(const ControlInput& in, const ForceSettings& settings) {
   const Vec2 p = in.odometry.pose.position();
   const std::optional<Nearest>& left = in.scene->left;
   const std::optional<Nearest>& right = in.scene->right;
@@ -51,32 +87,31 @@ bool ElasticStripController::push(const ControlInput& in,
   if ((left && d_left == 0) || (right && d_right == 0)) return false;
   // The lower beam of equals, which is on the right.
   if (left && (both || !right || d_left < d_right)) {
-    out.external_left_W = external_force(settings, p, left->point_W);
+    forces_.left_W = external_force(settings, p, left->point_W);
   }
   if (right && (both || !left || d_right <= d_left)) {
-    out.external_right_W = external_force(settings, p, right->point_W);
+    forces_.right_W = external_force(settings, p, right->point_W);
   }
   return true;
 }
 
-void ElasticStripController::choose(const ControlInput& in,
-                                    const Vec2& goal_W,
-                                    double reach,
-                                    ControlOutput& out) {
+void ElasticStripController::choose(const ControlInput& in, const Vec2& goal_W, double reach) {
   const SideInput input{
       in.stamp, in.odometry.pose, goal_W, reach, in.spec->radius, &in.scene->scan};
-  const SidePush push = side_.update(input, out.external_left_W + out.external_right_W);
-  out.elastic_W += push.force_W;
-  out.side = side_.state().side;
-  out.side_since = side_.state().since;
-  out.side_alpha = push.alpha;
-  out.blocked_beam = push.blocked_beam ? static_cast<std::int32_t>(*push.blocked_beam) : -1;
+  const SidePush push = side_.update(input, forces_.left_W + forces_.right_W);
+  forces_.push_W = push.force_W;
+  forces_.elastic_W += push.force_W;
+  forces_.side = side_.state().side;
+  forces_.side_since = side_.state().since;
+  forces_.side_alpha = push.alpha;
+  forces_.blocked_beam = push.blocked_beam;
 }
 
 void ElasticStripController::update(const ControlInput& in,
                                     const Parameters& parameters,
                                     ControlOutput& out) {
   out.clear();
+  forces_ = {};
   if (!all_finite(in, parameters)) return;
   if (!in.goal) {
     reset(in.odometry.pose);
@@ -90,22 +125,84 @@ void ElasticStripController::update(const ControlInput& in,
       reading_.law, reach, parameters[kRepulsionGain], parameters[kStripStep]};
 
   const Strip strip = lay_strip(pose.position(), goal.position_W, parameters);
-  const double k_c = parameters[kContractionGain];
-  out.internal_W = internal_force(strip.start_W, strip.via_W, strip.end_W, k_c);
-  const bool free_to_move = push(in, settings, out);
-  out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
-  if (reading_.choose_side) choose(in, goal.position_W, reach, out);
-  out.pass_W = update_strip(pose, strip.end_W, out.elastic_W).updated.position();
-  kept_via_W_ = out.pass_W;
-
-  out.strip.push_back({strip.start_W, {0, 0}, {0, 0}});
-  out.strip.push_back({out.pass_W, out.internal_W, out.elastic_W - out.internal_W});
-  out.strip.push_back({strip.end_W, {0, 0}, {0, 0}});
+  const double k_c = parameters[algo::kContractionGain];
+  forces_.internal_W = internal_force(strip.start_W, strip.via_W, strip.end_W, k_c);
+  const bool free_to_move = push(in, settings);
+  forces_.elastic_W = forces_.internal_W + forces_.left_W + forces_.right_W;
+  if (reading_.choose_side) choose(in, goal.position_W, reach);
+  const Vec2 pass_W = update_strip(pose, strip.end_W, forces_.elastic_W).updated.position();
+  kept_via_W_ = pass_W;
+  out.pass_W = pass_W;
+  show(strip, pass_W, goal.position_W, out);
 
   const double to_goal = (goal.position_W - pose.position()).norm();
   if (!free_to_move) return;
-  out.twist = to_goal < parameters[kGoalReach] ? turn_to(pose, goal, parameters)
-                                               : drive_to(pose, out.pass_W, parameters);
+  out.twist = to_goal < parameters[algo::kGoalReach] ? turn_to(pose, goal, parameters)
+                                                     : drive_to(pose, pass_W, parameters);
+}
+
+void ElasticStripController::show(const Strip& strip,
+                                  const Vec2& pass_W,
+                                  const Vec2& goal_W,
+                                  ControlOutput& out) const {
+  put(add_layer(out.layers, kStrip), strip.start_W, pass_W);
+  put(add_layer(out.layers, kAhead), pass_W, goal_W);
+  put(add_layer(out.layers, kNodes), pass_W);
+  const auto arrows = [&](const LayerInfo& info, std::initializer_list<const Vec2*> forces) {
+    Layer& layer = add_layer(out.layers, info);
+    layer.values.reserve(4 * forces.size());  // also where there is no force yet
+    for (const Vec2* force : forces) {
+      if (force->squaredNorm() > kVisible * kVisible) put(layer, strip.end_W, *force);
+    }
+  };
+  arrows(kInternal, {&forces_.internal_W});
+  arrows(kExternal, {&forces_.left_W, &forces_.right_W});
+  arrows(kPush, {&forces_.push_W});
+  arrows(kElastic, {&forces_.elastic_W});
+
+  const double before = (pass_W - strip.start_W).norm();
+  const double after = (strip.end_W - pass_W).norm();
+  const auto measure = [&](std::string_view name, std::string_view unit, double value) {
+    out.measures.push_back({name, unit, value});
+  };
+  measure("strip.length", "m", before + after);
+  measure("strip.internal", "m", forces_.internal_W.norm());
+  measure("strip.left", "m", forces_.left_W.norm());
+  measure("strip.right", "m", forces_.right_W.norm());
+  measure("strip.push", "m", forces_.push_W.norm());
+  measure("strip.elastic", "m", forces_.elastic_W.norm());
+  measure("strip.side", "", static_cast<double>(forces_.side));
+  if (before + after > 0) measure("strip.share", "", before / (before + after));
+}
+
+void ElasticStripController::explain(const Telemetry& t, Explanation& words) const {
+  if (t.mission == Mission::Stuck) {
+    say(words.why,
+        "The pull to the goal and the push of %.2f m from obstacles cancel;",
+        forces_.elastic_W.norm());
+    return;
+  }
+  const double left = forces_.left_W.norm();
+  const double right = forces_.right_W.norm();
+  const bool by_left = left >= right;
+  const std::optional<Nearest>& nearest = by_left ? t.scene.left : t.scene.right;
+  const double force = by_left ? left : right;
+  if (force < kNoticeable || !nearest) {
+    say_driving(t, words);
+    return;
+  }
+  say(words.why,
+      "External force %.2f m from the nearest %s return at %.2f m",
+      force,
+      by_left ? "left" : "right",
+      nearest->distance);
+  if (forces_.side == Side::None) {
+    say(words.what, "Keeping clear of the %s obstacle", by_left ? "left" : "right");
+    words.why += '.';
+    return;
+  }
+  say(words.what, "Passing the obstacle on its %s", forces_.side == Side::Left ? "left" : "right");
+  say(words.why, "; side chosen %.1f s ago.", t.observation.stamp - forces_.side_since);
 }
 
 }  // namespace algo

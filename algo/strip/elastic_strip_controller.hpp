@@ -26,22 +26,41 @@ struct StripReading {
   bool keep_via = false;
 };
 
+/// The forces of one tick [m]. They act at the strip's end and move it to the pass point.
+struct StripForces {
+  Vec2 internal_W{0, 0};
+  Vec2 left_W{0, 0};  // external, of each side
+  Vec2 right_W{0, 0};
+  Vec2 push_W{0, 0};       // of the side choice
+  Vec2 elastic_W{0, 0};    // their sum
+  Side side = Side::None;  // on which the obstacle is passed
+  double side_since = 0;   // [s] run clock at which it was chosen
+  double side_alpha = 0;   // share of the push, 0..1
+  std::optional<std::size_t> blocked_beam{};
+};
+
 class ElasticStripController final : public Controller {
  public:
   explicit ElasticStripController(const StripReading& reading) : reading_(reading) {}
 
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
+  void explain(const Telemetry& t, Explanation& words) const override;
+
+  /// Of the last tick.
+  const StripForces& forces() const { return forces_; }
 
  private:
   struct Strip;  // start, via and end of one tick
 
   void follow_goal(const SetGoal& goal);
   Strip lay_strip(const Vec2& start_W, const Vec2& goal_W, const Parameters& parameters) const;
-  bool push(const ControlInput& in, const ForceSettings& settings, ControlOutput& out) const;
-  void choose(const ControlInput& in, const Vec2& goal_W, double reach, ControlOutput& out);
+  bool push(const ControlInput& in, const ForceSettings& settings);
+  void choose(const ControlInput& in, const Vec2& goal_W, double reach);
+  void show(const Strip& strip, const Vec2& pass_W, const Vec2& goal_W, ControlOutput& out) const;
 
   StripReading reading_{};
+  StripForces forces_{};
   SideChoice side_{};
   std::optional<SetGoal> goal_{};     // of the tick before
   std::optional<Vec2> kept_via_W_{};  // pass point of the tick before

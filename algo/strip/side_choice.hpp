@@ -5,14 +5,16 @@
 // balance point, at which the robot stays stuck.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
-#include "algo/telemetry.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
+
+enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
 
 /// What is remembered from tick to tick.
 struct SideState {

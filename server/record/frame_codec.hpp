@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <flatbuffers/flatbuffers.h>
@@ -14,7 +16,9 @@
 
 namespace tautline::wire {
 struct LaserScan;
-}
+struct Layer;
+struct Measures;
+}  // namespace tautline::wire
 
 namespace server {
 
@@ -29,21 +33,34 @@ class FrameEncoder {
  public:
   /// The frame's bytes, valid until the next call.
   std::span<const std::byte> encode(const algo::Telemetry& t);
-  /// Where the last encoded frame holds ranges and strip nodes, ascending: the record codes them as
+  /// A scan on its own, as a message whose root is LaserScan; valid until the next call.
+  std::span<const std::byte> encode(const algo::LaserScan& scan);
+  /// Where the last encoded frame holds ranges and long lines, ascending: the record codes them as
   /// differences.
   std::span<const db::Window> windows() const { return windows_; }
 
  private:
+  template <typename Table>
+  using Tables = flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<Table>>>;
+
+  using Text = flatbuffers::Offset<flatbuffers::String>;
+  std::pair<Text, Text> write_words(const algo::Telemetry& t);
+  Tables<tautline::wire::Layer> write_layers(const algo::Telemetry& t);
+  flatbuffers::Offset<tautline::wire::Measures> write_measures(
+      const algo::Recycled<algo::Measure>& measures);
   void find_windows();
 
   flatbuffers::FlatBufferBuilder builder_{2048};
   std::vector<flatbuffers::Offset<tautline::wire::LaserScan>> scans_{};
+  std::vector<flatbuffers::Offset<tautline::wire::Layer>> layers_{};
+  std::string names_{}, units_{};  // of the measures
   std::vector<db::Window> windows_{};
 };
 
 /// Reads back what a pipeline needs to repeat a tick (observation, requests) and what it commanded
-/// (command, hold, mission, behaviour). What only people look at (truth, clearance, goal, strip,
-/// forces) is read back at the frame's float precision. Throws WireError.
+/// (command, hold, mission, behaviour). What only people look at (truth, what moved, clearance,
+/// goal, pass point, words) is read back at the frame's float precision; layers and measures, which
+/// only they read, not at all. Throws WireError.
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t);
 
 }  // namespace server

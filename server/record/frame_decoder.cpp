@@ -186,77 +186,17 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   }
 }
 
-std::optional<algo::Nearest> read_nearest(const fb::Nearest* n) {
-  if (n == nullptr) return std::nullopt;
-  return algo::Nearest{n->beam(), from_wire(n->point()), n->distance()};
-}
-
-void read_grid(const fb::Grid& wire, algo::GridLayer& grid) {
-  if (wire.corner() == nullptr || wire.cells() == nullptr || wire.columns() == 0 ||
-      wire.cells()->size() % wire.columns() != 0) {
-    throw WireError("The grid in the frame lacks a corner or a part of a row.");
-  }
-  grid.corner_W = from_wire(*wire.corner());
-  grid.cell = wire.cell();
-  grid.columns = wire.columns();
-  grid.rows = wire.cells()->size() / wire.columns();
-  grid.cells.assign(wire.cells()->begin(), wire.cells()->end());
-}
-
-/// What a controller without a strip weighed.
-void read_weighing(const fb::Frame& f, algo::ControlOutput& out) {
-  if (f.plan() != nullptr) {
-    check_alignment(*f.plan());
-    for (const fb::Vec2f* p : *f.plan()) out.plan_W.push_back(from_wire(*p));
-  }
-  if (f.candidates() != nullptr) {
-    check_alignment(*f.candidates());
-    for (const fb::Candidate* c : *f.candidates()) {
-      out.candidates.push_back(
-          {{c->v(), c->omega()}, c->horizon(), c->cost(), c->allowed(), c->chosen()});
-    }
-  }
-  if (f.histogram() != nullptr) {
-    out.histogram.assign(f.histogram()->begin(), f.histogram()->end());
-  }
-  out.histogram_threshold = f.histogram_threshold();
-  if (f.grid() != nullptr) read_grid(*f.grid(), out.grid);
-  if (f.tracks() != nullptr) {
-    check_alignment(*f.tracks());
-    for (const fb::Track* k : *f.tracks()) {
-      out.tracks.push_back(
-          {from_wire(k->position()), from_wire(k->velocity()), k->radius(), 0, k->unseen()});
-    }
-  }
-}
-
+/// What a controller decided, without what it shows.
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
-  algo::ControlOutput& out = t.output;
-  out = {};
-  if (f.strip() != nullptr) {
-    check_alignment(*f.strip());
-    for (const fb::Vec2f* p : *f.strip()) out.strip.push_back({from_wire(*p), {0, 0}, {0, 0}});
-  }
-  if (const auto* forces = f.forces()) {
-    out.internal_W = from_wire(forces->internal());
-    out.external_left_W = from_wire(forces->external_left());
-    out.external_right_W = from_wire(forces->external_right());
-    out.elastic_W = out.internal_W + out.external_left_W + out.external_right_W;
-    if (const auto* push = f.side_push()) out.elastic_W += from_wire(*push);
-  }
-  if (out.strip.size() > 1) {
-    algo::Node& pass = out.strip[1];
-    out.pass_W = pass.position_W;
-    pass.internal_W = out.internal_W;
-    pass.external_W = out.elastic_W - out.internal_W;
-  }
-  const std::int8_t side = f.decision()->side();
-  out.side = static_cast<algo::Side>(side > 0 ? 1 : (side < 0 ? -1 : 0));
-  out.side_since = f.side_since();
-  read_weighing(f, out);
+  t.output.clear();
+  if (f.pass() != nullptr) t.output.pass_W = from_wire(*f.pass());
+  t.output.waits = f.waits();
+  t.output.state = f.state();
+  t.layers.clear();
+  t.words_fresh = f.what() != nullptr && f.what()->size() > 0 && f.why() != nullptr;
+  t.words = {};
+  if (t.words_fresh) t.words = {f.what()->str(), f.why()->str()};
   t.scene.fresh = !t.observation.scans.empty();
-  t.scene.left = read_nearest(f.left());
-  t.scene.right = read_nearest(f.right());
 }
 
 }  // namespace
@@ -293,6 +233,12 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
                       .obstacle_distance = g->obstacle_distance(),
                       .clearance = g->clearance(),
                       .collided = f.collided()};
+  }
+  t.moved.clear();
+  if (f.moved() != nullptr) {
+    check_alignment(*f.moved());
+    for (const fb::Moved* m : *f.moved())
+      t.moved.push_back({m->id(), {m->x(), m->y(), m->heading()}});
   }
   t.goal.reset();
   if (const auto* goal = f.goal()) {

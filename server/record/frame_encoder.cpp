@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -10,13 +11,16 @@
 
 #include "telemetry_generated.h"
 
-#include "algo/explain.hpp"
 #include "server/record/frame_codec.hpp"
 
 namespace server {
 namespace {
 
 namespace fb = tautline::wire;
+// Points from which on a line is coded as differences; of a shorter one each value follows its own
+// of the tick before better.
+constexpr std::uint32_t kLongLine = 8;
+constexpr std::size_t kLargestAlignment = sizeof(double);
 using Builder = flatbuffers::FlatBufferBuilder;
 template <typename T>
 using Offset = flatbuffers::Offset<T>;
@@ -42,30 +46,12 @@ fb::RangeReading to_wire(const algo::RangeReading& r) {
 fb::Bumper to_wire(const algo::BumperReading& b) {
   return {b.stamp, to_float(b.mount_R), b.pressed};
 }
-fb::Nearest to_wire(const algo::Nearest& n) {
-  return {to_float(n.point_W), static_cast<float>(n.distance), n.beam};
-}
 fb::Vec2f to_wire(const algo::SetGoal& goal) {
   return to_float(goal.position_W);
 }
-fb::Vec2f to_wire(const algo::Node& n) {
-  return to_float(n.position_W);
-}
-
-fb::Track to_wire(const algo::Track& track) {
-  return {to_float(track.position_W),
-          to_float(track.velocity_W),
-          static_cast<float>(track.radius),
-          static_cast<float>(track.unseen)};
-}
-
-fb::Candidate to_wire(const algo::Candidate& c) {
-  return {static_cast<float>(c.twist.v),
-          static_cast<float>(c.twist.omega),
-          static_cast<float>(c.horizon),
-          static_cast<float>(c.cost),
-          c.allowed,
-          c.chosen};
+fb::Moved to_wire(const algo::Moved& m) {
+  const fb::Pose2f pose = to_float(m.pose_W);
+  return {pose.x(), pose.y(), pose.heading(), m.id};
 }
 
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
@@ -175,34 +161,47 @@ Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
   return b.CreateVector(boxes);
 }
 
-Offset<flatbuffers::Vector<const fb::Vec2f*>> write_path(Builder& b,
-                                                         const algo::Recycled<algo::Vec2>& path) {
-  if (path.empty()) return 0;
-  fb::Vec2f* out = nullptr;
-  const auto vector = b.CreateUninitializedVectorOfStructs(path.size(), &out);
-  for (const algo::Vec2& p : path) *out++ = to_float(p);
+/// Nobody sees less than a millimetre, and the record would keep it at twice the size.
+float rounded(float value) {
+  constexpr float kSteps = 1024;
+  constexpr float kMost = 0x1p20F;  // beyond it a float resolves little more
+  if (!(std::abs(value) < kMost)) return value;
+  return static_cast<float>(std::lrint(value * kSteps)) / kSteps;
+}
+
+template <typename List, typename Number>
+Offset<flatbuffers::Vector<float>> write_rounded(Builder& b, const List& list, Number&& number) {
+  float* out = nullptr;
+  const auto vector = b.CreateUninitializedVector(list.size(), &out);
+  for (const auto& each : list) *out++ = rounded(number(each));
   return vector;
 }
 
-Offset<fb::Grid> write_grid(Builder& b, const algo::GridLayer& grid) {
-  if (grid.cells.empty()) return 0;
-  const auto cells = b.CreateVector(grid.cells);
-  const fb::Vec2f corner = to_float(grid.corner_W);
-  return fb::CreateGrid(b, &corner, static_cast<float>(grid.cell), grid.columns, cells);
+Offset<flatbuffers::String> write_text(Builder& b, std::string_view text) {
+  return text.empty() ? 0 : b.CreateString(text.data(), text.size());
 }
 
-/// What the side choice adds to the forces: what is left of the elastic force without them. Less
-/// than a float resolves of them is the rounding of their sum, which would come and go each time
-/// that a frame is read and written.
-algo::Vec2 side_push_of(const algo::ControlOutput& out) {
-  constexpr double kResolution = 0x1p-24;
-  const algo::Vec2 others =
-      out.internal_W.cwiseAbs() + out.external_left_W.cwiseAbs() + out.external_right_W.cwiseAbs();
-  algo::Vec2 push = out.elastic_W - out.internal_W - out.external_left_W - out.external_right_W;
-  for (const Eigen::Index axis : {0, 1}) {
-    if (std::abs(push[axis]) <= kResolution * others[axis]) push[axis] = 0;
-  }
-  return push;
+Offset<fb::Layer> write_layer(Builder& b, const algo::Layer& layer) {
+  const auto name = write_text(b, layer.name);
+  const auto label = write_text(b, layer.label);
+  const auto unit = write_text(b, layer.unit);
+  const auto text = write_text(b, layer.text);
+  const auto cells = layer.cells.empty() ? 0 : b.CreateVector(layer.cells);
+  const auto values = write_rounded(b, layer.values, [](float value) { return value; });
+  fb::LayerBuilder out(b);
+  out.add_name(name);
+  out.add_values(values);
+  out.add_label(label);
+  out.add_unit(unit);
+  out.add_text(text);
+  out.add_cells(cells);
+  out.add_level(layer.level);
+  out.add_kind(static_cast<fb::LayerKind>(layer.kind));
+  out.add_frame(static_cast<fb::LayerFrame>(layer.frame));
+  out.add_tone(static_cast<fb::Tone>(layer.tone));
+  out.add_style(static_cast<fb::LayerStyle>(layer.style));
+  out.add_axes(layer.axes);
+  return out.Finish();
 }
 
 struct FrameWriter {
@@ -247,8 +246,7 @@ void FrameWriter::decision() {
   const fb::Decision decision(static_cast<float>(t.clearance),
                               static_cast<fb::Hold>(t.hold),
                               static_cast<fb::Mission>(t.mission),
-                              static_cast<fb::Behaviour>(t.behaviour),
-                              static_cast<std::int8_t>(out.side));
+                              static_cast<fb::Behaviour>(t.behaviour));
   frame.add_decision(&decision);
   frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
   if (t.goal) {
@@ -256,23 +254,12 @@ void FrameWriter::decision() {
     frame.add_goal(&goal);
     if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
   }
-  if (!out.strip.empty()) {
-    const fb::Forces forces(
-        to_float(out.internal_W), to_float(out.external_left_W), to_float(out.external_right_W));
-    frame.add_forces(&forces);
-    const algo::Vec2 push = side_push_of(out);
-    const fb::Vec2f side_push = to_float(push);
-    if (push != algo::Vec2{0, 0}) frame.add_side_push(&side_push);
+  if (out.pass_W) {
+    const fb::Vec2f pass = to_float(*out.pass_W);
+    frame.add_pass(&pass);
   }
-  if (out.side != algo::Side::None) frame.add_side_since(out.side_since);
-  if (t.scene.left) {
-    const fb::Nearest left = to_wire(*t.scene.left);
-    frame.add_left(&left);
-  }
-  if (t.scene.right) {
-    const fb::Nearest right = to_wire(*t.scene.right);
-    frame.add_right(&right);
-  }
+  frame.add_state(out.state);
+  frame.add_waits(out.waits);
   if (t.hold == algo::Hold::StaleScan && t.scene.scan.size() > 0) {
     frame.add_newest_scan(t.scene.scan.stamp);
   }
@@ -298,62 +285,106 @@ std::uint32_t half_turn(const fb::LaserScan& scan) {
 
 }  // namespace
 
+/// FlatBuffers writes from the leaves to the root and from the end of the buffer to its front. What
+/// varies most from frame to frame comes first, so that all else keeps its place in the frame: the
+/// record compares frames byte by byte.
 std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   Builder& b = builder_;
   b.Clear();
   const algo::Observation& o = t.observation;
-
-  // Tables and vectors first: FlatBuffers writes from the leaves to the root.
-  scans_.clear();
-  for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
-  const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
+  const auto [what, why] = write_words(t);
+  const auto layers = write_layers(t);
+  const auto measures = write_measures(t.output.measures);
+  b.Align(kLargestAlignment);
+  const auto requests = write_requests(b, t.requests);
+  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
+  const auto moved = write_structs<fb::Moved>(b, t.moved);
   const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
   const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
   const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
-  const auto requests = write_requests(b, t.requests);
-  const auto strip = write_structs<fb::Vec2f>(b, t.output.strip);
-  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
-  const auto plan = write_path(b, t.output.plan_W);
-  const auto candidates = write_structs<fb::Candidate>(b, t.output.candidates);
-  const auto histogram = t.output.histogram.empty() ? 0 : b.CreateVector(t.output.histogram);
-  const auto grid = write_grid(b, t.output.grid);
-  const auto tracks = write_structs<fb::Track>(b, t.output.tracks);
-  const bool own_words =
-      t.output.manner != algo::Manner::None && t.behaviour == algo::BehaviourId::Avoid;
-  const algo::Explanation words = own_words ? algo::explain(t) : algo::Explanation{};
-  const auto what = own_words ? b.CreateString(words.what) : 0;
-  const auto why = own_words ? b.CreateString(words.why) : 0;
+  scans_.clear();
+  for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
+  const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
 
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;
   frame.add_tick(t.tick);
   frame.add_stamp(o.stamp);
-  if (!o.scans.empty()) frame.add_scans(scans);
-  if (!o.sonar.empty()) frame.add_sonar(sonar);
-  if (!o.infrared.empty()) frame.add_infrared(infrared);
-  if (!o.bumpers.empty()) frame.add_bumpers(bumpers);
-  if (!t.requests.empty()) frame.add_requests(requests);
-  if (!t.output.strip.empty()) frame.add_strip(strip);
+  // Offset 0 is that of what there is not; no field comes of it.
+  frame.add_what(what);
+  frame.add_why(why);
+  frame.add_scans(scans);
+  frame.add_sonar(sonar);
+  frame.add_infrared(infrared);
+  frame.add_bumpers(bumpers);
+  frame.add_requests(requests);
   writer.sensors();
   writer.decision();
   writer.stamps();
-  if (own_words) {
-    frame.add_what(what);
-    frame.add_why(why);
-  }
-  if (!t.goals_ahead.empty()) frame.add_goals_ahead(goals_ahead);
-  if (!t.output.plan_W.empty()) frame.add_plan(plan);
-  if (!t.output.candidates.empty()) frame.add_candidates(candidates);
-  if (!t.output.histogram.empty()) {
-    frame.add_histogram(histogram);
-    frame.add_histogram_threshold(static_cast<float>(t.output.histogram_threshold));
-  }
-  if (!t.output.grid.cells.empty()) frame.add_grid(grid);
-  if (!t.output.tracks.empty()) frame.add_tracks(tracks);
+  frame.add_layers(layers);
+  frame.add_measures(measures);
+  frame.add_goals_ahead(goals_ahead);
+  frame.add_moved(moved);
   b.Finish(frame.Finish());
 
   find_windows();
   return std::as_bytes(std::span(b.GetBufferPointer(), b.GetSize()));
+}
+
+std::span<const std::byte> FrameEncoder::encode(const algo::LaserScan& scan) {
+  builder_.Clear();
+  windows_.clear();
+  builder_.Finish(write_scan(builder_, scan));
+  return std::as_bytes(std::span(builder_.GetBufferPointer(), builder_.GetSize()));
+}
+
+/// Empty ones, which share a string, when they are not new: a field that came and went would move
+/// all that follows the frame's own table.
+std::pair<Offset<flatbuffers::String>, Offset<flatbuffers::String>> FrameEncoder::write_words(
+    const algo::Telemetry& t) {
+  const auto write = [&](const std::string& text) {
+    return builder_.CreateString(text.data(), text.size());
+  };
+  if (!t.words_fresh) {
+    const auto none = write({});
+    builder_.Align(kLargestAlignment);
+    return {none, none};
+  }
+  const auto what = write(t.words.what);
+  const auto why = write(t.words.why);
+  builder_.Align(kLargestAlignment);
+  return {what, why};
+}
+
+/// Those of the pipeline and of the controller that have something to show.
+Offset<flatbuffers::Vector<Offset<fb::Layer>>> FrameEncoder::write_layers(
+    const algo::Telemetry& t) {
+  layers_.clear();
+  for (const auto* list : {&t.layers, &t.output.layers}) {
+    for (const algo::Layer& layer : *list) {
+      if (!layer.empty()) layers_.push_back(write_layer(builder_, layer));
+    }
+  }
+  return layers_.empty() ? 0 : builder_.CreateVector(layers_);
+}
+
+Offset<fb::Measures> FrameEncoder::write_measures(const algo::Recycled<algo::Measure>& measures) {
+  if (measures.empty()) return 0;
+  names_.clear();
+  units_.clear();
+  for (const algo::Measure& each : measures) {
+    if (&each != measures.begin()) {
+      names_ += '\n';
+      units_ += '\n';
+    }
+    names_ += each.name;
+    units_ += each.unit;
+  }
+  const auto names = write_text(builder_, names_);
+  const auto units = write_text(builder_, units_);
+  const auto values = write_rounded(
+      builder_, measures, [](const algo::Measure& each) { return static_cast<float>(each.value); });
+  return fb::CreateMeasures(builder_, names, units, values);
 }
 
 void FrameEncoder::find_windows() {
@@ -377,9 +408,14 @@ void FrameEncoder::find_windows() {
           half_turn(*scan));
     }
   }
-  if (const auto* strip = frame->strip()) {
-    constexpr auto kFloats = static_cast<std::uint32_t>(sizeof(fb::Vec2f) / sizeof(float));
-    add(strip->Data(), strip->size() * kFloats, db::Window::Kind::Floats, kFloats, 0);
+  if (const auto* layers = frame->layers()) {
+    for (const fb::Layer* layer : *layers) {
+      const std::uint32_t count = layer->values()->size();
+      const std::uint32_t axes = layer->axes();
+      if (windows_.size() == db::kMaxFrameWindows) break;
+      if (layer->kind() != fb::LayerKind_Polyline || count < kLongLine * axes) continue;
+      add(layer->values()->Data(), count - count % axes, db::Window::Kind::Floats, axes, 0);
+    }
   }
   std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
     return a.offset < c.offset;

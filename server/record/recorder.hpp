@@ -99,12 +99,13 @@ struct RecorderOptions {
 /// ends, and after a job. A store that is locked keeps the frames waiting in their rings. One that
 /// fails costs what was not committed; from then on frames are dropped, the store is tried again
 /// once per retry_interval, and the runs go on where it is well, in a new file when the old one was
-/// deleted or, being damaged, had to be set aside.
+/// deleted or, being damaged or of an older program, had to be set aside.
 class Recorder {
  public:
   /// Opens the store, in which unfinished runs become interrupted. Throws db::StoreError when it
-  /// may not be written or is no run store. A store that is damaged is set aside for a new one; one
-  /// that is locked, or on a full disk, is opened later.
+  /// may not be written or is no run store. A store that is damaged, or that an older
+  /// program wrote, is set aside for a new one; one that is locked, or on a full disk, is opened
+  /// later.
   explicit Recorder(const std::string& path, RecorderOptions options = {});
   /// Writes what was pushed; runs that are still open end as interrupted.
   ~Recorder();
@@ -191,7 +192,7 @@ class Recorder {
   // recorder_health.cpp
   void note_trouble(const db::DatabaseError& error);
   void look_at_file();
-  void set_aside();
+  void set_aside(std::string_view why);
   void recover();
   void publish();
   std::string state_sentence(RecordKind kind, const RunChannel* live) const;

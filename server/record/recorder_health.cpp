@@ -62,16 +62,18 @@ void Recorder::note_trouble(const db::DatabaseError& error) {
     channel->fail(error.what());
     channel->missing_ = {.cause = db::GapCause::Failed, .sentence = without_folder(error.what())};
   }
-  if (error.trouble() == db::Trouble::Damaged) set_aside();
+  if (error.trouble() == db::Trouble::Damaged) set_aside("damaged");
+  if (error.trouble() == db::Trouble::Outdated) set_aside("older");
 }
 
-void Recorder::set_aside() {
+void Recorder::set_aside(std::string_view why) {
   const auto now = Clock::now();
   if (set_aside_ != Clock::time_point{} && now - set_aside_ < kSetAsideAgain) return;
   try {
     const std::time_t wall = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    const std::string name = store_.set_aside(fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(wall)));
-    report(fmt::format("The damaged run store was set aside as {}, and a new one is begun.", name));
+    const std::string name =
+        store_.set_aside(why, fmt::format("{:%Y%m%dT%H%M%SZ}", fmt::gmtime(wall)));
+    report(fmt::format("The {} run store was set aside as {}, and a new one is begun.", why, name));
     set_aside_ = now;
     ailment_->retry = now;
   } catch (const db::DatabaseError& error) {

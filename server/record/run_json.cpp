@@ -3,11 +3,14 @@
 
 #include <chrono>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "algo/filter/filter.hpp"
+#include "algo/pipeline/parameter_table.hpp"
 #include "server/record/record_sink.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/paths.hpp"
@@ -132,6 +135,26 @@ json to_json(const db::RunRow& row) {
   }
   if (!row.what.document.empty()) out["document"] = parsed(row.what.document);
   return out;
+}
+
+algo::Parameters stored_parameters(const db::RunRow& row) {
+  algo::Parameters out;
+  const nlohmann::json values = parse_json(row.what.parameters, kOwnDocument);
+  for (const auto& [name, value] : values.items()) {
+    const algo::ParameterInfo* const parameter = algo::find_parameter(name);
+    if (parameter == nullptr) {
+      throw std::runtime_error(
+          fmt::format("Run {} used a parameter '{}', which this program has not.", row.id, name));
+    }
+    out.set(*parameter, value.get<double>());
+  }
+  return out;
+}
+
+algo::FilterKind stored_filter(const db::RunRow& row) {
+  const auto filter = algo::find_filter(row.what.filter);
+  if (!filter) throw std::runtime_error(fmt::format("Run {} used an unknown filter.", row.id));
+  return *filter;
 }
 
 const db::CsvNames& csv_names() {

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/filter/filter.hpp"
 #include "algo/metrics.hpp"
 #include "db/records.hpp"
 #include "db/run_reader.hpp"
@@ -26,6 +27,11 @@ db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, doubl
 /// One that was `cut` by the end of the program before it came to an outcome is interrupted.
 db::RunEnd run_end(const RunResult& result, bool cut = false);
 db::TickRow tick_row(const algo::Telemetry& t);
+
+/// What the run began with, as it was: what today's program would refuse was accepted once. Throws
+/// std::runtime_error for what this program has not.
+algo::Parameters stored_parameters(const db::RunRow& row);
+algo::FilterKind stored_filter(const db::RunRow& row);
 
 /// Options every recorder of this program shares; what it reports goes to the log.
 RecorderOptions recorder_options();

@@ -30,29 +30,12 @@ Decided decided(const algo::Telemetry& t) {
   return {t.command, t.hold, t.mission};
 }
 
-/// As they were: what today's program would refuse was accepted once.
-algo::Parameters stored_parameters(const db::RunRow& row) {
-  algo::Parameters out;
-  const nlohmann::json values = parse_json(row.what.parameters, kOwnDocument);
-  for (const auto& [name, value] : values.items()) {
-    const algo::ParameterInfo* const parameter = algo::find_parameter(name);
-    if (parameter == nullptr) {
-      throw std::runtime_error(
-          fmt::format("Run {} used a parameter '{}', which this program has not.", row.id, name));
-    }
-    out.set(*parameter, value.get<double>());
-  }
-  return out;
-}
-
 algo::Pipeline pipeline_of(const db::RunRow& row) {
   const nlohmann::json document = parse_json(row.what.document, kOwnDocument);
   const algo::RobotSpec spec = robot_spec_from_json(document.at("robot"));
-  const auto filter = algo::find_filter(row.what.filter);
-  if (!filter) throw std::runtime_error(fmt::format("Run {} used an unknown filter.", row.id));
   algo::PipelineConfig config;
   config.controller = row.what.controller;
-  config.filter = *filter;
+  config.filter = stored_filter(row);
   config.parameters = stored_parameters(row);
   return {config, spec};
 }

@@ -232,6 +232,7 @@ RunResult Run::execute(const std::vector<algo::Request>& first) {
   try {
     FrameRef frame = next_frame();
     if (!frame) return result_;
+    pipeline_.want_grids(links_.rings != nullptr || links_.record != nullptr);
     robot_.reset(frame->telemetry.observation);
     pipeline_.reset(frame->telemetry.observation.odometry.pose);
     while (true) {
@@ -242,6 +243,7 @@ RunResult Run::execute(const std::vector<algo::Request>& first) {
       pending_.clear();
       pipeline_.tick(t);
       t.ground_truth = robot_.ground_truth();
+      robot_.find_moved(t.moved);
       metrics_.add(t, pipeline_.parameters());
       judge(t);
       publish(frame);

@@ -15,6 +15,7 @@
 #include "server/run/paths.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/serve/layers_json.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/scene_json.hpp"
 #include "server/serve/session_json.hpp"
@@ -32,6 +33,10 @@ constexpr const char* kBusy = "More is waiting to be done than this robot can ta
 
 std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
+}
+
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 double yaw_of(const JsonReader& q) {
@@ -161,13 +166,20 @@ void Bridge::add_channels() {
                              }});
   };
   const FrameRef& newest = session_.newest();
-  telemetry_ = hub_.add_channel({"/telemetry", "tautline.wire.Frame"});
+  telemetry_ = hub_.add_channel(
+      {"/telemetry", "tautline.wire.Frame", [this, &newest] {
+         return newest ? foxglove::Stamped{now_ns(), with_words(*newest)} : foxglove::Stamped{};
+       }});
   state_ = hub_.add_channel({"/state", "tautline.State"});
   scan_ = drawn("/scan", "foxglove.LaserScan", laser_scan_json, session_.newest_scan());
   tf_ = drawn("/tf", "foxglove.FrameTransforms", transforms_json, newest);
   odom_ = drawn("/odom", "foxglove.Odometry", odometry_json, newest);
-  strip_ = drawn("/strip", "foxglove.SceneUpdate", strip_json, newest);
-  forces_ = drawn("/forces", "foxglove.SceneUpdate", forces_json, newest);
+  layers_ = drawn("/layers", "foxglove.SceneUpdate", layers_json, newest);
+  filtered_ = drawn(
+      "/tautline/filtered",
+      "tautline.wire.LaserScan",
+      [this](const algo::Telemetry& t) { return text_of(encoder_.encode(t.scene.scan)); },
+      session_.newest_scan());
   obstacles_ = hub_.add_channel({"/obstacles", "foxglove.SceneUpdate"});
   goal_ = drawn("/goal", "foxglove.PoseInFrame", goal_json, newest);
   trajectory_ = drawn(
@@ -314,21 +326,34 @@ void Bridge::add_topics() {
   });
 }
 
+/// The frame with its words, which most frames leave out.
+std::shared_ptr<const std::string> Bridge::with_words(const Frame& frame) {
+  algo::Telemetry t = frame.telemetry;
+  t.words_fresh = true;
+  return shared(text_of(encoder_.encode(t)));
+}
+
 void Bridge::publish_frame(const FrameRef& frame) {
   const algo::Telemetry& t = frame->telemetry;
   const std::uint64_t time_ns = now_ns();
-  // Whether or not somebody watches: whoever opens the page while time stands still wants the last.
-  const auto bytes = encoded(*frame).bytes();
-  hub_.publish(
-      telemetry_, time_ns, shared({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  if (hub_.wanted(telemetry_)) {
+    // Words of frames that were passed over since the last one shown.
+    const bool passed_over = !t.words_fresh && t.words != told_words_;
+    hub_.publish(telemetry_,
+                 time_ns,
+                 passed_over ? with_words(*frame) : shared(text_of(encoded(*frame).bytes())));
+    told_words_ = t.words;
+  }
   const auto publish = [&](ChannelId channel, auto encode) {
     if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));
   };
-  if (t.scene.fresh) publish(scan_, [&] { return laser_scan_json(t); });
+  if (t.scene.fresh) {
+    publish(scan_, [&] { return laser_scan_json(t); });
+    publish(filtered_, [&] { return text_of(encoder_.encode(t.scene.scan)); });
+  }
   publish(tf_, [&] { return transforms_json(t); });
   publish(odom_, [&] { return odometry_json(t); });
-  publish(strip_, [&] { return strip_json(t); });
-  publish(forces_, [&] { return forces_json(t); });
+  publish(layers_, [&] { return layers_json(t); });
   publish(goal_, [&] { return goal_json(t); });
   const PathTrail& path = session_.path();
   const auto now = std::chrono::steady_clock::now();

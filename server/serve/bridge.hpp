@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "server/record/frame_codec.hpp"
 #include "server/serve/foxglove/hub.hpp"
 #include "server/serve/session.hpp"
 
@@ -52,6 +53,7 @@ class Bridge {
   void add_services();
   void add_topics();
   void publish_frame(const FrameRef& frame);
+  std::shared_ptr<const std::string> with_words(const Frame& frame);
   void publish_state();
   void state_changed();
   void submit(foxglove::ClientId client,
@@ -66,6 +68,8 @@ class Bridge {
   Loads loads_;
   foxglove::Hub hub_{};
   Gains gains_{*this};
+  FrameEncoder encoder_{};          // of what is sent besides the frames as they are
+  algo::Explanation told_words_{};  // that viewers of the telemetry have
   algo::Parameters told_parameters_{};
   bool state_waits_ = false;
   std::chrono::steady_clock::time_point state_due_{};  // when it may be published again
@@ -73,8 +77,8 @@ class Bridge {
   std::map<foxglove::ClientId, std::chrono::steady_clock::time_point> stick_refused_{};
   std::chrono::steady_clock::time_point path_sent_{};
 
-  foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, strip_ = 0,
-                      forces_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
+  foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, layers_ = 0,
+                      filtered_ = 0, obstacles_ = 0, goal_ = 0, trajectory_ = 0, log_ = 0;
 };
 
 }  // namespace server

@@ -10,43 +10,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "server/serve/scene_shapes.hpp"
+
 namespace server {
 namespace {
 
 using nlohmann::json;
-
-struct Colour {
-  double r = 0, g = 0, b = 0, a = 1;
-};
-// The page's own palette (design tokens of the light theme).
-constexpr Colour kStrip{0.66, 0.44, 0.0, 1};
-constexpr Colour kInternal{0.0, 0.50, 0.42, 1};
-constexpr Colour kExternal{0.76, 0.32, 0.05, 1};
-constexpr Colour kElastic{0.48, 0.25, 0.71, 1};
+using namespace scene;
 constexpr Colour kObstacle{0.55, 0.60, 0.66, 1};
-
-json to_json(const Colour& c) {
-  return {{"r", c.r}, {"g", c.g}, {"b", c.b}, {"a", c.a}};
-}
-
-json time_json(double stamp) {
-  const double whole = std::floor(std::max(0.0, stamp));
-  const auto nsec = static_cast<std::int64_t>((std::max(0.0, stamp) - whole) * 1e9);
-  return {{"sec", static_cast<std::int64_t>(whole)}, {"nsec", nsec}};
-}
-
-json point_json(const algo::Vec2& p, double z = 0) {
-  return {{"x", p.x()}, {"y", p.y()}, {"z", z}};
-}
-
-json rotation_json(double heading) {
-  return {{"x", 0.0}, {"y", 0.0}, {"z", std::sin(heading / 2)}, {"w", std::cos(heading / 2)}};
-}
-
-json pose_json(const algo::Pose2& pose, double z = 0) {
-  return {{"position", point_json(pose.position(), z)},
-          {"orientation", rotation_json(pose.heading)}};
-}
 
 json transform_json(double stamp, const char* parent, const char* child, const algo::Pose2& pose) {
   return {{"timestamp", time_json(stamp)},
@@ -56,57 +27,10 @@ json transform_json(double stamp, const char* parent, const char* child, const a
           {"rotation", rotation_json(pose.heading)}};
 }
 
-json entity_json(double stamp, const std::string& id) {
-  json entity = {{"timestamp", time_json(stamp)},
-                 {"frame_id", "map"},
-                 {"id", id},
-                 {"lifetime", {{"sec", 0}, {"nsec", 0}}},
-                 {"frame_locked", false}};
-  for (const char* list : {"metadata",
-                           "arrows",
-                           "cubes",
-                           "spheres",
-                           "cylinders",
-                           "lines",
-                           "triangles",
-                           "texts",
-                           "models"}) {
-    entity[list] = json::array();
-  }
-  return entity;
-}
-
-json scene_json(json entities, json deletions = json::array()) {
-  return {{"deletions", std::move(deletions)}, {"entities", std::move(entities)}};
-}
-
-json line_json(const std::vector<algo::Vec2>& points, const Colour& colour) {
-  json line = {{"type", 0},
-               {"pose", pose_json({})},
-               {"thickness", 0.03},
-               {"scale_invariant", false},
-               {"points", json::array()},
-               {"color", to_json(colour)},
-               {"colors", json::array()},
-               {"indices", json::array()}};
-  for (const algo::Vec2& p : points) line["points"].push_back(point_json(p, 0.05));
-  return line;
-}
-
-json arrow_json(const algo::Vec2& from, const algo::Vec2& vector, const Colour& colour) {
-  const double length = vector.norm();
-  return {{"pose", pose_json({from.x(), from.y(), std::atan2(vector.y(), vector.x())}, 0.1)},
-          {"shaft_length", length * 0.8},
-          {"shaft_diameter", 0.03},
-          {"head_length", length * 0.2},
-          {"head_diameter", 0.07},
-          {"color", to_json(colour)}};
-}
-
 /// A prism over a convex outline: fan for the top, two triangles for each side.
 json prism_json(const std::vector<algo::Vec2>& outline, double height) {
-  json points = json::array();
-  const auto add = [&](const algo::Vec2& p, double z) { points.push_back(point_json(p, z)); };
+  std::vector<Point> points;
+  const auto add = [&](const algo::Vec2& p, double z) { points.push_back({p.x(), p.y(), z}); };
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const algo::Vec2& a = outline[i];
     const algo::Vec2& b = outline[(i + 1) % outline.size()];
@@ -114,15 +38,11 @@ json prism_json(const std::vector<algo::Vec2>& outline, double height) {
     add(a, 0), add(b, 0), add(b, height);
     add(a, 0), add(b, height), add(a, height);
   }
-  return {{"pose", pose_json({})},
-          {"points", std::move(points)},
-          {"color", to_json(kObstacle)},
-          {"colors", json::array()},
-          {"indices", json::array()}};
+  return triangles_json(points, kObstacle);
 }
 
 json obstacle_entity(double stamp, const algo::Obstacle& o) {
-  json entity = entity_json(stamp, fmt::format("obstacle-{}", o.id));
+  json entity = entity_json(stamp, fmt::format("obstacle-{}", o.id), "map");
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&o.shape)) {
     entity["cylinders"].push_back(
         {{"pose", pose_json(o.pose_W, o.height / 2)},
@@ -173,29 +93,6 @@ std::string odometry_json(const algo::Telemetry& t) {
               {"linear_velocity", point_json({o.twist.v, 0})},
               {"angular_velocity", point_json({0, 0}, o.twist.omega)}}
       .dump();
-}
-
-std::string strip_json(const algo::Telemetry& t) {
-  std::vector<algo::Vec2> points;
-  for (const algo::Node& node : t.output.strip) points.push_back(node.position_W);
-  json entity = entity_json(t.observation.stamp, "strip");
-  if (!points.empty()) entity["lines"].push_back(line_json(points, kStrip));
-  return scene_json(json::array({std::move(entity)})).dump();
-}
-
-std::string forces_json(const algo::Telemetry& t) {
-  json entity = entity_json(t.observation.stamp, "forces");
-  if (!t.output.strip.empty()) {
-    const algo::Vec2 at = t.observation.odometry.pose.position();
-    const auto add = [&](const algo::Vec2& force, const Colour& colour) {
-      if (force.norm() > 1e-3) entity["arrows"].push_back(arrow_json(at, force, colour));
-    };
-    add(t.output.internal_W, kInternal);
-    add(t.output.external_left_W, kExternal);
-    add(t.output.external_right_W, kExternal);
-    add(t.output.elastic_W, kElastic);
-  }
-  return scene_json(json::array({std::move(entity)})).dump();
 }
 
 std::string obstacles_json(double stamp, std::span<const algo::Obstacle> obstacles) {

@@ -19,8 +19,6 @@ constexpr double kNoReading = 100.0;
 std::string laser_scan_json(const algo::Telemetry& t);
 std::string transforms_json(const algo::Telemetry& t);
 std::string odometry_json(const algo::Telemetry& t);
-std::string strip_json(const algo::Telemetry& t);
-std::string forces_json(const algo::Telemetry& t);
 /// Replaces all obstacles a viewer has.
 std::string obstacles_json(double stamp, std::span<const algo::Obstacle> obstacles);
 /// The goal's pose; the robot's own while it has no goal (the message cannot say "none").

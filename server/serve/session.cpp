@@ -9,7 +9,6 @@
 #include <utility>
 #include <variant>
 
-#include "algo/explain.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
@@ -379,9 +378,8 @@ void Session::narrate(const algo::Telemetry& t) {
   told_hold_ = t.hold;
   told_mission_ = t.mission;
   if (!held && !notable) return;
-  const algo::Explanation words = algo::explain(t);
   log(held || t.mission == algo::Mission::Stuck ? LogLevel::Warning : LogLevel::Info,
-      words.what + ". " + words.why);
+      t.words.what + ". " + t.words.why);
 }
 
 void Session::watch_run() {

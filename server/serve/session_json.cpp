@@ -1,7 +1,6 @@
 // server/serve/session_json.cpp: documents about a session.
 #include "server/serve/session_json.hpp"
 
-#include "algo/explain.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
@@ -57,7 +56,6 @@ json session_json(const Session& session) {
   if (!session.newest()) return out;
   const algo::Telemetry& t = session.newest()->telemetry;
   const algo::Pose2& pose = t.observation.odometry.pose;
-  const algo::Explanation words = algo::explain(t);
   out["tick"] = t.tick;
   out["stamp"] = t.observation.stamp;
   out["pose"] = {{"x", pose.x}, {"y", pose.y}, {"heading", pose.heading}};
@@ -66,8 +64,8 @@ json session_json(const Session& session) {
   out["mission"] = algo::name(t.mission);
   out["hold"] = algo::name(t.hold);
   out["behaviour"] = algo::name(t.behaviour);
-  out["what"] = words.what;
-  out["why"] = words.why;
+  out["what"] = t.words.what;
+  out["why"] = t.words.why;
   return out;
 }
 

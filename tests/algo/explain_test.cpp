@@ -1,7 +1,12 @@
 // tests/algo/explain_test.cpp: the sentences carry the numbers of the tick.
 #include "algo/explain.hpp"
 
+#include <memory>
+
 #include <gtest/gtest.h>
+
+#include "algo/full_strip/full_strip_controller.hpp"
+#include "algo/pipeline/controllers.hpp"
 
 namespace algo {
 namespace {
@@ -13,59 +18,76 @@ Telemetry driving() {
   t.mission = Mission::Driving;
   t.behaviour = BehaviourId::Avoid;
   t.scene.left = Nearest{.beam = 200, .point_W = {1, 0}, .distance = 1.0};
-  t.output.external_left_W = {-0.21, 0};
   return t;
 }
 
-TEST(Explain, PassingAnObstacle) {
-  Telemetry t = driving();
-  t.output.side = Side::Right;
-  t.output.side_since = 6.6;
-  const Explanation e = explain(t);
-  EXPECT_EQ(e.what, "Passing the obstacle on its right");
-  EXPECT_EQ(e.why,
-            "External force 0.21 m from the nearest left return at 1.00 m; side chosen 3.4 s ago.");
+/// What `controller` says of `t`.
+Explanation said(const char* controller, const Telemetry& t) {
+  Explanation words{"of a tick before", "and its why"};
+  explain(t, *builtin_controllers().at(controller).make(), words);
+  return words;
 }
 
 TEST(Explain, FreeDrivingSaysHowFarToGo) {
-  Telemetry t = driving();
-  t.output.external_left_W = {0, 0};
-  EXPECT_EQ(explain(t).what, "Driving to the goal");
-  EXPECT_EQ(explain(t).why, "5.00 m to go. The nearest return is 1.00 m from the robot's centre.");
+  const Explanation words = said("modified", driving());
+  EXPECT_EQ(words.what, "Driving to the goal");
+  EXPECT_EQ(words.why, "5.00 m to go. The nearest return is 1.00 m from the robot's centre.");
 }
 
-TEST(Explain, AControllerWithoutAStripSaysWhatItIsAbout) {
+TEST(Explain, ThePlannerSaysHowLongItsPathIs) {
   Telemetry t = driving();
-  t.output.manner = Manner::Planned;
-  for (const double x : {0.0, 1.0, 2.5}) t.output.plan_W.push_back({x, 0});
-  EXPECT_EQ(explain(t).what, "Following its plan");
-  EXPECT_EQ(explain(t).why, "The path over the grid is 2.50 m long.");
+  t.output.state = 1;
+  t.output.measures.push_back({"plan.length", "m", 2.5});
+  EXPECT_EQ(said("certainty_grid", t).what, "Following its plan");
+  EXPECT_EQ(said("certainty_grid", t).why, "The path over the grid is 2.50 m long.");
+}
 
-  t.output.manner = Manner::Valley;
-  t.output.histogram = {10, 200, 400, 299};
-  t.output.histogram_threshold = 300;
-  t.output.pass_W = {4, -3};  // at right angles to the goal
-  EXPECT_EQ(explain(t).why, "3 of 4 sectors are free; the way is 90 degrees off the goal.");
-
-  t.output.manner = Manner::Window;
-  t.output.twist = {0.25, -0.5};
-  t.output.candidates.push_back({.twist = {0.25, -0.5}, .allowed = true, .chosen = true});
-  t.output.candidates.push_back({.twist = {0.5, 0}});
-  EXPECT_EQ(explain(t).why,
-            "1 of 2 motions can be stopped in time; the best is 0.25 m/s, -0.50 rad/s.");
+TEST(Explain, TheHistogramSaysWhatIsFree) {
+  Telemetry t = driving();
+  t.output.state = 1;
+  t.output.measures.push_back({"histogram.free", "", 41});
+  t.output.pass_W = Vec2{4, -3};  // at right angles to the goal
+  EXPECT_EQ(said("vfh", t).why, "41 of 72 sectors are free; the way is 90 degrees off the goal.");
   t.mission = Mission::Stuck;
-  t.output.manner = Manner::Walled;
-  EXPECT_EQ(explain(t).why,
+  t.output.state = 2;
+  EXPECT_EQ(said("vfh", t).what, "Stuck");
+  EXPECT_EQ(said("vfh", t).why,
             "No sector of the histogram is free. 5.00 m to go. Move an obstacle or the goal.");
 }
 
-TEST(Explain, EveryMannerHasItsSentences) {
-  for (int manner = 0; manner <= static_cast<int>(Manner::NoWindow); ++manner) {
-    Telemetry t = driving();
-    t.output.external_left_W = {0, 0};
-    t.output.manner = static_cast<Manner>(manner);
-    EXPECT_FALSE(explain(t).what.empty()) << manner;
-    EXPECT_FALSE(explain(t).why.empty()) << manner;
+TEST(Explain, TheWindowSaysWhatItWeighed) {
+  Telemetry t = driving();
+  t.output.state = 1;
+  t.output.twist = {0.25, -0.5};
+  t.output.measures.push_back({"window.allowed", "", 17});
+  EXPECT_EQ(said("dwa", t).why,
+            "17 of 189 motions can be stopped in time; the best is 0.25 m/s, -0.50 rad/s.");
+}
+
+TEST(Explain, TheFullStripSaysHowFarAlongItTheGoalIs) {
+  Telemetry t = driving();
+  t.output.state = FullStripController::kFollowing;
+  t.output.twist.v = 0.5;
+  t.output.measures.push_back({"strip.length", "m", 6.25});
+  EXPECT_EQ(said("strip", t).why,
+            "6.25 m along it to the goal, at 0.50 m/s. The nearest return is 1.00 m from the "
+            "robot's centre.");
+  t.output.state = FullStripController::kGivingWay;
+  t.output.measures.push_back({"moving.count", "", 3});
+  EXPECT_EQ(said("strip_moving", t).what, "Giving way");
+  EXPECT_EQ(said("strip_moving", t).why, "3 things move; waiting costs less than driving on.");
+}
+
+TEST(Explain, EveryStateOfEveryControllerHasItsSentences) {
+  for (const auto& about : builtin_controllers().entries()) {
+    const auto controller = builtin_controllers().at(about.name).make();
+    for (std::uint8_t state = 0; state <= FullStripController::kGoalTaken; ++state) {
+      Telemetry t = driving();
+      t.output.state = state;
+      explain(t, *controller, t.words);
+      EXPECT_FALSE(t.words.what.empty()) << about.name << " " << int{state};
+      EXPECT_FALSE(t.words.why.empty()) << about.name << " " << int{state};
+    }
   }
 }
 
@@ -74,8 +96,8 @@ TEST(Explain, AHoldComesBeforeEverythingElse) {
   t.hold = Hold::StaleScan;
   t.scene.scan.resize(1);
   t.scene.scan.stamp = 9.7;
-  EXPECT_EQ(explain(t).what, "Waiting for the laser");
-  EXPECT_EQ(explain(t).why, "Scan is 0.3 s old. The robot waits.");
+  EXPECT_EQ(said("modified", t).what, "Waiting for the laser");
+  EXPECT_EQ(said("modified", t).why, "Scan is 0.3 s old. The robot waits.");
 }
 
 TEST(Explain, EveryStateHasItsSentences) {
@@ -93,8 +115,8 @@ TEST(Explain, EveryStateHasItsSentences) {
         t.hold = hold;
         t.mission = mission;
         if (with_goal) t.goal = SetGoal{};
-        EXPECT_FALSE(explain(t).what.empty());
-        EXPECT_FALSE(explain(t).why.empty());
+        EXPECT_FALSE(said("modified", t).what.empty());
+        EXPECT_FALSE(said("modified", t).why.empty());
       }
     }
   }

@@ -20,8 +20,8 @@ struct MetricsTest : ::testing::Test {
     t.ground_truth = GroundTruth{{x, y, 0}, distance, distance - spec.radius, false};
     t.clearance = distance - spec.radius;
     t.scene.left = Nearest{.beam = 200, .point_W = {x, y + distance}, .distance = distance};
-    t.output.pass_W = {x + 0.2, y};
-    t.output.strip.append();
+    t.output.pass_W = Vec2{x + 0.2, y};
+    t.output.measures.push_back({"strip.length", "m", 0.2});
     recorder.add(t, parameters);
   }
   RobotSpec spec{};

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "tests/bench/rooms.hpp"
 
@@ -29,6 +30,21 @@ inline algo::Pipeline make_pipeline(const algo::RobotSpec& spec) {
   algo::PipelineConfig config;
   config.parameters.set(algo::kFilterHalfWidth, 2);
   return {config, spec};
+}
+
+/// Draws the strip of a tick out to `nodes` points, each `step` [m] farther on along the heading.
+inline void stretch_strip(algo::Telemetry& t, std::size_t nodes, double step) {
+  for (algo::Layer& layer : t.output.layers) {
+    if (layer.name != "strip" || layer.empty()) continue;
+    const std::vector<float> line = layer.values;
+    const std::size_t points = line.size() / layer.axes;
+    const algo::Vec2 way = step * algo::direction(t.observation.odometry.pose.heading);
+    layer.values.clear();
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const std::size_t k = 2 * (i * points / nodes);
+      put(layer, algo::Vec2(algo::Vec2(line[k], line[k + 1]) + static_cast<double>(i) * way));
+    }
+  }
 }
 
 /// Gives a robot that has arrived, or is stuck, the next corner of a square about the middle.

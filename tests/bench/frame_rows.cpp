@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "telemetry_generated.h"
 #include "tests/bench/driving.hpp"
 #include "tests/bench/rows.hpp"
 #include <benchmark/benchmark.h>
@@ -24,8 +25,13 @@ json pose(const algo::Pose2& p) {
 json twist(const algo::Twist2& t) {
   return {{"v", t.v}, {"omega", t.omega}};
 }
-json nearest(const algo::Nearest& n) {
-  return {{"point", point(n.point_W)}, {"distance", n.distance}, {"beam", n.beam}};
+json layer_json(const algo::Layer& layer) {
+  return {{"name", layer.name},
+          {"label", layer.label},
+          {"kind", static_cast<int>(layer.kind)},
+          {"tone", static_cast<int>(layer.tone)},
+          {"style", static_cast<int>(layer.style)},
+          {"values", layer.values}};
 }
 
 json scan_json(const algo::LaserScan& scan) {
@@ -78,15 +84,21 @@ json frame_json(const algo::Telemetry& t) {
   frame["mission"] = static_cast<int>(t.mission);
   frame["behaviour"] = static_cast<int>(t.behaviour);
   frame["clearance"] = t.clearance;
-  frame["strip"] = json::array();
-  for (const algo::Node& node : out.strip) frame["strip"].push_back(point(node.position_W));
-  frame["internal"] = point(out.internal_W);
-  if (t.scene.left) frame["left"] = nearest(*t.scene.left);
-  if (t.scene.right) frame["right"] = nearest(*t.scene.right);
-  frame["external_left"] = point(out.external_left_W);
-  frame["external_right"] = point(out.external_right_W);
-  frame["side"] = static_cast<int>(out.side);
-  frame["side_since"] = out.side_since;
+  if (out.pass_W) frame["pass"] = point(*out.pass_W);
+  frame["layers"] = json::array();
+  for (const auto* list : {&t.layers, &out.layers}) {
+    for (const algo::Layer& layer : *list) {
+      if (!layer.empty()) frame["layers"].push_back(layer_json(layer));
+    }
+  }
+  frame["measures"] = json::object();
+  for (const algo::Measure& each : out.measures) {
+    frame["measures"][std::string(each.name)] = {{"unit", each.unit}, {"value", each.value}};
+  }
+  if (t.words_fresh) {
+    frame["what"] = t.words.what;
+    frame["why"] = t.words.why;
+  }
   return frame;
 }
 
@@ -106,10 +118,17 @@ void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
   for (std::size_t k = 0; k < back.observation.scans.size(); ++k) {
     same(document.at("scans")[k] == scan_json(back.observation.scans[k]), "a scan");
   }
-  same(document.at("strip").size() == back.output.strip.size(), "the strip");
-  for (std::size_t k = 0; k < back.output.strip.size(); ++k) {
-    const double x = document.at("strip")[k].at("x");
-    same(std::abs(x - back.output.strip[k].position_W.x()) < 1e-5, "a strip node");
+  const auto& layers = *tautline::wire::GetFrame(encoder.encode(t).data())->layers();
+  same(document.at("layers").size() == layers.size(), "the number of layers");
+  std::size_t k = 0;
+  for (const auto* layer : layers) {
+    const json& written = document.at("layers")[k++];
+    same(written.at("name") == layer->name()->str(), "the name of a layer");
+    same(written.at("values").size() == layer->values()->size(), "the length of a layer");
+    flatbuffers::uoffset_t i = 0;
+    for (const double value : written.at("values")) {
+      same(std::abs(value - layer->values()->Get(i++)) < 1e-3, "a value of a layer");
+    }
   }
 }
 
@@ -122,11 +141,7 @@ std::vector<algo::Telemetry> driving_ticks(std::size_t count, std::size_t nodes)
     if (driving.t.observation.scans.size() != 1 || !driving.t.requests.empty()) continue;
     algo::Telemetry t = driving.t;
     t.ground_truth = driving.world().ground_truth();
-    const auto strip = t.output.strip;
-    if (nodes > 0 && strip.size() > 0) t.output.strip.clear();
-    for (std::size_t i = 0; i < nodes && strip.size() > 0; ++i) {
-      t.output.strip.push_back(strip[i * strip.size() / nodes]);
-    }
+    if (nodes > 0) stretch_strip(t, nodes, 0);
     ticks.push_back(std::move(t));
   }
   return ticks;

@@ -42,14 +42,7 @@ std::vector<Stored> ticks_of_a_drive(std::size_t count, std::size_t nodes, doubl
     driving.tick();
     driving.t.ground_truth = driving.world().ground_truth();
     algo::Telemetry t = driving.t;
-    const auto strip = t.output.strip;
-    if (nodes > 0 && strip.size() > 0) t.output.strip.clear();
-    for (std::size_t i = 0; i < nodes && strip.size() > 0; ++i) {
-      algo::Node node = strip[i * strip.size() / nodes];
-      node.position_W +=
-          0.004 * static_cast<double>(i) * algo::direction(t.observation.odometry.pose.heading);
-      t.output.strip.push_back(node);
-    }
+    if (nodes > 0) stretch_strip(t, nodes, 0.004);
     const auto bytes = encoder.encode(t);
     const auto windows = encoder.windows();
     ticks.push_back(

@@ -43,59 +43,39 @@ constexpr const char* kVersion1 = R"(
   INSERT INTO tick VALUES (7, 0, 0.026, 1, 2, 3, 4, 5, 6, 1, 2);
 )";
 
-TEST_F(SchemaTest, AnOlderDatabaseIsBroughtUpToDate) {
+TEST_F(SchemaTest, AnOlderDatabaseIsRefusedUntouched) {
   Connection(path, Connection::Mode::Write).execute(kVersion1);
-  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("older version"));
-  RunStore store(path);
-  EXPECT_EQ(ask("PRAGMA user_version"), db::detail::schema_version());
-  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
-  RunReader reader(path);
-  const db::RunRow run = get(reader, 7);
-  EXPECT_EQ(run.what.controller, "original");
-  EXPECT_EQ(run.what.document, R"({"name":"case3"})");
-  const db::TickRow expected{.tick = 0,
-                             .t = 0.026,
-                             .x = 1,
-                             .y = 2,
-                             .heading = 3,
-                             .v = 4,
-                             .omega = 5,
-                             .clearance = 6,
-                             .hold = 1,
-                             .behaviour = 2};
-  ASSERT_EQ(reader.ticks(7, 0, 9).ticks.size(), 1U);
-  EXPECT_EQ(reader.ticks(7, 0, 9).ticks[0], expected);
-  EXPECT_EQ(record(store, 3), 8);
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("older program"));
+  try {
+    const RunStore store(path);
+    FAIL() << "opened";
+  } catch (const db::DatabaseError& error) {
+    EXPECT_EQ(error.trouble(), db::Trouble::Outdated);
+    EXPECT_THAT(error.what(), HasSubstr("older program"));
+  }
+  EXPECT_EQ(ask("PRAGMA user_version"), 1);
+  EXPECT_EQ(ask("SELECT count(*) FROM run"), 1);
+  EXPECT_EQ(ask("SELECT count(*) FROM tick"), 1);
 }
 
-TEST_F(SchemaTest, ADatabaseWithoutGapsIsReadAsItIs) {
+TEST_F(SchemaTest, ADatabaseOfTheVersionBeforeLayersIsRefusedToo) {
   {
     RunStore store(path);
     record(store, 3);
   }
-  Connection(path, Connection::Mode::Write).execute("DROP TABLE gap; PRAGMA user_version = 2");
-  RunReader reader(path);
-  EXPECT_EQ(get(reader, 1).ticks, 3U);
-  EXPECT_TRUE(get(reader, 1).gaps.empty());
-  EXPECT_EQ(ask("PRAGMA user_version"), 2);
+  Connection(path, Connection::Mode::Write).execute("PRAGMA user_version = 4");
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("has version 4"));
+  EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("has version 4"));
+  EXPECT_EQ(ask("SELECT count(*) FROM tick"), 3);
 }
 
-TEST_F(SchemaTest, TheOlderTablesPlusTheStepsAreTodaysTables) {
-  const auto tables = [](const std::string& file) {
-    const Connection c(file, Connection::Mode::Write);
-    auto list = c.prepare(
-        "SELECT m.name || '.' || c.name || ' ' || c.type || ' ' || c.pk FROM"
-        " sqlite_master m, pragma_table_info(m.name) c ORDER BY m.name, c.cid");
-    std::vector<std::string> found;
-    while (list.step()) found.push_back(list.text(0));
-    return found;
-  };
-  const std::string fresh = (folder / "fresh.db").string();
-  { const RunStore store(fresh); }
-  Connection(path, Connection::Mode::Write).execute(kVersion1);
+TEST_F(SchemaTest, AnEmptyFileIsSetUp) {
   { const RunStore store(path); }
-  EXPECT_EQ(tables(path), tables(fresh));
-  EXPECT_GT(tables(fresh).size(), 30U);
+  EXPECT_EQ(ask("PRAGMA user_version"), 5);
+  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
+  Connection((folder / "empty.db").string(), Connection::Mode::Write);
+  EXPECT_THAT(refusal([&] { const RunReader reader((folder / "empty.db").string()); }),
+              HasSubstr("is empty"));
 }
 
 TEST_F(SchemaTest, ANewerDatabaseIsRefusedUntouched) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "algo/driving.hpp"
 #include "server/experiment/judge.hpp"
@@ -68,17 +69,15 @@ class Path final : public Judge {
   }
 
   void follow_strip(const algo::ControlOutput& output) {
-    largest_internal_ = std::max(largest_internal_, output.internal_W.norm());
-    const bool pushed = output.external_left_W.norm() + output.external_right_W.norm() > 0;
-    if (output.strip.size() != 3 || !pushed) return;
-    const double before = (output.strip[1].position_W - output.strip[0].position_W).norm();
-    const double after = (output.strip[2].position_W - output.strip[1].position_W).norm();
-    if (!(before + after > 0)) return;
-    const double share = before / (before + after);
+    const auto measure = [&](std::string_view name) { return output.measure(name).value_or(0); };
+    largest_internal_ = std::max(largest_internal_, measure("strip.internal"));
+    const std::optional<double> share = output.measure("strip.share");
+    const bool pushed = measure("strip.left") + measure("strip.right") > 0;
+    if (!share || !pushed) return;
     shares_ += 1;
-    const double off = share - share_mean_;
+    const double off = *share - share_mean_;
     share_mean_ += off / shares_;
-    squares_ += off * (share - share_mean_);
+    squares_ += off * (*share - share_mean_);
   }
 
   double safety_distance_ = 0;  // [m]

@@ -2,7 +2,6 @@
 #include <cmath>
 #include <optional>
 
-#include "algo/explain.hpp"
 #include "server/experiment/judge.hpp"
 
 namespace server::experiment::judges {
@@ -26,19 +25,7 @@ bool finite(const algo::Telemetry& t) {
 
 /// What a robot may say while it stands. All else promises motion.
 bool gives_reason(const algo::Telemetry& t) {
-  if (t.mission == algo::Mission::Stuck || t.mission == algo::Mission::Held) return true;
-  switch (t.output.manner) {
-    case algo::Manner::NoWay:
-    case algo::Manner::GoalTaken:
-    case algo::Manner::Blocked:
-    case algo::Manner::NoPlan:
-    case algo::Manner::Walled:
-    case algo::Manner::NoWindow:
-    case algo::Manner::Cornered:
-      return true;
-    default:
-      return false;
-  }
+  return t.mission == algo::Mission::Stuck || t.mission == algo::Mission::Held || t.output.waits;
 }
 
 /// How long the robot has been where it is.
@@ -90,7 +77,7 @@ class Silence final : public Judge {
 
  private:
   void end(algo::Outcome outcome, const algo::Telemetry& t) {
-    ending_ = Ending{outcome, algo::explain(t).why};
+    ending_ = Ending{outcome, t.words.why};
   }
 
   Stand stand_{};

@@ -1,8 +1,11 @@
 // server/serve/api/run_routes.cpp: experiments in, records out.
 #include <algorithm>
+#include <deque>
+#include <mutex>
 
 #include <fmt/format.h>
 
+#include "server/record/filtered_scans.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
@@ -202,23 +205,24 @@ net::Response list_ticks(ApiContext& context, const net::Request& request, Worke
   return page_response(std::move(list), next ? json(*next) : json(nullptr));
 }
 
-/// Each frame as u32 little-endian length + bytes.
-net::Response list_frames(ApiContext& context, const net::Request& request, Worker& worker) {
-  const db::RunId run = run_id(request);
-  db::RunReader& reader = worker.runs();
-  if (!reader.get(run)) return no_such_run(run);
+/// u32 little-endian length + bytes.
+void append_message(std::string& body, std::span<const std::byte> message) {
+  const auto size = static_cast<std::uint32_t>(message.size());
+  for (int shift = 0; shift < 32; shift += 8) {
+    body.push_back(static_cast<char>((size >> shift) & 0xFF));
+  }
+  body.append(reinterpret_cast<const char*>(message.data()), message.size());
+}
+
+/// A page of messages, one a tick: `read(from, body)` appends one and returns the tick to go on
+/// with.
+template <typename Read>
+net::Response messages_page(ApiContext& context, const net::Request& request, const Read& read) {
   std::string body;
-  const auto append = [&](std::uint64_t /*tick*/, std::span<const std::byte> frame) {
-    const auto size = static_cast<std::uint32_t>(frame.size());
-    for (int shift = 0; shift < 32; shift += 8) {
-      body.push_back(static_cast<char>((size >> shift) & 0xFF));
-    }
-    body.append(reinterpret_cast<const char*>(frame.data()), frame.size());
-  };
   std::optional<std::uint64_t> next = number_of(request, "from", 0);
   const std::size_t room = context.room.page();
   for (std::size_t left = limit_of(request, 1000, 5000); left > 0 && body.size() < room; --left) {
-    next = reader.frames(run, *next, 1, append);
+    next = read(*next, body);
     if (!next) break;
   }
   net::Response response;
@@ -227,6 +231,58 @@ net::Response list_frames(ApiContext& context, const net::Request& request, Work
   response.body = std::make_shared<const std::string>(std::move(body));
   return response;
 }
+
+net::Response list_frames(ApiContext& context, const net::Request& request, Worker& worker) {
+  const db::RunId run = run_id(request);
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  return messages_page(context, request, [&](std::uint64_t from, std::string& body) {
+    return reader.frames(run, from, 1, [&](std::uint64_t, std::span<const std::byte> frame) {
+      append_message(body, frame);
+    });
+  });
+}
+
+/// Readings of filtered scans that a next page may go on from.
+class FilteredPages {
+ public:
+  net::Response page(ApiContext& context, const net::Request& request, Worker& worker) {
+    const db::RunId run = run_id(request);
+    db::RunReader& reader = worker.runs();
+    const auto row = reader.get(run);
+    if (!row) return no_such_run(run);
+    FilteredScans scans = take(*row, number_of(request, "from", 0));
+    net::Response response =
+        messages_page(context, request, [&](std::uint64_t from, std::string& body) {
+          return scans.read(reader, from, 1, [&](std::uint64_t, std::span<const std::byte> scan) {
+            append_message(body, scan);
+          });
+        });
+    keep(std::move(scans));
+    return response;
+  }
+
+ private:
+  static constexpr std::size_t kMost = 4;
+
+  FilteredScans take(const db::RunRow& row, std::uint64_t from) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find_if(
+        kept_, [&](const FilteredScans& scans) { return scans.stands_before(row, from); });
+    if (found == kept_.end()) return FilteredScans(row);
+    FilteredScans scans = std::move(*found);
+    kept_.erase(found);
+    return scans;
+  }
+  void keep(FilteredScans scans) {
+    const std::lock_guard lock(mutex_);
+    if (kept_.size() == kMost) kept_.pop_front();
+    kept_.push_back(std::move(scans));
+  }
+
+  std::mutex mutex_{};
+  std::deque<FilteredScans> kept_{};
+};
 
 net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
   constexpr std::size_t kLines = 1000;  // of a slice: some 100 kB
@@ -307,6 +363,13 @@ void add_run_routes(net::Router& router, ApiContext& context) {
   router.add("GET", "/api/v1/runs/{id}/metrics", made_on_worker(context, get_metrics));
   router.add("GET", "/api/v1/runs/{id}/ticks", made(list_ticks));
   router.add("GET", "/api/v1/runs/{id}/frames", made(list_frames));
+  const auto filtered = std::make_shared<FilteredPages>();
+  router.add(
+      "GET",
+      "/api/v1/runs/{id}/filtered",
+      made_on_worker(context, [&context, filtered](const net::Request& request, Worker& worker) {
+        return filtered->page(context, request, worker);
+      }));
   router.add("GET", "/api/v1/runs/{id}/csv", made(export_csv));
 }
 

@@ -7,9 +7,10 @@
 #include "tests/algo/baselines/drive.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/baselines/edge_detection.hpp"
+
 namespace {
 
-using algo::Manner;
 using baselines::Drive;
 using baselines::Outcome;
 using baselines::Vec2;
@@ -86,8 +87,12 @@ TEST(Baselines, TheCertaintyGridFindsTheWayOutOfADeadEnd) {
   bool replanned_back = false;
   const Outcome outcome = Drive("certainty_grid", dead_end(), kGoal)
                               .watch([&](const algo::ControlOutput& out) {
-                                for (const Vec2& point : out.plan_W) {
-                                  replanned_back = replanned_back || std::abs(point.y()) > 1.7;
+                                for (const algo::Layer& layer : out.layers) {
+                                  if (layer.name != "plan") continue;
+                                  for (std::size_t k = 1; k < layer.values.size(); k += 2) {
+                                    const float y = layer.values[k];
+                                    replanned_back = replanned_back || std::abs(y) > 1.7F;
+                                  }
                                 }
                               })
                               .run();
@@ -101,12 +106,12 @@ TEST(Baselines, WithoutAnyWayTheCertaintyGridStopsAndSaysSo) {
                             box(-1.2, 1.1, 1.2, 1.2),
                             box(1.1, -1.2, 1.2, 1.2),
                             box(-1.2, -1.2, -1.1, 1.2)}};
-  Manner last = Manner::None;
+  bool waits = false;
   const Outcome outcome = Drive("certainty_grid", cell, kGoal)
-                              .watch([&](const algo::ControlOutput& out) { last = out.manner; })
+                              .watch([&](const algo::ControlOutput& out) { waits = out.waits; })
                               .run(40);
   EXPECT_EQ(outcome.name, "out_of_time");
-  EXPECT_EQ(last, Manner::NoPlan);
+  EXPECT_TRUE(waits);
   EXPECT_GT(outcome.clearance, 0);
 }
 
@@ -117,7 +122,7 @@ TEST(Baselines, EdgeDetectionStopsToTakeItsScans) {
   int scans = 0;
   const Outcome outcome = Drive("edge_detection", post(0), kGoal)
                               .watch([&](const algo::ControlOutput& out) {
-                                const bool stands = out.manner == Manner::TakingScan;
+                                const bool stands = out.state == algo::EdgeDetection::kTakingScan;
                                 if (stands && standing == 0) ++scans;
                                 standing = stands ? standing + 1 : 0;
                                 longest = std::max(longest, standing);
@@ -131,18 +136,23 @@ TEST(Baselines, EdgeDetectionStopsToTakeItsScans) {
 
 TEST(Baselines, TheDynamicWindowChoosesWhatItCanReachAndStop) {
   algo::Twist2 before;
-  const Outcome outcome = Drive("dwa", post(0), kGoal)
-                              .watch([&](const algo::ControlOutput& out) {
-                                int chosen = 0;
-                                for (const algo::Candidate& each : out.candidates) {
-                                  if (!each.chosen) continue;
-                                  ++chosen;
-                                  EXPECT_TRUE(each.allowed);
-                                  EXPECT_EQ(each.twist, out.twist);
-                                }
-                                EXPECT_EQ(chosen, 1);
-                              })
-                              .run();
+  const Outcome outcome =
+      Drive("dwa", post(0), kGoal)
+          .watch([&](const algo::ControlOutput& out) {
+            ASSERT_EQ(out.layers.size(), 3U);  // refused, allowed, chosen
+            const auto& allowed = out.layers[1].values;
+            const auto& chosen = out.layers[2].values;
+            ASSERT_EQ(chosen.size(), 2U);
+            EXPECT_NEAR(chosen[0], 1.5 * out.twist.v, 1e-6);
+            EXPECT_NEAR(chosen[1], 1.5 * out.twist.omega, 1e-6);
+            bool is_allowed = false;
+            for (std::size_t k = 0; k < allowed.size(); k += 2) {
+              is_allowed = is_allowed || (allowed[k] == chosen[0] && allowed[k + 1] == chosen[1]);
+            }
+            EXPECT_TRUE(is_allowed);
+            EXPECT_EQ(out.measure("window.allowed"), static_cast<double>(allowed.size() / 2));
+          })
+          .run();
   EXPECT_EQ(outcome.name, "reached");
   EXPECT_GE(outcome.clearance, 0.04);  // its margin of 5 cm, less what it drives in a tick
 }

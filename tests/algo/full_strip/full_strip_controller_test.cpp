@@ -13,7 +13,6 @@
 
 namespace {
 
-using algo::Manner;
 using algo::Vec2;
 
 /// A robot that does what it is told, among posts.
@@ -65,7 +64,7 @@ TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
   drive.controller.reset({});
   for (int k = 0; k < 1000; ++k) {
     drive.tick({3, 0});
-    EXPECT_EQ(drive.out.manner, Manner::Following) << "tick " << k;
+    EXPECT_EQ(drive.out.state, algo::FullStripController::kFollowing) << "tick " << k;
     EXPECT_LE(std::abs(drive.out.twist.v), 0.04 + 1e-12);
   }
   EXPECT_GT(drive.pose.x, 1.9);
@@ -86,7 +85,7 @@ TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
     EXPECT_LE(std::abs(drive.out.twist.omega), 0.3 + 1e-12);
   }
   EXPECT_LT(drive.pose.position().norm(), 0.3);  // there is no way out, and it says so
-  EXPECT_NE(drive.out.manner, Manner::Following);
+  EXPECT_NE(drive.out.state, algo::FullStripController::kFollowing);
 }
 
 TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
@@ -96,7 +95,7 @@ TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
   drive.controller.reset({});
   for (int k = 0; k < 2400 && drive.pose.x < 39; ++k) drive.tick({40, 0});
   EXPECT_GT(drive.pose.x, 39);
-  EXPECT_EQ(drive.out.manner, Manner::Following);
+  EXPECT_EQ(drive.out.state, algo::FullStripController::kFollowing);
 }
 
 /// Where the map ends, half a metre of it is no goal: a strip laid to there ended beside a goal
@@ -119,7 +118,7 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
     drive.world.circles = {{{4, 0.05}, 0.4}};
     drive.controller.reset({});
     for (int k = 0; k < 600; ++k) drive.tick({4, 0});
-    EXPECT_EQ(drive.out.manner, Manner::GoalTaken);
+    EXPECT_EQ(drive.out.state, algo::FullStripController::kGoalTaken);
     EXPECT_EQ(drive.out.twist, algo::Twist2{});
     const double from_it = (drive.pose.position() - Vec2(4, 0.05)).norm() - 0.75;
     EXPECT_GT(from_it, 0.02);
@@ -150,7 +149,7 @@ TEST(FullStrip, AGoalWithoutRoomStaysRefused) {
   int others = 0;
   for (int k = 0; k < 1200; ++k) {
     drive.tick({3, 0});
-    if (k >= 800 && drive.out.manner != Manner::GoalTaken) ++others;
+    if (k >= 800 && drive.out.state != algo::FullStripController::kGoalTaken) ++others;
   }
   EXPECT_EQ(others, 0);
   EXPECT_LT((drive.pose.position() - Vec2(3, 0)).norm(), 0.3);
@@ -231,7 +230,7 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
   double longest = 0;
   for (int k = 0; k < 200; ++k) {
     drive.tick({4, 0});
-    run = drive.out.manner == Manner::Escaping ? run + drive.spec.period : 0;
+    run = drive.out.state == algo::FullStripController::kEscaping ? run + drive.spec.period : 0;
     longest = std::max(longest, run);
   }
   EXPECT_GE(longest, 0.5);

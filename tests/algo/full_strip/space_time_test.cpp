@@ -20,7 +20,7 @@ struct Meeting {
   algo::MotionState robot{};
   algo::HullCheck hull{spec};
   algo::SpaceTimeSearch search{};
-  algo::ControlOutput out{};
+  algo::Weighing out{};
 
   algo::SpaceTimeInput input() const {
     algo::SpaceTimeInput in;

@@ -16,7 +16,7 @@ struct Stage {
   algo::NodeStrip strip{};
   algo::VelocityStage stage{};
   algo::StageInput in{};
-  algo::ControlOutput out{};
+  algo::Weighing out{};
 
   Stage() {
     algo::RobotSpec spec;

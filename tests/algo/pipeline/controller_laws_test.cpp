@@ -1,4 +1,5 @@
 // tests/algo/pipeline/controller_laws_test.cpp: laws that every controller of the table obeys.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -6,6 +7,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/algo/allocations.hpp"
@@ -13,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/driving.hpp"
+#include "algo/explain.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
@@ -24,7 +27,6 @@ using algo::ControlInput;
 using algo::ControlOutput;
 using algo::Parameters;
 using algo::Scene;
-using algo::Side;
 using algo::Twist2;
 using algo::Vec2;
 
@@ -63,21 +65,64 @@ struct Situation {
   Situation& operator=(const Situation&) = delete;
 };
 
+bool same(const algo::Layer& a, const algo::Layer& b) {
+  return a.name == b.name && a.level == b.level && a.values == b.values && a.cells == b.cells &&
+         a.text == b.text;
+}
+
 bool same(const ControlOutput& a, const ControlOutput& b) {
-  bool strip = a.strip.size() == b.strip.size();
-  for (std::size_t i = 0; strip && i < a.strip.size(); ++i) strip = a.strip[i] == b.strip[i];
-  bool plan = a.plan_W.size() == b.plan_W.size();
-  for (std::size_t i = 0; plan && i < a.plan_W.size(); ++i) plan = a.plan_W[i] == b.plan_W[i];
-  bool candidates = a.candidates.size() == b.candidates.size();
-  for (std::size_t i = 0; candidates && i < a.candidates.size(); ++i) {
-    candidates = a.candidates[i] == b.candidates[i];
+  return a.twist == b.twist && a.pass_W == b.pass_W && a.waits == b.waits && a.state == b.state &&
+         std::ranges::equal(a.measures, b.measures) &&
+         std::ranges::equal(
+             a.layers, b.layers, [](const auto& x, const auto& y) { return same(x, y); });
+}
+
+const algo::Layer* layer_of(const ControlOutput& out, std::string_view name) {
+  const auto found = std::ranges::find(out.layers, name, &algo::Layer::name);
+  return found == out.layers.end() ? nullptr : found;
+}
+
+/// Point `k` of a layer.
+Vec2 point(const algo::Layer& layer, std::size_t k) {
+  return {layer.values[2 * k], layer.values[2 * k + 1]};
+}
+
+/// Whether a layer's values are as many as its kind asks, and numbers.
+void expect_well_formed(const algo::Layer& layer) {
+  SCOPED_TRACE(layer.name);
+  EXPECT_FALSE(layer.name.empty());
+  EXPECT_FALSE(layer.label.empty());
+  const std::size_t n = layer.values.size();
+  const std::size_t axes = layer.axes;
+  EXPECT_TRUE(axes == 2 || axes == 3);
+  switch (layer.kind) {
+    case algo::LayerKind::Points:
+    case algo::LayerKind::Polyline:
+    case algo::LayerKind::Text:
+      EXPECT_EQ(n % axes, 0U);
+      break;
+    case algo::LayerKind::Arrows:
+      EXPECT_EQ(n % (2 * axes), 0U);
+      break;
+    case algo::LayerKind::Circles:
+      EXPECT_EQ(n % (axes + 1), 0U);
+      break;
+    case algo::LayerKind::Arcs:
+      EXPECT_EQ(n % 2, 0U);
+      EXPECT_EQ(layer.frame, algo::LayerFrame::Robot);
+      break;
+    case algo::LayerKind::Grid:
+      ASSERT_TRUE(n == 0 || n == 4);
+      if (n == 4) {
+        EXPECT_EQ(layer.cells.size() % static_cast<std::size_t>(layer.values[3]), 0U);
+      }
+      break;
+    case algo::LayerKind::Polar:
+      EXPECT_GT(layer.level, 0);
+      break;
   }
-  return strip && plan && candidates && a.histogram == b.histogram &&
-         a.grid.cells == b.grid.cells && a.manner == b.manner && a.twist == b.twist &&
-         a.internal_W == b.internal_W && a.external_left_W == b.external_left_W &&
-         a.external_right_W == b.external_right_W && a.elastic_W == b.elastic_W &&
-         a.pass_W == b.pass_W && a.side == b.side && a.side_since == b.side_since &&
-         a.side_alpha == b.side_alpha && a.blocked_beam == b.blocked_beam;
+  EXPECT_EQ(layer.cells.empty(), layer.kind != algo::LayerKind::Grid || n == 0);
+  for (const float value : layer.values) EXPECT_TRUE(std::isfinite(value));
 }
 
 class EveryController : public ::testing::TestWithParam<std::string> {
@@ -99,29 +144,107 @@ TEST_P(EveryController, MovesWhenAllIsSound) {
     controller->update(s.in, s.parameters, out);
   }
   EXPECT_NE(out.twist, Twist2{});
-  EXPECT_NE(out.pass_W, s.in.odometry.pose.position());
+  ASSERT_TRUE(out.pass_W);
+  EXPECT_NE(*out.pass_W, s.in.odometry.pose.position());
 }
 
-/// The law of the strips alone; the others have none. That of many nodes ends at the goal.
+TEST_P(EveryController, ShowsWellFormedLayersAndMeasuresOfNamesOfTheirOwn) {
+  Situation s;
+  s.in.grids = true;
+  const auto controller = make();
+  ControlOutput out;
+  std::vector<std::string_view> first;
+  for (int tick = 0; tick < 30; ++tick) {
+    s.in.stamp = 3 + 0.026 * tick;
+    controller->update(s.in, s.parameters, out);
+    std::vector<std::string_view> layers;
+    for (const algo::Layer& layer : out.layers) {
+      expect_well_formed(layer);
+      layers.push_back(layer.name);
+    }
+    EXPECT_EQ(std::set(layers.begin(), layers.end()).size(), layers.size());
+    if (tick == 0) first = layers;
+    EXPECT_EQ(layers, first);  // so that each finds its own buffers again
+    std::set<std::string_view> measures;
+    for (const algo::Measure& each : out.measures) {
+      EXPECT_TRUE(measures.insert(each.name).second) << each.name;
+      EXPECT_TRUE(std::isfinite(each.value)) << each.name;
+    }
+  }
+}
+
+TEST_P(EveryController, AGridThatNobodyWantsIsNotMadeAndChangesNoCommand) {
+  Situation s;
+  const auto with = make();
+  const auto without = make();
+  ControlOutput seen;
+  ControlOutput unseen;
+  for (int tick = 0; tick < 30; ++tick) {
+    s.in.stamp = 3 + 0.026 * tick;
+    s.in.grids = true;
+    with->update(s.in, s.parameters, seen);
+    s.in.grids = false;
+    without->update(s.in, s.parameters, unseen);
+    ASSERT_EQ(seen.twist, unseen.twist) << "tick " << tick;
+    for (const algo::Layer& layer : unseen.layers) EXPECT_TRUE(layer.cells.empty());
+  }
+}
+
+TEST_P(EveryController, HasWordsForWhatItDoes) {
+  Situation s;
+  const auto controller = make();
+  algo::Telemetry t;
+  t.goal = s.in.goal;
+  t.mission = algo::Mission::Driving;
+  t.behaviour = algo::BehaviourId::Avoid;
+  for (const algo::Mission mission : {algo::Mission::Driving, algo::Mission::Stuck}) {
+    t.mission = mission;
+    for (int tick = 0; tick < 30; ++tick) {
+      s.in.stamp = 3 + 0.026 * tick;
+      t.observation.stamp = s.in.stamp;
+      t.observation.odometry = s.in.odometry;
+      t.scene = s.scene;
+      controller->update(s.in, s.parameters, t.output);
+      algo::explain(t, *controller, t.words);
+      EXPECT_FALSE(t.words.what.empty());
+      EXPECT_GT(t.words.why.size(), 10U);
+    }
+  }
+  EXPECT_EQ(t.words.what, "Stuck");
+  EXPECT_NE(t.words.why.find("Move an obstacle or the goal."), std::string::npos);
+}
+
+/// The law of the strips alone; the others have none. That of many nodes ends at the goal, that of
+/// three where the forces begin.
 TEST_P(EveryController, AStripRunsFromTheRobotThroughThePassPoint) {
   const Situation s;
   ControlOutput out;
   make()->update(s.in, s.parameters, out);
+  const algo::Layer* strip = layer_of(out, "strip");
+  EXPECT_EQ(strip != nullptr, out.measure("strip.length").has_value());
+  if (strip == nullptr) return;
+  const Vec2 robot = s.in.odometry.pose.position();
+  EXPECT_LT((point(*strip, 0) - robot).norm(), 1e-6);
   if (GetParam() == "strip" || GetParam() == "strip_moving") {
-    ASSERT_GT(out.strip.size(), 10U);
-    EXPECT_EQ(out.strip[0].position_W, s.in.odometry.pose.position());
-    EXPECT_EQ(out.strip.back().position_W, s.in.goal->position_W);
+    ASSERT_GT(strip->values.size(), 20U);
+    EXPECT_LT((point(*strip, strip->values.size() / 2 - 1) - s.in.goal->position_W).norm(), 1e-6);
     return;
   }
-  if (out.manner != algo::Manner::None) {
-    EXPECT_TRUE(out.strip.empty());
-    return;
+  ASSERT_EQ(strip->values.size(), 4U);
+  ASSERT_TRUE(out.pass_W);
+  EXPECT_LT((point(*strip, 1) - *out.pass_W).norm(), 1e-6);
+  const algo::Layer* elastic = layer_of(out, "strip.elastic");
+  ASSERT_TRUE(elastic != nullptr && elastic->values.size() == 4U);
+  const Vec2 end = point(*elastic, 0);
+  EXPECT_NEAR((end - robot).norm(), 0.2, 1e-6);
+  EXPECT_LT((end + point(*elastic, 1) - *out.pass_W).norm(), 1e-6);
+  Vec2 sum{0, 0};
+  for (const char* name : {"strip.internal", "strip.external", "strip.push"}) {
+    const algo::Layer* forces = layer_of(out, name);
+    ASSERT_NE(forces, nullptr) << name;
+    for (std::size_t k = 1; k < forces->values.size() / 2; k += 2) sum += point(*forces, k);
   }
-  ASSERT_EQ(out.strip.size(), 3U);
-  EXPECT_EQ(out.strip[0].position_W, s.in.odometry.pose.position());
-  EXPECT_EQ(out.strip[1].position_W, out.pass_W);
-  EXPECT_NEAR((out.strip[2].position_W - out.strip[0].position_W).norm(), 0.2, 1e-12);
-  EXPECT_LT((out.strip[1].internal_W + out.strip[1].external_W - out.elastic_W).norm(), 1e-12);
+  EXPECT_LT((sum - point(*elastic, 1)).norm(), 1e-6);
 }
 
 TEST_P(EveryController, AnyNumberThatIsNotFiniteGivesZero) {
@@ -162,8 +285,8 @@ TEST_P(EveryController, AnyNumberThatIsNotFiniteGivesZero) {
       spoils[k](s, bad);
       controller->update(s.in, s.parameters, out);
       EXPECT_EQ(out.twist, Twist2{}) << "number " << k << " = " << bad;
-      EXPECT_TRUE(out.strip.empty()) << "number " << k << " = " << bad;
-      EXPECT_TRUE(out.pass_W.allFinite() && out.elastic_W.allFinite());
+      EXPECT_TRUE(out.layers.empty()) << "number " << k << " = " << bad;
+      EXPECT_FALSE(out.pass_W) << "number " << k << " = " << bad;
     }
   }
 }
@@ -215,7 +338,7 @@ TEST_P(EveryController, OnAnObstaclePointItStops) {
   ControlOutput out;
   make()->update(s.in, s.parameters, out);
   EXPECT_EQ(out.twist, Twist2{});
-  EXPECT_TRUE(out.pass_W.allFinite());
+  EXPECT_TRUE(!out.pass_W || out.pass_W->allFinite());
 }
 
 TEST_P(EveryController, SameInputsTwiceGiveTheSame) {

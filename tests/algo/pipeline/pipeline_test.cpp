@@ -8,7 +8,6 @@
 #include "tests/algo/allocations.hpp"
 #include <gtest/gtest.h>
 
-#include "algo/explain.hpp"
 #include "algo/strip/strip_law.hpp"
 
 namespace algo {
@@ -87,7 +86,7 @@ TEST_F(PipelineTest, ABlindedScanIsNone) {
   for (int i = 0; i < 8; ++i) tick(0, true, true);
   EXPECT_EQ(tick(0, true, true).hold, Hold::Dazzled);
   EXPECT_EQ(t.command, Command{});
-  EXPECT_NE(algo::explain(t).why.find("blinded"), std::string::npos);
+  EXPECT_NE(t.words.why.find("blinded"), std::string::npos);
   EXPECT_EQ(tick().hold, Hold::None);
 }
 
@@ -97,13 +96,14 @@ TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
   EXPECT_EQ(tick(0, true, false, 20).hold, Hold::Dazzled);
   EXPECT_EQ(t.command, Command{});
   EXPECT_EQ(t.mission, Mission::Held);
-  EXPECT_NE(algo::explain(t).why.find("dazzled"), std::string::npos);
+  EXPECT_NE(t.words.why.find("dazzled"), std::string::npos);
   EXPECT_EQ(tick(0, false).hold, Hold::Dazzled);  // no newer scan
   EXPECT_EQ(tick(0, true, false, 2).hold, Hold::None);
 }
 
 TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
   Pipeline pipeline({.controller = "vff"}, disc());
+  pipeline.want_grids(true);
   pipeline.reset({});
   Telemetry t;
   t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
@@ -124,7 +124,7 @@ TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
       }
       pipeline.tick(t);
       t.requests.clear();
-      brought += t.output.grid.cells.empty() ? 0 : 1;
+      for (const algo::Layer& layer : t.output.layers) brought += layer.cells.empty() ? 0 : 1;
     }
   };
   run(0, 200, true);  // 5 s
@@ -133,6 +133,59 @@ TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
   run(200, 800, false);  // 15 s, nothing new but the last returns
   EXPECT_GE(brought, 3);
   EXPECT_LE(brought, 4);
+  brought = 0;
+  pipeline.want_grids(false);
+  run(800, 1000, true);
+  EXPECT_EQ(brought, 0);
+}
+
+/// A tick each 25 ms of a robot that stands in the open.
+struct Spoken {
+  Pipeline pipeline{{}, disc()};
+  Telemetry t{};
+  int ticks = 0;
+  int fresh = 0;
+
+  Spoken() { pipeline.reset({}); }
+  void tick() {
+    t.observation.clear_sensors();
+    t.observation.stamp = 0.025 * ticks++;
+    LaserScan& scan = t.observation.scans.append();
+    scan.stamp = t.observation.stamp;
+    scan.angle_min = -0.1;
+    scan.angle_increment = 0.1;
+    scan.range_max = 8;
+    scan.resize(3);
+    for (std::size_t i = 0; i < 3; ++i) scan.set_free(i);
+    pipeline.tick(t);
+    t.requests.clear();
+    fresh += t.words_fresh ? 1 : 0;
+  }
+};
+
+TEST(PipelineWords, ComeTwiceASecondAndHoldInBetween) {
+  Spoken robot;
+  for (int k = 0; k < 200; ++k) {  // 5 s
+    robot.tick();
+    EXPECT_EQ(robot.t.words.what, "Waiting for a goal");
+  }
+  EXPECT_NEAR(robot.fresh, 10, 1);
+}
+
+TEST(PipelineWords, ComeAtOnceWhenTheStateChanges) {
+  Spoken robot;
+  for (int k = 0; k < 5; ++k) robot.tick();
+  EXPECT_EQ(robot.fresh, 1);
+  robot.t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+  robot.tick();
+  EXPECT_TRUE(robot.t.words_fresh);
+  EXPECT_EQ(robot.t.words.what, "Driving to the goal");
+  robot.tick();
+  EXPECT_FALSE(robot.t.words_fresh);
+  robot.t.requests.push_back(algo::Stop{true});
+  robot.tick();
+  EXPECT_TRUE(robot.t.words_fresh);
+  EXPECT_EQ(robot.t.words.what, "Stopped");
 }
 
 /// One tick of a robot that has a sonar ring and no scanner; the sonar ahead pings in each fourth.

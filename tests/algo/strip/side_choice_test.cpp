@@ -9,6 +9,7 @@
 
 #include "algo/perceive.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/strip/elastic_strip_controller.hpp"
 #include "algo/strip/strip.hpp"
 
 namespace {
@@ -179,6 +180,16 @@ TEST(SideChoice, AScannerMountedElsewhereSeesTheSameLane) {
   EXPECT_FALSE(ahead.at(0).blocked_beam.has_value());
 }
 
+/// Of a first tick.
+algo::StripForces forces_of(const char* name,
+                            const algo::ControlInput& in,
+                            const algo::Parameters& parameters) {
+  const auto controller = algo::builtin_controllers().at(name).make();
+  algo::ControlOutput out;
+  controller->update(in, parameters, out);
+  return dynamic_cast<const algo::ElasticStripController&>(*controller).forces();
+}
+
 /// Force law and side choice can be had in any combination: the side choice adds its push to what
 /// the law alone gives, and nothing else.
 TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
@@ -195,15 +206,13 @@ TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
   const std::pair<const char*, const char*> pairs[] = {{"original", "original_side"},
                                                        {"modified_c1", "modified"}};
   for (const auto& [without, with] : pairs) {
-    algo::ControlOutput plain;
-    algo::ControlOutput chosen;
-    algo::builtin_controllers().at(without).make()->update(in, parameters, plain);
-    algo::builtin_controllers().at(with).make()->update(in, parameters, chosen);
+    const algo::StripForces plain = forces_of(without, in, parameters);
+    const algo::StripForces chosen = forces_of(with, in, parameters);
     EXPECT_EQ(plain.side, Side::None);
-    EXPECT_EQ(plain.blocked_beam, -1);
+    EXPECT_FALSE(plain.blocked_beam);
     EXPECT_EQ(chosen.side, Side::Right);
-    EXPECT_EQ(plain.external_left_W, chosen.external_left_W);
-    EXPECT_EQ(plain.external_right_W, chosen.external_right_W);
+    EXPECT_EQ(plain.left_W, chosen.left_W);
+    EXPECT_EQ(plain.right_W, chosen.right_W);
     const Vec2 push = chosen.elastic_W - plain.elastic_W;
     EXPECT_NEAR(push.x(), 0, 1e-12) << with;
     EXPECT_NEAR(push.y(), -chosen.side_alpha * plain.elastic_W.norm(), 1e-12) << with;
@@ -225,10 +234,11 @@ TEST(SideChoice, AnotherGoalForgetsTheSide) {
   algo::ControlOutput out;
   const auto controller = algo::builtin_controllers().at("modified").make();
   controller->update(in, {}, out);
-  EXPECT_EQ(out.side, Side::Right);
+  EXPECT_EQ(out.measure("strip.side"), -1);  // right
+  EXPECT_GT(out.measure("strip.push").value_or(0), 0);
   in.goal = algo::SetGoal{{0, 4}, std::nullopt};  // nothing in that way
   controller->update(in, {}, out);
-  EXPECT_EQ(out.side, Side::None);
+  EXPECT_EQ(out.measure("strip.side"), 0);
 }
 
 }  // namespace

@@ -118,8 +118,8 @@ TEST(PathJudge, ShareOfTheStripBeforeItsVia) {
   const auto tick = [&](double via, double push) {
     algo::Telemetry t;
     t.ground_truth = algo::GroundTruth{{0, 0, 0}, 2, 1.65, false};
-    for (const double x : {0.0, via, 0.2}) t.output.strip.append().position_W = {x, 0};
-    t.output.external_left_W = {0, push};
+    t.output.measures.push_back({"strip.share", "", via / 0.2});
+    t.output.measures.push_back({"strip.left", "m", push});
     path.see(std::move(t));
   };
   tick(0.1, 1), tick(0.15, 1), tick(0.05, 1);  // shares 0.5, 0.75, 0.25
@@ -251,10 +251,11 @@ TEST(ContactJudge, SpeaksOfWhatMovesOnly) {
 struct SilenceTest : ::testing::Test {
   SilenceTest() { silence.robot.period = 1; }
   /// A second at `x`.
-  void tick(double x, algo::Manner manner, algo::Mission mission = algo::Mission::Driving) {
+  void tick(double x, bool waits, algo::Mission mission = algo::Mission::Driving) {
     algo::Telemetry t;
     t.ground_truth = algo::GroundTruth{{x, 0, 0}, 5, 4.65, collided};
-    t.output.manner = manner;
+    t.output.waits = waits;
+    if (waits) t.words.why = "Nothing is free just now.";
     t.output.twist.v = speed;
     t.mission = mission;
     silence.see(std::move(t));
@@ -265,9 +266,9 @@ struct SilenceTest : ::testing::Test {
 };
 
 TEST_F(SilenceTest, StandingWithoutAReasonIsSilent) {
-  for (int second = 0; second <= 20; ++second) tick(0, algo::Manner::Following);
+  for (int second = 0; second <= 20; ++second) tick(0, false);
   EXPECT_FALSE(silence.ending());
-  tick(0, algo::Manner::Following);
+  tick(0, false);
   ASSERT_TRUE(silence.ending());
   EXPECT_EQ(silence.ending()->outcome, Outcome::Stuck);
   EXPECT_EQ(silence["silent"], 1);
@@ -275,7 +276,7 @@ TEST_F(SilenceTest, StandingWithoutAReasonIsSilent) {
 
 TEST_F(SilenceTest, AReasonGivenMeanwhileIsEnough) {
   for (int second = 0; second <= 21; ++second) {
-    tick(0, second == 12 ? algo::Manner::NoWay : algo::Manner::Following);
+    tick(0, second == 12);
   }
   ASSERT_TRUE(silence.ending());
   EXPECT_EQ(silence.ending()->outcome, Outcome::Stuck);
@@ -284,23 +285,23 @@ TEST_F(SilenceTest, AReasonGivenMeanwhileIsEnough) {
 }
 
 TEST_F(SilenceTest, WhoMovesMayKeepSilent) {
-  for (int second = 0; second <= 300; ++second) tick(0.1 * second, algo::Manner::Following);
+  for (int second = 0; second <= 300; ++second) tick(0.1 * second, false);
   EXPECT_FALSE(silence.ending());
-  tick(31, algo::Manner::Following);
+  tick(31, false);
   EXPECT_EQ(silence.ending()->outcome, Outcome::OutOfTime);
   EXPECT_EQ(silence["silent"], 0);
 }
 
 TEST_F(SilenceTest, ArrivalContactAndWhatIsNoNumberEndIt) {
-  tick(0, algo::Manner::Following, algo::Mission::Arrived);
+  tick(0, false, algo::Mission::Arrived);
   EXPECT_EQ(silence.ending()->outcome, Outcome::Reached);
   silence = Watched("silence");
   collided = true;
-  tick(0, algo::Manner::Following);
+  tick(0, false);
   EXPECT_EQ(silence.ending()->outcome, Outcome::Collided);
   silence = Watched("silence");
   speed = std::nan("");
-  tick(0, algo::Manner::Following);
+  tick(0, false);
   EXPECT_EQ(silence.ending()->outcome, Outcome::Failed);
   EXPECT_EQ(silence["not_finite"], 1);
 }

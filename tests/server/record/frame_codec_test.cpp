@@ -3,17 +3,34 @@
 #include "server/record/frame_codec.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "telemetry_generated.h"
 #include <gtest/gtest.h>
 
 #include "algo/strip/strip_law.hpp"
 
 namespace server {
 namespace {
+
+namespace wire = tautline::wire;
+
+constexpr algo::LayerInfo kStrip{
+    .name = "strip", .label = "Strip", .kind = algo::LayerKind::Polyline};
+constexpr algo::LayerInfo kPlan{
+    .name = "plan", .label = "Plan", .kind = algo::LayerKind::Polyline, .tone = algo::Tone::Plan};
+constexpr algo::LayerInfo kForces{
+    .name = "forces", .label = "Forces", .kind = algo::LayerKind::Arrows};
+constexpr algo::LayerInfo kNearest{
+    .name = "scan.nearest", .label = "Nearest", .style = algo::LayerStyle::Dashed};
+constexpr algo::LayerInfo kGrid{.name = "grid", .label = "Grid", .kind = algo::LayerKind::Grid};
+constexpr algo::LayerInfo kText{
+    .name = "text", .label = "Text", .kind = algo::LayerKind::Text, .axes = 3, .unit = "m"};
 
 algo::Telemetry full_telemetry() {
   algo::Telemetry t;
@@ -65,17 +82,17 @@ algo::Telemetry full_telemetry() {
   t.mission = algo::Mission::Held;
   t.behaviour = algo::BehaviourId::Avoid;
   t.clearance = 0.75;
-  t.output.strip.push_back({{0, 1}, {0, 0}, {0, 0}});
-  t.output.strip.push_back({{0.5, 1}, {0.25, 0}, {-0.5, 0.375}});
-  t.output.strip.push_back({{1, 1}, {0, 0}, {0, 0}});
-  t.output.pass_W = {0.5, 1};
-  t.output.internal_W = {0.25, 0};
-  t.output.external_left_W = {-0.5, 0};
-  t.output.external_right_W = {0, 0.125};
-  t.output.elastic_W = {-0.25, 0.375};  // the side choice pushes by 0.25
-  t.output.side = algo::Side::Right;
-  t.output.side_since = 11.9;
-  t.scene.left = algo::Nearest{200, {1, 0.5}, 1.125};
+  t.moved.push_back({7, {1.5, -2, 0.25}});
+  t.output.pass_W = algo::Vec2{0.5, 1};
+  t.output.waits = true;
+  t.output.state = 3;
+  t.output.measures.push_back({"strip.elastic", "m", 0.25});
+  t.output.measures.push_back({"strip.side", "", -1});
+  put(add_layer(t.output.layers, kStrip), algo::Vec2{0, 1}, algo::Vec2{0.5, 1}, algo::Vec2{1, 1});
+  add_layer(t.output.layers, kForces);  // nothing to show
+  put(add_layer(t.layers, kNearest), algo::Vec2{1, 0.5});
+  t.words = {"Doing this", "For that reason."};
+  t.words_fresh = true;
   return t;
 }
 
@@ -114,13 +131,13 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   EXPECT_EQ(back.hold, t.hold);
   EXPECT_EQ(back.mission, t.mission);
   EXPECT_EQ(back.behaviour, t.behaviour);
-  EXPECT_EQ(back.output.side, t.output.side);
-  EXPECT_EQ(back.output.side_since, t.output.side_since);
+  ASSERT_EQ(back.moved.size(), 1U);
+  EXPECT_EQ(back.moved[0], t.moved[0]);
   EXPECT_EQ(back.output.pass_W, t.output.pass_W);
-  EXPECT_EQ(back.output.elastic_W, t.output.elastic_W);
-  ASSERT_EQ(back.output.strip.size(), 3u);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(back.output.strip[i], t.output.strip[i]);
-  EXPECT_EQ(back.scene.left, t.scene.left);
+  EXPECT_TRUE(back.output.waits);
+  EXPECT_EQ(back.output.state, 3);
+  EXPECT_TRUE(back.words_fresh);
+  EXPECT_EQ(back.words, t.words);
 }
 
 TEST(FrameCodec, StampsOfTheirOwnAndThoseOfTheFrameComeBack) {
@@ -163,53 +180,85 @@ TEST(FrameCodec, AScannerUnlikeTheDefaultComesBack) {
   }
 }
 
-TEST(FrameCodec, WhatAControllerWeighsComesBack) {
-  algo::Telemetry t = full_telemetry();
-  algo::ControlOutput& out = t.output;
-  for (int i = 0; i < 4; ++i) out.plan_W.push_back({0.5 * i, -0.25 * i});
-  out.candidates.push_back({{0.25, -0.5}, 1.5, 0.125, true, true});
-  out.candidates.push_back({{0.5, 0}, 1.5, 0.0625, false, false});
-  out.histogram = {0, 1, 2.5F, 300};
-  out.histogram_threshold = 300;
-  out.grid = {{-1.5, 2}, 0.125, 3, 2, {0, 127, 254, 255, 7, 0}};
-  FrameEncoder encoder;
-  algo::Telemetry back;
-  decode_frame(encoder.encode(t), back);
-  ASSERT_EQ(back.output.plan_W.size(), 4U);
-  EXPECT_EQ(back.output.plan_W[3], out.plan_W[3]);
-  ASSERT_EQ(back.output.candidates.size(), 2U);
-  EXPECT_EQ(back.output.candidates[0], out.candidates[0]);
-  EXPECT_EQ(back.output.candidates[1], out.candidates[1]);
-  EXPECT_EQ(back.output.histogram, out.histogram);
-  EXPECT_EQ(back.output.histogram_threshold, 300);
-  EXPECT_EQ(back.output.grid, out.grid);
-
-  decode_frame(encoder.encode(full_telemetry()), back);  // nothing of it stays
-  EXPECT_TRUE(back.output.plan_W.empty() && back.output.candidates.empty());
-  EXPECT_TRUE(back.output.histogram.empty() && back.output.grid.cells.empty());
+/// The frame as the page reads it, valid until the encoder's next frame.
+const wire::Frame& read(FrameEncoder& encoder, const algo::Telemetry& t) {
+  return *wire::GetFrame(encoder.encode(t).data());
 }
 
-// By the fuzzer: forces of 1e-27 m beside others left a push of 1e-43 m that grew with every
-// reading.
-TEST(FrameCodec, TheRoundingOfForcesIsNoPushToASide) {
-  for (const double tiny : {1.64078e-27, 1e-9, 0.0}) {
-    algo::Telemetry t = full_telemetry();
-    t.output.internal_W = {tiny, 0.1};
-    t.output.external_left_W = {3.57331e-43, 35.751};
-    t.output.external_right_W = {3.54487e-38, 0.3};
-    t.output.elastic_W = t.output.internal_W + t.output.external_left_W + t.output.external_right_W;
-    t.output.elastic_W.x() += 0x1p-53 * tiny;
-    FrameEncoder encoder;
-    const auto first = encoder.encode(t);
-    const std::vector<std::byte> kept(first.begin(), first.end());
-    algo::Telemetry back;
-    decode_frame(kept, back);
-    const algo::Vec2 sum =
-        back.output.internal_W + back.output.external_left_W + back.output.external_right_W;
-    EXPECT_EQ(back.output.elastic_W, sum) << tiny;
-    const auto second = encoder.encode(back);
-    EXPECT_TRUE(std::ranges::equal(kept, second)) << tiny;
+TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
+  algo::Telemetry t = full_telemetry();
+  algo::Layer& grid = add_layer(t.output.layers, kGrid);
+  put(grid, algo::Vec2{-1.5, 2}, 0.125, 3);
+  grid.cells = {0, 127, 254, 255, 7, 0};
+  algo::Layer& text = add_layer(t.output.layers, kText);
+  put(text, 1.0, 2.0, 0.5);
+  text.text = "here";
+  FrameEncoder encoder;
+  const wire::Frame& frame = read(encoder, t);
+  ASSERT_EQ(frame.layers()->size(), 4U);  // the one of the pipeline first, none that is empty
+  EXPECT_EQ(frame.layers()->Get(0)->name()->str(), "scan.nearest");
+  EXPECT_EQ(frame.layers()->Get(0)->style(), wire::LayerStyle_Dashed);
+  const wire::Layer& strip = *frame.layers()->Get(1);
+  EXPECT_EQ(strip.name()->str(), "strip");
+  EXPECT_EQ(strip.label()->str(), "Strip");
+  EXPECT_EQ(strip.kind(), wire::LayerKind_Polyline);
+  EXPECT_EQ(strip.tone(), wire::Tone_Accent);
+  EXPECT_EQ(strip.axes(), 2);
+  const std::vector<float> line{0, 1, 0.5, 1, 1, 1};
+  EXPECT_TRUE(std::ranges::equal(*strip.values(), line));
+  const wire::Layer& cells = *frame.layers()->Get(2);
+  EXPECT_EQ(cells.kind(), wire::LayerKind_Grid);
+  EXPECT_TRUE(std::ranges::equal(*cells.values(), std::vector<float>{-1.5, 2, 0.125, 3}));
+  EXPECT_TRUE(std::ranges::equal(*cells.cells(), grid.cells));
+  const wire::Layer& words = *frame.layers()->Get(3);
+  EXPECT_EQ(words.text()->str(), "here");
+  EXPECT_EQ(words.axes(), 3);
+  EXPECT_EQ(words.unit()->str(), "m");
+  EXPECT_EQ(frame.measures()->names()->str(), "strip.elastic\nstrip.side");
+  EXPECT_EQ(frame.measures()->units()->str(), "m\n");
+  EXPECT_TRUE(std::ranges::equal(*frame.measures()->values(), std::vector<float>{0.25, -1}));
+}
+
+TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  algo::Telemetry t;
+  algo::Layer& layer = add_layer(t.output.layers, kStrip);
+  layer.values = {1.0004F, -3.9991F, kNan, kNan, 3e30F, 1e-9F};
+  FrameEncoder encoder;
+  const auto& values = *read(encoder, t).layers()->Get(0)->values();
+  EXPECT_EQ(values[0], 1);
+  EXPECT_EQ(values[1], -4 + 1.0F / 1024);
+  EXPECT_TRUE(std::isnan(values[2]) && std::isnan(values[3]));
+  EXPECT_EQ(values[4], 3e30F);
+  EXPECT_EQ(values[5], 0);
+}
+
+TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
+  algo::Telemetry t = full_telemetry();
+  t.words_fresh = false;
+  FrameEncoder encoder;
+  EXPECT_EQ(read(encoder, t).what()->size(), 0U);
+  EXPECT_EQ(read(encoder, t).why()->size(), 0U);
+  algo::Telemetry back;
+  decode_frame(encoder.encode(full_telemetry()), back);
+  decode_frame(encoder.encode(t), back);  // nothing of it stays
+  EXPECT_FALSE(back.words_fresh);
+  EXPECT_TRUE(back.words.what.empty());
+}
+
+TEST(FrameCodec, AScanOnItsOwnIsAMessage) {
+  const algo::LaserScan& scan = full_telemetry().observation.scans[0];
+  FrameEncoder encoder;
+  const auto bytes = encoder.encode(scan);
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  flatbuffers::Verifier verifier(data, bytes.size());
+  ASSERT_TRUE(verifier.VerifyBuffer<wire::LaserScan>(nullptr));
+  const auto& read = *flatbuffers::GetRoot<wire::LaserScan>(data);
+  ASSERT_EQ(read.ranges()->size(), scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    EXPECT_EQ(read.ranges()->Get(static_cast<flatbuffers::uoffset_t>(i)), algo::pack_beam(scan, i));
   }
+  EXPECT_EQ(read.stamp(), scan.stamp);
 }
 
 TEST(FrameCodec, AFrameReadsWhereverItLies) {
@@ -228,18 +277,20 @@ TEST(FrameCodec, EncodingIsDeterministicAndReusesItsBuffers) {
   const algo::Telemetry t = full_telemetry();
   FrameEncoder first;
   FrameEncoder second;
-  second.encode({});
+  second.encode(algo::Telemetry{});
   const auto a = first.encode(t);
   const auto b = second.encode(t);
   ASSERT_EQ(a.size(), b.size());
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size()), 0);
 }
 
-TEST(FrameCodec, WindowsPointAtTheRanges) {
-  const algo::Telemetry t = full_telemetry();
+TEST(FrameCodec, WindowsPointAtRangesAndLongLines) {
+  algo::Telemetry t = full_telemetry();
+  algo::Layer& line = add_layer(t.output.layers, kPlan);
+  for (int k = 0; k < 8; ++k) put(line, algo::Vec2{0.5 * k, -0.25 * k});
   FrameEncoder encoder;
   const auto bytes = encoder.encode(t);
-  ASSERT_EQ(encoder.windows().size(), 2u);  // the ranges and the strip
+  ASSERT_EQ(encoder.windows().size(), 2u);  // the ranges and the plan
   const auto windows = encoder.windows();
   const db::Window window = windows[0].kind == db::Window::Kind::Samples ? windows[0] : windows[1];
   ASSERT_EQ(window.kind, db::Window::Kind::Samples);
@@ -248,6 +299,13 @@ TEST(FrameCodec, WindowsPointAtTheRanges) {
   std::uint16_t sample = 0;
   std::memcpy(&sample, bytes.data() + window.offset + 2 * 100, 2);
   EXPECT_EQ(sample, algo::pack_beam(t.observation.scans[0], 100));
+  const db::Window floats = windows[0].kind == db::Window::Kind::Floats ? windows[0] : windows[1];
+  ASSERT_EQ(floats.kind, db::Window::Kind::Floats);
+  ASSERT_EQ(floats.count, 16u);
+  EXPECT_EQ(floats.stride, 2u);
+  float y = 0;
+  std::memcpy(&y, bytes.data() + floats.offset + 4 * 7, 4);
+  EXPECT_EQ(y, -0.75F);
 }
 
 TEST(FrameCodec, ATickOfDrivingStaysSmall) {

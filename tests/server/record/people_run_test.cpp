@@ -1,8 +1,11 @@
 // tests/server/record/people_run_test.cpp: a hall of people who walk about and do not step aside.
+#include <memory>
+
 #include <gtest/gtest.h>
 
 #include "server/record/headless.hpp"
 #include "server/run/run_spec.hpp"
+#include "server/run/runner.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server {
@@ -17,6 +20,35 @@ TEST(PeopleRun, TheRobotCrossesTheirHallWithoutTouchingAnyone) {
     const HeadlessResult result = run_headless(spec, *robot, {}, {});
     EXPECT_EQ(result.run.outcome, algo::Outcome::Reached) << seed << ": " << result.run.reason;
   }
+}
+
+/// People who are said to be elsewhere than they are would be drawn so.
+TEST(PeopleRun, SaysInEachTickWhereTheyAre) {
+  const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("people"), {});
+  const auto robot = make_robot(spec);
+  const std::shared_ptr<FramePool> pool = FramePool::make(2);
+  std::size_t ticks = 0;
+  double walked = 0;
+  algo::Vec2 last_W{0, 0};
+  RunLinks links;
+  links.pool = pool.get();
+  links.observer = [&](const Frame& frame) {
+    const algo::Telemetry& t = frame.telemetry;
+    ASSERT_EQ(t.moved.size(), spec.scenario.paths.size());
+    for (std::size_t k = 0; k < t.moved.size(); ++k) {
+      const sim::ObstaclePath& path = spec.scenario.paths[k];
+      EXPECT_EQ(t.moved[k].id, path.id);
+      EXPECT_EQ(t.moved[k].pose_W.position(), path.at(t.observation.stamp));
+    }
+    const algo::Vec2 here_W = t.moved[0].pose_W.position();
+    if (ticks++ > 0) walked += (here_W - last_W).norm();
+    last_W = here_W;
+  };
+  algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
+  robot->set_pace({.paused = false, .speed = 0});
+  run(*robot, pipeline, {}, {.until_outcome = true, .time_limit = 3}, links, {});
+  EXPECT_GT(ticks, 60U);
+  EXPECT_GT(walked, 0.5);
 }
 
 }  // namespace

@@ -194,6 +194,32 @@ TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAndTheRunGoesOnInANewOne) {
   }
 }
 
+TEST_F(RecorderHealthTest, AStoreOfAnOlderProgramIsSetAsideWhole) {
+  {
+    db::RunStore store(path);
+    record(store, 100);
+  }
+  Connection(path, Connection::Mode::Write).execute("PRAGMA user_version = 4");
+  {
+    Recorder recorder(path, quick());
+    const auto live = recorder.begin(what());
+    push(*live, 0, 10);
+    live->close({.outcome = "reached"}, 10);
+    recorder.flush();
+    expect_frames(live->run(), 10);
+    EXPECT_TRUE(tells(recorder, "The older run store was set aside as"));
+  }
+  std::vector<std::filesystem::path> aside;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("runs.older-") && name.ends_with("Z.db")) aside.push_back(entry.path());
+  }
+  ASSERT_EQ(aside.size(), 1u);
+  const Connection kept(aside[0].string(), Connection::Mode::Write);
+  EXPECT_EQ(kept.query_integer("SELECT count(*) FROM tick"), 100);
+  EXPECT_EQ(kept.query_integer("PRAGMA user_version"), 4);
+}
+
 TEST_F(RecorderHealthTest, AStoreThatIsDamagedAtTheStartIsSetAsideAndATextIsNot) {
   {
     db::RunStore store(path);

@@ -1,0 +1,172 @@
+// algo/full_strip/full_strip_report.cpp: what a tick of the full strip shows and says.
+#include "algo/explain.hpp"
+#include "algo/full_strip/full_strip_controller.hpp"
+
+namespace algo {
+namespace {
+
+constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
+constexpr double kOutOfSight = 0.2;    // [s] since it was seen
+constexpr std::size_t kFewMoving = 8;  // that room is kept for
+
+constexpr LayerInfo kMap{
+    .name = "map", .label = "Map", .kind = LayerKind::Grid, .tone = Tone::External};
+constexpr LayerInfo kPlan{.name = "plan",
+                          .label = "Plan",
+                          .kind = LayerKind::Polyline,
+                          .tone = Tone::Plan,
+                          .style = LayerStyle::Dashed};
+constexpr LayerInfo kRefused{.name = "window.refused",
+                             .label = "Motions refused",
+                             .kind = LayerKind::Arcs,
+                             .frame = LayerFrame::Robot,
+                             .tone = Tone::Refused,
+                             .style = LayerStyle::Faint};
+constexpr LayerInfo kAllowed{.name = "window.allowed",
+                             .label = "Motions weighed",
+                             .kind = LayerKind::Arcs,
+                             .frame = LayerFrame::Robot,
+                             .tone = Tone::Muted};
+constexpr LayerInfo kChosen{.name = "window.chosen",
+                            .label = "Motion chosen",
+                            .kind = LayerKind::Arcs,
+                            .frame = LayerFrame::Robot,
+                            .tone = Tone::Accent};
+constexpr LayerInfo kStrip{
+    .name = "strip", .label = "Strip", .kind = LayerKind::Polyline, .tone = Tone::Accent};
+constexpr LayerInfo kAhead{.name = "strip.ahead",
+                           .label = "From the strip to the goal",
+                           .kind = LayerKind::Polyline,
+                           .tone = Tone::Accent,
+                           .style = LayerStyle::Dashed};
+constexpr LayerInfo kMoving{
+    .name = "moving", .label = "What moves", .kind = LayerKind::Circles, .tone = Tone::Moving};
+constexpr LayerInfo kHidden{.name = "moving.hidden",
+                            .label = "What moves, out of sight",
+                            .kind = LayerKind::Circles,
+                            .tone = Tone::Moving,
+                            .style = LayerStyle::Faint};
+constexpr LayerInfo kVelocities{.name = "moving.velocity",
+                                .label = "Its way in a second",
+                                .kind = LayerKind::Arrows,
+                                .tone = Tone::Moving,
+                                .unit = "m/s"};
+
+/// A further layer with room for `values`, so that a tick which shows more than those before it
+/// does not allocate.
+Layer& add_layer(ControlOutput& out, const LayerInfo& info, std::size_t values) {
+  Layer& layer = add_layer(out.layers, info);
+  layer.values.reserve(values);
+  return layer;
+}
+
+}  // namespace
+
+void FullStripController::report(const ControlInput& in, ControlOutput& out) const {
+  out.state = state_;
+  out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked || state_ == kCornered;
+  Layer& map = add_layer(out, kMap, 0);
+  if (in.grids) map_.draw(in.odometry.pose.position(), kDrawn, map);
+  Layer& plan = add_layer(out, kPlan, 0);
+  for (const Vec2& point : path_W_) put(plan, point);
+  show_weighed(out);
+  show_strip(out);
+  show_moving(out);
+}
+
+void FullStripController::show_weighed(ControlOutput& out) const {
+  const auto show = [&](const LayerInfo& info, const auto& belongs) {
+    Layer& layer = add_layer(out, info, 2 * Weighing::kMost);
+    for (const Candidate& c : weighed_.candidates) {
+      if (belongs(c)) put(layer, c.horizon * c.twist.v, c.horizon * c.twist.omega);
+    }
+  };
+  show(kRefused, [](const Candidate& c) { return !c.allowed; });
+  show(kAllowed, [](const Candidate& c) { return c.allowed && !c.chosen; });
+  show(kChosen, [](const Candidate& c) { return c.chosen; });
+}
+
+void FullStripController::show_strip(ControlOutput& out) const {
+  Layer& line = add_layer(out, kStrip, 0);
+  for (const Node& node : strip_.nodes()) put(line, node.position_W);
+  Layer& ahead = add_layer(out, kAhead, 4);
+  if (strip_.empty()) return;
+  // It ends short of a goal beyond the map, or on which something stands.
+  if (goal_W_ && strip_.end_W() != *goal_W_) put(ahead, strip_.end_W(), *goal_W_);
+  out.measures.push_back({"strip.length", "m", strip_.length()});
+}
+
+void FullStripController::show_moving(ControlOutput& out) const {
+  const auto show = [&](const LayerInfo& info, bool hidden) {
+    Layer& circles = add_layer(out, info, 3 * kFewMoving);
+    for (const Track& track : tracker_.moving()) {
+      if ((track.unseen > kOutOfSight) == hidden) put(circles, track.position_W, track.radius);
+    }
+  };
+  show(kMoving, false);
+  show(kHidden, true);
+  Layer& velocities = add_layer(out, kVelocities, 4 * kFewMoving);
+  for (const Track& track : tracker_.moving()) put(velocities, track.position_W, track.velocity_W);
+  if (!among_moving_) return;
+  out.measures.push_back({"moving.count", "", static_cast<double>(tracker_.moving().size())});
+}
+
+void FullStripController::explain(const Telemetry& t, Explanation& words) const {
+  const double moving = t.output.measure("moving.count").value_or(0);
+  switch (t.output.state) {
+    case kNone:
+      say_driving(t, words);
+      break;
+    case kTurning:
+      words.what = "Turning towards the strip";
+      words.why = "It leads away at too wide an angle to drive into.";
+      break;
+    case kManeuvering:
+      words.what = "Manoeuvring";
+      words.why = "The place is too narrow to turn in; it moves to and fro.";
+      break;
+    case kGivingWay:
+      words.what = "Giving way";
+      say(words.why, "%.0f things move; waiting costs less than driving on.", moving);
+      break;
+    case kCornered:
+      words.what = "Making room";
+      say(words.why, "%.0f things move and every motion comes too close to one.", moving);
+      break;
+    case kEscaping:
+      words.what = "Making room";
+      words.why = "Something stands closer than the strip may pass.";
+      break;
+    case kBackingOff:
+      words.what = "Backing off";
+      words.why = "There was no way on for too long; a new strip is laid.";
+      break;
+    case kNoWay:
+      words.what = "No way known";
+      say(words.why,
+          "The map shows no way to the goal, %.2f m away. It is asked again four times a second.",
+          to_goal(t));
+      break;
+    case kGoalTaken:
+      words.what = "The goal is taken";
+      say(words.why,
+          "Something stands on it, %.2f m away, or too close to it. It is looked at again four "
+          "times a second.",
+          to_goal(t));
+      break;
+    case kBlocked:
+      words.what = "Standing still";
+      words.why = "No motion could be braked in time. ";
+      say_surroundings(t, words.why);
+      break;
+    default:
+      words.what = "Following the strip";
+      say(words.why,
+          "%.2f m along it to the goal, at %.2f m/s. ",
+          t.output.measure("strip.length").value_or(0),
+          t.output.twist.v);
+      say_surroundings(t, words.why);
+  }
+}
+
+}  // namespace algo

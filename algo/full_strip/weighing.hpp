@@ -1,0 +1,40 @@
+// algo/full_strip/weighing.hpp: what the velocity stage and the beam search weighed in a tick.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "algo/recycled.hpp"
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A motion that was weighed: constant twist held for `horizon`.
+struct Candidate {
+  Twist2 twist{};
+  double horizon = 0;    // [s]
+  bool allowed = false;  // passed the test of its stage
+  bool chosen = false;
+  bool operator==(const Candidate&) const = default;
+};
+
+/// Room for the most that is ever weighed, so that a tick which weighs more than those before it
+/// does not allocate.
+class Weighing {
+ public:
+  static constexpr std::size_t kMost = 32;
+
+  Weighing() {
+    while (candidates.size() < kMost) candidates.append();
+    candidates.clear();
+  }
+  void clear() {
+    candidates.clear();
+    pass_W.reset();
+  }
+
+  Recycled<Candidate> candidates{};
+  std::optional<Vec2> pass_W{};  // where the robot is sent
+};
+
+}  // namespace algo

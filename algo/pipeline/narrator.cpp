@@ -1,0 +1,40 @@
+// algo/pipeline/narrator.cpp: words are made twice a second, not forty times.
+#include "algo/pipeline/narrator.hpp"
+
+#include "algo/explain.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kPeriod = 0.5;  // [s]
+// Room for the longest words, so that those which are longer than all before do not allocate.
+constexpr std::size_t kLongestWhat = 60;
+constexpr std::size_t kLongestWhy = 250;
+
+void make_room(Explanation& words) {
+  words.what.reserve(kLongestWhat);
+  words.why.reserve(kLongestWhy);
+}
+
+}  // namespace
+
+bool Narrator::Said::same_state(const Said& other) const {
+  return hold == other.hold && halt == other.halt && mission == other.mission &&
+         behaviour == other.behaviour && state == other.state;
+}
+
+void Narrator::tell(const Controller& controller, Telemetry& t) {
+  const Said now{
+      t.observation.stamp, t.hold, t.observation.halt, t.mission, t.behaviour, t.output.state};
+  // Written so that a stamp that is not a number makes new ones.
+  t.words_fresh = !said_ || !now.same_state(*said_) || !(now.stamp - said_->stamp < kPeriod);
+  make_room(t.words);
+  if (t.words_fresh) {
+    make_room(words_);
+    explain(t, controller, words_);
+    said_ = now;
+  }
+  t.words = words_;
+}
+
+}  // namespace algo
