@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,11 +12,10 @@
 
 #include "algo/telemetry.hpp"
 #include "db/block_codec.hpp"
+#include "server/record/layers_block.hpp"
 
 namespace tautline::wire {
 struct LaserScan;
-struct Layer;
-struct Measures;
 }  // namespace tautline::wire
 
 namespace server {
@@ -40,20 +38,13 @@ class FrameEncoder {
   std::span<const db::Window> windows() const { return windows_; }
 
  private:
-  template <typename Table>
-  using Tables = flatbuffers::Offset<flatbuffers::Vector<flatbuffers::Offset<Table>>>;
-
   using Text = flatbuffers::Offset<flatbuffers::String>;
   std::pair<Text, Text> write_words(const algo::Telemetry& t);
-  Tables<tautline::wire::Layer> write_layers(const algo::Telemetry& t);
-  flatbuffers::Offset<tautline::wire::Measures> write_measures(
-      const algo::Recycled<algo::Measure>& measures);
   void find_windows();
 
   flatbuffers::FlatBufferBuilder builder_{2048};
   std::vector<flatbuffers::Offset<tautline::wire::LaserScan>> scans_{};
-  std::vector<flatbuffers::Offset<tautline::wire::Layer>> layers_{};
-  std::string names_{}, units_{};  // of the measures
+  LayersBlock block_{};
   std::vector<db::Window> windows_{};
 };
 

@@ -20,7 +20,6 @@ namespace fb = tautline::wire;
 // Points from which on a line is coded as differences; of a shorter one each value follows its own
 // of the tick before better.
 constexpr std::uint32_t kLongLine = 8;
-constexpr std::size_t kLargestAlignment = sizeof(double);
 using Builder = flatbuffers::FlatBufferBuilder;
 template <typename T>
 using Offset = flatbuffers::Offset<T>;
@@ -161,49 +160,6 @@ Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
   return b.CreateVector(boxes);
 }
 
-/// Nobody sees less than a millimetre, and the record would keep it at twice the size.
-float rounded(float value) {
-  constexpr float kSteps = 1024;
-  constexpr float kMost = 0x1p20F;  // beyond it a float resolves little more
-  if (!(std::abs(value) < kMost)) return value;
-  return static_cast<float>(std::lrint(value * kSteps)) / kSteps;
-}
-
-template <typename List, typename Number>
-Offset<flatbuffers::Vector<float>> write_rounded(Builder& b, const List& list, Number&& number) {
-  float* out = nullptr;
-  const auto vector = b.CreateUninitializedVector(list.size(), &out);
-  for (const auto& each : list) *out++ = rounded(number(each));
-  return vector;
-}
-
-Offset<flatbuffers::String> write_text(Builder& b, std::string_view text) {
-  return text.empty() ? 0 : b.CreateString(text.data(), text.size());
-}
-
-Offset<fb::Layer> write_layer(Builder& b, const algo::Layer& layer) {
-  const auto name = write_text(b, layer.name);
-  const auto label = write_text(b, layer.label);
-  const auto unit = write_text(b, layer.unit);
-  const auto text = write_text(b, layer.text);
-  const auto cells = layer.cells.empty() ? 0 : b.CreateVector(layer.cells);
-  const auto values = write_rounded(b, layer.values, [](float value) { return value; });
-  fb::LayerBuilder out(b);
-  out.add_name(name);
-  out.add_values(values);
-  out.add_label(label);
-  out.add_unit(unit);
-  out.add_text(text);
-  out.add_cells(cells);
-  out.add_level(layer.level);
-  out.add_kind(static_cast<fb::LayerKind>(layer.kind));
-  out.add_frame(static_cast<fb::LayerFrame>(layer.frame));
-  out.add_tone(static_cast<fb::Tone>(layer.tone));
-  out.add_style(static_cast<fb::LayerStyle>(layer.style));
-  out.add_axes(layer.axes);
-  return out.Finish();
-}
-
 struct FrameWriter {
   fb::FrameBuilder frame;
   const algo::Telemetry& t;
@@ -293,9 +249,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   b.Clear();
   const algo::Observation& o = t.observation;
   const auto [what, why] = write_words(t);
-  const auto layers = write_layers(t);
-  const auto measures = write_measures(t.output.measures);
-  b.Align(kLargestAlignment);
+  const auto [layers, measures] = block_.write(b, t);
   const auto requests = write_requests(b, t.requests);
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto moved = write_structs<fb::Moved>(b, t.moved);
@@ -347,44 +301,13 @@ std::pair<Offset<flatbuffers::String>, Offset<flatbuffers::String>> FrameEncoder
   };
   if (!t.words_fresh) {
     const auto none = write({});
-    builder_.Align(kLargestAlignment);
+    builder_.Align(LayersBlock::kAlignment);
     return {none, none};
   }
   const auto what = write(t.words.what);
   const auto why = write(t.words.why);
-  builder_.Align(kLargestAlignment);
+  builder_.Align(LayersBlock::kAlignment);
   return {what, why};
-}
-
-/// Those of the pipeline and of the controller that have something to show.
-Offset<flatbuffers::Vector<Offset<fb::Layer>>> FrameEncoder::write_layers(
-    const algo::Telemetry& t) {
-  layers_.clear();
-  for (const auto* list : {&t.layers, &t.output.layers}) {
-    for (const algo::Layer& layer : *list) {
-      if (!layer.empty()) layers_.push_back(write_layer(builder_, layer));
-    }
-  }
-  return layers_.empty() ? 0 : builder_.CreateVector(layers_);
-}
-
-Offset<fb::Measures> FrameEncoder::write_measures(const algo::Recycled<algo::Measure>& measures) {
-  if (measures.empty()) return 0;
-  names_.clear();
-  units_.clear();
-  for (const algo::Measure& each : measures) {
-    if (&each != measures.begin()) {
-      names_ += '\n';
-      units_ += '\n';
-    }
-    names_ += each.name;
-    units_ += each.unit;
-  }
-  const auto names = write_text(builder_, names_);
-  const auto units = write_text(builder_, units_);
-  const auto values = write_rounded(
-      builder_, measures, [](const algo::Measure& each) { return static_cast<float>(each.value); });
-  return fb::CreateMeasures(builder_, names, units, values);
 }
 
 void FrameEncoder::find_windows() {

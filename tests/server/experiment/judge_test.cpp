@@ -255,7 +255,7 @@ struct SilenceTest : ::testing::Test {
     algo::Telemetry t;
     t.ground_truth = algo::GroundTruth{{x, 0, 0}, 5, 4.65, collided};
     t.output.waits = waits;
-    if (waits) t.words.why = "Nothing is free just now.";
+    t.words.why = "Nothing is free just now.";
     t.output.twist.v = speed;
     t.mission = mission;
     silence.see(std::move(t));

@@ -56,7 +56,8 @@ class FilteredScansTest : public test::StoreFiles {
         const algo::LaserScan& raw = t.observation.scans[0];
         entered += t.scene.scan.ranges[i] < raw.ranges[i] - 0.5 ? 1U : 0U;
       }
-      store.append_tick(run, tick_row(t), encoder.encode(t), encoder.windows());
+      const auto bytes = encoder.encode(t);
+      store.append_tick(run, tick_row(t), bytes, encoder.windows());
       t.requests.clear();
       robot->step(t.command, t.observation);
     }
