@@ -62,7 +62,7 @@ Tick pushed(const char* controller, bool by_left, double force, double post_asid
   const double gain = parameters[algo::kRepulsionGain];
   const double half_step = parameters[algo::kStripStep] / 2;
   // C1: half a step and gain times the depth into the reach, which is safety distance and radius.
-  parameters.set(&algo::kSafetyDistance,
+  parameters.set(algo::kSafetyDistance,
                  pushes->distance + (force - half_step) / gain - spec.radius);
   algo::ControlInput in;
   in.dt = spec.period;
