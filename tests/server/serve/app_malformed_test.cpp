@@ -1,19 +1,16 @@
 // tests/server/serve/app_malformed_test.cpp: the program under bad requests and bad frames: each
 // gets its answer, and everybody else goes on.
-#include <map>
 #include <string>
 #include <vector>
 
 #include "tests/server/serve/app_fixture.hpp"
+#include "tests/server/serve/viewer.hpp"
 #include <gtest/gtest.h>
 
 namespace server {
 namespace {
 
-using namespace std::chrono_literals;
 using net::test::Answer;
-using net::test::Frame;
-using net::test::WsTestClient;
 
 struct Bad {
   const char* method;
@@ -115,56 +112,6 @@ TEST_F(AppTest, BadHeadsAreRefusedBeforeAnyHandlerSeesThem) {
       "bytes");
   EXPECT_EQ(get("/session")["goal"]["x"], 3.5);
 }
-
-/// A viewer that has read the greetings and knows channels and services by name.
-class Viewer {
- public:
-  explicit Viewer(std::uint16_t port) : client(port) {
-    while (channels.empty() || services.empty()) {
-      const Frame frame = client.read();
-      if (frame.opcode < 0) return;
-      if (frame.opcode != 1) continue;
-      const json message = json::parse(frame.payload);
-      if (message["op"] == "advertise") {
-        for (const json& c : message["channels"]) channels[c["topic"]] = c["id"];
-      }
-      if (message["op"] == "advertiseServices") {
-        for (const json& s : message["services"]) services[s["name"]] = s["id"];
-      }
-    }
-  }
-  void subscribe(const std::string& topic) const {
-    const json message = {{"op", "subscribe"},
-                          {"subscriptions", {{{"id", 1}, {"channelId", channels.at(topic)}}}}};
-    client.send_text(message.dump());
-  }
-  /// A frame of subscription 1 comes within a second or two.
-  bool receives() {
-    for (int i = 0; i < 500; ++i) {
-      const Frame frame = client.read(2s);
-      if (frame.opcode < 0) return false;
-      if (frame.opcode == 2 && !frame.payload.empty() && frame.payload[0] == 1) return true;
-    }
-    return false;
-  }
-  /// The sentence of the next status message or service failure; empty when none comes.
-  std::string complaint() {
-    for (int i = 0; i < 500; ++i) {
-      const Frame frame = client.read(2s);
-      if (frame.opcode < 0 || frame.opcode == 8) return {};
-      if (frame.opcode != 1) continue;
-      const json message = json::parse(frame.payload);
-      if (message["op"] == "status" || message["op"] == "serviceCallFailure") {
-        return message["message"];
-      }
-    }
-    return {};
-  }
-
-  WsTestClient client;
-  std::map<std::string, std::uint32_t> channels{};
-  std::map<std::string, std::uint32_t> services{};
-};
 
 std::string u32(std::uint32_t value) {
   std::string out;
