@@ -2,16 +2,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { RequestJson } from "../../web/src/contract";
-import { force_arrows } from "../../web/src/draw/strip";
 import { View } from "../../web/src/draw/view";
 import { add_edit, move_edit, new_box, new_cylinder, remove_edit, set_goal_edit } from "../../web/src/edit/edits";
 import { GestureTarget, Gestures, Tool } from "../../web/src/edit/gestures";
 import { EditHistory } from "../../web/src/edit/history";
 import { wrap_angle } from "../../web/src/geometry";
-import { decode_frame } from "../../web/src/link/frame";
 import { covers, obstacle_from_json, obstacle_to_json, outline } from "../../web/src/obstacle";
 import { new_scene } from "../../web/src/state/scene";
-import { frame_bytes } from "./wire";
 import { clock, fixed, link_words, run_word, state_word, titled } from "../../web/src/words";
 
 /** 100 px/m, world origin in the middle of 800 x 600: (x, y) m is at (400 + 100 x, 300 - 100 y). */
@@ -249,14 +246,6 @@ test("a pointer hits a turned box within its slack", () => {
   assert.ok(covers(box, { x: 0.45, y: 0.95 }, 0));
   assert.ok(!covers(box, { x: 0.55, y: 0 }, 0));
   assert.ok(covers(box, { x: 0.55, y: 0 }, 0.1));
-});
-
-test("the arrow of the elastic force ends at the pass point it made", () => {
-  const f = decode_frame(frame_bytes({ tick: 0, external_left: [-0.25, 0.125],
-    strip: [[0, 0], [0.5, 0.25], [0.75, 0.125]] }));
-  const elastic = force_arrows(f).find((a) => a.colour === "elastic")!;
-  assert.deepEqual(elastic.at, { x: 0.75, y: 0.125 }, "which is where the strip ended before it was pushed");
-  assert.deepEqual([elastic.at.x + elastic.force.x, elastic.at.y + elastic.force.y], [0.5, 0.25]);
 });
 
 test("angles wrap to (-pi, pi]", () => {

@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { kBackoff, LinkStatus, LiveLink, SocketLike } from "../../web/src/link/live";
 import { parse_binary, parse_text, service_request } from "../../web/src/link/foxglove";
-import { Frame } from "../../web/src/link/frame";
+import { Frame, Sweep } from "../../web/src/link/frame";
 import { hand_wound } from "./timers";
-import { frame_bytes } from "./wire";
+import { frame_bytes, scan_bytes } from "./wire";
 
 const hex = (text: string) => Uint8Array.from(text.match(/../g)!.map((b) => parseInt(b, 16))).buffer as ArrayBuffer;
 
@@ -65,6 +65,14 @@ class FakeSocket implements SocketLike {
   text(message: unknown) {
     this.onmessage?.({ data: JSON.stringify(message) });
   }
+  /** Message data: the payload starts at byte 13. */
+  message(subscription: number, payload: Uint8Array) {
+    const message = new Uint8Array(13 + payload.length);
+    message[0] = 1;
+    new DataView(message.buffer).setUint32(1, subscription, true);
+    message.set(payload, 13);
+    this.onmessage?.({ data: message.buffer });
+  }
   ops(): { op: string; [key: string]: unknown }[] {
     return this.sent.filter((s): s is string => typeof s === "string").map((s) => JSON.parse(s));
   }
@@ -72,10 +80,10 @@ class FakeSocket implements SocketLike {
 
 function linked() {
   const sockets: FakeSocket[] = [];
-  const seen = { frames: [] as Frame[], states: [] as unknown[], notices: [] as string[],
+  const seen = { frames: [] as Frame[], filtered: [] as Sweep[], states: [] as unknown[], notices: [] as string[],
     status: [] as LinkStatus[], sessions: 0 };
   const link = new LiveLink("ws://x/ws", {
-    frame: (f) => seen.frames.push(f), state: (s) => seen.states.push(s),
+    frame: (f) => seen.frames.push(f), filtered: (s) => seen.filtered.push(s), state: (s) => seen.states.push(s),
     status: (s) => seen.status.push(s), notice: (_, m) => seen.notices.push(m), log: () => undefined,
     new_session: () => ++seen.sessions,
   }, () => {
@@ -88,7 +96,8 @@ function linked() {
     socket.open();
     socket.text({ op: "serverInfo", name: "t", capabilities: [], sessionId: session });
     socket.text({ op: "advertise", channels: [{ id: 5, topic: "/telemetry", encoding: "flatbuffer", schemaName: "" },
-      { id: 6, topic: "/scan", encoding: "json", schemaName: "" }] });
+      { id: 6, topic: "/scan", encoding: "json", schemaName: "" },
+      { id: 7, topic: "/tautline/filtered", encoding: "flatbuffer", schemaName: "LaserScan" }] });
     socket.text({ op: "advertiseServices", services: [{ id: 9, name: "/reset" }] });
   };
   return { link, sockets, seen, ready };
@@ -102,16 +111,37 @@ test("the link subscribes to what the page reads, and no more", () => {
   link.close();
 });
 
+test("filtered scans are asked for while they are wanted, over a new connection as well", () => {
+  const timers = hand_wound();
+  const { link, sockets, seen, ready } = linked();
+  const asked = (socket: FakeSocket) => socket.ops().filter((o) => o.op === "subscribe")
+    .flatMap((o) => o.subscriptions as { id: number; channelId: number }[]);
+  link.want_filtered(true); // before there is a connection
+  ready(sockets[0]);
+  const [first] = asked(sockets[0]).filter((s) => s.channelId === 7);
+  sockets[0].message(first.id, scan_bytes({ ranges: [1000, 2000, 65535], stamp: 2.5 }));
+  sockets[0].message(first.id, new Uint8Array(0));
+  assert.deepEqual(seen.filtered.map((s) => [s.stamp, ...s.ranges]), [[2.5, 1000, 2000, 65535]]);
+  link.want_filtered(false);
+  link.want_filtered(false);
+  assert.deepEqual(sockets[0].ops().filter((o) => o.op === "unsubscribe"), [{ op: "unsubscribe", subscriptionIds: [first.id] }]);
+  sockets[0].message(first.id, scan_bytes({ ranges: [1, 2, 3] }));
+  assert.equal(seen.filtered.length, 1, "what was under way is not shown any more");
+  link.want_filtered(true);
+  assert.equal(asked(sockets[0]).filter((s) => s.channelId === 7).length, 2);
+  sockets[0].onclose?.();
+  timers.tick(kBackoff[0]);
+  ready(sockets[1]);
+  assert.equal(asked(sockets[1]).filter((s) => s.channelId === 7).length, 1);
+  link.close();
+  timers.restore();
+});
+
 test("a frame comes through, at an odd address in the message as well", () => {
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0]);
   const id = (sockets[0].ops().find((o) => o.op === "subscribe")!.subscriptions as { id: number }[])[0].id;
-  const payload = frame_bytes({ tick: 3, ranges: [1000, 2000, 65535] });
-  const message = new Uint8Array(13 + payload.length); // the payload starts at byte 13
-  message[0] = 1;
-  new DataView(message.buffer).setUint32(1, id, true);
-  message.set(payload, 13);
-  sockets[0].onmessage?.({ data: message.buffer });
+  sockets[0].message(id, frame_bytes({ tick: 3, ranges: [1000, 2000, 65535] }));
   assert.equal(seen.frames.length, 1);
   assert.deepEqual([...seen.frames[0].sweeps[0].ranges], [1000, 2000, 65535]);
   link.close();

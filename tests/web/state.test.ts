@@ -1,30 +1,35 @@
 // tests/web/state.test.ts: frames folded into the scene, and a stored run played and scrubbed.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { RunDocument, RunItem } from "../../web/src/contract";
-import { arc_points } from "../../web/src/draw/weighing";
-import { decode_frame } from "../../web/src/link/frame";
+import { RunDocument, RunItem, SessionState } from "../../web/src/contract";
+import { decode_frame, decode_sweep } from "../../web/src/link/frame";
 import { Player } from "../../web/src/link/player";
 import { StoredRun, kPageFrames, split_frames } from "../../web/src/link/stored";
 import { Columns } from "../../web/src/state/columns";
-import { fold_frame, goal_distance, new_scene, scene_bounds, sweep_points } from "../../web/src/state/scene";
-import { Hold, Mission } from "../../web/src/wire/telemetry_generated";
-import { FrameSpec, add_cylinder, frame_bytes, framed, move, remove, set_parameter } from "./wire";
+import { layer_groups } from "../../web/src/state/layers";
+import { SceneState, begin_run, fold_frame, fold_session, goal_distance, new_scene, scene_bounds } from "../../web/src/state/scene";
+import { FilteredScan, sweep_points } from "../../web/src/state/sweeps";
+import { Hold, LayerFrame, LayerKind, LayerStyle, Mission, Tone } from "../../web/src/wire/telemetry_generated";
+import { FrameSpec, LayerSpec, add_cylinder, frame_bytes, framed, move, remove, scan_bytes, set_parameter } from "./wire";
 
 const frame = (spec: FrameSpec) => decode_frame(frame_bytes(spec));
 
 test("a frame is read back whole", () => {
   const f = frame({
     tick: 41, stamp: 1.066, pose: [1, 2, 0.5], goal: [3, 4, null], mission: Mission.Driving, hold: Hold.StaleScan,
-    strip: [[1, 2], [1.5, 2.25]], internal: [0.125, 0], external_left: [0, -0.5], truth: [1.25, 2, 0.5, 0.75, true],
-    requests: [add_cylinder(7, 1.5, -2, 0.25), set_parameter("k_r", 0.5)],
+    truth: [1.25, 2, 0.5, 0.75, true],
+    requests: [add_cylinder(7, 1.5, -2, 0.25), set_parameter("k_r", 0.5)], words: ["Driving", "2 m to go."],
+    measures: [["strip.left", "m", 0.5], ["strip.side", "", -1]], moved: [[4, 1.5, 2.5, -0.25], [9, 0, 1, 0]],
   });
   assert.equal(f.tick, 41);
   assert.deepEqual(f.pose, { x: 1, y: 2, heading: 0.5 });
   assert.deepEqual(f.goal, { x: 3, y: 4, heading: null });
   assert.equal(f.mission, "driving");
   assert.equal(f.hold, "stale_scan");
-  assert.deepEqual(f.strip[1], { position: { x: 1.5, y: 2.25 }, internal: { x: 0.125, y: 0 }, external: { x: 0, y: -0.5 } });
+  assert.deepEqual(f.words, { what: "Driving", why: "2 m to go." });
+  assert.deepEqual(f.measures, [{ name: "strip.left", unit: "m", value: 0.5 }, { name: "strip.side", unit: "", value: -1 }]);
+  assert.deepEqual(f.moved[0], { id: 4, pose: { x: 1.5, y: 2.5, heading: -0.25 } });
+  assert.equal(f.moved.length, 2);
   assert.equal(f.truth?.collided, true);
   assert.equal(f.requests.length, 2);
   const [first, second] = f.requests;
@@ -33,24 +38,26 @@ test("a frame is read back whole", () => {
   assert.throws(() => decode_frame(new Uint8Array(3)), /too short/);
 });
 
-test("what a controller weighs is read back, from wherever the bytes lie", () => {
-  const bytes = frame_bytes({
-    tick: 1, pose: [1, 2, 0], plan: [[1, 2], [1.5, 2.25]],
-    candidates: [[0.25, -0.5, 1.5, 0.125, true, true], [0.5, 0, 1.5, 0.5, false, false]],
-    histogram: { density: [0, 1.5, 400], threshold: 300 },
-    grid: { corner: [-1, 0.5], cell: 0.125, columns: 2, cells: [0, 254, 127, 255] },
-  });
+test("a layer is read back, from wherever the bytes lie", () => {
+  const bytes = frame_bytes({ tick: 1, layers: [
+    { name: "histogram", label: "Polar histogram", kind: LayerKind.Polar, values: [0, 1.5, 400], level: 300, unit: "1/m",
+      frame: LayerFrame.Robot, tone: Tone.External, style: LayerStyle.Faint },
+    { name: "grid", kind: LayerKind.Grid, values: [-1, 0.5, 0.125, 2], cells: [0, 254, 127, 255] },
+    { name: "names", kind: LayerKind.Text, values: [1, 2, 3, 4, 5, 6], axes: 3, text: "one\ntwo" },
+    { name: "later", kind: 99 as LayerKind, values: [1] },
+  ] });
   for (let shift = 0; shift < 4; ++shift) {
     const moved = new Uint8Array(bytes.length + shift);
     moved.set(bytes, shift);
-    const f = decode_frame(moved.subarray(shift));
-    assert.deepEqual(f.plan, [{ x: 1, y: 2 }, { x: 1.5, y: 2.25 }]);
-    assert.deepEqual(f.candidates[0],
-      { v: 0.25, omega: -0.5, horizon: 1.5, cost: 0.125, allowed: true, chosen: true });
-    assert.deepEqual([...f.histogram], [0, 1.5, 400]);
-    assert.equal(f.histogram_threshold, 300);
-    assert.deepEqual(f.grid?.corner, { x: -1, y: 0.5 });
-    assert.deepEqual([...f.grid!.cells], [0, 254, 127, 255]);
+    const { layers } = decode_frame(moved.subarray(shift));
+    assert.deepEqual(layers.map((l) => l.name), ["histogram", "grid", "names"], "a kind of later is left out");
+    const [polar, grid, names] = layers;
+    assert.deepEqual({ ...polar, values: [...polar.values], cells: [] }, {
+      name: "histogram", label: "Polar histogram", kind: "polar", values: [0, 1.5, 400], level: 300, unit: "1/m",
+      robot: true, tone: "external", style: "faint", axes: 2, cells: [], text: [],
+    });
+    assert.deepEqual([[...grid.values], [...grid.cells]], [[-1, 0.5, 0.125, 2], [0, 254, 127, 255]]);
+    assert.deepEqual([names.axes, names.text, names.label], [3, ["one", "two"], "names"]);
   }
 });
 
@@ -70,23 +77,77 @@ test("readings of sonar and infrared stay where they were taken until they are o
   assert.equal(scene.readings.size, 0);
 });
 
-test("a grid holds until another comes, or another run", () => {
+const grid = (byte: number): LayerSpec => ({ name: "grid", kind: LayerKind.Grid, values: [0, 0, 0.1, 1], cells: [byte] });
+const line: LayerSpec = { name: "strip", label: "Strip", kind: LayerKind.Polyline, values: [0, 0, 1, 1] };
+const goal: [number, number, null] = [1, 0, null];
+
+test("a grid holds until another comes, the goal is gone, or another run begins", () => {
   const scene = new_scene();
-  const grid = { corner: [0, 0] as [number, number], cell: 0.1, columns: 1, cells: [254] };
-  fold_frame(scene, frame({ tick: 5, grid }));
-  fold_frame(scene, frame({ tick: 6 }));
-  assert.equal(scene.grid?.cells[0], 254);
-  fold_frame(scene, frame({ tick: 0 }));
-  assert.equal(scene.grid, null);
+  const byte = () => scene.layers.get("grid")?.cells[0];
+  fold_frame(scene, frame({ tick: 5, goal, layers: [grid(254), line] }));
+  fold_frame(scene, frame({ tick: 6, goal }));
+  assert.equal(byte(), 254);
+  assert.equal(scene.layers.has("strip"), false, "all others are of one instant");
+  fold_frame(scene, frame({ tick: 7, goal, layers: [grid(9)] }));
+  assert.equal(byte(), 9);
+  fold_frame(scene, frame({ tick: 8 }));
+  assert.equal(byte(), undefined);
+  fold_frame(scene, frame({ tick: 9, goal, layers: [grid(9)] }));
+  fold_frame(scene, frame({ tick: 0, goal }));
+  assert.equal(byte(), undefined);
 });
 
-test("a candidate's arc is the way of its constant twist", () => {
-  const c = { v: 0.5, omega: Math.PI / 2, horizon: 1, cost: 0, allowed: true, chosen: true };
-  const radius = 0.5 / (Math.PI / 2);
-  const end = arc_points({ x: 1, y: 1, heading: 0 }, c).at(-1)!;
-  assert.ok(Math.abs(end.x - (1 + radius)) < 1e-12 && Math.abs(end.y - (1 + radius)) < 1e-12);
-  const straight = arc_points({ x: 0, y: 0, heading: Math.PI }, { ...c, omega: 0 }).at(-1)!;
-  assert.ok(Math.abs(straight.x + 0.5) < 1e-12);
+test("words hold until others come, or another run begins", () => {
+  const scene = new_scene();
+  fold_frame(scene, frame({ tick: 5, words: ["Driving", "2 m to go."] }));
+  fold_frame(scene, frame({ tick: 6 }));
+  assert.deepEqual(scene.words, { what: "Driving", why: "2 m to go." });
+  fold_frame(scene, frame({ tick: 7, words: ["Arrived", ""] }));
+  assert.deepEqual(scene.words, { what: "Arrived", why: "" });
+  begin_run(scene);
+  assert.equal(scene.words, null);
+});
+
+test("the panel lists what came, also what is not there now, until another controller drives", () => {
+  const scene = new_scene();
+  const session = (controller: string) => ({ run: null, controller, source: "simulation" }) as unknown as SessionState;
+  const names = () => layer_groups(scene, "M").map((g) => [g.title, ...g.keys.map((k) => k.name)]);
+  fold_session(scene, session("modified"));
+  assert.deepEqual(names(), [["Senses", "scan", "filtered"], ["Robot", "path", "safety"]]);
+  fold_frame(scene, frame({ tick: 0, goal, layers: [line, { ...line, name: "scan.nearest" }] }));
+  fold_frame(scene, frame({ tick: 1, goal }));
+  assert.deepEqual(names(), [["Senses", "scan", "filtered", "scan.nearest"], ["M", "strip"], ["Robot", "path", "safety"]]);
+  fold_session(scene, session("dwa"));
+  assert.deepEqual(names(), [["Senses", "scan", "filtered"], ["Robot", "path", "safety"]]);
+});
+
+test("obstacles that move by themselves are where the frame says, the others where they were", () => {
+  const scene = new_scene();
+  const cylinder = (id: number, x: number) => ({ id, type: "cylinder", x, y: 0, radius: 0.3 });
+  const session = { run: null, source: "simulation", obstacles: [cylinder(1, 1), cylinder(2, 2)] } as unknown as SessionState;
+  const poses = () => scene.obstacles.map((o) => [o.pose.x, o.pose.heading]);
+  fold_session(scene, session);
+  fold_frame(scene, frame({ tick: 0, moved: [[2, 2.5, 0, 0.25]] }));
+  assert.deepEqual(poses(), [[1, 0], [2.5, 0.25]]);
+  fold_session(scene, session);
+  assert.deepEqual(poses(), [[1, 0], [2.5, 0.25]], "the document names where it began, not where it is");
+});
+
+test("a filtered scan is placed where the robot was when its tick came, whichever comes first", () => {
+  const filtered = new FilteredScan();
+  const scan = (stamp: number) => decode_sweep(scan_bytes({ ranges: [1000, 2000, 3000], stamp }))!;
+  const tick = (n: number, x: number) => frame({ tick: n, pose: [x, 0, 0], ranges: [1, 2, 3], scan_stamp: n });
+  filtered.see(tick(1, 5));
+  filtered.take(scan(1));
+  assert.equal(filtered.shown?.origin.x, 5);
+  filtered.take(scan(2)); // before its frame: the one before stays
+  assert.equal(filtered.shown?.sweep.stamp, 1);
+  filtered.see(tick(2, 6));
+  assert.deepEqual([filtered.shown?.sweep.stamp, filtered.shown?.origin.x], [2, 6]);
+  filtered.see(tick(3, 7));
+  filtered.take(scan(2)); // late by a frame
+  assert.equal(filtered.shown?.origin.x, 6);
+  assert.equal(decode_sweep(new Uint8Array(0)), null);
 });
 
 test("beams end where the geometry says, from the scanner's own place", () => {
@@ -94,9 +155,9 @@ test("beams end where the geometry says, from the scanner's own place", () => {
   // Robot at (1, 2) facing +y; the scanner 0.5 m ahead of its centre, so at (1, 2.5) facing +y.
   // Three beams at -90, 0, +90 degrees of it: along +x, +y and -x. 2 m, free, a device code.
   fold_frame(scene, frame({ tick: 0, pose: [1, 2, Math.PI / 2], mount: [0.5, 0, 0], ranges: [2000, 65535, 65530] }));
-  const { raw, end } = sweep_points(scene.sweeps[0]);
-  assert.equal(raw.length, 2, "only the measured beam is a point");
-  assert.ok(Math.abs(raw[0] - 3) < 1e-6 && Math.abs(raw[1] - 2.5) < 1e-6, `at ${raw}`);
+  const { hits, end } = sweep_points(scene.sweeps[0]);
+  assert.equal(hits.length, 2, "only the measured beam is a point");
+  assert.ok(Math.abs(hits[0] - 3) < 1e-6 && Math.abs(hits[1] - 2.5) < 1e-6, `at ${hits}`);
   assert.ok(Math.abs(end[3] - (2.5 + 8.191)) < 1e-5, "a free beam reaches as far as the scanner does");
   assert.ok(Number.isNaN(end[4]), "a code has no end");
 });
@@ -163,7 +224,21 @@ test("rows of the record come before those already here", () => {
   const row = (tick: number) => ({ tick, t: tick, x: tick / 2, y: 0, heading: 0, v: 0, omega: 0, clearance: 1 });
   columns.prepend([row(8), row(9)]);
   assert.deepEqual([...columns.get("x")], [4, 4.5, 5]);
-  assert.ok(Number.isNaN(columns.at("elastic", 0)), "what the record's columns do not hold stays open");
+  assert.ok(Number.isNaN(columns.at("strip.left", 0)), "what the record's columns do not hold stays open");
+});
+
+test("a measure is a column from when it first comes; where it does not, there is no number", () => {
+  const columns = new Columns();
+  columns.push(frame({ tick: 0 }));
+  columns.push(frame({ tick: 1, measures: [["strip.left", "m", 0.5]] }));
+  columns.push(frame({ tick: 2, measures: [["strip.left", "m", 0.25], ["strip.side", "", 1]] }));
+  columns.push(frame({ tick: 3 }));
+  assert.deepEqual(columns.measures, [{ name: "strip.left", unit: "m" }, { name: "strip.side", unit: "" }]);
+  assert.deepEqual([...columns.get("strip.left")], [NaN, 0.5, 0.25, NaN]);
+  assert.deepEqual([...columns.get("strip.side")], [NaN, NaN, 1, NaN]);
+  columns.clear();
+  columns.push(frame({ tick: 0 }));
+  assert.deepEqual([columns.measures, [...columns.get("strip.left")]], [[], [NaN]]);
 });
 
 test("a fitted view shows goal, obstacles, start and robot", () => {
@@ -184,10 +259,12 @@ test("frames of an answer are split by their lengths; a cut answer is said", () 
 
 const item: RunItem = {
   id: 3, status: "finished", outcome: "reached", scenario: "case1", controller: "modified", filter: "none",
-  vehicle: "bullet", seed: 1, parameters: { filter_half_width: 1 }, version: "0", started: "", ticks: 1000, time: 26,
+  vehicle: "bullet", seed: 1, parameters: { safety_distance: 1 }, version: "0", started: "", ticks: 1000, time: 26,
   lost_ticks: 0, bytes: 0, metrics: null,
-  document: { robot: { radius: 0.3, half_track: 0.2 } as RunDocument["robot"], scenario: { name: "case1", start: { x: 0, y: 0, heading: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 1, radius: 0.3 }] } },
+  document: { robot: { radius: 0.3, half_length: 0.25, half_width: 0.21, half_track: 0.2 } as RunDocument["robot"], scenario: { name: "case1", start: { x: 0, y: 0, heading: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 1, radius: 0.3 }] } },
 };
+
+const none = () => Promise.reject(new Error("nothing filtered"));
 
 /** A server that holds `count` frames; obstacle 2 is added at tick 100, moved at 200, gone at 300. */
 function stored(count: number) {
@@ -195,7 +272,7 @@ function stored(count: number) {
   const at = (tick: number) => frame_bytes({
     tick, pose: [tick / 100, 0, 0], ranges: tick % 2 === 0 ? [1000, 2000, 3000] : undefined,
     requests: tick === 100 ? [add_cylinder(2, 5, 5, 0.2)] : tick === 200 ? [move(2, 6, 5)] : tick === 300 ? [remove(2)]
-      : tick === 150 ? [set_parameter("filter_half_width", 3)] : [],
+      : tick === 150 ? [set_parameter("safety_distance", 3)] : [],
   });
   const run = new StoredRun(item, async (from, limit) => {
     asked.push(from);
@@ -203,7 +280,7 @@ function stored(count: number) {
     const frames = [];
     for (let t = from; t < end; ++t) frames.push(at(t));
     return { bytes: framed(frames), next: end < count ? end : null };
-  });
+  }, none);
   return { run, asked };
 }
 
@@ -228,14 +305,14 @@ test("obstacles and parameters are as they were at the shown instant, forward an
     run.seek(row);
     return run.scene.obstacles.map((o) => [o.id, o.pose.x]);
   };
-  assert.equal(run.scene.radius, 0.3, "the robot is the one of that run");
+  assert.deepEqual([run.scene.radius, run.scene.hull], [0.3, { half_length: 0.25, half_width: 0.21 }], "the robot is the one of that run");
   assert.deepEqual(at(399), [[1, 1]]);
   assert.deepEqual(at(250), [[1, 1], [2, 6]]);
   assert.deepEqual(at(100), [[1, 1], [2, 5]]);
   assert.deepEqual(at(99), [[1, 1]]);
-  assert.equal(run.scene.half_width, 1);
+  assert.equal(run.scene.safety_distance, 1);
   run.seek(150);
-  assert.equal(run.scene.half_width, 3);
+  assert.equal(run.scene.safety_distance, 3);
 });
 
 test("of a run that is still being recorded, what was there when it was opened", async () => {
@@ -244,7 +321,7 @@ test("of a run that is still being recorded, what was there when it was opened",
     there += 1000; // it grows faster than it is fetched
     const frames = Array.from({ length: Math.min(limit, there - from) }, (_, i) => frame_bytes({ tick: from + i }));
     return { bytes: framed(frames), next: from + limit };
-  });
+  }, none);
   await run.load(() => undefined);
   assert.equal(run.done, true);
   assert.ok(run.rows >= 500 && run.rows <= 500 + kPageFrames, `${run.rows} rows`);
@@ -255,7 +332,7 @@ test("a run that cannot be fetched says why and keeps what came", async () => {
   const run = new StoredRun(item, async () => {
     if (++pages > 1) throw new Error("The server cannot be reached.");
     return { bytes: framed([frame_bytes({ tick: 0 })]), next: 1 };
-  });
+  }, none);
   await run.load(() => undefined);
   assert.equal(run.rows, 1);
   assert.equal(run.done, false);
@@ -282,4 +359,62 @@ test("the player runs at its speed, stops at the end, starts over, and steps by 
   assert.equal(player.time, 0);
   player.seek(1e9);
   assert.ok(Math.abs(player.time - 2.6) < 1e-9);
+});
+
+/** A run in which things come seldom and hold: words, grids, readings, people, scans, a goal that goes and returns. */
+function varied(tick: number): FrameSpec {
+  return {
+    tick, pose: [tick / 100, 0, 0], scan_stamp: tick * 0.026, ranges: tick % 3 === 0 ? [1000 + tick, 2000, 3000] : undefined,
+    goal: tick > 50 && tick < 60 ? undefined : goal, words: tick % 19 === 0 ? [`Words of ${tick}`, ""] : undefined,
+    layers: [line, ...(tick % 23 === 0 ? [grid(tick)] : [])], moved: tick % 2 === 0 ? [[1, tick / 10, 1, 0]] : [],
+    sonar: tick % 5 === 0 ? [[0, tick]] : tick % 5 === 2 && tick < 60 ? [[1, tick]] : [],
+    requests: tick === 70 ? [add_cylinder(2, 5, 5, 0.2)] : [],
+  };
+}
+const shown = (scene: SceneState) => ({
+  words: scene.words, layers: [...scene.layers.values()].map((l) => [l.name, l.cells[0]]), goal: scene.goal,
+  obstacles: scene.obstacles.map((o) => [o.id, o.pose.x]), sweeps: scene.sweeps.map((s) => [s.sweep.ranges[0], s.origin.x]),
+  readings: [...scene.readings.values()].map((r) => `${r.kind} ${r.range} ${r.stamp}`).sort(),
+});
+
+test("a stored run shows at any tick what was shown live, sought in any order", async () => {
+  const bytes = Array.from({ length: 120 }, (_, tick) => frame_bytes(varied(tick)));
+  const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), none);
+  await run.load(() => undefined);
+  const live = new_scene();
+  live.obstacles = run.scene.obstacles;
+  const seen = bytes.map((b) => {
+    fold_frame(live, decode_frame(b));
+    if (live.frame?.tick === 70) live.obstacles = [...live.obstacles, { ...live.obstacles[0], id: 2, pose: { x: 5, y: 5, heading: 0 } }];
+    return shown(live);
+  });
+  for (const tick of [0, 119, 20, 21, 55, 60, 68, 69, 70, 71, 46, 118]) {
+    run.seek(tick);
+    assert.deepEqual(shown(run.scene), seen[tick], `tick ${tick}`);
+  }
+  assert.deepEqual([seen[69].layers.length, seen[69].readings.length, seen[119].readings.length], [2, 2, 1], "there is something to hold");
+});
+
+test("filtered scans of a stored run are fetched only while wanted, and belong to the newest scan", async () => {
+  const bytes = Array.from({ length: 30 }, (_, tick) => frame_bytes(varied(tick)));
+  const asked: number[] = [];
+  const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), async (from) => {
+    asked.push(from);
+    const messages = bytes.map((_, tick) => (tick % 3 === 0 ? scan_bytes({ ranges: [tick, 2, 3] }) : new Uint8Array(0)));
+    return { bytes: framed(messages), next: null };
+  });
+  await run.load(() => undefined);
+  run.seek(10);
+  assert.deepEqual([asked, run.scene.filtered.shown], [[], null]);
+  run.want_filtered(true);
+  let late = 0;
+  assert.equal(run.seek(10, () => ++late), true, "the rest of the instant does not wait for it");
+  await new Promise((resolve) => setTimeout(resolve));
+  assert.equal(late, 1);
+  assert.deepEqual([run.scene.filtered.shown?.sweep.ranges[0], run.scene.filtered.shown?.origin.x], [9, 0.09]);
+  run.seek(12);
+  assert.deepEqual([run.scene.filtered.shown?.sweep.ranges[0], asked], [12, [0]]);
+  run.want_filtered(false);
+  run.seek(12);
+  assert.equal(run.scene.filtered.shown, null);
 });

@@ -9,19 +9,74 @@ export interface FrameSpec {
   ranges?: number[];
   range_max?: number;
   mount?: [number, number, number];
+  scan_stamp?: number;
   goal?: [number, number, number | null];
   mission?: wire.Mission;
   hold?: wire.Hold;
-  strip?: [number, number][];
-  internal?: [number, number];
-  external_left?: [number, number];
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
-  what?: string;
-  grid?: { corner: [number, number]; cell: number; columns: number; cells: number[] };
-  plan?: [number, number][];
-  candidates?: [number, number, number, number, boolean, boolean][];
-  histogram?: { density: number[]; threshold: number };
+  words?: [string, string];
+  layers?: LayerSpec[];
+  measures?: [string, string, number][];
+  sonar?: [number, number][]; // heading of the mount, range
+  moved?: [number, number, number, number][]; // id, x, y, heading
+}
+
+export interface LayerSpec {
+  name: string;
+  kind: wire.LayerKind;
+  values: number[];
+  label?: string;
+  unit?: string;
+  frame?: wire.LayerFrame;
+  tone?: wire.Tone;
+  style?: wire.LayerStyle;
+  axes?: number;
+  level?: number;
+  cells?: number[];
+  text?: string;
+}
+
+function add_layer(b: flatbuffers.Builder, l: LayerSpec): number {
+  const text = (value: string | undefined) => (value === undefined ? 0 : b.createString(value));
+  const [name, label, unit, lines] = [l.name, l.label, l.unit, l.text].map(text);
+  const values = wire.Layer.createValuesVector(b, l.values);
+  const cells = l.cells ? wire.Layer.createCellsVector(b, l.cells) : 0;
+  wire.Layer.startLayer(b);
+  wire.Layer.addName(b, name);
+  if (label) wire.Layer.addLabel(b, label);
+  if (unit) wire.Layer.addUnit(b, unit);
+  if (lines) wire.Layer.addText(b, lines);
+  if (cells) wire.Layer.addCells(b, cells);
+  wire.Layer.addValues(b, values);
+  wire.Layer.addKind(b, l.kind);
+  wire.Layer.addFrame(b, l.frame ?? wire.LayerFrame.World);
+  wire.Layer.addTone(b, l.tone ?? wire.Tone.Accent);
+  wire.Layer.addStyle(b, l.style ?? wire.LayerStyle.Solid);
+  wire.Layer.addAxes(b, l.axes ?? 2);
+  wire.Layer.addLevel(b, l.level ?? 0);
+  return wire.Layer.endLayer(b);
+}
+
+interface ScanSpec { ranges: number[]; range_max?: number; mount?: [number, number, number]; stamp?: number }
+
+function add_scan(b: flatbuffers.Builder, scan: ScanSpec): number {
+  const ranges = wire.LaserScan.createRangesVector(b, scan.ranges);
+  wire.LaserScan.startLaserScan(b);
+  wire.LaserScan.addStamp(b, scan.stamp ?? 0);
+  wire.LaserScan.addMount(b, wire.Pose2.createPose2(b, ...(scan.mount ?? [0, 0, 0])));
+  wire.LaserScan.addAngleMin(b, -Math.PI / 2);
+  wire.LaserScan.addAngleIncrement(b, Math.PI / (scan.ranges.length - 1));
+  wire.LaserScan.addRangeMax(b, scan.range_max ?? 8.191);
+  wire.LaserScan.addRanges(b, ranges);
+  return wire.LaserScan.endLaserScan(b);
+}
+
+/** A filtered scan as it comes on its own. */
+export function scan_bytes(spec: ScanSpec): Uint8Array {
+  const b = new flatbuffers.Builder(256);
+  b.finish(add_scan(b, spec));
+  return b.asUint8Array().slice();
 }
 
 export const add_cylinder = (id: number, x: number, y: number, radius: number) =>
@@ -62,17 +117,8 @@ export const set_parameter = (name: string, value: number) =>
 
 export function frame_bytes(spec: FrameSpec): Uint8Array {
   const b = new flatbuffers.Builder(512);
-  let scans = 0;
-  if (spec.ranges) {
-    const ranges = wire.LaserScan.createRangesVector(b, spec.ranges);
-    wire.LaserScan.startLaserScan(b);
-    wire.LaserScan.addMount(b, wire.Pose2.createPose2(b, ...(spec.mount ?? [0, 0, 0])));
-    wire.LaserScan.addAngleMin(b, -Math.PI / 2);
-    wire.LaserScan.addAngleIncrement(b, Math.PI / (spec.ranges.length - 1));
-    wire.LaserScan.addRangeMax(b, spec.range_max ?? 8.191);
-    wire.LaserScan.addRanges(b, ranges);
-    scans = wire.Frame.createScansVector(b, [wire.LaserScan.endLaserScan(b)]);
-  }
+  const { ranges } = spec;
+  const scans = ranges ? wire.Frame.createScansVector(b, [add_scan(b, { ...spec, stamp: spec.scan_stamp, ranges })]) : 0;
   const boxes = (spec.requests ?? []).map((make) => {
     const [type, at] = make(b);
     wire.RequestBox.startRequestBox(b);
@@ -81,36 +127,25 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     return wire.RequestBox.endRequestBox(b);
   });
   const requests = wire.Frame.createRequestsVector(b, boxes);
-  let strip = 0;
-  if (spec.strip) {
-    wire.Frame.startStripVector(b, spec.strip.length);
-    for (const node of [...spec.strip].reverse()) wire.Vec2f.createVec2f(b, ...node);
-    strip = b.endVector();
+  const layers = wire.Frame.createLayersVector(b, (spec.layers ?? []).map((l) => add_layer(b, l)));
+  let measures = 0;
+  if (spec.measures) {
+    const names = b.createString(spec.measures.map((m) => m[0]).join("\n"));
+    const units = b.createString(spec.measures.map((m) => m[1]).join("\n"));
+    const values = wire.Measures.createValuesVector(b, spec.measures.map((m) => m[2]));
+    measures = wire.Measures.createMeasures(b, names, units, values);
   }
-  let grid = 0;
-  if (spec.grid) {
-    const cells = wire.Grid.createCellsVector(b, spec.grid.cells);
-    wire.Grid.startGrid(b);
-    wire.Grid.addCorner(b, wire.Vec2f.createVec2f(b, ...spec.grid.corner));
-    wire.Grid.addCell(b, spec.grid.cell);
-    wire.Grid.addColumns(b, spec.grid.columns);
-    wire.Grid.addCells(b, cells);
-    grid = wire.Grid.endGrid(b);
+  const moved = spec.moved ?? [];
+  wire.Frame.startMovedVector(b, moved.length);
+  for (const [id, x, y, heading] of [...moved].reverse()) wire.Moved.createMoved(b, x, y, heading, id);
+  const places = b.endVector();
+  const sonar = spec.sonar ?? [];
+  wire.Frame.startSonarVector(b, sonar.length);
+  for (const [heading, range] of [...sonar].reverse()) {
+    wire.RangeReading.createRangeReading(b, 0, 0, heading, spec.tick * 0.026, range, 4, wire.BeamStatus.Ok);
   }
-  let plan = 0;
-  if (spec.plan) {
-    wire.Frame.startPlanVector(b, spec.plan.length);
-    for (const p of [...spec.plan].reverse()) wire.Vec2f.createVec2f(b, ...p);
-    plan = b.endVector();
-  }
-  let candidates = 0;
-  if (spec.candidates) {
-    wire.Frame.startCandidatesVector(b, spec.candidates.length);
-    for (const c of [...spec.candidates].reverse()) wire.Candidate.createCandidate(b, ...c);
-    candidates = b.endVector();
-  }
-  const histogram = spec.histogram ? wire.Frame.createHistogramVector(b, spec.histogram.density) : 0;
-  const what = spec.what === undefined ? 0 : b.createString(spec.what);
+  const readings = b.endVector();
+  const [what, why] = (spec.words ?? []).map((text) => b.createString(text));
   wire.Frame.startFrame(b);
   wire.Frame.addTick(b, BigInt(spec.tick));
   wire.Frame.addStamp(b, spec.stamp ?? spec.tick * 0.026);
@@ -129,20 +164,13 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.Frame.addCollided(b, hit);
   }
   wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.hold ?? wire.Hold.None,
-    spec.mission ?? wire.Mission.Idle, wire.Behaviour.Rest, 0));
-  if (strip) wire.Frame.addStrip(b, strip);
-  if (spec.strip) {
-    wire.Frame.addForces(b, wire.Forces.createForces(b, ...(spec.internal ?? [0, 0]),
-      ...(spec.external_left ?? [0, 0]), 0, 0));
-  }
+    spec.mission ?? wire.Mission.Idle, wire.Behaviour.Rest));
+  wire.Frame.addLayers(b, layers);
+  wire.Frame.addMoved(b, places);
+  wire.Frame.addSonar(b, readings);
+  if (measures) wire.Frame.addMeasures(b, measures);
   if (what) wire.Frame.addWhat(b, what);
-  if (grid) wire.Frame.addGrid(b, grid);
-  if (plan) wire.Frame.addPlan(b, plan);
-  if (candidates) wire.Frame.addCandidates(b, candidates);
-  if (histogram) {
-    wire.Frame.addHistogram(b, histogram);
-    wire.Frame.addHistogramThreshold(b, spec.histogram!.threshold);
-  }
+  if (why) wire.Frame.addWhy(b, why);
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();
 }

@@ -8,12 +8,13 @@ import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
 import { add_goal_edit, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
-import { Goal, decode_frame } from "./link/frame";
+import { Goal, decode_frame, decode_sweep } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
 import { split_frames } from "./link/stored";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { TickRow } from "./state/columns";
+import { stored_hidden, store_open, stored_open, toggled } from "./state/layers";
 import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
 import { Store } from "./state/store";
 import { StopState, Stopper, sound_alarm } from "./stopper";
@@ -47,6 +48,8 @@ export interface UiState {
   three: boolean;
   follow: boolean;
   force_scale: number;
+  hidden: ReadonlySet<string>; // layers that are switched off, by name
+  layers: boolean;             // their panel is open
   shortcuts: boolean;
   sheet: boolean;
   loading: string | null;
@@ -77,6 +80,7 @@ export class App {
   private readonly sign_: SignOfLife;
   private readonly stopper_: Stopper;
   private past_of_: number | null = null; // run whose past was asked for
+  private wants_filtered_ = false;
   private next_toast_ = 1;
   private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
 
@@ -85,7 +89,7 @@ export class App {
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
       locked: false, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
       theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
-      force_scale: 1, shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
+      force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
     });
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
@@ -93,6 +97,10 @@ export class App {
         fold_frame(this.scene, frame);
         this.scene.heard_at = performance.now();
         this.look_back();
+        this.redraw();
+      },
+      filtered: (sweep) => {
+        this.scene.filtered.take(sweep);
         this.redraw();
       },
       state: (session) => this.take_session(session),
@@ -166,8 +174,33 @@ export class App {
       for (const bytes of frames) fold_frame(this.scene, decode_frame(bytes));
       this.look_back();
       this.redraw();
+      if (this.wants_filtered_) await this.fetch_filtered();
     } catch {
       // Nothing is kept of this run: it is shown from the next frame on.
+    }
+  }
+
+  /** Whether filtered scans are looked at. A paused run sends none: its newest is in the record. */
+  want_filtered(wanted: boolean): void {
+    this.wants_filtered_ = wanted;
+    this.link.want_filtered(wanted);
+    if (wanted && this.scene.frame && this.ui.value.session?.pace.paused) void this.fetch_filtered();
+    if (!wanted) this.scene.filtered.shown = null;
+  }
+
+  private async fetch_filtered(): Promise<void> {
+    const { run, frame } = this.scene;
+    if (run === null || run <= 0 || !frame) return;
+    try {
+      const from = Math.max(0, frame.tick - kRecentTicks);
+      const { bytes } = await rest.get_bytes(`/runs/${run}/filtered?from=${from}&limit=${kRecentTicks + 1}`);
+      for (const message of split_frames(bytes)) {
+        const sweep = decode_sweep(message);
+        if (sweep && run === this.scene.run) this.scene.filtered.take(sweep);
+      }
+      this.redraw();
+    } catch {
+      // It is shown from the next scan on.
     }
   }
 
@@ -189,6 +222,15 @@ export class App {
     this.scene.columns.prepend(rows);
     this.scene.rows = this.scene.columns.length;
     this.redraw();
+  }
+
+  toggle_layer(name: string): void {
+    this.ui.set({ hidden: toggled(this.ui.value.hidden, name) });
+    this.redraw();
+  }
+  show_layers(open: boolean): void {
+    this.ui.set({ layers: open });
+    store_open(open);
   }
 
   /** Calls a service; a refusal becomes a toast with the server's sentence. */

@@ -4,6 +4,7 @@ import "./style/tokens.css";
 import "./style/layout.css";
 import "./style/controls.css";
 import "./style/scene.css";
+import "./style/layers.css";
 import "./style/runs.css";
 import "./style/hardware.css";
 import "./style/narrow.css";

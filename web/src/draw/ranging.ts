@@ -1,10 +1,10 @@
 // web/src/draw/ranging.ts: sonar cones, infrared returns, bumpers.
 import { Frame } from "../link/frame";
 import { PlacedReadings } from "../state/ranging";
+import { Context } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
-type Context = CanvasRenderingContext2D;
 const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo is somewhere on that arc
 const kDot = 2;                 // [px]
 

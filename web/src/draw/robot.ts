@@ -1,12 +1,11 @@
 // web/src/draw/robot.ts: the robot, its safety circle, and its goals.
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
+import { Context, arrow } from "./marks";
 import { Palette } from "./palette";
-import { arrow } from "./strip";
 import { SceneState } from "../state/scene";
 import { View } from "./view";
 
-type Context = CanvasRenderingContext2D;
 type Hull = SceneState["hull"];
 
 export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose,
@@ -24,7 +23,7 @@ export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose
 
 /** Hull, two wheels and an arrowhead ahead. */
 export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose, radius: number,
-  half_track: number, colour = palette.robot, alpha = 1, hull: Hull | null = null): void {
+  half_track: number, colour = palette.robot, alpha = 1, hull: Hull = null): void {
   const s = view.scale;
   const r = Math.max(radius * s, 6);
   const k = r / radius; // small robots are drawn no smaller than 12 px across
@@ -35,12 +34,7 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.fillStyle = palette.panel;
   g.strokeStyle = colour;
   g.lineWidth = Math.max(1.5, Math.min(2.4, r / 8));
-  g.beginPath();
-  if (hull) {
-    g.rect(-hull.half_length * s, -hull.half_width * s, 2 * hull.half_length * s, 2 * hull.half_width * s);
-  } else {
-    g.arc(0, 0, r, 0, 2 * Math.PI);
-  }
+  trace_hull(g, s, r, hull);
   g.fill();
   g.stroke();
   g.fillStyle = colour;
@@ -55,16 +49,27 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.restore();
 }
 
+/** A hull about the origin, `scale` [px/m] large; a disc of `radius` [px] where it is no rectangle. */
+function trace_hull(g: Context, scale: number, radius: number, hull: Hull): void {
+  g.beginPath();
+  if (hull) {
+    g.rect(-hull.half_length * scale, -hull.half_width * scale, 2 * hull.half_length * scale, 2 * hull.half_width * scale);
+  } else {
+    g.arc(0, 0, radius, 0, 2 * Math.PI);
+  }
+}
+
 /** Where the robot truly is, when its own idea of it has drifted visibly. */
-export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose,
-  radius: number): void {
+export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose, radius: number, hull: Hull): void {
+  g.save();
+  g.translate(view.sx(pose.x), view.sy(pose.y));
+  g.rotate(-pose.heading);
   g.strokeStyle = palette.muted;
   g.lineWidth = 1.2;
   g.setLineDash([2, 3]);
-  g.beginPath();
-  g.arc(view.sx(pose.x), view.sy(pose.y), radius * view.scale, 0, 2 * Math.PI);
+  trace_hull(g, view.scale, radius * view.scale, hull);
   g.stroke();
-  g.setLineDash([]);
+  g.restore();
 }
 
 export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, selected: boolean,

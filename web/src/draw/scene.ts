@@ -4,14 +4,15 @@ import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
 import { sweep_age } from "../state/age";
+import { is_sensed, kOwn } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
+import { draw_layer, stacked } from "./layers";
+import { Context, draw_path } from "./marks";
 import { Palette } from "./palette";
 import { draw_bumpers, draw_ranging } from "./ranging";
 import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
-import { draw_fan, draw_nearest, draw_returns } from "./sensing";
-import { draw_forces, draw_path, draw_strip } from "./strip";
+import { draw_fan, draw_filtered, draw_raw } from "./sensing";
 import { Insets, View } from "./view";
-import { draw_candidates, draw_cells, draw_histogram, draw_plan, draw_tracks } from "./weighing";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
 export type Selection = { kind: "goal" } | { kind: "obstacle"; id: number } | null;
@@ -27,13 +28,15 @@ export interface Draft {
 }
 
 /** A second run drawn over the first. */
-export interface Ghost { columns: Columns; rows: number; pose: Pose | null; radius: number }
+export interface Ghost { columns: Columns; rows: number; pose: Pose | null; radius: number; hull: SceneState["hull"] }
 
 export interface Overlay {
   selection: Selection;
   hovered: number | null;
   draft: Draft;
   force_scale: number;
+  /** Names of the layers that are switched off. */
+  hidden: ReadonlySet<string>;
   ghost: Ghost | null;
   /** Draws the path still to come, faintly. */
   future: boolean;
@@ -44,51 +47,59 @@ export interface Overlay {
   path_colour?: string;
 }
 
-export function draw_scene(g: CanvasRenderingContext2D, view: View, palette: Palette,
+export function draw_scene(g: Context, view: View, palette: Palette,
   scene: SceneState, overlay: Overlay): void {
   g.fillStyle = palette.bg;
   g.fillRect(0, 0, view.width, view.height);
   draw_grid(g, view, palette);
   const pose = robot_pose(scene);
   const f = scene.frame;
-  const old = new Set(scene.sweeps.filter((s) => sweep_age(scene, s) !== null));
-  for (const sweep of scene.sweeps) if (!old.has(sweep)) draw_fan(g, view, palette, sweep);
+  const on = (key: { name: string }) => !overlay.hidden.has(key.name);
+  const old = scene.sweeps.some((s) => sweep_age(scene, s) !== null);
+  const layers = [...scene.layers.values()].filter((l) => on(l) && !(old && is_sensed(l.name)));
+  const { below, above } = stacked(layers);
+  const canvas = f && { g, view, palette, robot: f.pose, radius: scene.radius, times: overlay.force_scale };
+
+  const filtered = on(kOwn.filtered) ? scene.filtered.shown : null;
+  const filtered_old = filtered !== null && sweep_age(scene, filtered) !== null;
+  if (filtered && !filtered_old) draw_fan(g, view, palette, filtered);
   const selected = overlay.selection?.kind === "obstacle" ? overlay.selection.id : null;
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
-  for (const sweep of scene.sweeps) draw_returns(g, view, palette, sweep, old.has(sweep));
-  draw_ranging(g, view, palette, scene.readings);
-  if (scene.grid && f?.goal) draw_cells(g, view, palette, scene.grid);
-  const path = overlay.path_colour ?? palette.path;
-  if (overlay.future) {
-    draw_path(g, view, scene.columns, 0, scene.columns.length, path, 2, 0.3);
+  if (on(kOwn.scan)) for (const sweep of scene.sweeps) draw_raw(g, view, palette, sweep);
+  if (filtered) draw_filtered(g, view, palette, filtered, filtered_old);
+  if (on(kOwn.ranging)) draw_ranging(g, view, palette, scene.readings);
+  const grids = below.filter((l) => l.kind === "grid");
+  if (canvas) for (const layer of grids) draw_layer(canvas, layer);
+  draw_ways(g, view, palette, scene, overlay, on(kOwn.path));
+  if (pose && scene.world && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
+  draw_goals(g, view, palette, scene, overlay);
+  if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
+  if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
+  if (f) draw_bumpers(g, view, palette, f, scene.radius);
+  if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
+    draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
   }
+  if (canvas) for (const layer of above) draw_layer(canvas, layer);
+  draw_draft(g, view, palette, overlay.draft);
+  draw_scale(g, view, palette, overlay.insets);
+}
+
+/** The travelled path, that of a second run, and what is still to come of a stored one. */
+function draw_ways(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay, travelled: boolean): void {
+  const colour = overlay.path_colour ?? palette.path;
+  if (overlay.future && travelled) draw_path(g, view, scene.columns, 0, scene.columns.length, colour, 2, 0.3);
   if (overlay.ghost) draw_ghost(g, view, palette, overlay.ghost);
-  draw_path(g, view, scene.columns, 0, Math.min(scene.rows, scene.columns.length), path, 3);
-  if (pose && scene.world) draw_safety(g, view, palette, pose, scene.safety_distance);
+  if (travelled) draw_path(g, view, scene.columns, 0, Math.min(scene.rows, scene.columns.length), colour, 3);
+}
+
+function draw_goals(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay): void {
   const preview = overlay.preview && !overlay.draft.goal ? overlay.preview : null;
   if (preview) draw_goal(g, view, palette, preview, overlay.selection?.kind === "goal", true);
   const goal = overlay.draft.goal ?? scene.goal;
-  if (goal) {
-    draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
-    draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal" && !preview,
-      !!overlay.draft.goal);
-  }
-  if (f) draw_tracks(g, view, palette, f);
-  if (f && old.size === 0) draw_nearest(g, view, palette, f);
-  if (f) draw_plan(g, view, palette, f);
-  if (f) draw_histogram(g, view, palette, f);
-  if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
-  if (f) draw_bumpers(g, view, palette, f, scene.radius);
-  if (f) draw_candidates(g, view, palette, f);
-  if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
-    draw_truth(g, view, palette, f.truth.pose, scene.radius);
-  }
-  // A strip of one step ends inside the hull, so it lies on top of it.
-  if (f) draw_strip(g, view, palette, f);
-  if (f) draw_forces(g, view, palette, f, overlay.force_scale);
-  draw_draft(g, view, palette, overlay.draft);
-  draw_scale(g, view, palette, overlay.insets);
+  if (!goal) return;
+  draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
+  draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal" && !preview, !!overlay.draft.goal);
 }
 
 /** The obstacles, with the one in the hand where the hand is. */
@@ -98,14 +109,14 @@ function held_obstacles(obstacles: Obstacle[], draft: Draft): Obstacle[] {
   return obstacles.map((o) => (o.id === moved.id ? { ...o, pose: moved.pose } : o));
 }
 
-function draw_ghost(g: CanvasRenderingContext2D, view: View, palette: Palette, ghost: Ghost): void {
+function draw_ghost(g: Context, view: View, palette: Palette, ghost: Ghost): void {
   draw_path(g, view, ghost.columns, 0, ghost.columns.length, palette.elastic, 2, 0.4);
   draw_path(g, view, ghost.columns, 0, ghost.rows, palette.elastic, 2.5, 0.9);
   if (!ghost.pose) return;
-  draw_robot(g, view, palette, ghost.pose, ghost.radius, ghost.radius * 0.7, palette.elastic, 0.8);
+  draw_robot(g, view, palette, ghost.pose, ghost.radius, ghost.radius * 0.7, palette.elastic, 0.8, ghost.hull);
 }
 
-function draw_draft(g: CanvasRenderingContext2D, view: View, palette: Palette, draft: Draft): void {
+function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): void {
   if (draft.obstacle) {
     trace_obstacle(g, view, draft.obstacle);
     g.fillStyle = palette.obst;
@@ -131,7 +142,7 @@ function draw_draft(g: CanvasRenderingContext2D, view: View, palette: Palette, d
   g.stroke();
 }
 
-function draw_measure(g: CanvasRenderingContext2D, view: View, palette: Palette, from: Point,
+function draw_measure(g: Context, view: View, palette: Palette, from: Point,
   to: Point): void {
   const a = view.to_screen(from);
   const b = view.to_screen(to);

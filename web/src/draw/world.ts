@@ -1,9 +1,8 @@
 // web/src/draw/world.ts: the ground: grid, obstacles, scale bar.
 import { Obstacle, outline } from "../obstacle";
+import { Context, trace } from "./marks";
 import { Palette } from "./palette";
 import { Insets, View } from "./view";
-
-type Context = CanvasRenderingContext2D;
 
 /** A line a metre, stronger every fifth; wider steps when zoomed out. */
 export function draw_grid(g: Context, view: View, palette: Palette): void {
@@ -36,10 +35,7 @@ export function trace_obstacle(g: Context, view: View, o: Obstacle): void {
     g.arc(view.sx(o.pose.x), view.sy(o.pose.y), Math.max(1, o.radius * view.scale), 0, 2 * Math.PI);
     return;
   }
-  outline(o).forEach((p, i) => {
-    if (i === 0) g.moveTo(view.sx(p.x), view.sy(p.y));
-    else g.lineTo(view.sx(p.x), view.sy(p.y));
-  });
+  trace(g, view, outline(o));
   g.closePath();
 }
 

@@ -1,6 +1,7 @@
 // web/src/link/frame.ts: one FlatBuffers frame (telemetry.fbs) as a plain object.
 import * as flatbuffers from "flatbuffers";
 import { Point, Pose } from "../geometry";
+import { LayerView, kLayerKinds, kLayerStyles, kTones } from "../layer";
 import { Obstacle, ObstacleKind } from "../obstacle";
 import * as wire from "../wire/telemetry_generated";
 
@@ -18,19 +19,13 @@ export interface Sweep {
   ranges: Uint16Array;      // [mm] or a code, B beams
 }
 
-export interface Nearest { point: Point; distance: number; beam: number }
-export interface StripNode { position: Point; internal: Point; external: Point }
 export interface Goal { x: number; y: number; heading: number | null }
 export interface RangeReading { mount: Pose; range: number; status: number }
 
-/** A motion the controller weighed: constant twist for `horizon` seconds. */
-export interface Candidate {
-  v: number; omega: number; horizon: number; cost: number; allowed: boolean; chosen: boolean;
-}
-/** Byte of a cell of which nothing is known; else 0 free .. 254 occupied. */
-export const kUnknownCell = 255;
-/** A controller's grid, row-major from its corner in W. */
-export interface GridLayer { corner: Point; cell: number; columns: number; cells: Uint8Array }
+/** A number of the controller's method. */
+export interface Measure { name: string; unit: string; value: number }
+/** What the robot does, and why: a sentence each. */
+export interface Words { what: string; why: string }
 
 export type FrameRequest =
   | { type: "set_goal"; goal: Goal }
@@ -58,9 +53,6 @@ const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
 const kBehaviours: Behaviour[] = ["rest", "avoid", "manual"];
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
 
-/** Something seen moving. */
-export interface TrackView { position: Point; velocity: Point; radius: number; unseen: number } // [m], [m/s], [s]
-
 /** One tick of a run; positions in W, metres, radians, seconds. */
 export interface Frame {
   tick: number;
@@ -82,24 +74,11 @@ export interface Frame {
   mission: Mission;
   behaviour: Behaviour;
   clearance: number;        // [m] hull to nearest filtered return
-  strip: StripNode[];
-  pass: Point | null;
-  left: Nearest | null;
-  right: Nearest | null;
-  external_left: Point;     // displacements [m]
-  external_right: Point;
-  elastic: Point;
-  side: number;
-  side_since: number;         // [s] run clock at which `side` was chosen
   newest_scan: number | null; // [s] its stamp, only while it is too old to drive by
-  what: string;
-  why: string;
-  plan: Point[];
-  candidates: Candidate[];
-  tracks: TrackView[];
-  histogram: Float32Array;  // density by bearing in W, ccw from 0
-  histogram_threshold: number;
-  grid: GridLayer | null;   // null: none, or as in the frames before
+  words: Words | null;      // null: as in the frames before
+  layers: LayerView[];      // a grid that is not among them holds
+  measures: Measure[];
+  moved: { id: number; pose: Pose }[]; // obstacles that move by themselves
 }
 
 interface XY { x(): number; y(): number }
@@ -112,25 +91,13 @@ const pose = (p: XYH | null): Pose =>
 /** Decodes `bytes`; throws when they are too short to be a frame. The ranges are copied. */
 export function decode_frame(bytes: Uint8Array): Frame {
   if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
-  // Ranges and densities are read as typed arrays over the buffer, which must start where their
-  // elements may lie.
-  const aligned = bytes.byteOffset % 4 === 0 ? bytes : bytes.slice();
-  const f = wire.Frame.getRootAsFrame(new flatbuffers.ByteBuffer(aligned));
+  const f = wire.Frame.getRootAsFrame(buffer_of(bytes));
   const odometry = f.odometry();
   const truth = f.truth();
   const command = f.command();
   const goal = f.goal();
   const decision = f.decision();
-  const forces = f.forces();
-  const strip = list(f.stripLength(), (i): StripNode => {
-    return { position: point(f.strip(i)), internal: zero, external: zero };
-  });
-  const internal = point(forces?.internal() ?? null);
-  const left = point(forces?.externalLeft() ?? null);
-  const right = point(forces?.externalRight() ?? null);
-  const push = point(f.sidePush());
-  const external = { x: left.x + right.x + push.x, y: left.y + right.y + push.y };
-  if (strip.length > 1) strip[1] = { position: strip[1].position, internal, external };
+  const what = f.what();
   return {
     tick: Number(f.tick()),
     stamp: f.stamp(),
@@ -158,28 +125,22 @@ export function decode_frame(bytes: Uint8Array): Frame {
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
     behaviour: kBehaviours[decision?.behaviour() ?? 0] ?? "rest",
     clearance: decision?.clearance() ?? 0,
-    strip,
-    pass: strip.length > 1 ? strip[1].position : null,
-    left: nearest(f.left()),
-    right: nearest(f.right()),
-    external_left: left,
-    external_right: right,
-    elastic: { x: internal.x + external.x, y: internal.y + external.y },
-    side: decision?.side() ?? 0,
-    side_since: f.sideSince(),
     newest_scan: f.newestScan(),
-    what: f.what() ?? "",
-    why: f.why() ?? "",
-    plan: list(f.planLength(), (i) => point(f.plan(i))),
-    candidates: list(f.candidatesLength(), (i) => candidate(f.candidates(i)!)),
-    tracks: list(f.tracksLength(), (i) => {
-      const t = f.tracks(i)!;
-      return { position: point(t.position()), velocity: point(t.velocity()), radius: t.radius(), unseen: t.unseen() };
-    }),
-    histogram: f.histogramArray()?.slice() ?? new Float32Array(0),
-    histogram_threshold: f.histogramThreshold(),
-    grid: grid(f.grid()),
+    words: what === null ? null : { what, why: f.why() ?? "" },
+    layers: list(f.layersLength(), (i) => layer(f.layers(i)!)).filter((l) => l !== null),
+    measures: measures(f.measures()),
+    moved: list(f.movedLength(), (i) => ({ id: f.moved(i)!.id(), pose: pose(f.moved(i)) })),
   };
+}
+
+/** Decodes a scan that comes on its own, as of /tautline/filtered; null for an empty message. */
+export function decode_sweep(bytes: Uint8Array): Sweep | null {
+  return bytes.length < 8 ? null : sweep(wire.LaserScan.getRootAsLaserScan(buffer_of(bytes)));
+}
+
+/** Numbers are read as typed arrays over the buffer, which must start where they may lie. */
+function buffer_of(bytes: Uint8Array): flatbuffers.ByteBuffer {
+  return new flatbuffers.ByteBuffer(bytes.byteOffset % 4 === 0 ? bytes : bytes.slice());
 }
 
 function list<T>(length: number, item: (i: number) => T): T[] {
@@ -203,24 +164,32 @@ function reading(r: wire.RangeReading): RangeReading {
   return { mount: pose(r.mount()), range: r.range(), status: r.status() };
 }
 
-function nearest(n: wire.Nearest | null): Nearest | null {
-  return n && { point: point(n.point()), distance: n.distance(), beam: n.beam() };
-}
-
-function candidate(c: wire.Candidate): Candidate {
-  return {
-    v: c.v(), omega: c.omega(), horizon: c.horizon(), cost: c.cost(),
-    allowed: c.allowed(), chosen: c.chosen(),
+/** Null for a kind that this page is too old to know. */
+function layer(l: wire.Layer): LayerView | null {
+  const name = l.name() ?? "";
+  const kind = kLayerKinds[l.kind()];
+  return kind === undefined ? null : {
+    name,
+    label: l.label() ?? name,
+    unit: l.unit() ?? "",
+    kind,
+    robot: l.frame() === wire.LayerFrame.Robot,
+    tone: kTones[l.tone()] ?? "muted",
+    style: kLayerStyles[l.style()] ?? "solid",
+    axes: l.axes(),
+    level: l.level(),
+    values: l.valuesArray()?.slice() ?? new Float32Array(0),
+    cells: l.cellsArray()?.slice() ?? new Uint8Array(0),
+    text: l.text()?.split("\n") ?? [],
   };
 }
 
-function grid(layer: wire.Grid | null): GridLayer | null {
-  const cells = layer?.cellsArray();
-  if (!layer || !cells || layer.columns() === 0) return null;
-  return {
-    corner: point(layer.corner()), cell: layer.cell(), columns: layer.columns(),
-    cells: cells.slice(),
-  };
+function measures(m: wire.Measures | null): Measure[] {
+  if (!m) return [];
+  const names = m.names()?.split("\n") ?? [];
+  const units = m.units()?.split("\n") ?? [];
+  return list(Math.min(names.length, m.valuesLength()), (i) =>
+    ({ name: names[i], unit: units[i] ?? "", value: m.values(i) ?? NaN }));
 }
 
 function set_goal(g: wire.SetGoal): Goal {

@@ -1,7 +1,7 @@
 // web/src/link/live.ts: the live session over /ws: subscribes, calls services, sets parameters,
 // measures rate and round trip, and comes back by itself when the connection is lost.
 import { SessionState } from "../contract";
-import { Frame, decode_frame } from "./frame";
+import { Frame, Sweep, decode_frame, decode_sweep } from "./frame";
 import {
   ParameterValue, ServerBinary, ServerText, kSubprotocols, parse_binary, parse_text, payload_json,
   service_request,
@@ -19,6 +19,8 @@ export interface LinkStatus {
 
 export interface LinkEvents {
   frame(frame: Frame): void;
+  /** What the controller saw of a scan; only while it is wanted. */
+  filtered(sweep: Sweep): void;
   state(state: SessionState): void;
   status(status: LinkStatus): void;
   /** A sentence from the server; level 0 info, 1 warning, 2 error. */
@@ -44,6 +46,7 @@ export type OpenSocket = (url: string, protocols: string[]) => SocketLike;
 interface PendingCall { resolve(value: unknown): void; reject(error: Error): void; timer: number }
 
 const kTopics = ["/telemetry", "/state", "/log"];
+const kFiltered = "/tautline/filtered";
 const kCallTimeout = 10_000;   // [ms]
 const kConnectTimeout = 8_000; // [ms]
 const kSilenceLimit = 6_000;   // [ms] without any answer the connection counts as lost
@@ -54,7 +57,9 @@ export class LiveLink {
   private socket_: SocketLike | null = null;
   private attempt_ = 0;
   private services_ = new Map<string, number>();
+  private channels_ = new Map<string, number>(); // by topic
   private subscriptions_ = new Map<number, string>();
+  private wants_filtered_ = false;
   private calls_ = new Map<number, PendingCall>();
   private parameter_answers_ = new Map<string, (values: ParameterValue[]) => void>();
   private next_id_ = 1;
@@ -115,6 +120,29 @@ export class LiveLink {
       this.calls_.set(call, { resolve: resolve as (value: unknown) => void, reject, timer });
       this.send(service_request(service, call, body));
     });
+  }
+
+  /** Whether the server computes filtered scans for this page and sends them. */
+  want_filtered(wanted: boolean): void {
+    if (wanted === this.wants_filtered_) return;
+    this.wants_filtered_ = wanted;
+    if (wanted) {
+      this.subscribe(kFiltered);
+      return;
+    }
+    for (const [id, topic] of this.subscriptions_) {
+      if (topic !== kFiltered) continue;
+      this.subscriptions_.delete(id);
+      this.send_json({ op: "unsubscribe", subscriptionIds: [id] });
+    }
+  }
+
+  private subscribe(topic: string): void {
+    const channel = this.channels_.get(topic);
+    if (channel === undefined) return;
+    const id = this.next_id_++;
+    this.subscriptions_.set(id, topic);
+    this.send_json({ op: "subscribe", subscriptions: [{ id, channelId: channel }] });
   }
 
   /** Calls a service whose answer is no matter; does nothing without a connection. */
@@ -183,6 +211,7 @@ export class LiveLink {
     if (socket) socket.onclose = null;
     socket?.close();
     this.services_.clear();
+    this.channels_.clear();
     this.subscriptions_.clear();
     this.ping_sent_.clear();
     this.parameter_answers_.clear();
@@ -218,10 +247,10 @@ export class LiveLink {
         break;
       case "advertise":
         for (const channel of message.channels) {
-          if (!kTopics.includes(channel.topic)) continue;
-          const id = this.next_id_++;
-          this.subscriptions_.set(id, channel.topic);
-          this.send_json({ op: "subscribe", subscriptions: [{ id, channelId: channel.id }] });
+          this.channels_.set(channel.topic, channel.id);
+          if (kTopics.includes(channel.topic) || (channel.topic === kFiltered && this.wants_filtered_)) {
+            this.subscribe(channel.topic);
+          }
         }
         break;
       case "advertiseServices":
@@ -277,6 +306,9 @@ export class LiveLink {
       if (topic === "/telemetry") {
         this.arrivals_.push(now());
         this.events_.frame(decode_frame(payload));
+      } else if (topic === kFiltered) {
+        const sweep = decode_sweep(payload);
+        if (sweep) this.events_.filtered(sweep);
       } else if (topic === "/state") {
         this.events_.state(payload_json(payload) as SessionState);
       } else if (topic === "/log") {

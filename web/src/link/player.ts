@@ -35,6 +35,12 @@ export class Player {
     if (this.run.rows > 0) this.seek(this.run.columns.at("t", at));
   }
 
+  /** The shown row anew: something else of it is wanted. */
+  show_again(): void {
+    if (this.row_ >= 0) this.run.seek(this.row_, this.changed_);
+    this.changed_();
+  }
+
   toggle(): void {
     if (!this.playing && this.run.done && this.time >= this.run.duration) this.time = 0;
     this.playing = !this.playing;

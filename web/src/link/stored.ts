@@ -4,23 +4,26 @@ import { RunItem } from "../contract";
 import { obstacle_from_json } from "../obstacle";
 import { Obstacle } from "../obstacle";
 import { EventLog } from "../state/events";
-import { Columns } from "../state/columns";
+import { Columns, last_not_after } from "../state/columns";
+import { learn_layers } from "../state/layers";
 import {
-  SceneState, edited, new_scene, place_sweeps, show_frame, take_parameters,
+  SceneState, edited, forget_instant, held_of, new_scene, show_frame, take_parameters, take_robot,
 } from "../state/scene";
-import { Frame, GridLayer, decode_frame } from "./frame";
+import { placed } from "../state/sweeps";
+import { Frame, decode_frame, decode_sweep } from "./frame";
 
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
 
-interface Chunk { from_tick: number; first_row: number; frames: Uint8Array[] | null; used: number }
+/** A page of frames, and of the filtered scans that stand for them once somebody wants to see those. */
+interface Chunk {
+  from_tick: number; first_row: number; frames: Uint8Array[] | null; filtered: Uint8Array[] | null; used: number;
+}
 
 export const kPageFrames = 400;
 const kMostChunks = 60;      // about 24 000 frames, some 40 MB
-const kScanLookBack = 60;    // frames; the newest sweep lies within them
-const kGridLookBack = 200;   // frames; the newest grid of a controller that keeps one does
 
-/** Splits an answer of /frames: each frame is a u32 length and its bytes. */
+/** Splits an answer of /frames or /filtered: each message is a u32 length and its bytes. */
 export function split_frames(bytes: Uint8Array): Uint8Array[] {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const out: Uint8Array[] = [];
@@ -49,21 +52,22 @@ export class StoredRun {
   private parameters_: { row: number; name: string; value: number }[] = [];
   private clock_ = 0;
   private wanted_ = -1;
-  private has_grid_ = false;
+  private held_ = new Map<string, number[]>(); // rows that bring what holds after them, by its name
+  private wants_filtered_ = false;
+  private filtering_ = new Set<Chunk>(); // whose filtered scans are under way, or cannot be had
 
   constructor(
     readonly item: RunItem,
     private readonly fetch_: FetchFrames,
+    private readonly fetch_filtered_: FetchFrames,
   ) {
     const doc = item.document?.scenario;
-    const robot = item.document?.robot;
     this.scene = new_scene();
     this.scene.columns = this.columns;
     this.scene.events = this.events;
     this.scene.run = item.id;
-    this.scene.radius = robot?.radius ?? this.scene.radius;
-    this.scene.half_track = robot?.half_track ?? this.scene.half_track;
-    this.scene.filter = item.filter;
+    this.scene.controller = item.controller;
+    take_robot(this.scene, item.document?.robot);
     this.scene.start = doc?.start ?? null;
     this.scene.world = item.vehicle !== "log";
     this.scene.goal = doc?.goal
@@ -111,53 +115,87 @@ export class StoredRun {
   }
 
   /**
-   * Shows row `row` in `scene`. Returns false when its frame has to be fetched first; `ready` is
-   * then called when it is there and still the one wanted.
+   * Shows row `row` in `scene`. Returns false when a frame has to be fetched first; `ready` is
+   * then called when it is there and still the one wanted, and once more when its filtered scan is.
    */
   seek(row: number, ready: () => void = () => undefined): boolean {
     if (this.rows === 0) return false;
     const at = Math.max(0, Math.min(this.rows - 1, row));
     this.wanted_ = at;
-    const frame = this.frame(at);
-    if (!frame) {
-      void this.fetch_chunk(this.chunk_of(at)).then(() => {
-        if (this.wanted_ === at && this.seek(at)) ready();
-      });
-      return false;
+    const frames: Frame[] = [];
+    for (const needed of this.rows_for(at)) {
+      const frame = this.frame(needed);
+      if (!frame) {
+        void this.fetch_chunk(this.chunk_of(needed)).then((there) => {
+          if (there && this.wanted_ === at && this.seek(at, ready)) ready();
+        });
+        return false;
+      }
+      frames.push(frame);
     }
+    forget_instant(this.scene);
     this.scene.obstacles = this.world_at(at);
     this.set_parameters_at(at);
-    show_frame(this.scene, frame);
-    for (let back = 1; frame.sweeps.length === 0 && back < kScanLookBack; ++back) {
-      const earlier = this.frame(at - back);
-      if (!earlier) break;
-      if (earlier.sweeps.length === 0) continue;
-      place_sweeps(this.scene, earlier);
-      break;
-    }
-    if (this.has_grid_) this.scene.grid = this.grid_at(at);
+    for (const frame of frames) show_frame(this.scene, frame);
     this.scene.rows = at + 1;
+    this.show_filtered(at, ready);
     return true;
   }
 
-  /** Grids are sent seldom: the newest up to row `at`. */
-  private grid_at(at: number): GridLayer | null {
-    for (let back = 0; back < kGridLookBack; ++back) {
-      const grid = this.frame(at - back)?.grid;
-      if (grid) return grid;
+  /** Whether filtered scans are fetched and shown; they are shown from the next seek on. */
+  want_filtered(wanted: boolean): void {
+    this.wants_filtered_ = wanted;
+  }
+
+  /** The rows that make up the instant of row `at`, itself the last: what it does not bring holds. */
+  private rows_for(at: number): number[] {
+    const rows = new Set([at]);
+    for (const bringing of this.held_.values()) {
+      const newest = bringing[last_not_after(bringing, at)];
+      if (newest !== undefined) rows.add(newest);
     }
-    return null;
+    return [...rows].sort((a, b) => a - b);
+  }
+
+  /** The filtered scan of the newest row up to `at` that brought a scan. */
+  private show_filtered(at: number, ready: () => void): void {
+    this.scene.filtered.clear();
+    const scans = [...this.held_].filter(([name]) => name.startsWith("scan ")).map(([, rows]) => rows);
+    // Of several scanners only one is filtered: in a row of another the message is empty.
+    const rows = scans.map((rows) => rows[last_not_after(rows, at)] ?? -1).filter((row) => row >= 0).sort((a, b) => b - a);
+    if (!this.wants_filtered_) return;
+    for (const row of rows) {
+      const chunk = this.chunk_of(row);
+      if (!chunk.filtered) {
+        void this.fetch_filtered(chunk).then((there) => {
+          if (!there || this.wanted_ !== at) return;
+          this.show_filtered(at, ready);
+          ready();
+        });
+        return;
+      }
+      const sweep = decode_sweep(chunk.filtered[row - chunk.first_row] ?? new Uint8Array(0));
+      const frame = sweep && this.frame(row);
+      if (!frame) continue;
+      this.scene.filtered.shown = placed(sweep, frame.pose);
+      return;
+    }
   }
 
   private take(from_tick: number, frames: Uint8Array[]): void {
     const first_row = this.rows;
-    this.chunks_.push({ from_tick, first_row, frames, used: ++this.clock_ });
+    this.chunks_.push({ from_tick, first_row, frames, filtered: null, used: ++this.clock_ });
     for (const bytes of frames) {
       const f = decode_frame(bytes);
       const row = this.rows;
       this.columns.push(f);
       this.events.push(f);
-      this.has_grid_ ||= f.grid !== null;
+      learn_layers(this.scene.known, f.layers);
+      for (const name of held_of(f)) {
+        const rows = this.held_.get(name);
+        if (rows) rows.push(row);
+        else this.held_.set(name, [row]);
+      }
       for (const request of f.requests) {
         const before = this.worlds_.at(-1)!.obstacles;
         const after = edited(before, request);
@@ -187,14 +225,28 @@ export class StoredRun {
     return found;
   }
 
-  private async fetch_chunk(chunk: Chunk): Promise<void> {
+  private async fetch_chunk(chunk: Chunk): Promise<boolean> {
     try {
-      const page = await this.fetch_(chunk.from_tick, kPageFrames);
-      chunk.frames = split_frames(page.bytes);
+      chunk.frames = split_frames((await this.fetch_(chunk.from_tick, kPageFrames)).bytes);
       chunk.used = ++this.clock_;
       this.trim();
+      return true;
     } catch (error) {
       this.error = error instanceof Error ? error.message : String(error);
+      return false;
+    }
+  }
+
+  /** One request at a time for a page; what cannot be filtered is not tried again. */
+  private async fetch_filtered(chunk: Chunk): Promise<boolean> {
+    if (this.filtering_.has(chunk)) return false;
+    this.filtering_.add(chunk);
+    try {
+      chunk.filtered = split_frames((await this.fetch_filtered_(chunk.from_tick, kPageFrames)).bytes);
+      this.filtering_.delete(chunk);
+      return true;
+    } catch {
+      return false; // the rest of the instant is shown without it
     }
   }
 
@@ -202,7 +254,7 @@ export class StoredRun {
     const held = this.chunks_.filter((c) => c.frames !== null);
     if (held.length <= kMostChunks) return;
     held.sort((a, b) => a.used - b.used);
-    for (const chunk of held.slice(0, held.length - kMostChunks)) chunk.frames = null;
+    for (const chunk of held.slice(0, held.length - kMostChunks)) chunk.frames = chunk.filtered = null;
   }
 
   private world_at(row: number): Obstacle[] {

@@ -67,7 +67,7 @@ export class Plot {
   }
 
   /** Columns x, y1, y2 ...; shows [from, to] of the run clock. */
-  update(columns: ArrayLike<number>[], from: number, to: number, cursor: number | null): void {
+  update(columns: ArrayLike<number | null>[], from: number, to: number, cursor: number | null): void {
     this.data_ = columns as unknown as uPlot.AlignedData;
     this.cursor_ = cursor;
     this.chart_?.batch(() => {
@@ -107,6 +107,11 @@ function padded(low: number | null, high: number | null, least: [number, number]
   return [a < 0 || a < least[0] ? a - room : a, b + room];
 }
 
+/** `values` with null where there is none: a gap in the line. */
+export function gapped(values: Float64Array): (number | null)[] | Float64Array {
+  return values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values;
+}
+
 /** The two columns of two runs on one axis of time: the second is read at the first's times. */
 export function resampled(t: Float64Array, other_t: Float64Array, other: Float64Array):
   (number | null)[] {
@@ -115,7 +120,7 @@ export function resampled(t: Float64Array, other_t: Float64Array, other: Float64
   for (let i = 0; i < t.length; ++i) {
     while (j + 1 < other_t.length && other_t[j + 1] <= t[i]) ++j;
     const inside = other_t.length > 0 && t[i] <= other_t[other_t.length - 1] + 0.2;
-    out.push(inside ? other[j] : null);
+    out.push(inside && !Number.isNaN(other[j]) ? other[j] : null);
   }
   return out;
 }

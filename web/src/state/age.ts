@@ -1,7 +1,8 @@
 // web/src/state/age.ts: how old what is drawn is. Times of arrival are the page's own [ms], stamps
 // the robot's run clock [s].
 import { SessionState } from "../contract";
-import { PlacedSweep, SceneState } from "./scene";
+import { SceneState } from "./scene";
+import { PlacedSweep } from "./sweeps";
 
 const kNewsLimit = 1.0; // [s] a robot at work is heard of many times a second
 const kScanLimit = 0.5; // [s] at least; a slow scanner's robot waits longer before it stops

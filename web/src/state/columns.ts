@@ -1,10 +1,11 @@
 // web/src/state/columns.ts: the plain numbers of a run by row, for the path and the plots, in
-// growing typed arrays. A live run is thinned when it grows beyond a bound, so memory stays flat.
+// growing typed arrays; a number that a row does not have is NaN. A live run is thinned when it grows beyond a bound, so memory stays flat.
 import { Frame } from "../link/frame";
 
-export const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "clearance", "left",
-  "right", "elastic", "internal"] as const;
-export type Column = (typeof kColumns)[number];
+/** What every robot has; besides, a column for each measure of its controller, by that name. */
+const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "clearance"];
+
+export interface MeasureKey { name: string; unit: string }
 
 /** A row of GET /runs/{id}/ticks. */
 export interface TickRow {
@@ -14,26 +15,30 @@ export interface TickRow {
 
 export class Columns {
   length = 0;
-  private data_ = new Map<Column, Float64Array>();
+  /** The measures that came so far, in the order in which they first did. */
+  measures: MeasureKey[] = [];
+  private data_ = new Map<string, Float64Array>();
   private capacity_ = 1024;
   private stride_ = 1;
   private skipped_ = 0;
 
   /** `most` rows are kept; when reached, every second one goes and later ones are thinned alike. */
   constructor(private readonly most_ = Infinity) {
-    for (const name of kColumns) this.data_.set(name, new Float64Array(this.capacity_));
+    for (const name of kColumns) this.add(name);
   }
 
-  /** A view of the rows, valid until the next push. */
-  get(name: Column): Float64Array {
-    return this.data_.get(name)!.subarray(0, this.length);
+  /** A view of the rows, valid until the next push; of a column there is not: NaN. */
+  get(name: string): Float64Array {
+    return this.data_.get(name)?.subarray(0, this.length) ?? new Float64Array(this.length).fill(NaN);
   }
 
-  at(name: Column, row: number): number {
-    return this.data_.get(name)![row];
+  at(name: string, row: number): number {
+    return this.data_.get(name)?.[row] ?? NaN;
   }
 
   clear(): void {
+    for (const { name } of this.measures) this.data_.delete(name);
+    this.measures = [];
     this.length = 0;
     this.stride_ = 1;
     this.skipped_ = 0;
@@ -45,8 +50,8 @@ export class Columns {
     if (this.length >= this.most_) this.thin();
     if (this.length === this.capacity_) this.grow();
     const i = this.length++;
-    const put = (name: Column, value: number) => {
-      this.data_.get(name)![i] = value;
+    const put = (name: string, value: number) => {
+      (this.data_.get(name) ?? this.add(name))[i] = value;
     };
     put("t", f.stamp);
     put("tick", f.tick);
@@ -56,11 +61,11 @@ export class Columns {
     put("v", f.twist.v);
     put("omega", f.twist.omega);
     put("clearance", f.clearance);
-    put("left", Math.hypot(f.external_left.x, f.external_left.y));
-    put("right", Math.hypot(f.external_right.x, f.external_right.y));
-    put("elastic", Math.hypot(f.elastic.x, f.elastic.y));
-    const via = f.strip[1];
-    put("internal", via ? Math.hypot(via.internal.x, via.internal.y) : 0);
+    for (const { name } of this.measures) put(name, NaN);
+    for (const { name, unit, value } of f.measures) {
+      if (!this.data_.has(name)) this.measures = [...this.measures, { name, unit }];
+      put(name, value);
+    }
   }
 
   /** Puts rows of the record before those that are here. What they do not say is NaN. */
@@ -78,15 +83,7 @@ export class Columns {
 
   /** The last row with t <= `t`; 0 when there is none. */
   row_at(t: number): number {
-    const column = this.data_.get("t")!;
-    let low = 0;
-    let high = this.length;
-    while (low < high) {
-      const mid = (low + high) >> 1;
-      if (column[mid] <= t) low = mid + 1;
-      else high = mid;
-    }
-    return Math.max(0, low - 1);
+    return Math.max(0, last_not_after(this.get("t"), t));
   }
 
   private thin(): void {
@@ -97,6 +94,12 @@ export class Columns {
     this.stride_ *= 2;
   }
 
+  private add(name: string): Float64Array {
+    const column = new Float64Array(this.capacity_).fill(NaN);
+    this.data_.set(name, column);
+    return column;
+  }
+
   private grow(): void {
     this.capacity_ *= 2;
     for (const [name, column] of this.data_) {
@@ -105,4 +108,16 @@ export class Columns {
       this.data_.set(name, wider);
     }
   }
+}
+
+/** Index of the last of the ascending `values` that is not after `limit`; -1 when all are. */
+export function last_not_after(values: ArrayLike<number>, limit: number): number {
+  let low = 0;
+  let high = values.length;
+  while (low < high) {
+    const mid = (low + high) >> 1;
+    if (values[mid] <= limit) low = mid + 1;
+    else high = mid;
+  }
+  return low - 1;
 }

@@ -19,6 +19,10 @@ export type PlacedReadings = Map<string, PlacedReading>;
 const kLast = 1; // [s] after which a reading says nothing any more
 const kOk = 0;   // BeamStatus.Ok
 
+export function reading_key(kind: RangeKind, mount: Pose): string {
+  return `${kind} ${mount.x} ${mount.y} ${mount.heading}`;
+}
+
 /** Takes the frame's readings and forgets what is too old, or of later than the frame. */
 export function place_readings(placed: PlacedReadings, f: Frame): void {
   for (const [key, reading] of placed) {
@@ -26,7 +30,7 @@ export function place_readings(placed: PlacedReadings, f: Frame): void {
   }
   const take = (kind: RangeKind, readings: RangeReading[]): void => {
     for (const { mount, range, status } of readings) {
-      placed.set(`${kind} ${mount.x} ${mount.y} ${mount.heading}`, {
+      placed.set(reading_key(kind, mount), {
         kind, origin: compose(f.pose, mount), range, hit: status === kOk, stamp: f.stamp,
       });
     }

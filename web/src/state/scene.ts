@@ -1,48 +1,38 @@
 // web/src/state/scene.ts: what there is to draw, as one plain object, and how a frame and the
 // session's document are folded into it. Live session and stored run fill the same object.
-import { moved_along, ObstaclePath, paths_of } from "./paths";
-import { SessionState } from "../contract";
-import { FilterName, apply_filter, samples_of } from "../filter";
-import { Bounds, Point, Pose, compose, empty_bounds, include } from "../geometry";
-import { Frame, FrameRequest, Goal, GridLayer, Sweep, kMaxRange } from "../link/frame";
+import { RobotInfo, SessionState } from "../contract";
+import { Bounds, Point, Pose, empty_bounds, include } from "../geometry";
+import { LayerView } from "../layer";
+import { Frame, FrameRequest, Goal, Words } from "../link/frame";
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
-import { PlacedReadings, place_readings } from "./ranging";
-
-/** A sweep where it was taken. Points are worked out when first drawn, not per message. */
-export interface PlacedSweep {
-  sweep: Sweep;
-  origin: Pose; // of the scanner in W
-  filter: string;
-  half_width: number;
-  points: SweepPoints | null;
-}
-
-/** Points in W; x, y alternate. `end` holds every beam's end for the field of view, NaN: none. */
-export interface SweepPoints { raw: Float32Array; filtered: Float32Array; end: Float32Array }
+import { LayerKey, learn_layers } from "./layers";
+import { PlacedReadings, place_readings, reading_key } from "./ranging";
+import { FilteredScan, PlacedSweep, newest_sweeps } from "./sweeps";
 
 export interface SceneState {
   frame: Frame | null;
   sweeps: PlacedSweep[];    // the newest of each scanner
+  filtered: FilteredScan;   // what the controller saw of them
   readings: PlacedReadings; // of sonar and infrared
-  grid: GridLayer | null; // the controller's newest
+  layers: Map<string, LayerView>;  // of the controller; the newest of each grid
+  known: Map<string, LayerKey>;    // all that came so far, shown now or not
+  words: Words | null;             // the newest
   columns: Columns;
   rows: number;           // of columns that have happened at the shown instant
   obstacles: Obstacle[];
-  paths: ObstaclePath[];  // of those that move by themselves
   start: Pose | null;
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
   radius: number;         // [m] hull
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
-  filter: FilterName | string;
-  half_width: number;
   safety_distance: number; // [m] about the centre
   scan_timeout: number; // [s] the age of a scan by which the robot stops
   events: EventLog;
   run: number | null;
+  controller: string;
   heard_at: number | null; // [ms] performance.now() when the newest live frame came
   /** A world has walls to fit; a log has only what the scanner saw. */
   world: boolean;
@@ -50,45 +40,58 @@ export interface SceneState {
 
 export function new_scene(most_rows = Infinity): SceneState {
   return {
-    frame: null, sweeps: [], readings: new Map(), grid: null, columns: new Columns(most_rows), rows: 0, obstacles: [], paths: [], start: null,
-    goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, filter: "none", half_width: 1, safety_distance: 1,
-    scan_timeout: 0,
-    events: new EventLog(), run: null, heard_at: null, world: true,
+    frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
+    words: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
+    goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, safety_distance: 1, scan_timeout: 0,
+    events: new EventLog(), run: null, controller: "", heard_at: null, world: true,
   };
 }
 
 /** Forgets the travelled path, the history and the events: a new run begins. */
 export function begin_run(scene: SceneState): void {
-  scene.frame = null;
+  forget_instant(scene);
   scene.heard_at = null;
-  scene.sweeps = [];
-  scene.readings.clear();
-  scene.grid = null;
+  scene.filtered.clear();
   scene.columns.clear();
   scene.rows = 0;
   scene.events.clear();
 }
 
+/** Forgets the shown instant and all that holds from the frames before it. */
+export function forget_instant(scene: SceneState): void {
+  scene.frame = null;
+  scene.sweeps = [];
+  scene.readings.clear();
+  scene.layers.clear();
+  scene.words = null;
+}
+
 export function fold_session(scene: SceneState, s: SessionState): void {
   const run = s.run?.id ?? null;
   if (run !== scene.run) begin_run(scene);
+  if (s.controller !== scene.controller) {
+    scene.layers.clear();
+    scene.known.clear();
+  }
+  scene.controller = s.controller;
   scene.run = run;
-  scene.obstacles = (s.obstacles ?? []).map(obstacle_from_json);
-  scene.paths = paths_of(s.scenario?.obstacles ?? []);
+  scene.obstacles = moved_by_themselves((s.obstacles ?? []).map(obstacle_from_json), scene.frame);
   scene.start = s.scenario?.start ?? null;
   scene.goal = s.goal ? { x: s.goal.x, y: s.goal.y, heading: s.goal.heading ?? null } : null;
   scene.goals_ahead = s.goals_ahead ?? [];
-  scene.radius = s.robot?.radius ?? scene.radius;
-  const { half_length = 0, half_width = 0 } = s.robot ?? {};
-  scene.hull = half_length > 0 ? { half_length, half_width } : null;
-  scene.half_track = s.robot?.half_track ?? scene.half_track;
-  scene.filter = s.filter;
+  take_robot(scene, s.robot);
   scene.world = s.source === "simulation";
   take_parameters(scene, s.parameters ?? {});
 }
 
+export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): void {
+  scene.radius = robot.radius ?? scene.radius;
+  scene.half_track = robot.half_track ?? scene.half_track;
+  const { half_length = 0, half_width = 0 } = robot;
+  scene.hull = half_length > 0 ? { half_length, half_width } : null;
+}
+
 export function take_parameters(scene: SceneState, p: Record<string, number>): void {
-  scene.half_width = Math.round(p.filter_half_width ?? scene.half_width);
   scene.safety_distance = p.safety_distance ?? scene.safety_distance;
   scene.scan_timeout = p.scan_timeout ?? scene.scan_timeout;
 }
@@ -99,36 +102,46 @@ export function fold_frame(scene: SceneState, f: Frame): void {
   scene.columns.push(f);
   scene.rows = scene.columns.length;
   scene.events.push(f);
+  learn_layers(scene.known, f.layers);
   show_frame(scene, f);
+  scene.filtered.see(f);
 }
 
-/** Makes `f` the shown instant without touching the history. */
+/** Makes `f` the shown instant without touching the history. What it does not bring holds. */
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
   scene.goals_ahead = f.goals_ahead;
-  scene.grid = f.grid ?? scene.grid;
-  if (scene.paths.length > 0) scene.obstacles = moved_along(scene.obstacles, scene.paths, f.stamp);
-  place_sweeps(scene, f);
+  scene.words = f.words ?? scene.words;
+  scene.obstacles = moved_by_themselves(scene.obstacles, f);
+  for (const [name, layer] of scene.layers) if (layer.kind !== "grid" || !f.goal) scene.layers.delete(name);
+  for (const layer of f.layers) {
+    scene.layers.delete(layer.name); // the frame's order is the order in which they lie
+    scene.layers.set(layer.name, layer);
+  }
+  scene.sweeps = newest_sweeps(scene.sweeps, f);
   place_readings(scene.readings, f);
 }
 
-const same = (a: Pose, b: Pose): boolean =>
-  a.x === b.x && a.y === b.y && a.heading === b.heading;
+/** Names of what `f` says that holds in the frames after it, as `show_frame` has it. */
+export function held_of(f: Frame): string[] {
+  const mount = (m: Pose) => `${m.x} ${m.y} ${m.heading}`;
+  return [
+    ...(f.words ? ["words"] : []),
+    ...(f.goal ? [] : ["no goal"]),
+    ...(f.moved.length > 0 ? ["moved"] : []),
+    ...f.layers.filter((l) => l.kind === "grid").map((l) => `grid ${l.name}`),
+    ...f.sweeps.map((s) => `scan ${mount(s.mount)}`),
+    ...f.sonar.map((r) => reading_key("sonar", r.mount)),
+    ...f.infrared.map((r) => reading_key("infrared", r.mount)),
+  ];
+}
 
-export function place_sweeps(scene: SceneState, f: Frame): void {
-  if (f.sweeps.length === 0) return;
-  // Scanners deliver when they are ready, each in its own phase: the others' sweeps stay.
-  const others = scene.sweeps.filter((old) => old.sweep.stamp <= f.stamp &&
-    !f.sweeps.some((sweep) => same(sweep.mount, old.sweep.mount)));
-  const fresh = f.sweeps.map((sweep) => ({
-    sweep,
-    origin: compose(f.pose, sweep.mount),
-    filter: scene.filter,
-    half_width: scene.half_width,
-    points: null,
-  }));
-  scene.sweeps = [...others, ...fresh];
+/** The obstacles, with those that move by themselves where `f` says; the same list if it says nothing. */
+function moved_by_themselves(obstacles: Obstacle[], f: Frame | null): Obstacle[] {
+  if (!f || f.moved.length === 0) return obstacles;
+  const places = new Map(f.moved.map((m) => [m.id, m.pose]));
+  return obstacles.map((o) => ({ ...o, pose: places.get(o.id) ?? o.pose }));
 }
 
 /** Obstacles after `request`, as a new list; the old one when it changes nothing. */
@@ -143,34 +156,6 @@ export function edited(obstacles: Obstacle[], request: FrameRequest): Obstacle[]
     default:
       return obstacles;
   }
-}
-
-/** Where the sweep's beams ended, raw and filtered. Kept with the sweep. */
-export function sweep_points(placed: PlacedSweep): SweepPoints {
-  if (placed.points) return placed.points;
-  const { sweep, origin } = placed;
-  const raw_samples = samples_of(sweep);
-  const filtered = apply_filter(placed.filter, placed.half_width, raw_samples);
-  const size = sweep.ranges.length;
-  const raw: number[] = [];
-  const kept: number[] = [];
-  const end = new Float32Array(2 * size).fill(NaN);
-  for (let i = 0; i < size; ++i) {
-    const bearing = origin.heading + sweep.angle_min + i * sweep.angle_increment;
-    const c = Math.cos(bearing);
-    const s = Math.sin(bearing);
-    if (sweep.ranges[i] <= kMaxRange) {
-      const r = raw_samples.values[i];
-      raw.push(origin.x + r * c, origin.y + r * s);
-    }
-    if (!filtered.valid[i]) continue;
-    const r = Math.min(filtered.values[i], sweep.range_max);
-    end[2 * i] = origin.x + r * c;
-    end[2 * i + 1] = origin.y + r * s;
-    if (r < sweep.range_max) kept.push(end[2 * i], end[2 * i + 1]);
-  }
-  placed.points = { raw: Float32Array.from(raw), filtered: Float32Array.from(kept), end };
-  return placed.points;
 }
 
 /** Where the robot is drawn: the newest frame's pose, or the start before the first frame. */

@@ -2,7 +2,6 @@
 import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Point } from "../geometry";
-import { TrackView } from "../link/frame";
 import { Obstacle, outline } from "../obstacle";
 import { SceneState } from "../state/scene";
 
@@ -12,7 +11,10 @@ export function clear(group: THREE.Group): void {
     child.traverse((o) => {
       const mesh = o as THREE.Mesh;
       mesh.geometry?.dispose();
-      for (const m of [mesh.material].flat()) m?.dispose();
+      for (const m of [mesh.material].flat()) {
+        (m as THREE.SpriteMaterial | undefined)?.map?.dispose();
+        m?.dispose();
+      }
     });
   }
 }
@@ -94,14 +96,6 @@ export function ring(at: Point, inner: number, outer: number, z: number, colour:
 /** The goals after `from`, one or more, and the way through them. */
 export function goals_ahead(from: Point, ahead: Point[], p: Palette): THREE.Object3D[] {
   return [ribbon([from, ...ahead], 0.015, 0.016, p.ok), ...ahead.map((at) => ring(at, 0.12, 0.15, 0.02, p.ok))];
-}
-
-/** What was seen moving, in the scanner's plane, and its way in the next second. */
-export function track(group: THREE.Group, t: TrackView, p: Palette, z: number): void {
-  const mesh = new THREE.Mesh(new THREE.TorusGeometry(t.radius, 0.02, 8, 48), flat(p.warn));
-  mesh.position.set(t.position.x, t.position.y, z);
-  group.add(mesh);
-  push_arrow(group, t.position, t.velocity, 1, p.warn, z);
 }
 
 export function dot(at: Point, radius: number, z: number, colour: string): THREE.Mesh {

@@ -38,7 +38,7 @@ export function SceneThree(): JSX.Element {
       world.current.scene = app.scene;
       world.current.options = () => ({
         selection: app.ui.value.selection, force_scale: app.ui.value.force_scale,
-        follow: app.ui.value.follow,
+        hidden: app.ui.value.hidden, follow: app.ui.value.follow,
       });
       world.current.request();
     };

@@ -3,27 +3,27 @@ import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Palette } from "../draw/palette";
 import { Selection } from "../draw/scene";
-import { force_arrows } from "../draw/strip";
 import { Point } from "../geometry";
-import { SceneState, robot_pose, scene_bounds, sweep_points } from "../state/scene";
-import { body, clear, dot, goal, goals_ahead, grid, points, push_arrow, ribbon, ring, solid, sun, track } from "./shapes";
+import { kOwn } from "../state/layers";
+import { SceneState, robot_pose, scene_bounds } from "../state/scene";
+import { PlacedSweep, sweep_points } from "../state/sweeps";
+import { build_layer, kScanHeight } from "./layers";
+import { body, clear, goal, goals_ahead, grid, points, ribbon, ring, solid, sun } from "./shapes";
 
-export interface Options { selection: Selection; force_scale: number; follow: boolean }
+export interface Options { selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean }
 
-const kScanHeight = 0.3;  // [m] of the scan plane
-const kStripHeight = 0.36; // [m] above the hull, within which a strip of one step ends
 const kMostPath = 1500;
 
 export class World3 {
   scene: SceneState | null = null;
-  options: () => Options = () => ({ selection: null, force_scale: 1, follow: false });
+  options: () => Options = () => ({ selection: null, force_scale: 1, hidden: new Set(), follow: false });
   private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
   private readonly world_ = new THREE.Scene();
   private readonly camera_ = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
   private readonly controls_: OrbitControls;
   private readonly observer_: ResizeObserver;
   private readonly statics_ = new THREE.Group();  // grid, obstacles, goal
-  private readonly moving_ = new THREE.Group();   // path, strip, forces
+  private readonly moving_ = new THREE.Group();   // path, the controller's layers
   private readonly robot_ = new THREE.Group();
   private readonly raw_ = points(2.5);
   private readonly filtered_ = points(3.5);
@@ -93,9 +93,9 @@ export class World3 {
     const options = this.options();
     if (!this.placed_) this.place_camera(scene);
     this.build_statics(scene, options.selection);
-    this.build_moving(scene, options.force_scale);
+    this.build_moving(scene, options);
     this.place_robot(scene, options.follow);
-    this.place_points(scene);
+    this.place_points(scene, options.hidden);
     this.controls_.update();
     this.renderer_.render(this.world_, this.camera_);
   }
@@ -126,47 +126,34 @@ export class World3 {
     if (scene.goal) this.statics_.add(goal(scene.goal, p));
   }
 
-  private build_moving(scene: SceneState, times: number): void {
+  private build_moving(scene: SceneState, options: Options): void {
     clear(this.moving_);
     const p = this.palette_;
-    const { columns } = scene;
-    const rows = Math.min(scene.rows, columns.length);
-    if (rows > 1) {
-      const step = Math.max(1, Math.floor(rows / kMostPath));
-      const xs = columns.get("x");
-      const ys = columns.get("y");
-      const line: Point[] = [];
-      for (let i = 0; i < rows; i += step) line.push({ x: xs[i], y: ys[i] });
-      line.push({ x: xs[rows - 1], y: ys[rows - 1] });
-      this.moving_.add(ribbon(line, 0.045, 0.012, p.path));
-    }
+    const on = (layer: { name: string }) => !options.hidden.has(layer.name);
+    if (on(kOwn.path)) this.build_path(scene);
     const pose = robot_pose(scene);
-    if (pose && scene.world) {
+    if (pose && scene.world && on(kOwn.safety)) {
       this.moving_.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
     }
     if (scene.goal && scene.goals_ahead.length > 0) {
       this.moving_.add(...goals_ahead(scene.goal, scene.goals_ahead, p));
     }
-    const f = scene.frame;
-    if (!f) return;
-    if (f.plan.length > 1) this.moving_.add(ribbon(f.plan, 0.02, 0.01, p.accent));
-    for (const t of f.tracks) track(this.moving_, t, p, kScanHeight);
-    if (f.strip.length > 1) {
-      const nodes = f.strip.map((n) => n.position);
-      const line = nodes.length === 3 ? nodes.slice(0, 2) : nodes; // the third is before the forces
-      this.moving_.add(ribbon(line, 0.06, kStripHeight, p.accent));
-      if (f.goal) this.moving_.add(ribbon([line[line.length - 1], f.goal], 0.012, kStripHeight, p.accent));
-    }
-    for (const n of f.strip.slice(1, -1)) {
-      this.moving_.add(dot(n.position, 0.05, kStripHeight, p.accent));
-    }
-    for (const a of force_arrows(f)) {
-      push_arrow(this.moving_, a.at, a.force, times, p[a.colour], kStripHeight + 0.02);
-    }
-    for (const nearest of [f.left, f.right]) {
-      if (!nearest) continue;
-      this.moving_.add(dot(nearest.point, 0.05, kScanHeight, p.external));
-    }
+    if (!scene.frame) return;
+    const stage = { group: this.moving_, palette: p, robot: scene.frame.pose, radius: scene.radius, times: options.force_scale };
+    for (const layer of scene.layers.values()) if (on(layer)) build_layer(stage, layer);
+  }
+
+  private build_path(scene: SceneState): void {
+    const { columns } = scene;
+    const rows = Math.min(scene.rows, columns.length);
+    if (rows < 2) return;
+    const step = Math.max(1, Math.floor(rows / kMostPath));
+    const xs = columns.get("x");
+    const ys = columns.get("y");
+    const line: Point[] = [];
+    for (let i = 0; i < rows; i += step) line.push({ x: xs[i], y: ys[i] });
+    line.push({ x: xs[rows - 1], y: ys[rows - 1] });
+    this.moving_.add(ribbon(line, 0.045, 0.012, this.palette_.path));
   }
 
   private place_robot(scene: SceneState, follow: boolean): void {
@@ -190,19 +177,20 @@ export class World3 {
     this.last_robot_ = follow ? { x: pose.x, y: pose.y } : null;
   }
 
-  private place_points(scene: SceneState): void {
-    const raw: number[] = [];
-    const filtered: number[] = [];
-    for (const sweep of scene.sweeps) {
-      const found = sweep_points(sweep);
-      for (const [xy, out] of [[found.raw, raw], [found.filtered, filtered]] as const) {
-        for (let i = 0; i < xy.length; i += 2) out.push(xy[i], xy[i + 1], kScanHeight);
-      }
-    }
-    for (const [p, xyz] of [[this.raw_, raw], [this.filtered_, filtered]] as const) {
-      p.geometry.dispose();
-      p.geometry = new THREE.BufferGeometry();
-      p.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-    }
+  private place_points(scene: SceneState, hidden: ReadonlySet<string>): void {
+    const filtered = scene.filtered.shown;
+    set_points(this.raw_, hidden.has(kOwn.scan.name) ? [] : scene.sweeps);
+    set_points(this.filtered_, filtered && !hidden.has(kOwn.filtered.name) ? [filtered] : []);
   }
+}
+
+function set_points(points: THREE.Points, sweeps: PlacedSweep[]): void {
+  const xyz: number[] = [];
+  for (const sweep of sweeps) {
+    const { hits } = sweep_points(sweep);
+    for (let i = 0; i < hits.length; i += 2) xyz.push(hits[i], hits[i + 1], kScanHeight);
+  }
+  points.geometry.dispose();
+  points.geometry = new THREE.BufferGeometry();
+  points.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
 }

@@ -28,6 +28,7 @@ export const icons = {
   cylinder: line(<circle cx="10" cy="10" r="6" />),
   box: line(<rect x="4" y="4" width="12" height="12" />),
   measure: line(<path d="M4 16 16 4M7 16H4v-3M13 4h3v3" />),
+  layers: line(<path d="m10 3 7 4-7 4-7-4zM3 10.5l7 4 7-4M3 14l7 4 7-4" />),
   undo: line(<path d="M8 5 4 9l4 4M4 9h8a4 4 0 0 1 0 8h-2" />),
   redo: line(<path d="m12 5 4 4-4 4M16 9H8a4 4 0 0 0 0 8h2" />),
   fit: line(<path d="M4 8V4h4M12 4h4v4M16 12v4h-4M8 16H4v-4" />),

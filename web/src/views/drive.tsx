@@ -11,7 +11,8 @@ import { use_store } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { icons } from "../ui/icons";
 import { SceneThree } from "../three/view";
-import { Banner, Explain, Legend, Staleness } from "./cards";
+import { Banner, Explain, Staleness } from "./cards";
+import { LayerButton, LayerPanel, panel_cover, use_filtered } from "./layers";
 import { GoalHint, PreviewCard } from "./preview";
 import { scene_keys } from "./keys";
 import { Figures, Tuning } from "./panel";
@@ -33,11 +34,14 @@ export function Drive(): JSX.Element {
   const tool = use_store(app.ui, (u) => u.tool);
   const selection = use_store(app.ui, (u) => u.selection);
   const force_scale = use_store(app.ui, (u) => u.force_scale);
+  const hidden = use_store(app.ui, (u) => u.hidden);
+  const layers = use_store(app.ui, (u) => u.layers);
   const preview = use_store(app.ui, (u) => u.preview);
   const hand = useMemo(() => make_hand(app), [app]);
   const main = useRef<HTMLElement>(null);
 
-  useEffect(() => app.redraw(), [selection, force_scale, tool, preview]);
+  useEffect(() => app.redraw(), [selection, force_scale, hidden, layers, tool, preview]);
+  use_filtered((wanted) => app.want_filtered(wanted));
   useEffect(() => {
     const keys = scene_keys(app, hand);
     addEventListener("keydown", keys.window);
@@ -57,7 +61,7 @@ export function Drive(): JSX.Element {
               on_ready={(redraw) => (app.redraw = redraw)} on_key={canvas_key}
               overlay={() => ({
                 selection: app.ui.value.selection, hovered: hand.hovered, draft: hand.draft,
-                force_scale: app.ui.value.force_scale, ghost: null, future: false,
+                force_scale: app.ui.value.force_scale, hidden: app.ui.value.hidden, ghost: null, future: false,
                 insets: scale_insets(main.current), preview: app.ui.value.preview?.goal ?? null,
               })} />}
         <Tools />
@@ -65,8 +69,9 @@ export function Drive(): JSX.Element {
         {!three && <GoalHint />}
         <Banner />
         <Staleness />
-        <div class="cards"><Legend /><div class="stack"><PreviewCard /><Explain /></div></div>
+        <div class="cards"><div class="stack"><PreviewCard /><Explain /></div></div>
       </main>
+      {layers && <LayerPanel scene={app.scene} on_close={() => app.show_layers(false)} />}
       <Transport />
       <aside class="panel" aria-label="Figures and gains">
         <Figures />
@@ -133,6 +138,7 @@ function free_insets(main: HTMLElement | null): Insets {
   if (tools) insets.left = tools.right - box.left + 16;
   const values = main.querySelector(".values:not(.hint)")?.getBoundingClientRect();
   if (values && values.height > 0) insets.top = values.bottom - box.top + 12;
+  insets.right = Math.max(insets.right, panel_cover(main) + 16);
   const cards = main.querySelector(".cards")?.getBoundingClientRect();
   if (cards && cards.height > 0) insets.bottom = box.bottom - cards.top + 12;
   return insets;
@@ -153,6 +159,7 @@ function Tools(): JSX.Element {
   const session = use_store(app.ui, (u) => u.session);
   const tool = use_store(app.ui, (u) => u.tool);
   const three = use_store(app.ui, (u) => u.three);
+  const open = use_store(app.ui, (u) => u.layers);
   const undo = use_store(app.ui, (u) => u.undo);
   const redo = use_store(app.ui, (u) => u.redo);
   const drives = session?.robot.drives ?? false;
@@ -161,8 +168,9 @@ function Tools(): JSX.Element {
     <button class={`text-tool ${three ? "on" : ""}`} aria-pressed={three} data-testid="three"
       aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
   );
+  const layers = <LayerButton open={open} on_press={(open) => app.show_layers(open)} />;
   // In 3D one looks; editing is done from above, where a place is one place.
-  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{threed}</div>;
+  if (three) return <div class="tools" role="toolbar" aria-label="Tools">{layers}{threed}</div>;
   const button = (name: Tool, label: string, key: string, can: boolean) => can && (
     <button class={tool === name ? "on" : ""} aria-pressed={tool === name}
        aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
@@ -187,6 +195,7 @@ function Tools(): JSX.Element {
           app.view.fitted = true;
           app.redraw();
         }}>{icons.fit}</button>
+      {layers}
       {threed}
     </div>
   );

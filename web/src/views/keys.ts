@@ -42,6 +42,7 @@ export function scene_keys(app: App, hand: Hand): {
     b: () => set({ tool: "box", selection: null }),
     m: () => set({ tool: "measure", selection: null }),
     n: () => select_next(app),
+    l: () => app.show_layers(!app.ui.value.layers),
     "3": () => set({ three: !app.ui.value.three }),
     f: () => {
       app.view.fitted = true;

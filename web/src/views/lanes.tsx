@@ -1,33 +1,47 @@
 // web/src/views/lanes.tsx: the signals of a stored run over its whole time, with a cursor; a second
 // run's in the second colour.
 import { JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { StoredRun } from "../link/stored";
-import { Plot, resampled } from "../plots/plot";
-import { Column } from "../state/columns";
+import { Plot, gapped, resampled } from "../plots/plot";
+import { Pick } from "../ui/controls";
 import { fixed } from "../words";
+import { measure_words } from "./signals";
 
-interface Lane { name: string; column: Column; unit: string; least: [number, number]; digits: number }
+interface Lane { name: string; column: string; unit: string; least: [number, number]; digits: number }
 const kLanes: Lane[] = [
   { name: "Clearance", column: "clearance", unit: "m", least: [0, 1], digits: 2 },
   { name: "Speed", column: "v", unit: "m/s", least: [0, 0.2], digits: 2 },
   { name: "Turn rate", column: "omega", unit: "rad/s", least: [-0.2, 0.2], digits: 2 },
-  { name: "Elastic force", column: "elastic", unit: "m", least: [0, 0.2], digits: 2 },
 ];
 const kMostPoints = 2000;
 
 export function Lanes(props: {
   run: StoredRun; other: StoredRun | null; time: number; theme: string; on_pick: (t: number) => void;
 }): JSX.Element {
+  const [picked, pick] = useState<string | null>(null);
+  const { measures } = props.run.columns;
+  const measure = measures.find((m) => m.name === picked) ?? measures.at(0);
+  const rows: [Lane, JSX.Element | undefined][] = kLanes.map((lane) => [lane, undefined]);
+  if (measure) {
+    const choices = measures.map(({ name }) => {
+      const { of, label } = measure_words(name);
+      return { value: name, label: of === label ? of : `${of}: ${label.toLowerCase()}` };
+    });
+    rows.push([{ name: measure.name, column: measure.name, unit: measure.unit, least: [0, 0.2], digits: 2 },
+      <Pick label="Measure of the controller" name="lane-measure" value={measure.name} choices={choices}
+        on_pick={pick} />]);
+  }
   return (
     <>
-      {kLanes.map((lane) => <LaneRow key={lane.name + (props.other ? "2" : "1")} lane={lane} {...props} />)}
+      {rows.map(([lane, title]) =>
+        <LaneRow key={lane.column + (props.other ? "2" : "1")} lane={lane} title={title} {...props} />)}
     </>
   );
 }
 
 function LaneRow(props: {
-  lane: Lane; run: StoredRun; other: StoredRun | null; time: number; theme: string;
+  lane: Lane; title?: JSX.Element; run: StoredRun; other: StoredRun | null; time: number; theme: string;
   on_pick: (t: number) => void;
 }): JSX.Element {
   const { lane, run, other } = props;
@@ -44,9 +58,9 @@ function LaneRow(props: {
   useEffect(() => plot.current?.theme(), [props.theme]);
   useEffect(() => {
     const t = thinned(run, "t");
-    const columns: ArrayLike<number>[] = [t, thinned(run, lane.column)];
+    const columns: ArrayLike<number | null>[] = [t, gapped(thinned(run, lane.column))];
     if (other) {
-      columns.push(resampled(t, other.columns.get("t"), other.columns.get(lane.column)) as ArrayLike<number>);
+      columns.push(resampled(t, other.columns.get("t"), other.columns.get(lane.column)));
     }
     plot.current?.update(columns, 0, run.duration, props.time);
   });
@@ -54,7 +68,7 @@ function LaneRow(props: {
   const value = run.rows > 0 ? run.columns.at(lane.column, row) : null;
   return (
     <div class="lane">
-      <span>{lane.name}</span>
+      {props.title ?? <span>{lane.name}</span>}
       <div class="plot" ref={box} />
       <b class="num">{fixed(value, lane.digits)} {lane.unit}</b>
     </div>
@@ -62,7 +76,7 @@ function LaneRow(props: {
 }
 
 /** A column of the run with no more points than a screen can show. */
-function thinned(run: StoredRun, column: Column): Float64Array {
+function thinned(run: StoredRun, column: string): Float64Array {
   const all = run.columns.get(column);
   const step = Math.max(1, Math.ceil(all.length / kMostPoints));
   return step === 1 ? all.slice() : all.filter((_, i) => i % step === 0);

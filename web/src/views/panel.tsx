@@ -1,16 +1,15 @@
-// web/src/views/panel.tsx: the right panel of Drive: four figures, controller, filter, vehicle,
-// gains and live signals.
+// web/src/views/panel.tsx: the right panel of Drive: four figures, controller, filter, vehicle and
+// gains; below them the signals.
 import { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { use_app } from "../app";
 import { Catalog, Choice, ParameterInfo, SessionState } from "../contract";
-import { Line, Plot } from "../plots/plot";
-import { Column } from "../state/columns";
 import { goal_distance } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
 import { Pick, Segments, Slider } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { fixed, state_word, titled } from "../words";
+import { Signals } from "./signals";
 
 export function Figures(): JSX.Element {
   const app = use_app();
@@ -56,7 +55,7 @@ export function Tuning(): JSX.Element {
     <>
       <Choices session={session} catalog={catalog} />
       {session.robot.drives && <Gains session={session} catalog={catalog} />}
-      <Signals drives={session.robot.drives} />
+      <Signals />
     </>
   );
 }
@@ -145,95 +144,4 @@ function Gain(props: { info: ParameterInfo; session: SessionState }): JSX.Elemen
         return held;
       }} />
   );
-}
-
-const kWindow = 20; // [s] of run clock
-const kMostPoints = 900;
-
-interface SignalSpec {
-  name: string; lines: (Line & { column: Column })[]; least: [number, number];
-  value: (row: (c: Column) => number) => string;
-}
-const kSignals: SignalSpec[] = [
-  { name: "Clearance", least: [0, 1], lines: [{ label: "Clearance", colour: "filtered", column: "clearance" }],
-    value: (at) => `${fixed(at("clearance"), 2)} m` },
-  { name: "Speed, turn rate", least: [-0.1, 0.2],
-    lines: [{ label: "Speed", colour: "ok", column: "v" },
-      { label: "Turn rate", colour: "path", column: "omega", dash: [5, 3] }],
-    value: (at) => `${fixed(at("v"), 2)} m/s · ${fixed(at("omega"), 2)} rad/s` },
-  { name: "External force L / R, elastic", least: [0, 0.2],
-    lines: [{ label: "Left", colour: "external", column: "left" },
-      { label: "Right", colour: "external", column: "right", dash: [5, 3] },
-      { label: "Elastic", colour: "elastic", column: "elastic" }],
-    value: (at) => `${fixed(at("left"), 2)} / ${fixed(at("right"), 2)} m` },
-];
-
-/** The lines of a signal as words, each with a stroke of its colour and dash. */
-function Key(props: { lines: Line[] }): JSX.Element | null {
-  if (props.lines.length < 2) return null;
-  return (
-    <span class="key">
-      {props.lines.map((l) => (
-        <span key={l.label}><i class={`swatch c-${l.colour} ${l.dash ? "dashed" : ""}`} />{l.label}</span>
-      ))}
-    </span>
-  );
-}
-
-function Signals(props: { drives: boolean }): JSX.Element {
-  const shown = props.drives ? kSignals : kSignals.slice(0, 2);
-  return (
-    <section class="signals">
-      <h2>Signals <small>last {kWindow} s</small></h2>
-      {shown.map((s) => <Signal key={s.name} spec={s} />)}
-    </section>
-  );
-}
-
-function Signal(props: { spec: SignalSpec }): JSX.Element {
-  const app = use_app();
-  const theme = use_store(app.ui, (u) => u.theme);
-  const box = useRef<HTMLDivElement>(null);
-  const value = useRef<HTMLElement>(null);
-  const plot = useRef<Plot | null>(null);
-  useEffect(() => {
-    plot.current = new Plot(box.current!, props.spec.lines, 66, props.spec.least);
-    let seen = -1;
-    let seen_at = NaN;
-    const update = () => {
-      const { columns } = app.scene;
-      const end = columns.length;
-      const t = end > 0 ? columns.at("t", end - 1) : 0;
-      if (end === seen && t === seen_at) return;
-      seen = end;
-      seen_at = t;
-      const from = columns.row_at(t - kWindow);
-      const step = Math.max(1, Math.floor((end - from) / kMostPoints));
-      const cut = (name: Column) => every(columns.get(name).subarray(from, end), step);
-      plot.current!.update([cut("t"), ...props.spec.lines.map((l) => cut(l.column))],
-        Math.max(0, t - kWindow), Math.max(t, kWindow), null);
-      if (value.current) {
-        value.current.textContent = end > 0 ? props.spec.value((c) => columns.at(c, end - 1)) : "–";
-      }
-    };
-    const timer = setInterval(update, 100);
-    update();
-    return () => {
-      clearInterval(timer);
-      plot.current?.destroy();
-    };
-  }, []);
-  useEffect(() => plot.current?.theme(), [theme]);
-  return (
-    <figure class="signal" aria-label={`${props.spec.name} over the last ${kWindow} seconds`}>
-      <figcaption><span>{props.spec.name}</span><b class="num" ref={value} /></figcaption>
-      <div class="plot" ref={box} />
-      <Key lines={props.spec.lines} />
-    </figure>
-  );
-}
-
-function every(values: Float64Array, step: number): Float64Array {
-  if (step === 1) return values.slice();
-  return values.filter((_, i) => i % step === 0);
 }

@@ -7,19 +7,19 @@ import { Metrics, RunItem } from "../contract";
 import { Ghost } from "../draw/scene";
 import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
-import { explain } from "../explain";
 import { Bounds, include } from "../geometry";
 import { Player } from "../link/player";
 import * as rest from "../link/rest";
-import { StoredRun } from "../link/stored";
+import { FetchFrames, StoredRun } from "../link/stored";
 import { scene_bounds } from "../state/scene";
 import { use_store } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { Dialog, Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
-import { clock, driver_word, fixed, run_word, sentence_of, speed_word, titled } from "../words";
+import { clock, driver_word, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
 import { Lanes } from "./lanes";
+import { LayerButton, LayerPanel, panel_cover, use_filtered } from "./layers";
 import { typing } from "./keys";
 
 /** Fetches a run's row and then its frames; tells `changed` as they come. */
@@ -33,7 +33,9 @@ function use_stored(id: number | null, changed: () => void): { run: StoredRun | 
     const stop = new AbortController();
     const begin = async () => {
       const item = await rest.get<RunItem>(`/runs/${id}`, stop.signal);
-      const stored = new StoredRun(item, (from, limit, signal) => rest.get_bytes(`/runs/${id}/frames?from=${from}&limit=${limit}`, signal));
+      const pages = (what: string): FetchFrames => (from, limit, signal) =>
+        rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
+      const stored = new StoredRun(item, pages("frames"), pages("filtered"));
       set_run(stored);
       await stored.load(changed, stop.signal);
     };
@@ -72,6 +74,9 @@ function Opened(props: {
   const app = use_app();
   const { run, other } = props;
   const theme = use_store(app.ui, (u) => u.theme);
+  const hidden = use_store(app.ui, (u) => u.hidden);
+  const force_scale = use_store(app.ui, (u) => u.force_scale);
+  const [layers, set_layers] = useState(false);
   const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
   const redraw = useRef<() => void>(() => undefined);
   const frame = useRef<HTMLElement>(null);
@@ -88,6 +93,10 @@ function Opened(props: {
     const row = other.columns.row_at(player.time);
     if (other.scene.rows !== row + 1) other.seek(row);
   }
+  use_filtered((wanted) => {
+    run.want_filtered(wanted);
+    player.show_again();
+  });
   useEffect(() => redraw.current());
 
   useEffect(() => {
@@ -132,6 +141,7 @@ function Opened(props: {
   const ghost = (): Ghost | null => other && {
     columns: other.columns, rows: other.columns.row_at(player.time) + 1,
     pose: other.rows > 0 ? pose_at(other, player.time) : null, radius: other.scene.radius,
+    hull: other.scene.hull,
   };
   const bounds = (): Bounds => {
     const b = scene_bounds(run.scene);
@@ -144,15 +154,17 @@ function Opened(props: {
       <section class="view" ref={frame} aria-busy={!run.done && !run.error} aria-label={`Run ${run.item.id}`} data-testid="run-view">
         <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
           label={`Run ${run.item.id} from above`} bounds={bounds}
-          insets={() => ({ left: 20, top: 20, right: 20, bottom: card_height(frame.current) + 24 })}
+          insets={() => free_insets(frame.current)}
           on_ready={(request) => (redraw.current = request)}
           overlay={() => ({
-            selection: null, hovered: null, draft: {}, force_scale: app.ui.value.force_scale,
-            ghost: ghost(), future: true, insets: scale_insets(frame.current),
+            selection: null, hovered: null, draft: {}, force_scale,
+            hidden, ghost: ghost(), future: true, insets: scale_insets(frame.current),
             path_colour: other ? getComputedStyle(document.documentElement).getPropertyValue("--accent").trim() : undefined,
           })} />
+        <LayerButton class="icon" open={layers} on_press={set_layers} />
         <Instant run={run} />
       </section>
+      {layers && <LayerPanel scene={run.scene} on_close={() => set_layers(false)} />}
       <section class="lanes" aria-label="Time and signals">
         <div class="controls">
           <button class="btn" aria-label="One tick back" title="One tick back (,)"
@@ -185,7 +197,7 @@ function Opened(props: {
 function Instant(props: { run: StoredRun }): JSX.Element | null {
   const f = props.run.scene.frame;
   if (!f) return null;
-  const said = explain(f);
+  const said = props.run.scene.words ?? { what: frame_word(f).word, why: "" };
   return (
     <div class={`card explain tone-${f.hold !== "none" ? "bad" : "accent"}`} data-testid="run-explain">
       <b>{props.run.scene.world ? said.what : "Replaying the log"}</b>
@@ -194,9 +206,11 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
   );
 }
 
-/** [px] that the sentence takes up at the bottom of the view. */
-function card_height(view: HTMLElement | null): number {
-  return view?.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
+/** What the sentence at the bottom and the panel of layers leave free. */
+function free_insets(view: HTMLElement | null): Insets {
+  const card = view?.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
+  const panel = view ? panel_cover(view) : 0;
+  return { left: 20, top: 20, right: 20 + panel, bottom: card + 24 };
 }
 
 /** The scale bar stands at the lower right, above the sentence where that reaches there. */

@@ -22,6 +22,7 @@ export const kShortcuts: [string[], string][] = [
   [["Ctrl+Shift+Z"], "Do again"],
   [["F"], "Fit the world into the view"],
   [["+", "−"], "Zoom"],
+  [["L"], "Layers: what the colours mean, each with its switch (Enter)"],
   [["3"], "Seen from above or in 3D"],
   [["Esc"], "Leave what is being drawn; deselect"],
   [["?"], "This list"],

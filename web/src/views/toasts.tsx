@@ -2,7 +2,6 @@
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_app } from "../app";
-import { explain } from "../explain";
 import { use_pulse, use_store } from "../state/store";
 import { icons } from "../ui/icons";
 import { state_word } from "../words";
@@ -31,8 +30,7 @@ export function Spoken(): JSX.Element {
   const word = state_word(app.scene.frame, session, link.phase === "open").word;
   const last = useRef(word);
   useEffect(() => {
-    const frame = app.scene.frame;
-    if (last.current !== word) app.say(`${word}. ${frame ? explain(frame).what : ""}`);
+    if (last.current !== word) app.say(`${word}. ${app.scene.words?.what ?? ""}`);
     last.current = word;
   }, [word]);
   return <div class="spoken" aria-live="polite">{spoken}</div>;

@@ -1,0 +1,187 @@
+// web/src/draw/layers.ts: what a controller shows, from above: a drawing for each kind of layer.
+import { Point, Pose } from "../geometry";
+import {
+  LayerKind, LayerStyle, LayerView, arcs, arrows, circles, grade_of, grid_place, kGrades, lines, places, sectors,
+} from "../layer";
+import { is_scaled, kTokens } from "../state/layers";
+import { Context, arrow, trace } from "./marks";
+import { Palette } from "./palette";
+import { View } from "./view";
+
+/** Where and how a layer is drawn. */
+interface Canvas {
+  g: Context;
+  view: View;
+  palette: Palette;
+  robot: Pose;
+  radius: number; // [m] of the robot's hull
+  times: number;  // by which forces are drawn enlarged
+}
+type Draw = (c: Canvas, layer: LayerView, colour: string) => void;
+
+const kFew = 3;         // points up to which each is large, and a line has no room to bend
+const kRing = 0.1;      // [m] from the hull to a polar's foot
+const kTallest = 0.5;   // [m] of a sector at twice the level and above
+const kAlpha: Record<LayerStyle, number> = { solid: 1, dashed: 1, faint: 0.4 };
+
+function draw_points(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view, palette } = c;
+  const all = places(layer, c.robot);
+  const tied = layer.style === "dashed";
+  if (tied) {
+    g.strokeStyle = colour;
+    g.setLineDash([3, 4]);
+    g.lineWidth = 1.3;
+    g.beginPath();
+    for (const p of all) trace(g, view, [c.robot, p]);
+    g.stroke();
+    g.setLineDash([]);
+  }
+  const large = all.length <= kFew;
+  const radius = tied ? 5 : large ? 4.5 : 2.5;
+  g.fillStyle = colour;
+  g.strokeStyle = palette.bg;
+  g.lineWidth = tied ? 2 : large ? 1.5 : 0.75;
+  for (const p of all) {
+    g.beginPath();
+    g.arc(view.sx(p.x), view.sy(p.y), radius, 0, 2 * Math.PI);
+    g.fill();
+    g.stroke();
+  }
+}
+
+/** A solid line bends and has no corners, like a string; a dashed one is not there yet, a dotted one planned. */
+function draw_polyline(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view } = c;
+  g.strokeStyle = colour;
+  g.lineJoin = "round";
+  g.lineCap = "round";
+  g.lineWidth = layer.style === "solid" ? 3 : 2.3;
+  if (layer.style === "dashed") g.setLineDash(layer.tone === "plan" ? [2, 6] : [7, 6]);
+  g.beginPath();
+  for (const line of lines(layer, c.robot)) {
+    if (layer.style === "solid" && line.length > kFew) trace_smooth(g, view, line);
+    else trace(g, view, line);
+  }
+  g.stroke();
+  g.setLineDash([]);
+}
+
+/** Through the middles of the line's pieces, bent towards its corners. */
+function trace_smooth(g: Context, view: View, line: Point[]): void {
+  const at = line.map((p) => view.to_screen(p));
+  g.moveTo(at[0].x, at[0].y);
+  for (let i = 1; i < at.length - 1; ++i) {
+    g.quadraticCurveTo(at[i].x, at[i].y, (at[i].x + at[i + 1].x) / 2, (at[i].y + at[i + 1].y) / 2);
+  }
+  g.lineTo(at[at.length - 1].x, at[at.length - 1].y);
+}
+
+function draw_arrows(c: Canvas, layer: LayerView, colour: string): void {
+  const force = is_scaled(layer);
+  const dash = layer.style === "dashed" ? [4, 3] : [];
+  for (const { at, by } of arrows(layer, c.robot)) arrow(c.g, c.view, at, by, force ? c.times : 1, colour, force ? 3 : 2, dash);
+}
+
+function draw_circles(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view } = c;
+  g.strokeStyle = colour;
+  g.lineWidth = 2;
+  if (layer.style === "dashed") g.setLineDash([5, 6]);
+  for (const { at, radius } of circles(layer, c.robot)) {
+    g.beginPath();
+    g.arc(view.sx(at.x), view.sy(at.y), radius * view.scale, 0, 2 * Math.PI);
+    g.stroke();
+  }
+  g.setLineDash([]);
+}
+
+/** What is muted are the many others beside the one that counts. */
+function draw_arcs(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view } = c;
+  const among_many = layer.style === "faint" || layer.tone === "muted";
+  if (layer.tone === "muted") g.globalAlpha *= 0.4;
+  g.strokeStyle = colour;
+  g.lineWidth = among_many ? 1 : 3;
+  if (layer.style === "dashed") g.setLineDash([5, 4]);
+  g.beginPath();
+  for (const line of arcs(layer, c.robot)) trace(g, view, line);
+  g.stroke();
+  g.setLineDash([]);
+}
+
+/**
+ * Cells more likely occupied than free, the surer the stronger. A path a shade, not a call a cell:
+ * there are thousands.
+ */
+function draw_grid(c: Canvas, layer: LayerView, colour: string): void {
+  const place = grid_place(layer, c.robot);
+  if (!place) return;
+  const { g, view } = c;
+  const { corner, columns } = place;
+  const edge = place.cell * view.scale;
+  const alpha = g.globalAlpha;
+  g.save();
+  g.translate(view.sx(corner.x), view.sy(corner.y));
+  g.rotate(-corner.heading);
+  g.fillStyle = colour;
+  for (let grade = 0; grade < kGrades; ++grade) {
+    g.globalAlpha = (alpha * 0.5 * (grade + 1)) / kGrades;
+    g.beginPath();
+    layer.cells.forEach((cell, at) => {
+      // The screen's y axis points down.
+      if (grade_of(cell) === grade) g.rect((at % columns) * edge, -(Math.floor(at / columns) + 1) * edge, edge, edge);
+    });
+    g.fill();
+  }
+  g.restore();
+}
+
+/** A rose about the robot; sectors from the level up in their own colour. */
+function draw_polar(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view } = c;
+  const x = view.sx(c.robot.x);
+  const y = view.sy(c.robot.y);
+  const foot = (c.radius + kRing) * view.scale;
+  g.globalAlpha *= 0.6;
+  for (const { from, to, height, free } of sectors(layer, c.robot)) {
+    g.fillStyle = free ? c.palette.muted : colour;
+    g.beginPath();
+    g.arc(x, y, foot + height * kTallest * view.scale, -from, -to, true);
+    g.arc(x, y, foot, -to, -from);
+    g.closePath();
+    g.fill();
+  }
+}
+
+function draw_text(c: Canvas, layer: LayerView, colour: string): void {
+  const { g, view } = c;
+  g.font = `600 12px ${c.palette.font}`;
+  g.textAlign = "center";
+  g.textBaseline = "middle";
+  g.fillStyle = colour;
+  places(layer, c.robot).forEach((p, i) => g.fillText(layer.text[i] ?? "", view.sx(p.x), view.sy(p.y)));
+}
+
+const kDraw: Record<LayerKind, Draw> = {
+  points: draw_points, polyline: draw_polyline, arrows: draw_arrows, circles: draw_circles, arcs: draw_arcs,
+  grid: draw_grid, polar: draw_polar, text: draw_text,
+};
+
+export function draw_layer(c: Canvas, layer: LayerView): void {
+  c.g.globalAlpha = kAlpha[layer.style];
+  kDraw[layer.kind](c, layer, c.palette[kTokens[layer.tone]]);
+  c.g.globalAlpha = 1;
+}
+
+/** What lies below the robot; a strip of one step ends inside the hull, so it lies on top of it. */
+const kBelow: LayerKind[] = ["grid", "polar", "circles"];
+const kBelowDashed: LayerKind[] = ["polyline", "points"];
+const kOrder: LayerKind[] = [...kBelow, "arcs", "polyline", "points", "arrows", "text"];
+
+/** `layers` in the order in which they lie: those below the robot, and those above. */
+export function stacked(layers: LayerView[]): { below: LayerView[]; above: LayerView[] } {
+  const sorted = [...layers].sort((a, b) => kOrder.indexOf(a.kind) - kOrder.indexOf(b.kind));
+  const under = (l: LayerView) => kBelow.includes(l.kind) || (l.style === "dashed" && kBelowDashed.includes(l.kind));
+  return { below: sorted.filter(under), above: sorted.filter((l) => !under(l)) };
+}

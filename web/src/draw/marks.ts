@@ -1,0 +1,77 @@
+// web/src/draw/marks.ts: strokes that several drawings share: arrows, dots, the travelled path.
+import { Point } from "../geometry";
+import { Columns } from "../state/columns";
+import { View } from "./view";
+
+export type Context = CanvasRenderingContext2D;
+const kMostPathPoints = 3000;
+
+/** Rows [from, to) of the path. Long paths are drawn with fewer corners. */
+export function draw_path(g: Context, view: View, columns: Columns, from: number, to: number,
+  colour: string, width: number, alpha = 1): void {
+  if (to - from < 2) return;
+  const xs = columns.get("x");
+  const ys = columns.get("y");
+  const step = Math.max(1, Math.floor((to - from) / kMostPathPoints));
+  g.strokeStyle = colour;
+  g.lineWidth = width;
+  g.lineJoin = "round";
+  g.lineCap = "round";
+  g.globalAlpha = alpha;
+  g.beginPath();
+  g.moveTo(view.sx(xs[from]), view.sy(ys[from]));
+  for (let i = from + step; i < to; i += step) g.lineTo(view.sx(xs[i]), view.sy(ys[i]));
+  g.lineTo(view.sx(xs[to - 1]), view.sy(ys[to - 1]));
+  g.stroke();
+  g.globalAlpha = 1;
+}
+
+/** An arrow of `v` metres from `at`; too short ones are left out, very long ones are cut at 2 m. */
+export function arrow(g: Context, view: View, at: Point, v: Point, times: number, colour: string,
+  width = 3, dash: number[] = []): void {
+  const metres = Math.hypot(v.x, v.y) * times;
+  const length = Math.min(2, metres) * view.scale;
+  if (!(length >= 5)) return;
+  const head = Math.min(11, length * 0.6);
+  const angle = Math.atan2(-v.y, v.x);
+  g.save();
+  g.translate(view.sx(at.x), view.sy(at.y));
+  g.rotate(angle);
+  g.strokeStyle = colour;
+  g.fillStyle = colour;
+  g.lineWidth = Math.min(width, length / 3);
+  g.lineCap = dash.length > 0 ? "butt" : "round";
+  g.setLineDash(dash);
+  g.beginPath();
+  g.moveTo(0, 0);
+  g.lineTo(Math.max(0, length - head + 2), 0);
+  g.stroke();
+  g.beginPath();
+  g.moveTo(length, 0);
+  g.lineTo(length - head, -head * 0.46);
+  g.lineTo(length - head, head * 0.46);
+  g.fill();
+  g.restore();
+}
+
+/** A line through `points`, in the present stroke. */
+export function trace(g: Context, view: View, points: Point[]): void {
+  points.forEach((p, i) => {
+    if (i === 0) g.moveTo(view.sx(p.x), view.sy(p.y));
+    else g.lineTo(view.sx(p.x), view.sy(p.y));
+  });
+}
+
+/** Discs of `radius` [px] at x, y alternating; those outside of the window are left out. */
+export function dots(g: Context, view: View, xy: Float32Array, colour: string, radius: number): void {
+  g.fillStyle = colour;
+  g.beginPath();
+  for (let i = 0; i < xy.length; i += 2) {
+    const x = view.sx(xy[i]);
+    const y = view.sy(xy[i + 1]);
+    if (x < -4 || y < -4 || x > view.width + 4 || y > view.height + 4) continue;
+    g.moveTo(x + radius, y);
+    g.arc(x, y, radius, 0, 2 * Math.PI);
+  }
+  g.fill();
+}

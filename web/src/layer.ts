@@ -1,0 +1,142 @@
+// web/src/layer.ts: what a controller shows, as values of a kind, and those values as shapes in W.
+import { Pose, wrap_angle } from "./geometry";
+
+export const kLayerKinds =
+  ["points", "polyline", "arrows", "circles", "arcs", "grid", "polar", "text"] as const;
+export type LayerKind = (typeof kLayerKinds)[number];
+/** Which meaning a colour has. */
+export const kTones = ["accent", "internal", "external", "elastic", "plan", "moving", "muted", "refused", "good"] as const;
+export type Tone = (typeof kTones)[number];
+export const kLayerStyles = ["solid", "dashed", "faint"] as const;
+export type LayerStyle = (typeof kLayerStyles)[number];
+
+/** One thing shown; `values` by kind as telemetry.fbs says. */
+export interface LayerView {
+  name: string;    // key of its toggle
+  label: string;   // for people
+  unit: string;    // of the values that are no positions
+  kind: LayerKind;
+  robot: boolean;  // values are in R, else in W
+  tone: Tone;
+  style: LayerStyle;
+  axes: number;    // coordinates of a position
+  level: number;   // of a polar: below it a sector is free
+  values: Float32Array;
+  cells: Uint8Array; // of a grid: 0 free .. 254 occupied, kUnknownCell
+  text: string[];    // a line a position
+}
+
+/** Byte of a cell of which nothing is known. */
+export const kUnknownCell = 255;
+
+/** On the ground of W unless the layer says how high. */
+export interface Place { x: number; y: number; z: number | null }
+
+/** Where the values of `layer` are meant from: the robot's pose, or the origin of W. */
+function base_of(layer: LayerView, robot: Pose): Pose {
+  return layer.robot ? robot : { x: 0, y: 0, heading: 0 };
+}
+
+/** Calls `each(place, at)` with every position and where it begins in the values, `stride` apart. */
+function each_place(layer: LayerView, robot: Pose, more: number, each: (p: Place, at: number) => void): void {
+  const base = base_of(layer, robot);
+  const c = Math.cos(base.heading);
+  const s = Math.sin(base.heading);
+  const { values, axes } = layer;
+  for (let at = 0; at + axes + more <= values.length; at += axes + more) {
+    const [x, y] = [values[at], values[at + 1]];
+    each({ x: base.x + c * x - s * y, y: base.y + s * x + c * y, z: axes > 2 ? values[at + 2] : null }, at);
+  }
+}
+
+/** The positions of points and of text. */
+export function places(layer: LayerView, robot: Pose): Place[] {
+  const out: Place[] = [];
+  each_place(layer, robot, 0, (p) => out.push(p));
+  return out;
+}
+
+/** The lines of a polyline: a position that is not a number begins a new one. */
+export function lines(layer: LayerView, robot: Pose): Place[][] {
+  const out: Place[][] = [[]];
+  for (const p of places(layer, robot)) {
+    if (Number.isFinite(p.x) && Number.isFinite(p.y)) out[out.length - 1].push(p);
+    else out.push([]);
+  }
+  return out.filter((line) => line.length > 1);
+}
+
+/** Arrows: from a place, by a vector in W. */
+export function arrows(layer: LayerView, robot: Pose): { at: Place; by: Place }[] {
+  const out: { at: Place; by: Place }[] = [];
+  const { heading } = base_of(layer, robot);
+  const c = Math.cos(heading);
+  const s = Math.sin(heading);
+  const { values, axes } = layer;
+  each_place(layer, robot, axes, (at, i) => {
+    const [dx, dy] = [values[i + axes], values[i + axes + 1]];
+    out.push({ at, by: { x: c * dx - s * dy, y: s * dx + c * dy, z: axes > 2 ? values[i + axes + 2] : 0 } });
+  });
+  return out;
+}
+
+export function circles(layer: LayerView, robot: Pose): { at: Place; radius: number }[] {
+  const out: { at: Place; radius: number }[] = [];
+  each_place(layer, robot, 1, (at, i) => out.push({ at, radius: layer.values[i + layer.axes] }));
+  return out;
+}
+
+const kArcPoints = 8; // corners of an arc
+
+/** Motions of constant curvature from the robot's pose, as lines. */
+export function arcs(layer: LayerView, robot: Pose): Place[][] {
+  const out: Place[][] = [];
+  for (let at = 0; at + 2 <= layer.values.length; at += 2) {
+    const [length, turn] = [layer.values[at], layer.values[at + 1]];
+    const line: Place[] = [];
+    for (let k = 0; k <= kArcPoints; ++k) {
+      const half = (turn * k) / kArcPoints / 2;
+      // The chord of an arc: its length sinc(turn / 2) along the middle heading.
+      const chord = ((length * k) / kArcPoints) * (Math.abs(half) < 1e-6 ? 1 : Math.sin(half) / half);
+      line.push({ x: robot.x + chord * Math.cos(robot.heading + half), y: robot.y + chord * Math.sin(robot.heading + half), z: null });
+    }
+    out.push(line);
+  }
+  return out;
+}
+
+/** A grid's place: the outer corner of its first cell and the way its rows lie, in W. */
+export interface GridPlace { corner: Pose; cell: number; columns: number }
+export function grid_place(layer: LayerView, robot: Pose): GridPlace | null {
+  const [x, y, cell, columns] = layer.values;
+  if (!(cell > 0) || !(columns >= 1)) return null;
+  const base = base_of(layer, robot);
+  const c = Math.cos(base.heading);
+  const s = Math.sin(base.heading);
+  return { corner: { x: base.x + c * x - s * y, y: base.y + s * x + c * y, heading: base.heading }, cell, columns };
+}
+
+const kEven = 127;        // as likely free as occupied
+export const kGrades = 6; // shades of occupied cells
+
+/** 0 .. kGrades - 1: how surely a cell is occupied; -1 when it is not. */
+export function grade_of(cell: number): number {
+  if (cell === kUnknownCell || cell <= kEven) return -1;
+  return Math.floor(((cell - kEven) * kGrades) / (kUnknownCell - kEven));
+}
+
+/** The sectors of a polar about the robot that something is in: bearings in W, height 0 .. 1. */
+export interface Sector { from: number; to: number; height: number; free: boolean }
+export function sectors(layer: LayerView, robot: Pose): Sector[] {
+  const { values, level } = layer;
+  if (!(level > 0)) return [];
+  const width = (2 * Math.PI) / values.length;
+  const zero = base_of(layer, robot).heading;
+  const out: Sector[] = [];
+  values.forEach((density, k) => {
+    if (!(density > 0)) return;
+    const from = wrap_angle(zero + k * width);
+    out.push({ from, to: from + width, height: Math.min(1, density / (2 * level)), free: density < level });
+  });
+  return out;
+}

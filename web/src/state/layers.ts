@@ -1,0 +1,111 @@
+// web/src/state/layers.ts: the layers there are to show, in the page's own words and in those of the
+// controller, and which of them are switched off.
+import type { Palette } from "../draw/palette";
+import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
+import type { SceneState } from "./scene";
+
+export type Token = Exclude<keyof Palette, "font">;
+
+/** One palette for what colours mean; Foxglove's views have the same. */
+export const kTokens: Record<Tone, Token> = {
+  accent: "accent", internal: "internal", external: "external", elastic: "elastic", plan: "accent", moving: "warn",
+  muted: "muted", refused: "bad", good: "ok",
+};
+
+/** A layer as the panel lists it. */
+export interface LayerKey {
+  name: string;
+  label: string;
+  token: Token;
+  kind: LayerKind;
+  style: LayerStyle;
+  scaled: boolean; // its arrows are lengths that may be drawn enlarged
+}
+
+const own = (name: string, label: string, token: Token, kind: LayerKind, style: LayerStyle = "solid"): LayerKey =>
+  ({ name, label, token, kind, style, scaled: false });
+
+/** What the page draws of every robot, whatever drives it. */
+export const kOwn = {
+  scan: own("scan", "Raw scan", "scan", "points"),
+  filtered: own("filtered", "Filtered scan", "filtered", "points"),
+  ranging: own("ranging", "Sonar, infrared", "scan", "arcs"),
+  path: own("path", "Travelled path", "path", "polyline"),
+  safety: own("safety", "Safety circle", "safe", "circles", "dashed"),
+};
+
+/** A force is a displacement, so without a unit of its own; too short to be seen, it may be drawn enlarged. */
+export function is_scaled(layer: LayerView): boolean {
+  return layer.kind === "arrows" && layer.unit === "";
+}
+
+/** Enters what `layers` are, once each, in the order in which they first came. */
+export function learn_layers(known: Map<string, LayerKey>, layers: LayerView[]): void {
+  for (const layer of layers) {
+    if (known.has(layer.name)) continue;
+    const { name, label, tone, kind, style } = layer;
+    known.set(name, { name, label, token: kTokens[tone], kind, style, scaled: is_scaled(layer) });
+  }
+}
+
+/** What belongs to the sensors rather than to the controller. */
+export function is_sensed(name: string): boolean {
+  return name.startsWith("scan.");
+}
+
+export interface LayerGroup { title: string; keys: LayerKey[] }
+
+/** The panel's rows. Of a log there is only what was sensed and the way. */
+export function layer_groups(scene: SceneState, method: string): LayerGroup[] {
+  const known = [...scene.known.values()];
+  return [
+    { title: "Senses", keys: [kOwn.scan, kOwn.filtered, ...(scene.readings.size > 0 ? [kOwn.ranging] : []),
+      ...known.filter((k) => is_sensed(k.name))] },
+    { title: method, keys: known.filter((k) => !is_sensed(k.name)) },
+    { title: "Robot", keys: [kOwn.path, ...(scene.world ? [kOwn.safety] : [])] },
+  ].filter((group) => group.keys.length > 0);
+}
+
+const kHidden = "tautline.layers.hidden";
+const kOpen = "tautline.layers.open";
+const kRoomFor = 1240; // [px] of a window in which the panel leaves the scene enough
+
+/** What the browser kept under `key`; `usual` where it has nothing or keeps nothing. */
+function kept<T>(key: string, usual: T): T {
+  try {
+    return (JSON.parse(localStorage.getItem(key) ?? "null") as T | null) ?? usual;
+  } catch {
+    return usual;
+  }
+}
+
+function keep(key: string, value: unknown): void {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch {
+    // private windows may refuse; the choice then lasts as long as the page
+  }
+}
+
+/** The layers that were switched off when the page was last here. */
+export function stored_hidden(): ReadonlySet<string> {
+  const names = kept<unknown>(kHidden, []);
+  return new Set(Array.isArray(names) ? names : []);
+}
+
+/** `hidden` with the layer `name` switched the other way, and kept for the next visit. */
+export function toggled(hidden: ReadonlySet<string>, name: string): ReadonlySet<string> {
+  const next = new Set(hidden);
+  if (!next.delete(name)) next.add(name);
+  keep(kHidden, [...next]);
+  return next;
+}
+
+/** Whether the panel was open; at first where there is room for it. */
+export function stored_open(): boolean {
+  return kept(kOpen, innerWidth >= kRoomFor) === true;
+}
+
+export function store_open(open: boolean): void {
+  keep(kOpen, open);
+}

@@ -1,0 +1,87 @@
+// web/src/views/layers.tsx: legend and layers as one panel: what each colour means, with its switch.
+import { JSX } from "preact";
+import { useEffect, useRef } from "preact/hooks";
+import { use_app } from "../app";
+import { LayerKey, kOwn, layer_groups } from "../state/layers";
+import { SceneState } from "../state/scene";
+import { use_pulse, use_store } from "../state/store";
+import { icons } from "../ui/icons";
+
+/** Calls `tell` with whether filtered scans are looked at: while their layer is on and the tab seen. */
+export function use_filtered(tell: (wanted: boolean) => void): void {
+  const app = use_app();
+  const on = use_store(app.ui, (u) => !u.hidden.has(kOwn.filtered.name));
+  const latest = useRef(tell);
+  latest.current = tell;
+  useEffect(() => {
+    const update = () => latest.current(on && document.visibilityState === "visible");
+    update();
+    document.addEventListener("visibilitychange", update);
+    return () => {
+      document.removeEventListener("visibilitychange", update);
+      latest.current(false);
+    };
+  }, [on]);
+}
+
+export function LayerButton(props: { open: boolean; on_press: (open: boolean) => void; class?: string }): JSX.Element {
+  return (
+    <button class={`${props.class ?? ""} ${props.open ? "on" : ""}`} aria-label="Layers: what the colours mean"
+      aria-expanded={props.open} title="Layers (L)" data-testid="layers"
+      onClick={() => props.on_press(!props.open)}>{icons.layers}</button>
+  );
+}
+
+/** Every layer there is: swatch, words, switch. */
+export function LayerPanel(props: { scene: SceneState; on_close: () => void }): JSX.Element {
+  const app = use_app();
+  const hidden = use_store(app.ui, (u) => u.hidden);
+  const times = use_store(app.ui, (u) => u.force_scale);
+  use_pulse(500); // a controller's layers come with its frames
+  const groups = layer_groups(props.scene, app.controller_label(props.scene.controller));
+  const next = { 1: 2, 2: 5, 5: 1 }[times] ?? 1;
+  return (
+    <section class="layers card" aria-label="Layers" data-testid="layer-panel" onKeyDown={(e) => {
+      if (e.key === "Escape") props.on_close();
+    }}>
+      <header>
+        <h2>Layers</h2>
+        {groups.some((g) => g.keys.some((k) => k.scaled)) &&
+          <button class="text scale-button" data-testid="force-scale"
+            title="A force is a displacement in metres; this enlarges its arrow"
+            onClick={() => app.ui.set({ force_scale: next })}>Forces drawn ×{times}</button>}
+        <button class="icon" aria-label="Close" onClick={props.on_close}>{icons.close}</button>
+      </header>
+      <div class="layer-groups">
+        {groups.map((group) => (
+          <div role="group" aria-label={group.title} key={group.title}>
+            <h3>{group.title}</h3>
+            {group.keys.map((key) => <LayerRow key={key.name} of={key} on={!hidden.has(key.name)} />)}
+          </div>
+        ))}
+      </div>
+    </section>
+  );
+}
+
+/** Enter switches it; Space is Stop, here as everywhere. */
+function LayerRow(props: { of: LayerKey; on: boolean }): JSX.Element {
+  const app = use_app();
+  const { name, label, token, kind, style } = props.of;
+  return (
+    <button class="layer" role="switch" aria-checked={props.on} data-testid={`layer-${name}`}
+      onClick={() => app.toggle_layer(name)}>
+      <i class={`swatch c-${token} ${kind} ${style}`} />
+      <span>{label}</span>
+      <i class="switch" />
+    </button>
+  );
+}
+
+/** [px] of `scene`, from its right, that an open panel covers; none where the panel has a place of its own. */
+export function panel_cover(scene: HTMLElement): number {
+  const panel = scene.parentElement?.querySelector(".layers")?.getBoundingClientRect();
+  const box = scene.getBoundingClientRect();
+  const over = panel && panel.left < box.right && panel.top < box.bottom && panel.bottom > box.top;
+  return over ? box.right - panel.left : 0;
+}
