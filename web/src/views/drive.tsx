@@ -168,7 +168,7 @@ function Tools(): JSX.Element {
     <button class={`text-tool ${three ? "on" : ""}`} aria-pressed={three} data-testid="three"
       aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
   );
-  const layers = <LayerButton open={open} on_press={(open) => app.show_layers(open)} />;
+  const layers = <LayerButton class="layers-tool" open={open} on_press={(open) => app.show_layers(open)} />;
   // In 3D one looks; editing is done from above, where a place is one place.
   if (three) return <div class="tools" role="toolbar" aria-label="Tools">{layers}{threed}</div>;
   const button = (name: Tool, label: string, key: string, can: boolean) => can && (

@@ -71,7 +71,7 @@ function LayerRow(props: { of: LayerKey; on: boolean }): JSX.Element {
   return (
     <button class="layer" role="switch" aria-checked={props.on} data-testid={`layer-${name}`}
       onClick={() => app.toggle_layer(name)}>
-      <i class={`swatch c-${token} ${kind} ${style}`} />
+      <i class={`swatch c-${token} is-${kind} ${style}`} />
       <span>{label}</span>
       <i class="switch" />
     </button>

@@ -47,11 +47,13 @@ export function measure_signals(measures: MeasureKey[]): SignalSpec[] {
   }
   return [...groups.values()].map((group) => {
     const { of, label } = measure_words(group[0].name);
-    const lines = group.map(({ name, unit }, i) => ({
+    const { unit } = group[0];
+    const lines = group.map(({ name }, i) => ({
       label: measure_words(name).label, column: name, unit,
       ...(kMeaning[name.split(".").at(-1)!] ?? kInTurn[i % kInTurn.length]),
     }));
-    return { name: group.length > 1 ? of : `${of}: ${label.toLowerCase()}`, lines, least: [0, 0.2] };
+    const name = group.length === 1 ? `${of}: ${label.toLowerCase()}` : unit ? `${of}, ${unit}` : of;
+    return { name, lines, least: [0, 0.2] };
   });
 }
 
