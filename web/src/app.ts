@@ -8,12 +8,11 @@ import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
 import { add_goal_edit, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
-import { Goal, decode_frame, decode_sweep } from "./link/frame";
+import { Goal } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
-import { split_frames } from "./link/stored";
+import { Past } from "./link/past";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
-import { TickRow } from "./state/columns";
 import { stored_hidden, store_open, stored_open, toggled } from "./state/layers";
 import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
 import { Store } from "./state/store";
@@ -63,8 +62,6 @@ export interface UiState {
 
 const kPathRows = 40_000;
 const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
-const kLate = 40;   // [ticks] a page that comes this late asks for what it missed
-const kRecentTicks = 60;
 const kFrameWait = 600; // [ms] a run that goes on has sent a frame by then
 const kHeardLimit = 1000; // [ms] who hears nothing for so long sees nothing of the robot either
 const kMoveMs = 90; // between two requests of one drag
@@ -79,8 +76,7 @@ export class App {
   redraw: () => void = () => undefined;
   private readonly sign_: SignOfLife;
   private readonly stopper_: Stopper;
-  private past_of_: number | null = null; // run whose past was asked for
-  private wants_filtered_ = false;
+  private readonly past_ = new Past(this.scene, kPathRows, () => this.redraw());
   private next_toast_ = 1;
   private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
 
@@ -96,7 +92,7 @@ export class App {
       frame: (frame) => {
         fold_frame(this.scene, frame);
         this.scene.heard_at = performance.now();
-        this.look_back();
+        this.past_.look_back();
         this.redraw();
       },
       filtered: (sweep) => {
@@ -111,7 +107,7 @@ export class App {
       log: (message) => this.say(message),
       new_session: () => {
         begin_run(this.scene);
-        this.past_of_ = null;
+        this.past_.forget();
         this.history.clear();
         void this.fetch_lists();
       },
@@ -147,83 +143,13 @@ export class App {
     }
   }
 
-  /** Once a run: a page that came late asks for what it missed. */
-  private look_back(): void {
-    const { run, columns } = this.scene;
-    if (run === null || run <= 0 || run === this.past_of_ || columns.length === 0) return;
-    this.past_of_ = run;
-    const first = columns.at("tick", 0);
-    if (first > kLate) void this.fetch_past(first);
-  }
-
-  /** A paused run sends no frames: a page that has none shows the last one of the record. */
-  private async fetch_newest(): Promise<void> {
-    const run = this.scene.run;
-    if (run === null || run <= 0 || this.scene.frame) return;
-    try {
-      const { tick } = await rest.get<{ tick?: number }>("/session");
-      if (tick === undefined) return;
-      const frames: Uint8Array[] = [];
-      for (let from: number | null = Math.max(0, tick - kRecentTicks); from !== null && from <= tick;) {
-        const page: { bytes: Uint8Array; next: number | null } =
-          await rest.get_bytes(`/runs/${run}/frames?from=${from}&limit=${kRecentTicks + 1}`);
-        frames.push(...split_frames(page.bytes));
-        from = page.next;
-      }
-      if (this.scene.frame || run !== this.scene.run) return; // a live one came meanwhile
-      for (const bytes of frames) fold_frame(this.scene, decode_frame(bytes));
-      this.look_back();
-      this.redraw();
-      if (this.wants_filtered_) await this.fetch_filtered();
-    } catch {
-      // Nothing is kept of this run: it is shown from the next frame on.
-    }
-  }
-
   /** Whether filtered scans are looked at. A paused run sends none: its newest is in the record. */
   want_filtered(wanted: boolean): void {
-    this.wants_filtered_ = wanted;
+    this.past_.wants_filtered = wanted;
     this.link.want_filtered(wanted);
-    if (wanted && this.scene.frame && this.ui.value.session?.pace.paused) void this.fetch_filtered();
+    if (wanted && this.ui.value.session?.pace.paused) void this.past_.fetch_filtered();
     if (!wanted) this.scene.filtered.shown = null;
   }
-
-  private async fetch_filtered(): Promise<void> {
-    const { run, frame } = this.scene;
-    if (run === null || run <= 0 || !frame) return;
-    try {
-      const from = Math.max(0, frame.tick - kRecentTicks);
-      const { bytes } = await rest.get_bytes(`/runs/${run}/filtered?from=${from}&limit=${kRecentTicks + 1}`);
-      for (const message of split_frames(bytes)) {
-        const sweep = decode_sweep(message);
-        if (sweep && run === this.scene.run) this.scene.filtered.take(sweep);
-      }
-      this.redraw();
-    } catch {
-      // It is shown from the next scan on.
-    }
-  }
-
-  /** The path and the figures of the run before this page came, from the record. */
-  private async fetch_past(before: number): Promise<void> {
-    const run = this.scene.run;
-    const stride = Math.max(1, Math.ceil(before / kPathRows) * 2 - 1);
-    const rows: TickRow[] = [];
-    try {
-      for (let from: number | null = 0; from !== null && from < before;) {
-        const page: Page<TickRow> = await rest.get(`/runs/${run}/ticks?from=${from}&limit=5000`);
-        rows.push(...page.items.filter((r) => r.tick < before && r.tick % stride === 0));
-        from = page.next === null ? null : Number(page.next);
-      }
-    } catch {
-      return; // the path then begins where this page came in
-    }
-    if (run !== this.scene.run || rows.length === 0) return;
-    this.scene.columns.prepend(rows);
-    this.scene.rows = this.scene.columns.length;
-    this.redraw();
-  }
-
   toggle_layer(name: string): void {
     this.ui.set({ hidden: toggled(this.ui.value.hidden, name) });
     this.redraw();
@@ -435,7 +361,7 @@ export class App {
     if (before?.scenario.name !== session.scenario.name) this.view.fitted = true;
     if (before?.run?.id !== session.run?.id) {
       if (before) this.history.clear();
-      setTimeout(() => void this.fetch_newest(), kFrameWait);
+      setTimeout(() => void this.past_.fetch_newest(), kFrameWait);
     }
     if (session.problem && session.problem !== before?.problem) this.toast("bad", session.problem);
     const other_world = before?.scenario.name !== session.scenario.name;
