@@ -24,10 +24,11 @@ export function Lanes(props: {
   const measure = measures.find((m) => m.name === picked) ?? measures.at(0);
   const rows: [Lane, JSX.Element | undefined][] = kLanes.map((lane) => [lane, undefined]);
   if (measure) {
-    const choices = measures.map(({ name }) => {
-      const { of, label } = measure_words(name);
-      return { value: name, label: of === label ? of : `${of}: ${label.toLowerCase()}` };
-    });
+    const words = measures.map(({ name }) => measure_words(name));
+    const choices = words.map(({ of, label }, i) => ({
+      value: measures[i].name,
+      label: words.some((other, k) => k !== i && other.label === label) ? `${of}: ${label.toLowerCase()}` : label,
+    }));
     rows.push([{ name: measure.name, column: measure.name, unit: measure.unit, least: [0, 0.2], digits: 2 },
       <Pick label="Measure of the controller" name="lane-measure" value={measure.name} choices={choices}
         on_pick={pick} />]);

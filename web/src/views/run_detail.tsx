@@ -161,7 +161,7 @@ function Opened(props: {
             hidden, ghost: ghost(), future: true, insets: scale_insets(frame.current),
             path_colour: other ? getComputedStyle(document.documentElement).getPropertyValue("--accent").trim() : undefined,
           })} />
-        <LayerButton class="icon" open={layers} on_press={set_layers} />
+        <LayerButton class="icon layers-tool" open={layers} on_press={set_layers} />
         <Instant run={run} />
       </section>
       {layers && <LayerPanel scene={run.scene} on_close={() => set_layers(false)} />}
@@ -206,11 +206,15 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
   );
 }
 
-/** What the sentence at the bottom and the panel of layers leave free. */
+/** What the sentence, the button at the upper right and the panel of layers leave free. */
 function free_insets(view: HTMLElement | null): Insets {
-  const card = view?.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
-  const panel = view ? panel_cover(view) : 0;
-  return { left: 20, top: 20, right: 20 + panel, bottom: card + 24 };
+  if (!view) return { left: 20, top: 20, right: 20, bottom: 20 };
+  const card = view.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
+  const button = view.querySelector(".layers-tool")?.getBoundingClientRect().height ?? 0;
+  const high = view.clientHeight > view.clientWidth; // there is more room above than beside
+  return {
+    left: 20, top: 20 + (high ? button : 0), right: 20 + (panel_cover(view) || (high ? 0 : button)), bottom: card + 24,
+  };
 }
 
 /** The scale bar stands at the lower right, above the sentence where that reaches there. */
