@@ -398,10 +398,11 @@ test("a stored run shows at any tick what was shown live, sought in any order", 
 test("filtered scans of a stored run are fetched only while wanted, and belong to the newest scan", async () => {
   const bytes = Array.from({ length: 30 }, (_, tick) => frame_bytes(varied(tick)));
   const asked: number[] = [];
-  const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), async (from) => {
+  const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), async (from, limit) => {
     asked.push(from);
     const messages = bytes.map((_, tick) => (tick % 3 === 0 ? scan_bytes({ ranges: [tick, 2, 3] }) : new Uint8Array(0)));
-    return { bytes: framed(messages), next: null };
+    const end = Math.min(from + limit, from + 20); // an answer may be shorter than was asked for
+    return { bytes: framed(messages.slice(from, end)), next: end < 30 ? end : null };
   });
   await run.load(() => undefined);
   run.seek(10);
@@ -412,8 +413,8 @@ test("filtered scans of a stored run are fetched only while wanted, and belong t
   await new Promise((resolve) => setTimeout(resolve));
   assert.equal(late, 1);
   assert.deepEqual([run.scene.filtered.shown?.sweep.ranges[0], run.scene.filtered.shown?.origin.x], [9, 0.09]);
-  run.seek(12);
-  assert.deepEqual([run.scene.filtered.shown?.sweep.ranges[0], asked], [12, [0]]);
+  run.seek(28);
+  assert.deepEqual([run.scene.filtered.shown?.sweep.ranges[0], asked], [27, [0, 20]]);
   run.want_filtered(false);
   run.seek(12);
   assert.equal(run.scene.filtered.shown, null);

@@ -7,7 +7,7 @@ import { EventLog } from "../state/events";
 import { Columns, last_not_after } from "../state/columns";
 import { learn_layers } from "../state/layers";
 import {
-  SceneState, edited, forget_instant, held_of, new_scene, show_frame, take_parameters, take_robot,
+  SceneState, edited, forget_instant, held_of, hold_time, new_scene, show_frame, take_parameters, take_robot,
 } from "../state/scene";
 import { placed } from "../state/sweeps";
 import { Frame, decode_frame, decode_sweep } from "./frame";
@@ -17,7 +17,8 @@ export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
 
 /** A page of frames, and of the filtered scans that stand for them once somebody wants to see those. */
 interface Chunk {
-  from_tick: number; first_row: number; frames: Uint8Array[] | null; filtered: Uint8Array[] | null; used: number;
+  from_tick: number; first_row: number; count: number; frames: Uint8Array[] | null; filtered: Uint8Array[] | null;
+  used: number;
 }
 
 export const kPageFrames = 400;
@@ -150,9 +151,10 @@ export class StoredRun {
   /** The rows that make up the instant of row `at`, itself the last: what it does not bring holds. */
   private rows_for(at: number): number[] {
     const rows = new Set([at]);
-    for (const bringing of this.held_.values()) {
+    const t = (row: number) => this.columns.at("t", row);
+    for (const [name, bringing] of this.held_) {
       const newest = bringing[last_not_after(bringing, at)];
-      if (newest !== undefined) rows.add(newest);
+      if (newest !== undefined && t(at) - t(newest) <= hold_time(name)) rows.add(newest);
     }
     return [...rows].sort((a, b) => a - b);
   }
@@ -160,11 +162,13 @@ export class StoredRun {
   /** The filtered scan of the newest row up to `at` that brought a scan. */
   private show_filtered(at: number, ready: () => void): void {
     this.scene.filtered.clear();
-    const scans = [...this.held_].filter(([name]) => name.startsWith("scan ")).map(([, rows]) => rows);
-    // Of several scanners only one is filtered: in a row of another the message is empty.
-    const rows = scans.map((rows) => rows[last_not_after(rows, at)] ?? -1).filter((row) => row >= 0).sort((a, b) => b - a);
     if (!this.wants_filtered_) return;
-    for (const row of rows) {
+    const newest: number[] = []; // of each scanner; only one is filtered, the others' messages are empty
+    for (const [name, bringing] of this.held_) {
+      const last = last_not_after(bringing, at);
+      if (name.startsWith("scan ") && last >= 0) newest.push(bringing[last]);
+    }
+    for (const row of newest.sort((a, b) => b - a)) {
       const chunk = this.chunk_of(row);
       if (!chunk.filtered) {
         void this.fetch_filtered(chunk).then((there) => {
@@ -184,7 +188,8 @@ export class StoredRun {
 
   private take(from_tick: number, frames: Uint8Array[]): void {
     const first_row = this.rows;
-    this.chunks_.push({ from_tick, first_row, frames, filtered: null, used: ++this.clock_ });
+    const count = frames.length;
+    this.chunks_.push({ from_tick, first_row, count, frames, filtered: null, used: ++this.clock_ });
     for (const bytes of frames) {
       const f = decode_frame(bytes);
       const row = this.rows;
@@ -227,7 +232,7 @@ export class StoredRun {
 
   private async fetch_chunk(chunk: Chunk): Promise<boolean> {
     try {
-      chunk.frames = split_frames((await this.fetch_(chunk.from_tick, kPageFrames)).bytes);
+      chunk.frames = await fetch_all(this.fetch_, chunk);
       chunk.used = ++this.clock_;
       this.trim();
       return true;
@@ -242,7 +247,7 @@ export class StoredRun {
     if (this.filtering_.has(chunk)) return false;
     this.filtering_.add(chunk);
     try {
-      chunk.filtered = split_frames((await this.fetch_filtered_(chunk.from_tick, kPageFrames)).bytes);
+      chunk.filtered = await fetch_all(this.fetch_filtered_, chunk);
       this.filtering_.delete(chunk);
       return true;
     } catch {
@@ -268,6 +273,17 @@ export class StoredRun {
     for (const p of this.parameters_) if (p.row <= row) now[p.name] = p.value;
     take_parameters(this.scene, now);
   }
+}
+
+/** All messages of `chunk`: a page ends early where its bytes are too many. */
+async function fetch_all(fetch: FetchFrames, chunk: Chunk): Promise<Uint8Array[]> {
+  const out: Uint8Array[] = [];
+  for (let from: number | null = chunk.from_tick; from !== null && out.length < chunk.count;) {
+    const page: { bytes: Uint8Array; next: number | null } = await fetch(from, chunk.count - out.length);
+    out.push(...split_frames(page.bytes));
+    from = page.next;
+  }
+  return out;
 }
 
 /** Obstacles of a document may go without ids; they are then numbered in order from 1. */

@@ -1,5 +1,6 @@
 // web/src/state/columns.ts: the plain numbers of a run by row, for the path and the plots, in
-// growing typed arrays; a number that a row does not have is NaN. A live run is thinned when it grows beyond a bound, so memory stays flat.
+// growing typed arrays; a number that a row does not have is NaN. A live run is thinned when it grows
+// beyond a bound, so memory stays flat.
 import { Frame } from "../link/frame";
 
 /** What every robot has; besides, a column for each measure of its controller, by that name. */

@@ -16,7 +16,7 @@ export interface PlacedReading {
 /** By sensor: kind and mount. */
 export type PlacedReadings = Map<string, PlacedReading>;
 
-const kLast = 1; // [s] after which a reading says nothing any more
+export const kReadingHolds = 1; // [s] after which a reading says nothing any more
 const kOk = 0;   // BeamStatus.Ok
 
 export function reading_key(kind: RangeKind, mount: Pose): string {
@@ -26,7 +26,7 @@ export function reading_key(kind: RangeKind, mount: Pose): string {
 /** Takes the frame's readings and forgets what is too old, or of later than the frame. */
 export function place_readings(placed: PlacedReadings, f: Frame): void {
   for (const [key, reading] of placed) {
-    if (reading.stamp > f.stamp || f.stamp - reading.stamp > kLast) placed.delete(key);
+    if (reading.stamp > f.stamp || f.stamp - reading.stamp > kReadingHolds) placed.delete(key);
   }
   const take = (kind: RangeKind, readings: RangeReading[]): void => {
     for (const { mount, range, status } of readings) {

@@ -8,7 +8,7 @@ import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
 import { LayerKey, learn_layers } from "./layers";
-import { PlacedReadings, place_readings, reading_key } from "./ranging";
+import { PlacedReadings, kReadingHolds, place_readings, reading_key } from "./ranging";
 import { FilteredScan, PlacedSweep, newest_sweeps } from "./sweeps";
 
 export interface SceneState {
@@ -135,6 +135,11 @@ export function held_of(f: Frame): string[] {
     ...f.sonar.map((r) => reading_key("sonar", r.mount)),
     ...f.infrared.map((r) => reading_key("infrared", r.mount)),
   ];
+}
+
+/** [s] for which what `held_of` calls `name` holds. */
+export function hold_time(name: string): number {
+  return /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 
 /** The obstacles, with those that move by themselves where `f` says; the same list if it says nothing. */
