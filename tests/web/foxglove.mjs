@@ -61,7 +61,8 @@ async function with_server(act) {
   }
 }
 
-const kTopics = ["/telemetry", "/state", "/scan", "/tf", "/odom", "/strip", "/forces", "/obstacles", "/goal", "/trajectory", "/log"];
+const kTopics = ["/telemetry", "/tautline/filtered", "/state", "/scan", "/tf", "/odom", "/layers", "/obstacles", "/goal",
+  "/trajectory", "/log"];
 
 test("every channel speaks as its schema says", { timeout: 90_000 }, () => with_server(async ({ base }) => {
   const { client, seen, service } = await connect(base);
@@ -81,7 +82,7 @@ test("every channel speaks as its schema says", { timeout: 90_000 }, () => with_
     const { channel, check } = topics.get(subscriptionId);
     counts.set(channel.topic, (counts.get(channel.topic) ?? 0) + 1);
     if (!check) {
-      assert.ok(data.byteLength > 100, "a frame of telemetry");
+      assert.ok(data.byteLength > 100, "a frame of telemetry, a filtered scan");
       return;
     }
     const text = new TextDecoder().decode(data);
@@ -123,7 +124,8 @@ test("a viewer who connects at rest sees the scene", { timeout: 60_000 }, () => 
     });
     await until(`the newest of every channel, viewer ${viewer}`, 10, () => kTopics.filter((t) => !got.has(t)), (none) => none.length === 0);
     assert.ok(got.get("/scan").value.ranges.length > 300, "a scan");
-    assert.ok(got.get("/strip").value.entities.length > 0, "the strip");
+    const entities = got.get("/layers").value.entities.map((e) => e.id);
+    assert.ok(entities.some((id) => /strip/.test(id)), `the strip is among ${entities}`);
     const pose = got.get("/odom").value.pose.position;
     assert.ok(Math.hypot(pose.x - still.pose.x, pose.y - still.pose.y) < 1e-6, "where the robot stands");
     assert.ok(got.get("/trajectory").value.poses.length > 1, "the way it came");

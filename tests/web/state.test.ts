@@ -100,7 +100,7 @@ test("a grid holds until another comes, the goal is gone, or another run begins"
 test("words hold until others come, or another run begins", () => {
   const scene = new_scene();
   fold_frame(scene, frame({ tick: 5, words: ["Driving", "2 m to go."] }));
-  fold_frame(scene, frame({ tick: 6 }));
+  fold_frame(scene, frame({ tick: 6, words: ["", ""] }));
   assert.deepEqual(scene.words, { what: "Driving", why: "2 m to go." });
   fold_frame(scene, frame({ tick: 7, words: ["Arrived", ""] }));
   assert.deepEqual(scene.words, { what: "Arrived", why: "" });

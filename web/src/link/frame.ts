@@ -126,7 +126,7 @@ export function decode_frame(bytes: Uint8Array): Frame {
     behaviour: kBehaviours[decision?.behaviour() ?? 0] ?? "rest",
     clearance: decision?.clearance() ?? 0,
     newest_scan: f.newestScan(),
-    words: what === null ? null : { what, why: f.why() ?? "" },
+    words: what ? { what, why: f.why() ?? "" } : null, // empty where they are not new
     layers: list(f.layersLength(), (i) => layer(f.layers(i)!)).filter((l) => l !== null),
     measures: measures(f.measures()),
     moved: list(f.movedLength(), (i) => ({ id: f.moved(i)!.id(), pose: pose(f.moved(i)) })),
