@@ -50,7 +50,7 @@ fb::Vec2f to_wire(const algo::SetGoal& goal) {
 }
 fb::Moved to_wire(const algo::Moved& m) {
   const fb::Pose2f pose = to_float(m.pose_W);
-  return {pose.x(), pose.y(), pose.heading(), m.id};
+  return {rounded(pose.x()), rounded(pose.y()), rounded(pose.heading()), m.id};
 }
 
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
@@ -211,7 +211,8 @@ void FrameWriter::decision() {
     if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
   }
   if (out.pass_W) {
-    const fb::Vec2f pass = to_float(*out.pass_W);
+    const fb::Vec2f pass(rounded(static_cast<float>(out.pass_W->x())),
+                         rounded(static_cast<float>(out.pass_W->y())));
     frame.add_pass(&pass);
   }
   frame.add_state(out.state);
@@ -249,16 +250,16 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   b.Clear();
   const algo::Observation& o = t.observation;
   const auto [what, why] = write_words(t);
-  const auto [layers, measures] = block_.write(b, t);
-  const auto requests = write_requests(b, t.requests);
-  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
-  const auto moved = write_structs<fb::Moved>(b, t.moved);
-  const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
-  const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
-  const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
   scans_.clear();
   for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
   const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
+  const auto sonar = write_structs<fb::RangeReading>(b, o.sonar);
+  const auto infrared = write_structs<fb::RangeReading>(b, o.infrared);
+  const auto requests = write_requests(b, t.requests);
+  const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
+  const auto moved = write_structs<fb::Moved>(b, t.moved);
+  const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
+  const auto [layers, measures] = block_.write(b, t);
 
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;

@@ -1,7 +1,6 @@
 // server/record/layers_block.cpp: built once for a set of layers, filled each tick.
 #include "server/record/layers_block.hpp"
 
-#include <cmath>
 #include <string_view>
 
 #include "telemetry_generated.h"
@@ -12,14 +11,6 @@ namespace {
 namespace fb = tautline::wire;
 template <typename T>
 using Offset = flatbuffers::Offset<T>;
-
-/// Nobody sees less than a millimetre, and the record would keep it at twice the size.
-float rounded(float value) {
-  constexpr float kSteps = 1024;
-  constexpr float kMost = 0x1p20F;  // beyond it a float resolves little more
-  if (!(std::abs(value) < kMost)) return value;
-  return static_cast<float>(std::lrint(value * kSteps)) / kSteps;
-}
 
 Offset<flatbuffers::String> write_text(flatbuffers::FlatBufferBuilder& b, std::string_view text) {
   return text.empty() ? 0 : b.CreateString(text.data(), text.size());
@@ -147,6 +138,7 @@ void LayersBlock::fill(Builder& b, const algo::Telemetry& t) const {
 }
 
 LayersBlock::Written LayersBlock::write(Builder& b, const algo::Telemetry& t) {
+  b.Align(kAlignment);
   if (!collect(t)) {  // a grid comes seldom and is large: not to be kept
     forms_.clear();
     names_.clear();

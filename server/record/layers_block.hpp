@@ -2,6 +2,7 @@
 // tick to tick.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -18,6 +19,15 @@ struct Measures;
 
 namespace server {
 
+/// What only people look at: nobody sees less than a millimetre, and the record would keep it at
+/// twice the size.
+inline float rounded(float value) {
+  constexpr float kSteps = 1024;
+  constexpr float kMost = 0x1p20F;  // beyond it a float resolves little more
+  if (!(std::abs(value) < kMost)) return value;
+  return static_cast<float>(std::lrint(value * kSteps)) / kSteps;
+}
+
 /// Names, labels and the tables round them are mostly those of the tick before: the bytes made for
 /// that are kept, and only values are written anew. What comes out does not depend on what was
 /// written before.
@@ -30,8 +40,7 @@ class LayersBlock {
     flatbuffers::Offset<tautline::wire::Measures> measures{};
   };
 
-  /// Into `b`, whose size must be a multiple of kAlignment and is one afterwards. Those of the
-  /// pipeline come first; a layer that has nothing to show is left out.
+  /// Into `b`. Those of the pipeline come first; a layer that has nothing to show is left out.
   Written write(flatbuffers::FlatBufferBuilder& b, const algo::Telemetry& t);
   static constexpr std::size_t kAlignment = sizeof(double);
 
