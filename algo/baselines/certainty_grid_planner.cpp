@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "algo/baselines/certainty_grid.hpp"
+#include "algo/common_layers.hpp"
 
 namespace algo {
 namespace {
@@ -18,11 +19,6 @@ constexpr LayerInfo kGrid{.name = "certainty.grid",
                           .label = "Certainty grid",
                           .kind = LayerKind::Grid,
                           .tone = Tone::External};
-constexpr LayerInfo kPlan{.name = "plan",
-                          .label = "Plan",
-                          .kind = LayerKind::Polyline,
-                          .tone = Tone::Plan,
-                          .style = LayerStyle::Dashed};
 enum State : std::uint8_t { kPlanned = 1, kNoPlan };
 constexpr std::size_t kCells =
     static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
@@ -172,7 +168,7 @@ void CertaintyGridPlanner::steer(const ControlInput& in,
 }
 
 void CertaintyGridPlanner::show_plan(ControlOutput& out) const {
-  Layer& plan = add_layer(out.layers, kPlan);
+  Layer& plan = add_layer(out.layers, layers::kPlan);
   double length = 0;
   for (std::size_t k = 0; k < path_W_.size(); ++k) {
     put(plan, path_W_[k]);

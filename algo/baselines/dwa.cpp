@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "algo/baselines/returns.hpp"
+#include "algo/common_layers.hpp"
 #include "algo/diff_drive.hpp"
 
 namespace algo {
@@ -19,22 +20,6 @@ constexpr int kMotions = kSpeeds * kTurns;
 constexpr double kFarthest = 3.0;  // [m] [D] more room than this is no better
 constexpr double kShown = 1.5;     // [s] [D] of each candidate that is drawn
 constexpr std::size_t kBearings = 180;
-constexpr LayerInfo kRefused{.name = "window.refused",
-                             .label = "Motions that cannot be stopped in time",
-                             .kind = LayerKind::Arcs,
-                             .frame = LayerFrame::Robot,
-                             .tone = Tone::Refused,
-                             .style = LayerStyle::Faint};
-constexpr LayerInfo kAllowed{.name = "window.allowed",
-                             .label = "Motions weighed",
-                             .kind = LayerKind::Arcs,
-                             .frame = LayerFrame::Robot,
-                             .tone = Tone::Muted};
-constexpr LayerInfo kChosen{.name = "window.chosen",
-                            .label = "Motion chosen",
-                            .kind = LayerKind::Arcs,
-                            .frame = LayerFrame::Robot,
-                            .tone = Tone::Accent};
 enum State : std::uint8_t { kWindow = 1, kNoWindow };
 
 constexpr ParameterInfo kMargin{.name = "dwa.margin",
@@ -255,12 +240,12 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const double reaction = in.dt + spec.command_delay;
 
   // Room for all of them in each: references to a layer do not outlive the next add_layer().
-  for (const LayerInfo* info : {&kRefused, &kAllowed, &kChosen}) {
+  for (const LayerInfo* info : {&layers::kRefused, &layers::kAllowed, &layers::kChosen}) {
     add_layer(out.layers, *info).values.reserve(2 * kMotions);
   }
-  Layer* const layers = out.layers.end() - 3;
-  Layer& refused = layers[0];
-  Layer& allowed = layers[1];
+  Layer& refused = *(out.layers.end() - 3);
+  Layer& allowed = *(out.layers.end() - 2);
+  Layer& chosen = out.layers.back();
   const auto show = [](Layer& layer, const Twist2& twist) {
     put(layer, kShown * twist.v, kShown * twist.omega);
   };
@@ -290,7 +275,7 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   out.state = best ? kWindow : kNoWindow;
   out.waits = !best;
   if (!best) return;  // nothing can be stopped in time: brake
-  show(layers[2], *best);
+  show(chosen, *best);
   out.twist = *best;
   out.pass_W = integrate_arc(in.odometry.pose, out.twist, kShown).position();
 }

@@ -1,4 +1,5 @@
 // algo/full_strip/full_strip_report.cpp: what a tick of the full strip shows and says.
+#include "algo/common_layers.hpp"
 #include "algo/explain.hpp"
 #include "algo/full_strip/full_strip_controller.hpp"
 
@@ -11,34 +12,6 @@ constexpr std::size_t kFewMoving = 8;  // that room is kept for
 
 constexpr LayerInfo kMap{
     .name = "map", .label = "Map", .kind = LayerKind::Grid, .tone = Tone::External};
-constexpr LayerInfo kPlan{.name = "plan",
-                          .label = "Plan",
-                          .kind = LayerKind::Polyline,
-                          .tone = Tone::Plan,
-                          .style = LayerStyle::Dashed};
-constexpr LayerInfo kRefused{.name = "window.refused",
-                             .label = "Motions refused",
-                             .kind = LayerKind::Arcs,
-                             .frame = LayerFrame::Robot,
-                             .tone = Tone::Refused,
-                             .style = LayerStyle::Faint};
-constexpr LayerInfo kAllowed{.name = "window.allowed",
-                             .label = "Motions weighed",
-                             .kind = LayerKind::Arcs,
-                             .frame = LayerFrame::Robot,
-                             .tone = Tone::Muted};
-constexpr LayerInfo kChosen{.name = "window.chosen",
-                            .label = "Motion chosen",
-                            .kind = LayerKind::Arcs,
-                            .frame = LayerFrame::Robot,
-                            .tone = Tone::Accent};
-constexpr LayerInfo kStrip{
-    .name = "strip", .label = "Strip", .kind = LayerKind::Polyline, .tone = Tone::Accent};
-constexpr LayerInfo kAhead{.name = "strip.ahead",
-                           .label = "From the strip to the goal",
-                           .kind = LayerKind::Polyline,
-                           .tone = Tone::Accent,
-                           .style = LayerStyle::Dashed};
 constexpr LayerInfo kMoving{
     .name = "moving", .label = "What moves", .kind = LayerKind::Circles, .tone = Tone::Moving};
 constexpr LayerInfo kHidden{.name = "moving.hidden",
@@ -67,7 +40,7 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) con
   out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked || state_ == kCornered;
   Layer& map = add_layer(out, kMap, 0);
   if (in.grids) map_.draw(in.odometry.pose.position(), kDrawn, map);
-  Layer& plan = add_layer(out, kPlan, 0);
+  Layer& plan = add_layer(out, layers::kPlan, 0);
   for (const Vec2& point : path_W_) put(plan, point);
   show_weighed(out);
   show_strip(out);
@@ -81,15 +54,15 @@ void FullStripController::show_weighed(ControlOutput& out) const {
       if (belongs(c)) put(layer, c.horizon * c.twist.v, c.horizon * c.twist.omega);
     }
   };
-  show(kRefused, [](const Candidate& c) { return !c.allowed; });
-  show(kAllowed, [](const Candidate& c) { return c.allowed && !c.chosen; });
-  show(kChosen, [](const Candidate& c) { return c.chosen; });
+  show(layers::kRefused, [](const Candidate& c) { return !c.allowed; });
+  show(layers::kAllowed, [](const Candidate& c) { return c.allowed && !c.chosen; });
+  show(layers::kChosen, [](const Candidate& c) { return c.chosen; });
 }
 
 void FullStripController::show_strip(ControlOutput& out) const {
-  Layer& line = add_layer(out, kStrip, 0);
+  Layer& line = add_layer(out, layers::kStrip, 0);
   for (const Node& node : strip_.nodes()) put(line, node.position_W);
-  Layer& ahead = add_layer(out, kAhead, 4);
+  Layer& ahead = add_layer(out, layers::kStripAhead, 4);
   if (strip_.empty()) return;
   // It ends short of a goal beyond the map, or on which something stands.
   if (goal_W_ && strip_.end_W() != *goal_W_) put(ahead, strip_.end_W(), *goal_W_);

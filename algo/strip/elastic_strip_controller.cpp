@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <string_view>
 
+#include "algo/common_layers.hpp"
 #include "algo/driving.hpp"
 #include "algo/explain.hpp"
 #include "algo/strip/strip_law.hpp"
@@ -11,13 +12,6 @@
 namespace algo {
 namespace {
 
-constexpr LayerInfo kStrip{
-    .name = "strip", .label = "Strip", .kind = LayerKind::Polyline, .tone = Tone::Accent};
-constexpr LayerInfo kAhead{.name = "strip.ahead",
-                           .label = "From the strip to the goal",
-                           .kind = LayerKind::Polyline,
-                           .tone = Tone::Accent,
-                           .style = LayerStyle::Dashed};
 constexpr LayerInfo kNodes{
     .name = "strip.nodes", .label = "Pass point", .kind = LayerKind::Points, .tone = Tone::Accent};
 constexpr LayerInfo kInternal{.name = "strip.internal",
@@ -145,8 +139,8 @@ void ElasticStripController::show(const Strip& strip,
                                   const Vec2& pass_W,
                                   const Vec2& goal_W,
                                   ControlOutput& out) const {
-  put(add_layer(out.layers, kStrip), strip.start_W, pass_W);
-  put(add_layer(out.layers, kAhead), pass_W, goal_W);
+  put(add_layer(out.layers, layers::kStrip), strip.start_W, pass_W);
+  put(add_layer(out.layers, layers::kStripAhead), pass_W, goal_W);
   put(add_layer(out.layers, kNodes), pass_W);
   const auto arrows = [&](const LayerInfo& info, std::initializer_list<const Vec2*> forces) {
     Layer& layer = add_layer(out.layers, info);
