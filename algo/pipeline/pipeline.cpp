@@ -138,7 +138,7 @@ void Pipeline::tick(Telemetry& t) {
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
   remember(t.command.base);
-  narrator_.tell(*avoiding_, t);
+  narrator_.tell(*avoiding_, t);  // what it does, and why, now and then
 }
 
 void Pipeline::apply(const Request& request) {
