@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "algo/health.hpp"
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
 #include "algo/request.hpp"
@@ -13,16 +14,10 @@
 
 namespace algo {
 
-/// The link to the robot is lost, or its data ended. what() is a sentence for a person.
+/// The link to the robot is lost. what() is a sentence for a person.
 class RobotError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-};
-
-/// The recorded data has come to its end: not a fault.
-class EndOfLog : public RobotError {
- public:
-  using RobotError::RobotError;
 };
 
 struct RobotSpec {
@@ -38,8 +33,6 @@ struct RobotSpec {
   double max_angular_acceleration = 0;  // [rad/s2]
   double command_delay = 0;             // [s] from a command's tick until it acts
   bool has_laser = true;                // looking ahead; without one the sonar ring stands in
-  bool editable = false;                // obstacles can be added, moved, removed
-  bool paceable = false;                // has pause, single step and speed
   bool drives = false;                  // commands move it; a recorded log does not
 };
 
@@ -59,11 +52,28 @@ struct Moved {
   bool operator==(const Moved&) const = default;
 };
 
-/// How fast time runs; only a robot whose spec says `paceable` heeds it.
-struct Pace {
-  bool paused = false;
-  double speed = 1;                // times real time; 0 = as fast as it goes
-  std::uint32_t single_steps = 0;  // periods to run while paused
+/// Motors that have to be switched on, and the devices behind them. All calls from any thread.
+class Arming {
+ public:
+  virtual ~Arming() = default;
+  /// Switches the motors on, or says why not, as a sentence.
+  virtual std::optional<std::string> arm() = 0;
+  /// From now on nothing moves the robot until it is armed again: it brakes as hard as it can, and
+  /// its motors go off once the wheels stand. `why` is the sentence for people.
+  virtual void disarm(const std::string& why) = 0;
+  /// Which arming this is: another number each time the motors were switched on, 0 while they are
+  /// off.
+  virtual std::uint32_t epoch() const = 0;
+  virtual HealthReport health() const = 0;
+};
+
+/// Obstacles that can be added, moved and removed. Belongs to the thread of the robot.
+class Editing {
+ public:
+  virtual ~Editing() = default;
+  /// Carries out AddObstacle, MoveObstacle or RemoveObstacle; leaves other requests alone. Returns
+  /// why it was refused, as a sentence.
+  virtual std::optional<std::string> edit(const Request& request) = 0;
 };
 
 class Robot {
@@ -74,27 +84,25 @@ class Robot {
   /// Arms the robot and reports the first observation, robot at rest.
   virtual void reset(Observation& observation) = 0;
 
-  /// Writes `command`, waits for the robot's own next deadline (absolute, so that no period is
-  /// lost), then reads the newest data into `observation`. Returns false, with the observation
-  /// untouched and no period gone by, when paused: the caller serves its requests and calls again.
-  /// Throws RobotError when the link is lost.
+  /// Writes `command`, advances one period and reads the newest data into `observation`. Simulated
+  /// and recorded time advances at once; a robot of real devices waits for its own next deadline
+  /// (absolute, so that no period is lost). Returns false, with the observation untouched, when
+  /// recorded data has come to its end. Throws RobotError when the link is lost.
   virtual bool step(const Command& command, Observation& observation) = 0;
+  /// [s] of the run clock that the next step() takes.
+  virtual double next_period() const { return spec().period; }
 
   /// Zero velocity now; allowed in every state.
   virtual void stop() noexcept = 0;
 
-  /// Carries out an obstacle edit; other requests are none of its business. Returns why it was
-  /// refused, as a sentence.
-  virtual std::optional<std::string> edit(const Request& request) = 0;
+  // What some robots can do besides; null from those that cannot.
 
+  /// A robot that is armed is made of real devices and keeps its own time.
+  virtual Arming* arming() { return nullptr; }
+  virtual Editing* editing() { return nullptr; }
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
   /// Overwrites `moved`, whose buffers stay.
   virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
-
-  /// May be called from any thread.
-  virtual void set_pace(const Pace& /*pace*/) {}
-  /// Periods whose time went by unused because step() came too late for them.
-  virtual std::uint64_t missed_periods() const { return 0; }
 };
 
 }  // namespace algo

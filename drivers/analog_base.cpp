@@ -77,9 +77,9 @@ BaseState AnalogBase::state() {
   return state_;
 }
 
-DeviceReport AnalogBase::report() {
+algo::DeviceReport AnalogBase::report() {
   const std::lock_guard lock(mutex_);
-  DeviceReport out;
+  algo::DeviceReport out;
   out.name = "base";
   out.well = true;
   out.sentence = card_.enabled() ? "Well, motors on." : "Well, motors off.";

@@ -56,7 +56,7 @@ class AnalogBase final : public Base {
   void stop() noexcept override;
   BaseState state() override;
   double watchdog() const override { return card_.watchdog(); }
-  DeviceReport report() override;
+  algo::DeviceReport report() override;
 
  private:
   void measure();

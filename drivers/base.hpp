@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "algo/health.hpp"
 #include "algo/types.hpp"
-#include "drivers/device_report.hpp"
 #include "drivers/wheel_watch.hpp"
 
 namespace drivers {
@@ -66,7 +66,7 @@ class Base {
   /// How its wheels follow its commands. Ramps of 0 are not known.
   virtual WheelDynamics dynamics() const { return {}; }
   /// From any thread.
-  virtual DeviceReport report() = 0;
+  virtual algo::DeviceReport report() = 0;
 };
 
 /// The limits of a file, for every kind of base.

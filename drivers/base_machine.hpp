@@ -52,7 +52,7 @@ class BaseMachine : public Machine {
   virtual double watchdog() const = 0;
   virtual WheelDynamics dynamics() const = 0;
   /// Name and port are the caller's.
-  virtual DeviceReport report(double now) const = 0;
+  virtual algo::DeviceReport report(double now) const = 0;
 };
 
 }  // namespace drivers

@@ -57,15 +57,15 @@ bool Lms200Device::comes_to_run(double patience, const std::function<bool()>& in
   }
 }
 
-DeviceReport Lms200Device::report() {
-  DeviceReport out = describe(details(), steady_now());
+algo::DeviceReport Lms200Device::report() {
+  algo::DeviceReport out = describe(details(), steady_now());
   out.name = name_;
   out.port = line_.path();
   return out;
 }
 
-DeviceReport describe(const LaserReport& report, double now) {
-  DeviceReport out;
+algo::DeviceReport describe(const LaserReport& report, double now) {
+  algo::DeviceReport out;
   const std::string health = health_text(report.health);
   const bool running = report.stage == Stage::Running;
   const bool storm = report.storm;

@@ -17,7 +17,7 @@ class Lms200Device final : public Scanner {
 
   bool take(algo::LaserScan& scan) override;
   ScannerState state() override;
-  DeviceReport report() override;
+  algo::DeviceReport report() override;
   /// The same with all its numbers.
   LaserReport details();
   /// Waits until it runs: `patience` [s] until it is found, and as long as its set-up goes on after
@@ -31,6 +31,6 @@ class Lms200Device final : public Scanner {
 };
 
 /// For people.
-DeviceReport describe(const LaserReport& report, double now);
+algo::DeviceReport describe(const LaserReport& report, double now);
 
 }  // namespace drivers::lms200

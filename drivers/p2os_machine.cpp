@@ -338,8 +338,8 @@ void PioneerMachine::close() {
   step_ = Step::Left;
 }
 
-DeviceReport PioneerMachine::report(double now) const {
-  DeviceReport out;
+algo::DeviceReport PioneerMachine::report(double now) const {
+  algo::DeviceReport out;
   out.well = state_.running && trouble_.empty() && !state_.stop_button && !state_.faulty;
   out.sentence = trouble_;
   if (state_.running && state_.faulty) {

@@ -47,7 +47,7 @@ class PioneerMachine final : public BaseMachine {
             .ramps = {setup_.limits.acceleration, setup_.limits.turn_acceleration},
             .checked = true};
   }
-  DeviceReport report(double now) const override;
+  algo::DeviceReport report(double now) const override;
 
  private:
   enum class Step : std::uint8_t { NoLine, Greeting, ClosingOld, Waiting, Running, Leaving, Left };

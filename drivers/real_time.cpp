@@ -63,11 +63,4 @@ std::string memory_advice() {
          "/etc/security/limits.d/tautline.conf and log in again.";
 }
 
-void LatenessHistogram::add(double late) {
-  const auto it = std::upper_bound(kLimits.begin(), kLimits.end(), late);
-  ++counts_[static_cast<std::size_t>(it - kLimits.begin())];
-  worst_ = std::max(worst_, late);
-  ++ticks_;
-}
-
 }  // namespace drivers

@@ -1,10 +1,7 @@
 // drivers/real_time.hpp: what the system allows a control loop: its priority, its memory kept in
-// place; and how well it kept its deadlines.
+// place.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <string>
 
 namespace drivers {
@@ -31,23 +28,5 @@ struct RealTimeCheck {
 RealTimeCheck check_real_time();
 std::string priority_advice();
 std::string memory_advice();
-
-/// How late the loop woke for its ticks. Written by one thread; copies are for others.
-class LatenessHistogram {
- public:
-  static constexpr std::array<double, 8> kLimits{
-      1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 5e-2};  // [s] upper ends; one more beyond the last
-  static constexpr std::size_t kBuckets = kLimits.size() + 1;
-
-  void add(double late);  // [s]
-  const std::array<std::uint64_t, kBuckets>& counts() const { return counts_; }
-  double worst() const { return worst_; }  // [s]
-  std::uint64_t ticks() const { return ticks_; }
-
- private:
-  std::array<std::uint64_t, kBuckets> counts_{};
-  double worst_ = 0;
-  std::uint64_t ticks_ = 0;
-};
 
 }  // namespace drivers

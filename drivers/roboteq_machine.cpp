@@ -370,8 +370,8 @@ void RoboteqMachine::close() {
   step_ = Step::Left;
 }
 
-DeviceReport RoboteqMachine::report(double now) const {
-  DeviceReport out;
+algo::DeviceReport RoboteqMachine::report(double now) const {
+  algo::DeviceReport out;
   const std::uint16_t faults = values_.faults.value_or(0);
   const auto others = static_cast<std::uint16_t>(faults & ~kStopFault);
   out.well = state_.running && trouble_.empty() && others == 0 && !state_.stop_button &&

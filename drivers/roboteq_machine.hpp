@@ -56,7 +56,7 @@ class RoboteqMachine final : public BaseMachine {
             .resolution = setup_.wheel.speed(std::max(1.0, step)),
             .checked = false};
   }
-  DeviceReport report(double now) const override;
+  algo::DeviceReport report(double now) const override;
 
  private:
   static constexpr double kSilent = 1.0;  // [s] without an answer: it is looked for again

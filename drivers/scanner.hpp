@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "algo/health.hpp"
 #include "algo/laser_scan.hpp"
-#include "drivers/device_report.hpp"
 
 namespace drivers {
 
@@ -35,7 +35,7 @@ class Scanner {
   /// stamp is of the steady clock; `scan` keeps its mount. Never waits for the device.
   virtual bool take(algo::LaserScan& scan) = 0;
   virtual ScannerState state() = 0;
-  virtual DeviceReport report() = 0;
+  virtual algo::DeviceReport report() = 0;
 };
 
 }  // namespace drivers

@@ -44,8 +44,8 @@ BaseState SerialBase::state() {
   return out;
 }
 
-DeviceReport SerialBase::report() {
-  DeviceReport out;
+algo::DeviceReport SerialBase::report() {
+  algo::DeviceReport out;
   line_.look([&] { out = machine_->report(steady_now()); });
   out.name = "base";
   out.port = line_.path();

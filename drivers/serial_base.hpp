@@ -20,7 +20,7 @@ class SerialBase final : public Base {
   BaseState state() override;
   double watchdog() const override { return machine_->watchdog(); }
   WheelDynamics dynamics() const override { return machine_->dynamics(); }
-  DeviceReport report() override;
+  algo::DeviceReport report() override;
 
  private:
   std::unique_ptr<BaseMachine> machine_;

@@ -63,7 +63,7 @@ SerialRobot::SerialRobot(RobotFile file,
 }
 
 SerialRobot::~SerialRobot() {
-  disarm();
+  disarm("");
 }
 
 void SerialRobot::become_real_time() {
@@ -75,7 +75,7 @@ void SerialRobot::become_real_time() {
 }
 
 void SerialRobot::reset(algo::Observation& observation) {
-  disarm();
+  disarm("");
   become_real_time();
   const double now = clock_->now();
   epoch_ = deadline_ = now;
@@ -325,14 +325,6 @@ void SerialRobot::stop() noexcept {
   base_->stop();
 }
 
-std::optional<std::string> SerialRobot::edit(const algo::Request& request) {
-  const bool obstacle = std::holds_alternative<algo::AddObstacle>(request) ||
-                        std::holds_alternative<algo::MoveObstacle>(request) ||
-                        std::holds_alternative<algo::RemoveObstacle>(request);
-  if (!obstacle) return std::nullopt;
-  return "This is real hardware: obstacles are put in its way by hand.";
-}
-
 // ---- arming ----------------------------------------------------------------------------------
 
 /// Why the base's own watchdog, as the base itself says, is no protection.
@@ -382,7 +374,7 @@ std::optional<std::string> SerialRobot::arm() {
     if (armed_) return std::nullopt;
   }
   if (halt != Halt::Disarmed && halt != Halt::None) {
-    return "It cannot be armed now. " + report().trouble;
+    return "It cannot be armed now. " + health().trouble;
   }
   if (auto refusal = watchdog_refusal(base)) return refusal;
   const double now = clock_->now();
@@ -408,7 +400,7 @@ void SerialRobot::disarm(const std::string& why) {
   base_->enable(false);
 }
 
-std::uint32_t SerialRobot::arming() const {
+std::uint32_t SerialRobot::epoch() const {
   const std::lock_guard lock(mutex_);
   return armed_ ? armings_ : 0;
 }
@@ -418,15 +410,15 @@ void SerialRobot::note_memory_locked(bool locked) {
   memory_locked_ = locked;
 }
 
-HardwareReport SerialRobot::report() {
-  HardwareReport out;
+algo::HealthReport SerialRobot::health() const {
+  algo::HealthReport out;
   for (const auto& scanner : scanners_) out.devices.push_back(scanner->report());
   out.devices.push_back(base_->report());
   out.warnings = file_.warnings;
   if (std::string warning = watchdog_warning(base_->state()); !warning.empty()) {
     out.warnings.push_back(std::move(warning));
   }
-  out.missed_periods = missed_periods();
+  out.missed_periods = missed_.load(std::memory_order_relaxed);
   const std::lock_guard lock(mutex_);
   out.armed = armed_;
   out.halt = halt_;
@@ -438,7 +430,7 @@ HardwareReport SerialRobot::report() {
 }
 
 /// The device's own words where one is to blame.
-std::string SerialRobot::words(Halt halt, const std::vector<DeviceReport>& devices) const {
+std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>& devices) const {
   if (halt == Halt::None) return "";
   const bool waits_for_a_person = halt == Halt::Disarmed || (halt == Halt::LateTick && !armed_);
   if (waits_for_a_person && !disarmed_because_.empty()) return disarmed_because_;
@@ -446,7 +438,7 @@ std::string SerialRobot::words(Halt halt, const std::vector<DeviceReport>& devic
                        halt == Halt::BaseFault || halt == Halt::OverCurrent;
   const bool of_scanner =
       halt == Halt::ScannerLost || halt == Halt::ScannerFault || halt == Halt::BadLine;
-  for (const DeviceReport& device : devices) {
+  for (const algo::DeviceReport& device : devices) {
     const bool base = device.name == "base";
     if (device.well || !(base ? of_base : of_scanner)) continue;
     return "The " + device.name + " at " + device.port + ": " + device.sentence;

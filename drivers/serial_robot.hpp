@@ -18,26 +18,13 @@
 
 namespace drivers {
 
-/// What people want to know of a robot of real devices.
-struct HardwareReport {
-  bool armed = false;
-  algo::Halt halt = algo::Halt::None;
-  std::string trouble{};  // why the wheels are held still, a sentence; empty when they may turn
-  std::vector<DeviceReport> devices{};
-  std::vector<std::string> warnings{};  // what the file or the system leaves to be wished for
-  bool real_time = false;               // the loop has its priority
-  bool memory_locked = false;
-  LatenessHistogram lateness{};
-  std::uint64_t missed_periods = 0;
-};
-
 /// Real devices behind the robot port. Wheels turn only while the robot is armed and nothing is
 /// wrong; whatever is wrong sends zero to the base at once, in the tick in which it is seen. What
 /// passes by itself within kRearm lets the robot go on; what lasts longer, and what somebody has to
 /// look at, disarms it: a robot that stood still for long must not drive off by itself.
 ///
-/// reset(), step(), edit() and missed_periods() belong to the control thread, the rest to any.
-class SerialRobot final : public algo::Robot {
+/// reset() and step() belong to the control thread, the rest to any.
+class SerialRobot final : public algo::Robot, public algo::Arming {
  public:
   static constexpr double kBaseTimeout = 0.3;     // [s] the age of the base's newest report
   static constexpr double kScanPeriods = 3;       // without a scan, where that is not too long
@@ -60,18 +47,12 @@ class SerialRobot final : public algo::Robot {
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
   void stop() noexcept override;
-  std::optional<std::string> edit(const algo::Request& request) override;
-  std::uint64_t missed_periods() const override { return missed_.load(std::memory_order_relaxed); }
+  algo::Arming* arming() override { return this; }
 
-  /// Switches the motors on, or says why not.
-  std::optional<std::string> arm();
-  /// From now on nothing moves the robot until it is armed again: it brakes with the base's
-  /// emergency ramp, and its motors go off once the wheels stand. `why` is the sentence for people.
-  void disarm(const std::string& why = "");
-  /// Which arming this is: another number each time the motors were switched on, 0 while they are
-  /// off.
-  std::uint32_t arming() const;
-  HardwareReport report();
+  std::optional<std::string> arm() override;
+  void disarm(const std::string& why) override;
+  std::uint32_t epoch() const override;
+  algo::HealthReport health() const override;
   /// For the report: whether lock_memory() succeeded.
   void note_memory_locked(bool locked);
   const RobotFile& file() const { return file_; }
@@ -98,7 +79,7 @@ class SerialRobot final : public algo::Robot {
   void wait_for_deadline(double now);
   void observe(algo::Observation& observation);
   void observe_base(const BaseState& base, double now, algo::Observation& observation) const;
-  std::string words(algo::Halt halt, const std::vector<DeviceReport>& devices) const;
+  std::string words(algo::Halt halt, const std::vector<algo::DeviceReport>& devices) const;
 
   RobotFile file_;
   std::vector<std::unique_ptr<Scanner>> scanners_;
@@ -122,7 +103,7 @@ class SerialRobot final : public algo::Robot {
   std::string disarmed_because_{};
   algo::Halt halt_ = algo::Halt::Disarmed;
   double halted_since_ = 0;  // [s]; 0: it is not
-  LatenessHistogram lateness_{};
+  algo::LatenessHistogram lateness_{};
   bool real_time_ = false;
   bool memory_locked_ = false;
 };

@@ -142,34 +142,24 @@ void Replay::describe() {
            .max_omega = stand_in.max_omega,
            .max_acceleration = stand_in.max_acceleration,
            .max_angular_acceleration = stand_in.max_angular_acceleration,
-           .editable = false,
-           .paceable = true,
            .drives = false};
 }
 
 void Replay::reset(algo::Observation& observation) {
   current_ = 0;
-  pacer_.restart();
   deliver(observation);
 }
 
 bool Replay::step(const algo::Command& /*command*/, algo::Observation& observation) {
-  if (current_ + 1 == scans_.size()) {
-    throw algo::EndOfLog("The log " + name_ + " ended after " + std::to_string(scans_.size()) +
-                         (scans_.size() == 1 ? " scan." : " scans."));
-  }
-  if (!pacer_.wait(scans_[current_ + 1].stamp - scans_[current_].stamp)) return false;
+  if (current_ + 1 == scans_.size()) return false;
   ++current_;
   deliver(observation);
   return true;
 }
 
-std::optional<std::string> Replay::edit(const algo::Request& request) {
-  const bool edits = std::holds_alternative<algo::AddObstacle>(request) ||
-                     std::holds_alternative<algo::MoveObstacle>(request) ||
-                     std::holds_alternative<algo::RemoveObstacle>(request);
-  if (!edits) return std::nullopt;
-  return "A recorded log has no obstacles to add, move or remove.";
+double Replay::next_period() const {
+  if (current_ + 1 == scans_.size()) return 0;
+  return scans_[current_ + 1].stamp - scans_[current_].stamp;
 }
 
 void Replay::deliver(algo::Observation& observation) const {

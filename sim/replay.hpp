@@ -11,7 +11,6 @@
 
 #include "algo/robot.hpp"
 #include "sim/carmen_log.hpp"
-#include "sim/pacer.hpp"
 
 namespace sim {
 
@@ -22,11 +21,11 @@ struct SkippedLines {
   std::string first_reason{};
 };
 
-/// Replays a log one scan a tick, at the pace of its time stamps; where those are missing, repeated
-/// or run backwards, 0.2 s a scan. The run clock starts at 0 with the first scan.
+/// Replays a log one scan a tick, timed by its stamps; where those are missing, repeated or run
+/// backwards, 0.2 s a scan. The run clock starts at 0 with the first scan.
 ///
 /// The whole log is read when it is opened and kept as packed beams. Commands are ignored.
-/// set_pace() may come from any thread; everything else belongs to one.
+/// Belongs to one thread.
 class Replay final : public algo::Robot {
  public:
   /// [s] A tick where the log does not say.
@@ -39,12 +38,11 @@ class Replay final : public algo::Robot {
 
   const algo::RobotSpec& spec() const override { return spec_; }
   void reset(algo::Observation& observation) override;
-  /// Throws algo::EndOfLog after the last scan.
+  /// False after the last scan.
   bool step(const algo::Command& command, algo::Observation& observation) override;
+  /// [s] to the next scan; 0 after the last.
+  double next_period() const override;
   void stop() noexcept override {}
-  std::optional<std::string> edit(const algo::Request& request) override;
-  void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
-  std::uint64_t missed_periods() const override { return pacer_.missed(); }
 
   std::size_t size() const { return scans_.size(); }
   CarmenUnit unit() const { return unit_; }
@@ -68,7 +66,6 @@ class Replay final : public algo::Robot {
 
   std::string name_{};
   algo::RobotSpec spec_{};
-  Pacer pacer_{};
   std::vector<Scan> scans_{};
   std::vector<std::uint16_t> wire_{};
   CarmenUnit unit_ = CarmenUnit::Centimetre;

@@ -88,8 +88,6 @@ World::World(const Scenario& scenario, std::uint64_t seed)
            .max_acceleration = parameters_.max_acceleration,
            .max_angular_acceleration = parameters_.max_angular_acceleration,
            .command_delay = scenario_.period * scenario_.drive.delay_ticks,
-           .editable = true,
-           .paceable = true,
            .drives = true};
   spec_.has_laser = has_laser(scenario_);
   start();
@@ -181,12 +179,10 @@ void World::start_localization(const algo::Pose2& pose_W) {
 
 void World::reset(algo::Observation& observation) {
   if (touched_) start();
-  pacer_.restart();
   sense(observation);
 }
 
 bool World::step(const algo::Command& command, algo::Observation& observation) {
-  if (!pacer_.wait(scenario_.period)) return false;
   ++tick_;
   follow_paths(static_cast<double>(tick_) * scenario_.period);
   vehicle_->drive(errors_.act(command.base), obstacles_, *trail_);

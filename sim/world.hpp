@@ -14,7 +14,6 @@
 #include "sim/infrared_model.hpp"
 #include "sim/laser_model.hpp"
 #include "sim/obstacle_set.hpp"
-#include "sim/pacer.hpp"
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
 #include "sim/sonar_model.hpp"
@@ -25,10 +24,8 @@ namespace sim {
 /// A robot in a world of obstacles, with dynamics or without (Scenario::vehicle).
 ///
 /// The same scenario, seed, commands and edits give the same observations bit for bit. reset()
-/// starts the scenario anew: obstacles, noise and time as at first.
-///
-/// set_pace() may come from any thread; everything else belongs to one.
-class World final : public algo::Robot {
+/// starts the scenario anew: obstacles, noise and time as at first. Belongs to one thread.
+class World final : public algo::Robot, public algo::Editing {
  public:
   /// Throws std::invalid_argument with a sentence when the scenario cannot be run.
   World(const Scenario& scenario, std::uint64_t seed);
@@ -37,11 +34,10 @@ class World final : public algo::Robot {
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
   void stop() noexcept override { vehicle_->halt(); }
+  algo::Editing* editing() override { return this; }
   std::optional<std::string> edit(const algo::Request& request) override;
   std::optional<algo::GroundTruth> ground_truth() const override;
   void find_moved(algo::Recycled<algo::Moved>& moved) const override;
-  void set_pace(const algo::Pace& pace) override { pacer_.set(pace); }
-  std::uint64_t missed_periods() const override { return pacer_.missed(); }
 
  private:
   void check() const;
@@ -64,7 +60,6 @@ class World final : public algo::Robot {
   VehicleParameters parameters_{};
   Hull hull_{};
   algo::RobotSpec spec_{};
-  Pacer pacer_{};
 
   ObstacleSet obstacles_{};
   std::unique_ptr<VehicleModel> vehicle_{};

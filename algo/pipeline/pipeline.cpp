@@ -12,16 +12,10 @@
 #include "algo/geometry.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "algo/pipeline/reactive.hpp"
 
 namespace algo {
 namespace {
-
-template <class... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-template <class... Ts>
-Overloaded(Ts...) -> Overloaded<Ts...>;
 
 /// [m] From a rectangular hull to the nearest return of all beams.
 double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
@@ -82,7 +76,8 @@ Pipeline::Pipeline(const PipelineConfig& config,
 }
 
 void Pipeline::reset(const Pose2& start_W) {
-  parameters_ = initial_parameters_;
+  intent_ = {.parameters = initial_parameters_};
+  intent_.goals_ahead.reserve(kMostGoalsAhead);
   coordinator_.reset(start_W);
   sequencer_.reset(spec_.period);
   scene_ = {};
@@ -90,21 +85,19 @@ void Pipeline::reset(const Pose2& start_W) {
   scan_stamp_.reset();
   blinded_ = false;
   clearance_ = 0;
-  joystick_ = {};
   joystick_ticks_ = 0;
   std::ranges::fill(under_way_, Twist2{});
   grids_.reset();
   narrator_.reset();
-  stopped_ = false;
   tick_ = 0;
 }
 
 std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (const auto* set = std::get_if<SetParameter>(&request)) {
-    return refusal(parameters_, *set);
+    return refusal(intent_.parameters, *set);
   }
   const auto* add = std::get_if<AddGoal>(&request);
-  if (add != nullptr && sequencer_.goals_ahead().size() >= kMostGoalsAhead) {
+  if (add != nullptr && intent_.goals_ahead.size() >= kMostGoalsAhead) {
     return "There are " + std::to_string(kMostGoalsAhead) + " goals ahead; more are not kept.";
   }
   if (const auto* goal = add != nullptr ? &add->goal : std::get_if<SetGoal>(&request)) {
@@ -142,26 +135,16 @@ void Pipeline::tick(Telemetry& t) {
 }
 
 void Pipeline::apply(const Request& request) {
-  std::visit(
-      Overloaded{[&](const SetGoal& goal) { sequencer_.set_goal(goal); },
-                 [&](const AddGoal& add) { sequencer_.add_goal(add.goal); },
-                 [&](const ClearGoal&) { sequencer_.set_goal(std::nullopt); },
-                 [&](const Joystick& stick) {
-                   // Whoever takes the stick takes over: a silent driver must leave a robot
-                   // that stands still, not one that drives off to an old goal.
-                   if (stick != Joystick{}) sequencer_.set_goal(std::nullopt);
-                   joystick_ = stick;
-                   joystick_ticks_ = static_cast<std::uint64_t>(
-                       std::ceil(parameters_[kJoystickTimeout] / spec_.period));
-                 },
-                 [&](const Stop& stop) { stopped_ = stop.engaged; },
-                 [&](const SetParameter& set) { parameters_.set(*set.parameter, set.value); },
-                 [](const auto&) {}},  // obstacle edits were carried out by the robot
-      request);
+  if (is_edit(request)) return;  // carried out by the robot
+  if (intent_.apply(request)) sequencer_.begin(intent_);
+  if (std::holds_alternative<Joystick>(request)) {
+    joystick_ticks_ = static_cast<std::uint64_t>(
+        std::ceil(intent_.parameters[algo::kJoystickTimeout] / spec_.period));
+  }
 }
 
 void Pipeline::sense(Telemetry& t) {
-  const LaserScan* front = sensing_.take(t.observation, parameters_, scene_.scan);
+  const LaserScan* front = sensing_.take(t.observation, intent_.parameters, scene_.scan);
   scene_.fresh = front != nullptr;
   if (front != nullptr) {
     blinded_ = blinded(*front);
@@ -218,10 +201,10 @@ bool Pipeline::manual() const {
 }
 
 void Pipeline::control(Telemetry& t) {
-  t.mission = sequencer_.update(t.observation.odometry.pose, parameters_);
-  t.goal = sequencer_.goal();
+  t.mission = sequencer_.update(t.observation.odometry.pose, intent_);
+  t.goal = intent_.goal;
   t.goals_ahead.clear();
-  for (const SetGoal& goal : sequencer_.goals_ahead()) t.goals_ahead.push_back(goal);
+  for (const SetGoal& goal : intent_.goals_ahead) t.goals_ahead.push_back(goal);
 
   Resource resource;
   resource.dt = spec_.period;
@@ -229,11 +212,11 @@ void Pipeline::control(Telemetry& t) {
   resource.scene = &scene_;
   resource.merge = &sensing_.merge();
   resource.under_way = under_way_;
-  resource.parameters = &parameters_;
+  resource.parameters = &intent_.parameters;
   resource.spec = &spec_;
   resource.goal = t.goal;
   resource.mission = t.mission;
-  resource.joystick = joystick_;
+  resource.joystick = intent_.stick;
   resource.manual = manual();
   resource.grids = grids_wanted_ && grids_.due(t.observation.stamp);
   const Decision decision = coordinator_.decide(resource, t.output);
@@ -244,8 +227,8 @@ void Pipeline::control(Telemetry& t) {
 
 void Pipeline::hold(Telemetry& t) {
   GateInput in;
-  in.stopped = stopped_;
-  in.scan_timeout = parameters_[kScanTimeout];
+  in.stopped = intent_.stop;
+  in.scan_timeout = intent_.parameters[kScanTimeout];
   in.scan_stamp = scan_stamp_;
   in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algo/intent.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/grid_thinning.hpp"
 #include "algo/pipeline/narrator.hpp"
@@ -47,7 +48,9 @@ class Pipeline {
   /// Whether grids are made for people to see, at most twice a second. Never changes a command.
   void want_grids(bool wanted) { grids_wanted_ = wanted; }
 
-  const Parameters& parameters() const { return parameters_; }
+  const Parameters& parameters() const { return intent_.parameters; }
+  /// Of all requests but obstacle edits, up to the newest tick.
+  const Intent& intent() const { return intent_; }
 
  private:
   void apply(const Request& request);
@@ -62,7 +65,7 @@ class Pipeline {
   RobotSpec spec_{};
   ControllerInfo controller_{};
   Parameters initial_parameters_{};
-  Parameters parameters_{};
+  Intent intent_{};  // but for the obstacles, which are the robot's
   Sensing sensing_;
   BehaviourCoordinator coordinator_{};
   const Controller* avoiding_ = nullptr;  // one of its behaviours'
@@ -72,13 +75,11 @@ class Pipeline {
   std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
   bool blinded_ = false;                // the newest scan is
   double clearance_ = 0;                // [m] of the newest scan
-  Joystick joystick_{};
-  std::uint64_t joystick_ticks_ = 0;  // ticks the stick's value still counts
-  std::vector<Twist2> under_way_{};   // commands given that do not act yet, oldest first
+  std::uint64_t joystick_ticks_ = 0;    // ticks the stick's value still counts
+  std::vector<Twist2> under_way_{};     // commands given that do not act yet, oldest first
   GridThinning grids_{};
   bool grids_wanted_ = false;
   Narrator narrator_{};
-  bool stopped_ = false;
   std::uint64_t tick_ = 0;
 };
 

@@ -51,45 +51,31 @@ bool StuckDetector::update(const Vec2& position_W, double v_max) {
 }
 
 void Sequencer::reset(double period) {
-  goal_.reset();
-  ahead_.clear();
-  ahead_.reserve(kMostGoalsAhead);
   mission_ = Mission::Idle;
   stuck_.reset(period);
 }
 
-void Sequencer::set_goal(const std::optional<SetGoal>& goal) {
-  goal_ = goal;
-  ahead_.clear();
-  mission_ = goal ? Mission::Driving : Mission::Idle;
+void Sequencer::begin(const Intent& intent) {
+  mission_ = intent.goal ? Mission::Driving : Mission::Idle;
   stuck_.restart();
 }
 
-void Sequencer::add_goal(const SetGoal& goal) {
-  if (!goal_) {
-    set_goal(goal);
-  } else {
-    ahead_.push_back(goal);
-  }
-}
-
-void Sequencer::go_on() {
-  goal_ = ahead_.front();
-  ahead_.erase(ahead_.begin());
+void Sequencer::go_on(Intent& intent) {
+  intent.go_on();
   mission_ = Mission::Driving;
   stuck_.restart();
 }
 
-Mission Sequencer::update(const Pose2& pose_W, const Parameters& parameters) {
-  if (mission_ == Mission::Arrived && !ahead_.empty()) go_on();
-  if (!goal_ || mission_ == Mission::Arrived) return mission_;
-  while (at_goal(*goal_, pose_W, parameters[kGoalReach])) {
-    if (ahead_.empty()) return mission_ = Mission::Arrived;
-    go_on();
+Mission Sequencer::update(const Pose2& pose_W, Intent& intent) {
+  if (mission_ == Mission::Arrived && !intent.goals_ahead.empty()) go_on(intent);
+  if (!intent.goal || mission_ == Mission::Arrived) return mission_;
+  while (at_goal(*intent.goal, pose_W, intent.parameters[algo::kGoalReach])) {
+    if (intent.goals_ahead.empty()) return mission_ = Mission::Arrived;
+    go_on(intent);
   }
 
   const Vec2 position_W = pose_W.position();
-  if (stuck_.update(position_W, parameters[kMaxSpeed])) {
+  if (stuck_.update(position_W, intent.parameters[algo::kMaxSpeed])) {
     if (mission_ != Mission::Stuck) stuck_at_W_ = position_W;
     mission_ = Mission::Stuck;
   } else if (mission_ == Mission::Stuck && (position_W - stuck_at_W_).norm() > kStuckRadius) {

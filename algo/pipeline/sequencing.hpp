@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
+#include "algo/intent.hpp"
 #include "algo/telemetry.hpp"
 
 namespace algo {
@@ -27,30 +27,22 @@ class StuckDetector {
   std::size_t count_ = 0;
 };
 
-constexpr std::size_t kMostGoalsAhead = 100;
-
-/// The goal's state machine, and the goals to come. A stuck robot keeps trying and counts as
-/// driving again as soon as it gets away; an arrived one waits for the next goal.
+/// The goal's state machine. A stuck robot keeps trying and counts as driving again as soon as it
+/// gets away; an arrived one waits for the next goal.
 class Sequencer {
  public:
   void reset(double period);
-  /// In place of all goals there are.
-  void set_goal(const std::optional<SetGoal>& goal);
-  void add_goal(const SetGoal& goal);
-  const std::optional<SetGoal>& goal() const { return goal_; }
-  /// Those after the present one, in order.
-  const std::vector<SetGoal>& goals_ahead() const { return ahead_; }
+  /// The goals began anew (Intent::apply).
+  void begin(const Intent& intent);
   /// The robot was held: standing still does not mean that it is stuck.
   void interrupt() { stuck_.restart(); }
-  /// The state for this tick, before control; `pose_W` is the odometry's. A goal that is reached
-  /// gives way to the next; the robot has arrived at the last only.
-  Mission update(const Pose2& pose_W, const Parameters& parameters);
+  /// The state for this tick, before control; `pose_W` is the odometry's. A goal of `intent` that
+  /// is reached gives way to the next; the robot has arrived at the last only.
+  Mission update(const Pose2& pose_W, Intent& intent);
 
  private:
-  void go_on();  // to the next goal
+  void go_on(Intent& intent);  // to the next goal
 
-  std::optional<SetGoal> goal_{};
-  std::vector<SetGoal> ahead_{};
   Mission mission_ = Mission::Idle;
   StuckDetector stuck_{};
   Vec2 stuck_at_W_{0, 0};

@@ -67,7 +67,7 @@ void wait_for(Lms200Device& laser, double patience) {
 void print_info(Lms200Device& laser) {
   const double until = drivers::steady_now() + 1.0;  // for a measured scan rate
   while (drivers::steady_now() < until && g_interrupted == 0) nap();
-  const drivers::DeviceReport report = laser.report();
+  const algo::DeviceReport report = laser.report();
   fmt::print("{}: {}\n", report.port, report.sentence);
   for (const auto& [name, value] : report.facts) fmt::print("  {:<18} {}\n", name, value);
   for (const std::string& remark : report.remarks) fmt::print("  note: {}\n", remark);

@@ -1,4 +1,5 @@
 // server/cli/command_serve.cpp: `tautline serve`.
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "drivers/serial_robot.hpp"
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/run/hardware.hpp"
@@ -25,6 +27,7 @@ struct Options {
   RunFlags flags{};
   double keep_gigabytes = 2;
   std::string evict = "never";
+  std::uint32_t idle_seconds = 900;  // --session-idle
 };
 
 /// The spec to begin with: of the devices of a robot's file, or of a scenario.
@@ -44,7 +47,7 @@ RunSpec first_spec(const Options& options) {
   if (!drivers::check_real_time().priority) spdlog::warn(drivers::priority_advice());
   const std::shared_ptr<drivers::SerialRobot> robot = drivers::open_robot(file);
   robot->note_memory_locked(locked);
-  return hardware_spec(robot, overrides);
+  return hardware_spec(describe(robot), overrides);
 }
 
 /// Loud, since the docker image and many a shell history say --insecure without another thought.
@@ -71,6 +74,7 @@ void serve(Options& options) {
   }
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
   app.evict_oldest = options.evict == "oldest";
+  app.sessions.idle = std::chrono::seconds(options.idle_seconds);
   app.first = first_spec(options);
   app.net.log = [](std::string_view sentence) { spdlog::warn(sentence); };
   const std::string database = app.database.string();
@@ -171,6 +175,34 @@ void add_serve_command(CLI::App& app, int& status) {
   command->add_flag("--unattended",
                     options->app.unattended,
                     "Real hardware drives on though nobody watches it who could stop it");
+  AppOptions& app_options = options->app;
+  command->add_flag("--per-visitor",
+                    app_options.sessions.per_visitor,
+                    "Whoever opens the page without a session gets one of their own");
+  command
+      ->add_option("--sessions",
+                   app_options.sessions.sessions,
+                   "How many sessions there may be at once, beside main")
+      ->check(CLI::Range(0, 100000))
+      ->capture_default_str();
+  command
+      ->add_option("--session-runs",
+                   app_options.sessions.runs,
+                   "How often one session, other than main, may load or reset; 0: no limit")
+      ->capture_default_str();
+  command
+      ->add_option("--session-idle",
+                   options->idle_seconds,
+                   "A session that nobody watches or asks anything ends after so long; not main")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(1, 31'536'000))
+      ->capture_default_str();
+  command
+      ->add_option("--control-threads",
+                   app_options.threads,
+                   "Threads that drive simulated robots; 0: one a processor")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
   options->flags.add_to(*command);
   command->callback([options, &status] {
     serve(*options);

@@ -294,7 +294,7 @@ bool look_at_base(const drivers::RobotFile& file,
   drivers::SerialBase base(entry.port, std::move(machine));
   const double until = steady_now() + options.patience;
   while (!base.state().running && steady_now() < until) pause();
-  const drivers::DeviceReport report = base.report();
+  const algo::DeviceReport report = base.report();
   const drivers::BaseState state = base.state();
   if (!state.running) {
     notes.bad(report.sentence, "Is it switched on? Is it the right cable, at the right port?");

@@ -1,6 +1,7 @@
 // server/emulate/emulated_world.cpp: one physics step after another, devices served in between.
 #include "server/emulate/emulated_world.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -59,8 +60,12 @@ void EmulatedWorld::run(const std::stop_token& stop) {
   algo::Observation observation;
   world_.reset(observation);
   trail_.reset(world_.ground_truth()->pose, 0);
+  const auto period = std::chrono::duration_cast<Deadlines::Clock::duration>(
+      std::chrono::duration<double>(world_.spec().period));
   while (!stop.stop_requested()) {
-    if (!world_.step(command(), observation)) continue;
+    const auto due = deadlines_.next(Deadlines::Clock::now(), period);
+    std::this_thread::sleep_until(due);
+    world_.step(command(), observation);
     const algo::GroundTruth truth = *world_.ground_truth();
     trail_.push(truth.pose);
     feel(observation, truth.pose);
@@ -126,7 +131,7 @@ void EmulatedWorld::note(double now, const algo::GroundTruth& truth) {
               .pose_W = truth.pose,
               .clearance = truth.clearance,
               .collided = truth_.collided || truth.collided,
-              .missed = world_.missed_periods()};
+              .missed = deadlines_.missed()};
   }
   if (now < next_note_) return;
   next_note_ += kEvery;

@@ -15,6 +15,7 @@
 #include "server/emulate/mirror.hpp"
 #include "server/emulate/sonar_ring.hpp"
 #include "server/emulate/truth_record.hpp"
+#include "server/run/pacer.hpp"
 #include "sim/world.hpp"
 
 namespace server::emulate {
@@ -65,6 +66,7 @@ class EmulatedWorld {
   TruthRecord& record_;
   double metres_per_count_ = 0;
   sim::World world_;
+  Deadlines deadlines_{};
   sim::PoseTrail trail_;
   std::vector<Mirror> mirrors_{};
   SonarRing sonars_;

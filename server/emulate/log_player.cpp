@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "server/emulate/clock.hpp"
+#include "server/run/pacer.hpp"
 
 namespace server::emulate {
 
@@ -16,8 +17,7 @@ void LogPlayer::start() {
 }
 
 void LogPlayer::run(const std::stop_token& stop) {
-  // A log may hold a pause of minutes, which must not keep the program from ending.
-  const std::stop_callback wake(stop, [this] { replay_.set_pace({.paused = false, .speed = 0}); });
+  Pacer pacer;
   algo::Observation observation;
   replay_.reset(observation);
   while (!stop.stop_requested()) {
@@ -28,11 +28,8 @@ void LogPlayer::run(const std::stop_token& stop) {
       if (scanner_.device->sweep().parts.empty()) scanner_.device->offer(scan, machine_time());
       scanner_.thread->wake();
     }
-    try {
-      replay_.step({}, observation);
-    } catch (const algo::EndOfLog&) {
-      replay_.reset(observation);
-    }
+    if (!pacer.wait(replay_.next_period(), stop)) return;
+    if (!replay_.step({}, observation)) replay_.reset(observation);
   }
 }
 

@@ -36,15 +36,13 @@ class TimedRobot final : public algo::Robot {
     return stepped;
   }
   void stop() noexcept override { robot_->stop(); }
-  std::optional<std::string> edit(const algo::Request& request) override {
-    return robot_->edit(request);
-  }
+  double next_period() const override { return robot_->next_period(); }
+  algo::Arming* arming() override { return robot_->arming(); }
+  algo::Editing* editing() override { return robot_->editing(); }
   std::optional<algo::GroundTruth> ground_truth() const override {
     tick_us_.push_back(static_cast<float>((cpu_time() - begin_) * 1e6));
     return robot_->ground_truth();
   }
-  void set_pace(const algo::Pace& pace) override { robot_->set_pace(pace); }
-  std::uint64_t missed_periods() const override { return robot_->missed_periods(); }
 
  private:
   std::unique_ptr<algo::Robot> robot_;

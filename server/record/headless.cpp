@@ -29,24 +29,23 @@ HeadlessResult run_headless(const RunSpec& spec,
   const bool encodes = options.record != nullptr || options.hash_frames;
   constexpr std::size_t kNowAndNext = 2;  // frames in use where nobody keeps one
   const std::shared_ptr<FramePool> pool =
-      encodes ? FramePool::make<EncodedFrame>(kPoolFrames) : FramePool::make(kNowAndNext);
+      encodes ? FramePool::growing<EncodedFrame>(
+                    kPoolFrames, kPoolFrames, std::make_shared<FrameRoom>(0))
+              : FramePool::make(kNowAndNext);
   std::unique_ptr<RecordSink> sink;
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
   algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
-  robot.set_pace({.paused = false, .speed = options.pace});
+  Pacer pacer({.speed = options.pace});
   std::stop_source over;
-  // A robot that waits for its time must not wait on when it is asked to end.
-  const std::stop_callback wake(stop, [&] {
-    over.request_stop();
-    robot.set_pace({.paused = false, .speed = 0});
-  });
+  const std::stop_callback wake(stop, [&] { over.request_stop(); });
 
   auto next_progress = std::chrono::steady_clock::now();
   std::optional<Ending> ending;
   RunLinks links;
   links.pool = pool.get();
   links.record = sink.get();
-  links.observer = [&](const Frame& frame) {
+  links.pacer = &pacer;
+  links.listeners.push_back([&](const Frame& frame) {
     if (options.hash_frames) {
       result.telemetry_hash = fnv1a(encoded(frame).bytes(), result.telemetry_hash);
     }
@@ -55,7 +54,7 @@ HeadlessResult run_headless(const RunSpec& spec,
     if (!options.progress || std::chrono::steady_clock::now() < next_progress) return;
     next_progress = std::chrono::steady_clock::now() + std::chrono::milliseconds(100);
     options.progress(frame.telemetry.observation.stamp, frame.telemetry.tick + 1);
-  };
+  });
   const RunPolicy policy{.until_outcome = !options.until_watch,
                          .time_limit = options.until_watch ? 0 : time_limit(spec)};
   result.run = run(robot, pipeline, first_requests(spec), policy, links, over.get_token());

@@ -14,8 +14,8 @@ bool is_goal(const algo::Request& request) {
 
 }  // namespace
 
-bool FreshOrders::notice(std::uint32_t arming) {
-  return std::exchange(arming_, arming) != arming && (goal_ || stick_);
+bool FreshOrders::notice(std::uint32_t epoch) {
+  return std::exchange(epoch_, epoch) != epoch && (goal() || stick());
 }
 
 std::optional<std::string> FreshOrders::refusal(const algo::Request& request, double now) {
@@ -24,9 +24,9 @@ std::optional<std::string> FreshOrders::refusal(const algo::Request& request, do
   if (stick != nullptr && !pushed) held_at_ = -std::numeric_limits<double>::infinity();
   if (!pushed && !is_goal(request)) return std::nullopt;
   const char* why = nullptr;
-  if (stopped_) {
+  if (asked_.stop) {
     why = "This robot is stopped. Release Stop first, then send it off.";
-  } else if (arming_ == 0) {
+  } else if (epoch_ == 0) {
     why = "The motors are off. Arm the robot first, then send it off.";
   } else if (pushed && now - held_at_ < kLetGo) {
     why = "The stick was held before the robot was armed or released. Let go of it first.";
@@ -37,15 +37,10 @@ std::optional<std::string> FreshOrders::refusal(const algo::Request& request, do
 }
 
 bool FreshOrders::accept(const algo::Request& request) {
-  if (is_goal(request)) goal_ = true;
-  if (std::holds_alternative<algo::ClearGoal>(request)) goal_ = false;
-  if (const auto* stick = std::get_if<algo::Joystick>(&request))
-    stick_ = *stick != algo::Joystick{};
-  if (const auto* stop = std::get_if<algo::Stop>(&request)) {
-    stopped_ = stop->engaged;
-    return stopped_ && (goal_ || stick_);
-  }
-  return false;
+  if (algo::is_edit(request)) return false;
+  asked_.apply(request);
+  const auto* stop = std::get_if<algo::Stop>(&request);
+  return stop != nullptr && stop->engaged && (goal() || stick());
 }
 
 }  // namespace server

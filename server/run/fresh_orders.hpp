@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "algo/request.hpp"
+#include "algo/intent.hpp"
 
 namespace server {
 
@@ -18,21 +18,24 @@ class FreshOrders {
  public:
   static constexpr double kLetGo = 0.5;  // [s] without a stick that is held
 
-  /// `arming` as of algo::Robot. True when what was ordered before is void.
-  bool notice(std::uint32_t arming);
+  /// `epoch` as of algo::Arming. True when what was ordered before is void.
+  bool notice(std::uint32_t epoch);
   /// Why `request` is refused at `now` [s] of the run clock, as a sentence.
   std::optional<std::string> refusal(const algo::Request& request, double now);
   /// `request` was accepted. True when it makes void what was ordered before.
   bool accept(const algo::Request& request);
 
-  bool goal() const { return goal_; }    // one was accepted and is not void
-  bool stick() const { return stick_; }  // the last that was accepted was not at rest
+  /// The pipeline has seen all that was accepted, and this is what it makes of it.
+  void follow(const algo::Intent& intent) { asked_ = intent; }
+  /// What was accepted adds up to, but for obstacle edits.
+  const algo::Intent& asked() const { return asked_; }
+
+  bool goal() const { return asked_.goal.has_value(); }
+  bool stick() const { return asked_.stick != algo::Joystick{}; }  // it is not at rest
 
  private:
-  std::uint32_t arming_ = 0;
-  bool stopped_ = false;
-  bool goal_ = false;
-  bool stick_ = false;
+  algo::Intent asked_{};
+  std::uint32_t epoch_ = 0;
   double held_at_ = -std::numeric_limits<double>::infinity();  // [s] a stick in vain
 };
 

@@ -9,6 +9,7 @@
 #include "algo/gate.hpp"
 #include "drivers/lms200_scan.hpp"
 #include "drivers/scanner.hpp"
+#include "drivers/serial_robot.hpp"
 
 namespace server {
 namespace {
@@ -38,7 +39,7 @@ double scan_timeout(const drivers::RobotFile& file) {
   return longest;
 }
 
-json to_json(const drivers::DeviceReport& device) {
+json to_json(const algo::DeviceReport& device) {
   json facts = json::object();
   for (const auto& [name, value] : device.facts) facts[name] = value;
   return {{"name", device.name},
@@ -49,22 +50,42 @@ json to_json(const drivers::DeviceReport& device) {
           {"facts", std::move(facts)}};
 }
 
-json to_json(const drivers::LatenessHistogram& lateness) {
+json to_json(const algo::LatenessHistogram& lateness) {
   json buckets = json::array();
   const auto& counts = lateness.counts();
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const bool last = i == drivers::LatenessHistogram::kLimits.size();
+    const bool last = i == algo::LatenessHistogram::kLimits.size();
     json below = nullptr;
-    if (!last) below = drivers::LatenessHistogram::kLimits[i];
+    if (!last) below = algo::LatenessHistogram::kLimits[i];
     buckets.push_back({{"below", std::move(below)}, {"ticks", counts[i]}});
   }
   return {
       {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
 }
 
+/// One run of a robot that outlives it. Ends disarmed.
+class HardwareRun final : public algo::Robot {
+ public:
+  explicit HardwareRun(std::shared_ptr<algo::Robot> robot) : robot_(std::move(robot)) {}
+  ~HardwareRun() override { robot_->arming()->disarm(""); }
+  HardwareRun(const HardwareRun&) = delete;
+  HardwareRun& operator=(const HardwareRun&) = delete;
+
+  const algo::RobotSpec& spec() const override { return robot_->spec(); }
+  void reset(algo::Observation& observation) override { robot_->reset(observation); }
+  bool step(const algo::Command& command, algo::Observation& observation) override {
+    return robot_->step(command, observation);
+  }
+  void stop() noexcept override { robot_->stop(); }
+  algo::Arming* arming() override { return robot_->arming(); }
+
+ private:
+  std::shared_ptr<algo::Robot> robot_;
+};
+
 }  // namespace
 
-RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOverrides& overrides) {
+std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> robot) {
   const drivers::RobotFile& file = robot->file();
   sim::Scenario scenario;
   scenario.name = file.spec.name;
@@ -82,14 +103,23 @@ RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOver
   scenario.parameters = {{&algo::kMaxSpeed, allowed(algo::kMaxSpeed, file.limits.speed)},
                          {&algo::kMaxTurnRate, allowed(algo::kMaxTurnRate, file.limits.turn)},
                          {&algo::kScanTimeout, allowed(algo::kScanTimeout, scan_timeout(file))}};
-  RunSpec spec = make_spec(std::move(scenario), overrides);
-  spec.hardware = std::move(robot);
+  return std::make_shared<const Hardware>(
+      Hardware{.robot = std::move(robot), .scenario = std::move(scenario)});
+}
+
+RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrides& overrides) {
+  RunSpec spec = make_spec(hardware->scenario, overrides);
+  spec.hardware = std::move(hardware);
   return spec;
 }
 
-json to_json(const drivers::HardwareReport& report) {
+std::unique_ptr<algo::Robot> make_run(const Hardware& hardware) {
+  return std::make_unique<HardwareRun>(hardware.robot);
+}
+
+json to_json(const algo::HealthReport& report) {
   json devices = json::array();
-  for (const drivers::DeviceReport& device : report.devices) devices.push_back(to_json(device));
+  for (const algo::DeviceReport& device : report.devices) devices.push_back(to_json(device));
   return {{"armed", report.armed},
           {"halt", algo::name(report.halt)},
           {"trouble", report.trouble},

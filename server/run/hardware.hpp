@@ -2,45 +2,35 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "algo/robot.hpp"
-#include "drivers/serial_robot.hpp"
 #include "server/run/run_spec.hpp"
+#include "sim/scenario.hpp"
+
+namespace drivers {
+class SerialRobot;
+}
 
 namespace server {
 
-/// One run of hardware that outlives it: devices stay open from run to run. Ends disarmed.
-class HardwareRun final : public algo::Robot {
- public:
-  explicit HardwareRun(std::shared_ptr<drivers::SerialRobot> robot) : robot_(std::move(robot)) {}
-  ~HardwareRun() override { robot_->disarm(); }
-  HardwareRun(const HardwareRun&) = delete;
-  HardwareRun& operator=(const HardwareRun&) = delete;
-
-  const algo::RobotSpec& spec() const override { return robot_->spec(); }
-  void reset(algo::Observation& observation) override { robot_->reset(observation); }
-  bool step(const algo::Command& command, algo::Observation& observation) override {
-    return robot_->step(command, observation);
-  }
-  void stop() noexcept override { robot_->stop(); }
-  std::optional<std::string> edit(const algo::Request& request) override {
-    return robot_->edit(request);
-  }
-  std::uint64_t missed_periods() const override { return robot_->missed_periods(); }
-
- private:
-  std::shared_ptr<drivers::SerialRobot> robot_;
+/// Devices that stay open from run to run, and the empty world without a goal that describes them.
+struct Hardware {
+  std::shared_ptr<algo::Robot> robot{};  // one with Arming
+  sim::Scenario scenario{};
 };
 
-/// The spec of runs on `robot`: an empty world without a goal, the file's controller and limits.
-/// Throws DocumentError.
-RunSpec hardware_spec(std::shared_ptr<drivers::SerialRobot> robot, const RunOverrides& overrides);
+/// The scenario has the controller and the limits of the robot's file. Throws DocumentError.
+std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> robot);
+
+/// The spec of runs on `hardware`. Throws DocumentError.
+RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrides& overrides);
+
+/// One run of it, which ends disarmed.
+std::unique_ptr<algo::Robot> make_run(const Hardware& hardware);
 
 /// As in docs/interfaces.md.
-nlohmann::json to_json(const drivers::HardwareReport& report);
+nlohmann::json to_json(const algo::HealthReport& report);
 
 }  // namespace server

@@ -105,7 +105,7 @@ const char* vehicle_of(const RunSpec& spec) {
 
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
   net::not_on_io_thread("Building a world");
-  if (spec.hardware) return std::make_unique<HardwareRun>(spec.hardware);
+  if (spec.hardware) return make_run(*spec.hardware);
   if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
   return std::make_unique<sim::World>(spec.scenario, spec.seed);
 }
@@ -159,8 +159,6 @@ json to_json(const algo::RobotSpec& robot) {
           {"max_angular_acceleration", robot.max_angular_acceleration},
           {"command_delay", robot.command_delay},
           {"has_laser", robot.has_laser},
-          {"editable", robot.editable},
-          {"paceable", robot.paceable},
           {"drives", robot.drives}};
 }
 
@@ -180,8 +178,6 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
   robot.max_angular_acceleration = in.number("max_angular_acceleration");
   robot.command_delay = in.number_or("command_delay", 0);
   robot.has_laser = in.flag_or("has_laser", true);
-  robot.editable = in.flag_or("editable", false);
-  robot.paceable = in.flag_or("paceable", false);
   robot.drives = in.flag_or("drives", false);
   return robot;
 }

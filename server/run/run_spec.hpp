@@ -13,11 +13,9 @@
 #include "algo/robot.hpp"
 #include "sim/scenario.hpp"
 
-namespace drivers {
-class SerialRobot;
-}
-
 namespace server {
+
+struct Hardware;
 
 /// Same spec, same run, bit for bit. Controller, filter and vehicle are the scenario's own.
 struct RunSpec {
@@ -25,7 +23,7 @@ struct RunSpec {
   algo::Parameters parameters{};
   std::uint64_t seed = 1;
   /// Real devices to run on, instead of a world; they outlive the run.
-  std::shared_ptr<drivers::SerialRobot> hardware{};
+  std::shared_ptr<const Hardware> hardware{};
 };
 
 /// "simulation", "replay" or "hardware".

@@ -1,111 +1,171 @@
-// server/run/runner.cpp: sense, decide, act, publish, once per period of the robot.
+// server/run/runner.cpp: one period after the other.
 #include "server/run/runner.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <thread>
 #include <utility>
 #include <variant>
 
-#include "server/run/fresh_orders.hpp"
+#include <fmt/format.h>
 
 namespace server {
 namespace {
 
 using algo::Outcome;
 constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
+// What the noise of an encoder amounts to.
+constexpr double kStandingSpeed = 0.01;  // [m/s]
+constexpr double kStandingTurn = 0.02;   // [rad/s]
+// Until a full ring or an empty pool is looked at again.
+constexpr std::chrono::microseconds kSoon{100};
+constexpr std::chrono::milliseconds kPausedWait{50};
 
-/// How long nothing has happened: nobody asked for anything, and the robot neither drives nor
-/// moves nor is held for another reason than before.
-class Stillness {
- public:
-  /// True when that has lasted longer than `span` [s] at `t`; never when `span` is 0.
-  bool lasts(const algo::Telemetry& t, double span) {
-    const double now = t.observation.stamp;
-    const algo::Twist2& twist = t.observation.odometry.twist;
-    const bool moves = std::abs(twist.v) > kStandingSpeed ||
-                       std::abs(twist.omega) > kStandingTurn || t.command.base != algo::Twist2{};
-    const bool event = moves || !t.requests.empty() || t.mission == algo::Mission::Driving ||
-                       t.mission != mission_ || t.hold != hold_;
-    mission_ = t.mission;
-    hold_ = t.hold;
-    if (event || now < since_) since_ = now;
-    return span > 0 && now - since_ > span;
+}  // namespace
+
+bool Stillness::lasts(const algo::Telemetry& t, double span) {
+  const double now = t.observation.stamp;
+  const algo::Twist2& twist = t.observation.odometry.twist;
+  const bool moves = std::abs(twist.v) > kStandingSpeed || std::abs(twist.omega) > kStandingTurn ||
+                     t.command.base != algo::Twist2{};
+  const bool event = moves || !t.requests.empty() || t.mission == algo::Mission::Driving ||
+                     t.mission != mission_ || t.hold != hold_;
+  mission_ = t.mission;
+  hold_ = t.hold;
+  if (event || now < since_) since_ = now;
+  return span > 0 && now - since_ > span;
+}
+
+Run::Run(algo::Robot& robot,
+         algo::Pipeline& pipeline,
+         const RunPolicy& policy,
+         RunLinks links,
+         std::stop_token stop)
+    : robot_(robot),
+      arming_(robot.arming()),
+      editing_(robot.editing()),
+      pipeline_(pipeline),
+      policy_(policy),
+      links_(std::move(links)),
+      stop_(std::move(stop)) {}
+
+void Run::begin(const std::vector<algo::Request>& first) {
+  metrics_.reset(robot_.spec());
+  orders_.follow(pipeline_.intent());
+  for (const algo::Request& request : first) accept(request);
+  if (links_.pacer != nullptr) links_.pacer->restart();
+}
+
+Run::Next Run::advance() {
+  constexpr Next kOver{.when = Next::When::Over};
+  if (phase_ == Phase::Over || stop_.stop_requested()) return kOver;
+  Next next = kOver;
+  try {
+    next = advance_phase();
+  } catch (const std::exception& e) {
+    robot_.stop();
+    set_outcome(Outcome::Failed, e.what());
   }
+  if (next.when == Next::When::Over) phase_ = Phase::Over;
+  return next;
+}
 
- private:
-  // What the noise of an encoder amounts to.
-  static constexpr double kStandingSpeed = 0.01;  // [m/s]
-  static constexpr double kStandingTurn = 0.02;   // [rad/s]
-  double since_ = 0;                              // [s] of the last event
-  algo::Mission mission_ = algo::Mission::Idle;
-  algo::Hold hold_ = algo::Hold::None;
-};
+Run::Next Run::advance_phase() {
+  const Next soon{.when = Next::When::At, .time = Clock::now() + kSoon};
+  if (phase_ == Phase::Reset) {
+    frame_ = links_.pool->take();
+    if (!frame_) return soon;
+    pipeline_.want_grids(links_.rings != nullptr || links_.record != nullptr);
+    robot_.reset(frame_->telemetry.observation);
+    pipeline_.reset(frame_->telemetry.observation.odometry.pose);
+    tick();
+  } else if (phase_ == Phase::Step) {
+    if (const auto later = step()) return *later;
+    tick();
+  } else {
+    serve_requests();  // as long as the record makes time wait
+  }
+  phase_ = Phase::Keep;
+  if (!keep()) return soon;
+  for (const Listener& listener : links_.listeners) listener(*frame_);
+  if (over()) return {.when = Next::When::Over};
+  phase_ = Phase::Step;
+  return next_step();
+}
 
-/// One run in progress. Lives on the control thread.
-class Run {
- public:
-  Run(algo::Robot& robot,
-      algo::Pipeline& pipeline,
-      const RunPolicy& policy,
-      const RunLinks& links,
-      const std::stop_token& stop)
-      : robot_(robot), pipeline_(pipeline), policy_(policy), links_(links), stop_(stop) {}
+/// When the period that begins now will be over.
+Run::Next Run::next_step() {
+  if (arming_ != nullptr || links_.pacer == nullptr) return {};
+  const Clock::time_point now = Clock::now();
+  const auto due = links_.pacer->due(robot_.next_period(), now);
+  if (!due) return {.when = Next::When::Asked, .time = now + kPausedWait};
+  if (*due == Clock::time_point::min()) return {};
+  return {.when = Next::When::At, .time = *due};
+}
 
-  RunResult execute(const std::vector<algo::Request>& first);
+/// Advances the robot; or says when to try again, as its time has not come or there is no frame.
+/// Simulated time waits for a frame; a real robot's pool has more than all rings hold.
+std::optional<Run::Next> Run::step() {
+  FrameRef next = links_.pool->take();
+  if (!next) return Next{.when = Next::When::At, .time = Clock::now() + kSoon};
+  if (arming_ == nullptr && links_.pacer != nullptr &&
+      !links_.pacer->pass(robot_.next_period(), Clock::now())) {
+    serve_requests();
+    return next_step();
+  }
+  const algo::Telemetry& t = frame_->telemetry;
+  // A real base brakes harder than along the driving ramp to the zero that follows.
+  if (t.hold != algo::Hold::None && arming_ != nullptr) robot_.stop();
+  if (!robot_.step(t.command, next->telemetry.observation)) {
+    const std::string reason = fmt::format("The log ended after {} scans.", t.tick + 1);
+    set_outcome(Outcome::EndOfLog, reason.c_str());
+    return Next{.when = Next::When::Over};
+  }
+  if (stop_.stop_requested()) return Next{.when = Next::When::Over};
+  frame_ = std::move(next);
+  return std::nullopt;
+}
 
- private:
-  void serve_requests();
-  void notice_arming();
-  void void_orders();
-  std::optional<std::string> refusal_of(const algo::Request& request);
-  void accept(const algo::Request& request);
-  void publish(const FrameRef& frame);
-  bool record(const FrameRef& frame);
-  bool push(const FrameRef& frame);
-  void judge(const algo::Telemetry& t);
-  void set_outcome(Outcome outcome, const char* reason = "");
-  FrameRef next_frame();
-  void step_into(const algo::Command& command, FrameRef& next);
-  bool over() const;
+/// Decides on the newest observation and shows what came of it.
+void Run::tick() {
+  algo::Telemetry& t = frame_->telemetry;
+  now_ = t.observation.stamp;
+  serve_requests();
+  t.requests = pending_;
+  pending_.clear();
+  pipeline_.tick(t);
+  orders_.follow(pipeline_.intent());
+  t.ground_truth = robot_.ground_truth();
+  robot_.find_moved(t.moved);
+  metrics_.add(t, pipeline_.parameters());
+  judge(t);
+  waits_since_.reset();
+  if (links_.rings == nullptr) return;
+  links_.rings->stream.push(frame_);  // full: one frame is not shown
+  news();
+}
 
-  algo::Robot& robot_;
-  algo::Pipeline& pipeline_;
-  const RunPolicy& policy_;
-  const RunLinks& links_;
-  const std::stop_token& stop_;
-  algo::Recycled<algo::Request> pending_{};  // accepted, for the next tick's record
-  algo::Parameters accepted_{};
-  FreshOrders orders_{};  // of a real robot
-  double now_ = 0;        // [s] run clock, of the newest observation
-  algo::MetricsRecorder metrics_{};
-  RunResult result_{};
-  Stillness stillness_{};
-  bool impatient_ = false;  // the record kept a tick waiting too long and has taken none since
-  bool broken_ = false;
-};
-
-bool is_real_time(const algo::RobotSpec& spec) {
-  return !spec.paceable;
+void Run::news() const {
+  if (links_.rings->news) links_.rings->news();
 }
 
 void Run::serve_requests() {
   if (links_.rings == nullptr) return;
   notice_arming();
   const bool stop = links_.rings->stop_now.exchange(false);
-  links_.rings->requests.consume_all([&](const Submission& submission) {
+  const std::size_t served = links_.rings->requests.consume_all([&](const Submission& submission) {
     notice_arming();
     std::optional<std::string> refusal = refusal_of(submission.request);
-    if (!refusal) refusal = robot_.edit(submission.request);
+    if (!refusal) refusal = carry_out(submission.request);
     if (!refusal) accept(submission.request);
     links_.rings->replies.push({submission.ticket, std::move(refusal)});
   });
   if (stop) accept(algo::Stop{true});  // last: a release in the full ring was given before it
+  if (served > 0) news();
 }
 
 /// Asked before each request: it may have been disarmed and armed again since the last.
 void Run::notice_arming() {
-  if (links_.arming && orders_.notice(links_.arming())) void_orders();
+  if (arming_ != nullptr && orders_.notice(arming_->epoch())) void_orders();
 }
 
 /// As requests of its own, so that the record has them and a replay does the same.
@@ -113,52 +173,47 @@ void Run::void_orders() {
   if (orders_.stick()) accept(algo::Joystick{});
   if (!orders_.goal()) return;
   accept(algo::ClearGoal{});
-  if (links_.rings != nullptr) links_.rings->replies.push({kGoalsCleared, std::nullopt});
+  if (links_.rings == nullptr) return;
+  links_.rings->replies.push({kGoalsCleared, std::nullopt});
+  news();
 }
 
 /// Parameters are checked against those accepted before, which the pipeline may not have seen yet.
 std::optional<std::string> Run::refusal_of(const algo::Request& request) {
   if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
-    return pipeline_.refusal(accepted_, *set);
+    return pipeline_.refusal(orders_.asked().parameters, *set);
   }
   auto refusal = pipeline_.refusal(request);
-  if (!refusal && links_.arming) refusal = orders_.refusal(request, now_);
+  if (!refusal && arming_ != nullptr) refusal = orders_.refusal(request, now_);
   return refusal;
+}
+
+/// Edits are the robot's to carry out, at once.
+std::optional<std::string> Run::carry_out(const algo::Request& request) {
+  if (!algo::is_edit(request)) return std::nullopt;
+  if (editing_ != nullptr) return editing_->edit(request);
+  return arming_ != nullptr ? "This is real hardware: obstacles are put in its way by hand."
+                            : "A recorded log has no obstacles to add, move or remove.";
 }
 
 void Run::accept(const algo::Request& request) {
   pending_.push_back(request);
-  if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
-    accepted_.set(*set->parameter, set->value);
-  }
-  if (links_.arming && orders_.accept(request)) void_orders();
+  const bool voided = orders_.accept(request);
+  if (voided && arming_ != nullptr) void_orders();
 }
 
-/// A simulated robot's time waits for a free frame; a real one's cannot, so that tick gets none.
-FrameRef Run::next_frame() {
-  FrameRef frame = links_.pool->take();
-  while (!frame && !stop_.stop_requested()) {
-    std::this_thread::sleep_for(std::chrono::microseconds(100));
-    frame = links_.pool->take();
-  }
-  return frame;
-}
-
-void Run::publish(const FrameRef& frame) {
-  if (links_.rings != nullptr) links_.rings->stream.push(frame);  // full: one frame is not shown
-  if (links_.record != nullptr && !record(frame)) ++result_.lost_ticks;
-  if (links_.observer) links_.observer(*frame);
-}
-
-/// True unless the tick was lost.
-bool Run::record(const FrameRef& frame) {
-  const algo::Telemetry& t = frame->telemetry;
-  if (stillness_.lasts(t, policy_.pause_record_after)) {
+/// Gives the newest tick to the record; false while simulated time waits for the record to take it.
+bool Run::keep() {
+  if (links_.record == nullptr) return true;
+  const bool waiting = waits_since_.has_value();
+  if (!waiting && stillness_.lasts(frame_->telemetry, policy_.pause_record_after)) {
     links_.record->pause();
     return true;
   }
-  const bool taken = push(frame);
-  if (!policy_.require_record) return taken;
+  const bool taken = try_to_keep();
+  if (!taken && waits_since_) return false;
+  if (!taken) ++result_.lost_ticks;
+  if (!policy_.require_record) return true;
   std::optional<std::string> failure = links_.record->failure();
   if (!taken && !failure) failure = "The record cannot keep up.";
   if (failure && !broken_) {
@@ -166,25 +221,23 @@ bool Run::record(const FrameRef& frame) {
     set_outcome(Outcome::Failed, failure->c_str());
     broken_ = true;
   }
-  return taken;
+  return true;
 }
 
-bool Run::push(const FrameRef& frame) {
-  using Clock = std::chrono::steady_clock;
-  if (links_.record->push(frame)) {
+/// False, with waits_since_ set: not yet; without it: the tick is lost.
+bool Run::try_to_keep() {
+  if (links_.record->push(frame_)) {
+    waits_since_.reset();
     impatient_ = false;
     return true;
   }
-  if (is_real_time(robot_.spec()) || impatient_) return false;
-  const auto begun = Clock::now();
-  do {
-    impatient_ = policy_.record_patience && Clock::now() - begun >= *policy_.record_patience;
-    if (impatient_ || stop_.stop_requested()) return false;
-    if (policy_.require_record && links_.record->failure()) return false;
-    serve_requests();
-    std::this_thread::sleep_for(std::chrono::microseconds(50));
-  } while (!links_.record->push(frame));
-  return true;
+  const Clock::time_point now = Clock::now();
+  if (!waits_since_ && arming_ == nullptr && !impatient_) waits_since_ = now;
+  if (!waits_since_) return false;
+  impatient_ = policy_.record_patience && now - *waits_since_ >= *policy_.record_patience;
+  const bool gives_up = policy_.require_record && links_.record->failure();
+  if (impatient_ || gives_up) waits_since_.reset();
+  return false;
 }
 
 /// Called every tick with the same words: a C string, so that nothing is allocated meanwhile.
@@ -218,58 +271,19 @@ bool Run::over() const {
          (policy_.until_outcome && result_.outcome != Outcome::Running);
 }
 
-void Run::step_into(const algo::Command& command, FrameRef& next) {
-  while (!robot_.step(command, next->telemetry.observation)) {  // paused
-    serve_requests();
-    if (stop_.stop_requested()) return;
-  }
-}
-
-RunResult Run::execute(const std::vector<algo::Request>& first) {
-  metrics_.reset(robot_.spec());
-  accepted_ = pipeline_.parameters();
-  for (const algo::Request& request : first) accept(request);
-  try {
-    FrameRef frame = next_frame();
-    if (!frame) return result_;
-    pipeline_.want_grids(links_.rings != nullptr || links_.record != nullptr);
-    robot_.reset(frame->telemetry.observation);
-    pipeline_.reset(frame->telemetry.observation.odometry.pose);
-    while (true) {
-      algo::Telemetry& t = frame->telemetry;
-      now_ = t.observation.stamp;
-      serve_requests();
-      t.requests = pending_;
-      pending_.clear();
-      pipeline_.tick(t);
-      t.ground_truth = robot_.ground_truth();
-      robot_.find_moved(t.moved);
-      metrics_.add(t, pipeline_.parameters());
-      judge(t);
-      publish(frame);
-      if (over()) break;
-
-      FrameRef next = next_frame();
-      if (!next) break;
-      // A real base brakes harder than along the driving ramp to the zero that follows.
-      if (t.hold != algo::Hold::None && is_real_time(robot_.spec())) robot_.stop();
-      step_into(t.command, next);  // returns at the robot's next deadline with the newest data
-      if (stop_.stop_requested()) break;
-      frame = std::move(next);
-    }
-  } catch (const algo::EndOfLog& e) {
-    set_outcome(Outcome::EndOfLog, e.what());
-  } catch (const std::exception& e) {
-    robot_.stop();
-    set_outcome(Outcome::Failed, e.what());
-  }
+RunResult Run::finish() {
+  phase_ = Phase::Over;
   robot_.stop();
+  frame_.reset();
+  if (waits_since_) ++result_.lost_ticks;
   result_.metrics = metrics_.metrics();
-  result_.missed_periods = robot_.missed_periods();
-  return result_;
+  if (arming_ != nullptr) {
+    result_.missed_periods = arming_->health().missed_periods;
+  } else if (links_.pacer != nullptr) {
+    result_.missed_periods = links_.pacer->missed();
+  }
+  return std::move(result_);
 }
-
-}  // namespace
 
 RunResult run(algo::Robot& robot,
               algo::Pipeline& pipeline,
@@ -277,7 +291,20 @@ RunResult run(algo::Robot& robot,
               const RunPolicy& policy,
               const RunLinks& links,
               const std::stop_token& stop) {
-  return Run(robot, pipeline, policy, links, stop).execute(first);
+  Run one(robot, pipeline, policy, links, stop);
+  one.begin(first);
+  Run::Next next = one.advance();
+  while (next.when != Run::Next::When::Over) {
+    if (next.when != Run::Next::When::AtOnce) {
+      if (links.pacer != nullptr) {
+        links.pacer->sleep_until(next.time, stop);
+      } else {
+        std::this_thread::sleep_until(next.time);
+      }
+    }
+    next = one.advance();
+  }
+  return one.finish();
 }
 
 }  // namespace server

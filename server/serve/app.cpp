@@ -9,13 +9,15 @@
 #include "server/record/record_sink.hpp"
 #include "server/record/run_json.hpp"
 #include "server/serve/api/api.hpp"
-#include "server/serve/bridge.hpp"
 
 namespace server {
 namespace {
 
-// Frames are looked for this often: a good part of a tick sooner than any display shows them.
-constexpr std::chrono::milliseconds kPollPeriod{4};
+// How often is done what is due by the clock; frames and answers ring a bell.
+constexpr std::chrono::milliseconds kTendPeriod{40};
+
+// Of all fast runs together: some 200 MB.
+constexpr std::size_t kSharedFrames = 4096;
 
 std::string prepared(const std::filesystem::path& database) {
   std::error_code error;
@@ -40,45 +42,38 @@ struct App::Impl {
   explicit Impl(AppOptions options)
       : recorder(prepared(options.database), recorder_options_for(options)),
         library(options.scenarios, options.logs),
+        scheduler(options.threads),
         workers(options.database.string()),
         experiments(recorder),
-        session(&recorder),
-        loader(session,
-               workers,
-               [this](std::function<void()> work) { server->post(std::move(work)); }),
-        context{.session = session,
-                .library = library,
-                .experiments = experiments,
-                .recorder = recorder,
-                .workers = workers,
-                .loader = loader},
-        bridge(
-            session,
-            {.load =
-                 [this](const nlohmann::json& body, SessionLoader::Done done) {
-                   return load_from_json(context, body, std::move(done));
-                 },
-             .reset = [this](SessionLoader::Done done) { return loader.reset(std::move(done)); }}) {
+        sessions(house(), options.sessions),
+        context{
+            .sessions = sessions,
+            .library = library,
+            .experiments = experiments,
+            .recorder = recorder,
+            .workers = workers,
+            .first = options.first.hardware ? make_spec(library.load("demo"), {}) : options.first} {
     options.net.limits.frame_bytes = kRequestBytes;
     options.net.offload = [this](std::function<void()> job) {
       workers.post([job = std::move(job)](Worker&) { job(); });
     };
     server = std::make_unique<net::Server>(options.net);
+    bell = server->bell([this] { take_news(); });
     add_api(server->router(), context);
-    server->add(bridge.hub().endpoint("/ws"));
+    server->add(sessions.endpoint());
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
-    if (options.unattended) session.watch().need_nobody();
-    if (options.require_record) session.require_record();
-    session.load(std::move(options.first));
-    if (options.armed) session.arm_when_ready();
-    server->every(kPollPeriod, [this, ended = std::move(options.ended)] {
-      session.poll();
-      bridge.flush();
+    Session& main = sessions.main().session();
+    if (options.unattended) main.watch().need_nobody();
+    if (options.require_record) main.require_record();
+    main.load(std::move(options.first));
+    if (options.armed) main.arm_when_ready();
+    server->every(kTendPeriod, [this, ended = std::move(options.ended)] {
+      sessions.tend(SessionRegistry::Clock::now());
       if (ended && ended()) server->stop();
     });
   }
   ~Impl() {
-    session.end(true);  // first: the robot stops, however long the others take
+    sessions.end_all();  // first: the robot stops, however long the others take
     workers.stop();
     experiments.stop();
     // What was posted may still answer through the server: while it is there.
@@ -88,18 +83,40 @@ struct App::Impl {
       spdlog::error("The last of the record could not be written: {}", e.what());
     }
   }
+  SessionHouse house() {
+    return {.runs = {.recorder = &recorder,
+                     .scheduler = scheduler,
+                     .frames = std::make_shared<FrameRoom>(kSharedFrames)},
+            .workers = workers,
+            .to_io = [this](std::function<void()> work) { server->post(std::move(work)); },
+            .ring = [this] { bell(); },
+            .load =
+                [this](OpenSession& session, const nlohmann::json& body, SessionLoader::Done done) {
+                  return load_from_json(context, session, body, std::move(done));
+                }};
+  }
+  /// At once, but for sessions that were tended a moment ago.
+  void take_news() {
+    if (!sessions.take_news(SessionRegistry::Clock::now()) || news_later) return;
+    news_later = true;
+    server->after(SessionRegistry::kLeast, [this] {
+      news_later = false;
+      take_news();
+    });
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
   Recorder recorder;
   ScenarioLibrary library;
+  Scheduler scheduler;
   std::unique_ptr<net::Server> server{};  // outlives workers and experiments, which post to it
   Workers workers;
   Experiments experiments;
-  Session session;
-  SessionLoader loader;
+  SessionRegistry sessions;
   ApiContext context;
-  Bridge bridge;
+  std::function<void()> bell{};
+  bool news_later = false;
 };
 
 App::App(AppOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}

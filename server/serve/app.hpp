@@ -1,4 +1,4 @@
-// server/serve/app.hpp: the serving program: one session, its record, and the doors to both.
+// server/serve/app.hpp: the serving program: the sessions, their record, and the doors to both.
 #pragma once
 
 #include <filesystem>
@@ -8,6 +8,7 @@
 
 #include "server/run/run_spec.hpp"
 #include "server/serve/net/server.hpp"
+#include "server/serve/session_registry.hpp"
 
 namespace server {
 
@@ -17,12 +18,14 @@ struct AppOptions {
   std::filesystem::path scenarios{};  // the user's own
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
   std::uint64_t keep_bytes = std::uint64_t{2} << 30;
-  bool evict_oldest = false;      // finished runs may be deleted for room
-  bool require_record = false;    // a tick that is not recorded ends the live run
-  RunSpec first{};                // loaded at the start
+  bool evict_oldest = false;    // finished runs may be deleted for room
+  bool require_record = false;  // a tick that is not recorded ends the live run
+  RunSpec first{};              // of the session `main`, loaded at the start
+  SessionRules sessions{};
+  std::size_t threads = 0;        // that advance simulated runs; 0: one a processor
   bool armed = false;             // hardware: its motors on as soon as its devices are well
   bool unattended = false;        // hardware: drives on though nobody is there to stop it
-  std::function<bool()> ended{};  // asked some hundred times a second: true ends run()
+  std::function<bool()> ended{};  // asked some twenty times a second: true ends run()
 };
 
 class App {

@@ -131,7 +131,7 @@ std::string Bridge::Gains::set(const std::string& name, const json& value) {
 }
 
 void Bridge::Gains::follow() {
-  if (on_their_way_ == 0) shown_ = bridge_.session_.state().parameters;
+  if (on_their_way_ == 0) shown_ = bridge_.session_.state().asked.parameters;
 }
 
 Bridge::Bridge(Session& session, Loads loads) : session_(session), loads_(std::move(loads)) {
@@ -385,12 +385,12 @@ void Bridge::flush() {
 void Bridge::publish_state() {
   const std::uint64_t time_ns = now_ns();
   hub_.publish(state_, time_ns, shared(dump_json(state_json(session_))));
-  hub_.publish(
-      obstacles_,
-      time_ns,
-      shared(obstacles_json(static_cast<double>(time_ns) * 1e-9, session_.state().obstacles)));
-  if (told_parameters_ != session_.state().parameters) {
-    told_parameters_ = session_.state().parameters;
+  hub_.publish(obstacles_,
+               time_ns,
+               shared(obstacles_json(static_cast<double>(time_ns) * 1e-9,
+                                     session_.state().asked.obstacles)));
+  if (told_parameters_ != session_.state().asked.parameters) {
+    told_parameters_ = session_.state().asked.parameters;
     gains_.follow();
     hub_.parameters_changed();
   }

@@ -1,11 +1,9 @@
-// server/serve/live_run.cpp: the control thread of a session's run.
+// server/serve/live_run.cpp: who advances a run, and what becomes of it in the end.
 #include "server/serve/live_run.hpp"
 
 #include <chrono>
 #include <utility>
 
-#include "drivers/serial_robot.hpp"
-#include "server/record/record_sink.hpp"
 #include "server/record/run_json.hpp"
 
 namespace server {
@@ -15,6 +13,8 @@ namespace {
 constexpr std::chrono::milliseconds kRecordPatience{200};
 // [s] run clock: the record of a run in which nothing happens pauses after so long.
 constexpr double kRecordPause = 5;
+// As many as a run at a few times real time needs; faster ones share the house's.
+constexpr std::size_t kOwnFrames = 16;
 
 /// A log is played to its end, its standstills included.
 RunPolicy live_policy(const RunSpec& spec, bool require_record) {
@@ -23,73 +23,110 @@ RunPolicy live_policy(const RunSpec& spec, bool require_record) {
           .require_record = require_record};
 }
 
+/// A real robot's loop allocates nothing and never waits for a frame.
+std::shared_ptr<FramePool> frames_for(bool real, const RunHouse& house) {
+  return real ? FramePool::make<EncodedFrame>(kPoolFrames)
+              : FramePool::growing<EncodedFrame>(kOwnFrames, kPoolFrames, house.frames);
+}
+
 }  // namespace
 
 LiveRun::LiveRun(RunSpec spec,
                  std::unique_ptr<algo::Robot> robot,
                  std::shared_ptr<RunChannel> channel,
+                 const RunHouse& house,
                  OperatorWatch& watch,
+                 std::function<void()> news,
                  bool require_record)
     : spec_(std::move(spec)),
       robot_(std::move(robot)),
+      arming_(robot_->arming()),
       pipeline_(pipeline_config(spec_), robot_->spec()),
       channel_(std::move(channel)),
+      sink_(channel_ ? std::make_unique<RecordSink>(channel_) : nullptr),
+      scheduler_(house.scheduler),
       watch_(watch),
-      pool_(FramePool::make<EncodedFrame>(kPoolFrames)),
-      policy_(live_policy(spec_, require_record)) {}
-
-void LiveRun::start(std::vector<algo::Request> first) {
-  first_ = std::move(first);
-  thread_ = std::jthread([this](const std::stop_token& stop) { control(stop); });
+      pool_(frames_for(arming_ != nullptr, house)),
+      run_(*robot_, pipeline_, live_policy(spec_, require_record), links(), stop_.get_token()) {
+  rings.news = std::move(news);
 }
 
-void LiveRun::ask_to_end() {
-  thread_.request_stop();
-  robot_->set_pace({.paused = false, .speed = 0});  // wakes a robot that waits for its time
-}
-
-LiveRun::~LiveRun() {
-  ask_to_end();
-  if (thread_.joinable()) thread_.join();
-  rings.stream.consume_all([](const FrameRef&) {});
-}
-
-void LiveRun::control(const std::stop_token& stop) {
-  std::unique_ptr<RecordSink> sink;
-  if (channel_) sink = std::make_unique<RecordSink>(channel_);
-  RunLinks links;
-  links.pool = pool_.get();
-  links.rings = &rings;
-  links.record = sink.get();
-  if (spec_.hardware) {
-    links.arming = [this] { return spec_.hardware->arming(); };
-    links.observer = [this](const Frame& frame) { look_for_operator(frame.telemetry); };
+RunLinks LiveRun::links() {
+  RunLinks out{.pool = pool_.get(), .rings = &rings, .record = sink_.get(), .pacer = &pacer_};
+  if (arming_ != nullptr) {
+    out.listeners.emplace_back([this](const Frame& frame) { look_for_operator(frame.telemetry); });
   }
-  links.on_outcome = [this](algo::Outcome outcome, const algo::Metrics& metrics) {
+  out.on_outcome = [this](algo::Outcome outcome, const algo::Metrics& metrics) {
     {
       const std::lock_guard lock(mutex_);
       metrics_ = metrics;
     }
     outcome_.store(outcome, std::memory_order_relaxed);
   };
-  result_ = run(*robot_, pipeline_, first_, policy_, links, stop);
+  return out;
+}
+
+void LiveRun::start(const std::vector<algo::Request>& first) {
+  started_ = true;
+  run_.begin(first);
+  if (arming_ == nullptr) {
+    scheduler_.add(*this);
+    return;
+  }
+  thread_ = std::jthread([this] {
+    while (LiveRun::advance().when != Run::Next::When::Over) {
+    }
+  });
+}
+
+Run::Next LiveRun::advance() {
+  const Run::Next next = run_.advance();
+  if (next.when == Run::Next::When::Over) conclude();
+  return next;
+}
+
+void LiveRun::ask_to_end() {
+  stop_.request_stop();
+  wake();
+}
+
+void LiveRun::wake() {
+  if (arming_ == nullptr) scheduler_.wake(*this);
+}
+
+void LiveRun::set_pace(const Pace& pace) {
+  pacer_.set(pace);
+  wake();
+}
+
+LiveRun::~LiveRun() {
+  ask_to_end();
+  if (arming_ == nullptr) scheduler_.remove(*this);
+  if (thread_.joinable()) thread_.join();
+  if (started_ && !finished()) conclude();
+  rings.stream.consume_all([](const FrameRef&) {});
+}
+
+/// On the thread that advanced it last.
+void LiveRun::conclude() {
+  result_ = run_.finish();
   if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
   // Nobody looks after it any more; the base's own thread brakes it and cuts its motors off.
-  if (spec_.hardware && spec_.hardware->arming() != 0) {
+  if (arming_ != nullptr && arming_->epoch() != 0) {
     const std::string why = result_.reason.empty() ? "" : ": " + result_.reason;
-    spec_.hardware->disarm("The motors are off, as the run ended" + (why.empty() ? "." : why));
+    arming_->disarm("The motors are off, as the run ended" + (why.empty() ? "." : why));
   }
   outcome_.store(result_.outcome, std::memory_order_relaxed);
   if (channel_) {
     channel_->close(run_end(result_, cut_.load(std::memory_order_relaxed)), result_.metrics.ticks);
   }
   finished_.store(true, std::memory_order_release);
+  if (rings.news) rings.news();
 }
 
 void LiveRun::look_for_operator(const algo::Telemetry& t) {
-  drivers::SerialRobot& robot = *spec_.hardware;
-  const char* why = watch_.why_disarm(robot.arming(), on_its_way(t), OperatorWatch::Clock::now());
-  if (why != nullptr) robot.disarm(why);
+  const char* why = watch_.why_disarm(arming_->epoch(), on_its_way(t), OperatorWatch::Clock::now());
+  if (why != nullptr) arming_->disarm(why);
 }
 
 algo::Metrics LiveRun::metrics() const {

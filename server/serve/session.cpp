@@ -5,11 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <type_traits>
 #include <utility>
 #include <variant>
 
 #include "server/record/run_json.hpp"
+#include "server/run/hardware.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/goal_check.hpp"
@@ -23,9 +23,10 @@ constexpr std::chrono::milliseconds kFresh{500};
 
 }  // namespace
 
-Session::Session(Recorder* recorder) : recorder_(recorder) {
+Session::Session(const RunHouse& house, std::function<void()> news)
+    : house_(house), recorder_(house.recorder), news_(std::move(news)) {
   state_.record.sentence = "This server keeps no record.";
-  if (recorder != nullptr) state_.record = recorder->status();
+  if (recorder_ != nullptr) state_.record = recorder_->status();
 }
 
 PreparedRun Session::prepare(RunSpec spec) {
@@ -33,7 +34,7 @@ PreparedRun Session::prepare(RunSpec spec) {
   std::shared_ptr<RunChannel> channel;
   if (recorder_ != nullptr) channel = recorder_->begin(new_run(spec, robot->spec()));
   auto live = std::make_unique<LiveRun>(
-      spec, std::move(robot), std::move(channel), watch_, require_record_);
+      spec, std::move(robot), std::move(channel), house_, watch_, news_, require_record_);
   return {std::move(spec), std::move(live)};
 }
 
@@ -45,10 +46,10 @@ void Session::load(RunSpec spec) {
 
 void Session::begin(PreparedRun next) {
   const RunSpec& spec = next.spec;
+  const bool stopped = state_.asked.stop;
   state_.robot = next.live->robot().spec();
-  set_goals(std::nullopt);
-  state_.obstacles = spec.scenario.obstacles;
-  state_.parameters = spec.parameters;
+  state_.editable = next.live->robot().editing() != nullptr;
+  state_.asked = {.parameters = spec.parameters, .obstacles = spec.scenario.obstacles};
   state_.outcome = algo::Outcome::Running;
   state_.lost_ticks = 0;
   state_.missed_periods = 0;
@@ -63,12 +64,12 @@ void Session::begin(PreparedRun next) {
   next_obstacle_ = 1;
 
   std::vector<algo::Request> first = first_requests(spec);
-  if (state_.stop) first.push_back(algo::Stop{true});
-  for (const algo::Request& request : first) adopt(request);
+  if (stopped) first.emplace_back(algo::Stop{true});
+  for (const algo::Request& request : first) state_.asked.apply(request);
   state_.spec = spec;
   live_ = std::move(next.live);
-  live_->robot().set_pace(state_.pace);
-  live_->start(std::move(first));
+  live_->set_pace(state_.pace);
+  live_->start(first);
   changed();
 }
 
@@ -94,7 +95,7 @@ void Session::answer_the_rest() {
   for (const auto& [ticket, pending] : rest) {
     if (!pending.answer) continue;
     if (std::holds_alternative<algo::Stop>(pending.request) && ticket > stop_ticket_) {
-      adopt(pending.request);  // a release
+      state_.asked.apply(pending.request);  // a release
       pending.answer(std::nullopt);
     } else {
       pending.answer("The run ended before this could be done.");
@@ -109,8 +110,8 @@ std::uint32_t Session::free_obstacle_id() {
       const auto* add = std::get_if<algo::AddObstacle>(&entry.second.request);
       return add != nullptr && add->obstacle.id == id;
     };
-    return std::any_of(state_.obstacles.begin(),
-                       state_.obstacles.end(),
+    return std::any_of(state_.asked.obstacles.begin(),
+                       state_.asked.obstacles.end(),
                        [id](const auto& o) { return o.id == id; }) ||
            std::any_of(pending_.begin(), pending_.end(), on_its_way);
   };
@@ -135,7 +136,7 @@ std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answe
   }
   if (!live_ || live_->finished()) {
     if (release) {
-      adopt(request);
+      state_.asked.apply(request);
       changed();
     }
     if (answer && release) answer(std::nullopt);
@@ -148,6 +149,7 @@ std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answe
     return std::nullopt;
   }
   pending_.emplace(ticket, Pending{std::move(request), std::move(answer)});
+  live_->wake();
   return id;
 }
 
@@ -156,7 +158,8 @@ void Session::engage_stop(std::uint64_t ticket, const Answer& answer) {
   if (live_ && !live_->rings.requests.push({ticket, algo::Stop{true}})) {
     live_->rings.stop_now.store(true);
   }
-  const bool news = !std::exchange(state_.stop, true);
+  if (live_) live_->wake();
+  const bool news = !std::exchange(state_.asked.stop, true);
   if (answer) answer(std::nullopt);  // before people are told of it: Stop waits for nothing
   if (news) changed();
 }
@@ -173,25 +176,25 @@ bool Session::standing() const {
 }
 
 void Session::apply_pace() {
-  if (live_) live_->robot().set_pace(state_.pace);
+  if (live_) live_->set_pace(state_.pace);
   state_.pace.single_steps = 0;
   changed();
 }
 
 std::optional<std::string> Session::arm(bool on) {
-  drivers::SerialRobot* robot = state_.spec.hardware.get();
-  if (robot == nullptr) return "This robot is simulated: it has no motors to switch on.";
+  if (!state_.spec.hardware) return "This robot is simulated: it has no motors to switch on.";
+  algo::Arming& motors = *state_.spec.hardware->robot->arming();
   std::optional<std::string> refusal;
   if (!on) {
     arm_when_ready_ = false;
-    robot->disarm("Somebody has disarmed it.");
+    motors.disarm("Somebody has disarmed it.");
   } else if (!state_.running) {
     refusal = "The run is over. Reset first.";
   } else {
-    refusal = robot->arm();
+    refusal = motors.arm();
   }
   if (!refusal) log(LogLevel::Warning, on ? "The motors are armed." : "The motors are disarmed.");
-  state_.hardware = robot->report();
+  state_.hardware = motors.health();
   changed();
   return refusal;
 }
@@ -232,7 +235,9 @@ void Session::poll() {
 void Session::watch_record() {
   if (recorder_ == nullptr || recorder_->revision() == record_seen_) return;
   record_seen_ = recorder_->revision();
-  for (const std::string& news : recorder_->take_news()) log(LogLevel::Warning, news);
+  if (house_.tells_record_news) {
+    for (const std::string& news : recorder_->take_news()) log(LogLevel::Warning, news);
+  }
   const RecordStatus was = std::exchange(state_.record, recorder_->status());
   const RecordStatus& now = state_.record;
   if (was.kind != now.kind || was.sentence != now.sentence || was.deleted != now.deleted) changed();
@@ -241,11 +246,10 @@ void Session::watch_record() {
 /// People are told at once of what moves or stops the robot, of the rest once a second.
 void Session::watch_hardware() {
   using std::chrono::milliseconds;
-  drivers::SerialRobot* robot = state_.spec.hardware.get();
   const auto now = std::chrono::steady_clock::now();
-  if (robot == nullptr || now - hardware_seen_ < milliseconds(100)) return;
+  if (!state_.spec.hardware || now - hardware_seen_ < milliseconds(100)) return;
   hardware_seen_ = now;
-  drivers::HardwareReport report = robot->report();
+  algo::HealthReport report = state_.spec.hardware->robot->arming()->health();
   if (arm_when_ready_ && report.halt == algo::Halt::Disarmed) {
     arm_when_ready_ = false;
     if (const auto refusal = arm(true)) log(LogLevel::Warning, *refusal);
@@ -271,7 +275,7 @@ void Session::drain_replies() {
   bool different = false;
   live_->rings.replies.consume_all([&](const Reply& reply) {
     if (reply.ticket == kGoalsCleared) {
-      set_goals(std::nullopt);
+      state_.asked.apply(algo::ClearGoal{});
       log(LogLevel::Info, "The goals are cleared: the robot was disarmed or stopped.");
       different = true;
       return;
@@ -296,58 +300,15 @@ void Session::drain_replies() {
 
 /// Brings the mirror up to date with a request the control thread has accepted.
 void Session::adopt(const algo::Request& request) {
-  const auto find = [&](std::uint32_t id) {
-    return std::find_if(state_.obstacles.begin(), state_.obstacles.end(), [id](const auto& o) {
-      return o.id == id;
-    });
-  };
-  std::visit(
-      [&](const auto& r) {
-        using R = std::decay_t<decltype(r)>;
-        if constexpr (std::is_same_v<R, algo::SetGoal>) {
-          set_goals(r);
-        } else if constexpr (std::is_same_v<R, algo::AddGoal>) {
-          if (state_.goal) {
-            state_.goals_ahead.push_back(r.goal);
-          } else {
-            set_goals(r.goal);
-          }
-        } else if constexpr (std::is_same_v<R, algo::ClearGoal>) {
-          set_goals(std::nullopt);
-        } else if constexpr (std::is_same_v<R, algo::AddObstacle>) {
-          state_.obstacles.push_back(r.obstacle);
-        } else if constexpr (std::is_same_v<R, algo::MoveObstacle>) {
-          if (const auto it = find(r.id); it != state_.obstacles.end()) it->pose_W = r.pose_W;
-        } else if constexpr (std::is_same_v<R, algo::RemoveObstacle>) {
-          if (const auto it = find(r.id); it != state_.obstacles.end()) state_.obstacles.erase(it);
-        } else if constexpr (std::is_same_v<R, algo::Stop>) {
-          state_.stop = r.engaged;
-        } else if constexpr (std::is_same_v<R, algo::SetParameter>) {
-          state_.parameters.set(*r.parameter, r.value);
-        } else {
-          static_assert(std::is_same_v<R, algo::Joystick>);
-          if (r != algo::Joystick{} && state_.goal) {  // taking the stick cancels the goal
-            set_goals(std::nullopt);
-            changed();
-          }
-        }
-      },
-      request);
-}
-
-void Session::set_goals(const std::optional<algo::SetGoal>& goal) {
-  state_.goal = goal;
-  state_.goals_ahead.clear();
+  const bool anew = state_.asked.apply(request);
+  if (anew && std::holds_alternative<algo::Joystick>(request)) changed();  // it cancels the goals
 }
 
 /// Moves on in the mirror when the robot has: a frame may be older than what was asked for since.
 void Session::follow_goal(const algo::Telemetry& t) {
-  if (t.goal == state_.goal) return;
-  auto& ahead = state_.goals_ahead;
-  const auto found = std::find(ahead.begin(), ahead.end(), t.goal);
-  if (found == ahead.end()) return;
-  state_.goal = *found;
-  ahead.erase(ahead.begin(), found + 1);
+  algo::Intent& asked = state_.asked;
+  if (t.goal == asked.goal || std::ranges::count(asked.goals_ahead, t.goal) == 0) return;
+  while (asked.goal != t.goal) asked.go_on();
   log(LogLevel::Info, "A waypoint is reached; the next goal is set.");
   changed();
 }
@@ -433,7 +394,7 @@ std::optional<std::string> Session::trouble_with_goal(const algo::SetGoal& goal)
   const std::vector<sim::ObstaclePath>& paths = state_.spec.scenario.paths;
   std::vector<algo::Obstacle> standing;
   std::ranges::copy_if(
-      state_.obstacles, std::back_inserter(standing), [&](const algo::Obstacle& obstacle) {
+      state_.asked.obstacles, std::back_inserter(standing), [&](const algo::Obstacle& obstacle) {
         return std::ranges::none_of(paths, [&](const auto& p) { return p.id == obstacle.id; });
       });
   const algo::Telemetry& t = newest_->telemetry;
@@ -445,17 +406,21 @@ sim::Scenario Session::as_scenario(const std::string& name, const std::string& t
   sim::Scenario out = state_.spec.scenario;
   out.name = name;
   out.title = title;
-  out.goal = state_.goal;
+  out.goal = state_.asked.goal;
   out.waypoints.clear();
-  if (!state_.goals_ahead.empty()) {
-    out.waypoints.push_back(*state_.goal);
+  if (!state_.asked.goals_ahead.empty()) {
+    out.waypoints.push_back(*state_.asked.goal);
     out.waypoints.insert(
-        out.waypoints.end(), state_.goals_ahead.begin(), state_.goals_ahead.end() - 1);
-    out.goal = state_.goals_ahead.back();
+        out.waypoints.end(), state_.asked.goals_ahead.begin(), state_.asked.goals_ahead.end() - 1);
+    out.goal = state_.asked.goals_ahead.back();
   }
-  out.obstacles = state_.obstacles;
-  out.parameters = state_.parameters;
+  out.obstacles = state_.asked.obstacles;
+  out.parameters = state_.asked.parameters;
   return out;
+}
+
+algo::LatenessHistogram Session::lateness() const {
+  return live_ ? live_->lateness() : algo::LatenessHistogram{};
 }
 
 void Session::changed() const {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "algo/intent.hpp"
 #include "algo/metrics.hpp"
-#include "drivers/serial_robot.hpp"
 #include "server/record/record_status.hpp"
 #include "server/record/recorder.hpp"
 #include "server/run/frame_pool.hpp"
@@ -27,19 +27,16 @@ namespace server {
 struct SessionState {
   RunSpec spec{};
   algo::RobotSpec robot{};
-  algo::Pace pace{};
-  bool stop = false;
-  std::optional<algo::SetGoal> goal{};
-  std::vector<algo::SetGoal> goals_ahead{};  // after that one, in order
-  std::vector<algo::Obstacle> obstacles{};
-  algo::Parameters parameters{};
+  bool editable = false;  // obstacles can be added, moved, removed
+  Pace pace{};
+  algo::Intent asked{};  // all requests that were accepted
   algo::Outcome outcome = algo::Outcome::Running;
   bool running = false;  // the run's control thread is at work
   std::uint64_t lost_ticks = 0;
   std::uint64_t missed_periods = 0;
   std::optional<std::string> problem{};
   RecordStatus record{};
-  std::optional<drivers::HardwareReport> hardware{};  // as people were last told
+  std::optional<algo::HealthReport> hardware{};  // as people were last told
   Watchers watchers{};
 };
 
@@ -55,8 +52,8 @@ class Session {
  public:
   using Answer = std::function<void(const std::optional<std::string>& refusal)>;
 
-  /// `recorder` may be null: nothing is kept.
-  explicit Session(Recorder* recorder);
+  /// `news` is called from any thread when poll() has something to do; it may be empty.
+  explicit Session(const RunHouse& house, std::function<void()> news = {});
 
   /// Builds the world or opens the log or the record: whatever takes time. Throws std::exception
   /// with a sentence. Any thread but the io thread.
@@ -100,7 +97,7 @@ class Session {
   void set_speed(double times_real_time);  // 0: as fast as it goes
   void single_step(std::uint32_t ticks);
 
-  /// Takes answers and frames over from the control thread; call it often.
+  /// Takes answers and frames over from the control thread; call it on news, and now and then.
   void poll();
 
   const SessionState& state() const { return state_; }
@@ -116,6 +113,8 @@ class Session {
   /// The newest frame that brought a scan: not every tick does.
   const FrameRef& newest_scan() const { return newest_scan_; }
   const PathTrail& path() const { return path_; }
+  /// How late the ticks of its run were for their deadlines, unless it is hardware.
+  algo::LatenessHistogram lateness() const;
   /// The world as it stands, as a scenario of its own.
   sim::Scenario as_scenario(const std::string& name, const std::string& title) const;
 
@@ -130,7 +129,6 @@ class Session {
   };
 
   void engage_stop(std::uint64_t ticket, const Answer& answer);
-  void set_goals(const std::optional<algo::SetGoal>& goal);
   void adopt(const algo::Request& request);
   std::uint32_t free_obstacle_id();
   void drain_replies();
@@ -147,7 +145,9 @@ class Session {
   void changed() const;
   void log(LogLevel level, const std::string& text) const;
 
+  RunHouse house_;
   Recorder* recorder_;
+  std::function<void()> news_;
   OperatorWatch watch_{};  // outlives the runs
   SessionState state_{};
   FrameRef newest_{};

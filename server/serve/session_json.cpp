@@ -17,7 +17,7 @@ using nlohmann::json;
 json state_json(const Session& session) {
   const SessionState& s = session.state();
   json obstacles = json::array();
-  for (const algo::Obstacle& o : s.obstacles) obstacles.push_back(to_json(o));
+  for (const algo::Obstacle& o : s.asked.obstacles) obstacles.push_back(to_json(o));
   json out = {
       {"run",
        {{"id", session.run_id()},
@@ -31,11 +31,11 @@ json state_json(const Session& session) {
       {"seed", s.spec.seed},
       {"robot", to_json(s.robot)},
       {"pace", {{"paused", s.pace.paused}, {"speed", s.pace.speed}}},
-      {"stop", s.stop},
+      {"stop", s.asked.stop},
       {"goal", nullptr},
       {"goals_ahead", json::array()},
       {"obstacles", std::move(obstacles)},
-      {"parameters", to_json(s.parameters)},
+      {"parameters", to_json(s.asked.parameters)},
       {"lost_ticks", s.lost_ticks},
       {"missed_periods", s.missed_periods},
       {"problem", nullptr},
@@ -44,8 +44,10 @@ json state_json(const Session& session) {
       {"watchers", s.watchers.pages + (s.watchers.scripts ? 1U : 0U)},
       {"watched_by_script", s.watchers.scripts},
   };
-  if (s.goal) out["goal"] = to_json(*s.goal);
-  for (const algo::SetGoal& goal : s.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
+  if (s.asked.goal) out["goal"] = to_json(*s.asked.goal);
+  for (const algo::SetGoal& goal : s.asked.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
+  out["robot"]["editable"] = s.editable;
+  out["robot"]["paceable"] = !s.spec.hardware;
   if (s.problem) out["problem"] = without_folders(*s.problem);
   if (s.hardware) out["hardware"] = to_json(*s.hardware);
   return out;

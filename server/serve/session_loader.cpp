@@ -4,10 +4,19 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "server/serve/net/http.hpp"
+
 namespace server {
 
 bool SessionLoader::load(Plan plan, Done done) {
   if (loads_.size() >= kMaxWaiting) return false;
+  if (most_ > 0 && taken_ >= most_) {
+    throw net::HttpError(
+        409, fmt::format("This session has had its {} runs. Open a new session to go on.", most_));
+  }
+  ++taken_;
   loads_.push_back({std::move(plan), std::move(done)});
   if (loads_.size() == 1) begin_first();
   return true;

@@ -27,11 +27,13 @@ class SessionLoader {
 
   static constexpr std::size_t kMaxWaiting = 8;
 
-  /// `to_io` runs a function on the io thread, from any.
-  SessionLoader(Session& session, Workers& workers, Post to_io)
-      : session_(session), workers_(workers), to_io_(std::move(to_io)) {}
+  /// `to_io` runs a function on the io thread, from any. `most`: how many loads there may be in
+  /// all; 0: as many as anybody likes.
+  SessionLoader(Session& session, Workers& workers, Post to_io, std::size_t most = 0)
+      : session_(session), workers_(workers), to_io_(std::move(to_io)), most_(most) {}
 
-  /// False when too many wait already: try again later.
+  /// False when too many wait already: try again later. Throws net::HttpError when the session has
+  /// had all there may be.
   bool load(Plan plan, Done done);
   /// The same again from its beginning.
   bool reset(Done done);
@@ -50,6 +52,8 @@ class SessionLoader {
   Session& session_;
   Workers& workers_;
   Post to_io_;
+  std::size_t most_;
+  std::size_t taken_ = 0;
   std::deque<Load> loads_{};  // the first is under way
 };
 

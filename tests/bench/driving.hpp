@@ -67,7 +67,6 @@ class Driving {
  public:
   explicit Driving(const sim::Scenario& scenario)
       : world_(scenario, 1), pipeline_(make_pipeline(world_.spec())) {
-    world_.set_pace({.speed = 0});
     world_.reset(t.observation);
     pipeline_.reset(t.observation.odometry.pose);
     pipeline_.tick(t);

@@ -99,10 +99,7 @@ void check_ticks(Vehicle vehicle, int ticks, const std::string& row) {
 /// A world driven in a circle by a fixed command, to time it without control.
 class Circling {
  public:
-  explicit Circling(const sim::Scenario& scenario) : world_(scenario, 1) {
-    world_.set_pace({.speed = 0});
-    world_.reset(seen_);
-  }
+  explicit Circling(const sim::Scenario& scenario) : world_(scenario, 1) { world_.reset(seen_); }
   void step() { world_.step({{0.3, 0.6}}, seen_); }
   algo::Pose2 pose() const { return seen_.odometry.pose; }
 

@@ -13,8 +13,8 @@
 #include <sched.h>
 
 #include "drivers/real_time.hpp"
+#include "server/run/pacer.hpp"
 #include "server/serve/foxglove/hub.hpp"
-#include "sim/pacer.hpp"
 
 namespace bench {
 namespace {
@@ -66,7 +66,7 @@ Lateness bare_timer(double period, double seconds) {
 Lateness paced(double period, double seconds) {
   Lateness late;
   drivers::ask_for_punctual_timers();  // as the control thread of a real robot does
-  sim::Pacer pacer;
+  server::Pacer pacer;
   pacer.restart();
   const double start = wall();
   const auto count = static_cast<std::size_t>(seconds / period);

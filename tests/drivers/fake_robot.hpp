@@ -58,7 +58,7 @@ class FakeScanner final : public Scanner {
             .faulty = faulty,
             .blinded = blinded};
   }
-  DeviceReport report() override {
+  algo::DeviceReport report() override {
     return {.name = "front laser", .port = "/dev/test", .well = !silent, .sentence = "Silent."};
   }
 
@@ -107,7 +107,7 @@ class FakeBase final : public Base {
   }
   double watchdog() const override { return 0.5; }
   WheelDynamics dynamics() const override { return {.checked = true}; }
-  DeviceReport report() override {
+  algo::DeviceReport report() override {
     return {.name = "base", .port = "/dev/base", .well = !silent, .sentence = "No answer."};
   }
 
@@ -155,7 +155,7 @@ struct FakeRobot {
     step();
   }
   bool moves() const { return base->commanded != algo::Twist2{}; }
-  bool armed() const { return robot->report().armed; }
+  bool armed() const { return robot->health().armed; }
 
   double time = 500;
   FakeScanner* scanner = nullptr;

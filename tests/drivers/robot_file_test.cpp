@@ -53,7 +53,6 @@ TEST(RobotFile, TenLinesAreEnough) {
   EXPECT_DOUBLE_EQ(robot.spec.half_track, 0.25);
   EXPECT_TRUE(robot.spec.has_laser);
   EXPECT_TRUE(robot.spec.drives);
-  EXPECT_FALSE(robot.spec.paceable);
   ASSERT_EQ(robot.lasers.size(), 1U);
   EXPECT_EQ(robot.lasers[0].setup.baud, 500'000U);
   EXPECT_EQ(robot.lasers[0].setup.variant, (lms200::Variant{180, 50}));

@@ -25,11 +25,11 @@ TEST(SerialRobot, DoesNotMoveUntilItIsArmed) {
   f.steps(1);
   EXPECT_FALSE(f.moves());
   EXPECT_EQ(f.seen.halt, Halt::Disarmed);
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("Nobody has armed"));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("Nobody has armed"));
   f.arm();
   EXPECT_TRUE(f.moves());
   EXPECT_EQ(f.seen.halt, Halt::None);
-  EXPECT_EQ(f.robot->report().trouble, "");
+  EXPECT_EQ(f.robot->health().trouble, "");
 }
 
 TEST(SerialRobot, CommandsTheBaseOncePerTickAndNeverBetween) {
@@ -100,7 +100,7 @@ TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
   while (f.moves() && f.time < silent_at + 1) f.step();
   EXPECT_LE(f.time - silent_at, 3 * 0.0266 + SerialRobot::kArrivalJitter + 2 * kPeriod);
   EXPECT_EQ(f.seen.halt, Halt::ScannerLost);
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("front laser at /dev/test: Silent."));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("front laser at /dev/test: Silent."));
   // WHEN it is back soon THEN the robot goes on.
   f.scanner->silent = false;
   f.steps(0.2);
@@ -136,7 +136,7 @@ TEST(SerialRobot, WhatLastsLongDisarms) {
   f.steps(1);
   EXPECT_FALSE(f.moves());
   EXPECT_FALSE(f.armed());
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("Arm it again"));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("Arm it again"));
   f.arm();
   EXPECT_TRUE(f.moves());
 }
@@ -177,7 +177,7 @@ TEST(SerialRobot, WheelsThatTurnWithoutACommandAreCutOff) {
   while (f.armed() && f.time < began + 4) f.step(0);
   EXPECT_LE(f.time - began, 0.3);
   EXPECT_EQ(f.base->cuts, 1);
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("does not turn as told"));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("does not turn as told"));
   // Pushed without power it is left alone.
   f.steps(5);
   EXPECT_EQ(f.base->cuts, 1);
@@ -197,7 +197,7 @@ TEST(SerialRobot, BaseWithoutAProperWatchdogIsNotArmed) {
   EXPECT_THAT(*f.robot->arm(), HasSubstr("go on for 2.5 m"));
   f.base->now.watchdog = 2;
   EXPECT_EQ(f.robot->arm(), std::nullopt);
-  EXPECT_THAT(f.robot->report().warnings,
+  EXPECT_THAT(f.robot->health().warnings,
               ::testing::Contains(HasSubstr("says that its watchdog is 2.00 s")));
 }
 
@@ -228,7 +228,7 @@ TEST(SerialRobot, BatteryMaySagButNotStayLow) {
   EXPECT_TRUE(f.moves());
   f.steps(2);
   EXPECT_FALSE(f.moves());
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("battery"));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("battery"));
 }
 
 TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
@@ -239,7 +239,7 @@ TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
   EXPECT_FALSE(f.moves());
   EXPECT_TRUE(f.seen.bumper_pressed());
   EXPECT_FALSE(f.armed());
-  EXPECT_THAT(f.robot->report().trouble, HasSubstr("touched something"));
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("touched something"));
   // Free again, it does not go on by itself.
   f.base->now.bumper_front = false;
   f.steps(1);
@@ -272,7 +272,7 @@ TEST(SerialRobot, CommandThatComesTooLateIsNone) {
   f.step();
   EXPECT_FALSE(f.moves());
   EXPECT_EQ(f.seen.halt, Halt::LateTick);
-  EXPECT_GT(f.robot->missed_periods(), 5U);
+  EXPECT_GT(f.robot->health().missed_periods, 5U);
   f.steps(1.2);
   EXPECT_TRUE(f.moves());
 }
@@ -289,7 +289,7 @@ TEST(SerialRobot, ProgramThatSleptFindsItselfLateAndDisarms) {
     f.step();
     EXPECT_FALSE(f.moves());
     EXPECT_FALSE(f.armed());
-    EXPECT_THAT(f.robot->report().trouble, HasSubstr("stood still for 2."));
+    EXPECT_THAT(f.robot->health().trouble, HasSubstr("stood still for 2."));
     f.steps(5);
     EXPECT_FALSE(f.moves());
     f.arm();
@@ -314,8 +314,8 @@ TEST(SerialRobot, LatenessOfLessThanAPeriodDelaysNoDeadline) {
     f.step();
   }
   EXPECT_NEAR(f.seen.stamp, 10 * kPeriod, 1e-9);
-  EXPECT_EQ(f.robot->missed_periods(), 0U);
-  EXPECT_EQ(f.robot->report().lateness.ticks(), 10U);
+  EXPECT_EQ(f.robot->health().missed_periods, 0U);
+  EXPECT_EQ(f.robot->health().lateness.ticks(), 10U);
 }
 
 TEST(SerialRobot, ResetAndStopDoNotLeaveItArmed) {
@@ -349,8 +349,9 @@ TEST(SerialRobot, MotorsThatDoNotComeOnDisarm) {
 
 TEST(SerialRobot, ObstaclesCannotBeEdited) {
   FakeRobot f;
-  EXPECT_TRUE(f.robot->edit(algo::AddObstacle{}));
-  EXPECT_FALSE(f.robot->edit(algo::Stop{true}));
+  algo::Robot& robot = *f.robot;
+  EXPECT_EQ(robot.editing(), nullptr);
+  EXPECT_EQ(robot.arming(), f.robot.get());
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ class SilentClient final : public server::net::WsClient {
   std::uint32_t id() const override { return 1; }
   const std::string& peer() const override { return peer_; }
   const std::string& subprotocol() const override { return peer_; }
+  const std::map<std::string, std::string>& query() const override { return query_; }
   bool open() const override { return true; }
   void send_control(server::net::FrameKind, server::net::Payload) override {}
   bool send_latest(std::uint32_t,
@@ -30,13 +31,16 @@ class SilentClient final : public server::net::WsClient {
 
  private:
   std::string peer_{"fuzz"};
+  std::map<std::string, std::string> query_{};
 };
 
 }  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  server::Session session(nullptr);  // without a run: requests are refused, parsing is the same
+  static server::Scheduler scheduler(1);
+  // Without a run: requests are refused, parsing is the same.
+  server::Session session({.scheduler = scheduler});
   server::Bridge bridge(session,
                         {.load = [](const auto&, const auto&) { return false; },
                          .reset = [](const auto&) { return false; }});

@@ -118,7 +118,7 @@ bool Bench::wait_for(const std::function<bool()>& condition, double seconds) {
 
 bool Bench::arm(double seconds) {
   return wait_for(
-      [this] { return robot_->report().halt == algo::Halt::Disarmed && !robot_->arm(); }, seconds);
+      [this] { return robot_->health().halt == algo::Halt::Disarmed && !robot_->arm(); }, seconds);
 }
 
 HeadlessResult Bench::drive(const std::stop_token& stop) {
@@ -131,17 +131,17 @@ HeadlessResult Bench::drive(const std::stop_token& stop) {
     bool moved = false;
     while (!done.stop_requested()) {
       // Until it moves for the first time; whoever disarms it then has a reason.
-      moved = moved || robot_->report().halt == algo::Halt::None;
+      moved = moved || robot_->health().halt == algo::Halt::None;
       if (!moved) arm(0.1);
       // What holds the robot, as it changes: whoever reads the trial's figures wants to know.
-      const drivers::HardwareReport report = robot_->report();
+      const algo::HealthReport report = robot_->health();
       if (report.trouble != said) fmt::print(stderr, "{}: {}\n", options_.scenario, report.trouble);
       said = report.trouble;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
   });
   HeadlessResult result = run_headless(spec_, *robot_, headless, stop);
-  robot_->disarm();
+  robot_->disarm("");
   recorder.flush();
   return result;
 }

@@ -41,12 +41,10 @@ std::vector<algo::Vec2> simulated(const std::string& name, std::uint64_t seed, u
   std::vector<algo::Vec2> path;
   const std::shared_ptr<FramePool> pool = FramePool::make(64);
   algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
-  robot->set_pace({.paused = false, .speed = 0});
   RunLinks links;
   links.pool = pool.get();
-  links.observer = [&](const Frame& frame) {
-    path.push_back(frame.telemetry.ground_truth->pose.position());
-  };
+  links.listeners.push_back(
+      [&](const Frame& frame) { path.push_back(frame.telemetry.ground_truth->pose.position()); });
   const RunPolicy policy{.until_outcome = true, .time_limit = time_limit(spec)};
   run(*robot, pipeline, first_requests(spec), policy, links, {});
   return path;

@@ -57,7 +57,7 @@ Memory watch(double seconds) {
   return memory;
 }
 
-std::uint64_t fact(const drivers::HardwareReport& report, std::string_view wanted) {
+std::uint64_t fact(const algo::HealthReport& report, std::string_view wanted) {
   for (const auto& [name, value] : report.devices.front().facts) {
     if (name == wanted) return std::stoull(value);
   }
@@ -81,7 +81,7 @@ bool soak(const std::filesystem::path& folder, double seconds) {
     memory = watch(seconds);
     stop.request_stop();
     driving.join();
-    const drivers::HardwareReport report = bench.robot().report();
+    const algo::HealthReport report = bench.robot().health();
     for (const auto& device : report.devices) {
       for (const auto& [name, value] : device.facts) {
         fmt::print("{} {}: {}\n", device.name, name, value);

@@ -34,7 +34,6 @@ TEST(Allocation, ASteadyTickAllocatesNothing) {
     scenario.vehicle = vehicle;
     scenario.obstacles = reference::room(20);
     World world(scenario, 1);
-    world.set_pace({.speed = 0});
     algo::Observation seen;
     world.reset(seen);
     const auto drive = [&](int ticks) {

@@ -93,7 +93,6 @@ Scenario moving_scenario(Vehicle vehicle) {
 TEST(World, AnObstacleFollowsItsPathAndTheScannerSeesIt) {
   for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
     World world(moving_scenario(vehicle), 1);
-    world.set_pace({.speed = 0});
     algo::Observation observation;
     world.reset(observation);
     EXPECT_NEAR(world.ground_truth()->obstacle_distance, 1.7, 1e-9);
@@ -113,7 +112,6 @@ TEST(World, SomethingThatDrivesIntoTheRobotIsACollision) {
   Scenario scenario = moving_scenario(Vehicle::Kinematic);
   scenario.paths[0].keys = {{0, {2, 0}}, {2, {0.2, 0}}};
   World world(scenario, 1);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   for (int k = 0; k < 10; ++k) world.step({}, observation);
@@ -130,7 +128,6 @@ TEST(World, APostBesideTheWheelsIsNotInTheWay) {
   scenario.obstacles = {
       {.id = 1, .pose_W = {1, 0.215 + 0.03 + 0.075, 0}, .shape = algo::Cylinder{0.075}}};
   World world(scenario, 1);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   for (int k = 0; k < 80; ++k) world.step({{0.5, 0}}, observation);

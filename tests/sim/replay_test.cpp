@@ -23,7 +23,6 @@ std::string scan(const std::string& readings,
 std::unique_ptr<Replay> replay(const std::string& text) {
   std::istringstream log(text);
   auto result = std::make_unique<Replay>(log, "test.log");
-  result->set_pace({.speed = 0});
   return result;
 }
 
@@ -60,12 +59,9 @@ TEST(Replay, OneScanATickWithPosesTwistsAndStamps) {
   // 0.5 m along x in 0.5 s, seen at the middle heading of 0.1: 1 m/s * cos(0.1); turned 0.2 rad.
   EXPECT_NEAR(seen.odometry.twist.v, std::cos(0.1), 1e-9);
   EXPECT_NEAR(seen.odometry.twist.omega, 0.4, 1e-9);
-  try {
-    robot->step({}, seen);
-    FAIL() << "the log goes on";
-  } catch (const algo::EndOfLog& end) {
-    EXPECT_STREQ(end.what(), "The log test.log ended after 2 scans.");
-  }
+  EXPECT_EQ(robot->next_period(), 0);
+  EXPECT_FALSE(robot->step({}, seen));
+  EXPECT_EQ(seen.stamp, 0.5);
   robot->reset(seen);
   EXPECT_EQ(seen.stamp, 0);
 }
@@ -96,15 +92,14 @@ TEST(Replay, StampsTooCloseForAnyScannerSayNothing) {
   EXPECT_GT(robot->spec().period, 1e-3);  // what sizes buffers must not come near zero
 }
 
-TEST(Replay, OriginalPace) {
+TEST(Replay, SaysHowLongTheNextScanTakes) {
   const auto robot =
       replay(scan("1 1 1 1", "0 0 0 0 0 0", "1") + scan("1 1 1 1", "0 0 0 0 0 0", "1.05"));
-  robot->set_pace({.speed = 1});
   algo::Observation seen;
   robot->reset(seen);
-  const auto start = std::chrono::steady_clock::now();
+  EXPECT_NEAR(robot->next_period(), 0.05, 1e-9);
   ASSERT_TRUE(robot->step({}, seen));
-  EXPECT_GE(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(49));
+  EXPECT_EQ(robot->next_period(), 0);
 }
 
 TEST(Replay, MountsComeFromTheTwoPoses) {
@@ -158,11 +153,9 @@ TEST(Replay, SaysWhyALogCannotBeReplayed) {
 
 TEST(Replay, CannotBeEdited) {
   const auto robot = replay(scan("1 2 3 4", "0 0 0 0 0 0", "1"));
-  EXPECT_FALSE(robot->spec().editable);
+  EXPECT_EQ(robot->editing(), nullptr);
+  EXPECT_EQ(robot->arming(), nullptr);
   EXPECT_FALSE(robot->spec().drives);
-  EXPECT_TRUE(robot->spec().paceable);
-  EXPECT_TRUE(robot->edit(algo::RemoveObstacle{1}).has_value());
-  EXPECT_FALSE(robot->edit(algo::ClearGoal{}).has_value());
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 // tests/sim/robot_laws_test.cpp: what holds for every robot behind the port.
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "tests/sim/reference_world.hpp"
@@ -57,11 +55,7 @@ void PrintTo(const Kind& kind, std::ostream* out) {
 
 class RobotLaws : public testing::TestWithParam<Kind> {
  protected:
-  std::unique_ptr<Robot> make(std::uint64_t seed = 1, double speed = 0) const {
-    auto robot = GetParam().make(seed);
-    robot->set_pace({.speed = speed});
-    return robot;
-  }
+  std::unique_ptr<Robot> make(std::uint64_t seed = 1) const { return GetParam().make(seed); }
   static Command wander(int tick) {
     return {{0.4 - 0.002 * (tick % 300), 0.8 * std::sin(0.05 * tick)}};
   }
@@ -93,7 +87,8 @@ TEST_P(RobotLaws, TheSpecIsUsable) {
   EXPECT_GT(spec.period, 0);
   EXPECT_GT(spec.max_v, 0);
   EXPECT_GT(spec.max_omega, 0);
-  EXPECT_TRUE(spec.paceable);
+  EXPECT_EQ(robot->arming(), nullptr);
+  EXPECT_EQ(robot->editing() != nullptr, spec.drives);
 }
 
 TEST_P(RobotLaws, StopIsAllowedAfterAnyCall) {
@@ -105,7 +100,7 @@ TEST_P(RobotLaws, StopIsAllowedAfterAnyCall) {
   for (int tick = 0; tick < 50; ++tick) {
     ASSERT_TRUE(robot->step(wander(tick), seen));
     robot->stop();
-    robot->edit(algo::ClearGoal{});
+    if (robot->editing() != nullptr) robot->editing()->edit(algo::ClearGoal{});
     robot->stop();
   }
   if (!robot->spec().drives) return;
@@ -175,9 +170,9 @@ TEST_P(RobotLaws, ResetStartsTheSameRunAgain) {
     ASSERT_TRUE(robot->step(wander(tick), first));
     run.push_back(first);
   }
-  if (robot->spec().editable) {
+  if (robot->editing() != nullptr) {
     algo::Obstacle extra{.id = 999, .pose_W = {0, 3, 0}, .shape = algo::Cylinder{0.2}};
-    EXPECT_EQ(robot->edit(algo::AddObstacle{extra}), std::nullopt);
+    EXPECT_EQ(robot->editing()->edit(algo::AddObstacle{extra}), std::nullopt);
   }
   Observation second;
   robot->reset(second);
@@ -188,51 +183,16 @@ TEST_P(RobotLaws, ResetStartsTheSameRunAgain) {
   }
 }
 
-TEST_P(RobotLaws, PausedReturnsFalseAndLeavesTheObservationAlone) {
+TEST_P(RobotLaws, TheNextStepTakesAsLongAsItSays) {
   const auto robot = make();
   Observation seen;
   robot->reset(seen);
-  ASSERT_TRUE(robot->step(wander(0), seen));
-  robot->set_pace({.paused = true});
-  const Observation before = seen;
-  const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < 3; ++i) EXPECT_FALSE(robot->step(wander(1), seen));
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
-  expect_same(before, seen);
-  robot->set_pace({.paused = true, .single_steps = 2});
-  EXPECT_TRUE(robot->step(wander(1), seen));
-  EXPECT_TRUE(robot->step(wander(2), seen));
-  EXPECT_FALSE(robot->step(wander(3), seen));
-  EXPECT_GT(seen.stamp, before.stamp);
-}
-
-TEST_P(RobotLaws, PaceChangesNoBit) {
-  const auto fast = make(6, 0);
-  const auto slow = make(6, 40);
-  Observation a;
-  Observation b;
-  fast->reset(a);
-  slow->reset(b);
-  for (int tick = 0; tick < 30; ++tick) {
-    ASSERT_TRUE(fast->step(wander(tick), a));
-    ASSERT_TRUE(slow->step(wander(tick), b));
-    expect_same(a, b);
+  for (int tick = 0; tick < 50; ++tick) {
+    const double before = seen.stamp;
+    const double period = robot->next_period();
+    ASSERT_TRUE(robot->step(wander(tick), seen));
+    EXPECT_NEAR(seen.stamp - before, period, 1e-9);
   }
-}
-
-TEST_P(RobotLaws, PaceMayBeSetFromAnotherThread) {
-  const auto robot = make();
-  Observation seen;
-  robot->reset(seen);
-  std::jthread other([&](const std::stop_token& stop) {
-    while (!stop.stop_requested()) {
-      robot->set_pace({.paused = true});
-      robot->set_pace({.speed = 0});
-    }
-  });
-  int steps = 0;
-  while (steps < 100) steps += robot->step({}, seen) ? 1 : 0;
-  EXPECT_GT(seen.stamp, 0);
 }
 
 TEST_P(RobotLaws, EveryBeamSurvivesTheWire) {
@@ -257,10 +217,12 @@ TEST_P(RobotLaws, EveryBeamSurvivesTheWire) {
 
 TEST_P(RobotLaws, RequestsThatAreNoEditsAreNoneOfItsBusiness) {
   const auto robot = make();
-  EXPECT_EQ(robot->edit(algo::SetGoal{{1, 2}, {}}), std::nullopt);
-  EXPECT_EQ(robot->edit(algo::Joystick{1, 0}), std::nullopt);
-  EXPECT_EQ(robot->edit(algo::Stop{true}), std::nullopt);
-  EXPECT_EQ(robot->edit(algo::SetParameter{}), std::nullopt);
+  algo::Editing* const editing = robot->editing();
+  if (editing == nullptr) return;
+  EXPECT_EQ(editing->edit(algo::SetGoal{{1, 2}, {}}), std::nullopt);
+  EXPECT_EQ(editing->edit(algo::Joystick{1, 0}), std::nullopt);
+  EXPECT_EQ(editing->edit(algo::Stop{true}), std::nullopt);
+  EXPECT_EQ(editing->edit(algo::SetParameter{}), std::nullopt);
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots,

@@ -106,7 +106,6 @@ Turn turn(Vehicle vehicle, Localization localization) {
   scenario.gyro = GyroConfig{.bias = 0.01, .bias_walk = 1e-4, .noise = 0.005};
   scenario.localization = localization;
   World world(scenario, 3);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   for (int k = 0; k < 400; ++k) world.step({{0.2, 0.5}}, observation);
@@ -131,7 +130,6 @@ TEST(World, ThreeBumpersTellWhereTheContactIs) {
   // Behind, to the left; the robot backs into it.
   scenario.obstacles = {post(1, -0.75, 0.15)};
   World world(scenario, 1);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   ASSERT_EQ(observation.bumpers.size(), 3U);
@@ -151,7 +149,6 @@ TEST(World, EachSensorCanBeLeftOut) {
   scenario.bumpers = 0;
   scenario.encoders = false;
   World world(scenario, 1);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   world.step({}, observation);
@@ -171,7 +168,6 @@ TEST(World, FrontAndRearScannersReportFromTheirMounts) {
   scenario.infrared = {InfraredConfig{}, rear};
   scenario.obstacles = {post(1, -1.5, 0, 0.15)};
   World world(scenario, 1);
-  world.set_pace({.speed = 0});
   algo::Observation observation;
   world.reset(observation);
   std::size_t ahead = 0;

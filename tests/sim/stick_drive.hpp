@@ -54,7 +54,6 @@ struct Outcome {
 template <typename Stick>
 Outcome drive(const sim::Scenario& scenario, std::uint64_t seed, double seconds, Stick&& stick) {
   sim::World world(scenario, seed);
-  world.set_pace({.speed = 0});
   algo::Pipeline pipeline({.controller = scenario.controller}, world.spec());
   algo::Telemetry t;
   world.reset(t.observation);

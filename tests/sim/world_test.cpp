@@ -22,7 +22,6 @@ algo::Obstacle cylinder(std::uint32_t id, double x, double y, double radius = 0.
 
 std::unique_ptr<World> world_of(const Scenario& scenario, std::uint64_t seed = 1) {
   auto world = std::make_unique<World>(scenario, seed);
-  world->set_pace({.speed = 0});
   return world;
 }
 

@@ -49,7 +49,7 @@ class FakeSocket implements SocketLike {
   readyState = 0;
   sent: (string | Uint8Array)[] = [];
   onopen: (() => void) | null = null;
-  onclose: (() => void) | null = null;
+  onclose: ((event?: { code: number; reason: string }) => void) | null = null;
   onmessage: ((event: { data: unknown }) => void) | null = null;
   onerror: (() => void) | null = null;
   send(data: string | Uint8Array) {
@@ -81,11 +81,11 @@ class FakeSocket implements SocketLike {
 function linked() {
   const sockets: FakeSocket[] = [];
   const seen = { frames: [] as Frame[], filtered: [] as Sweep[], states: [] as unknown[], notices: [] as string[],
-    status: [] as LinkStatus[], sessions: 0 };
-  const link = new LiveLink("ws://x/ws", {
+    status: [] as LinkStatus[], gone: [] as string[], sessions: 0 };
+  const link = new LiveLink(() => "ws://x/ws", {
     frame: (f) => seen.frames.push(f), filtered: (s) => seen.filtered.push(s), state: (s) => seen.states.push(s),
     status: (s) => seen.status.push(s), notice: (_, m) => seen.notices.push(m), log: () => undefined,
-    new_session: () => ++seen.sessions,
+    new_session: () => ++seen.sessions, gone: (why) => seen.gone.push(why),
   }, () => {
     const socket = new FakeSocket();
     sockets.push(socket);
@@ -211,6 +211,22 @@ test("another server process means that what was known no longer holds", () => {
   ready(sockets[2], "b");
   assert.equal(seen.sessions, 1);
   assert.ok(sockets[2].ops().some((o) => o.op === "subscribe"));
+  link.close();
+  timers.restore();
+});
+
+test("a session that is gone is said, and not asked for again and again", () => {
+  const timers = hand_wound();
+  const { link, sockets, seen, ready } = linked();
+  ready(sockets[0]);
+  sockets[0].onclose?.({ code: 4404, reason: "This session has ended." });
+  assert.deepEqual(seen.gone, ["This session has ended."]);
+  timers.tick(60_000);
+  assert.equal(sockets.length, 1);
+  link.reconnect();
+  ready(sockets[1], "b");
+  assert.equal(seen.status.at(-1)?.phase, "open");
+  assert.equal(seen.sessions, 1);
   link.close();
   timers.restore();
 });

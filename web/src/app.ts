@@ -12,6 +12,7 @@ import { Goal } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
 import { Past } from "./link/past";
+import { open_session, session_id, session_path, socket_url } from "./link/session";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { stored_hidden, store_open, stored_open, toggled } from "./state/layers";
 import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
@@ -33,6 +34,7 @@ export interface UiState {
   link: LinkStatus;
   /** The server answers, and wants its token first. */
   locked: boolean;
+  gone: string | null; // why there is no session to show
   session: SessionState | null;
   catalog: Catalog | null;
   scenarios: ScenarioItem[];
@@ -83,12 +85,11 @@ export class App {
   constructor() {
     this.ui = new Store<UiState>({
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
-      locked: false, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
+      locked: false, gone: null, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
       theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
       force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
     });
-    const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-    this.link = new LiveLink(`${scheme}//${location.host}/ws`, {
+    this.link = new LiveLink(socket_url, {
       frame: (frame) => {
         fold_frame(this.scene, frame);
         this.scene.heard_at = performance.now();
@@ -111,10 +112,11 @@ export class App {
         this.history.clear();
         void this.fetch_lists();
       },
+      gone: (why) => void this.session_gone(why),
     });
     this.stopper_ = new Stopper([
       () => this.link.call("/request", { type: "stop", engaged: true }),
-      () => rest.post("/session/control", { action: "stop" }),
+      () => rest.post(session_path("/control"), { action: "stop" }),
     ], (stop) => this.take_stop(stop));
     this.sign_ = new SignOfLife(browser,
       () => this.link.is_open && this.link.silence < kHeardLimit && stop_in_reach(),
@@ -415,6 +417,26 @@ export class App {
     await rest.post("/login", { token });
     this.ui.set({ locked: false });
     this.link.retry_now();
+  }
+
+  /** Opens a session of this page's own and shows it. Rejects with the server's sentence. */
+  async new_session(): Promise<void> {
+    await open_session();
+    this.ui.set({ gone: null });
+    this.link.reconnect();
+  }
+
+  /** A page that asked for none in particular gets one; else the person decides. */
+  private async session_gone(why: string): Promise<void> {
+    if (session_id() !== null) {
+      this.ui.set({ gone: why });
+      return;
+    }
+    try {
+      await this.new_session();
+    } catch (error) {
+      this.ui.set({ gone: sentence_of(error) });
+    }
   }
 
   /** Gives the cookie back. The server closes what was opened with it, and the page asks for the token. */

@@ -13,6 +13,7 @@ import { useEffect } from "preact/hooks";
 import { App, AppContext, use_app } from "./app";
 import { use_store } from "./state/store";
 import { Drive } from "./views/drive";
+import { SessionGone } from "./views/gone";
 import { stop_key, typing } from "./views/keys";
 import { HardwareBar } from "./views/hardware";
 import { Login } from "./views/login";
@@ -54,6 +55,7 @@ function Shell(): JSX.Element {
       {view === "drive" && <Drive />}
       {view === "runs" && <Runs />}
       {view === "system" && <System />}
+      <SessionGone />
       <StopAlarm />
       <Toasts />
       <Spoken />

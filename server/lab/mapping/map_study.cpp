@@ -67,7 +67,6 @@ nlohmann::json to_json(const PathError& error) {
 
 Recording read_recording(const std::filesystem::path& file) {
   sim::Replay replay(file);
-  replay.set_pace({.speed = 0});
   Recording log;
   log.name = file.stem().string();
   algo::Observation observation;

@@ -88,7 +88,6 @@ ScanValues values_of(const algo::LaserScan& scan) {
 
 Recording read_recording(const std::filesystem::path& file) {
   sim::Replay replay(file);
-  replay.set_pace({.speed = 0});
   Recording out{.name = file.stem().string(),
                 .step_mm = replay.unit() == sim::CarmenUnit::Centimetre ? 10.0 : 1.0};
   algo::Observation seen;

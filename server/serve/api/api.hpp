@@ -1,4 +1,4 @@
-// server/serve/api/api.hpp: REST /api/v1 over a session, the scenarios, the experiments and the
+// server/serve/api/api.hpp: REST /api/v1 over the sessions, the scenarios, the experiments and the
 // record.
 #pragma once
 
@@ -11,22 +11,21 @@
 #include "server/serve/api/worker_reply.hpp"
 #include "server/serve/experiments.hpp"
 #include "server/serve/net/router.hpp"
-#include "server/serve/session.hpp"
-#include "server/serve/session_loader.hpp"
+#include "server/serve/session_registry.hpp"
 #include "server/serve/workers.hpp"
 
 namespace server {
 
-/// What the handlers work on. Session and loader belong to the io thread; the others are
-/// safe from any thread.
+/// What the handlers work on. The sessions belong to the io thread; the others are safe from any
+/// thread.
 struct ApiContext {
-  Session& session;
+  SessionRegistry& sessions;
   const ScenarioLibrary& library;
   Experiments& experiments;
   Recorder& recorder;
   Workers& workers;
-  SessionLoader& loader;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
+  RunSpec first{};  // of a session that is opened without a word of what it is to be
   PageRoom room{};
 };
 
@@ -40,6 +39,7 @@ void add_api(net::Router& router, ApiContext& context);
 void add_catalog_routes(net::Router& router, ApiContext& context);
 void add_scenario_routes(net::Router& router, ApiContext& context);
 void add_session_routes(net::Router& router, ApiContext& context);
+void add_sessions_routes(net::Router& router, ApiContext& context);
 void add_run_routes(net::Router& router, ApiContext& context);
 
 /// Saves one of the user's own, once its world has been built: what cannot be run is not kept.
@@ -49,6 +49,9 @@ void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
 /// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError on
 /// a document that does not say what it must; `done` gets what goes wrong later, and the present
 /// run then goes on. False when too many loads wait.
-bool load_from_json(ApiContext& context, const nlohmann::json& body, SessionLoader::Done done);
+bool load_from_json(ApiContext& context,
+                    OpenSession& session,
+                    const nlohmann::json& body,
+                    SessionLoader::Done done);
 
 }  // namespace server

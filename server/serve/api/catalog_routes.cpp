@@ -16,13 +16,14 @@ void add_api(net::Router& router, ApiContext& context) {
   add_catalog_routes(router, context);
   add_scenario_routes(router, context);
   add_session_routes(router, context);
+  add_sessions_routes(router, context);
   add_run_routes(router, context);
 }
 
 void add_catalog_routes(net::Router& router, ApiContext& context) {
   router.add("GET", "/api/v1/healthz", immediate([&context](const net::Request&) {
                json body = {{"status", "ok"}};
-               if (const auto& problem = context.session.state().problem) {
+               if (const auto& problem = context.sessions.main().session().state().problem) {
                  body = {{"status", "degraded"}, {"problem", without_folders(*problem)}};
                }
                return json_response(200, body);

@@ -1,5 +1,10 @@
-// server/serve/api/openapi.cpp: what every operation may answer is written once and told of each.
+// server/serve/api/openapi.cpp: what every operation may answer, and what every session can do, is
+// written once and told of each.
 #include "server/serve/api/openapi.hpp"
+
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -18,12 +23,40 @@ void add_responses(ordered_json& operation, const ordered_json& statuses) {
   }
 }
 
+/// The operations of `main` once more, for a session by its id.
+void add_sessions(ordered_json& paths) {
+  const std::string of_main = "/api/v1/session";
+  std::vector<std::pair<std::string, ordered_json>> copies;
+  for (const auto& [path, methods] : paths.items()) {
+    if (path == of_main || path.starts_with(of_main + "/")) {
+      copies.emplace_back("/api/v1/sessions/{session}" + path.substr(of_main.size()), methods);
+    }
+  }
+  for (auto& [path, methods] : copies) {
+    for (auto& [method, operation] : methods.items()) {
+      operation["operationId"] = operation["operationId"].get<std::string>() + "ById";
+      ordered_json& of_session = paths[path][method];
+      of_session = std::move(operation);
+    }
+    for (auto& [method, operation] : paths[path].items()) {
+      ordered_json parameters = ordered_json::array();
+      parameters.push_back({{"$ref", "#/components/parameters/session"}});
+      for (const ordered_json& own : operation.value("parameters", ordered_json::array())) {
+        parameters.push_back(own);
+      }
+      operation["parameters"] = std::move(parameters);
+      operation["responses"]["404"] = {{"$ref", "#/components/responses/404"}};
+    }
+  }
+}
+
 std::string whole_document() {
   ordered_json document = ordered_json::parse(embedded_openapi());
   const ordered_json any = document.at("x-any-operation");
   const ordered_json change = document.at("x-any-change");
   document.erase("x-any-operation");
   document.erase("x-any-change");
+  add_sessions(document.at("paths"));
   for (auto& [path, methods] : document.at("paths").items()) {
     for (auto& [method, operation] : methods.items()) {
       add_responses(operation, any);

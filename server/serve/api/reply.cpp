@@ -52,6 +52,8 @@ net::Response problem_of_current_exception() {
   } catch (const std::bad_alloc&) {
     return net::problem(
         503, "Out of memory", "The server has not enough memory for this. Ask for less.");
+  } catch (const net::HttpError& e) {
+    return net::problem(e.status(), e.what());
   } catch (const std::invalid_argument& e) {  // a world that cannot be built
     return net::problem(422, "Scenario not usable", without_folders(e.what()));
   } catch (const std::exception& e) {

@@ -1,4 +1,4 @@
-// server/serve/api/session_routes.cpp: the live session: goal, obstacles, parameters, control.
+// server/serve/api/session_routes.cpp: a session: goal, obstacles, parameters, control.
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -28,33 +28,33 @@ void busy(const net::Responder& respond) {
 }
 
 /// The session as it is then, or why the present run goes on.
-SessionLoader::Done answer_when_loaded(ApiContext& context, const net::Responder& respond) {
-  return [&context, respond](const std::exception_ptr& failure) {
+SessionLoader::Done answer_when_loaded(OpenSession& open, const net::Responder& respond) {
+  return [&open, respond](const std::exception_ptr& failure) {
     if (failure) {
       respond(problem_of(failure));
     } else {
-      respond(json_response(200, state_json(context.session)));
+      respond(json_response(200, state_json(open.session())));
     }
   };
 }
 
 /// Submits and answers once the control thread has, a Stop at once: `status`, or 409 with the
 /// reason.
-void submit_and_reply(ApiContext& context,
+void submit_and_reply(Session& session,
                       algo::Request request,
                       const net::Responder& respond,
                       int status = 200) {
   const auto id = std::make_shared<std::uint32_t>(0);
   const bool stop = is_stop(request);
-  const std::optional<std::string> trouble = context.session.trouble_with(request);
-  const auto given = context.session.submit(
+  const std::optional<std::string> trouble = session.trouble_with(request);
+  const auto given = session.submit(
       std::move(request),
-      [&context, respond, id, status, stop, trouble](const std::optional<std::string>& refusal) {
+      [&session, respond, id, status, stop, trouble](const std::optional<std::string>& refusal) {
         if (refusal) {
           respond(net::problem(409, "Refused", *refusal));
           return;
         }
-        json body = accepted_json(context.session, stop);
+        json body = accepted_json(session, stop);
         if (*id != 0) body["id"] = *id;
         if (trouble) body["warning"] = *trouble;
         respond(json_response(status, body));
@@ -77,7 +77,7 @@ std::uint32_t obstacle_id(const net::Request& request) {
 
 json obstacle_list(const Session& session) {
   json items = json::array();
-  for (const algo::Obstacle& o : session.state().obstacles) items.push_back(to_json(o));
+  for (const algo::Obstacle& o : session.state().asked.obstacles) items.push_back(to_json(o));
   return {{"items", std::move(items)}, {"next", nullptr}};
 }
 
@@ -102,8 +102,8 @@ std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters
 }
 
 /// All values are checked together before the first is submitted.
-void patch_parameters(ApiContext& context, const json& body, const net::Responder& respond) {
-  const algo::Parameters& now = context.session.state().parameters;
+void patch_parameters(Session& session, const json& body, const net::Responder& respond) {
+  const algo::Parameters& now = session.state().asked.parameters;
   parameters_from_json(body, "", now);
   const std::vector<algo::SetParameter> order = in_safe_order(body, now);
   if (order.empty()) {
@@ -114,11 +114,11 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
   const auto left = std::make_shared<std::size_t>(order.size());
   const auto refused = std::make_shared<std::string>();
   for (const algo::SetParameter& set : order) {
-    const auto given = context.session.submit(
-        set, [&context, respond, left, refused](const std::optional<std::string>& refusal) {
+    const auto given = session.submit(
+        set, [&session, respond, left, refused](const std::optional<std::string>& refusal) {
           if (refusal) *refused = *refusal;
           if (--*left > 0) return;
-          respond(refused->empty() ? json_response(200, to_json(context.session.state().parameters))
+          respond(refused->empty() ? json_response(200, to_json(session.state().asked.parameters))
                                    : net::problem(409, "Refused", *refused));
         });
     if (!given) {
@@ -128,10 +128,13 @@ void patch_parameters(ApiContext& context, const json& body, const net::Responde
   }
 }
 
-void control(ApiContext& context, const json& body, const net::Responder& respond) {
+void control(ApiContext& context,
+             OpenSession& open,
+             const json& body,
+             const net::Responder& respond) {
   const JsonReader in(body, "");
   const std::string action = in.text("action", 32);
-  Session& session = context.session;
+  Session& session = open.session();
   if (action == "pause" || action == "step" || action == "speed") {
     if (const auto refusal = session.pace_refusal()) {
       respond(net::problem(409, "Refused", *refusal));
@@ -141,7 +144,7 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
   if (action == "load") {
     json load = body;
     load.erase("action");
-    if (!load_from_json(context, load, answer_when_loaded(context, respond))) busy(respond);
+    if (!load_from_json(context, open, load, answer_when_loaded(open, respond))) busy(respond);
     return;
   } else if (action == "step") {
     in.only({"action", "ticks"});
@@ -152,7 +155,7 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
     session.set_speed(pace_from_json(body, "speed", 1));
   } else if (action == "stop" || action == "release") {
     in.only({"action"});
-    submit_and_reply(context, algo::Stop{action == "stop"}, respond);
+    submit_and_reply(session, algo::Stop{action == "stop"}, respond);
     return;
   } else if (action == "arm" || action == "disarm") {
     in.only({"action"});
@@ -165,7 +168,7 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
     session.pause(action == "pause");
   } else if (action == "reset") {
     in.only({"action"});
-    if (!context.loader.reset(answer_when_loaded(context, respond))) busy(respond);
+    if (!open.loader().reset(answer_when_loaded(open, respond))) busy(respond);
     return;
   } else {
     in.fail("action",
@@ -176,15 +179,18 @@ void control(ApiContext& context, const json& body, const net::Responder& respon
   respond(json_response(200, state_json(session)));
 }
 
-void save_scenario(ApiContext& context, const json& body, const net::Responder& respond) {
+void save_scenario(ApiContext& context,
+                   const Session& session,
+                   const json& body,
+                   const net::Responder& respond) {
   const JsonReader in(body, "");
   in.only({"name", "title"});
   const std::string name = in.text("name", 64);
-  if (!context.session.state().spec.scenario.log.empty()) {
+  if (!session.state().spec.scenario.log.empty()) {
     respond(net::problem(409, "Refused", "A recorded log is playing: there is no world to save."));
     return;
   }
-  const sim::Scenario scenario = context.session.as_scenario(name, in.text_or("title", name));
+  const sim::Scenario scenario = session.as_scenario(name, in.text_or("title", name));
   answer_from_worker(context, respond, [&context, scenario](Worker&) {
     keep_scenario(context, scenario);
     net::Response response = json_response(201, to_json(scenario));
@@ -193,127 +199,171 @@ void save_scenario(ApiContext& context, const json& body, const net::Responder& 
   });
 }
 
+using SessionHandler =
+    std::function<void(OpenSession&, const net::Request&, const net::Responder&)>;
+
 /// A goal as the body, to be taken as a request of `type`.
-net::Handler goal_route(ApiContext& context, const char* type) {
-  return guarded([&context, type](const net::Request& request, const net::Responder& respond) {
+SessionHandler goal_route(const char* type) {
+  return [type](OpenSession& open, const net::Request& request, const net::Responder& respond) {
     json body = body_json(request);
     JsonReader(body, "").only({"x", "y", "heading"});
     body["type"] = type;
-    submit_and_reply(context, request_from_json(body), respond);
-  });
+    submit_and_reply(open.session(), request_from_json(body), respond);
+  };
+}
+
+/// Adds routes twice: of the session `main`, and of any by its id.
+class SessionRoutes {
+ public:
+  SessionRoutes(net::Router& router, ApiContext& context) : router_(router), context_(context) {}
+
+  /// A script that looks on may be a cron job; one that asks for something is there.
+  enum class Sign : std::uint8_t { OfLife, None };
+
+  void add(const std::string& method,
+           const std::string& path,
+           const SessionHandler& handler,
+           Sign sign = Sign::OfLife) {
+    for (const char* prefix : {"/api/v1/session", "/api/v1/sessions/{session}"}) {
+      router_.add(method,
+                  prefix + path,
+                  guarded([&context = context_, handler, sign](const net::Request& request,
+                                                               const net::Responder& respond) {
+                    OpenSession& open = asked_for(context, request);
+                    if (sign == Sign::OfLife) {
+                      open.session().watch().script_sign(OperatorWatch::Clock::now());
+                    }
+                    handler(open, request, respond);
+                  }),
+                  kRequestBytes);
+    }
+  }
+  void get(const std::string& path, json (*document)(const Session&)) {
+    add(
+        "GET",
+        path,
+        [document](OpenSession& open, const net::Request&, const net::Responder& respond) {
+          respond(json_response(200, document(open.session())));
+        },
+        Sign::None);
+  }
+
+ private:
+  static OpenSession& asked_for(ApiContext& context, const net::Request& request) {
+    const auto id = request.params.find("session");
+    if (id == request.params.end()) return context.sessions.main();
+    OpenSession* const found = context.sessions.find(id->second);
+    if (found == nullptr) throw net::HttpError(404, std::string(SessionRegistry::kGone));
+    return *found;
+  }
+
+  net::Router& router_;
+  ApiContext& context_;
+};
+
+json parameters_document(const Session& session) {
+  return to_json(session.state().asked.parameters);
 }
 
 }  // namespace
 
-bool load_from_json(ApiContext& context, const json& body, SessionLoader::Done done) {
+bool load_from_json(ApiContext& context,
+                    OpenSession& session,
+                    const json& body,
+                    SessionLoader::Done done) {
   const JsonReader in(body, "");
   in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
   const RunOverrides overrides = overrides_from_json(body);
   std::optional<std::string> name;
   if (in.has("scenario")) name = in.text("scenario", 64);
-  if (const auto& hardware = context.session.state().spec.hardware) {
-    if (name && *name != hardware->spec().name) {
+  if (const auto& hardware = session.session().state().spec.hardware) {
+    if (name && *name != hardware->scenario.name) {
       in.fail("scenario",
-              "cannot be loaded: this server drives real hardware. Start another for simulation");
+              "cannot be loaded: this session drives real hardware. Open another for simulation");
     }
     const auto plan = [hardware, overrides] {
       return [hardware, overrides] { return hardware_spec(hardware, overrides); };
     };
-    return context.loader.load(plan, std::move(done));
+    return session.loader().load(plan, std::move(done));
   }
-  const auto plan = [&context, name, overrides]() -> SessionLoader::Make {
+  const auto plan = [&context, &session, name, overrides]() -> SessionLoader::Make {
     sim::Scenario now;
-    if (!name) now = context.session.state().spec.scenario;
+    if (!name) now = session.session().state().spec.scenario;
     return [&library = context.library, name, now, overrides] {
       return make_spec(name ? library.load(*name) : now, overrides);
     };
   };
-  return context.loader.load(plan, std::move(done));
+  return session.loader().load(plan, std::move(done));
 }
 
 void add_session_routes(net::Router& router, ApiContext& context) {
-  // A script that looks on may be a cron job; one that asks for something is there.
-  const auto route = [&](const std::string& method, const char* pattern, net::Handler handler) {
-    router.add(
-        method,
-        pattern,
-        [&context, looks_on = method == "GET", handler = std::move(handler)](
-            const net::Request& request, const net::Responder& respond) {
-          if (!looks_on) context.session.watch().script_sign(OperatorWatch::Clock::now());
-          handler(request, respond);
-        },
-        kRequestBytes);
-  };
-  route("POST", "/api/v1/session/watch", immediate([](const net::Request& request) {
-          if (!request.body.empty()) JsonReader(body_json(request), "").only({});
-          return json_response(200, {{"ok", true}});
-        }));
-  router.add("POST",
-             "/api/v1/session/goal/check",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               if (context.session.may_look_at_goals()) {
-                 respond(json_response(200, goal_check_json(context.session, body_json(request))));
-               } else {
-                 busy(respond);
-               }
-             }),
-             kRequestBytes);
-  route("GET", "/api/v1/session", immediate([&context](const net::Request&) {
-          return json_response(200, session_json(context.session));
-        }));
-  route("POST",
-        "/api/v1/session/requests",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          submit_and_reply(context, request_from_json(body_json(request)), respond);
-        }));
-  route("PUT", "/api/v1/session/goal", goal_route(context, "set_goal"));
-  route("POST", "/api/v1/session/goal", goal_route(context, "add_goal"));
-  route("DELETE",
-        "/api/v1/session/goal",
-        guarded([&context](const net::Request&, const net::Responder& respond) {
-          submit_and_reply(context, algo::ClearGoal{}, respond);
-        }));
-  route("GET", "/api/v1/session/obstacles", immediate([&context](const net::Request&) {
-          return json_response(200, obstacle_list(context.session));
-        }));
-  route("POST",
-        "/api/v1/session/obstacles",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
-          submit_and_reply(context, std::move(add), respond, 201);
-        }));
-  route("PUT",
-        "/api/v1/session/obstacles/{id}",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          json body = body_json(request);
-          JsonReader(body, "").only({"x", "y", "heading"});
-          body["type"] = "move_obstacle";
-          body["id"] = obstacle_id(request);
-          submit_and_reply(context, request_from_json(body), respond);
-        }));
-  route("DELETE",
-        "/api/v1/session/obstacles/{id}",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          submit_and_reply(context, algo::RemoveObstacle{obstacle_id(request)}, respond);
-        }));
-  route("GET", "/api/v1/session/parameters", immediate([&context](const net::Request&) {
-          return json_response(200, to_json(context.session.state().parameters));
-        }));
-  route("PATCH",
-        "/api/v1/session/parameters",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          patch_parameters(context, body_json(request), respond);
-        }));
-  route("POST",
-        "/api/v1/session/control",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          control(context, body_json(request), respond);
-        }));
-  route("POST",
-        "/api/v1/session/scenario",
-        guarded([&context](const net::Request& request, const net::Responder& respond) {
-          save_scenario(context, body_json(request), respond);
-        }));
+  using Sign = SessionRoutes::Sign;
+  using net::Request;
+  using net::Responder;
+  SessionRoutes routes(router, context);
+  routes.get("", session_json);
+  routes.get("/obstacles", obstacle_list);
+  routes.get("/parameters", parameters_document);
+  routes.add("POST", "/watch", [](OpenSession&, const Request& request, const Responder& respond) {
+    if (!request.body.empty()) JsonReader(body_json(request), "").only({});
+    respond(json_response(200, {{"ok", true}}));
+  });
+  routes.add(
+      "POST",
+      "/goal/check",
+      [](OpenSession& open, const Request& request, const Responder& respond) {
+        if (open.session().may_look_at_goals()) {
+          respond(json_response(200, goal_check_json(open.session(), body_json(request))));
+        } else {
+          busy(respond);
+        }
+      },
+      Sign::None);
+  routes.add(
+      "POST", "/requests", [](OpenSession& open, const Request& request, const Responder& respond) {
+        submit_and_reply(open.session(), request_from_json(body_json(request)), respond);
+      });
+  routes.add("PUT", "/goal", goal_route("set_goal"));
+  routes.add("POST", "/goal", goal_route("add_goal"));
+  routes.add("DELETE", "/goal", [](OpenSession& open, const Request&, const Responder& respond) {
+    submit_and_reply(open.session(), algo::ClearGoal{}, respond);
+  });
+  routes.add("POST",
+             "/obstacles",
+             [](OpenSession& open, const Request& request, const Responder& respond) {
+               algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
+               submit_and_reply(open.session(), std::move(add), respond, 201);
+             });
+  routes.add("PUT",
+             "/obstacles/{id}",
+             [](OpenSession& open, const Request& request, const Responder& respond) {
+               json body = body_json(request);
+               JsonReader(body, "").only({"x", "y", "heading"});
+               body["type"] = "move_obstacle";
+               body["id"] = obstacle_id(request);
+               submit_and_reply(open.session(), request_from_json(body), respond);
+             });
+  routes.add("DELETE",
+             "/obstacles/{id}",
+             [](OpenSession& open, const Request& request, const Responder& respond) {
+               const algo::RemoveObstacle remove{obstacle_id(request)};
+               submit_and_reply(open.session(), remove, respond);
+             });
+  routes.add("PATCH",
+             "/parameters",
+             [](OpenSession& open, const Request& request, const Responder& respond) {
+               patch_parameters(open.session(), body_json(request), respond);
+             });
+  routes.add("POST",
+             "/control",
+             [&context](OpenSession& open, const Request& request, const Responder& respond) {
+               control(context, open, body_json(request), respond);
+             });
+  routes.add("POST",
+             "/scenario",
+             [&context](OpenSession& open, const Request& request, const Responder& respond) {
+               save_scenario(context, open.session(), body_json(request), respond);
+             });
 }
 
 }  // namespace server

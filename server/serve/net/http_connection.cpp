@@ -319,6 +319,7 @@ void HttpConnection::upgrade() {
                   *endpoint,
                   std::move(subprotocol),
                   request_.peer,
+                  request_.query,
                   core_.access.login_of(request_, Clock::now()));
   core_.remove(number_);
 }

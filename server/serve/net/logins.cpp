@@ -4,21 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <random>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "server/serve/net/secret.hpp"
+
 namespace server::net {
-namespace {
-
-/// 128 random bits in hex. random_device reads the kernel's generator on this platform.
-std::string random_id() {
-  std::random_device source;
-  return fmt::format("{:08x}{:08x}{:08x}{:08x}", source(), source(), source(), source());
-}
-
-}  // namespace
 
 bool equal_constant_time(std::string_view a, std::string_view b) {
   std::size_t difference = a.size() ^ b.size();
@@ -38,7 +30,7 @@ std::string LoginSessions::open(Clock::time_point now) {
           return a.second.used < b.second.used;
         }));
   }
-  std::string id = random_id();
+  std::string id = secret();
   sessions_[id] = {now, now};
   return id;
 }

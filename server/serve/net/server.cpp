@@ -2,16 +2,21 @@
 #include "server/serve/net/server.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <exception>
 #include <list>
 #include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
 
 #include <boost/asio/ip/address.hpp>
+#include <boost/asio/posix/basic_stream_descriptor.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/system/error_code.hpp>
+#include <sys/eventfd.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "server/run/io_thread.hpp"
 #include "server/serve/net/core.hpp"
@@ -84,6 +89,16 @@ struct Server::Impl {
     std::function<void()> fn;
   };
 
+  /// An eventfd: written by any thread, read by this one.
+  struct Bell {
+    Bell(Impl& owner, int file, std::function<void()> run)
+        : descriptor(owner.core.context.get_executor(), file), fd(file), fn(std::move(run)) {}
+    asio::posix::basic_stream_descriptor<Executor> descriptor;
+    int fd;
+    std::function<void()> fn;
+    std::atomic<bool> rung{false};
+  };
+
   static ServerOptions checked(ServerOptions options) {
     require_protection(parse_address(options.address), options.access);
     options.limits.connections = affordable_connections(options.limits.connections);
@@ -96,6 +111,7 @@ struct Server::Impl {
   void sweep();
   Response logout(const Request& request);
   void schedule(Periodic& periodic);
+  void listen_for(Bell& bell);
   void guarded(const std::function<void()>& fn);
   void begin_stop();
 
@@ -105,6 +121,7 @@ struct Server::Impl {
   Timer retry_timer;
   Bucket accept_lines{10, 0.1, Clock::now()};  // of the log, while none can be accepted
   std::list<Periodic> timers{};
+  std::list<Bell> bells{};
 };
 
 void Server::Impl::listen() {
@@ -209,6 +226,18 @@ void Server::Impl::schedule(Periodic& periodic) {
   });
 }
 
+void Server::Impl::listen_for(Bell& bell) {
+  bell.descriptor.async_wait(
+      asio::posix::descriptor_base::wait_read, [this, &bell](boost::system::error_code cancelled) {
+        if (cancelled) return;
+        std::uint64_t count = 0;
+        [[maybe_unused]] const auto bytes = ::read(bell.fd, &count, sizeof(count));
+        bell.rung.store(false);
+        guarded(bell.fn);
+        listen_for(bell);
+      });
+}
+
 void Server::Impl::guarded(const std::function<void()>& fn) {
   try {
     fn();
@@ -303,6 +332,27 @@ void Server::every(std::chrono::milliseconds period, std::function<void()> fn) {
   Impl::Periodic& periodic = impl_->timers.emplace_back(*impl_, period, std::move(fn));
   periodic.timer.expires_after(period);
   impl_->schedule(periodic);
+}
+
+void Server::after(std::chrono::milliseconds delay, std::function<void()> fn) {
+  const auto timer = std::make_shared<Timer>(impl_->core.context.get_executor());
+  timer->expires_after(delay);
+  timer->async_wait(
+      [impl = impl_.get(), timer, task = std::move(fn)](boost::system::error_code cancelled) {
+        if (!cancelled) impl->guarded(task);
+      });
+}
+
+std::function<void()> Server::bell(std::function<void()> fn) {
+  const int file = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  if (file < 0) throw ServerError("the system has no more files to open");
+  Impl::Bell& bell = impl_->bells.emplace_back(*impl_, file, std::move(fn));
+  impl_->listen_for(bell);
+  return [&bell] {
+    if (bell.rung.exchange(true)) return;
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const auto bytes = ::write(bell.fd, &one, sizeof(one));
+  };
 }
 
 std::size_t Server::connections() const {

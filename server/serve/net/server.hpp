@@ -89,6 +89,13 @@ class Server {
   /// Call before run() or on the io thread. An exception from `fn` is logged.
   void every(std::chrono::milliseconds period, std::function<void()> fn);
 
+  /// Runs `fn` once on the io thread, `delay` from now. Call as every().
+  void after(std::chrono::milliseconds delay, std::function<void()> fn);
+  /// A function that any thread may call to have `fn` run on the io thread, soon. It allocates
+  /// nothing and never blocks; calls before `fn` runs count as one. Set up before run(); the server
+  /// must outlive its calls. Throws ServerError when the system has no more files.
+  std::function<void()> bell(std::function<void()> fn);
+
   /// Open connections, HTTP and WebSocket. Io thread only.
   std::size_t connections() const;
 

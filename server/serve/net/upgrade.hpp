@@ -2,6 +2,7 @@
 // included by the two translation units that know Beast.
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
 
@@ -21,6 +22,7 @@ void start_websocket(Core& core,
                      const WsEndpoint& endpoint,
                      std::string subprotocol,
                      std::string peer,
+                     std::map<std::string, std::string> query,
                      std::string login);
 
 }  // namespace server::net

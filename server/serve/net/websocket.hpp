@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,6 +36,8 @@ class WsClient {
   virtual std::uint32_t id() const = 0;
   /// Address of the other end.
   virtual const std::string& peer() const = 0;
+  /// The query of the address it connected to, decoded.
+  virtual const std::map<std::string, std::string>& query() const = 0;
   /// The negotiated subprotocol.
   virtual const std::string& subprotocol() const = 0;
   virtual bool open() const = 0;

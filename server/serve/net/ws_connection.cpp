@@ -38,6 +38,7 @@ class WsConnection final : public Connection,
                const WsEndpoint& endpoint,
                std::string subprotocol,
                std::string peer,
+               std::map<std::string, std::string> query,
                std::string login);
 
   void start(const UpgradeRequest& request);
@@ -55,6 +56,7 @@ class WsConnection final : public Connection,
   // WsClient
   std::uint32_t id() const override { return id_; }
   const std::string& peer() const override { return peer_; }
+  const std::map<std::string, std::string>& query() const override { return query_; }
   const std::string& subprotocol() const override { return subprotocol_; }
   bool open() const override { return state_ == State::Open; }
   void send_control(FrameKind kind, Payload payload) override;
@@ -89,6 +91,7 @@ class WsConnection final : public Connection,
   std::optional<Stream> stream_;  // empty once ended
   std::string subprotocol_;
   std::string peer_;
+  std::map<std::string, std::string> query_;
   std::string login_;
   std::uint32_t id_;
   Connections::Number number_ = 0;
@@ -110,12 +113,14 @@ WsConnection::WsConnection(Core& core,
                            const WsEndpoint& endpoint,
                            std::string subprotocol,
                            std::string peer,
+                           std::map<std::string, std::string> query,
                            std::string login)
     : core_(core),
       endpoint_(endpoint),
       stream_(std::in_place, FrameSocket(std::move(socket))),
       subprotocol_(std::move(subprotocol)),
       peer_(std::move(peer)),
+      query_(std::move(query)),
       login_(std::move(login)),
       id_(core.next_client++),
       queue_({core.options.limits.control_messages, core.options.limits.control_bytes}) {}
@@ -385,9 +390,15 @@ void start_websocket(Core& core,
                      const WsEndpoint& endpoint,
                      std::string subprotocol,
                      std::string peer,
+                     std::map<std::string, std::string> query,
                      std::string login) {
-  std::make_shared<WsConnection>(
-      core, std::move(socket), endpoint, std::move(subprotocol), std::move(peer), std::move(login))
+  std::make_shared<WsConnection>(core,
+                                 std::move(socket),
+                                 endpoint,
+                                 std::move(subprotocol),
+                                 std::move(peer),
+                                 std::move(query),
+                                 std::move(login))
       ->start(request);
 }
 

@@ -33,71 +33,74 @@ TEST(StuckDetector, AMovingRobotIsNeverStuck) {
 
 struct SequencerTest : ::testing::Test {
   SequencerTest() { sequencer.reset(kPeriod); }
+  void ask(const Request& request) {
+    if (intent.apply(request)) sequencer.begin(intent);
+  }
   Sequencer sequencer{};
-  Parameters parameters{};
+  Intent intent{};
 };
 
 TEST_F(SequencerTest, IdleWithoutAGoal) {
-  EXPECT_EQ(sequencer.update({}, parameters), Mission::Idle);
+  EXPECT_EQ(sequencer.update({}, intent), Mission::Idle);
 }
 
 TEST_F(SequencerTest, ArrivesWithinReachAndStaysArrived) {
-  sequencer.set_goal(SetGoal{.position_W = {1, 0}});
-  EXPECT_EQ(sequencer.update({0.89, 0, 0}, parameters), Mission::Driving);  // 0.11 m > 0.10 m
-  EXPECT_EQ(sequencer.update({0.91, 0, 0}, parameters), Mission::Arrived);
-  EXPECT_EQ(sequencer.update({0.5, 0, 0}, parameters), Mission::Arrived);
-  sequencer.set_goal(SetGoal{.position_W = {2, 0}});
-  EXPECT_EQ(sequencer.update({0.91, 0, 0}, parameters), Mission::Driving);
+  ask(SetGoal{.position_W = {1, 0}});
+  EXPECT_EQ(sequencer.update({0.89, 0, 0}, intent), Mission::Driving);  // 0.11 m > 0.10 m
+  EXPECT_EQ(sequencer.update({0.91, 0, 0}, intent), Mission::Arrived);
+  EXPECT_EQ(sequencer.update({0.5, 0, 0}, intent), Mission::Arrived);
+  ask(SetGoal{.position_W = {2, 0}});
+  EXPECT_EQ(sequencer.update({0.91, 0, 0}, intent), Mission::Driving);
 }
 
 TEST_F(SequencerTest, AWantedHeadingMustBeReachedToo) {
-  sequencer.set_goal(SetGoal{.position_W = {1, 0}, .heading = 1.0});
-  EXPECT_EQ(sequencer.update({1, 0, 0.9}, parameters), Mission::Driving);
-  EXPECT_EQ(sequencer.update({1, 0, 0.96}, parameters), Mission::Arrived);
+  ask(SetGoal{.position_W = {1, 0}, .heading = 1.0});
+  EXPECT_EQ(sequencer.update({1, 0, 0.9}, intent), Mission::Driving);
+  EXPECT_EQ(sequencer.update({1, 0, 0.96}, intent), Mission::Arrived);
 }
 
 TEST_F(SequencerTest, GoesOnFromGoalToGoalAndArrivesAtTheLast) {
-  sequencer.add_goal({.position_W = {1, 0}});  // the first, as there is none
-  sequencer.add_goal({.position_W = {2, 0}, .heading = 1.0});
-  sequencer.add_goal({.position_W = {2, 0.05}});
-  EXPECT_EQ(sequencer.update({0.5, 0, 0}, parameters), Mission::Driving);
-  EXPECT_EQ(sequencer.goals_ahead().size(), 2U);
-  EXPECT_EQ(sequencer.update({0.95, 0, 0}, parameters), Mission::Driving);
-  EXPECT_EQ(sequencer.goal(), (SetGoal{.position_W = {2, 0}, .heading = 1.0}));
-  EXPECT_EQ(sequencer.update({2, 0, 0}, parameters), Mission::Driving);
-  EXPECT_EQ(sequencer.goals_ahead().size(), 1U);
+  ask(AddGoal{{.position_W = {1, 0}}});  // the first, as there is none
+  ask(AddGoal{{.position_W = {2, 0}, .heading = 1.0}});
+  ask(AddGoal{{.position_W = {2, 0.05}}});
+  EXPECT_EQ(sequencer.update({0.5, 0, 0}, intent), Mission::Driving);
+  EXPECT_EQ(intent.goals_ahead.size(), 2U);
+  EXPECT_EQ(sequencer.update({0.95, 0, 0}, intent), Mission::Driving);
+  EXPECT_EQ(intent.goal, (SetGoal{.position_W = {2, 0}, .heading = 1.0}));
+  EXPECT_EQ(sequencer.update({2, 0, 0}, intent), Mission::Driving);
+  EXPECT_EQ(intent.goals_ahead.size(), 1U);
   // Within reach of both that are left.
-  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Arrived);
-  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(2, 0.05)});
-  sequencer.add_goal({.position_W = {3, 0}});
-  EXPECT_EQ(sequencer.update({2, 0, 1}, parameters), Mission::Driving);
-  EXPECT_EQ(sequencer.goal(), SetGoal{.position_W = Vec2(3, 0)});
+  EXPECT_EQ(sequencer.update({2, 0, 1}, intent), Mission::Arrived);
+  EXPECT_EQ(intent.goal, SetGoal{.position_W = Vec2(2, 0.05)});
+  ask(AddGoal{{.position_W = {3, 0}}});
+  EXPECT_EQ(sequencer.update({2, 0, 1}, intent), Mission::Driving);
+  EXPECT_EQ(intent.goal, SetGoal{.position_W = Vec2(3, 0)});
 }
 
 TEST_F(SequencerTest, ANewGoalTakesThePlaceOfAllThereAre) {
-  sequencer.add_goal({.position_W = {1, 0}});
-  sequencer.add_goal({.position_W = {2, 0}});
-  sequencer.set_goal(SetGoal{.position_W = {0, 5}});
-  EXPECT_TRUE(sequencer.goals_ahead().empty());
-  sequencer.add_goal({.position_W = {2, 0}});
-  sequencer.set_goal(std::nullopt);
-  EXPECT_EQ(sequencer.update({}, parameters), Mission::Idle);
+  ask(AddGoal{{.position_W = {1, 0}}});
+  ask(AddGoal{{.position_W = {2, 0}}});
+  ask(SetGoal{.position_W = {0, 5}});
+  EXPECT_TRUE(intent.goals_ahead.empty());
+  ask(AddGoal{{.position_W = {2, 0}}});
+  ask(ClearGoal{});
+  EXPECT_EQ(sequencer.update({}, intent), Mission::Idle);
 }
 
 TEST_F(SequencerTest, StuckUntilItGetsAway) {
-  sequencer.set_goal(SetGoal{.position_W = {5, 0}});
+  ask(SetGoal{.position_W = {5, 0}});
   Mission mission = Mission::Driving;
-  for (int i = 0; i < 500; ++i) mission = sequencer.update({1, 0, 0}, parameters);
+  for (int i = 0; i < 500; ++i) mission = sequencer.update({1, 0, 0}, intent);
   EXPECT_EQ(mission, Mission::Stuck);
-  EXPECT_EQ(sequencer.update({1.05, 0, 0}, parameters), Mission::Stuck);
-  EXPECT_EQ(sequencer.update({1.2, 0, 0}, parameters), Mission::Driving);
+  EXPECT_EQ(sequencer.update({1.05, 0, 0}, intent), Mission::Stuck);
+  EXPECT_EQ(sequencer.update({1.2, 0, 0}, intent), Mission::Driving);
 }
 
 TEST_F(SequencerTest, AHeldRobotIsNotStuck) {
-  sequencer.set_goal(SetGoal{.position_W = {5, 0}});
+  ask(SetGoal{.position_W = {5, 0}});
   for (int i = 0; i < 2000; ++i) {
     sequencer.interrupt();
-    ASSERT_EQ(sequencer.update({1, 0, 0}, parameters), Mission::Driving);
+    ASSERT_EQ(sequencer.update({1, 0, 0}, intent), Mission::Driving);
   }
 }
 

@@ -176,7 +176,6 @@ std::vector<std::pair<double, algo::Request>> script(const algo::Pose2& start_W)
 
 std::uint64_t hash_of(const server::RunSpec& spec) {
   const auto robot = server::make_robot(spec);
-  robot->set_pace({.paused = false, .speed = 0});
   algo::Pipeline pipeline(server::pipeline_config(spec), robot->spec());
   const auto pool = server::FramePool::make(68);  // one more than the stream's ring takes
   server::Rings rings;
@@ -186,7 +185,7 @@ std::uint64_t hash_of(const server::RunSpec& spec) {
   Hash hash;
   std::uint64_t ticket = 1;
   auto todo = script(spec.scenario.start);
-  links.observer = [&](const server::Frame& frame) {
+  links.listeners.push_back([&](const server::Frame& frame) {
     add(hash, frame.telemetry);
     rings.stream.reset();
     rings.replies.reset();
@@ -194,7 +193,7 @@ std::uint64_t hash_of(const server::RunSpec& spec) {
       rings.requests.push({ticket++, todo.front().second});
       todo.erase(todo.begin());
     }
-  };
+  });
   std::stop_source stop;
   const auto result = server::run(*robot,
                                   pipeline,

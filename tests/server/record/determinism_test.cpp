@@ -80,7 +80,6 @@ class RecordedRun : public ::testing::Test {
                    std::optional<std::uint64_t> tampered = std::nullopt) {
     Recorder recorder(database_, recorder_options());
     const auto robot = make_robot(spec);
-    robot->set_pace({.paused = false, .speed = 0});
     const auto channel = recorder.open(new_run(spec, robot->spec()));
     RecordSink honest(channel);
     TamperingSink tampering(channel, tampered.value_or(0));
@@ -91,7 +90,7 @@ class RecordedRun : public ::testing::Test {
     links.pool = pool.get();
     links.rings = &rings;
     links.record = tampered ? static_cast<FrameSink*>(&tampering) : &honest;
-    links.observer = [&](const Frame& frame) {
+    links.listeners.push_back([&](const Frame& frame) {
       applied_ += frame.telemetry.requests.size();
       const auto [begin, end] = script.equal_range(frame.telemetry.tick);
       for (auto it = begin; it != end; ++it) rings.requests.push({1, it->second});
@@ -104,7 +103,8 @@ class RecordedRun : public ::testing::Test {
                   {});
     rings.stream.consume_all([](const FrameRef&) {});
     rings.replies.consume_all(
-        [](const Reply& reply) { EXPECT_FALSE(reply.refusal) << *reply.refusal; });
+        [](const Reply& reply) {
+      EXPECT_FALSE(reply.refusal) << *reply.refusal; });
     channel->close(run_end(result_));
     recorder.flush();
     return channel->run();
@@ -149,7 +149,7 @@ TEST_F(RecordedRun, FedBackWithEditsStickAndStopItGivesTheSameCommands) {
       {420, algo::ClearGoal{}},
       {430, algo::SetGoal{{3.0, 5.0}, std::nullopt}},
       {431, algo::AddGoal{{{0.0, 4.0}, std::nullopt}}},
-  };
+  });
   for (const char* vehicle : {"bullet", "kinematic"}) {
     SCOPED_TRACE(vehicle);
     applied_ = 0;

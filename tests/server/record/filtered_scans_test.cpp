@@ -34,7 +34,6 @@ class FilteredScansTest : public test::StoreFiles {
   void drive(const char* scenario) {
     const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load(scenario), {});
     const std::unique_ptr<algo::Robot> robot = make_robot(spec);
-    robot->set_pace({.paused = false, .speed = 0});
     algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
     db::RunStore store(path);
     run = store.begin_run(new_run(spec, robot->spec()));

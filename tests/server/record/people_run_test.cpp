@@ -32,7 +32,7 @@ TEST(PeopleRun, SaysInEachTickWhereTheyAre) {
   algo::Vec2 last_W{0, 0};
   RunLinks links;
   links.pool = pool.get();
-  links.observer = [&](const Frame& frame) {
+  links.listeners.push_back([&](const Frame& frame) {
     const algo::Telemetry& t = frame.telemetry;
     ASSERT_EQ(t.moved.size(), spec.scenario.paths.size());
     for (std::size_t k = 0; k < t.moved.size(); ++k) {
@@ -43,9 +43,8 @@ TEST(PeopleRun, SaysInEachTickWhereTheyAre) {
     const algo::Vec2 here_W = t.moved[0].pose_W.position();
     if (ticks++ > 0) walked += (here_W - last_W).norm();
     last_W = here_W;
-  };
+  });
   algo::Pipeline pipeline(pipeline_config(spec), robot->spec());
-  robot->set_pace({.paused = false, .speed = 0});
   run(*robot, pipeline, {}, {.until_outcome = true, .time_limit = 3}, links, {});
   EXPECT_GT(ticks, 60U);
   EXPECT_GT(walked, 0.5);

@@ -12,8 +12,8 @@
 namespace server {
 namespace {
 
-/// Drives where it is told on an endless plain; can lose its link, pause, or run out of data.
-class PaperRobot final : public algo::Robot {
+/// Drives where it is told on an endless plain; can lose its link, run out of data, or be real.
+class PaperRobot final : public algo::Robot, public algo::Editing, public algo::Arming {
  public:
   PaperRobot() {
     spec_.name = "paper";
@@ -22,20 +22,14 @@ class PaperRobot final : public algo::Robot {
     spec_.max_v = 0.5;
     spec_.max_omega = 1.0;
     spec_.max_acceleration = 0.5;
-    spec_.paceable = true;
     spec_.drives = true;
-    spec_.editable = true;
   }
   const algo::RobotSpec& spec() const override { return spec_; }
   void reset(algo::Observation& o) override { observe(o); }
   bool step(const algo::Command& command, algo::Observation& o) override {
-    if (paused_steps > 0) {
-      --paused_steps;
-      return false;
-    }
     ++steps;
     if (steps == link_lost_at) throw algo::RobotError("The cable is out.");
-    if (steps == log_ends_at) throw algo::EndOfLog("The log has ended.");
+    if (steps == log_ends_at) return false;
     pose_.heading = algo::wrap_angle(pose_.heading + command.base.omega * spec_.period);
     pose_.x += command.base.v * spec_.period * std::cos(pose_.heading);
     pose_.y += command.base.v * spec_.period * std::sin(pose_.heading);
@@ -47,6 +41,12 @@ class PaperRobot final : public algo::Robot {
     stopped = true;
     ++stops;
   }
+  algo::Editing* editing() override { return real ? nullptr : this; }
+  algo::Arming* arming() override { return real ? this : nullptr; }
+  std::optional<std::string> arm() override { return std::nullopt; }
+  void disarm(const std::string& /*why*/) override {}
+  std::uint32_t epoch() const override { return 1; }
+  algo::HealthReport health() const override { return {.missed_periods = 7}; }
   std::optional<std::string> edit(const algo::Request& request) override {
     if (std::holds_alternative<algo::RemoveObstacle>(request)) return "There is no obstacle 9.";
     return std::nullopt;
@@ -56,7 +56,7 @@ class PaperRobot final : public algo::Robot {
   int steps = 0;
   int link_lost_at = -1;
   int log_ends_at = -1;
-  int paused_steps = 0;
+  bool real = false;
   bool stopped = false;
   int stops = 0;
 
@@ -94,7 +94,7 @@ const algo::Request kGoal = algo::SetGoal{{1.0, 0.0}, std::nullopt};
 
 TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
   std::uint64_t frames = 0;
-  links.observer = [&](const Frame& frame) { EXPECT_EQ(frame.telemetry.tick, frames++); };
+  links.listeners.push_back([&](const Frame& frame) { EXPECT_EQ(frame.telemetry.tick, frames++); });
   const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.metrics.ticks, frames);
@@ -126,7 +126,7 @@ TEST_F(RunnerTest, ALostLinkFailsTheRunWithTheReason) {
 TEST_F(RunnerTest, RealRobotThatIsHeldBrakesAndASimulatedOneTakesItsZero) {
   for (const bool real : {true, false}) {
     robot = PaperRobot();
-    robot.spec_.paceable = !real;
+    robot.real = real;
     go({algo::Stop{true}}, {.until_outcome = true, .time_limit = 0.5});
     EXPECT_EQ(robot.stops, real ? robot.steps + 1 : 1);  // the last at the end
   }
@@ -134,20 +134,21 @@ TEST_F(RunnerTest, RealRobotThatIsHeldBrakesAndASimulatedOneTakesItsZero) {
 
 TEST_F(RunnerTest, TheEndOfALogIsNotAFault) {
   robot.log_ends_at = 5;
-  EXPECT_EQ(go({}, {}).outcome, algo::Outcome::EndOfLog);
+  const RunResult result = go({}, {});
+  EXPECT_EQ(result.outcome, algo::Outcome::EndOfLog);
+  EXPECT_EQ(result.reason, "The log ended after 5 scans.");
 }
 
 TEST_F(RunnerTest, AnswersRequestsAndRecordsOnlyWhatWasAccepted) {
   links.rings = &rings;
-  robot.paused_steps = 3;
   rings.requests.push({1, algo::Stop{true}});
   rings.requests.push({2, algo::RemoveObstacle{9}});
   rings.requests.push({3, algo::SetParameter{&algo::kRepulsionGain, 99.0}});
   std::vector<std::size_t> recorded;
-  links.observer = [&](const Frame& frame) {
+  links.listeners.push_back([&](const Frame& frame) {
     recorded.push_back(frame.telemetry.requests.size());
     if (recorded.size() == 2) stop.request_stop();
-  };
+  });
   go({}, {});
   ASSERT_GE(recorded.size(), 1u);
   EXPECT_EQ(recorded[0], 1u);
@@ -166,10 +167,10 @@ TEST_F(RunnerTest, AStopThatFoundTheRingFullComesAfterAReleaseInIt) {
   while (rings.requests.push({2, algo::Joystick{1, 0}})) {
   }
   rings.stop_now = true;
-  links.observer = [&](const Frame& frame) {
+  links.listeners.push_back([&](const Frame& frame) {
     EXPECT_EQ(frame.telemetry.hold, algo::Hold::Stopped);
     stop.request_stop();
-  };
+  });
   go({kGoal}, {});
 }
 
@@ -178,6 +179,66 @@ TEST_F(RunnerTest, AFullStreamCostsOnlyTheViewersAFrame) {
   const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.lost_ticks, 0u);
+}
+
+TEST_F(RunnerTest, APausedWorldServesRequestsAndKeepsItsTick) {
+  Pacer pacer({.paused = true});
+  links.rings = &rings;
+  links.pacer = &pacer;
+  std::vector<algo::Telemetry> seen;
+  links.listeners.push_back([&](const Frame& frame) { seen.push_back(frame.telemetry); });
+  algo::Pipeline pipeline({}, robot.spec());
+  server::Run one(robot, pipeline, {}, links, stop.get_token());
+  one.begin({});
+  EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
+  rings.requests.push({1, algo::RemoveObstacle{9}});
+  rings.requests.push({2, kGoal});
+  EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
+  EXPECT_EQ(rings.replies.read_available(), 2U);
+  ASSERT_EQ(seen.size(), 1U);
+  // WHEN a single step is asked for THEN it brings the goal, and no more follow.
+  pacer.set({.paused = true, .single_steps = 1});
+  EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
+  ASSERT_EQ(seen.size(), 2U);
+  EXPECT_EQ(seen[1].requests.size(), 1U);
+  EXPECT_TRUE(seen[1].goal);
+  EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
+  EXPECT_EQ(seen.size(), 2U);
+  one.finish();
+  EXPECT_TRUE(robot.stopped);
+}
+
+TEST_F(RunnerTest, AdvancedTooEarlyItDoesNothingButSayWhen) {
+  Pacer pacer({.speed = 0.05});  // a period of 0.05 s lasts a second
+  links.pacer = &pacer;
+  links.rings = &rings;
+  algo::Pipeline pipeline({}, robot.spec());
+  server::Run one(robot, pipeline, {}, links, stop.get_token());
+  one.begin({});
+  const Run::Next first = one.advance();
+  const Run::Next second = one.advance();
+  EXPECT_EQ(first.when, Run::Next::When::At);
+  EXPECT_EQ(first.time, second.time);
+  EXPECT_EQ(robot.steps, 0);
+  rings.requests.push({1, kGoal});  // answered all the same
+  one.advance();
+  EXPECT_EQ(rings.replies.read_available(), 1U);
+  stop.request_stop();
+  EXPECT_EQ(one.advance().when, Run::Next::When::Over);
+}
+
+TEST_F(RunnerTest, ARealRobotIsNeitherPacedNorEdited) {
+  robot.real = true;
+  Pacer pacer({.paused = true});
+  links.pacer = &pacer;
+  links.rings = &rings;
+  rings.requests.push({1, algo::RemoveObstacle{1}});
+  const RunResult result = go({}, {.until_outcome = true, .time_limit = 0.5});
+  EXPECT_EQ(result.outcome, algo::Outcome::OutOfTime);
+  EXPECT_EQ(result.missed_periods, 7U);
+  std::optional<std::string> refusal;
+  rings.replies.consume_all([&](const Reply& reply) { refusal = reply.refusal; });
+  EXPECT_EQ(refusal, "This is real hardware: obstacles are put in its way by hand.");
 }
 
 class BrokenSink final : public FrameSink {
@@ -229,7 +290,7 @@ TEST_F(RunnerTest, TheRecordPausesWhenNothingHappensAndGoesOnWithTheNextGoal) {
   links.rings = &rings;
   std::optional<std::uint64_t> reached;
   std::uint64_t asked = 0;
-  links.observer = [&](const Frame& frame) {
+  links.listeners.push_back([&](const Frame& frame) {
     const algo::Telemetry& t = frame.telemetry;
     rings.stream.consume_all([](const FrameRef&) {});
     if (t.mission == algo::Mission::Arrived && !reached) reached = t.tick;
@@ -238,7 +299,7 @@ TEST_F(RunnerTest, TheRecordPausesWhenNothingHappensAndGoesOnWithTheNextGoal) {
       asked = t.tick;
     }
     if (asked != 0 && t.tick == asked + 20) stop.request_stop();
-  };
+  });
   go({kGoal}, {.pause_record_after = 5});
   ASSERT_TRUE(reached);
   const double period = robot.spec().period;
@@ -259,6 +320,43 @@ TEST(FramePool, HandsOutEachFrameOnceAndTakesItBack) {
   EXPECT_FALSE(pool->take());
   b.reset();
   EXPECT_TRUE(pool->take());
+}
+
+TEST(FramePool, GrowsWithThoseWhoHoldFramesAndShrinksWhenTheyLetGo) {
+  const auto room = std::make_shared<FrameRoom>(3);
+  const auto pool = FramePool::growing<Frame>(2, 64, room);
+  const auto other = FramePool::growing<Frame>(2, 64, room);
+  EXPECT_EQ(pool->size(), 0U);
+  { const FrameRef one = pool->take(); }
+  { const FrameRef one = pool->take(); }
+  EXPECT_EQ(pool->size(), 1U);
+  std::vector<FrameRef> held;
+  while (FrameRef frame = pool->take()) held.push_back(std::move(frame));
+  EXPECT_EQ(held.size(), 5U);  // two of its own and all the room there is
+  std::vector<FrameRef> others;
+  while (FrameRef frame = other->take()) others.push_back(std::move(frame));
+  EXPECT_EQ(others.size(), 2U);
+  // WHEN nobody holds more than one for a while THEN the others go, and make room.
+  held.clear();
+  for (int i = 0; i < 600; ++i) EXPECT_TRUE(pool->take());
+  EXPECT_EQ(pool->size(), 1U);
+  while (FrameRef frame = other->take()) others.push_back(std::move(frame));
+  EXPECT_EQ(others.size(), 5U);
+}
+
+TEST(FramePool, FramesOutliveTheirRun) {
+  const auto room = std::make_shared<FrameRoom>(8);
+  auto pool = FramePool::growing<Frame>(1, 8, room);
+  FrameRef kept = pool->take();
+  FrameRef more = pool->take();
+  ASSERT_TRUE(kept && more);
+  kept->telemetry.tick = 7;
+  pool.reset();
+  more.reset();
+  EXPECT_EQ(kept->telemetry.tick, 7U);
+  kept.reset();
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(room->take()) << i;  // all of it is back
+  EXPECT_FALSE(room->take());
 }
 
 }  // namespace

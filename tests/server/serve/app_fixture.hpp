@@ -25,7 +25,7 @@ using nlohmann::json;
 class AppTest : public ::testing::Test {
  protected:
   AppTest() : AppTest(kinematic_case1()) {}
-  explicit AppTest(RunSpec first, const std::string& token = "") {
+  explicit AppTest(RunSpec first, const std::string& token = "", const SessionRules& rules = {}) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               ("tautline_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
@@ -37,6 +37,7 @@ class AppTest : public ::testing::Test {
     options.database = folder_ / "runs.db";
     options.scenarios = folder_ / "scenarios";
     options.first = std::move(first);
+    options.sessions = rules;
     app_.emplace(std::move(options));
     const std::string url = app_->url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));

@@ -60,7 +60,9 @@ class AppWalk : public AppTest {
     return out;
   }
 
-  std::vector<std::string> targets(const std::string& path) const {
+  std::vector<std::string> targets(std::string path) const {
+    if (const auto at = path.find("{session}"); at != std::string::npos)
+      path.replace(at, 9, "main");
     const auto filled = [&](const std::string& hole, const std::vector<std::string>& values) {
       std::vector<std::string> out;
       for (const std::string& value : values) {

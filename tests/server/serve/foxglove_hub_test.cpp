@@ -21,6 +21,7 @@ class FakeSocket final : public net::WsClient {
   std::uint32_t id() const override { return id_; }
   const std::string& peer() const override { return peer_; }
   const std::string& subprotocol() const override { return peer_; }
+  const std::map<std::string, std::string>& query() const override { return query_; }
   bool open() const override { return true; }
   void send_control(net::FrameKind kind, Payload payload) override {
     if (kind == net::FrameKind::Text) {
@@ -55,6 +56,7 @@ class FakeSocket final : public net::WsClient {
  private:
   std::uint32_t id_;
   std::string peer_{"fake"};
+  std::map<std::string, std::string> query_{};
 };
 
 /// k_r from 0 to 1, and a read-only text.

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/diff_drive.hpp"
+#include "drivers/serial_robot.hpp"
 #include "server/serve/operator_watch.hpp"
 
 namespace server {
@@ -40,7 +41,7 @@ class OpenField final : public drivers::Scanner {
   drivers::ScannerState state() override {
     return {.running = true, .last_scan = drivers::steady_now(), .period = 0.0266};
   }
-  drivers::DeviceReport report() override {
+  algo::DeviceReport report() override {
     return {.name = "front laser", .port = "none", .well = true, .sentence = "Well."};
   }
 
@@ -81,7 +82,7 @@ class GoodBase final : public drivers::Base {
     return out;
   }
   double watchdog() const override { return 0.5; }
-  drivers::DeviceReport report() override {
+  algo::DeviceReport report() override {
     return {.name = "base",
             .port = "none",
             .well = !*button_,
@@ -150,10 +151,10 @@ class HardwareAppTest : public AppTest {
     std::vector<std::unique_ptr<drivers::Scanner>> scanners;
     scanners.push_back(std::make_unique<OpenField>());
     return hardware_spec(
-        std::make_shared<drivers::SerialRobot>(std::move(file),
-                                               std::move(scanners),
-                                               std::make_unique<GoodBase>(button),
-                                               std::make_unique<drivers::SteadyClock>()),
+        describe(std::make_shared<drivers::SerialRobot>(std::move(file),
+                                                        std::move(scanners),
+                                                        std::make_unique<GoodBase>(button),
+                                                        std::make_unique<drivers::SteadyClock>())),
         {});
   }
 };

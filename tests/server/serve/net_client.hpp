@@ -209,9 +209,10 @@ class WsTestClient {
  public:
   explicit WsTestClient(std::uint16_t port,
                         std::string_view protocols = "foxglove.websocket.v1",
-                        int receive_buffer = 0)
+                        int receive_buffer = 0,
+                        std::string_view path = "/ws")
       : socket(port, receive_buffer) {
-    socket.send(upgrade_request(protocols));
+    socket.send(upgrade_request(protocols, "", path));
     handshake = read_answer(socket, false);
   }
 

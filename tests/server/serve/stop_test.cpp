@@ -24,7 +24,8 @@ class StopTest : public AppTest {
 
 /// Without poll() nothing the control thread says is heard: the answer needs no tick.
 TEST(Stop, IsAnsweredInTheCallThatMakesIt) {
-  Session session(nullptr);
+  Scheduler scheduler;
+  Session session({.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)});
   session.load(make_spec(ScenarioLibrary({}, {}).load("case1"), {}));
   bool answered = false;
   session.submit(algo::Stop{true}, [&](const std::optional<std::string>& refusal) {
@@ -32,11 +33,12 @@ TEST(Stop, IsAnsweredInTheCallThatMakesIt) {
     answered = true;
   });
   EXPECT_TRUE(answered);
-  EXPECT_TRUE(session.state().stop);
+  EXPECT_TRUE(session.state().asked.stop);
 }
 
 TEST(Stop, OvertakesRequestsThatNobodyTakes) {
-  Session session(nullptr);
+  Scheduler scheduler;
+  Session session({.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)});
   session.load(make_spec(ScenarioLibrary({}, {}).load("case1"), {}));
   while (session.submit(algo::Joystick{1, 0}, {})) {
   }
@@ -45,11 +47,12 @@ TEST(Stop, OvertakesRequestsThatNobodyTakes) {
     session.poll();
     return session.newest() && session.newest()->telemetry.hold == algo::Hold::Stopped;
   }));
-  EXPECT_TRUE(session.state().stop);
+  EXPECT_TRUE(session.state().asked.stop);
 }
 
 TEST(Stop, IsNotUndoneByAReleaseOnItsWay) {
-  Session session(nullptr);
+  Scheduler scheduler;
+  Session session({.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)});
   session.load(make_spec(ScenarioLibrary({}, {}).load("case1"), {}));
   session.submit(algo::Stop{true}, {});
   std::optional<bool> released;
@@ -60,7 +63,7 @@ TEST(Stop, IsNotUndoneByAReleaseOnItsWay) {
     session.poll();
     return released.has_value() && session.newest() != nullptr;
   }));
-  EXPECT_TRUE(session.state().stop);
+  EXPECT_TRUE(session.state().asked.stop);
   const std::uint64_t tick = session.newest()->telemetry.tick;
   EXPECT_TRUE(eventually([&] {
     session.poll();

@@ -94,7 +94,8 @@ class BusyWorkers : public ::testing::Test {
     for (std::size_t i = 0; i < Workers::kThreads; ++i) {
       workers.post([this](Worker&) { busy.arrive_and_wait(); });
     }
-    running.server.every(std::chrono::milliseconds(4), [this] { session.poll(); });
+    running.server.every(std::chrono::milliseconds(4),
+                         [this] { sessions.tend(SessionRegistry::Clock::now()); });
     running.start();
   }
   ~BusyWorkers() override {
@@ -102,7 +103,7 @@ class BusyWorkers : public ::testing::Test {
     workers.stop();
     experiments.stop();
     running.stop();
-    session.end();
+    sessions.end_all();
     std::filesystem::remove_all(folder);
   }
 
@@ -117,8 +118,9 @@ class BusyWorkers : public ::testing::Test {
     return path;
   }
   static std::string concrete(std::string pattern) {
-    for (const auto& [name, value] :
-         {std::pair<std::string, std::string>{"{id}", "1"}, {"{name}", "case1"}}) {
+    for (const auto& [name, value] : {std::pair<std::string, std::string>{"{id}", "1"},
+                                      {"{name}", "case1"},
+                                      {"{session}", "main"}}) {
       const std::size_t at = pattern.find(name);
       if (at != std::string::npos) pattern.replace(at, name.size(), value);
     }
@@ -133,26 +135,32 @@ class BusyWorkers : public ::testing::Test {
   net::test::RunningServer running{};
   Workers workers{(folder / "runs.db").string()};
   Experiments experiments{recorder};
-  Session session{&recorder};
-  SessionLoader loader{session, workers, [this](std::function<void()> work) {
-                         running.server.post(std::move(work));
-                       }};
-  ApiContext context{.session = session,
+  Scheduler scheduler{};
+  SessionRegistry sessions{
+      {.runs = {.recorder = &recorder,
+                .scheduler = scheduler,
+                .frames = std::make_shared<FrameRoom>(1024)},
+       .workers = workers,
+       .to_io = [this](std::function<void()> work) { running.server.post(std::move(work)); },
+       .ring = [] {}},
+      {}};
+  Session& session = sessions.main().session();
+  ApiContext context{.sessions = sessions,
                      .library = library,
                      .experiments = experiments,
                      .recorder = recorder,
                      .workers = workers,
-                     .loader = loader};
+                     .first = make_spec(library.load("case1"), {})};
 };
 
 TEST_F(BusyWorkers, StopIsAnsweredWhileEveryOtherRouteWaits) {
   std::vector<std::pair<std::string, Client>> asked;
   for (const auto& route : running.server.router().routes()) {
     const std::string target = concrete(route.pattern);
-    const std::string body = route.pattern == "/api/v1/runs" ? R"({"scenario":"case1"})"
-                             : route.pattern == "/api/v1/session/control"  ? R"({"action":"reset"})"
-                             : route.pattern == "/api/v1/session/scenario" ? R"({"name":"mine"})"
-                                                                           : R"({})";
+    const std::string body = route.pattern == "/api/v1/runs"        ? R"({"scenario":"case1"})"
+                             : route.pattern.ends_with("/control")  ? R"({"action":"reset"})"
+                             : route.pattern.ends_with("/scenario") ? R"({"name":"mine"})"
+                                                                    : R"({})";
     Client client(running.port());
     client.send(route.method == "GET"
                     ? net::test::get_request(target)
@@ -183,7 +191,8 @@ TEST_F(BusyWorkers, LoadsWaitInTurnAndTooManyAreRefused) {
     asked.back().send(reset);
   }
   ASSERT_TRUE(eventually([&] {
-    return running.on_io([&] { return loader.waiting(); }) == SessionLoader::kMaxWaiting;
+    return running.on_io([&] { return sessions.main().loader().waiting(); }) ==
+           SessionLoader::kMaxWaiting;
   }));
   EXPECT_EQ(net::test::ask(running.port(), reset).status, 503);
   const db::RunId before = running.on_io([&] { return session.run_id(); });

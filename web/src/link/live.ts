@@ -26,8 +26,10 @@ export interface LinkEvents {
   /** A sentence from the server; level 0 info, 1 warning, 2 error. */
   notice(level: number, message: string): void;
   log(message: string, level: number): void;
-  /** The server's process changed: what was known of its session no longer holds. */
+  /** The server's process or the session changed: what was known of it no longer holds. */
   new_session(): void;
+  /** There is no session at this address; the link rests until reconnect(). */
+  gone(why: string): void;
 }
 
 /** What the socket must offer; the browser's WebSocket, or a test's. */
@@ -37,7 +39,7 @@ export interface SocketLike {
   send(data: string | Uint8Array<ArrayBuffer>): void;
   close(): void;
   onopen: (() => void) | null;
-  onclose: (() => void) | null;
+  onclose: ((event?: { code: number; reason: string }) => void) | null;
   onmessage: ((event: { data: unknown }) => void) | null;
   onerror: (() => void) | null;
 }
@@ -51,6 +53,7 @@ const kCallTimeout = 10_000;   // [ms]
 const kConnectTimeout = 8_000; // [ms]
 const kSilenceLimit = 6_000;   // [ms] without any answer the connection counts as lost
 const kPingPeriod = 1_000;     // [ms]
+const kGone = 4404;            // close code: there is no such session
 export const kBackoff = [500, 1000, 2000, 4000, 5000]; // [ms]
 
 export class LiveLink {
@@ -74,7 +77,7 @@ export class LiveLink {
   private closed_ = false;
 
   constructor(
-    private readonly url_: string,
+    private readonly url_: () => string,
     private readonly events_: LinkEvents,
     private readonly open_: OpenSocket = (url, protocols) =>
       new WebSocket(url, protocols) as unknown as SocketLike,
@@ -100,6 +103,13 @@ export class LiveLink {
   retry_now(): void {
     if (this.status_.phase !== "lost") return;
     clearTimeout(this.retry_timer_);
+    this.connect();
+  }
+
+  /** Connects anew: the address is another. */
+  reconnect(): void {
+    clearTimeout(this.retry_timer_);
+    this.attempt_ = 0;
     this.connect();
   }
 
@@ -183,7 +193,7 @@ export class LiveLink {
     this.last_heard_ = now();
     let socket: SocketLike;
     try {
-      socket = this.open_(this.url_, kSubprotocols);
+      socket = this.open_(this.url_(), kSubprotocols);
     } catch {
       this.lose();
       return;
@@ -199,8 +209,12 @@ export class LiveLink {
     socket.onmessage = (event) => {
       if (socket === this.socket_) this.receive(event.data);
     };
-    socket.onclose = () => {
-      if (socket === this.socket_) this.lose();
+    socket.onclose = (event) => {
+      if (socket !== this.socket_) return;
+      this.lose();
+      if (event?.code !== kGone) return;
+      clearTimeout(this.retry_timer_);
+      this.events_.gone(event.reason);
     };
     socket.onerror = () => undefined; // a close always follows
   }

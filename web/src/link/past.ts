@@ -4,6 +4,7 @@ import { TickRow } from "../state/columns";
 import { SceneState, fold_frame } from "../state/scene";
 import { decode_frame, decode_sweep } from "./frame";
 import * as rest from "./rest";
+import { session_path } from "./session";
 import { split_frames } from "./stored";
 
 const kLate = 40;        // [ticks] a page that comes this late asks for what it missed
@@ -36,7 +37,7 @@ export class Past {
     const { run } = this.scene_;
     if (run === null || run <= 0 || this.scene_.frame) return;
     try {
-      const { tick } = await rest.get<{ tick?: number }>("/session");
+      const { tick } = await rest.get<{ tick?: number }>(session_path());
       if (tick === undefined) return;
       const frames = await recent(run, "frames", tick);
       if (this.scene_.frame || run !== this.scene_.run) return; // a live one came meanwhile

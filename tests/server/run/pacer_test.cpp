@@ -1,5 +1,5 @@
-// tests/sim/pacer_test.cpp: deadlines on a clock that is a variable, and the waiting itself.
-#include "sim/pacer.hpp"
+// tests/server/run/pacer_test.cpp: deadlines on a clock that is a variable, and the waiting itself.
+#include "server/run/pacer.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace sim {
+namespace server {
 namespace {
 
 using namespace std::chrono_literals;
@@ -105,31 +105,50 @@ TEST(Pacer, SpeedDividesAndZeroDoesNotWait) {
   EXPECT_LT(seconds_since(start), 1);
 }
 
-TEST(Pacer, PausedReturnsFalseSoonAndSingleStepsAddUp) {
+TEST(Pacer, PausedLetsNothingPassAndSingleStepsAddUp) {
   Pacer pacer;
   pacer.set({.paused = true});
-  const auto start = Clock::now();
-  EXPECT_FALSE(pacer.wait(10));
-  EXPECT_LT(seconds_since(start), 1);
+  const Clock::time_point now = Clock::now();
+  EXPECT_FALSE(pacer.due(10, now));
+  EXPECT_FALSE(pacer.pass(10, now));
   pacer.set({.paused = true, .single_steps = 1});
   pacer.set({.paused = true, .single_steps = 2});
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(pacer.wait(10));
-  EXPECT_FALSE(pacer.wait(10));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(pacer.pass(10, now));
+  EXPECT_FALSE(pacer.pass(10, now));
   pacer.set({.paused = true, .single_steps = 5});
   pacer.set({.paused = true});  // a plain pause cancels what is left
-  EXPECT_FALSE(pacer.wait(10));
+  EXPECT_FALSE(pacer.pass(10, now));
 }
 
-TEST(Pacer, AChangeOfPaceWakesTheWaiter) {
+TEST(Pacer, AskingTwiceBeginsOnePeriodAndLatenessIsCounted) {
   Pacer pacer;
+  const Clock::time_point start{1s};
+  EXPECT_EQ(pacer.due(0.025, start), start + 25ms);
+  EXPECT_EQ(pacer.due(0.025, start + 10ms), start + 25ms);
+  EXPECT_FALSE(pacer.pass(0.025, start + 24ms));
+  EXPECT_TRUE(pacer.pass(0.025, start + 28ms));
+  EXPECT_EQ(pacer.due(0.025, start + 28ms), start + 50ms);
+  EXPECT_EQ(pacer.lateness().ticks(), 1U);
+  EXPECT_NEAR(pacer.lateness().worst(), 0.003, 1e-9);
+  pacer.set({.speed = 0});
+  EXPECT_EQ(pacer.due(0.025, start + 28ms), Clock::time_point::min());
+}
+
+TEST(Pacer, AChangeOfPaceOrStopWakesTheWaiter) {
+  Pacer pacer({.paused = true});
+  std::stop_source stop;
   const auto start = Clock::now();
   std::jthread other([&] {
     std::this_thread::sleep_for(20ms);
-    pacer.set({.paused = true});
+    pacer.set({.speed = 0});
   });
-  EXPECT_FALSE(pacer.wait(100));  // would last 100 s
+  EXPECT_TRUE(pacer.wait(100));  // would last 100 s
+  other.join();
+  pacer.set({.paused = true});
+  stop.request_stop();
+  EXPECT_FALSE(pacer.wait(100, stop.get_token()));
   EXPECT_LT(seconds_since(start), 10);
 }
 
 }  // namespace
-}  // namespace sim
+}  // namespace server

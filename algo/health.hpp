@@ -1,0 +1,55 @@
+// algo/health.hpp: how a robot of real devices is, as people see it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algo/observation.hpp"
+
+namespace algo {
+
+struct DeviceReport {
+  std::string name{};  // "front laser", "base"
+  std::string port{};
+  bool well = false;
+  std::string sentence{};              // how it is, or what is wrong and what to do
+  std::vector<std::string> remarks{};  // what is not as it was asked for
+  std::vector<std::pair<std::string, std::string>> facts{};  // "rate", "500000 bit/s"
+};
+
+/// How late a loop woke for its ticks. Written by one thread; copies are for others.
+class LatenessHistogram {
+ public:
+  static constexpr std::array<double, 8> kLimits{
+      1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 5e-2};  // [s] upper ends; one more beyond the last
+  static constexpr std::size_t kBuckets = kLimits.size() + 1;
+
+  void add(double late);  // [s]
+  const std::array<std::uint64_t, kBuckets>& counts() const { return counts_; }
+  double worst() const { return worst_; }  // [s]
+  std::uint64_t ticks() const { return ticks_; }
+
+ private:
+  std::array<std::uint64_t, kBuckets> counts_{};
+  double worst_ = 0;
+  std::uint64_t ticks_ = 0;
+};
+
+/// What people want to know of a robot of real devices.
+struct HealthReport {
+  bool armed = false;
+  Halt halt = Halt::None;
+  std::string trouble{};  // why the wheels are held still, a sentence; empty when they may turn
+  std::vector<DeviceReport> devices{};
+  std::vector<std::string> warnings{};  // what the file or the system leaves to be wished for
+  bool real_time = false;               // the loop has its priority
+  bool memory_locked = false;
+  LatenessHistogram lateness{};
+  std::uint64_t missed_periods = 0;  // gone by unused because a tick came too late
+};
+
+}  // namespace algo

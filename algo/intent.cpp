@@ -1,0 +1,75 @@
+// algo/intent.cpp: the meaning of each request.
+#include "algo/intent.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace algo {
+namespace {
+
+template <class... Ts>
+struct Overloaded : Ts... {
+  using Ts::operator()...;
+};
+template <class... Ts>
+Overloaded(Ts...) -> Overloaded<Ts...>;
+
+}  // namespace
+
+bool Intent::set_goal(const std::optional<SetGoal>& to) {
+  goal = to;
+  goals_ahead.clear();
+  return true;
+}
+
+void Intent::go_on() {
+  goal = goals_ahead.front();
+  goals_ahead.erase(goals_ahead.begin());
+}
+
+bool Intent::apply(const Request& request) {
+  return std::visit(
+      Overloaded{[&](const SetGoal& to) { return set_goal(to); },
+                 [&](const AddGoal& add) {
+                   if (!goal) return set_goal(add.goal);
+                   goals_ahead.push_back(add.goal);
+                   return false;
+                 },
+                 [&](const ClearGoal&) { return set_goal(std::nullopt); },
+                 [&](const Joystick& pushed) {
+                   stick = pushed;
+                   // A silent driver must leave a robot that stands still, not one that drives off
+                   // to an old goal.
+                   return pushed != Joystick{} && set_goal(std::nullopt);
+                 },
+                 [&](const Stop& wanted) {
+                   stop = wanted.engaged;
+                   return false;
+                 },
+                 [&](const SetParameter& set) {
+                   parameters.set(*set.parameter, set.value);
+                   return false;
+                 },
+                 [&](const AddObstacle& add) {
+                   obstacles.push_back(add.obstacle);
+                   return false;
+                 },
+                 [&](const MoveObstacle& move) {
+                   const auto it = std::ranges::find(obstacles, move.id, &Obstacle::id);
+                   if (it != obstacles.end()) it->pose_W = move.pose_W;
+                   return false;
+                 },
+                 [&](const RemoveObstacle& remove) {
+                   std::erase_if(obstacles, [&](const auto& o) { return o.id == remove.id; });
+                   return false;
+                 }},
+      request);
+}
+
+bool is_edit(const Request& request) {
+  return std::holds_alternative<AddObstacle>(request) ||
+         std::holds_alternative<MoveObstacle>(request) ||
+         std::holds_alternative<RemoveObstacle>(request);
+}
+
+}  // namespace algo

@@ -1,0 +1,106 @@
+// server/serve/api/sessions_routes.cpp: opening, listing and ending sessions.
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/run/json_reader.hpp"
+#include "server/serve/api/api.hpp"
+#include "server/serve/api/reply.hpp"
+#include "server/serve/session_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+json lateness_json(const algo::LatenessHistogram& lateness) {
+  json buckets = json::array();
+  for (std::size_t i = 0; i < lateness.counts().size(); ++i) {
+    json below = nullptr;
+    if (i < algo::LatenessHistogram::kLimits.size()) below = algo::LatenessHistogram::kLimits[i];
+    buckets.push_back({{"below", std::move(below)}, {"ticks", lateness.counts()[i]}});
+  }
+  return {
+      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
+}
+
+json summary(OpenSession& open) {
+  const SessionState& state = open.session().state();
+  return {{"id", open.id()},
+          {"source", source_of(state.spec)},
+          {"scenario", state.spec.scenario.name},
+          {"run", open.session().run_id()},
+          {"viewers", open.bridge().hub().clients()},
+          {"missed_periods", state.missed_periods},
+          {"lateness", lateness_json(open.session().lateness())}};
+}
+
+/// Whoever knows an id may do with the session as they like. Where each visitor has one, nobody is
+/// told the others'.
+json list(ApiContext& context) {
+  json items = json::array();
+  const std::vector<OpenSession*> all = context.sessions.all();
+  for (OpenSession* open : all) {
+    if (!context.sessions.rules().per_visitor || open == &context.sessions.main())
+      items.push_back(summary(*open));
+  }
+  return {{"items", std::move(items)},
+          {"next", nullptr},
+          {"count", all.size() - 1},
+          {"most", context.sessions.rules().sessions}};
+}
+
+/// The fields of `/load`; without a scenario, what the server began with.
+SessionLoader::Make make_from(ApiContext& context, const json& body) {
+  const JsonReader in(body, "");
+  in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
+  RunOverrides overrides = overrides_from_json(body);
+  if (!overrides.seed) overrides.seed = context.first.seed;
+  std::optional<std::string> name;
+  if (in.has("scenario")) name = in.text("scenario", 64);
+  return [&context, name, overrides] {
+    return make_spec(name ? context.library.load(*name) : context.first.scenario, overrides);
+  };
+}
+
+void open_session(ApiContext& context, const net::Request& request, const net::Responder& respond) {
+  context.sessions.open(
+      make_from(context, body_json(request)),
+      [respond](OpenSession* open, const std::exception_ptr& failure) {
+        if (failure) {
+          respond(problem_of(failure));
+          return;
+        }
+        net::Response response = json_response(201, {{"id", open->id()}});
+        response.headers.push_back({"Location", "/api/v1/sessions/" + open->id()});
+        respond(std::move(response));
+      });
+}
+
+}  // namespace
+
+void add_sessions_routes(net::Router& router, ApiContext& context) {
+  router.add("GET", "/api/v1/sessions", immediate([&context](const net::Request&) {
+               return json_response(200, list(context));
+             }));
+  router.add("POST",
+             "/api/v1/sessions",
+             guarded([&context](const net::Request& request, const net::Responder& respond) {
+               open_session(context, request, respond);
+             }),
+             kRequestBytes);
+  router.add(
+      "DELETE", "/api/v1/sessions/{session}", immediate([&context](const net::Request& request) {
+        const std::string& id = request.params.at("session");
+        if (id == SessionRegistry::kMain) {
+          return net::problem(
+              409, "Refused", "The session main is there as long as the server is.");
+        }
+        if (!context.sessions.end(id)) {
+          return net::problem(404, std::string(SessionRegistry::kGone));
+        }
+        return net::Response{.status = 204};
+      }));
+}
+
+}  // namespace server

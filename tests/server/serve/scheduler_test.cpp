@@ -1,0 +1,184 @@
+// tests/server/serve/scheduler_test.cpp: deadlines before the fast, fair shares, and leaving.
+#include "server/serve/scheduler.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/server/serve/net_client.hpp"
+#include <gtest/gtest.h>
+
+#include "server/run/scenario_library.hpp"
+#include "server/serve/session.hpp"
+
+namespace server {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = Run::Clock;
+using net::test::eventually;
+using When = Run::Next::When;
+
+/// Counts how often it was advanced, and finds out when two threads do it at once.
+class Counter final : public Scheduler::Task {
+ public:
+  explicit Counter(std::function<Run::Next()> then) : then_(std::move(then)) {}
+  Run::Next advance() override {
+    EXPECT_FALSE(busy_.exchange(true));
+    ++count;
+    const Run::Next next = then_();
+    busy_ = false;
+    return next;
+  }
+  std::atomic<int> count{0};
+
+ private:
+  std::function<Run::Next()> then_;
+  std::atomic<bool> busy_{false};
+};
+
+Run::Next in(Clock::duration span) {
+  return {.when = When::At, .time = Clock::now() + span};
+}
+void spin(Clock::duration span) {
+  for (const auto end = Clock::now() + span; Clock::now() < end;) {
+  }
+}
+
+TEST(Scheduler, AdvancesATaskAtItsTimeUntilItIsOver) {
+  Scheduler scheduler(2);
+  std::atomic<int> left{20};
+  const auto start = Clock::now();
+  Counter task([&] { return --left > 0 ? in(1ms) : Run::Next{.when = When::Over}; });
+  scheduler.add(task);
+  EXPECT_TRUE(eventually([&] { return left == 0; }));
+  EXPECT_GE(Clock::now() - start, 19ms);
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(task.count, 20);
+  scheduler.remove(task);  // though it has gone by itself
+}
+
+TEST(Scheduler, WakingDoesNotWaitForTheTime) {
+  Scheduler scheduler(1);
+  Counter task([] { return in(1h); });
+  scheduler.add(task);
+  EXPECT_TRUE(eventually([&] { return task.count == 1; }));
+  scheduler.wake(task);
+  EXPECT_TRUE(eventually([&] { return task.count == 2; }));
+  scheduler.remove(task);
+}
+
+TEST(Scheduler, ATaskThatIsWokenWhileItRunsRunsOnceMore) {
+  Scheduler scheduler(1);
+  std::atomic<bool> inside{false};
+  std::atomic<bool> go_on{false};
+  Counter task([&] {
+    inside = true;
+    while (!go_on) std::this_thread::yield();
+    return in(1h);
+  });
+  scheduler.add(task);
+  EXPECT_TRUE(eventually([&] { return inside.load(); }));
+  scheduler.wake(task);
+  go_on = true;
+  EXPECT_TRUE(eventually([&] { return task.count == 2; }));
+  scheduler.remove(task);
+}
+
+TEST(Scheduler, RemovingWaitsForTheThreadThatIsInsideAndNoneComesAfter) {
+  Scheduler scheduler(2);
+  for (int i = 0; i < 200; ++i) {
+    auto task = std::make_unique<Counter>([] {
+      spin(20us);
+      return Run::Next{};
+    });
+    scheduler.add(*task);
+    std::this_thread::sleep_for(std::chrono::microseconds(i));
+    scheduler.wake(*task);
+    scheduler.remove(*task);
+    const int count = task->count;
+    std::this_thread::yield();
+    EXPECT_EQ(task->count, count);
+  }
+}
+
+TEST(Scheduler, TheFastShareFairlyAndGiveWayToDeadlines) {
+  Scheduler scheduler(1);
+  std::atomic<Clock::rep> due{Clock::time_point::max().time_since_epoch().count()};
+  std::atomic<int> begun{0};  // fast ones, since the deadline
+  const auto work = [&] {
+    if (Clock::now().time_since_epoch().count() >= due) ++begun;
+    spin(200us);
+    return Run::Next{};
+  };
+  std::array<std::unique_ptr<Counter>, 4> fast{};
+  for (auto& task : fast) {
+    task = std::make_unique<Counter>(work);
+    scheduler.add(*task);
+  }
+  int most_begun = 0;
+  Counter timed([&] {
+    most_begun = std::max<int>(most_begun, begun.exchange(0));
+    const Run::Next next = in(5ms);
+    due = next.time.time_since_epoch().count();
+    return timed.count < 60 ? next : Run::Next{.when = When::Over};
+  });
+  scheduler.add(timed);
+  EXPECT_TRUE(eventually([&] { return timed.count == 60; }));
+  for (auto& task : fast) scheduler.remove(*task);
+  scheduler.remove(timed);
+  // Behind four that never rest it waits for one advance, not for their slices.
+  EXPECT_LE(most_begun, 1);
+  int least = fast[0]->count;
+  int most = least;
+  for (const auto& task : fast) {
+    least = std::min<int>(least, task->count);
+    most = std::max<int>(most, task->count);
+  }
+  EXPECT_GT(least, 0);
+  EXPECT_LT(most, 3 * least);
+}
+
+/// Reported, not judged by the wall clock: how late the ticks of twenty worlds are.
+TEST(Scheduler, TwentyWorldsInRealTimeAllGoOn) {
+  Scheduler scheduler;
+  const RunHouse house{.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)};
+  std::vector<std::unique_ptr<Session>> sessions;
+  for (int i = 0; i < 20; ++i) {
+    sessions.push_back(std::make_unique<Session>(house));
+    sessions.back()->load(make_spec(ScenarioLibrary({}, {}).load("case1"), {}));
+  }
+  std::uint64_t ticks = 0;
+  for (const auto end = Clock::now() + 1s; Clock::now() < end;) {
+    for (auto& session : sessions) session->poll();
+    std::this_thread::sleep_for(4ms);
+  }
+  std::array<std::uint64_t, algo::LatenessHistogram::kBuckets> late{};
+  for (auto& session : sessions) {
+    ASSERT_TRUE(session->newest());
+    EXPECT_GT(session->newest()->telemetry.tick, 0U);
+    const algo::LatenessHistogram lateness = session->lateness();
+    ticks += lateness.ticks();
+    for (std::size_t i = 0; i < late.size(); ++i) late[i] += lateness.counts()[i];
+  }
+  std::uint64_t in_time = 0;  // within 10 ms, less than half a tick of 27 ms
+  for (std::size_t i = 0; i + 2 < late.size(); ++i) in_time += late[i];
+  RecordProperty("ticks", static_cast<int>(ticks));
+  RecordProperty("within_10_ms", static_cast<int>(in_time));
+  std::printf("20 worlds, %d threads: %.2f %% of %d ticks within 10 ms\n",
+              static_cast<int>(scheduler.threads()),
+              100.0 * static_cast<double>(in_time) / static_cast<double>(ticks),
+              static_cast<int>(ticks));
+  EXPECT_GT(ticks, 0U);
+}
+
+}  // namespace
+}  // namespace server

@@ -1,0 +1,28 @@
+// web/src/link/session.ts: which session this page shows: the one its address names, else `main`.
+import * as rest from "./rest";
+
+/** The id in the address of this page; null: `main`. */
+export function session_id(): string | null {
+  return new URLSearchParams(location.search).get("session");
+}
+
+/** The address of the session's WebSocket. */
+export function socket_url(): string {
+  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  const id = session_id();
+  return `${scheme}//${location.host}/ws${id === null ? "" : `?session=${encodeURIComponent(id)}`}`;
+}
+
+/** The path of something of the session in REST, such as "/control". */
+export function session_path(below = ""): string {
+  const id = session_id();
+  return (id === null ? "/session" : `/sessions/${encodeURIComponent(id)}`) + below;
+}
+
+/** Opens a session and puts it into the address of this page, which then is to connect anew. */
+export async function open_session(): Promise<void> {
+  const { id } = await rest.post<{ id: string }>("/sessions", {});
+  const url = new URL(location.href);
+  url.searchParams.set("session", id);
+  history.replaceState(null, "", url);
+}
