@@ -9,6 +9,7 @@
 namespace sim {
 namespace {
 
+constexpr int kPooledPairs = 256;
 constexpr double kGravity = 9.81;     // [m/s2]
 constexpr int kIterations = 10;       // enough on a flat floor
 constexpr double kMargin = 0.001;     // [m] the default of 0.04 rounds small edges away
@@ -67,7 +68,12 @@ BulletVehicle::~BulletVehicle() {
 }
 
 void BulletVehicle::build_world() {
-  configuration_ = make_bullet<btDefaultCollisionConfiguration>();
+  // Bullet's own choice is room for thousands of pairs in contact, seven megabytes a world; what
+  // goes beyond comes from the heap.
+  btDefaultCollisionConstructionInfo room;
+  room.m_defaultMaxPersistentManifoldPoolSize = kPooledPairs;
+  room.m_defaultMaxCollisionAlgorithmPoolSize = kPooledPairs;
+  configuration_ = make_bullet<btDefaultCollisionConfiguration>(room);
   dispatcher_ = make_bullet<btCollisionDispatcher>(configuration_.get());
   dispatcher_->setNearCallback(drop_wheel_sides);
   broadphase_ = make_bullet<btDbvtBroadphase>();

@@ -22,8 +22,11 @@ constexpr double kMiddle = 4.0;           // [m] the robot may be from the windo
 }  // namespace
 
 LocalMap::LocalMap()
-    : hits_(static_cast<std::size_t>(kSize) * kSize), seen_(hits_.size()), means_(hits_.size()) {
+    : hits_(static_cast<std::size_t>(kSize) * kSize),
+      seen_(std::make_unique_for_overwrite<std::uint16_t[]>(hits_.size())),
+      means_(std::make_unique_for_overwrite<Offset[]>(hits_.size())) {
   active_.reserve(hits_.size());
+  moved_.reserve(hits_.size());
   suspects_.reserve(kMostBeams);
   reset({0, 0});
 }
@@ -65,20 +68,22 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
   move_cells(hits_, kSize, columns, rows, std::uint8_t{0});
-  move_cells(seen_, kSize, columns, rows, std::uint16_t{0});
-  move_cells(means_, kSize, columns, rows, Offset{});
   field_.shift(tile_columns, tile_rows);
   occupied_ = 0;
-  std::size_t kept = 0;
+  moved_.clear();
   for (const std::uint32_t old : active_) {
     const int column = static_cast<int>(old) % kSize - columns;
     const int row = static_cast<int>(old) / kSize - rows;
     if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
-    const std::size_t cell = index(column, row);
-    active_[kept++] = static_cast<std::uint32_t>(cell);
-    if (hits_[cell] >= kOccupied) ++occupied_;
+    moved_.push_back({static_cast<std::uint32_t>(index(column, row)), seen_[old], means_[old]});
   }
-  active_.resize(kept);
+  active_.clear();
+  for (const Moved& moved : moved_) {
+    active_.push_back(moved.cell);
+    seen_[moved.cell] = moved.seen;
+    means_[moved.cell] = moved.mean;
+    if (hits_[moved.cell] >= kOccupied) ++occupied_;
+  }
 }
 
 void LocalMap::insert(const LaserScan& scan,
@@ -112,8 +117,8 @@ void LocalMap::hit(const Vec2& point_W) {
   Offset& mean = means_[cell];
   if (before == 0) mean = {};
   const float share = before == 0 ? 1.0F : 1.0F / static_cast<float>(before + kHit);
-  mean.x += share * (static_cast<float>(off.x()) - mean.x);
-  mean.y += share * (static_cast<float>(off.y()) - mean.y);
+  mean[0] += share * (static_cast<float>(off.x()) - mean[0]);
+  mean[1] += share * (static_cast<float>(off.y()) - mean[1]);
   if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
   if (before >= kOccupied || hits_[cell] < kOccupied) return;
   ++occupied_;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "algo/full_strip/distance_field.hpp"
@@ -100,9 +101,13 @@ class LocalMap {
   void draw(const Vec2& about_W, std::uint32_t side, Layer& out) const;
 
  private:
-  /// Where in a cell its hits lie, from its middle.
-  struct Offset {
-    float x = 0, y = 0;  // [m]
+  /// Where in a cell its hits lie, from its middle [m].
+  using Offset = std::array<float, 2>;
+  /// What is known of a cell with hits, on its way to another place in memory.
+  struct Moved {
+    std::uint32_t cell = 0;
+    std::uint16_t seen = 0;
+    Offset mean{};
   };
   int column_of(double x_W) const {
     return static_cast<int>(std::floor((x_W - corner_W_.x()) / kCell));
@@ -117,7 +122,7 @@ class LocalMap {
   }
   Vec2 mean_W(std::size_t cell) const {
     const Offset& o = means_[cell];
-    return centre_W(cell) + Vec2(static_cast<double>(o.x), static_cast<double>(o.y));
+    return centre_W(cell) + Vec2(static_cast<double>(o[0]), static_cast<double>(o[1]));
   }
   static std::size_t index(int column, int row) {
     return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
@@ -132,8 +137,10 @@ class LocalMap {
 
   Vec2 corner_W_{0, 0};
   std::vector<std::uint8_t> hits_;
-  std::vector<std::uint16_t> seen_;      // scan number of the last hit
-  std::vector<Offset> means_;            // of the hits
+  // Only of cells with hits, and never written elsewhere: most of a window costs no memory.
+  std::unique_ptr<std::uint16_t[]> seen_;  // scan number of the last hit
+  std::unique_ptr<Offset[]> means_;        // of the hits
+  std::vector<Moved> moved_;
   std::vector<std::uint32_t> active_;    // cells with hits
   std::vector<std::uint32_t> suspects_;  // cells that the last scan hit for the first time
   DistanceField field_{};

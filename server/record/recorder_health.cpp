@@ -155,9 +155,8 @@ std::string Recorder::state_sentence(RecordKind kind, const RunChannel* live) co
                      std::max(1.0, minutes));
 }
 
-/// Brings up to date what status() gives.
-void Recorder::publish() {
-  const RunChannel* live = live_channel();
+/// Of the run `live`, or of the store alone.
+RecordStatus Recorder::status_of(const RunChannel* live) const {
   RecordStatus now{.kind = RecordKind::Recording, .limit = options_.retention_bytes};
   const bool notable = ailment_ && (ailment_->trouble != db::Trouble::Busy ||
                                     Clock::now() - ailment_->since > kBusyNotable);
@@ -177,10 +176,22 @@ void Recorder::publish() {
     now.deleted += fmt::format("The first {:.0f} min of this run went for newer ticks.",
                                std::floor(now.kept_from / 60));
   }
+  return now;
+}
+
+/// Brings up to date what status() gives, of the newest live run and of each.
+void Recorder::publish() {
+  bool news = false;
+  for (const auto& channel : channels_) {
+    if (channel->keep() == Keep::NewestHour) news = channel->tell(status_of(channel.get())) || news;
+  }
+  RecordStatus now = status_of(live_channel());
   const std::lock_guard lock(mutex_);
-  if (now == status_) return;
-  status_ = std::move(now);
-  ++revision_;
+  if (now != status_) {
+    status_ = std::move(now);
+    news = true;
+  }
+  if (news) ++revision_;
 }
 
 RecordStatus Recorder::status() const {

@@ -89,6 +89,18 @@ void RunChannel::recover() {
   if (!broken_) failed_.store(false, std::memory_order_release);
 }
 
+RecordStatus RunChannel::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+bool RunChannel::tell(RecordStatus status) {
+  const std::lock_guard lock(mutex_);
+  if (status == status_) return false;
+  status_ = std::move(status);
+  return true;
+}
+
 /// The stretch from the last tick stored to before `tick`.
 db::Gap RunChannel::gap_until(std::uint64_t tick, bool paused) const {
   db::Gap gap{.cause = db::GapCause::Behind, .sentence = "The store took the ticks too slowly."};

@@ -18,6 +18,7 @@
 
 #include "db/block_codec.hpp"
 #include "db/records.hpp"
+#include "server/record/record_status.hpp"
 
 namespace server {
 
@@ -128,6 +129,8 @@ class RunChannel {
   /// True while frames are not recorded; problem() then says why, as a sentence.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   std::string problem() const;
+  /// How the record of this run is doing, as of the last commit; before it `kind` is Off.
+  RecordStatus status() const;
 
  private:
   friend class Recorder;
@@ -138,6 +141,7 @@ class RunChannel {
 
   void fail(const std::string& why);  // database thread
   void recover();                     // database thread
+  bool tell(RecordStatus status);     // database thread; true when it is another
   db::Gap gap_until(std::uint64_t tick, bool paused) const;
 
   std::atomic<db::RunId> run_;
@@ -163,6 +167,7 @@ class RunChannel {
   std::atomic<bool> closed_ = false;
   mutable std::mutex mutex_{};
   std::string problem_{};  // guarded by mutex_
+  RecordStatus status_{};  // guarded by mutex_
   std::atomic<bool> failed_ = false;
   std::atomic<bool> over_ = false;  // nobody empties the ring any more
 };

@@ -50,19 +50,6 @@ json to_json(const algo::DeviceReport& device) {
           {"facts", std::move(facts)}};
 }
 
-json to_json(const algo::LatenessHistogram& lateness) {
-  json buckets = json::array();
-  const auto& counts = lateness.counts();
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const bool last = i == algo::LatenessHistogram::kLimits.size();
-    json below = nullptr;
-    if (!last) below = algo::LatenessHistogram::kLimits[i];
-    buckets.push_back({{"below", std::move(below)}, {"ticks", counts[i]}});
-  }
-  return {
-      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
-}
-
 /// One run of a robot that outlives it. Ends disarmed.
 class HardwareRun final : public algo::Robot {
  public:
@@ -115,6 +102,19 @@ RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrid
 
 std::unique_ptr<algo::Robot> make_run(const Hardware& hardware) {
   return std::make_unique<HardwareRun>(hardware.robot);
+}
+
+json to_json(const algo::LatenessHistogram& lateness) {
+  json buckets = json::array();
+  const auto& counts = lateness.counts();
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const bool last = i == algo::LatenessHistogram::kLimits.size();
+    json below = nullptr;
+    if (!last) below = algo::LatenessHistogram::kLimits[i];
+    buckets.push_back({{"below", std::move(below)}, {"ticks", counts[i]}});
+  }
+  return {
+      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
 }
 
 json to_json(const algo::HealthReport& report) {

@@ -32,5 +32,6 @@ std::unique_ptr<algo::Robot> make_run(const Hardware& hardware);
 
 /// As in docs/interfaces.md.
 nlohmann::json to_json(const algo::HealthReport& report);
+nlohmann::json to_json(const algo::LatenessHistogram& lateness);
 
 }  // namespace server

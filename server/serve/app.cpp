@@ -45,7 +45,7 @@ struct App::Impl {
         scheduler(options.threads),
         workers(options.database.string()),
         experiments(recorder),
-        sessions(house(), options.sessions),
+        sessions(house(options.require_record), options.sessions),
         context{
             .sessions = sessions,
             .library = library,
@@ -64,7 +64,6 @@ struct App::Impl {
     context.post_to_io = [this](std::function<void()> work) { server->post(std::move(work)); };
     Session& main = sessions.main().session();
     if (options.unattended) main.watch().need_nobody();
-    if (options.require_record) main.require_record();
     main.load(std::move(options.first));
     if (options.armed) main.arm_when_ready();
     server->every(kTendPeriod, [this, ended = std::move(options.ended)] {
@@ -83,10 +82,11 @@ struct App::Impl {
       spdlog::error("The last of the record could not be written: {}", e.what());
     }
   }
-  SessionHouse house() {
+  SessionHouse house(bool require_record) {
     return {.runs = {.recorder = &recorder,
                      .scheduler = scheduler,
-                     .frames = std::make_shared<FrameRoom>(kSharedFrames)},
+                     .frames = std::make_shared<FrameRoom>(kSharedFrames),
+                     .require_record = require_record},
             .workers = workers,
             .to_io = [this](std::function<void()> work) { server->post(std::move(work)); },
             .ring = [this] { bell(); },

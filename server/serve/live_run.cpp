@@ -36,8 +36,7 @@ LiveRun::LiveRun(RunSpec spec,
                  std::shared_ptr<RunChannel> channel,
                  const RunHouse& house,
                  OperatorWatch& watch,
-                 std::function<void()> news,
-                 bool require_record)
+                 std::function<void()> news)
     : spec_(std::move(spec)),
       robot_(std::move(robot)),
       arming_(robot_->arming()),
@@ -47,7 +46,11 @@ LiveRun::LiveRun(RunSpec spec,
       scheduler_(house.scheduler),
       watch_(watch),
       pool_(frames_for(arming_ != nullptr, house)),
-      run_(*robot_, pipeline_, live_policy(spec_, require_record), links(), stop_.get_token()) {
+      run_(*robot_,
+           pipeline_,
+           live_policy(spec_, house.require_record),
+           links(),
+           stop_.get_token()) {
   rings.news = std::move(news);
 }
 

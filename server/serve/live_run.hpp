@@ -27,6 +27,7 @@ struct RunHouse {
   Scheduler& scheduler;
   std::shared_ptr<FrameRoom> frames{};  // for runs that are fast, beyond what each has
   bool tells_record_news = true;        // of the recorder, which says each piece once
+  bool require_record = false;          // a tick that is not recorded ends the run
 };
 
 /// One Run with its rings and frames. Made on any thread, begun by the io thread, and ended by
@@ -39,8 +40,7 @@ class LiveRun final : private Scheduler::Task {
           std::shared_ptr<RunChannel> channel,
           const RunHouse& house,
           OperatorWatch& watch,
-          std::function<void()> news,
-          bool require_record);
+          std::function<void()> news);
   ~LiveRun() override;  // asks the loop to end and waits for it: at most one period of the robot
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
@@ -65,6 +65,8 @@ class LiveRun final : private Scheduler::Task {
   bool finished() const { return finished_.load(std::memory_order_acquire); }
   /// Only once finished() is true.
   const RunResult& result() const { return result_; }
+  /// Off when it is not recorded, or was not a moment ago.
+  RecordStatus record_status() const { return channel_ ? channel_->status() : RecordStatus{}; }
   db::RunId id() const { return channel_ ? channel_->run() : 0; }
 
  private:

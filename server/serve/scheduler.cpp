@@ -5,13 +5,20 @@
 #include <utility>
 
 #include "drivers/real_time.hpp"
+#include "server/serve/workers.hpp"
 
 namespace server {
+namespace {
+
+constexpr int kFastNice = 5;  // before the experiments, behind all else
+
+}  // namespace
 
 Scheduler::Scheduler(std::size_t threads) {
   if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
   for (std::size_t i = 0; i < threads; ++i) {
-    threads_.emplace_back([this](const std::stop_token& stop) { work(stop); });
+    threads_.emplace_back([this](const std::stop_token& stop) { work_timed(stop); });
+    threads_.emplace_back([this](const std::stop_token& stop) { work_fast(stop); });
   }
 }
 
@@ -19,6 +26,7 @@ Scheduler::~Scheduler() {
   const std::lock_guard lock(mutex_);
   for (std::jthread& thread : threads_) thread.request_stop();
   wake_.notify_all();
+  wake_fast_.notify_all();
 }
 
 void Scheduler::add(Task& task) {
@@ -46,21 +54,17 @@ void Scheduler::remove(Task& task) {
   take_out(task);
 }
 
-void Scheduler::work(const std::stop_token& stop) {
+void Scheduler::work_timed(const std::stop_token& stop) {
   drivers::ask_for_punctual_timers();
   drivers::name_this_thread("runs");
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
-    if (Task* const task = next(Clock::now())) {
-      const bool fast = task->place_ == Task::Place::Fast;
-      take_out(*task);
-      task->place_ = Task::Place::Running;
+    if (!timed_.empty() && timed_.begin()->first <= Clock::now()) {
+      Task& task = *timed_.begin()->second;
+      take_out(task);
       // Who waits may wait for this task's deadline; there is another first one now.
-      if (idle_ > 0 && (!timed_.empty() || !fast_.empty())) wake_.notify_one();
-      lock.unlock();
-      const Run::Next then = advance(*task, fast);
-      lock.lock();
-      put_back(*task, then);
+      if (idle_ > 0 && !timed_.empty()) wake_.notify_one();
+      advance(task, false, lock);
       continue;
     }
     ++idle_;
@@ -73,20 +77,34 @@ void Scheduler::work(const std::stop_token& stop) {
   }
 }
 
-/// The one whose turn it is; null when there is time to wait.
-Scheduler::Task* Scheduler::next(Clock::time_point now) {
-  if (!timed_.empty() && timed_.begin()->first <= now) return timed_.begin()->second;
-  return fast_.empty() ? nullptr : fast_.front();
+void Scheduler::work_fast(const std::stop_token& stop) {
+  drivers::name_this_thread("fast runs");
+  stand_back(kFastNice);
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    if (fast_.empty()) {
+      wake_fast_.wait(lock);
+      continue;
+    }
+    Task& task = *fast_.front();
+    take_out(task);
+    advance(task, true, lock);
+  }
 }
 
-Run::Next Scheduler::advance(Task& task, bool fast) {
-  Run::Next then = task.advance();
+/// Called and left with the lock, which is open meanwhile.
+void Scheduler::advance(Task& task, bool fast, std::unique_lock<std::mutex>& lock) {
+  task.place_ = Task::Place::Running;
+  lock.unlock();
+  const Run::Next then = fast ? advance_fast(task) : task.advance();
+  lock.lock();
+  put_back(task, then);
+}
+
+Run::Next Scheduler::advance_fast(Task& task) {
   const Clock::time_point end = Clock::now() + kSlice;
-  while (fast && then.when == Run::Next::When::AtOnce) {
-    const Clock::time_point now = Clock::now();
-    if (now >= end || now.time_since_epoch().count() >= first_due_.load()) break;
-    then = task.advance();
-  }
+  Run::Next then = task.advance();
+  while (then.when == Run::Next::When::AtOnce && Clock::now() < end) then = task.advance();
   return then;
 }
 
@@ -99,8 +117,10 @@ void Scheduler::put_back(Task& task, const Run::Next& next) {
   } else if (next.when == Run::Next::When::AtOnce) {
     task.place_ = Task::Place::Fast;
     fast_.push_back(&task);
+    wake_fast_.notify_one();
   } else {
     queue(task, woken ? Clock::now() : next.time);
+    if (timed_.begin()->second == &task && idle_ > 0) wake_.notify_one();
   }
 }
 
@@ -108,22 +128,15 @@ void Scheduler::queue(Task& task, Clock::time_point due) {
   task.place_ = Task::Place::Timed;
   task.due_ = due;
   timed_.emplace(due, &task);
-  note_first();
 }
 
 void Scheduler::take_out(Task& task) {
   if (task.place_ == Task::Place::Timed) {
     timed_.erase({task.due_, &task});
-    note_first();
   } else if (task.place_ == Task::Place::Fast) {
     std::erase(fast_, &task);
   }
   task.place_ = Task::Place::Out;
-}
-
-void Scheduler::note_first() {
-  const auto first = timed_.empty() ? Clock::time_point::max() : timed_.begin()->first;
-  first_due_.store(first.time_since_epoch().count());
 }
 
 }  // namespace server

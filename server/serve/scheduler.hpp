@@ -2,7 +2,6 @@
 // has come.
 #pragma once
 
-#include <atomic>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +17,9 @@
 
 namespace server {
 
-/// Runs with a deadline come first, the earliest before the others. Those that go as fast as they
-/// can share what is left, a slice each in turn, and give way as soon as a deadline has come.
+/// Runs with a deadline come first, the earliest before the others, on threads that do nothing
+/// else. Those that go as fast as they can share what is left, a slice each in turn, on as many
+/// threads that the system lets run behind those and the io thread.
 ///
 /// All calls from any thread, but remove() not from one of its own.
 class Scheduler {
@@ -39,7 +39,7 @@ class Scheduler {
     bool leaving_ = false;          // while Running: take it out then
   };
 
-  /// `threads`: 0 means as many as the machine has processors.
+  /// `threads` of each kind: 0 means as many as the machine has processors.
   explicit Scheduler(std::size_t threads = 0);
   /// All tasks must have been removed.
   ~Scheduler();
@@ -53,28 +53,25 @@ class Scheduler {
   /// When this returns no thread advances it, nor will one. A task that is not there is no error.
   void remove(Task& task);
 
-  std::size_t threads() const { return threads_.size(); }
-
  private:
   using Clock = Run::Clock;
   static constexpr std::chrono::milliseconds kSlice{2};  // of those without deadlines
 
-  void work(const std::stop_token& stop);
-  Task* next(Clock::time_point now);
-  Run::Next advance(Task& task, bool fast);
+  void work_timed(const std::stop_token& stop);
+  void work_fast(const std::stop_token& stop);
+  void advance(Task& task, bool fast, std::unique_lock<std::mutex>& lock);
+  static Run::Next advance_fast(Task& task);
   void put_back(Task& task, const Run::Next& next);
   void queue(Task& task, Clock::time_point due);
   void take_out(Task& task);
-  void note_first();
 
-  std::mutex mutex_{};  // guards what follows, and the private part of each task
-  std::condition_variable wake_{};
-  std::condition_variable done_{};  // a task that was to leave has come back
+  std::mutex mutex_{};                   // guards what follows, and the private part of each task
+  std::condition_variable wake_{};       // there is another first deadline
+  std::condition_variable wake_fast_{};  // there is one without
+  std::condition_variable done_{};       // a task that was to leave has come back
   std::set<std::pair<Clock::time_point, Task*>> timed_{};
   std::deque<Task*> fast_{};
-  std::size_t idle_ = 0;  // threads that wait
-
-  std::atomic<Clock::rep> first_due_{Clock::time_point::max().time_since_epoch().count()};
+  std::size_t idle_ = 0;                 // threads that wait for a deadline
   std::vector<std::jthread> threads_{};  // last: they use all of the above
 };
 

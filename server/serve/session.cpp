@@ -33,8 +33,8 @@ PreparedRun Session::prepare(RunSpec spec) {
   std::unique_ptr<algo::Robot> robot = make_robot(spec);
   std::shared_ptr<RunChannel> channel;
   if (recorder_ != nullptr) channel = recorder_->begin(new_run(spec, robot->spec()));
-  auto live = std::make_unique<LiveRun>(
-      spec, std::move(robot), std::move(channel), house_, watch_, news_, require_record_);
+  auto live =
+      std::make_unique<LiveRun>(spec, std::move(robot), std::move(channel), house_, watch_, news_);
   return {std::move(spec), std::move(live)};
 }
 
@@ -238,7 +238,9 @@ void Session::watch_record() {
   if (house_.tells_record_news) {
     for (const std::string& news : recorder_->take_news()) log(LogLevel::Warning, news);
   }
-  const RecordStatus was = std::exchange(state_.record, recorder_->status());
+  RecordStatus mine = live_ ? live_->record_status() : RecordStatus{};
+  if (mine.kind == RecordKind::Off) mine = recorder_->status();
+  const RecordStatus was = std::exchange(state_.record, std::move(mine));
   const RecordStatus& now = state_.record;
   if (was.kind != now.kind || was.sentence != now.sentence || was.deleted != now.deleted) changed();
 }
@@ -300,8 +302,10 @@ void Session::drain_replies() {
 
 /// Brings the mirror up to date with a request the control thread has accepted.
 void Session::adopt(const algo::Request& request) {
-  const bool anew = state_.asked.apply(request);
-  if (anew && std::holds_alternative<algo::Joystick>(request)) changed();  // it cancels the goals
+  const bool had_goal = state_.asked.goal.has_value();
+  state_.asked.apply(request);
+  const bool stick = std::holds_alternative<algo::Joystick>(request);
+  if (stick && had_goal && !state_.asked.goal) changed();  // taking the stick cancels the goals
 }
 
 /// Moves on in the mirror when the robot has: a frame may be older than what was asked for since.

@@ -71,9 +71,6 @@ class Session {
   /// that a run without an outcome is interrupted.
   void end(bool cut = false);
 
-  /// From the next load on a tick that is not recorded ends the run.
-  void require_record() { require_record_ = true; }
-
   /// Hands `request` to the control thread; `answer` is called from a later poll(). An obstacle
   /// without an id gets one, which is returned (0 for other requests). Nothing when the control
   /// thread cannot take more just now: try again later.
@@ -162,7 +159,6 @@ class Session {
   algo::Mission told_mission_ = algo::Mission::Idle;
   algo::Hold told_hold_ = algo::Hold::None;
   bool arm_when_ready_ = false;
-  bool require_record_ = false;
   std::uint64_t record_seen_ = 0;                          // revision of the recorder
   std::chrono::steady_clock::time_point hardware_seen_{};  // when it was last looked at
   std::chrono::steady_clock::time_point hardware_told_{};  // when people were last told of it

@@ -8,11 +8,7 @@
 #include <unistd.h>
 
 namespace server {
-namespace {
-
-constexpr int kNice = 10;  // of threads that stand back
-
-}  // namespace
+namespace {}  // namespace
 
 db::RunReader& Worker::runs() {
   struct stat now {};
@@ -66,9 +62,9 @@ void Workers::work(const std::stop_token& stop, const std::string& database) {
   }
 }
 
-void stand_back() {
+void stand_back(int nice) {
   // Of this thread alone: on Linux each has a nice value of its own.
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNice);
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
 }
 
 }  // namespace server

@@ -62,7 +62,8 @@ class Workers {
   std::vector<std::jthread> threads_{};
 };
 
-/// Lets the calling thread run when those that drive robots leave room.
-void stand_back();
+/// Lets the calling thread run when those that drive robots leave room. `nice`: the higher the
+/// farther behind.
+void stand_back(int nice = 10);
 
 }  // namespace server

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"
@@ -13,17 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-json lateness_json(const algo::LatenessHistogram& lateness) {
-  json buckets = json::array();
-  for (std::size_t i = 0; i < lateness.counts().size(); ++i) {
-    json below = nullptr;
-    if (i < algo::LatenessHistogram::kLimits.size()) below = algo::LatenessHistogram::kLimits[i];
-    buckets.push_back({{"below", std::move(below)}, {"ticks", lateness.counts()[i]}});
-  }
-  return {
-      {"ticks", lateness.ticks()}, {"worst", lateness.worst()}, {"buckets", std::move(buckets)}};
-}
-
 json summary(OpenSession& open) {
   const SessionState& state = open.session().state();
   return {{"id", open.id()},
@@ -32,7 +22,7 @@ json summary(OpenSession& open) {
           {"run", open.session().run_id()},
           {"viewers", open.bridge().hub().clients()},
           {"missed_periods", state.missed_periods},
-          {"lateness", lateness_json(open.session().lateness())}};
+          {"lateness", to_json(open.session().lateness())}};
 }
 
 /// Whoever knows an id may do with the session as they like. Where each visitor has one, nobody is

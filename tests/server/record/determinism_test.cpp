@@ -94,7 +94,7 @@ class RecordedRun : public ::testing::Test {
       applied_ += frame.telemetry.requests.size();
       const auto [begin, end] = script.equal_range(frame.telemetry.tick);
       for (auto it = begin; it != end; ++it) rings.requests.push({1, it->second});
-    };
+    });
     result_ = run(*robot,
                   pipeline,
                   first_requests(spec),
@@ -103,8 +103,7 @@ class RecordedRun : public ::testing::Test {
                   {});
     rings.stream.consume_all([](const FrameRef&) {});
     rings.replies.consume_all(
-        [](const Reply& reply) {
-      EXPECT_FALSE(reply.refusal) << *reply.refusal; });
+        [](const Reply& reply) { EXPECT_FALSE(reply.refusal) << *reply.refusal; });
     channel->close(run_end(result_));
     recorder.flush();
     return channel->run();
@@ -149,7 +148,7 @@ TEST_F(RecordedRun, FedBackWithEditsStickAndStopItGivesTheSameCommands) {
       {420, algo::ClearGoal{}},
       {430, algo::SetGoal{{3.0, 5.0}, std::nullopt}},
       {431, algo::AddGoal{{{0.0, 4.0}, std::nullopt}}},
-  });
+  };
   for (const char* vehicle : {"bullet", "kinematic"}) {
     SCOPED_TRACE(vehicle);
     applied_ = 0;
