@@ -9,7 +9,7 @@
 namespace sim {
 namespace {
 
-constexpr int kPooledPairs = 256;
+constexpr int kPooledPairs = 64;
 constexpr double kGravity = 9.81;     // [m/s2]
 constexpr int kIterations = 10;       // enough on a flat floor
 constexpr double kMargin = 0.001;     // [m] the default of 0.04 rounds small edges away

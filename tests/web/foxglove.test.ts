@@ -221,6 +221,7 @@ test("a session that is gone is said, and not asked for again and again", () => 
   ready(sockets[0]);
   sockets[0].onclose?.({ code: 4404, reason: "This session has ended." });
   assert.deepEqual(seen.gone, ["This session has ended."]);
+  assert.equal(seen.status.at(-1)?.retry_at, Infinity);
   timers.tick(60_000);
   assert.equal(sockets.length, 1);
   link.reconnect();

@@ -26,6 +26,7 @@ export function clock(seconds: number): string {
 export function link_words(status: LinkStatus, now: number): string {
   if (status.phase === "connecting") return "Connecting";
   if (status.phase === "lost") {
+    if (status.retry_at === Infinity) return "No session";
     const wait = Math.max(0, Math.ceil((status.retry_at - now) / 1000));
     return wait > 0 ? `Connection lost. Trying again in ${wait} s.` : "Connection lost. Trying now.";
   }

@@ -9,7 +9,7 @@ import {
 
 export interface LinkStatus {
   phase: "connecting" | "open" | "lost";
-  /** Wall clock [ms] of the next try while lost. */
+  /** Wall clock [ms] of the next try while lost; Infinity: there is none, as the session is gone. */
   retry_at: number;
   /** [frames/s] received over the last second. */
   rate: number;
@@ -214,6 +214,7 @@ export class LiveLink {
       this.lose();
       if (event?.code !== kGone) return;
       clearTimeout(this.retry_timer_);
+      this.update({ retry_at: Infinity });
       this.events_.gone(event.reason);
     };
     socket.onerror = () => undefined; // a close always follows
