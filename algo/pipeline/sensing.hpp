@@ -17,8 +17,8 @@ class Sensing {
   void reset() { merge_.reset(); }
 
   /// Takes an observation; every tick's, as echoes are remembered. A new front scan goes to `scan`,
-  /// as the controller is to see it. Returns it as the scanner measured it; null when none has come,
-  /// and `scan` stays as it is.
+  /// as the controller is to see it. Returns it as the scanner measured it; null when none has
+  /// come, and `scan` stays as it is.
   const LaserScan* take(const Observation& observation,
                         const Parameters& parameters,
                         LaserScan& scan);
