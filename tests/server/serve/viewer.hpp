@@ -13,7 +13,6 @@
 namespace server {
 
 using namespace std::chrono_literals;
-using net::test::Frame;
 using net::test::WsTestClient;
 
 /// A viewer that has read the greetings and knows channels and services by name.
@@ -21,7 +20,7 @@ class Viewer {
  public:
   explicit Viewer(std::uint16_t port) : client(port) {
     while (channels.empty() || services.empty()) {
-      const Frame frame = client.read();
+      const net::test::Frame frame = client.read();
       if (frame.opcode < 0) return;
       if (frame.opcode != 1) continue;
       const json message = json::parse(frame.payload);
@@ -41,7 +40,7 @@ class Viewer {
   /// A frame of subscription 1 comes within a second or two.
   bool receives() {
     for (int i = 0; i < 500; ++i) {
-      const Frame frame = client.read(2s);
+      const net::test::Frame frame = client.read(2s);
       if (frame.opcode < 0) return false;
       if (frame.opcode == 2 && !frame.payload.empty() && frame.payload[0] == 1) return true;
     }
@@ -52,7 +51,7 @@ class Viewer {
     constexpr std::size_t kHeader = 13;  // opcode, subscription, time
     std::vector<std::string> out;
     while (out.size() < count) {
-      const Frame frame = client.read(2s);
+      const net::test::Frame frame = client.read(2s);
       if (frame.opcode < 0) break;
       if (frame.opcode != 2 || frame.payload.size() < kHeader || frame.payload[0] != 1) continue;
       out.push_back(frame.payload.substr(kHeader));
@@ -62,7 +61,7 @@ class Viewer {
   /// The sentence of the next status message or service failure; empty when none comes.
   std::string complaint() {
     for (int i = 0; i < 500; ++i) {
-      const Frame frame = client.read(2s);
+      const net::test::Frame frame = client.read(2s);
       if (frame.opcode < 0 || frame.opcode == 8) return {};
       if (frame.opcode != 1) continue;
       const json message = json::parse(frame.payload);
