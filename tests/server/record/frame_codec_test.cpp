@@ -278,7 +278,8 @@ TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
 }
 
 TEST(FrameCodec, AScanOnItsOwnIsAMessage) {
-  const algo::LaserScan& scan = full_telemetry().observation.scans[0];
+  const algo::Telemetry whole = full_telemetry();
+  const algo::LaserScan& scan = whole.observation.scans[0];
   FrameEncoder encoder;
   const auto bytes = encoder.encode(scan);
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
