@@ -1,4 +1,5 @@
-// server/experiment/oracle.hpp: whether a contact with something that moves could have been avoided.
+// server/experiment/oracle.hpp: whether a contact with something that moves could have been
+// avoided.
 #pragma once
 
 #include <cstdint>
