@@ -19,7 +19,8 @@ constexpr LayerInfo kGrid{.name = "certainty.grid",
                           .label = "Certainty grid",
                           .kind = LayerKind::Grid,
                           .tone = Tone::External};
-enum State : std::uint8_t { kPlanned = 1, kNoPlan };
+constexpr std::uint8_t kPlanned = 1;
+constexpr std::uint8_t kNoPlan = 2;
 constexpr std::size_t kCells =
     static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
 

@@ -20,7 +20,8 @@ constexpr int kMotions = kSpeeds * kTurns;
 constexpr double kFarthest = 3.0;  // [m] [D] more room than this is no better
 constexpr double kShown = 1.5;     // [s] [D] of each candidate that is drawn
 constexpr std::size_t kBearings = 180;
-enum State : std::uint8_t { kWindow = 1, kNoWindow };
+constexpr std::uint8_t kWindow = 1;
+constexpr std::uint8_t kNoWindow = 2;
 
 constexpr ParameterInfo kMargin{.name = "dwa.margin",
                                 .label = "Margin",
@@ -241,7 +242,7 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
 
   // Room for all of them in each: references to a layer do not outlive the next add_layer().
   for (const LayerInfo* info : {&layers::kRefused, &layers::kAllowed, &layers::kChosen}) {
-    add_layer(out.layers, *info).values.reserve(2 * kMotions);
+    add_layer(out.layers, *info).values.reserve(std::size_t{2} * kMotions);
   }
   Layer& refused = *(out.layers.end() - 3);
   Layer& allowed = *(out.layers.end() - 2);

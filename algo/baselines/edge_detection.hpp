@@ -35,7 +35,9 @@ class EdgeDetection final : public Baseline {
  public:
   static ParameterList parameters();
   /// ControlOutput::state.
-  enum State : std::uint8_t { kTakingScan = 1, kToEdge, kToGoal };
+  static constexpr std::uint8_t kTakingScan = 1;
+  static constexpr std::uint8_t kToEdge = 2;
+  static constexpr std::uint8_t kToGoal = 3;
 
  private:
   void forget() override;

@@ -36,7 +36,8 @@ constexpr LayerInfo kHistogram{.name = "histogram",
                                .label = "Polar histogram",
                                .kind = LayerKind::Polar,
                                .tone = Tone::External};
-enum State : std::uint8_t { kThroughValley = 1, kWalled };
+constexpr std::uint8_t kThroughValley = 1;
+constexpr std::uint8_t kWalled = 2;
 
 int cyclic(int k) {
   return (k % kSectors + kSectors) % kSectors;

@@ -46,19 +46,18 @@ class FullStripController final : public Controller {
   void explain(const Telemetry& t, Explanation& words) const override;
 
   /// What it is about, for its words: ControlOutput::state.
-  enum State : std::uint8_t {
-    kNone,
-    kFollowing,    // along the strip
-    kTurning,      // on the spot, towards the strip
-    kManeuvering,  // to and fro in a narrow place
-    kGivingWay,    // to what moves
-    kCornered,     // every motion would meet what moves
-    kEscaping,     // out of too narrow a place
-    kBackingOff,   // the way was blocked for long
-    kNoWay,        // the map has no way to the goal
-    kBlocked,      // nothing is free just now
-    kGoalTaken,    // something stands on the goal, and this is as far as it goes
-  };
+  using State = std::uint8_t;
+  static constexpr std::uint8_t kNone = 0;
+  static constexpr std::uint8_t kFollowing = 1;    // along the strip
+  static constexpr std::uint8_t kTurning = 2;      // on the spot, towards the strip
+  static constexpr std::uint8_t kManeuvering = 3;  // to and fro in a narrow place
+  static constexpr std::uint8_t kGivingWay = 4;    // to what moves
+  static constexpr std::uint8_t kCornered = 5;     // every motion would meet what moves
+  static constexpr std::uint8_t kEscaping = 6;     // out of too narrow a place
+  static constexpr std::uint8_t kBackingOff = 7;   // the way was blocked for long
+  static constexpr std::uint8_t kNoWay = 8;        // the map has no way to the goal
+  static constexpr std::uint8_t kBlocked = 9;      // nothing is free just now
+  static constexpr std::uint8_t kGoalTaken = 10;   // something stands on it; it drives no farther
 
  private:
   void prepare(const ControlInput& in, const Parameters& parameters);
