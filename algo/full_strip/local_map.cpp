@@ -248,7 +248,7 @@ void LocalMap::draw(const Vec2& about_W, std::uint32_t side, Layer& out) const {
   const Vec2 p = (about_W - corner_W_) / kCell;
   const int left = std::clamp(static_cast<int>(p.x()) - half, 0, kSize - 2 * half);
   const int bottom = std::clamp(static_cast<int>(p.y()) - half, 0, kSize - 2 * half);
-  const auto columns = static_cast<std::size_t>(2 * half);
+  const std::size_t columns = std::size_t{2} * static_cast<std::size_t>(half);
   put(out, Vec2(corner_W_ + Vec2(left * kCell, bottom * kCell)), kCell, 2 * half);
   out.cells.resize(columns * columns);
   for (int y = 0; y < 2 * half; ++y) {

@@ -132,45 +132,48 @@ test("what is drawn live is drawn of the record, layer by layer", { timeout: 600
   const place = scratch();
   const server = await serve({ database: place.database, scenario: "demo" });
   const { base } = server;
-  await control(base, { action: "pause" });
   const p = await open(browser, base, { size: desktop });
-  for (const [scenario, controller, ticks, seen] of kCases) {
-    const what = (id) => `${scenario}, ${controller}: ${id}`;
-    await control(base, { action: "load", scenario, controller });
-    await p.page.evaluate(() => (location.hash = "#/drive"));
-    await until("the page follows", 20, () => p.get("controller").inputValue(), (v) => v === controller);
-    if (!(await p.page.locator('[data-testid="layer-panel"]').count())) await p.get("layers").click();
-    await set(p, "layer-filtered", true);
-    const { tick, pose } = await drive(p, base, ticks);
-    const { run } = await json(base, "/session");
+  try {
+    await control(base, { action: "pause" });
+    for (const [scenario, controller, ticks, seen] of kCases) {
+      const what = (id) => `${scenario}, ${controller}: ${id}`;
+      await control(base, { action: "load", scenario, controller });
+      await p.page.evaluate(() => (location.hash = "#/drive"));
+      await until("the page follows", 20, () => p.get("controller").inputValue(), (v) => v === controller);
+      if (!(await p.page.locator('[data-testid="layer-panel"]').count())) await p.get("layers").click();
+      await set(p, "layer-filtered", true);
+      const { tick, pose } = await drive(p, base, ticks);
+      const { run } = await json(base, "/session");
 
-    await look_at(p, pose);
-    const of_live = await one_by_one(p, "live", async (id) => {
-      await p.page.waitForTimeout(id === "layer-filtered" ? 800 : 0);
-      const drawn = await keep(p, `live ${id}`, "live bare");
-      if (seen.includes(id.slice("layer-".length))) assert.ok(drawn > 0, `${what(id)} is seen`);
-    });
-    for (const name of seen) assert.ok(of_live.includes(`layer-${name}`), what(`${name} is listed`));
-    const words = await p.get("explain").textContent();
+      await look_at(p, pose);
+      const of_live = await one_by_one(p, "live", async (id) => {
+        await p.page.waitForTimeout(id === "layer-filtered" ? 800 : 0);
+        const drawn = await keep(p, `live ${id}`, "live bare");
+        if (seen.includes(id.slice("layer-".length))) assert.ok(drawn > 0, `${what(id)} is seen`);
+      });
+      for (const name of seen) assert.ok(of_live.includes(`layer-${name}`), what(`${name} is listed`));
+      const words = await p.get("explain").textContent();
 
-    await open_stored(p, base, run.id, tick);
-    await until("its last tick", 20, () => p.get("run-explain").textContent(), (w) => w === words);
-    await look_at(p, pose);
-    const of_stored = await one_by_one(p, "stored", async (id) => {
-      let differ = 1;
-      for (let i = 0; i < 20 && differ > kAlike; ++i) { // a filtered scan is fetched when first wanted
-        differ = await keep(p, `stored ${id}`, `live ${id}`);
-        if (differ > kAlike) await p.page.waitForTimeout(100);
-      }
-      assert.ok(differ <= kAlike, `${what(id)}: ${(100 * differ).toFixed(2)} % of the pixels differ`);
-    });
-    assert.deepEqual([...of_stored].sort(), [...of_live].sort());
-    assert.ok(await keep(p, "bare again", "stored bare") <= kOff, what("what is off is off"));
-    assert.ok(await keep(p, "bare again", "live bare") <= kAlike, what("the world itself"));
+      await open_stored(p, base, run.id, tick);
+      await until("its last tick", 20, () => p.get("run-explain").textContent(), (w) => w === words);
+      await look_at(p, pose);
+      const of_stored = await one_by_one(p, "stored", async (id) => {
+        let differ = 1;
+        for (let i = 0; i < 20 && differ > kAlike; ++i) { // a filtered scan is fetched when first wanted
+          differ = await keep(p, `stored ${id}`, `live ${id}`);
+          if (differ > kAlike) await p.page.waitForTimeout(100);
+        }
+        assert.ok(differ <= kAlike, `${what(id)}: ${(100 * differ).toFixed(2)} % of the pixels differ`);
+      });
+      assert.deepEqual([...of_stored].sort(), [...of_live].sort());
+      assert.ok(await keep(p, "bare again", "stored bare") <= kOff, what("what is off is off"));
+      assert.ok(await keep(p, "bare again", "live bare") <= kAlike, what("the world itself"));
+    }
+  } finally {
+    await p.close();
+    await server.stop();
+    place.remove();
   }
-  await p.close();
-  await server.stop();
-  place.remove();
 });
 
 test("a switch works by keyboard and by touch and is remembered; Space there is Stop", { timeout: 120_000 }, async () => {
