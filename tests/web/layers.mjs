@@ -10,7 +10,7 @@ const kAtOnce = 5;    // ticks
 const kScale = 70;    // [px/m] at which both are looked at
 const kHalf = 140;    // [px] of the piece about the robot that is compared
 const kOff = 0.0001;   // share of the pixels that may differ where nothing is drawn
-const kAlike = 0.004; // share of its pixels that may differ
+const kAlike = 0.008; // share of its pixels that may differ: the two views lie up to a pixel apart
 
 let browser;
 before(async () => {
