@@ -168,10 +168,12 @@ const kDraw: Record<LayerKind, Draw> = {
   grid: draw_grid, polar: draw_polar, text: draw_text,
 };
 
+/** Leaves the context as it was: nothing else is drawn otherwise for it. */
 export function draw_layer(c: Canvas, layer: LayerView): void {
+  c.g.save();
   c.g.globalAlpha = kAlpha[layer.style];
   kDraw[layer.kind](c, layer, c.palette[kTokens[layer.tone]]);
-  c.g.globalAlpha = 1;
+  c.g.restore();
 }
 
 /** What lies below the robot; a strip of one step ends inside the hull, so it lies on top of it. */

@@ -13,6 +13,7 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   const xs = columns.get("x");
   const ys = columns.get("y");
   const step = Math.max(1, Math.floor((to - from) / kMostPathPoints));
+  g.save();
   g.strokeStyle = colour;
   g.lineWidth = width;
   g.lineJoin = "round";
@@ -23,7 +24,7 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   for (let i = from + step; i < to; i += step) g.lineTo(view.sx(xs[i]), view.sy(ys[i]));
   g.lineTo(view.sx(xs[to - 1]), view.sy(ys[to - 1]));
   g.stroke();
-  g.globalAlpha = 1;
+  g.restore();
 }
 
 /** An arrow of `v` metres from `at`; too short ones are left out, very long ones are cut at 2 m. */

@@ -10,27 +10,28 @@ const kDot = 2;                 // [px]
 
 export function draw_ranging(g: Context, view: View, palette: Palette,
   readings: PlacedReadings): void {
+  const hits = [...readings.values()].filter((r) => r.hit);
+  g.save();
   g.lineWidth = 2;
-  for (const reading of readings.values()) {
-    if (!reading.hit) continue;
-    const { x, y, heading } = reading.origin;
-    if (reading.kind === "sonar") {
-      g.strokeStyle = palette.scan;
-      g.globalAlpha = 0.8;
-      g.beginPath();
-      // The screen's y axis points down.
-      g.arc(view.sx(x), view.sy(y), reading.range * view.scale, -heading - kHalfCone,
-        -heading + kHalfCone);
-      g.stroke();
-    } else {
-      const px = view.sx(x + reading.range * Math.cos(heading));
-      const py = view.sy(y + reading.range * Math.sin(heading));
-      g.fillStyle = palette.warn;
-      g.globalAlpha = 1;
-      g.fillRect(px - kDot, py - kDot, 2 * kDot, 2 * kDot);
-    }
+  g.strokeStyle = palette.scan;
+  g.globalAlpha = 0.8;
+  for (const { kind, origin, range } of hits) {
+    if (kind !== "sonar") continue;
+    g.beginPath();
+    // The screen's y axis points down.
+    g.arc(view.sx(origin.x), view.sy(origin.y), range * view.scale, -origin.heading - kHalfCone,
+      -origin.heading + kHalfCone);
+    g.stroke();
   }
   g.globalAlpha = 1;
+  g.fillStyle = palette.warn;
+  for (const { kind, origin, range } of hits) { // on top of the arcs
+    if (kind !== "infrared") continue;
+    const px = view.sx(origin.x + range * Math.cos(origin.heading));
+    const py = view.sy(origin.y + range * Math.sin(origin.heading));
+    g.fillRect(px - kDot, py - kDot, 2 * kDot, 2 * kDot);
+  }
+  g.restore();
 }
 
 /** Bumpers that are pressed, as thick arcs on the hull. */
