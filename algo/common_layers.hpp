@@ -1,5 +1,4 @@
-// algo/common_layers.hpp: layers that several controllers show, so that a name looks alike whoever
-// draws it.
+// algo/common_layers.hpp: layers that several controllers show: one description of each.
 #pragma once
 
 #include "algo/layer.hpp"

@@ -51,8 +51,8 @@ class FullStripController final : public Controller {
   static constexpr std::uint8_t kFollowing = 1;    // along the strip
   static constexpr std::uint8_t kTurning = 2;      // on the spot, towards the strip
   static constexpr std::uint8_t kManeuvering = 3;  // to and fro in a narrow place
-  static constexpr std::uint8_t kGivingWay = 4;    // to what moves
-  static constexpr std::uint8_t kCornered = 5;     // every motion would meet what moves
+  static constexpr std::uint8_t kGivingWay = 4;    // to moving obstacles
+  static constexpr std::uint8_t kCornered = 5;     // every motion would meet a moving obstacle
   static constexpr std::uint8_t kEscaping = 6;     // out of too narrow a place
   static constexpr std::uint8_t kBackingOff = 7;   // the way was blocked for long
   static constexpr std::uint8_t kNoWay = 8;        // the map has no way to the goal

@@ -12,10 +12,12 @@ constexpr std::size_t kFewMoving = 8;  // that room is kept for
 
 constexpr LayerInfo kMap{
     .name = "map", .label = "Map", .kind = LayerKind::Grid, .tone = Tone::External};
-constexpr LayerInfo kMoving{
-    .name = "moving", .label = "What moves", .kind = LayerKind::Circles, .tone = Tone::Moving};
+constexpr LayerInfo kMoving{.name = "moving",
+                            .label = "Moving obstacles",
+                            .kind = LayerKind::Circles,
+                            .tone = Tone::Moving};
 constexpr LayerInfo kHidden{.name = "moving.hidden",
-                            .label = "What moves, out of sight",
+                            .label = "Moving obstacles, out of sight",
                             .kind = LayerKind::Circles,
                             .tone = Tone::Moving,
                             .style = LayerStyle::Faint};
@@ -25,8 +27,8 @@ constexpr LayerInfo kVelocities{.name = "moving.velocity",
                                 .tone = Tone::Moving,
                                 .unit = "m/s"};
 
-/// A further layer with room for `values`, so that a tick which shows more than those before it
-/// does not allocate.
+/// A further layer with room for `values`: a tick with more values than its predecessors then
+/// allocates nothing.
 Layer& add_layer(ControlOutput& out, const LayerInfo& info, std::size_t values) {
   Layer& layer = add_layer(out.layers, info);
   layer.values.reserve(values);

@@ -18,8 +18,7 @@ struct Candidate {
   bool operator==(const Candidate&) const = default;
 };
 
-/// Room for the most that is ever weighed, so that a tick which weighs more than those before it
-/// does not allocate.
+/// Candidates in a fixed array: no tick allocates, however many it weighs.
 class Weighing {
  public:
   static constexpr std::size_t kMost = 32;

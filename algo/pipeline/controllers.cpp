@@ -94,7 +94,8 @@ std::vector<ControllerInfo> builtin() {
        .make = made<FullStripController>},
       {.name = "strip_moving",
        .label = "Full elastic strip among moving things",
-       .help = "As the full strip, and what moves is tracked in the scans; a search in space and "
+       .help = "As the full strip, and moving obstacles are tracked in the scans; a search in "
+               "space and "
                "time gives way to it. An experiment: of the moving obstacles it is measured on it "
                "still meets many.",
        .parameters = FullStripController::parameters(),

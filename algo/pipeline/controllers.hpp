@@ -25,7 +25,7 @@ struct ControllerInfo {
   std::function<std::optional<std::string>(const Parameters&)> refusal{};
 };
 
-/// The controllers that a run may choose from. A value: whoever makes pipelines may add to it.
+/// The controllers that a run may choose from. A value: the maker of a pipeline may add to it.
 class ControllerCatalogue {
  public:
   ControllerCatalogue() = default;

@@ -178,7 +178,7 @@ void add_serve_command(CLI::App& app, int& status) {
   AppOptions& app_options = options->app;
   command->add_flag("--per-visitor",
                     app_options.sessions.per_visitor,
-                    "Whoever opens the page without a session gets one of their own");
+                    "Each visitor who opens the page without a session gets one");
   command
       ->add_option("--sessions",
                    app_options.sessions.sessions,

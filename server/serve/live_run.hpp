@@ -31,7 +31,7 @@ struct RunHouse {
 };
 
 /// One Run with its rings and frames. Made on any thread, begun by the io thread, and ended by
-/// whoever may wait for it.
+/// a thread that may wait for it.
 class LiveRun final : private Scheduler::Task {
  public:
   /// `news` is called on the thread that advances the run, when its rings have something.

@@ -33,7 +33,7 @@ class SessionRegistry {
   static constexpr std::uint16_t kGoneCode = 4404;  // closes the WebSocket of who asks for none
   static constexpr std::string_view kOwn =
       "Here each visitor has a session: open one with POST /api/v1/sessions.";
-  /// Told to whoever asks for a session that is not there.
+  /// Told to a client that asks for a session that is not there.
   static constexpr std::string_view kGone =
       "There is no such session: it has ended, or it never was. Open a new one.";
 

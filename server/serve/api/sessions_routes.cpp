@@ -25,7 +25,7 @@ json summary(OpenSession& open) {
           {"lateness", to_json(open.session().lateness())}};
 }
 
-/// Whoever knows an id may do with the session as they like. Where each visitor has one, nobody is
+/// A client that knows an id may do all with its session. Where each visitor has one, nobody is
 /// told the others'.
 json list(ApiContext& context) {
   json items = json::array();
