@@ -139,7 +139,9 @@ void LayersBlock::fill(Builder& b, const algo::Telemetry& t) const {
 
 LayersBlock::Written LayersBlock::write(Builder& b, const algo::Telemetry& t) {
   b.Align(kAlignment);
-  if (!collect(t)) {  // a grid comes seldom and is large: not to be kept
+  const bool plain = collect(t);
+  if (shown_.empty() && t.output.measures.empty()) return {};
+  if (!plain) {  // a grid comes seldom and is large: not to be kept
     forms_.clear();
     names_.clear();
     const Written written = build(b, t);
