@@ -8,6 +8,8 @@
 #include <numbers>
 #include <string_view>
 
+#include "algo/gate.hpp"
+
 namespace algo {
 namespace {
 
@@ -79,31 +81,12 @@ void explain_stale(const Telemetry& t, Explanation& words) {
 }
 
 void explain_hold(const Telemetry& t, Explanation& words) {
-  switch (t.hold) {
-    case Hold::Halted:
-      tell(words, sentences_of(t.observation.halt));
-      break;
-    case Hold::Stopped:
-      tell(words, {"Stopped", "Stop is engaged. The robot stays here until it is released."});
-      break;
-    case Hold::Bumper:
-      tell(words, {"Touching something", "The bumper is pressed. Back away by hand, or reset."});
-      break;
-    case Hold::StaleScan:
-      explain_stale(t, words);
-      break;
-    case Hold::Dazzled:
-      tell(words, {"Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."});
-      break;
-    case Hold::NotFinite:
-      tell(words,
-           {"Holding still", "A sensor or the controller gave a value that is not a number."});
-      break;
-    case Hold::LinkLost:
-      tell(words, {"Holding still", "The link to the robot is lost."});
-      break;
-    case Hold::None:
-      break;
+  if (t.hold == holds::kHalted) {
+    tell(words, sentences_of(t.observation.halt));
+  } else if (t.hold == holds::kStaleScan) {
+    explain_stale(t, words);
+  } else {
+    tell(words, {t.hold.what, t.hold.why});
   }
 }
 
@@ -160,9 +143,9 @@ double off_goal(const Telemetry& t) {
 void explain(const Telemetry& t, const Controller& controller, Explanation& words) {
   words.what.clear();
   words.why.clear();
-  if (t.hold != Hold::None) {
+  if (t.hold) {
     explain_hold(t, words);
-  } else if (t.behaviour == BehaviourId::Manual) {
+  } else if (t.behaviour == behaviours::kManual) {
     words.what = "Driven by hand";
     say(words.why, "%.2f m/s ahead, %.2f rad/s. ", t.command.base.v, t.command.base.omega);
     say_surroundings(t, words.why);
@@ -173,6 +156,7 @@ void explain(const Telemetry& t, const Controller& controller, Explanation& word
     explain_arrived(t, t.goal->position_W, words);
   } else {
     controller.explain(t, words);
+    if (t.limit) say(words.why, " %s", std::string(t.limit.why).c_str());
     if (t.mission != Mission::Stuck) return;
     words.what = "Stuck";
     say(words.why, " %.2f m to go. Move an obstacle or the goal.", to_goal(t));

@@ -28,18 +28,18 @@ bool leaves_bumpers(const Observation& observation, double v) {
 }  // namespace
 
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
-  if (in.stopped) return Hold::Stopped;
-  if (in.link_lost) return Hold::LinkLost;
-  if (observation.halt != Halt::None) return Hold::Halted;
+  if (in.stopped) return holds::kStopped;
+  if (in.link_lost) return holds::kLinkLost;
+  if (observation.halt != Halt::None) return holds::kHalted;
   if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
-    return Hold::NotFinite;
+    return holds::kNotFinite;
   }
   const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);
-  if (observation.bumper_pressed() && !leaves) return Hold::Bumper;
+  if (observation.bumper_pressed() && !leaves) return holds::kBumper;
   // Written so that a stamp that is not a number counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
-  if (!fresh) return in.blinded ? Hold::Dazzled : Hold::StaleScan;
-  return in.hidden ? Hold::Dazzled : Hold::None;
+  if (!fresh) return in.blinded ? holds::kDazzled : holds::kStaleScan;
+  return in.hidden ? holds::kDazzled : Hold{};
 }
 
 }  // namespace algo

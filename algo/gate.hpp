@@ -27,7 +27,27 @@ struct GateInput {
   bool by_hand = false;                // a person drives, and may back away from what was hit
 };
 
-/// Why `command` must not be carried out, None when it may.
+namespace holds {
+
+inline constexpr Hold kStopped{
+    "stopped", "Stopped", "Stop is engaged. The robot stays here until it is released."};
+inline constexpr Hold kBumper{
+    "bumper", "Touching something", "The bumper is pressed. Back away by hand, or reset."};
+inline constexpr Hold kStaleScan{
+    "stale_scan", "Waiting for the laser", "The newest scan is too old. The robot waits."};
+inline constexpr Hold kDazzled{
+    "dazzled", "Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
+inline constexpr Hold kNotFinite{"not_finite",
+                                 "Holding still",
+                                 "A sensor or the controller gave a value that is not a number."};
+inline constexpr Hold kLinkLost{
+    "link_lost", "Holding still", "The link to the robot is lost."};
+/// By the robot itself: observation.halt says why.
+inline constexpr Hold kHalted{"halted", "Holding still", "The robot holds its wheels still."};
+
+}  // namespace holds
+
+/// Why `command` must not be carried out; no hold when it may.
 Hold gate(const GateInput& in, const Observation& observation, const Command& command);
 
 }  // namespace algo

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "algo/laser_scan.hpp"
 #include "algo/recycled.hpp"
@@ -74,6 +76,27 @@ enum class Halt : std::uint8_t {
   LateTick,   // the control loop came too late for its own deadlines
 };
 
+constexpr std::size_t kMostChannels = 256;
+
+/// What a further sensor of the robot reports: numbers that the pipeline only passes on, to record,
+/// page and export. What it acts on has a field of its own in Observation.
+struct ChannelInfo {
+  std::string name{};              // "air.temperature"
+  std::string kind{};              // what the values are: "temperature"; for people and readers
+  std::string unit{};              // of each value: "degC"
+  std::uint32_t values = 1;        // in a reading
+  std::optional<Pose2> mount_R{};  // where a place matters
+  bool operator==(const ChannelInfo&) const = default;
+};
+
+/// One reading of a channel. Its values keep their buffer.
+struct ChannelReading {
+  std::uint8_t channel = 0;  // index into RobotSpec::channels
+  double stamp = 0;          // [s] run clock
+  std::vector<double> values{};
+  bool operator==(const ChannelReading&) const = default;
+};
+
 struct Observation {
   double stamp = 0;  // [s] run clock, the only clock algo sees
   Halt halt = Halt::None;
@@ -85,6 +108,7 @@ struct Observation {
   std::optional<YawGyro> gyro{};
   std::optional<Inclinometer> inclinometer{};
   std::optional<Encoders> encoders{};
+  Recycled<ChannelReading> channels{};  // only those new in this tick
 
   bool bumper_pressed() const {
     for (const BumperReading& bumper : bumpers) {
@@ -100,6 +124,7 @@ struct Observation {
     gyro.reset();
     inclinometer.reset();
     encoders.reset();
+    channels.clear();
   }
 };
 

@@ -5,6 +5,8 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "algo/health.hpp"
 #include "algo/observation.hpp"
@@ -14,10 +16,22 @@
 
 namespace algo {
 
-/// The link to the robot is lost. what() is a sentence for a person.
+/// What a robot sensed and was told in one of its last periods.
+struct Moment {
+  double stamp = 0;  // [s] run clock
+  Halt halt = Halt::None;
+  Pose2 pose_W{};  // by odometry
+  Twist2 twist{};  // by odometry
+  Command command{};
+};
+
+/// The link to the robot is lost. what() is a sentence for a person; `last` are its last moments,
+/// oldest first, as far as the robot keeps them.
 class RobotError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit RobotError(const std::string& sentence, std::vector<Moment> moments = {})
+      : std::runtime_error(sentence), last(std::move(moments)) {}
+  std::vector<Moment> last;
 };
 
 struct RobotSpec {
@@ -34,6 +48,15 @@ struct RobotSpec {
   double command_delay = 0;             // [s] from a command's tick until it acts
   bool has_laser = true;                // looking ahead; without one the sonar ring stands in
   bool drives = false;                  // commands move it; a recorded log does not
+  std::vector<ChannelInfo> channels{};  // of its further sensors
+};
+
+/// How a robot stands on ground that is not level.
+struct Tilt {
+  double z = 0;      // [m] of R above the level z = 0
+  double roll = 0;   // [rad] left side up positive
+  double pitch = 0;  // [rad] nose down positive
+  bool operator==(const Tilt&) const = default;
 };
 
 /// The simulator's truth, for display and metrics only; controllers never see it.
@@ -42,6 +65,7 @@ struct GroundTruth {
   double obstacle_distance = 0;  // [m] from the robot's centre to the nearest surface
   double clearance = 0;          // [m] from the hull's outline to it, negative inside
   bool collided = false;
+  std::optional<Tilt> tilt{};  // where the ground is not level
   bool operator==(const GroundTruth&) const = default;
 };
 

@@ -3,26 +3,8 @@
 
 namespace algo {
 
-std::string_view name(Hold hold) {
-  switch (hold) {
-    case Hold::None:
-      return "none";
-    case Hold::Stopped:
-      return "stopped";
-    case Hold::Bumper:
-      return "bumper";
-    case Hold::StaleScan:
-      return "stale_scan";
-    case Hold::Dazzled:
-      return "dazzled";
-    case Hold::NotFinite:
-      return "not_finite";
-    case Hold::LinkLost:
-      return "link_lost";
-    case Hold::Halted:
-      return "halted";
-  }
-  return "none";
+std::string_view name(const Hold& hold) {
+  return hold ? hold.name.view() : "none";
 }
 
 std::string_view name(Halt halt) {
@@ -69,18 +51,6 @@ std::string_view name(Mission mission) {
       return "held";
   }
   return "idle";
-}
-
-std::string_view name(BehaviourId behaviour) {
-  switch (behaviour) {
-    case BehaviourId::Rest:
-      return "rest";
-    case BehaviourId::Avoid:
-      return "avoid";
-    case BehaviourId::Manual:
-      return "manual";
-  }
-  return "rest";
 }
 
 std::optional<double> ControlOutput::measure(std::string_view name) const {

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "algo/layer.hpp"
+#include "algo/name.hpp"
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
 #include "algo/request.hpp"
@@ -72,29 +73,40 @@ struct Explanation {
   bool operator==(const Explanation&) const = default;
 };
 
-/// Why the gate replaced the command by zero.
-enum class Hold : std::uint8_t {
-  None,
-  Stopped,
-  Bumper,
-  StaleScan,
-  NotFinite,
-  LinkLost,
-  Halted,   // by the robot itself: observation.halt says why
-  Dazzled,  // beams ahead, or most of them, tell nothing
+/// Why the gate replaced the command by zero; without a name it did not. Who holds the robot gives
+/// the reason (algo/gate.hpp).
+struct Hold {
+  Name name{};              // "stale_scan"
+  std::string_view what{};  // "Waiting for the laser": for people, without numbers, in static
+  std::string_view why{};   // storage; a record does not bring them back
+  explicit operator bool() const { return !name.empty(); }
+  friend bool operator==(const Hold& a, const Hold& b) { return a.name == b.name; }
+};
+
+/// What keeps a command below the one that was wanted; without a name nothing does.
+struct Limit {
+  Name name{};              // "turnover"
+  std::string_view why{};   // a sentence, as of a Hold
+  explicit operator bool() const { return !name.empty(); }
+  friend bool operator==(const Limit& a, const Limit& b) { return a.name == b.name; }
 };
 
 /// The sequencing layer's state.
 enum class Mission : std::uint8_t { Idle, Driving, Arrived, Stuck, Held };
 
-/// The behaviour whose proposal was taken.
-enum class BehaviourId : std::uint8_t { Rest, Avoid, Manual };
+namespace behaviours {
 
-/// "stale_scan", "driving", "avoid": as REST and CSV spell them.
-std::string_view name(Hold hold);
+inline constexpr Name kRest = "rest";  // none wants the base
+inline constexpr Name kAvoid = "avoid";
+inline constexpr Name kManual = "manual";
+
+}  // namespace behaviours
+
+/// "motors_off", "driving": as REST and CSV spell them.
 std::string_view name(Halt halt);
 std::string_view name(Mission mission);
-std::string_view name(BehaviourId behaviour);
+/// "none" where nothing holds the robot.
+std::string_view name(const Hold& hold);
 
 struct Telemetry {
   std::uint64_t tick = 0;
@@ -109,10 +121,13 @@ struct Telemetry {
   Recycled<Layer> layers{};  // what the pipeline shows besides the controller's
   Explanation words{};       // the newest
   bool words_fresh = false;  // they were said in this tick; the frame brings them only then
+  std::uint32_t legend = 0;  // which layers and measures there are (algo/legend.hpp)
+  bool legend_fresh = false;  // the frame says what they are
   Command command{};
-  Hold hold = Hold::None;
+  Hold hold{};
+  Limit limit{};
   Mission mission = Mission::Idle;
-  BehaviourId behaviour = BehaviourId::Rest;
+  Name behaviour = behaviours::kRest;  // the one whose proposal was taken
   double clearance = 0;  // [m] hull to the nearest filtered return; range_max - radius when none
 };
 

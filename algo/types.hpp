@@ -4,7 +4,10 @@
 // frame a quantity is expressed in.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
 
 #include <Eigen/Core>
@@ -55,9 +58,13 @@ struct Twist2 {
   bool operator==(const Twist2&) const = default;
 };
 
+constexpr std::size_t kMostJoints = 8;
+
 /// What the robot is told for one period.
 struct Command {
   Twist2 base{};
+  std::uint8_t joints = 0;                       // of the robot's arm
+  std::array<double, kMostJoints> joint_rates{};  // [rad/s]; of the first `joints`, 0 beyond
   bool operator==(const Command&) const = default;
 };
 

@@ -52,8 +52,8 @@ struct TickRow {
   double v = 0;          // [m/s] commanded
   double omega = 0;      // [rad/s] commanded
   double clearance = 0;  // [m] hull to nearest filtered return
-  std::uint8_t hold = 0;
-  std::uint8_t behaviour = 0;
+  std::string hold{};       // name; empty: not held
+  std::string behaviour{};  // name
   bool operator==(const TickRow&) const = default;
 };
 

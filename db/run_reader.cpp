@@ -55,8 +55,8 @@ TickRow tick_of(const Statement& found) {
   row.v = found.number(5);
   row.omega = found.number(6);
   row.clearance = found.number(7);
-  row.hold = static_cast<std::uint8_t>(found.integer(8));
-  row.behaviour = static_cast<std::uint8_t>(found.integer(9));
+  row.hold = found.text(8);
+  row.behaviour = found.text(9);
   return row;
 }
 
@@ -83,34 +83,6 @@ Connection open_for_reading(const std::string& path) {
     detail::require_readable(immutable);
     return immutable;
   }
-}
-
-void put_number(std::string& out, double value) {
-  if (std::isnan(value)) return;  // an empty cell
-  std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-  out.append(digits.data(), end);
-}
-
-void put_name(std::string& out, std::uint8_t value, const std::vector<std::string>& names) {
-  if (value < names.size()) {
-    out += names[value];
-  } else {
-    out += std::to_string(value);
-  }
-}
-
-void put_line(std::string& out, const TickRow& row, const CsvNames& names) {
-  out += std::to_string(row.tick);
-  for (const double value : {row.t, row.x, row.y, row.heading, row.v, row.omega, row.clearance}) {
-    out += ',';
-    put_number(out, value);
-  }
-  out += ',';
-  put_name(out, row.hold, names.holds);
-  out += ',';
-  put_name(out, row.behaviour, names.behaviours);
-  out += '\n';
 }
 
 }  // namespace
@@ -248,15 +220,6 @@ TickPage RunReader::ticks(RunId run, std::uint64_t from, std::size_t limit) {
   TickPage page{};
   page.next = each_tick(run, from, limit, [&](const TickRow& row) { page.ticks.push_back(row); });
   return page;
-}
-
-std::string_view RunReader::csv_header() {
-  return "tick,t,x,y,heading,v,omega,clearance,hold,behaviour\n";
-}
-
-std::optional<std::uint64_t> RunReader::csv(
-    RunId run, std::uint64_t from, std::size_t limit, std::string& out, const CsvNames& names) {
-  return each_tick(run, from, limit, [&](const TickRow& row) { put_line(out, row, names); });
 }
 
 bool RunReader::exists(RunId run) {

@@ -19,12 +19,6 @@
 
 namespace db {
 
-/// Words for the numbers of the hold and behaviour columns, by index; without one, the number.
-struct CsvNames {
-  std::vector<std::string> holds{};
-  std::vector<std::string> behaviours{};
-};
-
 /// Reads a run store over its own read-only connection. One thread at a time owns it, any thread
 /// and any program; it never waits for the writer and the writer never for it. A call sees what
 /// was committed when it began, in the file that is then at the path: one that was set aside or
@@ -55,16 +49,6 @@ class RunReader {
                                       std::uint64_t from,
                                       std::size_t limit,
                                       const FrameSink& sink);
-
-  /// The first line of the CSV form, with its end of line.
-  static std::string_view csv_header();
-  /// Appends up to `limit` lines from tick `from` on to `out`; every number in its shortest exact
-  /// form. Returns the tick to go on with, or nothing after the last.
-  std::optional<std::uint64_t> csv(RunId run,
-                                   std::uint64_t from,
-                                   std::size_t limit,
-                                   std::string& out,
-                                   const CsvNames& names = {});
 
  private:
   struct Tables;  // a connection and its statements

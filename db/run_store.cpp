@@ -281,8 +281,7 @@ void RunStore::append_tick(RunId run,
     }
     Statement& insert = sql_->insert_tick.reset();
     insert << run << static_cast<std::int64_t>(row.tick) << row.t << row.x << row.y << row.heading
-           << row.v << row.omega << row.clearance << std::int64_t{row.hold}
-           << std::int64_t{row.behaviour};
+           << row.v << row.omega << row.clearance << row.hold << row.behaviour;
     insert.run();
     if (recording.ticks == 0) recording.kept_from = row.t;
     recording.last = row;

@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": tells our files from others
 
 // The version counts the forms of the tables and of the frames in their blocks; a file of another
-// one is not read. 5: frames hold layers.
-constexpr std::int64_t kVersion = 5;
+// one is not read. 6: frames hold layers by legend; holds and behaviours are names.
+constexpr std::int64_t kVersion = 6;
 
 // SI units throughout. A run with the same document as the one before it shares that one's, which
 // stays as long as a run has it: ten thousand repeats of a world would fill the store with copies.
@@ -46,8 +46,8 @@ constexpr const char* kTables = R"(
       run INTEGER NOT NULL,
       tick INTEGER NOT NULL,
       t REAL, x REAL, y REAL, heading REAL, v REAL, omega REAL, clearance REAL,
-      hold INTEGER NOT NULL,
-      behaviour INTEGER NOT NULL,
+      hold TEXT NOT NULL,
+      behaviour TEXT NOT NULL,
       PRIMARY KEY (run, tick)
     ) WITHOUT ROWID;
     CREATE TABLE block (

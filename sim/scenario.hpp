@@ -12,6 +12,7 @@
 #include "algo/parameters.hpp"
 #include "algo/request.hpp"
 #include "algo/types.hpp"
+#include "sim/sensor.hpp"
 
 namespace sim {
 
@@ -134,6 +135,7 @@ struct Scenario {
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
   std::optional<SonarConfig> sonar{};
   std::vector<InfraredConfig> infrared{};
+  std::vector<SensorConfig> sensors{};  // further ones, each with a channel of its own
   /// Absent: an ideal one with dynamics, none without.
   std::optional<GyroConfig> gyro{};
   bool has_gyro = true;

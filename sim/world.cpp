@@ -90,6 +90,9 @@ World::World(const Scenario& scenario, std::uint64_t seed)
            .command_delay = scenario_.period * scenario_.drive.delay_ticks,
            .drives = true};
   spec_.has_laser = has_laser(scenario_);
+  for (const SensorConfig& config : scenario_.sensors) {
+    spec_.channels.push_back(channel_of(config));
+  }
   start();
 }
 
@@ -107,6 +110,14 @@ void World::check() const {
   }
   if (scenario_.bumpers > kMostBumpers) {
     throw std::invalid_argument("The scenario's bumpers must be 0 to 8.");
+  }
+  if (scenario_.sensors.size() > kMostSensors) {
+    throw std::invalid_argument("The scenario may have 16 further sensors at most.");
+  }
+  for (const SensorConfig& config : scenario_.sensors) {
+    if (const auto problem = defect(config)) {
+      throw std::invalid_argument("The scenario's sensor " + config.channel + ": " + *problem + ".");
+    }
   }
   const bool has_gyro =
       scenario_.has_gyro && (scenario_.gyro || scenario_.vehicle == Vehicle::Bullet);
@@ -145,6 +156,10 @@ void World::start() {
   for (const InfraredConfig& config : scenario_.infrared) {
     infrared_.emplace_back(config, seed_, static_cast<std::uint32_t>(infrared_.size()));
     memory = std::max(memory, config.period);
+  }
+  sensors_.clear();
+  for (const SensorConfig& config : scenario_.sensors) {
+    sensors_.push_back(make_sensor(config, seed_ + sensors_.size()));
   }
   start_localization(pose);
   const Substeps substeps(scenario_.period);
@@ -229,6 +244,7 @@ void World::sense(algo::Observation& observation) {
   if (sonar_) sonar_->sense(now, *trail_, observation.sonar);
   for (InfraredModel& scanner : infrared_) scanner.sense(now, *trail_, observation.infrared);
   sense_contact(observation);
+  sense_channels(observation);
 }
 
 /// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
@@ -308,6 +324,16 @@ void World::sense_contact(algo::Observation& observation) {
     observation.bumpers.append() = {.mount_R = {place.x(), place.y(), heading},
                                     .stamp = observation.stamp,
                                     .pressed = contact && k == pressed};
+  }
+}
+
+void World::sense_channels(algo::Observation& observation) {
+  const Surroundings around{observation.stamp, vehicle_->state(), obstacles_};
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    algo::ChannelReading& reading = observation.channels.append();
+    reading.channel = static_cast<std::uint8_t>(i);
+    reading.stamp = observation.stamp;
+    if (!sensors_[i]->sense(around, reading.values)) observation.channels.pop_back();
   }
 }
 

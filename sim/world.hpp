@@ -16,6 +16,7 @@
 #include "sim/obstacle_set.hpp"
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
+#include "sim/sensor.hpp"
 #include "sim/sonar_model.hpp"
 #include "sim/vehicle.hpp"
 
@@ -53,6 +54,7 @@ class World final : public algo::Robot, public algo::Editing {
   void sense_motion(algo::Observation& observation);
   void sense_turn(algo::Observation& observation);
   void sense_contact(algo::Observation& observation);
+  void sense_channels(algo::Observation& observation);
   double contact_bearing() const;
 
   Scenario scenario_{};
@@ -67,6 +69,7 @@ class World final : public algo::Robot, public algo::Editing {
   std::optional<SonarModel> sonar_{};
   std::vector<InfraredModel> infrared_{};
   std::optional<GyroModel> gyro_{};
+  std::vector<std::unique_ptr<Sensor>> sensors_{};  // one a channel
   algo::LocalLocalization localization_{};
   std::unique_ptr<PoseTrail> trail_{};
   DriveErrors errors_;

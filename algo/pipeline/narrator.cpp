@@ -6,7 +6,8 @@
 namespace algo {
 namespace {
 
-constexpr double kPeriod = 0.5;  // [s]
+constexpr double kPeriod = 0.5;        // [s]
+constexpr double kLegendPeriod = 2.0;  // [s] a viewer who missed a frame waits so long at most
 // Room for the longest words, so that those which are longer than all before do not allocate.
 constexpr std::size_t kLongestWhat = 60;
 constexpr std::size_t kLongestWhy = 250;
@@ -19,13 +20,19 @@ void make_room(Explanation& words) {
 }  // namespace
 
 bool Narrator::Said::same_state(const Said& other) const {
-  return hold == other.hold && halt == other.halt && mission == other.mission &&
-         behaviour == other.behaviour && state == other.state;
+  return hold == other.hold && halt == other.halt && limit == other.limit &&
+         mission == other.mission && behaviour == other.behaviour && state == other.state;
 }
 
 void Narrator::tell(const Controller& controller, Telemetry& t) {
-  const Said now{
-      t.observation.stamp, t.hold, t.observation.halt, t.mission, t.behaviour, t.output.state};
+  show_legend(t);
+  const Said now{.stamp = t.observation.stamp,
+                 .hold = t.hold,
+                 .halt = t.observation.halt,
+                 .mission = t.mission,
+                 .limit = t.limit,
+                 .behaviour = t.behaviour,
+                 .state = t.output.state};
   // Written so that a stamp that is not a number makes new ones.
   t.words_fresh = !said_ || !now.same_state(*said_) || !(now.stamp - said_->stamp < kPeriod);
   make_room(t.words);
@@ -35,6 +42,15 @@ void Narrator::tell(const Controller& controller, Telemetry& t) {
     said_ = now;
   }
   t.words = words_;
+}
+
+void Narrator::show_legend(Telemetry& t) {
+  t.legend = legend_.of(t);
+  const double now = t.observation.stamp;
+  t.legend_fresh = !shown_at_ || t.legend != shown_ || !(now - *shown_at_ < kLegendPeriod);
+  if (!t.legend_fresh) return;
+  shown_ = t.legend;
+  shown_at_ = now;
 }
 
 }  // namespace algo

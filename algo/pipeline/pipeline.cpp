@@ -222,6 +222,7 @@ void Pipeline::control(Telemetry& t) {
   const Decision decision = coordinator_.decide(resource, t.output);
   if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);
   t.behaviour = decision.winner;
+  t.limit = decision.limit;
   t.command = actuate(decision.twist, spec_);
 }
 
@@ -232,9 +233,9 @@ void Pipeline::hold(Telemetry& t) {
   in.scan_stamp = scan_stamp_;
   in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
-  in.by_hand = t.behaviour == BehaviourId::Manual;
+  in.by_hand = t.behaviour == behaviours::kManual;
   t.hold = gate(in, t.observation, t.command);
-  if (t.hold == Hold::None) return;
+  if (!t.hold) return;
   t.command = {};
   sequencer_.interrupt();
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;

@@ -9,8 +9,10 @@ namespace algo {
 namespace {
 
 TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
-  return {
-      std::max(a.v_min, b.v_min), std::min(a.v_max, b.v_max), std::min(a.omega_max, b.omega_max)};
+  return {.v_min = std::max(a.v_min, b.v_min),
+          .v_max = std::min(a.v_max, b.v_max),
+          .omega_min = std::max(a.omega_min, b.omega_min),
+          .omega_max = std::min(a.omega_max, b.omega_max)};
 }
 
 }  // namespace
@@ -61,7 +63,6 @@ void BehaviourCoordinator::reset(const Pose2& start_W) {
 
 Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& output) {
   Decision decision;
-  TwistLimits limits;
   for (Slot& slot : slots_) {
     slot.age += resource.dt;
     // Half a tick of slack, or rounding would make a period of n ticks last n + 1.
@@ -69,19 +70,28 @@ Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& o
       slot.held = slot.behaviour->propose(resource, output);
       slot.age = 0;
     }
-    if (!slot.held.active) continue;
-    limits = intersect(limits, slot.held.limits);
-    if (decision.winner == BehaviourId::Rest) {
-      decision.winner = slot.behaviour->id();
-      decision.twist = slot.held.twist;
-    }
+    if (!slot.held.active || decision.winner != behaviours::kRest) continue;
+    decision.winner = slot.behaviour->name();
+    decision.twist = slot.held.twist;
   }
-  // clamp() lets NaN through to the gate; min() and max() would turn it into a limit.
-  const bool contradictory = limits.v_min > limits.v_max || limits.omega_max < 0;
-  if (contradictory) return {.winner = decision.winner, .twist = {}};
-  decision.twist.v = std::clamp(decision.twist.v, limits.v_min, limits.v_max);
-  decision.twist.omega = std::clamp(decision.twist.omega, -limits.omega_max, limits.omega_max);
+  // A limit says how fast at most; it sets nobody in motion.
+  if (decision.winner == behaviours::kRest) return decision;
+  TwistLimits common;
+  for (const Slot& slot : slots_) {
+    const Twist2 before = limited(decision.twist, common);
+    common = intersect(common, slot.held.limits);
+    if (limited(decision.twist, common) != before) decision.limit = slot.held.limits.reason;
+  }
+  decision.twist = limited(decision.twist, common);
   return decision;
+}
+
+Twist2 limited(const Twist2& twist, const TwistLimits& limits) {
+  const bool contradictory = limits.v_min > limits.v_max || limits.omega_min > limits.omega_max;
+  if (contradictory) return {};
+  // clamp() lets NaN through to the gate; min() and max() would turn it into a limit.
+  return {std::clamp(twist.v, limits.v_min, limits.v_max),
+          std::clamp(twist.omega, limits.omega_min, limits.omega_max)};
 }
 
 Command actuate(const Twist2& twist, const RobotSpec& spec) {

@@ -36,22 +36,26 @@ struct Resource {
   bool manual = false;  // a driver's stick is live
 };
 
+/// What a behaviour allows at most, whoever drives, and why.
 struct TwistLimits {
-  double v_min = -std::numeric_limits<double>::infinity();     // [m/s]
-  double v_max = std::numeric_limits<double>::infinity();      // [m/s]
-  double omega_max = std::numeric_limits<double>::infinity();  // [rad/s] either way
+  double v_min = -std::numeric_limits<double>::infinity();      // [m/s]
+  double v_max = std::numeric_limits<double>::infinity();       // [m/s]
+  double omega_min = -std::numeric_limits<double>::infinity();  // [rad/s]
+  double omega_max = std::numeric_limits<double>::infinity();   // [rad/s]
+  Limit reason{};
 };
 
 struct Proposal {
   bool active = false;  // wants the base
   Twist2 twist{};
-  TwistLimits limits{};  // binds whoever wins
+  TwistLimits limits{};  // also of a behaviour that does not want the base
 };
 
 class Behaviour {
  public:
   virtual ~Behaviour() = default;
-  virtual BehaviourId id() const = 0;
+  /// "avoid": as REST and CSV spell it.
+  virtual Name name() const = 0;
   /// [s] between samples; its proposal is held in between. 0: every tick.
   virtual double period() const { return 0; }
   virtual void reset(const Pose2& start_W) = 0;
@@ -64,7 +68,7 @@ class AvoidBehaviour final : public Behaviour {
  public:
   explicit AvoidBehaviour(std::unique_ptr<Controller> controller);
   const Controller& controller() const { return *controller_; }
-  BehaviourId id() const override { return BehaviourId::Avoid; }
+  Name name() const override { return behaviours::kAvoid; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
 
@@ -86,7 +90,7 @@ inline constexpr ParameterInfo kJoystickTimeout{
 /// Follows the driver's stick as far as its guard lets it.
 class ManualBehaviour final : public Behaviour {
  public:
-  BehaviourId id() const override { return BehaviourId::Manual; }
+  Name name() const override { return behaviours::kManual; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
 
@@ -95,12 +99,13 @@ class ManualBehaviour final : public Behaviour {
 };
 
 struct Decision {
-  BehaviourId winner = BehaviourId::Rest;
+  Name winner = behaviours::kRest;
   Twist2 twist{};
+  Limit limit{};  // that changed the twist; of several the last
 };
 
 /// Samples each behaviour at its own period, takes the first active one in the order given (the
-/// order is the priority) and applies the intersection of all limits.
+/// order is the priority) and applies the limits of all, also of those that are not active.
 class BehaviourCoordinator {
  public:
   void add(std::unique_ptr<Behaviour> behaviour);
@@ -115,6 +120,10 @@ class BehaviourCoordinator {
   };
   std::vector<Slot> slots_{};
 };
+
+/// `twist` within `limits`, one part after the other. Limits that contradict each other allow
+/// nothing: zero. What is not a number stays so, for the gate.
+Twist2 limited(const Twist2& twist, const TwistLimits& limits);
 
 /// The command for the base: `twist` within the robot's own limits.
 Command actuate(const Twist2& twist, const RobotSpec& spec);

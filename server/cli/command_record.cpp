@@ -9,6 +9,7 @@
 
 #include "db/run_reader.hpp"
 #include "server/cli/cli.hpp"
+#include "server/record/run_csv.hpp"
 #include "server/record/run_json.hpp"
 #include "server/record/verify.hpp"
 #include "server/run/paths.hpp"
@@ -47,12 +48,13 @@ int export_run(const Options& options) {
         fmt::format("There is no run {} in {}.", options.run, options.database));
   }
   ProgressLine progress;
-  std::string text(db::RunReader::csv_header());
+  const RunCsv csv(*row);
+  std::string text = csv.header();
   std::optional<std::uint64_t> from = 0;
   bool written = true;
   std::uint64_t ticks = 0;
   while (from && written) {
-    from = reader.csv(options.run, *from, 4096, text, csv_names());
+    from = csv.lines(reader, *from, 4096, text);
     ticks += static_cast<std::uint64_t>(std::ranges::count(text, '\n'));
     written = std::fwrite(text.data(), 1, text.size(), out) == text.size();
     text.clear();

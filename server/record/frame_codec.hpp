@@ -5,14 +5,13 @@
 #include <cstdint>
 #include <span>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <flatbuffers/flatbuffers.h>
 
 #include "algo/telemetry.hpp"
 #include "db/block_codec.hpp"
-#include "server/record/layers_block.hpp"
+#include "server/record/layers_writer.hpp"
 
 namespace tautline::wire {
 struct LaserScan;
@@ -38,19 +37,17 @@ class FrameEncoder {
   std::span<const db::Window> windows() const { return windows_; }
 
  private:
-  using Text = flatbuffers::Offset<flatbuffers::String>;
-  std::pair<Text, Text> write_words(const algo::Telemetry& t);
-  void find_windows();
+  void find_windows(const algo::Telemetry& t);
 
   flatbuffers::FlatBufferBuilder builder_{2048};
   std::vector<flatbuffers::Offset<tautline::wire::LaserScan>> scans_{};
-  LayersBlock block_{};
+  LayersWriter layers_{};
   std::vector<db::Window> windows_{};
 };
 
 /// Reads back what a pipeline needs to repeat a tick (observation, requests) and what it commanded
-/// (command, hold, mission, behaviour). What only people look at (truth, what moved, clearance,
-/// goal, pass point, words) is read back at the frame's float precision; layers and measures, which
+/// (command, hold, limit, mission, behaviour). What only people look at (truth, what moved,
+/// clearance, goal, words) is read back at the frame's float precision; layers and measures, which
 /// only they read, not at all. Throws WireError.
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t);
 

@@ -1,4 +1,5 @@
 // server/record/frame_decoder.cpp: what may have come from anywhere, read part by part.
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -184,18 +185,53 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   if (const auto* e = f.encoders()) {
     o.encoders = {f.encoders_stamp().value_or(o.stamp), e->left(), e->right()};
   }
+  if (f.channels() == nullptr) return;
+  for (const fb::Reading* r : *f.channels()) {
+    algo::ChannelReading& reading = o.channels.append();
+    reading.channel = r->channel();
+    reading.stamp = r->stamp().value_or(o.stamp);
+    reading.values.clear();
+    if (r->values() != nullptr) reading.values.assign(r->values()->begin(), r->values()->end());
+  }
+}
+
+std::optional<algo::Tilt> read_tilt(const fb::Tilt* tilt) {
+  if (tilt == nullptr) return std::nullopt;
+  return algo::Tilt{tilt->z(), tilt->roll(), tilt->pitch()};
+}
+
+algo::Name read_name(const flatbuffers::String* text, const char* what) {
+  if (text == nullptr) return {};
+  if (text->size() > algo::Name::kLongest) {
+    throw WireError(std::string("The name of a ") + what + " in the frame is too long.");
+  }
+  return text->string_view();
+}
+
+algo::Command read_command(const fb::Frame& f) {
+  algo::Command command{.base = from_wire(*f.command())};
+  const auto* rates = f.joint_rates();
+  if (rates == nullptr) return command;
+  if (rates->size() > algo::kMostJoints) {
+    throw WireError("The frame commands more joints than a robot may have.");
+  }
+  command.joints = static_cast<std::uint8_t>(rates->size());
+  std::copy(rates->begin(), rates->end(), command.joint_rates.begin());
+  return command;
 }
 
 /// What a controller decided, without what it shows.
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output.clear();
-  if (f.pass() != nullptr) t.output.pass_W = from_wire(*f.pass());
   t.output.waits = f.waits();
   t.output.state = f.state();
   t.layers.clear();
-  t.words_fresh = f.what() != nullptr && f.what()->size() > 0 && f.why() != nullptr;
+  const fb::News* news = f.news();
+  t.words_fresh = news != nullptr && news->what() != nullptr && news->why() != nullptr;
   t.words = {};
-  if (t.words_fresh) t.words = {f.what()->str(), f.why()->str()};
+  if (t.words_fresh) t.words = {news->what()->str(), news->why()->str()};
+  t.legend = f.legend();
+  t.legend_fresh = news != nullptr && news->layers() != nullptr;
   t.scene.fresh = !t.observation.scans.empty();
 }
 
@@ -217,9 +253,7 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
     throw WireError("The frame lacks its odometry, command or decision.");
   }
   const fb::Decision& decision = *f.decision();
-  check_enum(decision.hold(), fb::Hold_MAX, "hold");
   check_enum(decision.mission(), fb::Mission_MAX, "mission");
-  check_enum(decision.behaviour(), fb::Behaviour_MAX, "behaviour");
 
   t.tick = f.tick();
   t.requests.clear();
@@ -232,7 +266,8 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
     t.ground_truth = {.pose = from_wire(g->pose()),
                       .obstacle_distance = g->obstacle_distance(),
                       .clearance = g->clearance(),
-                      .collided = f.collided()};
+                      .collided = f.collided(),
+                      .tilt = read_tilt(f.tilt())};
   }
   t.moved.clear();
   if (f.moved() != nullptr) {
@@ -250,10 +285,11 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
     for (const fb::Vec2f* p : *f.goals_ahead()) t.goals_ahead.push_back({from_wire(*p), {}});
   }
   read_output(f, t);
-  t.command = {from_wire(*f.command())};
-  t.hold = static_cast<algo::Hold>(decision.hold());
+  t.command = read_command(f);
+  t.hold = {.name = read_name(f.hold(), "hold")};
+  t.limit = {.name = read_name(f.limit(), "limit")};
   t.mission = static_cast<algo::Mission>(decision.mission());
-  t.behaviour = static_cast<algo::BehaviourId>(decision.behaviour());
+  t.behaviour = read_name(f.behaviour(), "behaviour");
   t.clearance = decision.clearance();
 }
 

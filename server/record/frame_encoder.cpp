@@ -11,15 +11,13 @@
 
 #include "telemetry_generated.h"
 
+#include "algo/gate.hpp"
 #include "server/record/frame_codec.hpp"
 
 namespace server {
 namespace {
 
 namespace fb = tautline::wire;
-// Points from which on a line is coded as differences; of a shorter one each value follows its own
-// of the tick before better.
-constexpr std::uint32_t kLongLine = 8;
 using Builder = flatbuffers::FlatBufferBuilder;
 template <typename T>
 using Offset = flatbuffers::Offset<T>;
@@ -149,6 +147,26 @@ Offset<flatbuffers::Vector<const Wire*>> write_structs(Builder& b, const List& l
                                        [&](std::size_t i, Wire* out) { *out = to_wire(list[i]); });
 }
 
+Offset<flatbuffers::String> write_name(Builder& b, const algo::Name& name) {
+  if (name.empty()) return 0;
+  return b.CreateString(name.view().data(), name.view().size());
+}
+
+Offset<flatbuffers::Vector<Offset<fb::Reading>>> write_channels(Builder& b,
+                                                                const algo::Observation& o) {
+  if (o.channels.empty()) return 0;
+  std::vector<Offset<fb::Reading>> readings;
+  for (const algo::ChannelReading& reading : o.channels) {
+    const auto values = b.CreateVector(reading.values);
+    fb::ReadingBuilder out(b);
+    out.add_channel(reading.channel);
+    out.add_values(values);
+    if (reading.stamp != o.stamp) out.add_stamp(reading.stamp);
+    readings.push_back(out.Finish());
+  }
+  return b.CreateVector(readings);
+}
+
 Offset<flatbuffers::Vector<Offset<fb::RequestBox>>> write_requests(
     Builder& b, const algo::Recycled<algo::Request>& requests) {
   if (requests.empty()) return 0;
@@ -192,6 +210,12 @@ void FrameWriter::sensors() {
         to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
     frame.add_truth(&truth);
     frame.add_collided(g.collided);
+    if (g.tilt) {
+      const fb::Tilt tilt(static_cast<float>(g.tilt->z),
+                          static_cast<float>(g.tilt->roll),
+                          static_cast<float>(g.tilt->pitch));
+      frame.add_tilt(&tilt);
+    }
   }
 }
 
@@ -200,9 +224,7 @@ void FrameWriter::decision() {
   const fb::Twist2 command = to_wire(t.command.base);
   frame.add_command(&command);
   const fb::Decision decision(static_cast<float>(t.clearance),
-                              static_cast<fb::Hold>(t.hold),
-                              static_cast<fb::Mission>(t.mission),
-                              static_cast<fb::Behaviour>(t.behaviour));
+                              static_cast<fb::Mission>(t.mission));
   frame.add_decision(&decision);
   frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
   if (t.goal) {
@@ -210,14 +232,9 @@ void FrameWriter::decision() {
     frame.add_goal(&goal);
     if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
   }
-  if (out.pass_W) {
-    const fb::Vec2f pass(rounded(static_cast<float>(out.pass_W->x())),
-                         rounded(static_cast<float>(out.pass_W->y())));
-    frame.add_pass(&pass);
-  }
   frame.add_state(out.state);
   frame.add_waits(out.waits);
-  if (t.hold == algo::Hold::StaleScan && t.scene.scan.size() > 0) {
+  if (t.hold == algo::holds::kStaleScan && t.scene.scan.size() > 0) {
     frame.add_newest_scan(t.scene.scan.stamp);
   }
 }
@@ -249,7 +266,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   Builder& b = builder_;
   b.Clear();
   const algo::Observation& o = t.observation;
-  const auto [what, why] = write_words(t);
+  const auto news = layers_.write_news(b, t);
+  b.Align(sizeof(double));  // so that its length moves nothing else
   scans_.clear();
   for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
   const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
@@ -259,15 +277,22 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto bumpers = write_structs<fb::Bumper>(b, o.bumpers);
   const auto moved = write_structs<fb::Moved>(b, t.moved);
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
-  const auto [layers, measures] = block_.write(b, t);
+  const auto channels = write_channels(b, o);
+  const auto rates = t.command.joints == 0
+                         ? 0
+                         : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
+  const auto hold = write_name(b, t.hold.name);
+  const auto limit = write_name(b, t.limit.name);
+  const auto shown = layers_.write_shown(b, t);
+  const auto behaviour = write_name(b, t.behaviour);
 
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;
   frame.add_tick(t.tick);
   frame.add_stamp(o.stamp);
   // Offset 0 is that of what there is not; no field comes of it.
-  frame.add_what(what);
-  frame.add_why(why);
+  frame.add_behaviour(behaviour);
+  frame.add_news(news);
   frame.add_scans(scans);
   frame.add_sonar(sonar);
   frame.add_infrared(infrared);
@@ -276,13 +301,19 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   writer.sensors();
   writer.decision();
   writer.stamps();
-  frame.add_layers(layers);
-  frame.add_measures(measures);
+  frame.add_legend(t.legend);
+  frame.add_counts(shown.counts);
+  frame.add_values(shown.values);
+  frame.add_more(shown.more);
+  frame.add_hold(hold);
+  frame.add_limit(limit);
+  frame.add_channels(channels);
+  frame.add_joint_rates(rates);
   frame.add_goals_ahead(goals_ahead);
   frame.add_moved(moved);
   b.Finish(frame.Finish());
 
-  find_windows();
+  find_windows(t);
   return std::as_bytes(std::span(b.GetBufferPointer(), b.GetSize()));
 }
 
@@ -293,25 +324,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::LaserScan& scan) {
   return std::as_bytes(std::span(builder_.GetBufferPointer(), builder_.GetSize()));
 }
 
-/// Empty ones, which share a string, when they are not new: a field that came and went would move
-/// all that follows the frame's own table.
-std::pair<Offset<flatbuffers::String>, Offset<flatbuffers::String>> FrameEncoder::write_words(
-    const algo::Telemetry& t) {
-  const auto write = [&](const std::string& text) {
-    return builder_.CreateString(text.data(), text.size());
-  };
-  if (!t.words_fresh) {
-    const auto none = write({});
-    builder_.Align(LayersBlock::kAlignment);
-    return {none, none};
-  }
-  const auto what = write(t.words.what);
-  const auto why = write(t.words.why);
-  builder_.Align(LayersBlock::kAlignment);
-  return {what, why};
-}
-
-void FrameEncoder::find_windows() {
+void FrameEncoder::find_windows(const algo::Telemetry& t) {
   const std::uint8_t* bytes = builder_.GetBufferPointer();
   const fb::Frame* frame = fb::GetFrame(bytes);
   windows_.clear();
@@ -332,15 +345,11 @@ void FrameEncoder::find_windows() {
           half_turn(*scan));
     }
   }
-  if (const auto* layers = frame->layers()) {
-    for (const fb::Layer* layer : *layers) {
-      const std::uint32_t count = layer->values()->size();
-      const std::uint32_t axes = layer->axes();
-      if (windows_.size() == db::kMaxFrameWindows) break;
-      if (layer->kind() != fb::LayerKind_Polyline || count < kLongLine * axes) continue;
-      add(layer->values()->Data(), count - count % axes, db::Window::Kind::Floats, axes, 0);
-    }
-  }
+  layers_.add_windows(
+      t,
+      static_cast<std::uint32_t>(
+          reinterpret_cast<const std::uint8_t*>(frame->values()->data()) - bytes),
+      windows_);
   std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
     return a.offset < c.offset;
   });

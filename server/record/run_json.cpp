@@ -91,8 +91,8 @@ db::TickRow tick_row(const algo::Telemetry& t) {
           .v = t.command.base.v,
           .omega = t.command.base.omega,
           .clearance = t.clearance,
-          .hold = static_cast<std::uint8_t>(t.hold),
-          .behaviour = static_cast<std::uint8_t>(t.behaviour)};
+          .hold = std::string(t.hold.name.view()),
+          .behaviour = std::string(t.behaviour.view())};
 }
 
 RecorderOptions recorder_options() {
@@ -157,20 +157,6 @@ algo::FilterKind stored_filter(const db::RunRow& row) {
   return *filter;
 }
 
-const db::CsvNames& csv_names() {
-  static const db::CsvNames names = [] {
-    db::CsvNames out;
-    for (int i = 0; i <= static_cast<int>(algo::Hold::Dazzled); ++i) {
-      out.holds.emplace_back(algo::name(static_cast<algo::Hold>(i)));
-    }
-    for (int i = 0; i <= static_cast<int>(algo::BehaviourId::Manual); ++i) {
-      out.behaviours.emplace_back(algo::name(static_cast<algo::BehaviourId>(i)));
-    }
-    return out;
-  }();
-  return names;
-}
-
 json to_json(const db::TickRow& row) {
   return {{"tick", row.tick},
           {"t", row.t},
@@ -180,8 +166,8 @@ json to_json(const db::TickRow& row) {
           {"v", row.v},
           {"omega", row.omega},
           {"clearance", row.clearance},
-          {"hold", algo::name(static_cast<algo::Hold>(row.hold))},
-          {"behaviour", algo::name(static_cast<algo::BehaviourId>(row.behaviour))}};
+          {"hold", row.hold.empty() ? "none" : row.hold},
+          {"behaviour", row.behaviour}};
 }
 
 }  // namespace server

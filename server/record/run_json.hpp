@@ -40,9 +40,6 @@ RecorderOptions recorder_options();
 nlohmann::json to_json(const db::RunRow& row);
 nlohmann::json to_json(const db::TickRow& row);
 
-/// Words for the hold and behaviour columns of an export.
-const db::CsvNames& csv_names();
-
 /// [UTC] now as ISO 8601 with milliseconds.
 std::string wall_time();
 

@@ -12,6 +12,7 @@
 #include "server/run/hardware.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/pose_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "sim/replay.hpp"
 #include "sim/world.hpp"
@@ -146,7 +147,33 @@ double time_limit(const RunSpec& spec) {
   return std::max(1.0, 5.0 * way / spec.parameters[algo::kMaxSpeed]);
 }
 
+namespace {
+
+json to_json(const algo::ChannelInfo& channel) {
+  json out = {{"name", channel.name},
+              {"kind", channel.kind},
+              {"unit", channel.unit},
+              {"values", channel.values}};
+  if (channel.mount_R) out["mount"] = server::to_json(*channel.mount_R);
+  return out;
+}
+
+algo::ChannelInfo channel_from_json(const JsonReader& in) {
+  constexpr std::uint64_t kMostValues = 65536;  // of a reading
+  algo::ChannelInfo channel;
+  channel.name = in.text("name");
+  channel.kind = in.text_or("kind", "");
+  channel.unit = in.text_or("unit", "");
+  channel.values = static_cast<std::uint32_t>(in.whole_or("values", 1, kMostValues));
+  if (in.has("mount")) channel.mount_R = pose_from_json(in.object("mount"), 0);
+  return channel;
+}
+
+}  // namespace
+
 json to_json(const algo::RobotSpec& robot) {
+  json channels = json::array();
+  for (const algo::ChannelInfo& channel : robot.channels) channels.push_back(to_json(channel));
   return {{"name", robot.name},
           {"radius", robot.radius},
           {"half_length", robot.half_length},
@@ -159,7 +186,8 @@ json to_json(const algo::RobotSpec& robot) {
           {"max_angular_acceleration", robot.max_angular_acceleration},
           {"command_delay", robot.command_delay},
           {"has_laser", robot.has_laser},
-          {"drives", robot.drives}};
+          {"drives", robot.drives},
+          {"channels", std::move(channels)}};
 }
 
 /// Without limits: what a run was accepted with is read as it is.
@@ -179,6 +207,10 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
   robot.command_delay = in.number_or("command_delay", 0);
   robot.has_laser = in.flag_or("has_laser", true);
   robot.drives = in.flag_or("drives", false);
+  if (in.has("channels")) {
+    const json& list = in.array("channels", algo::kMostChannels);
+    for (const json& each : list) robot.channels.push_back(channel_from_json({each, "robot"}));
+  }
   return robot;
 }
 

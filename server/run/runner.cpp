@@ -20,6 +20,20 @@ constexpr double kStandingTurn = 0.02;   // [rad/s]
 constexpr std::chrono::microseconds kSoon{100};
 constexpr std::chrono::milliseconds kPausedWait{50};
 
+/// The sentence, and what was known of the robot last.
+std::string account_of(const algo::RobotError& error) {
+  if (error.last.empty()) return error.what();
+  const algo::Moment& last = error.last.back();
+  return fmt::format("{} It was last heard of at {:.2f} s, at ({:.2f}, {:.2f}), driving {:.2f} m/s "
+                     "and told {:.2f} m/s.",
+                     error.what(),
+                     last.stamp,
+                     last.pose_W.x,
+                     last.pose_W.y,
+                     last.twist.v,
+                     last.command.base.v);
+}
+
 }  // namespace
 
 bool Stillness::lasts(const algo::Telemetry& t, double span) {
@@ -61,6 +75,9 @@ Run::Next Run::advance() {
   Next next = kOver;
   try {
     next = advance_phase();
+  } catch (const algo::RobotError& e) {
+    robot_.stop();
+    set_outcome(Outcome::Failed, account_of(e).c_str());
   } catch (const std::exception& e) {
     robot_.stop();
     set_outcome(Outcome::Failed, e.what());
@@ -114,7 +131,7 @@ std::optional<Run::Next> Run::step() {
   }
   const algo::Telemetry& t = frame_->telemetry;
   // A real base brakes harder than along the driving ramp to the zero that follows.
-  if (t.hold != algo::Hold::None && arming_ != nullptr) robot_.stop();
+  if (t.hold && arming_ != nullptr) robot_.stop();
   if (!robot_.step(t.command, next->telemetry.observation)) {
     const std::string reason = fmt::format("The log ended after {} scans.", t.tick + 1);
     set_outcome(Outcome::EndOfLog, reason.c_str());

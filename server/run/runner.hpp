@@ -97,7 +97,7 @@ class Stillness {
  private:
   double since_ = 0;  // [s] of the last event
   algo::Mission mission_ = algo::Mission::Idle;
-  algo::Hold hold_ = algo::Hold::None;
+  algo::Hold hold_{};
 };
 
 /// One run in progress. It keeps no thread and waits for nothing but a real robot's deadline: who

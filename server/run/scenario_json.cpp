@@ -220,7 +220,7 @@ sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
   in.only({"name",     "title",      "description", "robot",     "vehicle",      "period",
            "start",    "goal",       "drive",       "obstacles", "lasers",       "sonar",
-           "infrared", "gyro",       "bumpers",     "encoders",  "localization", "controller",
+           "infrared", "sensors", "gyro",       "bumpers",     "encoders",  "localization", "controller",
            "filter",   "parameters", "time_limit",  "waypoints"});
   sim::Scenario s;
   s.name = in.text("name", 64);

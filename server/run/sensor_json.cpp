@@ -2,10 +2,13 @@
 #include "server/run/sensor_json.hpp"
 
 #include <cmath>
+#include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "algo/name.hpp"
 #include "algo/units.hpp"
 #include "sim/gyro_model.hpp"
 #include "sim/infrared_model.hpp"
@@ -114,6 +117,54 @@ void read_gyro(const JsonReader& in, sim::Scenario& scenario) {
   scenario.gyro = config;
 }
 
+/// Besides sensor, channel and unit every field is a setting: a number or a list of them.
+sim::SensorConfig sensor_from_json(const JsonReader& in, const std::string& path) {
+  sim::SensorConfig config;
+  config.sensor = in.text("sensor", algo::Name::kLongest);
+  config.channel = in.text("channel");
+  config.unit = in.text_or("unit", "");
+  if (config.unit.size() > algo::Name::kLongest) in.fail("unit", "is too long");
+  for (const auto& [name, value] : in.raw().items()) {
+    if (name == "sensor" || name == "channel" || name == "unit") continue;
+    sim::Setting setting{.name = name};
+    const std::string at = in.at(name);
+    if (value.is_array()) {
+      if (value.size() > sim::kMostSettingValues) {
+        in.fail(name, fmt::format("must have {} numbers at most", sim::kMostSettingValues));
+      }
+      for (const json& each : value) setting.values.push_back(finite_number(each, at));
+    } else {
+      setting.values.push_back(finite_number(value, at));
+    }
+    config.settings.push_back(std::move(setting));
+  }
+  if (const auto complaint = sim::defect(config)) throw DocumentError(path, *complaint);
+  return config;
+}
+
+json to_json(const sim::SensorConfig& config) {
+  json out = {{"sensor", config.sensor}, {"channel", config.channel}};
+  if (!config.unit.empty()) out["unit"] = config.unit;
+  for (const sim::Setting& setting : config.settings) {
+    out[setting.name] = setting.values.size() == 1 ? json(setting.values[0]) : json(setting.values);
+  }
+  return out;
+}
+
+void read_channels(const JsonReader& in, sim::Scenario& scenario) {
+  if (!in.has("sensors")) return;
+  const json& list = in.array("sensors", sim::kMostSensors);
+  std::set<std::string> channels;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string path = fmt::format("sensors/{}", i);
+    scenario.sensors.push_back(sensor_from_json({list[i], path}, path));
+    const std::string& channel = scenario.sensors.back().channel;
+    if (!channels.insert(channel).second) {
+      throw DocumentError(path + "/channel", fmt::format("'{}' is used twice", channel));
+    }
+  }
+}
+
 }  // namespace
 
 void read_sensors(const JsonReader& in, sim::Scenario& scenario) {
@@ -125,6 +176,7 @@ void read_sensors(const JsonReader& in, sim::Scenario& scenario) {
       scenario.infrared.push_back(infrared_from_json({list[i], path}, path));
     }
   }
+  read_channels(in, scenario);
   read_gyro(in, scenario);
   scenario.bumpers = static_cast<std::uint32_t>(in.whole_or("bumpers", scenario.bumpers, 8));
   scenario.encoders = in.flag_or("encoders", scenario.encoders);
@@ -139,6 +191,7 @@ void read_sensors(const JsonReader& in, sim::Scenario& scenario) {
 void write_sensors(const sim::Scenario& s, nlohmann::json& out) {
   if (s.sonar) out["sonar"] = to_json(*s.sonar);
   for (const sim::InfraredConfig& scanner : s.infrared) out["infrared"].push_back(to_json(scanner));
+  for (const sim::SensorConfig& sensor : s.sensors) out["sensors"].push_back(to_json(sensor));
   if (!s.has_gyro) out["gyro"] = false;
   if (s.has_gyro && s.gyro) {
     out["gyro"] = {

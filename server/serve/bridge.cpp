@@ -168,7 +168,7 @@ void Bridge::add_channels() {
   const FrameRef& newest = session_.newest();
   telemetry_ = hub_.add_channel(
       {"/telemetry", "tautline.wire.Frame", [this, &newest] {
-         return newest ? foxglove::Stamped{now_ns(), with_words(*newest)} : foxglove::Stamped{};
+         return newest ? foxglove::Stamped{now_ns(), with_news(*newest)} : foxglove::Stamped{};
        }});
   state_ = hub_.add_channel({"/state", "tautline.State"});
   scan_ = drawn("/scan", "foxglove.LaserScan", laser_scan_json, session_.newest_scan());
@@ -326,10 +326,11 @@ void Bridge::add_topics() {
   });
 }
 
-/// The frame with its words, which most frames leave out.
-std::shared_ptr<const std::string> Bridge::with_words(const Frame& frame) {
+/// The frame with its news, which most frames leave out.
+std::shared_ptr<const std::string> Bridge::with_news(const Frame& frame) {
   algo::Telemetry t = frame.telemetry;
   t.words_fresh = true;
+  t.legend_fresh = true;
   return shared(text_of(encoder_.encode(t)));
 }
 
@@ -337,12 +338,14 @@ void Bridge::publish_frame(const FrameRef& frame) {
   const algo::Telemetry& t = frame->telemetry;
   const std::uint64_t time_ns = now_ns();
   if (hub_.wanted(telemetry_)) {
-    // Words of frames that were passed over since the last one shown.
-    const bool passed_over = !t.words_fresh && t.words != told_words_;
+    // News of frames that were passed over since the last one shown.
+    const bool passed_over = (!t.words_fresh && t.words != told_words_) ||
+                             (!t.legend_fresh && t.legend != told_legend_);
     hub_.publish(telemetry_,
                  time_ns,
-                 passed_over ? with_words(*frame) : shared(text_of(encoded(*frame).bytes())));
+                 passed_over ? with_news(*frame) : shared(text_of(encoded(*frame).bytes())));
     told_words_ = t.words;
+    told_legend_ = t.legend;
   }
   const auto publish = [&](ChannelId channel, auto encode) {
     if (hub_.wanted(channel)) hub_.publish(channel, time_ns, shared(encode()));

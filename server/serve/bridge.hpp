@@ -53,7 +53,7 @@ class Bridge {
   void add_services();
   void add_topics();
   void publish_frame(const FrameRef& frame);
-  std::shared_ptr<const std::string> with_words(const Frame& frame);
+  std::shared_ptr<const std::string> with_news(const Frame& frame);
   void publish_state();
   void state_changed();
   void submit(foxglove::ClientId client,
@@ -69,6 +69,7 @@ class Bridge {
   foxglove::Hub hub_{};
   Gains gains_{*this};
   FrameEncoder encoder_{};          // of what is sent besides the frames as they are
+  std::uint32_t told_legend_ = 0;
   algo::Explanation told_words_{};  // that viewers of the telemetry have
   algo::Parameters told_parameters_{};
   bool state_waits_ = false;

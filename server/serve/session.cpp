@@ -60,7 +60,7 @@ void Session::begin(PreparedRun next) {
   newest_.reset();
   newest_scan_.reset();
   told_mission_ = algo::Mission::Idle;
-  told_hold_ = algo::Hold::None;
+  told_hold_ = {};
   next_obstacle_ = 1;
 
   std::vector<algo::Request> first = first_requests(spec);
@@ -337,7 +337,7 @@ void Session::drain_frames() {
 /// Says in the log what changed for the robot, once per change.
 void Session::narrate(const algo::Telemetry& t) {
   if (t.hold == told_hold_ && t.mission == told_mission_) return;
-  const bool held = t.hold != algo::Hold::None && t.hold != told_hold_;
+  const bool held = t.hold && t.hold != told_hold_;
   const bool notable = t.mission != told_mission_ &&
                        (t.mission == algo::Mission::Arrived || t.mission == algo::Mission::Stuck);
   told_hold_ = t.hold;

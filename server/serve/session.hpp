@@ -157,7 +157,7 @@ class Session {
   std::uint64_t stop_ticket_ = 0;  // of the newest Stop
   std::uint32_t next_obstacle_ = 1;
   algo::Mission told_mission_ = algo::Mission::Idle;
-  algo::Hold told_hold_ = algo::Hold::None;
+  algo::Hold told_hold_{};
   bool arm_when_ready_ = false;
   std::uint64_t record_seen_ = 0;                          // revision of the recorder
   std::chrono::steady_clock::time_point hardware_seen_{};  // when it was last looked at

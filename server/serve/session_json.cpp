@@ -65,7 +65,7 @@ json session_json(const Session& session) {
   out["clearance"] = t.clearance;
   out["mission"] = algo::name(t.mission);
   out["hold"] = algo::name(t.hold);
-  out["behaviour"] = algo::name(t.behaviour);
+  out["behaviour"] = t.behaviour.view();
   out["what"] = t.words.what;
   out["why"] = t.words.why;
   return out;

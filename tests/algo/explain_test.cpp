@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "algo/full_strip/full_strip_controller.hpp"
+#include "algo/gate.hpp"
 #include "algo/pipeline/controllers.hpp"
 
 namespace algo {
@@ -16,7 +17,7 @@ Telemetry driving() {
   t.observation.stamp = 10.0;
   t.goal = SetGoal{.position_W = {3, 4}};
   t.mission = Mission::Driving;
-  t.behaviour = BehaviourId::Avoid;
+  t.behaviour = behaviours::kAvoid;
   t.scene.left = Nearest{.beam = 200, .point_W = {1, 0}, .distance = 1.0};
   return t;
 }
@@ -93,7 +94,7 @@ TEST(Explain, EveryStateOfEveryControllerHasItsSentences) {
 
 TEST(Explain, AHoldComesBeforeEverythingElse) {
   Telemetry t = driving();
-  t.hold = Hold::StaleScan;
+  t.hold = holds::kStaleScan;
   t.scene.scan.resize(1);
   t.scene.scan.stamp = 9.7;
   EXPECT_EQ(said("modified", t).what, "Waiting for the laser");
@@ -101,13 +102,13 @@ TEST(Explain, AHoldComesBeforeEverythingElse) {
 }
 
 TEST(Explain, EveryStateHasItsSentences) {
-  for (const Hold hold : {Hold::None,
-                          Hold::Stopped,
-                          Hold::Bumper,
-                          Hold::StaleScan,
-                          Hold::NotFinite,
-                          Hold::LinkLost,
-                          Hold::Dazzled}) {
+  for (const Hold hold : {Hold{},
+                          holds::kStopped,
+                          holds::kBumper,
+                          holds::kStaleScan,
+                          holds::kNotFinite,
+                          holds::kLinkLost,
+                          holds::kDazzled}) {
     for (const Mission mission :
          {Mission::Idle, Mission::Driving, Mission::Arrived, Mission::Stuck, Mission::Held}) {
       for (const bool with_goal : {false, true}) {

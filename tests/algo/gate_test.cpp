@@ -22,16 +22,16 @@ struct GateTest : ::testing::Test {
 };
 
 TEST_F(GateTest, PassesACommandWithAFreshScan) {
-  EXPECT_EQ(gate(input, observation, command), Hold::None);
+  EXPECT_EQ(gate(input, observation, command), Hold{});
 }
 
 TEST_F(GateTest, HoldsWhenTheScanIsStaleOrNeverCame) {
   input.scan_stamp = 9.79;  // 0.21 s old
-  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  EXPECT_EQ(gate(input, observation, command), holds::kStaleScan);
   input.scan_stamp.reset();
-  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  EXPECT_EQ(gate(input, observation, command), holds::kStaleScan);
   input.scan_stamp = kNaN;
-  EXPECT_EQ(gate(input, observation, command), Hold::StaleScan);
+  EXPECT_EQ(gate(input, observation, command), holds::kStaleScan);
 }
 
 TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
@@ -45,7 +45,7 @@ TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
     const double before = *field;
     for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
       *field = bad;
-      EXPECT_EQ(gate(input, observation, command), Hold::NotFinite);
+      EXPECT_EQ(gate(input, observation, command), holds::kNotFinite);
     }
     *field = before;
   }
@@ -61,32 +61,32 @@ TEST_F(GateTest, ABumperHoldsUnlessTheDriverLeavesWhatItTouched) {
     for (const double v : {away, -away, 0.0}) {
       command.base = {v, 0};
       input.by_hand = false;
-      EXPECT_EQ(gate(input, observation, command), Hold::Bumper) << at_front << v;
+      EXPECT_EQ(gate(input, observation, command), holds::kBumper) << at_front << v;
       input.by_hand = true;
-      EXPECT_EQ(gate(input, observation, command), v == away ? Hold::None : Hold::Bumper)
+      EXPECT_EQ(gate(input, observation, command), v == away ? Hold{} : holds::kBumper)
           << at_front << v;
     }
   }
   observation.bumpers.push_back(front);  // both
   command.base = {-0.1, 0};
-  EXPECT_EQ(gate(input, observation, command), Hold::Bumper);
+  EXPECT_EQ(gate(input, observation, command), holds::kBumper);
 }
 
 TEST_F(GateTest, NothingDrivesWhereADazzledScannerSeesNothing) {
   input.hidden = true;
-  EXPECT_EQ(gate(input, observation, command), Hold::Dazzled);
+  EXPECT_EQ(gate(input, observation, command), holds::kDazzled);
   input.hidden = false;
   input.blinded = true;  // lately: the last one that counted is young enough
-  EXPECT_EQ(gate(input, observation, command), Hold::None);
+  EXPECT_EQ(gate(input, observation, command), Hold{});
   input.scan_stamp.reset();
-  EXPECT_EQ(gate(input, observation, command), Hold::Dazzled);
+  EXPECT_EQ(gate(input, observation, command), holds::kDazzled);
 }
 
 TEST_F(GateTest, StopComesFirst) {
   input.stopped = true;
   input.scan_stamp.reset();
   observation.odometry.pose.x = kNaN;
-  EXPECT_EQ(gate(input, observation, command), Hold::Stopped);
+  EXPECT_EQ(gate(input, observation, command), holds::kStopped);
 }
 
 }  // namespace

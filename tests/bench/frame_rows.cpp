@@ -80,11 +80,10 @@ json frame_json(const algo::Telemetry& t) {
                       {"collided", t.ground_truth->collided}};
   }
   if (t.goal) frame["goal"] = point(t.goal->position_W);
-  frame["hold"] = static_cast<int>(t.hold);
+  frame["hold"] = algo::name(t.hold);
   frame["mission"] = static_cast<int>(t.mission);
-  frame["behaviour"] = static_cast<int>(t.behaviour);
+  frame["behaviour"] = t.behaviour.view();
   frame["clearance"] = t.clearance;
-  if (out.pass_W) frame["pass"] = point(*out.pass_W);
   frame["layers"] = json::array();
   for (const auto* list : {&t.layers, &out.layers}) {
     for (const algo::Layer& layer : *list) {
@@ -118,18 +117,20 @@ void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
   for (std::size_t k = 0; k < back.observation.scans.size(); ++k) {
     same(document.at("scans")[k] == scan_json(back.observation.scans[k]), "a scan");
   }
-  const auto& layers = *tautline::wire::GetFrame(encoder.encode(t).data())->layers();
-  same(document.at("layers").size() == layers.size(), "the number of layers");
-  std::size_t k = 0;
-  for (const auto* layer : layers) {
-    const json& written = document.at("layers")[k++];
-    same(written.at("name") == layer->name()->str(), "the name of a layer");
-    same(written.at("values").size() == layer->values()->size(), "the length of a layer");
-    flatbuffers::uoffset_t i = 0;
-    for (const double value : written.at("values")) {
-      same(std::abs(value - layer->values()->Get(i++)) < 1e-3, "a value of a layer");
+  const auto& frame = *tautline::wire::GetFrame(encoder.encode(t).data());
+  const auto& values = *frame.values();
+  flatbuffers::uoffset_t i = 0;
+  std::size_t written = 0;
+  for (const std::uint16_t count : *frame.counts()) {
+    if (count == 0) continue;
+    const json& layer = document.at("layers").at(written++);
+    same(layer.at("values").size() == count, "the length of a layer");
+    for (const double value : layer.at("values")) {
+      same(std::abs(value - values[i++]) < 1e-3, "a value of a layer");
     }
   }
+  same(document.at("layers").size() == written, "the number of layers");
+  same(document.at("measures").size() == values.size() - i, "the number of measures");
 }
 
 /// Driving ticks, their strip drawn out to `nodes` along the same line (0: as it is).

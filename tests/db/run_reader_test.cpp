@@ -103,32 +103,6 @@ TEST_F(RunReaderTest, FramesStartAnywhere) {
   EXPECT_EQ(reader.frames(run, 5, 0, none), 5U);
 }
 
-TEST_F(RunReaderTest, CsvIsExactAndInPieces) {
-  RunStore store(path);
-  const db::RunId run = store.begin_run(what());
-  db::TickRow odd = row(1);
-  odd.t = 0.1;
-  odd.x = 1e-9;
-  odd.y = -3;
-  odd.v = 1.0 / 3.0;
-  odd.clearance = std::nan("");
-  odd.hold = 1;
-  const auto made = frames(1);
-  store.append_tick(run, odd, made[0].bytes, made[0].windows);
-  append(store, run, 2, made[0]);
-  store.commit();
-  RunReader reader(path);
-  std::string out(RunReader::csv_header());
-  const db::CsvNames names{.holds = {"none", "stopped"}};
-  EXPECT_EQ(reader.csv(run, 0, 1, out, names), 2U);
-  EXPECT_EQ(out,
-            "tick,t,x,y,heading,v,omega,clearance,hold,behaviour\n"
-            "1,0.1,1e-09,-3,0.001,0.3333333333333333,0.3333333333333333,,stopped,1\n");
-  EXPECT_EQ(reader.csv(run, 2, 1, out, names), std::nullopt);
-  // 0.052 = 2 * 0.026; hold 2 has no name here.
-  EXPECT_THAT(out, testing::EndsWith("\n2,0.052,0.2,-0.4,0.002,0.5,0.3333333333333333,0.65,2,1\n"));
-}
-
 TEST_F(RunReaderTest, ADamagedBlockIsNamed) {
   RunStore store(path);
   const auto run = record(store, 200);

@@ -44,8 +44,8 @@ class StoreFiles : public testing::Test {
             .v = 0.5,
             .omega = 1.0 / 3.0,
             .clearance = 0.65,
-            .hold = static_cast<std::uint8_t>(tick % 3),
-            .behaviour = 1};
+            .hold = tick % 3 == 0 ? "" : tick % 3 == 1 ? "stopped" : "bumper",
+            .behaviour = "avoid"};
   }
   /// Frames 0 .. count-1 of a run, the same for the same seed.
   static std::vector<Frame> frames(std::size_t count, std::uint64_t seed = 1) {

@@ -7,6 +7,7 @@ import { draw_scene } from "../../web/src/draw/scene";
 import { View } from "../../web/src/draw/view";
 import { LayerKind, LayerView, arcs, grid_place, sectors } from "../../web/src/layer";
 import { decode_frame, decode_sweep } from "../../web/src/link/frame";
+import { Legends } from "../../web/src/link/legend";
 import { kOwn } from "../../web/src/state/layers";
 import { fold_frame, new_scene } from "../../web/src/state/scene";
 import * as wire from "../../web/src/wire/telemetry_generated";
@@ -208,8 +209,8 @@ test("each layer is drawn while its switch is on, and nothing of it while it is 
   const scene = new_scene();
   const kinds = [wire.LayerKind.Points, wire.LayerKind.Polyline, wire.LayerKind.Circles];
   const layers = kinds.map((kind, i) => ({ name: `l${i}`, kind, values: [0, 0, 1, 1, 0.5, 0.5] }));
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 0 })));
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, pose: [1, 0, 0], ranges: [1000, 2000, 1000], layers })));
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 0 }), new Legends()));
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, pose: [1, 0, 0], ranges: [1000, 2000, 1000], layers }), new Legends()));
   scene.filtered.take(decode_sweep(scan_bytes({ ranges: [1500, 1500, 1500] }))!);
   const names = [kOwn.scan.name, kOwn.filtered.name, kOwn.path.name, kOwn.safety.name, ...layers.map((l) => l.name)];
   const calls = (hidden: string[]) => {

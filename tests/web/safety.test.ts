@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { SessionState } from "../../web/src/contract";
 import { decode_frame } from "../../web/src/link/frame";
+import { Legends } from "../../web/src/link/legend";
 import { SignEnvironment, SignOfLife } from "../../web/src/sign_of_life";
 import { age_words, news_age, scan_age } from "../../web/src/state/age";
 import { fold_frame, new_scene } from "../../web/src/state/scene";
@@ -136,16 +137,16 @@ test("what is old says its age", () => {
 
 test("the scan's age is counted from its own stamp", () => {
   const scene = new_scene();
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 0, stamp: 0.25, ranges: [1000, 2000] })));
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 0, stamp: 0.25, ranges: [1000, 2000] }), new Legends()));
   assert.equal(scan_age(scene), null);
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, stamp: scene.sweeps[0].sweep.stamp + 2.5 })));
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, stamp: scene.sweeps[0].sweep.stamp + 2.5 }), new Legends()));
   assert.ok(Math.abs(scan_age(scene)! - 2.5) < 1e-6);
 });
 
 test("a Stop that is commanded is not yet a robot that stands", () => {
   const scene = new_scene();
   scene.heard_at = 0;
-  const frame = decode_frame(frame_bytes({ tick: 0 }));
+  const frame = decode_frame(frame_bytes({ tick: 0 }), new Legends());
   scene.frame = { ...frame, twist: { v: 0.12, omega: 0 } };
   assert.equal(stopped_words(scene, session(), true, 100), "Stop is commanded. The wheels still turn: 0.12 m/s.");
   scene.frame = { ...frame, twist: { v: 0, omega: 0 } };

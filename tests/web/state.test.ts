@@ -2,21 +2,22 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { RunDocument, RunItem, SessionState } from "../../web/src/contract";
-import { decode_frame, decode_sweep } from "../../web/src/link/frame";
+import { decode_frame, decode_frames, decode_sweep } from "../../web/src/link/frame";
+import { Legends } from "../../web/src/link/legend";
 import { Player } from "../../web/src/link/player";
 import { StoredRun, kPageFrames, split_frames } from "../../web/src/link/stored";
 import { Columns } from "../../web/src/state/columns";
 import { layer_groups } from "../../web/src/state/layers";
-import { SceneState, begin_run, fold_frame, fold_session, goal_distance, new_scene, scene_bounds } from "../../web/src/state/scene";
+import { SceneState, begin_run, fold_frame, fold_session, goal_distance, new_scene, scene_bounds, take_robot } from "../../web/src/state/scene";
 import { FilteredScan, sweep_points } from "../../web/src/state/sweeps";
-import { Hold, LayerFrame, LayerKind, LayerStyle, Mission, Tone } from "../../web/src/wire/telemetry_generated";
+import { LayerFrame, LayerKind, LayerStyle, Mission, Tone } from "../../web/src/wire/telemetry_generated";
 import { FrameSpec, LayerSpec, add_cylinder, frame_bytes, framed, move, remove, scan_bytes, set_parameter } from "./wire";
 
-const frame = (spec: FrameSpec) => decode_frame(frame_bytes(spec));
+const frame = (spec: FrameSpec) => decode_frame(frame_bytes(spec), new Legends());
 
 test("a frame is read back whole", () => {
   const f = frame({
-    tick: 41, stamp: 1.066, pose: [1, 2, 0.5], goal: [3, 4, null], mission: Mission.Driving, hold: Hold.StaleScan,
+    tick: 41, stamp: 1.066, pose: [1, 2, 0.5], goal: [3, 4, null], mission: Mission.Driving, hold: "stale_scan",
     truth: [1.25, 2, 0.5, 0.75, true],
     requests: [add_cylinder(7, 1.5, -2, 0.25), set_parameter("k_r", 0.5)], words: ["Driving", "2 m to go."],
     measures: [["strip.left", "m", 0.5], ["strip.side", "", -1]], moved: [[4, 1.5, 2.5, -0.25], [9, 0, 1, 0]],
@@ -35,7 +36,7 @@ test("a frame is read back whole", () => {
   const [first, second] = f.requests;
   assert.ok(first.type === "add_obstacle" && first.obstacle.radius === 0.25 && first.obstacle.pose.y === -2);
   assert.deepEqual(second, { type: "set_parameter", name: "k_r", value: 0.5 });
-  assert.throws(() => decode_frame(new Uint8Array(3)), /too short/);
+  assert.throws(() => decode_frame(new Uint8Array(3), new Legends()), /too short/);
 });
 
 test("a layer is read back, from wherever the bytes lie", () => {
@@ -49,7 +50,7 @@ test("a layer is read back, from wherever the bytes lie", () => {
   for (let shift = 0; shift < 4; ++shift) {
     const moved = new Uint8Array(bytes.length + shift);
     moved.set(bytes, shift);
-    const { layers } = decode_frame(moved.subarray(shift));
+    const { layers } = decode_frame(moved.subarray(shift), new Legends());
     assert.deepEqual(layers.map((l) => l.name), ["histogram", "grid", "names"], "a kind of later is left out");
     const [polar, grid, names] = layers;
     assert.deepEqual({ ...polar, values: [...polar.values], cells: [] }, {
@@ -59,6 +60,47 @@ test("a layer is read back, from wherever the bytes lie", () => {
     assert.deepEqual([[...grid.values], [...grid.cells]], [[-1, 0.5, 0.125, 2], [0, 254, 127, 255]]);
     assert.deepEqual([names.axes, names.text, names.label], [3, ["one", "two"], "names"]);
   }
+});
+
+test("layers and measures are told by a legend that came before, or comes in the same page of frames", () => {
+  const layers: LayerSpec[] = [
+    { name: "strip", kind: LayerKind.Polyline, values: [0, 0, 1, 1] },
+    { name: "forces", kind: LayerKind.Arrows, values: [] },
+    { name: "nodes", kind: LayerKind.Points, values: [2, 3] },
+  ];
+  const spec = { layers, measures: [["strip.left", "m", 0.5]] as [string, string, number][] };
+  const told = frame_bytes({ tick: 1, ...spec });
+  const silent = frame_bytes({ tick: 2, ...spec, words: null });
+  assert.ok(silent.length < told.length - 150, "names are not in it");
+  const unknown = decode_frame(silent, new Legends());
+  assert.deepEqual([unknown.layers, unknown.measures, unknown.words], [[], [], null], "nothing is guessed");
+  for (const order of [[told, silent], [silent, told]]) {
+    const f = decode_frames(order).find((each) => each.tick === 2)!;
+    assert.deepEqual(f.layers.map((l) => [l.name, ...l.values]), [["strip", 0, 0, 1, 1], ["nodes", 2, 3]], "none that is empty");
+    assert.deepEqual(f.measures, [{ name: "strip.left", unit: "m", value: 0.5 }]);
+  }
+  const other = frame_bytes({ tick: 3, layers: [layers[2]], words: null });
+  const legends = new Legends();
+  decode_frame(told, legends);
+  assert.deepEqual(decode_frame(other, legends).layers, [], "values of another legend are not read by this one");
+});
+
+test("channels of further sensors are columns that hold until their next reading", () => {
+  const scene = new_scene();
+  take_robot(scene, { channels: [
+    { name: "battery.voltage", kind: "scripted", unit: "V", values: 1 },
+    { name: "field", kind: "magnetic", unit: "uT", values: 2 }] });
+  fold_frame(scene, frame({ tick: 0 }));
+  fold_frame(scene, frame({ tick: 1, readings: [[0, [25.5]]] }));
+  fold_frame(scene, frame({ tick: 2, readings: [[1, [3, 4]], [7, [1]]] }));
+  fold_frame(scene, frame({ tick: 3, readings: [[0, [24]]] }));
+  assert.deepEqual(scene.columns.measures, [{ name: "battery.voltage", unit: "V" }, { name: "field[0]", unit: "uT" },
+    { name: "field[1]", unit: "uT" }]);
+  assert.deepEqual([...scene.columns.get("battery.voltage")], [NaN, 25.5, 25.5, 24]);
+  assert.deepEqual([...scene.columns.get("field[1]")], [NaN, NaN, 4, 4]);
+  begin_run(scene);
+  fold_frame(scene, frame({ tick: 0 }));
+  assert.ok(Number.isNaN(scene.columns.at("battery.voltage", 0)), "a new run holds nothing of the old one");
 });
 
 test("readings of sonar and infrared stay where they were taken until they are old", () => {
@@ -188,17 +230,17 @@ test("events: changes of mission and hold, and a drag is one mark", () => {
   for (let tick = 1; tick < 40; ++tick) {
     fold_frame(scene, frame({ tick, ...driving, requests: [move(1, tick, 0)] }));
   }
-  fold_frame(scene, frame({ tick: 40, ...driving, hold: Hold.Bumper }));
+  fold_frame(scene, frame({ tick: 40, ...driving, hold: "bumper" }));
   fold_frame(scene, frame({ tick: 41, mission: Mission.Arrived }));
   assert.deepEqual(scene.events.list.map((e) => e.label), ["Obstacle moved", "Bumper pressed", "Arrived"]);
 });
 
 test("that a run begins without a scan is no event; that it loses its scan later is", () => {
   const scene = new_scene();
-  for (const tick of [0, 1]) fold_frame(scene, frame({ tick, hold: Hold.StaleScan }));
+  for (const tick of [0, 1]) fold_frame(scene, frame({ tick, hold: "stale_scan" }));
   fold_frame(scene, frame({ tick: 2 }));
   assert.equal(scene.events.list.length, 0);
-  fold_frame(scene, frame({ tick: 100, hold: Hold.StaleScan }));
+  fold_frame(scene, frame({ tick: 100, hold: "stale_scan" }));
   assert.deepEqual(scene.events.list.map((e) => e.label), ["Scan too old"]);
 });
 
@@ -252,7 +294,7 @@ test("a fitted view shows goal, obstacles, start and robot", () => {
 test("frames of an answer are split by their lengths; a cut answer is said", () => {
   const parts = [frame_bytes({ tick: 0 }), frame_bytes({ tick: 1, ranges: [1, 2, 3] })];
   const whole = framed(parts);
-  assert.deepEqual(split_frames(whole).map((f) => decode_frame(f).tick), [0, 1]);
+  assert.deepEqual(decode_frames(split_frames(whole)).map((f) => f.tick), [0, 1]);
   assert.throws(() => split_frames(whole.slice(0, whole.length - 1)), /runs past the end/);
   assert.throws(() => split_frames(whole.slice(0, parts[0].length + 4 + 2)), /stray bytes/);
 });
@@ -383,8 +425,9 @@ test("a stored run shows at any tick what was shown live, sought in any order", 
   await run.load(() => undefined);
   const live = new_scene();
   live.obstacles = run.scene.obstacles;
+  const legends = new Legends();
   const seen = bytes.map((b) => {
-    fold_frame(live, decode_frame(b));
+    fold_frame(live, decode_frame(b, legends));
     if (live.frame?.tick === 70) live.obstacles = [...live.obstacles, { ...live.obstacles[0], id: 2, pose: { x: 5, y: 5, heading: 0 } }];
     return shown(live);
   });

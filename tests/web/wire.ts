@@ -12,10 +12,13 @@ export interface FrameSpec {
   scan_stamp?: number;
   goal?: [number, number, number | null];
   mission?: wire.Mission;
-  hold?: wire.Hold;
+  hold?: string;
+  behaviour?: string;
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
-  words?: [string, string];
+  words?: Words | null; // null: no news, although there are layers
+  legend?: number;
+  readings?: [number, number[], number?][]; // channel, values, stamp
   layers?: LayerSpec[];
   measures?: [string, string, number][];
   sonar?: [number, number][]; // heading of the mount, range
@@ -37,25 +40,30 @@ export interface LayerSpec {
   text?: string;
 }
 
-function add_layer(b: flatbuffers.Builder, l: LayerSpec): number {
+type Words = [string, string];
+
+/** What a frame says of its layers and measures. */
+function add_news(b: flatbuffers.Builder, words: Words, layers: LayerSpec[], measures: [string, string, number][]): number {
   const text = (value: string | undefined) => (value === undefined ? 0 : b.createString(value));
-  const [name, label, unit, lines] = [l.name, l.label, l.unit, l.text].map(text);
-  const values = wire.Layer.createValuesVector(b, l.values);
-  const cells = l.cells ? wire.Layer.createCellsVector(b, l.cells) : 0;
-  wire.Layer.startLayer(b);
-  wire.Layer.addName(b, name);
-  if (label) wire.Layer.addLabel(b, label);
-  if (unit) wire.Layer.addUnit(b, unit);
-  if (lines) wire.Layer.addText(b, lines);
-  if (cells) wire.Layer.addCells(b, cells);
-  wire.Layer.addValues(b, values);
-  wire.Layer.addKind(b, l.kind);
-  wire.Layer.addFrame(b, l.frame ?? wire.LayerFrame.World);
-  wire.Layer.addTone(b, l.tone ?? wire.Tone.Accent);
-  wire.Layer.addStyle(b, l.style ?? wire.LayerStyle.Solid);
-  wire.Layer.addAxes(b, l.axes ?? 2);
-  wire.Layer.addLevel(b, l.level ?? 0);
-  return wire.Layer.endLayer(b);
+  const infos = layers.map((l) => {
+    const [name, label, unit] = [l.name, l.label, l.unit].map(text);
+    return wire.LayerInfo.createLayerInfo(b, name, label, unit, l.kind, l.frame ?? wire.LayerFrame.World,
+      l.tone ?? wire.Tone.Accent, l.style ?? wire.LayerStyle.Solid, l.axes ?? 2, l.level ?? 0);
+  });
+  const [what, why] = words.map(text);
+  const list = wire.News.createLayersVector(b, infos);
+  const names = measures.length > 0 ? b.createString(measures.map((m) => m[0]).join("\n")) : 0;
+  const units = measures.length > 0 ? b.createString(measures.map((m) => m[1]).join("\n")) : 0;
+  return wire.News.createNews(b, what, why, list, names, units);
+}
+
+function add_more(b: flatbuffers.Builder, layers: LayerSpec[]): number {
+  const more = layers.flatMap((l, i) => {
+    if (!l.cells && l.text === undefined) return [];
+    const cells = l.cells ? wire.LayerMore.createCellsVector(b, l.cells) : 0;
+    return [wire.LayerMore.createLayerMore(b, i, cells, l.text === undefined ? 0 : b.createString(l.text))];
+  });
+  return wire.Frame.createMoreVector(b, more);
 }
 
 interface ScanSpec { ranges: number[]; range_max?: number; mount?: [number, number, number]; stamp?: number }
@@ -115,6 +123,15 @@ export const set_parameter = (name: string, value: number) =>
     return [wire.Request.SetParameter, wire.SetParameter.endSetParameter(b)];
   };
 
+/** As the server numbers them: another for other layers or measures. */
+function legend_of(spec: FrameSpec): number {
+  const looks = (spec.layers ?? []).map((l) => ({ ...l, values: 0, cells: 0, text: 0 }));
+  const text = JSON.stringify([looks, (spec.measures ?? []).map((m) => [m[0], m[1]])]);
+  let hash = 0;
+  for (const c of text) hash = (Math.imul(hash, 31) + c.charCodeAt(0)) >>> 0;
+  return hash;
+}
+
 export function frame_bytes(spec: FrameSpec): Uint8Array {
   const b = new flatbuffers.Builder(512);
   const { ranges } = spec;
@@ -127,14 +144,20 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     return wire.RequestBox.endRequestBox(b);
   });
   const requests = wire.Frame.createRequestsVector(b, boxes);
-  const layers = wire.Frame.createLayersVector(b, (spec.layers ?? []).map((l) => add_layer(b, l)));
-  let measures = 0;
-  if (spec.measures) {
-    const names = b.createString(spec.measures.map((m) => m[0]).join("\n"));
-    const units = b.createString(spec.measures.map((m) => m[1]).join("\n"));
-    const values = wire.Measures.createValuesVector(b, spec.measures.map((m) => m[2]));
-    measures = wire.Measures.createMeasures(b, names, units, values);
-  }
+  const { layers = [], measures = [] } = spec;
+  const words: Words = spec.words ?? ["Driving", "On its way."];
+  const silent = spec.words === null || (!spec.words && !spec.layers && !spec.measures);
+  const news = silent ? wire.News.createNews(b, 0, 0, 0, 0, 0) : add_news(b, words, layers, measures);
+  const values = wire.Frame.createValuesVector(b, [...layers.flatMap((l) => l.values), ...measures.map((m) => m[2])]);
+  const counts = wire.Frame.createCountsVector(b, layers.map((l) => l.values.length));
+  const more = add_more(b, layers);
+  const hold = spec.hold ? b.createString(spec.hold) : 0;
+  const behaviour = b.createString(spec.behaviour ?? "rest");
+  const readings_of = (spec.readings ?? []).map(([channel, list, stamp]) => {
+    const numbers = wire.Reading.createValuesVector(b, list);
+    return wire.Reading.createReading(b, channel, numbers, stamp ?? null);
+  });
+  const channels = wire.Frame.createChannelsVector(b, readings_of);
   const moved = spec.moved ?? [];
   wire.Frame.startMovedVector(b, moved.length);
   for (const [id, x, y, heading] of [...moved].reverse()) wire.Moved.createMoved(b, x, y, heading, id);
@@ -145,7 +168,6 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.RangeReading.createRangeReading(b, 0, 0, heading, spec.tick * 0.026, range, 4, wire.BeamStatus.Ok);
   }
   const readings = b.endVector();
-  const [what, why] = (spec.words ?? []).map((text) => b.createString(text));
   wire.Frame.startFrame(b);
   wire.Frame.addTick(b, BigInt(spec.tick));
   wire.Frame.addStamp(b, spec.stamp ?? spec.tick * 0.026);
@@ -163,14 +185,17 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, d - 0.5));
     wire.Frame.addCollided(b, hit);
   }
-  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.hold ?? wire.Hold.None,
-    spec.mission ?? wire.Mission.Idle, wire.Behaviour.Rest));
-  wire.Frame.addLayers(b, layers);
+  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.mission ?? wire.Mission.Idle));
   wire.Frame.addMoved(b, places);
   wire.Frame.addSonar(b, readings);
-  if (measures) wire.Frame.addMeasures(b, measures);
-  if (what) wire.Frame.addWhat(b, what);
-  if (why) wire.Frame.addWhy(b, why);
+  wire.Frame.addNews(b, news);
+  wire.Frame.addLegend(b, spec.legend ?? legend_of(spec));
+  wire.Frame.addValues(b, values);
+  wire.Frame.addCounts(b, counts);
+  wire.Frame.addMore(b, more);
+  wire.Frame.addBehaviour(b, behaviour);
+  wire.Frame.addChannels(b, channels);
+  if (hold) wire.Frame.addHold(b, hold);
   b.finish(wire.Frame.endFrame(b));
   return b.asUint8Array().slice();
 }

@@ -15,6 +15,9 @@ export interface ScenarioDocument {
   [key: string]: unknown;
 }
 
+/** A further sensor of the robot. */
+export interface ChannelInfo { name: string; kind: string; unit: string; values: number }
+
 export interface RobotInfo {
   name: string;
   radius: number;
@@ -27,6 +30,7 @@ export interface RobotInfo {
   editable: boolean;
   paceable: boolean;
   drives: boolean;
+  channels?: ChannelInfo[];
 }
 
 export type Source = "simulation" | "replay" | "hardware";

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <optional>
 
+#include "algo/gate.hpp"
 #include "server/experiment/judge.hpp"
 
 namespace server::experiment::judges {
@@ -20,7 +21,7 @@ constexpr Column kColumns[] = {
 bool finite(const algo::Telemetry& t) {
   return std::isfinite(t.output.twist.v) && std::isfinite(t.output.twist.omega) &&
          std::isfinite(t.command.base.v) && std::isfinite(t.command.base.omega) &&
-         t.hold != algo::Hold::NotFinite;
+         t.hold != algo::holds::kNotFinite;
 }
 
 /// What a robot may say while it stands. All else promises motion.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/record/filtered_scans.hpp"
+#include "server/record/run_csv.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
@@ -287,15 +288,16 @@ class FilteredPages {
 net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
   constexpr std::size_t kLines = 1000;  // of a slice: some 100 kB
   const db::RunId run = run_id(request);
-  if (!worker.runs().get(run)) return no_such_run(run);
+  const auto row = worker.runs().get(run);
+  if (!row) return no_such_run(run);
   const auto next = std::make_shared<std::optional<std::uint64_t>>(0);
-  const auto make = [run, next](Worker& at_work) {
+  const auto make = [csv = RunCsv(*row), next](Worker& at_work) {
     std::string slice;
     if (!*next) return slice;
     const std::uint64_t from = **next;
-    if (from == 0) slice = db::RunReader::csv_header();
+    if (from == 0) slice = csv.header();
     const std::size_t before = slice.size();
-    *next = at_work.runs().csv(run, from, kLines, slice, csv_names());
+    *next = csv.lines(at_work.runs(), from, kLines, slice);
     if (from > 0 && slice.size() == before) throw db::StoreError("The run was deleted meanwhile.");
     return slice;
   };

@@ -196,7 +196,7 @@ TEST_P(EveryController, HasWordsForWhatItDoes) {
   algo::Telemetry t;
   t.goal = s.in.goal;
   t.mission = algo::Mission::Driving;
-  t.behaviour = algo::BehaviourId::Avoid;
+  t.behaviour = algo::behaviours::kAvoid;
   for (const algo::Mission mission : {algo::Mission::Driving, algo::Mission::Stuck}) {
     t.mission = mission;
     for (int tick = 0; tick < 30; ++tick) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "algo/gate.hpp"
 #include "tests/algo/allocations.hpp"
 #include <gtest/gtest.h>
 
@@ -62,21 +63,21 @@ struct PipelineTest : ::testing::Test {
 
 TEST_F(PipelineTest, RestsWithoutAGoalAndDrivesWithOne) {
   EXPECT_EQ(tick().command, Command{});
-  EXPECT_EQ(t.behaviour, BehaviourId::Rest);
+  EXPECT_EQ(t.behaviour, behaviours::kRest);
   ask(SetGoal{{3, 0}, std::nullopt});
   EXPECT_GT(tick().command.base.v, 0);
-  EXPECT_EQ(t.behaviour, BehaviourId::Avoid);
+  EXPECT_EQ(t.behaviour, behaviours::kAvoid);
   EXPECT_EQ(t.mission, Mission::Driving);
 }
 
 TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
   ask(SetGoal{{3, 0}, std::nullopt});
   tick();
-  for (int i = 0; i < 8; ++i) EXPECT_EQ(tick(0, false).hold, Hold::None) << i;  // 8 x 25 ms = 0.2 s
-  EXPECT_EQ(tick(0, false).hold, Hold::StaleScan);
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(tick(0, false).hold, Hold{}) << i;  // 8 x 25 ms = 0.2 s
+  EXPECT_EQ(tick(0, false).hold, holds::kStaleScan);
   EXPECT_EQ(t.command, Command{});
   EXPECT_EQ(t.mission, Mission::Held);
-  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_EQ(tick().hold, Hold{});
   EXPECT_GT(t.command.base.v, 0);
 }
 
@@ -84,21 +85,21 @@ TEST_F(PipelineTest, ABlindedScanIsNone) {
   ask(SetGoal{{3, 0}, std::nullopt});
   tick();
   for (int i = 0; i < 8; ++i) tick(0, true, true);
-  EXPECT_EQ(tick(0, true, true).hold, Hold::Dazzled);
+  EXPECT_EQ(tick(0, true, true).hold, holds::kDazzled);
   EXPECT_EQ(t.command, Command{});
   EXPECT_NE(t.words.why.find("blinded"), std::string::npos);
-  EXPECT_EQ(tick().hold, Hold::None);
+  EXPECT_EQ(tick().hold, Hold{});
 }
 
 TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
   ask(SetGoal{{3, 0}, std::nullopt});
-  EXPECT_EQ(tick().hold, Hold::None);
-  EXPECT_EQ(tick(0, true, false, 20).hold, Hold::Dazzled);
+  EXPECT_EQ(tick().hold, Hold{});
+  EXPECT_EQ(tick(0, true, false, 20).hold, holds::kDazzled);
   EXPECT_EQ(t.command, Command{});
   EXPECT_EQ(t.mission, Mission::Held);
   EXPECT_NE(t.words.why.find("dazzled"), std::string::npos);
-  EXPECT_EQ(tick(0, false).hold, Hold::Dazzled);  // no newer scan
-  EXPECT_EQ(tick(0, true, false, 2).hold, Hold::None);
+  EXPECT_EQ(tick(0, false).hold, holds::kDazzled);  // no newer scan
+  EXPECT_EQ(tick(0, true, false, 2).hold, Hold{});
 }
 
 TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
@@ -219,23 +220,23 @@ struct SonarPipeline {
 TEST(PipelineBySonar, ItsStampsCountAndGoStale) {
   for (const char* controller : {"vff", "vfh", "certainty_grid", "potential_field"}) {
     SonarPipeline robot(controller);
-    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << "nothing has come yet";
+    EXPECT_EQ(robot.tick(false).hold, holds::kStaleScan) << "nothing has come yet";
     for (int i = 0; i < 20; ++i) {
-      EXPECT_EQ(robot.tick(i % 4 == 0).hold, Hold::None) << controller << ' ' << i;
+      EXPECT_EQ(robot.tick(i % 4 == 0).hold, Hold{}) << controller << ' ' << i;
     }
     EXPECT_GT(robot.t.command.base.v, 0) << controller;
     EXPECT_NEAR(robot.t.clearance, 1.65, 1e-12) << controller;
-    for (int i = 0; i < 5; ++i) EXPECT_EQ(robot.tick(false).hold, Hold::None) << i;
-    EXPECT_EQ(robot.tick(false).hold, Hold::StaleScan) << controller;
+    for (int i = 0; i < 5; ++i) EXPECT_EQ(robot.tick(false).hold, Hold{}) << i;
+    EXPECT_EQ(robot.tick(false).hold, holds::kStaleScan) << controller;
     EXPECT_EQ(robot.t.command, Command{});
-    EXPECT_EQ(robot.tick(true).hold, Hold::None) << controller;
+    EXPECT_EQ(robot.tick(true).hold, Hold{}) << controller;
   }
 }
 
 TEST(PipelineBySonar, AControllerThatNeedsALaserIsHeld) {
   for (const char* controller : {"modified", "dwa", "edge_detection"}) {
     SonarPipeline robot(controller);
-    for (int i = 0; i < 20; ++i) EXPECT_EQ(robot.tick(true).hold, Hold::StaleScan) << controller;
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(robot.tick(true).hold, holds::kStaleScan) << controller;
   }
 }
 
@@ -246,7 +247,7 @@ TEST(PipelineBySonar, ARobotWithALaserWaitsForIt) {
   t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
   t.observation.sonar.push_back({{0.35, 0, 0}, 0, 1.65, 5.0, Beam::Ok});
   pipeline.tick(t);
-  EXPECT_EQ(t.hold, Hold::StaleScan);
+  EXPECT_EQ(t.hold, holds::kStaleScan);
 }
 
 TEST_F(PipelineTest, StopIsLatchedAndSurvivesANewGoal) {
@@ -254,7 +255,7 @@ TEST_F(PipelineTest, StopIsLatchedAndSurvivesANewGoal) {
   ask(Stop{true});
   EXPECT_EQ(tick().command, Command{});
   ask(SetGoal{{4, 0}, std::nullopt});
-  EXPECT_EQ(tick().hold, Hold::Stopped);
+  EXPECT_EQ(tick().hold, holds::kStopped);
   ask(Stop{false});
   EXPECT_GT(tick().command.base.v, 0);
 }
@@ -263,11 +264,11 @@ TEST_F(PipelineTest, ASilentDriverLeavesARobotThatStandsStill) {
   ask(SetGoal{{3, 0}, std::nullopt});
   tick();
   ask(Joystick{0.5, 0});
-  EXPECT_EQ(tick().behaviour, BehaviourId::Manual);
+  EXPECT_EQ(tick().behaviour, behaviours::kManual);
   EXPECT_DOUBLE_EQ(t.command.base.v, 0.25);
   EXPECT_FALSE(t.goal);
   int live = 1;
-  while (tick().behaviour == BehaviourId::Manual) ++live;
+  while (tick().behaviour == behaviours::kManual) ++live;
   EXPECT_EQ(live, 20);  // 0.5 s of 25 ms
   EXPECT_EQ(t.command, Command{});
   for (int i = 0; i < 100; ++i) ASSERT_EQ(tick().command, Command{});
@@ -290,7 +291,7 @@ TEST_F(PipelineTest, NotANumberNeverReachesTheMotors) {
   tick();
   t.observation.odometry.pose.x = std::numeric_limits<double>::quiet_NaN();
   pipeline.tick(t);
-  EXPECT_EQ(t.hold, Hold::NotFinite);
+  EXPECT_EQ(t.hold, holds::kNotFinite);
   EXPECT_EQ(t.command, Command{});
 }
 

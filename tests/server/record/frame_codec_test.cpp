@@ -13,6 +13,7 @@
 #include "telemetry_generated.h"
 #include <gtest/gtest.h>
 
+#include "algo/gate.hpp"
 #include "algo/strip/strip_law.hpp"
 
 namespace server {
@@ -78,9 +79,9 @@ algo::Telemetry full_telemetry() {
   t.goals_ahead.push_back({{1, 2}, std::nullopt});
   t.goals_ahead.push_back({{-3, 0.5}, std::nullopt});
   t.command = {{0.1234567890123456, -0.9876543210987654}};
-  t.hold = algo::Hold::Bumper;
+  t.hold = algo::holds::kBumper;
   t.mission = algo::Mission::Held;
-  t.behaviour = algo::BehaviourId::Avoid;
+  t.behaviour = algo::behaviours::kAvoid;
   t.clearance = 0.75;
   t.moved.push_back({7, {1.5, -2, 0.25}});
   t.output.pass_W = algo::Vec2{0.5, 1};
@@ -93,7 +94,20 @@ algo::Telemetry full_telemetry() {
   put(add_layer(t.layers, kNearest), algo::Vec2{1, 0.5});
   t.words = {"Doing this", "For that reason."};
   t.words_fresh = true;
+  t.legend = 0xDEADBEEF;
+  t.legend_fresh = true;
+  t.limit = {.name = "slope"};
+  t.command.joints = 2;
+  t.command.joint_rates[1] = -0.1 / 3;
+  t.ground_truth->tilt = algo::Tilt{0.25, -0.5, 0.125};
+  o.channels.append() = {.channel = 3, .stamp = 12.1, .values = {1.0 / 3.0, -7}};
+  o.channels.append() = {.channel = 0, .stamp = o.stamp, .values = {}};
   return t;
+}
+
+/// The frame as the page reads it, valid until the encoder's next frame.
+const wire::Frame& read(FrameEncoder& encoder, const algo::Telemetry& t) {
+  return *wire::GetFrame(encoder.encode(t).data());
 }
 
 TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
@@ -133,11 +147,17 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   EXPECT_EQ(back.behaviour, t.behaviour);
   ASSERT_EQ(back.moved.size(), 1U);
   EXPECT_EQ(back.moved[0], t.moved[0]);
-  EXPECT_EQ(back.output.pass_W, t.output.pass_W);
   EXPECT_TRUE(back.output.waits);
   EXPECT_EQ(back.output.state, 3);
   EXPECT_TRUE(back.words_fresh);
   EXPECT_EQ(back.words, t.words);
+  EXPECT_EQ(back.legend, t.legend);
+  EXPECT_TRUE(back.legend_fresh);
+  EXPECT_EQ(back.limit, t.limit);
+  ASSERT_EQ(back.observation.channels.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(back.observation.channels[i], t.observation.channels[i]);
+  }
 }
 
 TEST(FrameCodec, StampsOfTheirOwnAndThoseOfTheFrameComeBack) {
@@ -153,6 +173,25 @@ TEST(FrameCodec, StampsOfTheirOwnAndThoseOfTheFrameComeBack) {
     EXPECT_EQ(back.observation.gyro, o.gyro);
     EXPECT_EQ(back.observation.inclinometer, o.inclinometer);
   }
+}
+
+TEST(FrameCodec, WhatARobotLacksTakesNoByte) {
+  algo::Telemetry t = full_telemetry();
+  FrameEncoder encoder;
+  const std::size_t whole = encoder.encode(t).size();
+  t.command.joints = 0;
+  t.command.joint_rates = {};
+  t.ground_truth->tilt.reset();
+  t.observation.channels.clear();
+  t.limit = {};
+  t.hold = {};
+  const wire::Frame& frame = read(encoder, t);
+  EXPECT_EQ(frame.joint_rates(), nullptr);
+  EXPECT_EQ(frame.tilt(), nullptr);
+  EXPECT_EQ(frame.channels(), nullptr);
+  EXPECT_EQ(frame.limit(), nullptr);
+  EXPECT_EQ(frame.hold(), nullptr);
+  EXPECT_GT(whole, encoder.encode(t).size() + 100);
 }
 
 TEST(FrameCodec, AScannerUnlikeTheDefaultComesBack) {
@@ -180,11 +219,6 @@ TEST(FrameCodec, AScannerUnlikeTheDefaultComesBack) {
   }
 }
 
-/// The frame as the page reads it, valid until the encoder's next frame.
-const wire::Frame& read(FrameEncoder& encoder, const algo::Telemetry& t) {
-  return *wire::GetFrame(encoder.encode(t).data());
-}
-
 TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
   algo::Telemetry t = full_telemetry();
   algo::Layer& grid = add_layer(t.output.layers, kGrid);
@@ -195,28 +229,31 @@ TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
   text.text = "here";
   FrameEncoder encoder;
   const wire::Frame& frame = read(encoder, t);
-  ASSERT_EQ(frame.layers()->size(), 4U);  // the one of the pipeline first, none that is empty
-  EXPECT_EQ(frame.layers()->Get(0)->name()->str(), "scan.nearest");
-  EXPECT_EQ(frame.layers()->Get(0)->style(), wire::LayerStyle_Dashed);
-  const wire::Layer& strip = *frame.layers()->Get(1);
+  const auto& infos = *frame.news()->layers();
+  ASSERT_EQ(infos.size(), 5U);  // the one of the pipeline first, also the one that is empty
+  EXPECT_EQ(infos[0]->name()->str(), "scan.nearest");
+  EXPECT_EQ(infos[0]->style(), wire::LayerStyle_Dashed);
+  const wire::LayerInfo& strip = *infos[1];
   EXPECT_EQ(strip.name()->str(), "strip");
   EXPECT_EQ(strip.label()->str(), "Strip");
   EXPECT_EQ(strip.kind(), wire::LayerKind_Polyline);
   EXPECT_EQ(strip.tone(), wire::Tone_Accent);
   EXPECT_EQ(strip.axes(), 2);
-  const std::vector<float> line{0, 1, 0.5, 1, 1, 1};
-  EXPECT_TRUE(std::ranges::equal(*strip.values(), line));
-  const wire::Layer& cells = *frame.layers()->Get(2);
-  EXPECT_EQ(cells.kind(), wire::LayerKind_Grid);
-  EXPECT_TRUE(std::ranges::equal(*cells.values(), std::vector<float>{-1.5, 2, 0.125, 3}));
-  EXPECT_TRUE(std::ranges::equal(*cells.cells(), grid.cells));
-  const wire::Layer& words = *frame.layers()->Get(3);
-  EXPECT_EQ(words.text()->str(), "here");
-  EXPECT_EQ(words.axes(), 3);
-  EXPECT_EQ(words.unit()->str(), "m");
-  EXPECT_EQ(frame.measures()->names()->str(), "strip.elastic\nstrip.side");
-  EXPECT_EQ(frame.measures()->units()->str(), "m\n");
-  EXPECT_TRUE(std::ranges::equal(*frame.measures()->values(), std::vector<float>{0.25, -1}));
+  EXPECT_EQ(infos[3]->kind(), wire::LayerKind_Grid);
+  EXPECT_EQ(infos[4]->axes(), 3);
+  EXPECT_EQ(infos[4]->unit()->str(), "m");
+  EXPECT_EQ(frame.news()->measures()->str(), "strip.elastic\nstrip.side");
+  EXPECT_EQ(frame.news()->units()->str(), "m\n");
+
+  EXPECT_EQ(frame.legend(), t.legend);
+  EXPECT_TRUE(std::ranges::equal(*frame.counts(), std::vector<std::uint16_t>{2, 6, 0, 4, 3}));
+  const std::vector<float> values{1, 0.5, 0, 1, 0.5, 1, 1, 1, -1.5, 2, 0.125, 3, 1, 2, 0.5, 0.25, -1};
+  EXPECT_TRUE(std::ranges::equal(*frame.values(), values));
+  ASSERT_EQ(frame.more()->size(), 2U);
+  EXPECT_EQ(frame.more()->Get(0)->layer(), 3);
+  EXPECT_TRUE(std::ranges::equal(*frame.more()->Get(0)->cells(), grid.cells));
+  EXPECT_EQ(frame.more()->Get(1)->layer(), 4);
+  EXPECT_EQ(frame.more()->Get(1)->text()->str(), "here");
 }
 
 TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
@@ -225,7 +262,7 @@ TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
   algo::Layer& layer = add_layer(t.output.layers, kStrip);
   layer.values = {1.0004F, -3.9991F, kNan, kNan, 3e30F, 1e-9F};
   FrameEncoder encoder;
-  const auto& values = *read(encoder, t).layers()->Get(0)->values();
+  const auto& values = *read(encoder, t).values();
   EXPECT_EQ(values[0], 1);
   EXPECT_EQ(values[1], -4 + 1.0F / 1024);
   EXPECT_TRUE(std::isnan(values[2]) && std::isnan(values[3]));
@@ -248,7 +285,7 @@ TEST(FrameCodec, LayersThatComeAndGoAreWrittenAsByAFreshEncoder) {
   t.output.layers[0].values.push_back(2);
   t.output.layers[0].values.push_back(3);
   expect_same("with a longer line");
-  t.words_fresh = false;
+  t.words_fresh = t.legend_fresh = false;
   expect_same("without words");
   algo::Layer& grid = add_layer(t.output.layers, kGrid);
   put(grid, algo::Vec2{-1.5, 2}, 0.125, 3);
@@ -266,10 +303,13 @@ TEST(FrameCodec, LayersThatComeAndGoAreWrittenAsByAFreshEncoder) {
 
 TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
   algo::Telemetry t = full_telemetry();
-  t.words_fresh = false;
+  t.words_fresh = t.legend_fresh = false;
   FrameEncoder encoder;
-  EXPECT_EQ(read(encoder, t).what()->size(), 0U);
-  EXPECT_EQ(read(encoder, t).why()->size(), 0U);
+  const wire::News& news = *read(encoder, t).news();
+  EXPECT_EQ(news.what(), nullptr);
+  EXPECT_EQ(news.why(), nullptr);
+  EXPECT_EQ(news.layers(), nullptr);
+  EXPECT_EQ(news.measures(), nullptr);
   algo::Telemetry back;
   decode_frame(encoder.encode(full_telemetry()), back);
   decode_frame(encoder.encode(t), back);  // nothing of it stays
@@ -347,9 +387,14 @@ TEST(FrameCodec, ATickOfDrivingStaysSmall) {
   t.observation.infrared.clear();
   t.goals_ahead.clear();
   t.moved.clear();
-  t.words_fresh = false;
+  t.words_fresh = t.legend_fresh = false;
+  t.observation.channels.clear();
+  t.command.joints = 0;
+  t.hold = {};
+  t.limit = {};
+  t.ground_truth->tilt.reset();
   FrameEncoder encoder;
-  EXPECT_LE(encoder.encode(t).size(), 1400u);  // of it names and labels of two layers
+  EXPECT_LE(encoder.encode(t).size(), 1200u);
 }
 
 TEST(FrameCodec, GarbageIsRefusedWithASentence) {

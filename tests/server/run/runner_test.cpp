@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "algo/gate.hpp"
 #include "algo/strip/strip_law.hpp"
 
 namespace server {
@@ -28,7 +29,7 @@ class PaperRobot final : public algo::Robot, public algo::Editing, public algo::
   void reset(algo::Observation& o) override { observe(o); }
   bool step(const algo::Command& command, algo::Observation& o) override {
     ++steps;
-    if (steps == link_lost_at) throw algo::RobotError("The cable is out.");
+    if (steps == link_lost_at) throw algo::RobotError("The cable is out.", moments);
     if (steps == log_ends_at) return false;
     pose_.heading = algo::wrap_angle(pose_.heading + command.base.omega * spec_.period);
     pose_.x += command.base.v * spec_.period * std::cos(pose_.heading);
@@ -55,6 +56,7 @@ class PaperRobot final : public algo::Robot, public algo::Editing, public algo::
   algo::RobotSpec spec_{};
   int steps = 0;
   int link_lost_at = -1;
+  std::vector<algo::Moment> moments{};
   int log_ends_at = -1;
   bool real = false;
   bool stopped = false;
@@ -168,7 +170,7 @@ TEST_F(RunnerTest, AStopThatFoundTheRingFullComesAfterAReleaseInIt) {
   }
   rings.stop_now = true;
   links.listeners.push_back([&](const Frame& frame) {
-    EXPECT_EQ(frame.telemetry.hold, algo::Hold::Stopped);
+    EXPECT_EQ(frame.telemetry.hold, algo::holds::kStopped);
     stop.request_stop();
   });
   go({kGoal}, {});

@@ -64,6 +64,8 @@ TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
        R"({"name":"c","goal":{"x":3,"y":0},"waypoints":[{"x":0,"y":2,"heading":0.5},{"x":1,"y":1}]})",
        R"({"name":"f","lasers":[]})",
        R"({"name":"f","lasers":[],"controller":"vff","sonar":{}})",
+       R"({"name":"f","sensors":[{"sensor":"compass","channel":"heading","north":0.5},)"
+       R"({"sensor":"scripted","channel":"b","unit":"V","times":[0],"values":[1]}]})",
        R"({"name":"f","sonar":{"count":8,"field_deg":180,"cone_deg":25,"ping":0.02,)"
        R"("range_min":0.2,"range_max":1,"noise":0,"incidence_deg":50,"height":0.2}})",
        R"({"name":"f","infrared":[{},{"mount":{"x":-0.3,"y":0,"heading":3},"height":0.2,"beams":31,)"
@@ -157,6 +159,15 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
       {R"({"name":"a","lasers":[{},{},{},{},{}]})", "lasers: has more than 4 entries"},
       {R"({"name":"a","lasers":[{"resolution_deg":0.3}]})", "lasers/0/resolution_deg: "},
       {R"({"name":"a","lasers":[{"rolling":1}]})", "lasers/0/rolling: must be true or false"},
+      {R"({"name":"a","sensors":{}})", "sensors: must be an array, not object"},
+      {R"({"name":"a","sensors":[{"channel":"b"}]})", "sensors/0/sensor: is missing"},
+      {R"({"name":"a","sensors":[{"sensor":"nose","channel":"b"}]})",
+       "sensors/0: sensor 'nose' is unknown; known are compass, scripted"},
+      {R"({"name":"a","sensors":[{"sensor":"compass","channel":"b","north":"up"}]})",
+       "sensors/0/north: must be a number, not string"},
+      {R"({"name":"a","sensors":[{"sensor":"compass","channel":"b"},)"
+       R"({"sensor":"compass","channel":"b"}]})",
+       "sensors/1/channel: 'b' is used twice"},
       {R"({"name":"a","sonar":[]})", "sonar: must be an object, not array"},
       {R"({"name":"a","sonar":{"sensors":8}})", "sonar: unknown field 'sensors'"},
       {R"({"name":"a","sonar":{"count":0}})", "sonar: count must be 1 to 64"},

@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "algo/gate.hpp"
 #include "tests/server/serve/app_fixture.hpp"
 #include <gtest/gtest.h>
 
@@ -45,7 +46,7 @@ TEST(Stop, OvertakesRequestsThatNobodyTakes) {
   session.submit(algo::Stop{true}, {});
   EXPECT_TRUE(eventually([&] {
     session.poll();
-    return session.newest() && session.newest()->telemetry.hold == algo::Hold::Stopped;
+    return session.newest() && session.newest()->telemetry.hold == algo::holds::kStopped;
   }));
   EXPECT_TRUE(session.state().asked.stop);
 }
@@ -69,7 +70,7 @@ TEST(Stop, IsNotUndoneByAReleaseOnItsWay) {
     session.poll();
     return session.newest()->telemetry.tick > tick + 2;
   }));
-  EXPECT_EQ(session.newest()->telemetry.hold, algo::Hold::Stopped);
+  EXPECT_EQ(session.newest()->telemetry.hold, algo::holds::kStopped);
 }
 
 TEST_F(StopTest, TellsCommandedFromStanding) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "algo/gate.hpp"
 #include "tests/algo/worlds.hpp"
 #include "tests/folders.hpp"
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ algo::Telemetry driving() {
   t.observation.odometry = {10.0, {0.25, -0.5, 0.5}, {}};
   t.goal = algo::SetGoal{{3.1, 4.2}, std::nullopt};
   t.mission = algo::Mission::Driving;
-  t.behaviour = algo::BehaviourId::Avoid;
+  t.behaviour = algo::behaviours::kAvoid;
   t.scene.left = algo::Nearest{200, {1, 0.5}, 1.253};
   t.scene.right = algo::Nearest{100, {1, -0.5}, 1.127};
   return t;
@@ -85,21 +86,25 @@ std::vector<Tick> ticks() {
     out.push_back({driving(), algo::builtin_controllers().at("modified").make()});
     return out.back().t;
   };
-  for (int hold = 1; hold <= static_cast<int>(algo::Hold::Dazzled); ++hold) {
-    if (static_cast<algo::Hold>(hold) == algo::Hold::Halted) continue;
-    add().hold = static_cast<algo::Hold>(hold);
+  for (const algo::Hold& hold : {algo::holds::kStopped,
+                                 algo::holds::kBumper,
+                                 algo::holds::kStaleScan,
+                                 algo::holds::kNotFinite,
+                                 algo::holds::kLinkLost,
+                                 algo::holds::kDazzled}) {
+    add().hold = hold;
   }
   for (int halt = 1; halt <= static_cast<int>(algo::Halt::LateTick); ++halt) {
     algo::Telemetry& t = add();
-    t.hold = algo::Hold::Halted;
+    t.hold = algo::holds::kHalted;
     t.observation.halt = static_cast<algo::Halt>(halt);
   }
   algo::Telemetry& stale = add();
-  stale.hold = algo::Hold::StaleScan;
+  stale.hold = algo::holds::kStaleScan;
   stale.scene.scan.resize(1);
   stale.scene.scan.stamp = 9.27;
   algo::Telemetry& by_hand = add();
-  by_hand.behaviour = algo::BehaviourId::Manual;
+  by_hand.behaviour = algo::behaviours::kManual;
   by_hand.command = {{-0.253, 0.127}};
   add().goal.reset();
   algo::Telemetry& right_only = add();
@@ -121,7 +126,7 @@ std::vector<Tick> ticks() {
   }
   for (Tick& tick : out) {
     algo::explain(tick.t, *tick.controller, tick.t.words);
-    tick.t.words_fresh = true;
+    tick.t.words_fresh = tick.t.legend_fresh = true;
   }
   return out;
 }

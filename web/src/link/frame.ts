@@ -1,9 +1,10 @@
 // web/src/link/frame.ts: one FlatBuffers frame (telemetry.fbs) as a plain object.
 import * as flatbuffers from "flatbuffers";
 import { Point, Pose } from "../geometry";
-import { LayerView, kLayerKinds, kLayerStyles, kTones } from "../layer";
+import { LayerView } from "../layer";
 import { Obstacle, ObstacleKind } from "../obstacle";
 import * as wire from "../wire/telemetry_generated";
+import { Legends, Measure, shown } from "./legend";
 
 /** Wire value of a beam that met nothing within range. */
 export const kFree = 65535;
@@ -22,8 +23,8 @@ export interface Sweep {
 export interface Goal { x: number; y: number; heading: number | null }
 export interface RangeReading { mount: Pose; range: number; status: number }
 
-/** A number of the controller's method. */
-export interface Measure { name: string; unit: string; value: number }
+/** A reading of a further sensor, by its index in the robot's list of channels. */
+export interface ChannelReading { channel: number; stamp: number; values: number[] }
 /** What the robot does, and why: a sentence each. */
 export interface Words { what: string; why: string }
 
@@ -38,19 +39,14 @@ export type FrameRequest =
   | { type: "stop"; engaged: boolean }
   | { type: "set_parameter"; name: string; value: number };
 
-export type Hold = "none" | "stopped" | "bumper" | "stale_scan" | "not_finite" | "link_lost" | "halted" | "dazzled";
 /** Why real hardware holds its own wheels still. */
 export type Halt = "none" | "disarmed" | "base_lost" | "scanner_lost" | "bad_line" | "scanner_fault" |
   "stop_button" | "base_fault" | "over_current" | "battery_low" | "motors_off" | "late_tick";
 export type Mission = "idle" | "driving" | "arrived" | "stuck" | "held";
-export type Behaviour = "rest" | "avoid" | "manual";
 
-const kHolds: Hold[] =
-  ["none", "stopped", "bumper", "stale_scan", "not_finite", "link_lost", "halted", "dazzled"];
 const kHalts: Halt[] = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
   "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"];
 const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
-const kBehaviours: Behaviour[] = ["rest", "avoid", "manual"];
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
 
 /** One tick of a run; positions in W, metres, radians, seconds. */
@@ -69,15 +65,17 @@ export interface Frame {
   truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
-  hold: Hold;
+  hold: string;             // "stale_scan", ...: why the command is zero; "none"
+  limit: string | null;     // what keeps the command below the one wanted
   halt: Halt;
   mission: Mission;
-  behaviour: Behaviour;
+  behaviour: string;        // "rest", "avoid", "manual", ...
   clearance: number;        // [m] hull to nearest filtered return
   newest_scan: number | null; // [s] its stamp, only while it is too old to drive by
   words: Words | null;      // null: as in the frames before
   layers: LayerView[];      // a grid that is not among them holds
   measures: Measure[];
+  readings: ChannelReading[]; // of further sensors; only those new in this tick
   moved: { id: number; pose: Pose }[]; // obstacles that move by themselves
 }
 
@@ -89,15 +87,16 @@ const pose = (p: XYH | null): Pose =>
   p ? { x: p.x(), y: p.y(), heading: p.heading() } : { x: 0, y: 0, heading: 0 };
 
 /** Decodes `bytes`; throws when they are too short to be a frame. The ranges are copied. */
-export function decode_frame(bytes: Uint8Array): Frame {
-  if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
-  const f = wire.Frame.getRootAsFrame(buffer_of(bytes));
+export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
+  const f = root_of(bytes);
+  legends.learn(f);
   const odometry = f.odometry();
   const truth = f.truth();
   const command = f.command();
   const goal = f.goal();
   const decision = f.decision();
-  const what = f.what();
+  const what = f.news()?.what();
+  const { layers, measures } = shown(f, legends.find(f.legend()));
   return {
     tick: Number(f.tick()),
     stamp: f.stamp(),
@@ -120,17 +119,31 @@ export function decode_frame(bytes: Uint8Array): Frame {
     },
     goals_ahead: list(f.goalsAheadLength(), (i) => point(f.goalsAhead(i))),
     goal: goal && { ...point(goal), heading: f.goalHeading() },
-    hold: kHolds[decision?.hold() ?? 0] ?? "none",
+    hold: f.hold() ?? "none",
+    limit: f.limit(),
     halt: kHalts[f.halt()] ?? "none",
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
-    behaviour: kBehaviours[decision?.behaviour() ?? 0] ?? "rest",
+    behaviour: f.behaviour() ?? "rest",
     clearance: decision?.clearance() ?? 0,
     newest_scan: f.newestScan(),
-    words: what ? { what, why: f.why() ?? "" } : null, // empty where they are not new
-    layers: list(f.layersLength(), (i) => layer(f.layers(i)!)).filter((l) => l !== null),
-    measures: measures(f.measures()),
+    words: what ? { what, why: f.news()?.why() ?? "" } : null, // absent where they are not new
+    layers,
+    measures,
+    readings: list(f.channelsLength(), (i) => channel_reading(f.channels(i)!, f.stamp())),
     moved: list(f.movedLength(), (i) => ({ id: f.moved(i)!.id(), pose: pose(f.moved(i)) })),
   };
+}
+
+/** Frames of one run: of a frame whose legend comes with a later one too. */
+export function decode_frames(frames: Uint8Array[], legends = new Legends()): Frame[] {
+  for (const bytes of frames) legends.learn(root_of(bytes));
+  return frames.map((bytes) => decode_frame(bytes, legends));
+}
+
+/** The frame in `bytes`, unread. */
+export function root_of(bytes: Uint8Array): wire.Frame {
+  if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
+  return wire.Frame.getRootAsFrame(buffer_of(bytes));
 }
 
 /** Decodes a scan that comes on its own, as of /tautline/filtered; null for an empty message. */
@@ -164,32 +177,8 @@ function reading(r: wire.RangeReading): RangeReading {
   return { mount: pose(r.mount()), range: r.range(), status: r.status() };
 }
 
-/** Null for a kind that this page is too old to know. */
-function layer(l: wire.Layer): LayerView | null {
-  const name = l.name() ?? "";
-  const kind = kLayerKinds[l.kind()];
-  return kind === undefined ? null : {
-    name,
-    label: l.label() ?? name,
-    unit: l.unit() ?? "",
-    kind,
-    robot: l.frame() === wire.LayerFrame.Robot,
-    tone: kTones[l.tone()] ?? "muted",
-    style: kLayerStyles[l.style()] ?? "solid",
-    axes: l.axes(),
-    level: l.level(),
-    values: l.valuesArray()?.slice() ?? new Float32Array(0),
-    cells: l.cellsArray()?.slice() ?? new Uint8Array(0),
-    text: l.text()?.split("\n") ?? [],
-  };
-}
-
-function measures(m: wire.Measures | null): Measure[] {
-  if (!m) return [];
-  const names = m.names()?.split("\n") ?? [];
-  const units = m.units()?.split("\n") ?? [];
-  return list(Math.min(names.length, m.valuesLength()), (i) =>
-    ({ name: names[i], unit: units[i] ?? "", value: m.values(i) ?? NaN }));
+function channel_reading(r: wire.Reading, now: number): ChannelReading {
+  return { channel: r.channel(), stamp: r.stamp() ?? now, values: [...(r.valuesArray() ?? [])] };
 }
 
 function set_goal(g: wire.SetGoal): Goal {

@@ -6,6 +6,7 @@ import {
   ParameterValue, ServerBinary, ServerText, kSubprotocols, parse_binary, parse_text, payload_json,
   service_request,
 } from "./foxglove";
+import { Legends } from "./legend";
 
 export interface LinkStatus {
   phase: "connecting" | "open" | "lost";
@@ -62,6 +63,7 @@ export class LiveLink {
   private services_ = new Map<string, number>();
   private channels_ = new Map<string, number>(); // by topic
   private subscriptions_ = new Map<number, string>();
+  private legends_ = new Legends();
   private wants_filtered_ = false;
   private calls_ = new Map<number, PendingCall>();
   private parameter_answers_ = new Map<string, (values: ParameterValue[]) => void>();
@@ -320,7 +322,7 @@ export class LiveLink {
     try {
       if (topic === "/telemetry") {
         this.arrivals_.push(now());
-        this.events_.frame(decode_frame(payload));
+        this.events_.frame(decode_frame(payload, this.legends_));
       } else if (topic === kFiltered) {
         const sweep = decode_sweep(payload);
         if (sweep) this.events_.filtered(sweep);

@@ -2,7 +2,7 @@
 import { Page } from "../contract";
 import { TickRow } from "../state/columns";
 import { SceneState, fold_frame } from "../state/scene";
-import { decode_frame, decode_sweep } from "./frame";
+import { decode_frames, decode_sweep } from "./frame";
 import * as rest from "./rest";
 import { session_path } from "./session";
 import { split_frames } from "./stored";
@@ -41,7 +41,7 @@ export class Past {
       if (tick === undefined) return;
       const frames = await recent(run, "frames", tick);
       if (this.scene_.frame || run !== this.scene_.run) return; // a live one came meanwhile
-      for (const bytes of frames) fold_frame(this.scene_, decode_frame(bytes));
+      for (const frame of decode_frames(frames)) fold_frame(this.scene_, frame);
       this.look_back();
       this.changed_();
       if (this.wants_filtered) await this.fetch_filtered();

@@ -10,7 +10,8 @@ import {
   SceneState, edited, forget_instant, held_of, hold_time, new_scene, show_frame, take_parameters, take_robot,
 } from "../state/scene";
 import { placed } from "../state/sweeps";
-import { Frame, decode_frame, decode_sweep } from "./frame";
+import { Frame, decode_frame, decode_frames, decode_sweep } from "./frame";
+import { Legends } from "./legend";
 
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
@@ -51,6 +52,7 @@ export class StoredRun {
   private chunks_: Chunk[] = [];
   private worlds_: { row: number; obstacles: Obstacle[] }[] = [];
   private parameters_: { row: number; name: string; value: number }[] = [];
+  private legends_ = new Legends();
   private clock_ = 0;
   private wanted_ = -1;
   private held_ = new Map<string, number[]>(); // rows that bring what holds after them, by its name
@@ -190,8 +192,7 @@ export class StoredRun {
     const first_row = this.rows;
     const count = frames.length;
     this.chunks_.push({ from_tick, first_row, count, frames, filtered: null, used: ++this.clock_ });
-    for (const bytes of frames) {
-      const f = decode_frame(bytes);
+    for (const f of decode_frames(frames, this.legends_)) {
       const row = this.rows;
       this.columns.push(f);
       this.events.push(f);
@@ -218,7 +219,7 @@ export class StoredRun {
     const chunk = this.chunk_of(row);
     chunk.used = ++this.clock_;
     const bytes = chunk.frames?.[row - chunk.first_row];
-    return bytes ? decode_frame(bytes) : null;
+    return bytes ? decode_frame(bytes, this.legends_) : null;
   }
 
   private chunk_of(row: number): Chunk {

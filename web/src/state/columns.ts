@@ -1,6 +1,7 @@
 // web/src/state/columns.ts: the plain numbers of a run by row, for the path and the plots, in
 // growing typed arrays; a number that a row does not have is NaN. A live run is thinned when it grows
 // beyond a bound, so memory stays flat.
+import { ChannelInfo } from "../contract";
 import { Frame } from "../link/frame";
 
 /** What every robot has; besides, a column for each measure of its controller, by that name. */
@@ -14,10 +15,16 @@ export interface TickRow {
   clearance: number;
 }
 
+/** As in the CSV: "NAME", or "NAME[1]" of several values. */
+const column_of = (info: ChannelInfo, k: number) => (info.values > 1 ? `${info.name}[${k}]` : info.name);
+
 export class Columns {
   length = 0;
   /** The measures that came so far, in the order in which they first did. */
   measures: MeasureKey[] = [];
+  /** Of the robot; a frame's readings name them by their place. */
+  channels: ChannelInfo[] = [];
+  private held_ = new Map<string, number>(); // the newest value of each channel
   private data_ = new Map<string, Float64Array>();
   private capacity_ = 1024;
   private stride_ = 1;
@@ -40,12 +47,14 @@ export class Columns {
   clear(): void {
     for (const { name } of this.measures) this.data_.delete(name);
     this.measures = [];
+    this.held_.clear();
     this.length = 0;
     this.stride_ = 1;
     this.skipped_ = 0;
   }
 
   push(f: Frame): void {
+    this.hold(f);
     if (++this.skipped_ < this.stride_) return;
     this.skipped_ = 0;
     if (this.length >= this.most_) this.thin();
@@ -63,10 +72,29 @@ export class Columns {
     put("omega", f.twist.omega);
     put("clearance", f.clearance);
     for (const { name } of this.measures) put(name, NaN);
-    for (const { name, unit, value } of f.measures) {
+    const put_named = (name: string, unit: string, value: number) => {
       if (!this.data_.has(name)) this.measures = [...this.measures, { name, unit }];
       put(name, value);
+    };
+    for (const { name, unit, value } of f.measures) put_named(name, unit, value);
+    for (const { name, unit } of this.channel_columns()) {
+      const value = this.held_.get(name);
+      if (value !== undefined) put_named(name, unit, value);
     }
+  }
+
+  /** A channel is seldomer read than the robot ticks: its value holds. */
+  private hold(f: Frame): void {
+    for (const { channel, values } of f.readings) {
+      const info = this.channels[channel];
+      if (!info) continue;
+      values.forEach((value, k) => this.held_.set(column_of(info, k), value));
+    }
+  }
+
+  private channel_columns(): MeasureKey[] {
+    return this.channels.flatMap((info) =>
+      Array.from({ length: info.values }, (_, k) => ({ name: column_of(info, k), unit: info.unit })));
   }
 
   /** Puts rows of the record before those that are here. What they do not say is NaN. */

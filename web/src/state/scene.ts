@@ -88,6 +88,7 @@ export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): v
   scene.radius = robot.radius ?? scene.radius;
   scene.half_track = robot.half_track ?? scene.half_track;
   const { half_length = 0, half_width = 0 } = robot;
+  scene.columns.channels = robot.channels ?? [];
   scene.hull = half_length > 0 ? { half_length, half_width } : null;
 }
 

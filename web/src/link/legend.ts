@@ -1,0 +1,78 @@
+// web/src/link/legend.ts: what the values of a frame's layers and measures are. Frames say it only when
+// it has changed and twice a second; the page remembers it.
+import { LayerView, kLayerKinds, kLayerStyles, kTones } from "../layer";
+import * as wire from "../wire/telemetry_generated";
+
+/** A number of the controller's method. */
+export interface Measure { name: string; unit: string; value: number }
+
+type LayerLook = Omit<LayerView, "values" | "cells" | "text">;
+export interface Legend {
+  layers: (LayerLook | null)[]; // null: of a kind that this page is too old to know
+  measures: { name: string; unit: string }[];
+}
+
+const kMost = 64; // a run has a few; the oldest goes
+
+/** Legends by their number, which tells them apart in every run. */
+export class Legends {
+  private held_ = new Map<number, Legend>();
+
+  /** Takes the legend that `f` brings, if it brings one. */
+  learn(f: wire.Frame): void {
+    const news = f.news();
+    if (!news || (news.layersLength() === 0 && !news.measures()) || this.held_.has(f.legend())) return;
+    const layers: (LayerLook | null)[] = [];
+    for (let i = 0; i < news.layersLength(); ++i) layers.push(look_of(news.layers(i)!));
+    const names = news.measures()?.split("\n") ?? [];
+    const units = news.units()?.split("\n") ?? [];
+    const measures = names.map((name, i) => ({ name, unit: units[i] ?? "" }));
+    this.held_.set(f.legend(), { layers, measures });
+    if (this.held_.size > kMost) this.held_.delete(this.held_.keys().next().value!);
+  }
+
+  find(number: number): Legend | null {
+    return this.held_.get(number) ?? null;
+  }
+}
+
+function look_of(info: wire.LayerInfo): LayerLook | null {
+  const name = info.name() ?? "";
+  const kind = kLayerKinds[info.kind()];
+  return kind === undefined ? null : {
+    name,
+    label: info.label() ?? name,
+    unit: info.unit() ?? "",
+    kind,
+    robot: info.frame() === wire.LayerFrame.Robot,
+    tone: kTones[info.tone()] ?? "muted",
+    style: kLayerStyles[info.style()] ?? "solid",
+    axes: info.axes(),
+    level: info.level(),
+  };
+}
+
+/** The layers of `f` that have something to show, and its measures; none until their legend is known. */
+export function shown(f: wire.Frame, legend: Legend | null): { layers: LayerView[]; measures: Measure[] } {
+  const values = f.valuesArray() ?? new Float32Array(0);
+  const counts = f.countsArray() ?? new Uint16Array(0);
+  if (!legend) return { layers: [], measures: [] };
+  const more = new Map<number, wire.LayerMore>();
+  for (let i = 0; i < f.moreLength(); ++i) more.set(f.more(i)!.layer(), f.more(i)!);
+  const layers: LayerView[] = [];
+  let at = 0;
+  counts.forEach((count, i) => {
+    const look = legend.layers[i];
+    if (count > 0 && look) {
+      layers.push({
+        ...look,
+        values: values.slice(at, at + count),
+        cells: more.get(i)?.cellsArray()?.slice() ?? new Uint8Array(0),
+        text: more.get(i)?.text()?.split("\n") ?? [],
+      });
+    }
+    at += count;
+  });
+  const measures = legend.measures.map((m, i) => ({ ...m, value: values[at + i] ?? NaN }));
+  return { layers, measures };
+}
