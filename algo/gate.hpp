@@ -37,11 +37,9 @@ inline constexpr Hold kStaleScan{
     "stale_scan", "Waiting for the laser", "The newest scan is too old. The robot waits."};
 inline constexpr Hold kDazzled{
     "dazzled", "Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
-inline constexpr Hold kNotFinite{"not_finite",
-                                 "Holding still",
-                                 "A sensor or the controller gave a value that is not a number."};
-inline constexpr Hold kLinkLost{
-    "link_lost", "Holding still", "The link to the robot is lost."};
+inline constexpr Hold kNotFinite{
+    "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
+inline constexpr Hold kLinkLost{"link_lost", "Holding still", "The link to the robot is lost."};
 /// By the robot itself: observation.halt says why.
 inline constexpr Hold kHalted{"halted", "Holding still", "The robot holds its wheels still."};
 

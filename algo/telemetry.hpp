@@ -85,8 +85,8 @@ struct Hold {
 
 /// What keeps a command below the one that was wanted; without a name nothing does.
 struct Limit {
-  Name name{};              // "turnover"
-  std::string_view why{};   // a sentence, as of a Hold
+  Name name{};             // "turnover"
+  std::string_view why{};  // a sentence, as of a Hold
   explicit operator bool() const { return !name.empty(); }
   friend bool operator==(const Limit& a, const Limit& b) { return a.name == b.name; }
 };
@@ -118,10 +118,10 @@ struct Telemetry {
   std::optional<SetGoal> goal{};
   Recycled<SetGoal> goals_ahead{};  // after that one, in order
   ControlOutput output{};
-  Recycled<Layer> layers{};  // what the pipeline shows besides the controller's
-  Explanation words{};       // the newest
-  bool words_fresh = false;  // they were said in this tick; the frame brings them only then
-  std::uint32_t legend = 0;  // which layers and measures there are (algo/legend.hpp)
+  Recycled<Layer> layers{};   // what the pipeline shows besides the controller's
+  Explanation words{};        // the newest
+  bool words_fresh = false;   // they were said in this tick; the frame brings them only then
+  std::uint32_t legend = 0;   // which layers and measures there are (algo/legend.hpp)
   bool legend_fresh = false;  // the frame says what they are
   Command command{};
   Hold hold{};

@@ -63,7 +63,7 @@ constexpr std::size_t kMostJoints = 8;
 /// What the robot is told for one period.
 struct Command {
   Twist2 base{};
-  std::uint8_t joints = 0;                       // of the robot's arm
+  std::uint8_t joints = 0;                        // of the robot's arm
   std::array<double, kMostJoints> joint_rates{};  // [rad/s]; of the first `joints`, 0 beyond
   bool operator==(const Command&) const = default;
 };

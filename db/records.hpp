@@ -45,13 +45,13 @@ std::optional<RunStatus> find_status(std::string_view name);
 /// The columns kept in plain sight for queries; the frame beside them holds everything.
 struct TickRow {
   std::uint64_t tick = 0;
-  double t = 0;          // [s] run clock
-  double x = 0;          // [m] of R in W, as odometry has it
-  double y = 0;          // [m]
-  double heading = 0;    // [rad]
-  double v = 0;          // [m/s] commanded
-  double omega = 0;      // [rad/s] commanded
-  double clearance = 0;  // [m] hull to nearest filtered return
+  double t = 0;             // [s] run clock
+  double x = 0;             // [m] of R in W, as odometry has it
+  double y = 0;             // [m]
+  double heading = 0;       // [rad]
+  double v = 0;             // [m/s] commanded
+  double omega = 0;         // [rad/s] commanded
+  double clearance = 0;     // [m] hull to nearest filtered return
   std::string hold{};       // name; empty: not held
   std::string behaviour{};  // name
   bool operator==(const TickRow&) const = default;

@@ -54,7 +54,7 @@ struct SettingInfo {
   std::string_view help{};
   double min = 0;
   double max = 0;
-  std::size_t most = 1;   // numbers; 1: a number, no list
+  std::size_t most = 1;  // numbers; 1: a number, no list
   bool required = false;
 };
 

@@ -116,7 +116,8 @@ void World::check() const {
   }
   for (const SensorConfig& config : scenario_.sensors) {
     if (const auto problem = defect(config)) {
-      throw std::invalid_argument("The scenario's sensor " + config.channel + ": " + *problem + ".");
+      throw std::invalid_argument("The scenario's sensor " + config.channel + ": " + *problem +
+                                  ".");
     }
   }
   const bool has_gyro =

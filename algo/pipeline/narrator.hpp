@@ -14,9 +14,9 @@ class Narrator {
     said_.reset();
     shown_at_.reset();
   }
-  /// Fills t.words: anew when hold, limit, mission, behaviour or the controller's state has changed,
-  /// else twice a second; the same as in the tick before otherwise. Fills t.legend, which is fresh
-  /// when it has changed, and every two seconds.
+  /// Fills t.words: anew when hold, limit, mission, behaviour or the controller's state has
+  /// changed, else twice a second; the same as in the tick before otherwise. Fills t.legend, which
+  /// is fresh when it has changed, and every two seconds.
   void tell(const Controller& controller, Telemetry& t);
 
  private:

@@ -223,8 +223,7 @@ void FrameWriter::decision() {
   const algo::ControlOutput& out = t.output;
   const fb::Twist2 command = to_wire(t.command.base);
   frame.add_command(&command);
-  const fb::Decision decision(static_cast<float>(t.clearance),
-                              static_cast<fb::Mission>(t.mission));
+  const fb::Decision decision(static_cast<float>(t.clearance), static_cast<fb::Mission>(t.mission));
   frame.add_decision(&decision);
   frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
   if (t.goal) {
@@ -278,9 +277,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto moved = write_structs<fb::Moved>(b, t.moved);
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto channels = write_channels(b, o);
-  const auto rates = t.command.joints == 0
-                         ? 0
-                         : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
+  const auto rates =
+      t.command.joints == 0 ? 0 : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
   const auto hold = write_name(b, t.hold.name);
   const auto limit = write_name(b, t.limit.name);
   const auto shown = layers_.write_shown(b, t);
@@ -345,11 +343,10 @@ void FrameEncoder::find_windows(const algo::Telemetry& t) {
           half_turn(*scan));
     }
   }
-  layers_.add_windows(
-      t,
-      static_cast<std::uint32_t>(
-          reinterpret_cast<const std::uint8_t*>(frame->values()->data()) - bytes),
-      windows_);
+  layers_.add_windows(t,
+                      static_cast<std::uint32_t>(
+                          reinterpret_cast<const std::uint8_t*>(frame->values()->data()) - bytes),
+                      windows_);
   std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
     return a.offset < c.offset;
   });

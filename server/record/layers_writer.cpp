@@ -92,17 +92,16 @@ LayersWriter::Shown LayersWriter::write_shown(Builder& b, const algo::Telemetry&
   float* value = nullptr;
   out.values = b.CreateUninitializedVector(values, &value);
   each_layer(t, [&](const algo::Layer& layer) {
-    value = std::transform(
-        layer.values.data(), layer.values.data() + count_of(layer), value, rounded);
+    value =
+        std::transform(layer.values.data(), layer.values.data() + count_of(layer), value, rounded);
   });
   for (const algo::Measure& each : t.output.measures) {
     *value++ = rounded(static_cast<float>(each.value));
   }
   std::uint16_t* count = nullptr;
   out.counts = b.CreateUninitializedVector(index, &count);
-  each_layer(t, [&](const algo::Layer& layer) {
-    *count++ = static_cast<std::uint16_t>(count_of(layer));
-  });
+  each_layer(
+      t, [&](const algo::Layer& layer) { *count++ = static_cast<std::uint16_t>(count_of(layer)); });
   return out;
 }
 

@@ -24,14 +24,15 @@ constexpr std::chrono::milliseconds kPausedWait{50};
 std::string account_of(const algo::RobotError& error) {
   if (error.last.empty()) return error.what();
   const algo::Moment& last = error.last.back();
-  return fmt::format("{} It was last heard of at {:.2f} s, at ({:.2f}, {:.2f}), driving {:.2f} m/s "
-                     "and told {:.2f} m/s.",
-                     error.what(),
-                     last.stamp,
-                     last.pose_W.x,
-                     last.pose_W.y,
-                     last.twist.v,
-                     last.command.base.v);
+  return fmt::format(
+      "{} It was last heard of at {:.2f} s, at ({:.2f}, {:.2f}), driving {:.2f} m/s "
+      "and told {:.2f} m/s.",
+      error.what(),
+      last.stamp,
+      last.pose_W.x,
+      last.pose_W.y,
+      last.twist.v,
+      last.command.base.v);
 }
 
 }  // namespace

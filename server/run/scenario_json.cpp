@@ -218,10 +218,10 @@ void read_waypoints(const JsonReader& in, sim::Scenario& s) {
 
 sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
-  in.only({"name",     "title",      "description", "robot",     "vehicle",      "period",
-           "start",    "goal",       "drive",       "obstacles", "lasers",       "sonar",
-           "infrared", "sensors", "gyro",       "bumpers",     "encoders",  "localization", "controller",
-           "filter",   "parameters", "time_limit",  "waypoints"});
+  in.only({"name",       "title",   "description", "robot",      "vehicle",  "period",
+           "start",      "goal",    "drive",       "obstacles",  "lasers",   "sonar",
+           "infrared",   "sensors", "gyro",        "bumpers",    "encoders", "localization",
+           "controller", "filter",  "parameters",  "time_limit", "waypoints"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_scenario_name(s.name)) {

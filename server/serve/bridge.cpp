@@ -339,8 +339,8 @@ void Bridge::publish_frame(const FrameRef& frame) {
   const std::uint64_t time_ns = now_ns();
   if (hub_.wanted(telemetry_)) {
     // News of frames that were passed over since the last one shown.
-    const bool passed_over = (!t.words_fresh && t.words != told_words_) ||
-                             (!t.legend_fresh && t.legend != told_legend_);
+    const bool passed_over =
+        (!t.words_fresh && t.words != told_words_) || (!t.legend_fresh && t.legend != told_legend_);
     hub_.publish(telemetry_,
                  time_ns,
                  passed_over ? with_news(*frame) : shared(text_of(encoded(*frame).bytes())));

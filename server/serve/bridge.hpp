@@ -68,7 +68,7 @@ class Bridge {
   Loads loads_;
   foxglove::Hub hub_{};
   Gains gains_{*this};
-  FrameEncoder encoder_{};          // of what is sent besides the frames as they are
+  FrameEncoder encoder_{};  // of what is sent besides the frames as they are
   std::uint32_t told_legend_ = 0;
   algo::Explanation told_words_{};  // that viewers of the telemetry have
   algo::Parameters told_parameters_{};

@@ -49,6 +49,13 @@ struct Subject {
 class Pass {
  public:
   explicit Pass(bool quick) : quick_(quick) {}
+  /// A quick pass that makes `calls` calls of each subject in counted(), for a program that counts
+  /// instructions there (tests/dev/bench_instructions.py), and prints which they were.
+  static Pass counting(int calls) {
+    Pass pass(true);
+    pass.calls_ = calls;
+    return pass;
+  }
 
   bool quick() const { return quick_; }
   /// `full` of something, or few of it in a quick pass.
@@ -73,7 +80,10 @@ class Pass {
   const std::vector<Figure>& figures() const { return figures_; }
 
  private:
+  void count_calls(const std::string& title, const std::vector<Subject>& subjects) const;
+
   bool quick_ = false;
+  int calls_ = 0;  // to be counted; 0: timed
   std::vector<Figure> figures_{};
 };
 

@@ -73,6 +73,9 @@ int bench_main(int argc, char** argv) {
   std::vector<std::string> files;
   app.add_flag("--quick", quick, "Only checks that ours and the references agree; no times");
   app.add_option("--only", only, "Rows to run with their families, such as P1,P12")->delimiter(',');
+  int calls = 0;
+  app.add_option("--count", calls, "Calls of each subject for an instruction counter; no times")
+      ->check(CLI::Range(1, 100000));
   app.add_option("--out", out, "Writes the results as JSON");
   app.add_option("--compare", files, "Compares two result files; fails when something is worse")
       ->expected(2)
@@ -90,9 +93,9 @@ int bench_main(int argc, char** argv) {
   std::array<char*, 2> given{words[0].data(), words[1].data()};
   int count = 2;
   benchmark::Initialize(&count, given.data());
-  Pass pass(quick);
+  Pass pass = calls > 0 ? Pass::counting(calls) : Pass(quick);
   const std::vector<std::string> failures = run(pass, only);
-  if (!quick) {
+  if (!pass.quick()) {
     bench::print_table(pass.figures());
     fmt::print("{}\n", kElsewhere);
   }

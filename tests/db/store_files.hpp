@@ -44,7 +44,9 @@ class StoreFiles : public testing::Test {
             .v = 0.5,
             .omega = 1.0 / 3.0,
             .clearance = 0.65,
-            .hold = tick % 3 == 0 ? "" : tick % 3 == 1 ? "stopped" : "bumper",
+            .hold = tick % 3 == 0   ? ""
+                    : tick % 3 == 1 ? "stopped"
+                                    : "bumper",
             .behaviour = "avoid"};
   }
   /// Frames 0 .. count-1 of a run, the same for the same seed.

@@ -99,7 +99,9 @@ TEST(Sensors, ADefectIsASentence) {
             "values must be as many as times");
   EXPECT_EQ(complaint([](SensorConfig& c) { c.settings[2].values = {std::nan("")}; }),
             "period must be 0 to 3600");
-  EXPECT_EQ(complaint([](SensorConfig& c) { c.settings[2].values = {1, 2}; }),
+  EXPECT_EQ(complaint([](SensorConfig& c) {
+              c.settings[2].values = {1, 2};
+            }),
             "period must be a number");
   EXPECT_THROW(World(with({{.sensor = "nose", .channel = "n"}}), 1), std::invalid_argument);
 }

@@ -5,10 +5,10 @@
 #include <limits>
 #include <string>
 
-#include "algo/gate.hpp"
 #include "tests/algo/allocations.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/gate.hpp"
 #include "algo/strip/strip_law.hpp"
 
 namespace algo {
@@ -171,6 +171,24 @@ TEST(PipelineWords, ComeTwiceASecondAndHoldInBetween) {
     EXPECT_EQ(robot.t.words.what, "Waiting for a goal");
   }
   EXPECT_NEAR(robot.fresh, 10, 1);
+}
+
+TEST(PipelineWords, TheLegendComesEveryTwoSecondsAndAtOnceWhenItHasChanged) {
+  Spoken robot;
+  std::uint32_t legend = 0;
+  int fresh = 0;
+  int changed = 0;
+  for (int k = 0; k < 200; ++k) {  // 5 s
+    if (k == 100) robot.t.requests.push_back(SetGoal{{3, 0}, std::nullopt});
+    robot.tick();
+    const bool other = k == 0 || robot.t.legend != legend;
+    EXPECT_TRUE(robot.t.legend_fresh || !other) << k;
+    changed += other ? 1 : 0;
+    fresh += robot.t.legend_fresh ? 1 : 0;
+    legend = robot.t.legend;
+  }
+  EXPECT_LE(fresh, 2 + changed + 1) << changed;
+  EXPECT_GE(fresh, 3);
 }
 
 TEST(PipelineWords, ComeAtOnceWhenTheStateChanges) {

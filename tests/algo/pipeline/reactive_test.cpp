@@ -83,9 +83,9 @@ TEST_F(CoordinatorTest, ALimitOfOneThatDoesNotDriveBindsAndIsNamed) {
 }
 
 TEST_F(CoordinatorTest, BothWaysOfTurningHaveALimitOfTheirOwn) {
-  Scripted* turning = add(
-      behaviours::kAvoid,
-      {.active = true, .twist = {0, -0.4}, .limits = {.omega_min = -0.1, .omega_max = 0.3}});
+  Scripted* turning =
+      add(behaviours::kAvoid,
+          {.active = true, .twist = {0, -0.4}, .limits = {.omega_min = -0.1, .omega_max = 0.3}});
   EXPECT_EQ(coordinator.decide(resource, output).twist.omega, -0.1);
   turning->proposal.twist.omega = 0.4;
   EXPECT_EQ(coordinator.decide(resource, output).twist.omega, 0.3);

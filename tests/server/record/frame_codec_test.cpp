@@ -247,7 +247,8 @@ TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
 
   EXPECT_EQ(frame.legend(), t.legend);
   EXPECT_TRUE(std::ranges::equal(*frame.counts(), std::vector<std::uint16_t>{2, 6, 0, 4, 3}));
-  const std::vector<float> values{1, 0.5, 0, 1, 0.5, 1, 1, 1, -1.5, 2, 0.125, 3, 1, 2, 0.5, 0.25, -1};
+  const std::vector<float> values{
+      1, 0.5, 0, 1, 0.5, 1, 1, 1, -1.5, 2, 0.125, 3, 1, 2, 0.5, 0.25, -1};
   EXPECT_TRUE(std::ranges::equal(*frame.values(), values));
   ASSERT_EQ(frame.more()->size(), 2U);
   EXPECT_EQ(frame.more()->Get(0)->layer(), 3);

@@ -1,4 +1,5 @@
-// tests/server/record/run_csv_test.cpp: every number exact, in pieces, with the channels of the robot.
+// tests/server/record/run_csv_test.cpp: every number exact, in pieces, with the channels of the
+// robot.
 #include "server/record/run_csv.hpp"
 
 #include <cmath>
@@ -82,9 +83,10 @@ TEST_F(RunCsvTest, ChannelsAreColumnsWithACellWhereThereIsAReading) {
   store.commit();
   for (const std::size_t limit : {1U, 2U, 100U}) {
     const std::string csv = whole(run, limit);
-    EXPECT_THAT(csv, testing::StartsWith(
-                         "tick,t,x,y,heading,v,omega,clearance,hold,behaviour,battery.voltage,"
-                         "field[0],field[1]\n0,0,"));
+    EXPECT_THAT(
+        csv,
+        testing::StartsWith("tick,t,x,y,heading,v,omega,clearance,hold,behaviour,battery.voltage,"
+                            "field[0],field[1]\n0,0,"));
     EXPECT_THAT(csv, testing::HasSubstr(",none,rest,,,\n1,"));
     EXPECT_THAT(csv, testing::HasSubstr(",none,rest,,0.3333333333333333,-2\n2,"));
     EXPECT_THAT(csv, testing::EndsWith(",none,rest,24.5,,\n"));

@@ -159,7 +159,7 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
       {R"({"name":"a","lasers":[{},{},{},{},{}]})", "lasers: has more than 4 entries"},
       {R"({"name":"a","lasers":[{"resolution_deg":0.3}]})", "lasers/0/resolution_deg: "},
       {R"({"name":"a","lasers":[{"rolling":1}]})", "lasers/0/rolling: must be true or false"},
-      {R"({"name":"a","sensors":{}})", "sensors: must be an array, not object"},
+      {R"({"name":"a","sensors":{}})", "sensors: must be a list, not object"},
       {R"({"name":"a","sensors":[{"channel":"b"}]})", "sensors/0/sensor: is missing"},
       {R"({"name":"a","sensors":[{"sensor":"nose","channel":"b"}]})",
        "sensors/0: sensor 'nose' is unknown; known are compass, scripted"},

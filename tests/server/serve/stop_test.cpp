@@ -2,10 +2,10 @@
 #include <optional>
 #include <string>
 
-#include "algo/gate.hpp"
 #include "tests/server/serve/app_fixture.hpp"
 #include <gtest/gtest.h>
 
+#include "algo/gate.hpp"
 #include "server/serve/session.hpp"
 
 namespace server {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "algo/gate.hpp"
 #include "tests/algo/worlds.hpp"
 #include "tests/folders.hpp"
 #include <gtest/gtest.h>
@@ -14,6 +13,7 @@
 
 #include "algo/driving.hpp"
 #include "algo/explain.hpp"
+#include "algo/gate.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/strip/strip_law.hpp"
 #include "server/record/frame_codec.hpp"
