@@ -3,6 +3,7 @@
 #include "server/serve/session_registry.hpp"
 
 #include <chrono>
+#include <cstdlib>
 #include <cstdint>
 #include <random>
 #include <set>
@@ -183,7 +184,9 @@ TEST_F(SessionsTest, NoneEverSeesAnothersState) {
   };
   std::vector<Known> sessions{anew(20), anew(30)};
   const json before = get("/session");
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(4);
+  const char* const longer = std::getenv("TAUTLINE_ISOLATION_SECONDS");  // by hand: 600
+  const auto end = std::chrono::steady_clock::now() +
+                   std::chrono::seconds(longer == nullptr ? 4 : std::atoi(longer));
   int acts = 0;
   while (std::chrono::steady_clock::now() < end && !HasFailure()) {
     Known& one = sessions[random() % 2];
@@ -237,9 +240,10 @@ TEST_F(SessionsTest, NoneEverSeesAnothersState) {
   }
   EXPECT_GT(acts, 5);
   const json after = get("/session");
-  for (const char* key : {"obstacles", "stop", "parameters", "goal", "seed", "run"}) {
+  for (const char* key : {"obstacles", "stop", "parameters", "goal", "seed"}) {
     EXPECT_EQ(before.at(key), after.at(key)) << key;
   }
+  EXPECT_EQ(before.at("run").at("id"), after.at("run").at("id"));  // it may have come to its end
 }
 
 }  // namespace
