@@ -67,32 +67,34 @@ std::optional<std::size_t> ObstacleSet::find(std::uint32_t id) const {
   return std::nullopt;
 }
 
-ObstacleSet::Item ObstacleSet::make(const algo::Obstacle& obstacle) {
-  Item item{.obstacle = obstacle,
-            .centre_W = obstacle.pose_W.position(),
-            .outline_W = algo::outline_W(obstacle)};
-  if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
+/// Outline and circle of `item` where its obstacle is.
+void ObstacleSet::measure(Item& item) {
+  item.centre_W = item.obstacle.pose_W.position();
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&item.obstacle.shape)) {
     item.bound = cylinder->radius;
-    return item;
+    return;
   }
+  item.outline_W = algo::outline_W(item.obstacle);
   item.centre_W = algo::Vec2(0, 0);
   for (const algo::Vec2& p : item.outline_W) {
     item.centre_W += p / static_cast<double>(item.outline_W.size());
   }
+  item.bound = 0;
   for (const algo::Vec2& p : item.outline_W) {
     item.bound = std::max(item.bound, (p - item.centre_W).norm());
   }
-  return item;
 }
 
 void ObstacleSet::add(const algo::Obstacle& obstacle) {
-  items_.push_back(make(obstacle));
+  items_.push_back({.obstacle = obstacle});
+  measure(items_.back());
 }
 
 void ObstacleSet::move(std::size_t index, const algo::Pose2& pose_W) {
-  algo::Obstacle obstacle = items_[index].obstacle;
-  obstacle.pose_W = pose_W;
-  items_[index] = make(obstacle);
+  Item& item = items_[index];
+  item.obstacle.pose_W = pose_W;
+  item.hidden = false;
+  measure(item);
 }
 
 void ObstacleSet::remove(std::size_t index) {
@@ -117,12 +119,14 @@ double ObstacleSet::distance(std::size_t index, const algo::Vec2& p_W) const {
 
 bool ObstacleSet::may_reach(std::size_t index, const algo::Vec2& p_W, double reach) const {
   const double sum = items_[index].bound + reach;
-  return sum >= 0 && (items_[index].centre_W - p_W).squaredNorm() <= sum * sum;
+  return !items_[index].hidden && sum >= 0 &&
+         (items_[index].centre_W - p_W).squaredNorm() <= sum * sum;
 }
 
 double ObstacleSet::distance(const algo::Vec2& p_W) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
+    if (items_[i].hidden) continue;
     // Nothing of it can be nearer than its circle; inside one, every distance must be looked at.
     if (nearest > 0 && !may_reach(i, p_W, nearest)) continue;
     nearest = std::min(nearest, distance(i, p_W));
@@ -143,6 +147,13 @@ double ObstacleSet::clearance(const Item& item, const Hull& hull, const algo::Po
                              algo::to_parent(pose_W, {-l, -w}),
                              algo::to_parent(pose_W, {l, -w})};
   return between(corners_W, item.outline_W);
+}
+
+double ObstacleSet::clearance(std::size_t index,
+                              const Hull& hull,
+                              const algo::Pose2& pose_W) const {
+  if (hull.half_length <= 0) return distance(index, pose_W.position()) - hull.radius;
+  return clearance(items_[index], hull, pose_W);
 }
 
 double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const {

@@ -29,6 +29,8 @@ class ObstacleSet {
   void add(const algo::Obstacle& obstacle);
   void move(std::size_t index, const algo::Pose2& pose_W);
   void remove(std::size_t index);
+  /// No distance counts obstacle `index` until it is moved again.
+  void hide(std::size_t index) { items_[index].hidden = true; }
   void clear() { items_.clear(); }
 
   /// [m] From `p_W` to the nearest surface, negative inside, infinite without obstacles. Equal to
@@ -39,6 +41,8 @@ class ObstacleSet {
   /// [m] From the outline of `hull` at `pose_W` to the nearest surface, infinite without obstacles.
   /// Negative where they overlap: for a disc the depth, for a rectangle some negative number.
   double clearance(const Hull& hull, const algo::Pose2& pose_W) const;
+  /// The same to the one obstacle `index`.
+  double clearance(std::size_t index, const Hull& hull, const algo::Pose2& pose_W) const;
   /// True when the circle about obstacle `index` comes within `reach` [m] of `p_W`.
   bool may_reach(std::size_t index, const algo::Vec2& p_W, double reach) const;
 
@@ -48,8 +52,9 @@ class ObstacleSet {
     algo::Vec2 centre_W{0, 0};
     double bound = 0;                     // [m] radius of the circle about it
     std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
+    bool hidden = false;
   };
-  static Item make(const algo::Obstacle& obstacle);
+  static void measure(Item& item);
   double clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const;
 
   std::vector<Item> items_{};

@@ -1,6 +1,7 @@
 // sim/scenario.hpp: a world to run in, as plain values: robot, start, goal, obstacles, sensors.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -119,6 +120,22 @@ enum class Localization : std::uint8_t {
   Gyro,      // distances from the wheels, turns from the gyro (algo/local_localization.hpp)
 };
 
+/// Another robot in the world of a scenario, by its own pipeline on its way. It has the scenario's
+/// sensors and drive. What is absent is as the scenario's first robot has it.
+struct OtherRobot {
+  algo::Pose2 start{};
+  std::optional<std::string> robot{};
+  /// Waypoints and goal, in order; empty: it stands where it is.
+  std::optional<std::vector<algo::SetGoal>> goals{};
+  std::optional<std::string> controller{};
+  std::optional<std::string> filter{};
+  std::vector<algo::Parameters::Setting> parameters{};  // in place of the scenario's
+};
+constexpr std::size_t kMostRobots = 200;  // in one world
+/// Ids of robots as obstacles: robot n, counted from 1, has kRobotIds + n. No obstacle that a
+/// person adds has one so high.
+constexpr std::uint32_t kRobotIds = 1'000'000'000;
+
 struct Scenario {
   std::string name{};  // [a-z0-9_-]+, at most 64
   std::string title{};
@@ -132,6 +149,7 @@ struct Scenario {
   DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
   std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
+  std::vector<OtherRobot> robots{};   // besides the first, which all else here is about
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
   std::optional<SonarConfig> sonar{};
   std::vector<InfraredConfig> infrared{};

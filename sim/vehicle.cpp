@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 namespace sim {
 namespace {
@@ -102,6 +104,16 @@ const VehicleParameters* find_vehicle(std::string_view name) {
     if (vehicle.name == name) return &vehicle;
   }
   return nullptr;
+}
+
+const VehicleParameters& vehicle_named(std::string_view name) {
+  if (const VehicleParameters* found = find_vehicle(name)) return *found;
+  std::string known;
+  for (const VehicleParameters& vehicle : vehicle_table()) {
+    known += (known.empty() ? "" : ", ") + std::string(vehicle.name);
+  }
+  throw std::invalid_argument("There is no robot named \"" + std::string(name) + "\"; there are " +
+                              known + ".");
 }
 
 Hull hull_of(const VehicleParameters& vehicle) {

@@ -47,6 +47,8 @@ struct VehicleParameters {
 /// All robots, and one by name.
 std::span<const VehicleParameters> vehicle_table();
 const VehicleParameters* find_vehicle(std::string_view name);
+/// Throws std::invalid_argument with a sentence when there is none.
+const VehicleParameters& vehicle_named(std::string_view name);
 
 /// The outline of `vehicle` in the plane.
 Hull hull_of(const VehicleParameters& vehicle);

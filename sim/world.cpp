@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 
@@ -22,26 +21,6 @@ constexpr std::uint32_t kMostBumpers = 8;
 
 bool finite(const algo::Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
-}
-
-std::string metres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m", value);
-  return text;
-}
-
-std::string name_of(const algo::Obstacle& obstacle) {
-  return "Obstacle " + std::to_string(obstacle.id);
-}
-
-const VehicleParameters& vehicle_of(const Scenario& scenario) {
-  if (const VehicleParameters* found = find_vehicle(scenario.robot)) return *found;
-  std::string known;
-  for (const VehicleParameters& vehicle : vehicle_table()) {
-    known += (known.empty() ? "" : ", ") + std::string(vehicle.name);
-  }
-  throw std::invalid_argument("There is no robot named \"" + scenario.robot + "\"; there are " +
-                              known + ".");
 }
 
 /// `vehicle` with the limits that `drive` gives instead of its own.
@@ -73,7 +52,7 @@ bool has_laser(const Scenario& scenario) {
 World::World(const Scenario& scenario, std::uint64_t seed)
     : scenario_(scenario),
       seed_(seed),
-      parameters_(limited(vehicle_of(scenario), scenario.drive)),
+      parameters_(limited(vehicle_named(scenario.robot), scenario.drive)),
       hull_(hull_of(parameters_)),
       errors_(scenario.drive, seed) {
   check();
@@ -93,6 +72,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
   for (const SensorConfig& config : scenario_.sensors) {
     spec_.channels.push_back(channel_of(config));
   }
+  sight_ = sight();
   start();
 }
 
@@ -167,14 +147,22 @@ void World::start() {
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
   trail_->reset(pose, 0);
 
+  slots_.clear();
+  slot_of_.clear();
   for (const algo::Obstacle& obstacle : scenario_.obstacles) {
-    if (const auto problem = add(obstacle)) throw std::invalid_argument(*problem);
+    if (const auto problem = objection(algo::AddObstacle{obstacle})) {
+      throw std::invalid_argument(*problem);
+    }
+    insert(obstacle);
   }
   follow_paths(0);
   tick_ = 0;
+  command_ = {};
+  touched_.reset();
+  bumped_ = false;
   odometry_ = {.pose = pose};
   encoders_ = {};
-  touched_ = false;
+  used_ = false;
 }
 
 /// As a driver does it: the gyro's bias is taken before the run, while the robot is known to stand.
@@ -193,17 +181,27 @@ void World::start_localization(const algo::Pose2& pose_W) {
   localization_.reset(pose_W);
 }
 
+void World::restart() {
+  if (used_) start();
+}
+
 void World::reset(algo::Observation& observation) {
-  if (touched_) start();
-  sense(observation);
+  restart();
+  read(observation);
 }
 
 bool World::step(const algo::Command& command, algo::Observation& observation) {
+  write(command);
+  advance();
+  read(observation);
+  return true;
+}
+
+void World::advance() {
+  used_ = true;
   ++tick_;
   follow_paths(static_cast<double>(tick_) * scenario_.period);
-  vehicle_->drive(errors_.act(command.base), obstacles_, *trail_);
-  sense(observation);
-  return true;
+  vehicle_->drive(errors_.act(command_.base), obstacles_, *trail_);
 }
 
 /// Obstacles that move by themselves go where they are at `now`, whoever stands there.
@@ -225,16 +223,8 @@ void World::find_moved(algo::Recycled<algo::Moved>& moved) const {
   }
 }
 
-void World::place(std::size_t index, const algo::Pose2& pose_W) {
-  obstacles_.move(index, pose_W);
-  vehicle_->moved(index, obstacles_[index]);
-  for (LaserModel& laser : lasers_) laser.move(obstacles_[index].id, pose_W);
-  if (sonar_) sonar_->move(obstacles_[index].id, pose_W);
-  for (InfraredModel& scanner : infrared_) scanner.move(obstacles_[index].id, pose_W);
-}
-
 void World::sense(algo::Observation& observation) {
-  touched_ = true;  // the scanners have drawn their noise
+  used_ = true;  // the scanners have drawn their noise
   const double now = static_cast<double>(tick_) * scenario_.period;
   observation.clear_sensors();
   observation.stamp = now;
@@ -313,7 +303,7 @@ double World::contact_bearing() const {
 /// A contact presses the bumper whose share of the hull it lies in.
 void World::sense_contact(algo::Observation& observation) {
   if (scenario_.bumpers == 0) return;
-  const bool contact = vehicle_->state().contact;
+  const bool contact = this->contact();
   const double share = 2 * std::numbers::pi / scenario_.bumpers;
   const double bearing = contact && scenario_.bumpers > 1 ? contact_bearing() : 0;
   const auto pressed =
@@ -346,74 +336,7 @@ std::optional<algo::GroundTruth> World::ground_truth() const {
   return algo::GroundTruth{.pose = state.pose_W,
                            .obstacle_distance = distance,
                            .clearance = clearance,
-                           .collided = state.contact || clearance < 0};
-}
-
-std::optional<std::string> World::edit(const algo::Request& request) {
-  touched_ = true;
-  if (const auto* add_request = std::get_if<algo::AddObstacle>(&request)) {
-    touched_ = true;
-    return add(add_request->obstacle);
-  }
-  if (const auto* move_request = std::get_if<algo::MoveObstacle>(&request)) {
-    touched_ = true;
-    return move(move_request->id, move_request->pose_W);
-  }
-  if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
-    touched_ = true;
-    return remove(remove_request->id);
-  }
-  return std::nullopt;
-}
-
-/// Why `obstacle` cannot stand where it is.
-std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const {
-  if (const auto problem = algo::defect(obstacle)) {
-    return name_of(obstacle) + ": " + *problem + ".";
-  }
-  ObstacleSet alone;
-  alone.add(obstacle);
-  const double distance = alone.clearance(hull_, vehicle_->state().pose_W);
-  if (distance < 0) {
-    return name_of(obstacle) + " would overlap the robot: " + metres(-distance) + " too close.";
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> World::add(const algo::Obstacle& obstacle) {
-  if (obstacles_.find(obstacle.id))
-    return "There is an obstacle " + std::to_string(obstacle.id) + " already.";
-  if (auto problem = refusal(obstacle)) return problem;
-  obstacles_.add(obstacle);
-  vehicle_->added(obstacle);
-  for (LaserModel& laser : lasers_) laser.add(obstacle);
-  if (sonar_) sonar_->add(obstacle);
-  for (InfraredModel& scanner : infrared_) scanner.add(obstacle);
-  return std::nullopt;
-}
-
-std::optional<std::string> World::move(std::uint32_t id, const algo::Pose2& pose_W) {
-  const auto index = obstacles_.find(id);
-  if (!index) return "There is no obstacle " + std::to_string(id) + ".";
-  algo::Obstacle obstacle = obstacles_[*index];
-  obstacle.pose_W = pose_W;
-  if (auto problem = refusal(obstacle)) return problem;
-  for (const ObstaclePath& path : scenario_.paths) {
-    if (path.id == id) return name_of(obstacle) + " moves by itself.";
-  }
-  place(*index, pose_W);
-  return std::nullopt;
-}
-
-std::optional<std::string> World::remove(std::uint32_t id) {
-  const auto index = obstacles_.find(id);
-  if (!index) return "There is no obstacle " + std::to_string(id) + ".";
-  obstacles_.remove(*index);
-  vehicle_->removed(*index);
-  for (LaserModel& laser : lasers_) laser.remove(id);
-  if (sonar_) sonar_->remove(id);
-  for (InfraredModel& scanner : infrared_) scanner.remove(id);
-  return std::nullopt;
+                           .collided = contact() || clearance < 0};
 }
 
 }  // namespace sim

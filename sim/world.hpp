@@ -1,9 +1,12 @@
 // sim/world.hpp: the simulated robot: a scenario and a seed in, observations out.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,6 +29,9 @@ namespace sim {
 ///
 /// The same scenario, seed, commands and edits give the same observations bit for bit. reset()
 /// starts the scenario anew: obstacles, noise and time as at first. Belongs to one thread.
+///
+/// The scenario's other robots are not in it: a Fleet keeps a world for each robot and tells it
+/// where the others are.
 class World final : public algo::Robot, public algo::Editing {
  public:
   /// Throws std::invalid_argument with a sentence when the scenario cannot be run.
@@ -34,9 +40,32 @@ class World final : public algo::Robot, public algo::Editing {
   const algo::RobotSpec& spec() const override { return spec_; }
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
+
+  // reset() and step() in parts, for a robot among others.
+
+  /// The scenario anew; nothing is sensed.
+  void restart();
+  /// What the next advance() drives under.
+  void write(const algo::Command& command) { command_ = command; }
+  /// One period of driving; nothing is sensed.
+  void advance();
+  /// What the robot senses now. Once after each restart() and advance().
+  void read(algo::Observation& observation) { sense(observation); }
+  /// Places the others of `robots` where they are now; this one is `self` among them. Those too far
+  /// to be sensed or touched are left out. Between restart() or advance() and read().
+  void meet(std::span<const algo::Obstacle> robots, std::size_t self);
+  /// Which of `robots` the newest contact is with.
+  std::optional<std::size_t> touched() const { return touched_; }
+  /// Another robot drove against this one.
+  void touch() { bumped_ = true; }
+  const algo::Pose2& pose_W() const { return vehicle_->state().pose_W; }
+  const Hull& hull() const { return hull_; }
+
   void stop() noexcept override { vehicle_->halt(); }
   algo::Editing* editing() override { return this; }
   std::optional<std::string> edit(const algo::Request& request) override;
+  /// Why edit() would refuse `request`, as a sentence.
+  std::optional<std::string> objection(const algo::Request& request) const;
   std::optional<algo::GroundTruth> ground_truth() const override;
   void find_moved(algo::Recycled<algo::Moved>& moved) const override;
 
@@ -44,18 +73,37 @@ class World final : public algo::Robot, public algo::Editing {
   void check() const;
   void start();
   void start_localization(const algo::Pose2& pose_W);
-  std::optional<std::string> add(const algo::Obstacle& obstacle);
-  std::optional<std::string> move(std::uint32_t id, const algo::Pose2& pose_W);
-  std::optional<std::string> remove(std::uint32_t id);
+  std::optional<std::string> objection(const algo::AddObstacle& add) const;
+  std::optional<std::string> objection(const algo::MoveObstacle& move) const;
+  std::optional<std::string> objection(const algo::RemoveObstacle& remove) const;
   std::optional<std::string> refusal(const algo::Obstacle& obstacle) const;
+  void insert(const algo::Obstacle& obstacle);
+  void remove(std::uint32_t id);
   void follow_paths(double now);
   void place(std::size_t index, const algo::Pose2& pose_W);
+  void show(std::uint32_t id, const algo::Pose2& pose_W);
+  std::size_t free_slot(const algo::Obstacle& robot);
+  void place_peer(std::size_t slot, const algo::Pose2& pose_W);
+  void hide_peer(std::size_t slot);
+  void find_slots();
+  double sight() const;
+  void feel_peers();
+  bool contact() const { return bumped_ || vehicle_->state().contact; }
   void sense(algo::Observation& observation);
   void sense_motion(algo::Observation& observation);
   void sense_turn(algo::Observation& observation);
   void sense_contact(algo::Observation& observation);
   void sense_channels(algo::Observation& observation);
   double contact_bearing() const;
+
+  /// An obstacle that stands for one of the robots near, whichever needs it.
+  struct Slot {
+    std::uint32_t id = 0;   // of the obstacle
+    std::size_t index = 0;  // in the ObstacleSet
+    bool taken = false;
+    bool solid = false;  // so near that the vehicle knows it
+  };
+  static constexpr std::size_t kNoSlot = std::numeric_limits<std::size_t>::max();
 
   Scenario scenario_{};
   std::uint64_t seed_ = 0;
@@ -78,7 +126,20 @@ class World final : public algo::Robot, public algo::Editing {
   algo::Pose2 sensed_W_{};     // the true pose at the tick before
   algo::Encoders encoders_{};
   std::uint64_t tick_ = 0;
-  bool touched_ = false;  // something happened since start()
+  algo::Command command_{};
+
+  double sight_ = 0;  // [m] from R to the farthest point that a sensor reaches
+  std::vector<Slot> slots_{};
+  std::vector<std::size_t> slot_of_{};  // of each robot, or kNoSlot
+  std::optional<std::size_t> touched_{};
+  bool bumped_ = false;  // by another robot, within the tick
+  bool used_ = false;    // something happened since start()
 };
+
+/// A `robot` of the scenario as others see it: its hull, as high as its highest sensor where that
+/// is higher. Throws std::invalid_argument when there is no such robot.
+algo::Obstacle robot_body(const Scenario& scenario,
+                          const std::string& robot,
+                          const algo::Pose2& pose_W);
 
 }  // namespace sim

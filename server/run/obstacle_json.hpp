@@ -7,10 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "algo/obstacle.hpp"
+#include "sim/scenario.hpp"
 
 namespace server {
 
 constexpr std::uint32_t kMaxObstacleId = 999'999'999;
+/// Of what can be named in an edit: robots, which refuse it, besides obstacles.
+constexpr std::uint32_t kMaxStandingId = sim::kRobotIds + sim::kMostRobots;
+static_assert(kMaxObstacleId < sim::kRobotIds);
 
 /// An obstacle without an "id" gets id 0. Throws DocumentError.
 algo::Obstacle obstacle_from_json(const nlohmann::json& value, const std::string& path);

@@ -1,6 +1,7 @@
 // server/run/pose_json.cpp: one reader and one writer each.
 #include "server/run/pose_json.hpp"
 
+#include <cmath>
 #include <string_view>
 
 namespace server {
@@ -32,6 +33,22 @@ algo::SetGoal goal_from_json(const JsonReader& in) {
   goal.position_W = {in.number("x", kCoordinate), in.number("y", kCoordinate)};
   if (in.has("heading")) goal.heading = angle_or(in, "heading", 0);
   return goal;
+}
+
+algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {
+  algo::Pose2 start;
+  bool heading_given = false;
+  if (in.has("start")) {
+    const JsonReader given = in.object("start");
+    given.only({"x", "y", "heading"});
+    start = pose_from_json(given, 0);
+    heading_given = given.has("heading");
+  }
+  if (goal && !heading_given) {
+    const algo::Vec2 to_goal = goal->position_W - start.position();
+    start.heading = std::atan2(to_goal.y(), to_goal.x());
+  }
+  return start;
 }
 
 json to_json(const algo::Pose2& pose) {

@@ -1,6 +1,7 @@
 // server/run/pose_json.hpp: points, poses and goals as JSON: metres and radians.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -22,6 +23,10 @@ nlohmann::json to_json(const algo::Pose2& pose);
 
 /// {"x","y","heading"?}: without a heading any will do.
 algo::SetGoal goal_from_json(const JsonReader& in);
+
+/// The field "start" of `in`, the origin without one. As in the paper, a start without a heading
+/// faces the `goal`.
+algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal);
 nlohmann::json to_json(const algo::SetGoal& goal);
 
 }  // namespace server

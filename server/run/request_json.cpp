@@ -34,12 +34,12 @@ algo::Request request_from_json(const nlohmann::json& value) {
   }
   if (type == "move_obstacle") {
     in.only({"type", "id", "x", "y", "heading"});
-    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId)),
+    return algo::MoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxStandingId)),
                               pose_from_json(in, 0)};
   }
   if (type == "remove_obstacle") {
     in.only({"type", "id"});
-    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxObstacleId))};
+    return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxStandingId))};
   }
   if (type == "joystick") {
     in.only({"type", "forward", "turn"});

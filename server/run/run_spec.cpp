@@ -9,6 +9,8 @@
 #include "algo/driving.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
+#include "server/run/fleet_robot.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_reader.hpp"
@@ -23,28 +25,94 @@ namespace {
 using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // what JSON numbers hold exactly
 
-void check_choices(const sim::Scenario& scenario) {
+/// @param at  of the fields in the document: "" or "robots/3/"
+void check_choices(const std::string& at,
+                   const std::string& controller_name,
+                   const std::string& filter,
+                   bool has_laser) {
   const algo::ControllerCatalogue& catalogue = algo::builtin_controllers();
-  const algo::ControllerInfo* const controller = catalogue.find(scenario.controller);
+  const algo::ControllerInfo* const controller = catalogue.find(controller_name);
   if (controller == nullptr) {
     std::string known;
     for (const auto& c : catalogue.entries()) known += fmt::format(" {}", c.name);
-    throw DocumentError("controller",
-                        fmt::format("'{}' is unknown; known are{}", scenario.controller, known));
+    throw DocumentError(at + "controller",
+                        fmt::format("'{}' is unknown; known are{}", controller_name, known));
   }
-  if (!sim::has_laser(scenario) && !controller->by_sonar) {
+  if (!has_laser && !controller->by_sonar) {
     std::string fit;
     for (const auto& c : catalogue.entries()) fit += c.by_sonar ? fmt::format(" {}", c.name) : "";
     throw DocumentError(
-        "controller",
+        at + "controller",
         fmt::format(
-            "'{}' needs a laser; with a sonar ring alone there are{}", scenario.controller, fit));
+            "'{}' needs a laser; with a sonar ring alone there are{}", controller_name, fit));
   }
-  if (!algo::find_filter(scenario.filter)) {
-    throw DocumentError("filter",
-                        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none",
-                                    scenario.filter));
+  if (!algo::find_filter(filter)) {
+    throw DocumentError(
+        at + "filter",
+        fmt::format("'{}' is unknown; known are pseudomedian, median, lulu, none", filter));
   }
+}
+
+void check_parameters(const std::string& at,
+                      const std::string& controller,
+                      const algo::Parameters& parameters) {
+  auto complaint = algo::refusal(parameters);
+  const auto& refusal = algo::builtin_controllers().at(controller).refusal;
+  if (!complaint && refusal) complaint = refusal(parameters);
+  if (complaint) throw DocumentError(at + "parameters", *complaint);
+}
+
+/// How `robot` drives in `scenario`, whose parameters are those of the run.
+algo::PipelineConfig pipeline_config(const sim::OtherRobot& robot, const sim::Scenario& scenario) {
+  algo::PipelineConfig config{.controller = robot.controller.value_or(scenario.controller),
+                              .filter = *algo::find_filter(robot.filter.value_or(scenario.filter)),
+                              .parameters = scenario.parameters};
+  for (const auto& [parameter, value] : robot.parameters) config.parameters.set(*parameter, value);
+  return config;
+}
+
+/// Throws DocumentError naming the field of the first robot that cannot be driven.
+void check_others(const sim::Scenario& scenario) {
+  for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+    const std::string at = fmt::format("robots/{}/", i);
+    const sim::OtherRobot& robot = scenario.robots[i];
+    check_choices(at,
+                  robot.controller.value_or(scenario.controller),
+                  robot.filter.value_or(scenario.filter),
+                  sim::has_laser(scenario));
+    const algo::PipelineConfig config = pipeline_config(robot, scenario);
+    check_parameters(at, config.controller, config.parameters);
+  }
+}
+
+/// As requests that are made in this order.
+std::vector<algo::Request> requests_of(const std::vector<algo::SetGoal>& goals) {
+  std::vector<algo::Request> requests;
+  for (const algo::SetGoal& goal : goals) {
+    if (requests.empty()) {
+      requests.emplace_back(goal);
+    } else {
+      requests.emplace_back(algo::AddGoal{goal});
+    }
+  }
+  return requests;
+}
+
+/// The scenario's way: waypoints and goal.
+std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
+  if (!scenario.goal) return {};
+  std::vector<algo::SetGoal> goals = scenario.waypoints;
+  goals.push_back(*scenario.goal);
+  return goals;
+}
+
+std::vector<RobotPlan> plans_of_others(const sim::Scenario& scenario) {
+  std::vector<RobotPlan> plans;
+  for (const sim::OtherRobot& robot : scenario.robots) {
+    plans.push_back({.pipeline = pipeline_config(robot, scenario),
+                     .first = requests_of(robot.goals ? *robot.goals : way_of(scenario))});
+  }
+  return plans;
 }
 
 }  // namespace
@@ -79,16 +147,14 @@ RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
     const bool bullet = *overrides.vehicle == "bullet";
     scenario.vehicle = bullet ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
   }
-  check_choices(scenario);
+  check_choices("", scenario.controller, scenario.filter, sim::has_laser(scenario));
   RunSpec spec;
   spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
-  const auto& refusal = algo::builtin_controllers().at(scenario.controller).refusal;
-  if (const auto complaint = refusal ? refusal(spec.parameters) : std::nullopt) {
-    throw DocumentError("parameters", *complaint);
-  }
+  check_parameters("", scenario.controller, spec.parameters);
   spec.seed = overrides.seed.value_or(1);
   // The document of the run must tell the whole story: parameters included.
   scenario.parameters = spec.parameters;
+  check_others(scenario);
   spec.scenario = std::move(scenario);
   return spec;
 }
@@ -108,7 +174,10 @@ std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
   net::not_on_io_thread("Building a world");
   if (spec.hardware) return make_run(*spec.hardware);
   if (!spec.scenario.log.empty()) return std::make_unique<sim::Replay>(spec.scenario.log);
-  return std::make_unique<sim::World>(spec.scenario, spec.seed);
+  if (spec.scenario.robots.empty()) {
+    return std::make_unique<sim::World>(spec.scenario, spec.seed);
+  }
+  return std::make_unique<FleetRobot>(spec.scenario, spec.seed, plans_of_others(spec.scenario));
 }
 
 algo::PipelineConfig pipeline_config(const RunSpec& spec) {
@@ -118,18 +187,8 @@ algo::PipelineConfig pipeline_config(const RunSpec& spec) {
 }
 
 std::vector<algo::Request> first_requests(const RunSpec& spec) {
-  if (!spec.scenario.goal || !spec.scenario.log.empty()) return {};
-  std::vector<algo::Request> requests;
-  const auto then = [&](const algo::SetGoal& goal) {
-    if (requests.empty()) {
-      requests.emplace_back(goal);
-    } else {
-      requests.emplace_back(algo::AddGoal{goal});
-    }
-  };
-  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) then(waypoint);
-  then(*spec.scenario.goal);
-  return requests;
+  if (!spec.scenario.log.empty()) return {};
+  return requests_of(way_of(spec.scenario));
 }
 
 double time_limit(const RunSpec& spec) {
@@ -138,12 +197,10 @@ double time_limit(const RunSpec& spec) {
   if (!spec.scenario.goal) return 60.0;
   double way = 0;
   algo::Vec2 from_W = spec.scenario.start.position();
-  const auto on_to = [&](const algo::SetGoal& goal) {
+  for (const algo::SetGoal& goal : way_of(spec.scenario)) {
     way += (goal.position_W - from_W).norm();
     from_W = goal.position_W;
-  };
-  for (const algo::SetGoal& waypoint : spec.scenario.waypoints) on_to(waypoint);
-  on_to(*spec.scenario.goal);
+  }
   return std::max(1.0, 5.0 * way / spec.parameters[algo::kMaxSpeed]);
 }
 
@@ -215,8 +272,12 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
 }
 
 json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
-  return {
+  json out = {
       {"scenario", to_json(spec.scenario)}, {"source", source_of(spec)}, {"robot", to_json(robot)}};
+  for (const algo::Obstacle& other : sim::other_robots(spec.scenario)) {
+    out["others"].push_back(to_json(other));
+  }
+  return out;
 }
 
 }  // namespace server

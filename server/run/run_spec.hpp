@@ -48,7 +48,8 @@ double pace_from_json(const nlohmann::json& body, const char* key, double fallba
 /// Throws DocumentError naming the field that is unknown or out of limits.
 RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides);
 
-/// Builds the simulated world or opens the log. Throws std::exception with a sentence.
+/// Builds the simulated world, with all its robots, or opens the log. Throws std::exception with a
+/// sentence.
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec);
 algo::PipelineConfig pipeline_config(const RunSpec& spec);
 
@@ -60,7 +61,8 @@ std::vector<algo::Request> first_requests(const RunSpec& spec);
 double time_limit(const RunSpec& spec);
 
 /// The run row's document: the scenario as run, and the robot's spec, from which replay rebuilds
-/// the pipeline without a world.
+/// the pipeline without a world; `others` are the scenario's other robots as obstacles at their
+/// starts, where there are any.
 nlohmann::json run_document(const RunSpec& spec, const algo::RobotSpec& robot);
 nlohmann::json to_json(const algo::RobotSpec& robot);
 algo::RobotSpec robot_spec_from_json(const nlohmann::json& value);

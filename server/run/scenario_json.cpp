@@ -16,6 +16,7 @@
 #include "server/run/json_reader.hpp"
 #include "server/run/motion_json.hpp"
 #include "server/run/pose_json.hpp"
+#include "server/run/robots_json.hpp"
 #include "server/run/sensor_json.hpp"
 
 namespace server {
@@ -23,23 +24,6 @@ namespace {
 
 using nlohmann::json;
 constexpr std::uint64_t kMaxBeams = 4096;
-
-/// As in the paper: without a start heading the robot faces its goal.
-algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {
-  algo::Pose2 start;
-  bool heading_given = false;
-  if (in.has("start")) {
-    const JsonReader given = in.object("start");
-    given.only({"x", "y", "heading"});
-    start = pose_from_json(given, 0);
-    heading_given = given.has("heading");
-  }
-  if (goal && !heading_given) {
-    const algo::Vec2 to_goal = goal->position_W - start.position();
-    start.heading = std::atan2(to_goal.y(), to_goal.x());
-  }
-  return start;
-}
 
 sim::LaserConfig laser_from_json(const JsonReader& in) {
   in.only({"resolution_deg",
@@ -218,10 +202,10 @@ void read_waypoints(const JsonReader& in, sim::Scenario& s) {
 
 sim::Scenario scenario_from_json(const json& document) {
   const JsonReader in(document, "");
-  in.only({"name",       "title",   "description", "robot",      "vehicle",  "period",
-           "start",      "goal",    "drive",       "obstacles",  "lasers",   "sonar",
-           "infrared",   "sensors", "gyro",        "bumpers",    "encoders", "localization",
-           "controller", "filter",  "parameters",  "time_limit", "waypoints"});
+  in.only({"name",       "title",   "description", "robot",      "vehicle",   "period",
+           "start",      "goal",    "drive",       "obstacles",  "lasers",    "sonar",
+           "infrared",   "sensors", "gyro",        "bumpers",    "encoders",  "localization",
+           "controller", "filter",  "parameters",  "time_limit", "waypoints", "robots"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_scenario_name(s.name)) {
@@ -249,6 +233,7 @@ sim::Scenario scenario_from_json(const json& document) {
   read_sensors(in, s);
   read_choices(in, s);
   s.time_limit = in.number_or("time_limit", 0, {0.0, 1e6});
+  read_robots(in, s);
   return s;
 }
 
@@ -280,6 +265,7 @@ json to_json(const sim::Scenario& s) {
     }
   }
   if (s.drive != sim::DriveConfig{}) out["drive"] = to_json(s.drive);
+  write_robots(s, out);
   return out;
 }
 

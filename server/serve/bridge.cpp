@@ -390,8 +390,7 @@ void Bridge::publish_state() {
   hub_.publish(state_, time_ns, shared(dump_json(state_json(session_))));
   hub_.publish(obstacles_,
                time_ns,
-               shared(obstacles_json(static_cast<double>(time_ns) * 1e-9,
-                                     session_.state().asked.obstacles)));
+               shared(obstacles_json(static_cast<double>(time_ns) * 1e-9, session_.obstacles())));
   if (told_parameters_ != session_.state().asked.parameters) {
     told_parameters_ = session_.state().asked.parameters;
     gains_.follow();

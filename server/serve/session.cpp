@@ -13,6 +13,7 @@
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/goal_check.hpp"
+#include "sim/fleet.hpp"
 
 namespace server {
 namespace {
@@ -50,6 +51,7 @@ void Session::begin(PreparedRun next) {
   state_.robot = next.live->robot().spec();
   state_.editable = next.live->robot().editing() != nullptr;
   state_.asked = {.parameters = spec.parameters, .obstacles = spec.scenario.obstacles};
+  state_.others = sim::other_robots(spec.scenario);
   state_.outcome = algo::Outcome::Running;
   state_.lost_ticks = 0;
   state_.missed_periods = 0;
@@ -404,6 +406,12 @@ std::optional<std::string> Session::trouble_with_goal(const algo::SetGoal& goal)
   const algo::Telemetry& t = newest_->telemetry;
   const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
   return goal_trouble(state_.robot, goal, pose, standing);
+}
+
+std::vector<algo::Obstacle> Session::obstacles() const {
+  std::vector<algo::Obstacle> all = state_.asked.obstacles;
+  all.insert(all.end(), state_.others.begin(), state_.others.end());
+  return all;
 }
 
 sim::Scenario Session::as_scenario(const std::string& name, const std::string& title) const {

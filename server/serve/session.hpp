@@ -29,7 +29,8 @@ struct SessionState {
   algo::RobotSpec robot{};
   bool editable = false;  // obstacles can be added, moved, removed
   Pace pace{};
-  algo::Intent asked{};  // all requests that were accepted
+  algo::Intent asked{};                  // all requests that were accepted
+  std::vector<algo::Obstacle> others{};  // the scenario's other robots, at their starts
   algo::Outcome outcome = algo::Outcome::Running;
   bool running = false;  // the run's control thread is at work
   std::uint64_t lost_ticks = 0;
@@ -98,6 +99,8 @@ class Session {
   void poll();
 
   const SessionState& state() const { return state_; }
+  /// All that stands or moves in the world: obstacles, then the other robots as such.
+  std::vector<algo::Obstacle> obstacles() const;
   db::RunId run_id() const { return live_ ? live_->id() : 0; }
   /// What is known to be wrong with a goal now, as a sentence; nothing for other requests, nor when
   /// there is no time to look.

@@ -17,7 +17,7 @@ using nlohmann::json;
 json state_json(const Session& session) {
   const SessionState& s = session.state();
   json obstacles = json::array();
-  for (const algo::Obstacle& o : s.asked.obstacles) obstacles.push_back(to_json(o));
+  for (const algo::Obstacle& o : session.obstacles()) obstacles.push_back(to_json(o));
   json out = {
       {"run",
        {{"id", session.run_id()},

@@ -67,17 +67,20 @@ void submit_and_reply(Session& session,
 }
 
 std::uint32_t obstacle_id(const net::Request& request) {
+  constexpr std::size_t kMostDigits = 10;
   const std::string& text = request.params.at("id");
-  if (text.empty() || text.size() > 9 ||
-      text.find_first_not_of("0123456789") != std::string::npos) {
+  const bool digits = !text.empty() && text.size() <= kMostDigits &&
+                      text.find_first_not_of("0123456789") == std::string::npos;
+  const std::uint64_t id = digits ? std::stoull(text) : kMaxStandingId + 1;
+  if (id > kMaxStandingId) {
     throw DocumentError("id", fmt::format("'{}' is not an obstacle's number", text));
   }
-  return static_cast<std::uint32_t>(std::stoul(text));
+  return static_cast<std::uint32_t>(id);
 }
 
 json obstacle_list(const Session& session) {
   json items = json::array();
-  for (const algo::Obstacle& o : session.state().asked.obstacles) items.push_back(to_json(o));
+  for (const algo::Obstacle& o : session.obstacles()) items.push_back(to_json(o));
   return {{"items", std::move(items)}, {"next", nullptr}};
 }
 

@@ -1,0 +1,129 @@
+// server/run/robots_json.cpp: one reader and one writer.
+#include "server/run/robots_json.hpp"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "algo/filter/filter.hpp"
+#include "algo/intent.hpp"
+#include "algo/pipeline/controllers.hpp"
+#include "algo/pipeline/parameter_table.hpp"
+#include "server/run/pose_json.hpp"
+#include "server/run/scenario_json.hpp"
+#include "sim/vehicle.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+constexpr std::size_t kMostBodies = 40'000;  // a robot's world holds every obstacle: memory
+
+algo::SetGoal strict_goal(const JsonReader& in) {
+  in.only({"x", "y", "heading"});
+  return goal_from_json(in);
+}
+
+/// Waypoints and goal in order; empty for a goal of null; nothing when neither is given.
+std::optional<std::vector<algo::SetGoal>> goals_from_json(const JsonReader& in) {
+  std::vector<algo::SetGoal> goals;
+  if (in.has("waypoints")) {
+    const json& list = in.array("waypoints", algo::kMostGoalsAhead);
+    if (!in.has("goal") && !list.empty()) in.fail("waypoints", "lead nowhere: there is no goal");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      goals.push_back(strict_goal({list[i], fmt::format("{}/{}", in.at("waypoints"), i)}));
+    }
+  }
+  if (in.has("goal")) {
+    goals.push_back(strict_goal(in.object("goal")));
+  } else if (!in.raw().contains("goal")) {
+    return std::nullopt;
+  }
+  return goals;
+}
+
+/// The first place that `robot` goes to.
+std::optional<algo::SetGoal> first_goal(const sim::OtherRobot& robot,
+                                        const sim::Scenario& scenario) {
+  if (!robot.goals) return scenario.waypoints.empty() ? scenario.goal : scenario.waypoints.front();
+  if (robot.goals->empty()) return std::nullopt;
+  return robot.goals->front();
+}
+
+sim::OtherRobot robot_from_json(const JsonReader& in, const sim::Scenario& scenario) {
+  in.only({"start", "robot", "goal", "waypoints", "controller", "filter", "parameters"});
+  sim::OtherRobot robot;
+  if (!in.has("start")) in.fail("start", "is missing");
+  robot.goals = goals_from_json(in);
+  robot.start = start_from_json(in, first_goal(robot, scenario));
+  if (in.has("robot")) {
+    robot.robot = in.text("robot", 64);
+    if (sim::find_vehicle(*robot.robot) == nullptr) {
+      in.fail("robot", fmt::format("'{}' is unknown", *robot.robot));
+    }
+  }
+  if (in.has("controller")) {
+    robot.controller = in.text("controller", 64);
+    if (algo::builtin_controllers().find(*robot.controller) == nullptr) {
+      in.fail("controller", fmt::format("'{}' is unknown", *robot.controller));
+    }
+  }
+  if (in.has("filter")) {
+    robot.filter = in.text("filter", 64);
+    if (!algo::find_filter(*robot.filter)) {
+      in.fail("filter", fmt::format("'{}' is unknown", *robot.filter));
+    }
+  }
+  if (in.has("parameters")) {
+    const json& given = in.object("parameters").raw();
+    parameters_from_json(given, in.at("parameters"), scenario.parameters);
+    for (const auto& [name, value] : given.items()) {
+      robot.parameters.push_back({algo::find_parameter(name), value.get<double>()});
+    }
+  }
+  return robot;
+}
+
+json robot_to_json(const sim::OtherRobot& robot) {
+  json out = {{"start", to_json(robot.start)}};
+  if (robot.robot) out["robot"] = *robot.robot;
+  if (robot.goals && robot.goals->empty()) out["goal"] = nullptr;
+  if (robot.goals && !robot.goals->empty()) {
+    out["goal"] = to_json(robot.goals->back());
+    for (std::size_t i = 0; i + 1 < robot.goals->size(); ++i) {
+      out["waypoints"].push_back(to_json((*robot.goals)[i]));
+    }
+  }
+  if (robot.controller) out["controller"] = *robot.controller;
+  if (robot.filter) out["filter"] = *robot.filter;
+  for (const auto& [parameter, value] : robot.parameters) {
+    out["parameters"][std::string(parameter->key())] = value;
+  }
+  return out;
+}
+
+}  // namespace
+
+void read_robots(const JsonReader& in, sim::Scenario& scenario) {
+  if (!in.has("robots")) return;
+  const json& list = in.array("robots", sim::kMostRobots - 1);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    scenario.robots.push_back(
+        robot_from_json({list[i], fmt::format("{}/{}", in.at("robots"), i)}, scenario));
+  }
+  if ((list.size() + 1) * scenario.obstacles.size() > kMostBodies) {
+    in.fail("robots",
+            fmt::format("{} robots among {} obstacles are too many; their product must be at "
+                        "most {}",
+                        list.size() + 1,
+                        scenario.obstacles.size(),
+                        kMostBodies));
+  }
+}
+
+void write_robots(const sim::Scenario& s, json& out) {
+  for (const sim::OtherRobot& robot : s.robots) out["robots"].push_back(robot_to_json(robot));
+}
+
+}  // namespace server

@@ -1,0 +1,117 @@
+// sim/world_edits.cpp: obstacles that are added, moved and removed while the world runs.
+#include <cstdio>
+#include <variant>
+
+#include "sim/world.hpp"
+
+namespace sim {
+namespace {
+
+std::string metres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f m", value);
+  return text;
+}
+
+std::string name_of(const algo::Obstacle& obstacle) {
+  return "Obstacle " + std::to_string(obstacle.id);
+}
+
+std::string there_is_none(std::uint32_t id) {
+  return "There is no obstacle " + std::to_string(id) + ".";
+}
+
+}  // namespace
+
+std::optional<std::string> World::edit(const algo::Request& request) {
+  used_ = true;
+  if (auto problem = objection(request)) return problem;
+  if (const auto* add = std::get_if<algo::AddObstacle>(&request)) {
+    insert(add->obstacle);
+  } else if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) {
+    place(*obstacles_.find(move->id), move->pose_W);
+  } else if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
+    remove(remove_request->id);
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> World::objection(const algo::Request& request) const {
+  if (const auto* add = std::get_if<algo::AddObstacle>(&request)) return objection(*add);
+  if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) return objection(*move);
+  if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
+    return objection(*remove_request);
+  }
+  return std::nullopt;
+}
+
+/// Why `obstacle` cannot stand where it is.
+std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const {
+  if (const auto problem = algo::defect(obstacle)) {
+    return name_of(obstacle) + ": " + *problem + ".";
+  }
+  ObstacleSet alone;
+  alone.add(obstacle);
+  const double distance = alone.clearance(hull_, vehicle_->state().pose_W);
+  if (distance < 0) {
+    return name_of(obstacle) + " would overlap the robot: " + metres(-distance) + " too close.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> World::objection(const algo::AddObstacle& add) const {
+  if (obstacles_.find(add.obstacle.id)) {
+    return "There is an obstacle " + std::to_string(add.obstacle.id) + " already.";
+  }
+  return refusal(add.obstacle);
+}
+
+std::optional<std::string> World::objection(const algo::MoveObstacle& move) const {
+  const auto index = obstacles_.find(move.id);
+  if (!index) return there_is_none(move.id);
+  algo::Obstacle obstacle = obstacles_[*index];
+  obstacle.pose_W = move.pose_W;
+  if (auto problem = refusal(obstacle)) return problem;
+  for (const ObstaclePath& path : scenario_.paths) {
+    if (path.id == move.id) return name_of(obstacle) + " moves by itself.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> World::objection(const algo::RemoveObstacle& remove) const {
+  if (!obstacles_.find(remove.id)) return there_is_none(remove.id);
+  return std::nullopt;
+}
+
+void World::insert(const algo::Obstacle& obstacle) {
+  obstacles_.add(obstacle);
+  vehicle_->added(obstacle);
+  for (LaserModel& laser : lasers_) laser.add(obstacle);
+  if (sonar_) sonar_->add(obstacle);
+  for (InfraredModel& scanner : infrared_) scanner.add(obstacle);
+}
+
+void World::place(std::size_t index, const algo::Pose2& pose_W) {
+  obstacles_.move(index, pose_W);
+  vehicle_->moved(index, obstacles_[index]);
+  show(obstacles_[index].id, pose_W);
+}
+
+/// Moves obstacle `id` for the sensors.
+void World::show(std::uint32_t id, const algo::Pose2& pose_W) {
+  for (LaserModel& laser : lasers_) laser.move(id, pose_W);
+  if (sonar_) sonar_->move(id, pose_W);
+  for (InfraredModel& scanner : infrared_) scanner.move(id, pose_W);
+}
+
+void World::remove(std::uint32_t id) {
+  const std::size_t index = *obstacles_.find(id);
+  obstacles_.remove(index);
+  vehicle_->removed(index);
+  for (LaserModel& laser : lasers_) laser.remove(id);
+  if (sonar_) sonar_->remove(id);
+  for (InfraredModel& scanner : infrared_) scanner.remove(id);
+  find_slots();
+}
+
+}  // namespace sim

@@ -1,0 +1,144 @@
+// sim/world_peers.cpp: the other robots as one robot meets them.
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "sim/world.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kSolid = 1.5;  // [m] beyond both hulls and a tick's way: bodies in the dynamics
+constexpr double kAway = 1e7;   // [m] where no sensor reaches
+
+double size_of(const VehicleParameters& vehicle) {
+  return std::max(vehicle.radius, std::hypot(vehicle.hull_length, vehicle.hull_width) / 2);
+}
+
+/// [m] Radius of a circle about the middle of a robot's body.
+double size_of(const algo::Obstacle& robot) {
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&robot.shape)) return cylinder->radius;
+  const auto& box = std::get<algo::Box>(robot.shape);
+  return std::hypot(box.length, box.width) / 2;
+}
+
+}  // namespace
+
+algo::Obstacle robot_body(const Scenario& scenario,
+                          const std::string& robot,
+                          const algo::Pose2& pose_W) {
+  const VehicleParameters& vehicle = vehicle_named(robot);
+  algo::Obstacle body;
+  body.pose_W = pose_W;
+  body.height = vehicle.hull_high;
+  for (const LaserConfig& laser : scenario.lasers) {
+    body.height = std::max(body.height, laser.height);
+  }
+  if (scenario.sonar) body.height = std::max(body.height, scenario.sonar->height);
+  for (const InfraredConfig& scanner : scenario.infrared) {
+    body.height = std::max(body.height, scanner.height);
+  }
+  if (vehicle.round) {
+    body.shape = algo::Cylinder{vehicle.radius};
+  } else {
+    body.shape = algo::Box{vehicle.hull_length, vehicle.hull_width};
+  }
+  return body;
+}
+
+/// [m] From R to the farthest point that a sensor reaches within a tick, along the way that its
+/// sweep looks back over.
+double World::sight() const {
+  double reach = 0;
+  double memory = 0;  // [s]
+  for (const LaserConfig& laser : scenario_.lasers) {
+    reach = std::max(reach, laser.range_max + laser.mount_R.position().norm());
+    if (laser.rolling) memory = std::max(memory, 2 * laser.turns * laser.mirror_period);
+  }
+  if (scenario_.sonar) reach = std::max(reach, scenario_.sonar->range_max + parameters_.radius);
+  for (const InfraredConfig& scanner : scenario_.infrared) {
+    reach = std::max(reach, scanner.range_max + scanner.mount_R.position().norm());
+  }
+  const double way = parameters_.max_v * (memory + scenario_.period);
+  return std::max(reach, size_of(parameters_) + kSolid) + way;
+}
+
+void World::meet(std::span<const algo::Obstacle> robots, std::size_t self) {
+  used_ = true;
+  slot_of_.resize(robots.size(), kNoSlot);
+  const algo::Vec2 here = vehicle_->state().pose_W.position();
+  for (std::size_t k = 0; k < robots.size(); ++k) {
+    if (k == self) continue;
+    const double reach = sight_ + size_of(robots[k]);
+    std::size_t& slot = slot_of_[k];
+    if ((robots[k].pose_W.position() - here).squaredNorm() < reach * reach) {
+      if (slot == kNoSlot) slot = free_slot(robots[k]);
+      place_peer(slot, robots[k].pose_W);
+    } else if (slot != kNoSlot) {
+      hide_peer(slot);
+      slot = kNoSlot;
+    }
+  }
+  feel_peers();
+}
+
+/// One that is not taken and has the shape of `robot`, made if there is none.
+std::size_t World::free_slot(const algo::Obstacle& robot) {
+  const auto fits = [&](const Slot& slot) {
+    const algo::Obstacle& there = obstacles_[slot.index];
+    return !slot.taken && there.height == robot.height && there.shape == robot.shape;
+  };
+  const auto found = std::ranges::find_if(slots_, fits);
+  if (found != slots_.end()) {
+    found->taken = true;
+    return static_cast<std::size_t>(found - slots_.begin());
+  }
+  algo::Obstacle obstacle = robot;
+  obstacle.id = kRobotIds + static_cast<std::uint32_t>(slots_.size());
+  slots_.push_back({.id = obstacle.id, .index = obstacles_.size(), .taken = true, .solid = true});
+  insert(obstacle);
+  return slots_.size() - 1;
+}
+
+/// The vehicle is told only of robots that it may touch within the next tick: to move a body costs
+/// it a look at all of them.
+void World::place_peer(std::size_t number, const algo::Pose2& pose_W) {
+  Slot& slot = slots_[number];
+  obstacles_.move(slot.index, pose_W);
+  show(slot.id, pose_W);
+  const double reach = parameters_.radius + kSolid + parameters_.max_v * scenario_.period;
+  const bool solid = obstacles_.may_reach(slot.index, vehicle_->state().pose_W.position(), reach);
+  if (solid || slot.solid) vehicle_->moved(slot.index, obstacles_[slot.index]);
+  slot.solid = solid;
+}
+
+void World::hide_peer(std::size_t number) {
+  Slot& slot = slots_[number];
+  obstacles_.hide(slot.index);
+  show(slot.id, {kAway, kAway, 0});
+  if (slot.solid) vehicle_->moved(slot.index, obstacles_[slot.index]);
+  slot.taken = false;
+  slot.solid = false;
+}
+
+/// Obstacles have new indices since one was removed.
+void World::find_slots() {
+  for (Slot& slot : slots_) slot.index = *obstacles_.find(slot.id);
+}
+
+/// Whether a robot stands in this one, and which robot a contact is with: what is nearest.
+void World::feel_peers() {
+  bumped_ = false;
+  touched_.reset();
+  const algo::Pose2& pose_W = vehicle_->state().pose_W;
+  const bool contact = vehicle_->state().contact;
+  const double nearest = contact ? std::max(0.0, obstacles_.clearance(hull_, pose_W)) : 0.0;
+  for (std::size_t k = 0; k < slot_of_.size(); ++k) {
+    if (slot_of_[k] == kNoSlot || !slots_[slot_of_[k]].solid) continue;
+    const double clearance = obstacles_.clearance(slots_[slot_of_[k]].index, hull_, pose_W);
+    bumped_ = bumped_ || clearance < 0;
+    if (contact && clearance <= nearest) touched_ = k;
+  }
+}
+
+}  // namespace sim
