@@ -62,10 +62,11 @@ Pipeline::Pipeline(const PipelineConfig& config,
                    const RobotSpec& spec,
                    const ControllerCatalogue& controllers)
     : spec_(spec),
+      by_hand_(config.by_hand),
       controller_(controllers.at(config.controller)),
       initial_parameters_(config.parameters),
       sensing_(config.filter) {
-  if (spec.drives) coordinator_.add(std::make_unique<ManualBehaviour>());
+  if (spec.drives && by_hand_) coordinator_.add(std::make_unique<ManualBehaviour>());
   auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
   avoiding_ = &avoid->controller();
   coordinator_.add(std::move(avoid));
@@ -110,6 +111,7 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
       return "Joystick axes must lie between -1 and 1.";
     }
     if (!spec_.drives) return "This robot only replays a log; it cannot be driven.";
+    if (!by_hand_) return "This robot drives by itself; it has no stick.";
   }
   return std::nullopt;
 }

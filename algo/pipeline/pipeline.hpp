@@ -21,6 +21,8 @@ struct PipelineConfig {
   std::string controller = "modified";
   FilterKind filter = FilterKind::Pseudomedian;
   Parameters parameters{};
+  /// A person may take the stick. A robot that nobody can reach needs no map for that.
+  bool by_hand = true;
 };
 
 /// Everything that turns observations and requests into commands for one robot. Fed the same
@@ -63,6 +65,7 @@ class Pipeline {
   bool manual() const;
 
   RobotSpec spec_{};
+  bool by_hand_ = true;
   ControllerInfo controller_{};
   Parameters initial_parameters_{};
   Intent intent_{};  // but for the obstacles, which are the robot's

@@ -66,7 +66,8 @@ void check_parameters(const std::string& at,
 algo::PipelineConfig pipeline_config(const sim::OtherRobot& robot, const sim::Scenario& scenario) {
   algo::PipelineConfig config{.controller = robot.controller.value_or(scenario.controller),
                               .filter = *algo::find_filter(robot.filter.value_or(scenario.filter)),
-                              .parameters = scenario.parameters};
+                              .parameters = scenario.parameters,
+                              .by_hand = false};
   for (const auto& [parameter, value] : robot.parameters) config.parameters.set(*parameter, value);
   return config;
 }
