@@ -1,6 +1,7 @@
 // sim/fleet.cpp: a world a robot, and the two phases of a period.
 #include "sim/fleet.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -27,6 +28,13 @@ algo::Obstacle body_of(const Scenario& scenario, std::size_t k) {
   }
   body.id = id_of(k);
   return body;
+}
+
+/// [m] Of a circle about its middle.
+double radius_of(const algo::Obstacle& body) {
+  if (const auto* cylinder = std::get_if<algo::Cylinder>(&body.shape)) return cylinder->radius;
+  const auto& box = std::get<algo::Box>(body.shape);
+  return std::hypot(box.length, box.width) / 2;
 }
 
 /// The scenario as robot `k` of it has it.
@@ -76,6 +84,7 @@ Fleet::Fleet(const Scenario& scenario, std::uint64_t seed, ForEach for_each)
     worlds_.push_back(world_of(scenario, seed, k));
     bodies_.push_back(body_of(scenario, k));
   }
+  for (const algo::Obstacle& body : bodies_) peers_.push_back({{}, radius_of(body), &body});
   check_starts();
   meet();
 }
@@ -108,8 +117,8 @@ void Fleet::advance() {
 
 /// Every robot learns where the others are.
 void Fleet::meet() {
-  for (std::size_t k = 0; k < size(); ++k) bodies_[k].pose_W = worlds_[k]->pose_W();
-  each([this](std::size_t k) { worlds_[k]->meet(bodies_, k); });
+  for (std::size_t k = 0; k < size(); ++k) peers_[k].pose_W = worlds_[k]->pose_W();
+  each([this](std::size_t k) { worlds_[k]->meet(peers_, k); });
   for (const auto& world : worlds_) {
     if (const auto other = world->touched()) worlds_[*other]->touch();
   }
@@ -131,7 +140,7 @@ std::optional<std::string> Fleet::edit(const algo::Request& request) {
 
 void Fleet::find_moved(algo::Recycled<algo::Moved>& moved) const {
   worlds_.front()->find_moved(moved);
-  for (std::size_t k = 1; k < size(); ++k) moved.push_back({bodies_[k].id, bodies_[k].pose_W});
+  for (std::size_t k = 1; k < size(); ++k) moved.push_back({bodies_[k].id, peers_[k].pose_W});
 }
 
 std::vector<algo::Obstacle> other_robots(const Scenario& scenario) {

@@ -64,7 +64,8 @@ class Fleet {
 
   ForEach for_each_{};
   std::vector<std::unique_ptr<World>> worlds_{};
-  std::vector<algo::Obstacle> bodies_{};  // one a robot
+  std::vector<algo::Obstacle> bodies_{};  // one a robot, at its start
+  std::vector<Peer> peers_{};             // the same where they are
 };
 
 /// The scenario's other robots as obstacles at their starts, as people see them. Throws

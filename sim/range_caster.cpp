@@ -30,6 +30,7 @@ void RangeCaster::add(const algo::Obstacle& obstacle) {
   if (obstacle.height < plane_height_) return;
   const std::size_t index = obstacles_.size();
   obstacles_.push_back(obstacle);
+  ids_.push_back(obstacle.id);
   const std::size_t vertices = algo::outline_W(obstacle).size();
   centre_x_.push_back(0);
   centre_y_.push_back(0);
@@ -61,6 +62,7 @@ void RangeCaster::remove(std::uint32_t id) {
 
 void RangeCaster::clear() {
   obstacles_.clear();
+  ids_.clear();
   centre_x_.clear();
   centre_y_.clear();
   bound_.clear();
@@ -72,9 +74,7 @@ void RangeCaster::clear() {
 }
 
 std::size_t RangeCaster::find(std::uint32_t id) const {
-  std::size_t index = 0;
-  while (index < obstacles_.size() && obstacles_[index].id != id) ++index;
-  return index;
+  return static_cast<std::size_t>(std::ranges::find(ids_, id) - ids_.begin());
 }
 
 /// Writes the slice of obstacle `index` at its present pose.

@@ -146,6 +146,7 @@ class RangeCaster {
 
   // The world, one entry an obstacle: the circle about it, and its outline in the vertex pool.
   std::vector<algo::Obstacle> obstacles_{};
+  std::vector<std::uint32_t> ids_{};  // of them, together, to be searched
   std::vector<double> centre_x_{}, centre_y_{}, bound_{};
   std::vector<std::uint32_t> first_vertex_{}, vertex_count_{};  // count 0: a circle
   std::vector<double> vertex_x_{}, vertex_y_{};

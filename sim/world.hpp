@@ -25,6 +25,13 @@
 
 namespace sim {
 
+/// One of several robots as the others meet it.
+struct Peer {
+  algo::Pose2 pose_W{};
+  double radius = 0;                     // [m] of a circle about its middle
+  const algo::Obstacle* body = nullptr;  // its shape
+};
+
 /// A robot in a world of obstacles, with dynamics or without (Scenario::vehicle).
 ///
 /// The same scenario, seed, commands and edits give the same observations bit for bit. reset()
@@ -53,7 +60,7 @@ class World final : public algo::Robot, public algo::Editing {
   void read(algo::Observation& observation) { sense(observation); }
   /// Places the others of `robots` where they are now; this one is `self` among them. Those too far
   /// to be sensed or touched are left out. Between restart() or advance() and read().
-  void meet(std::span<const algo::Obstacle> robots, std::size_t self);
+  void meet(std::span<const Peer> robots, std::size_t self);
   /// Which of `robots` the newest contact is with.
   std::optional<std::size_t> touched() const { return touched_; }
   /// Another robot drove against this one.
@@ -131,6 +138,7 @@ class World final : public algo::Robot, public algo::Editing {
   double sight_ = 0;  // [m] from R to the farthest point that a sensor reaches
   std::vector<Slot> slots_{};
   std::vector<std::size_t> slot_of_{};  // of each robot, or kNoSlot
+  std::vector<std::size_t> close_{};    // robots whose slot is solid
   std::optional<std::size_t> touched_{};
   bool bumped_ = false;  // by another robot, within the tick
   bool used_ = false;    // something happened since start()

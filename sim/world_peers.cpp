@@ -1,7 +1,6 @@
 // sim/world_peers.cpp: the other robots as one robot meets them.
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "sim/world.hpp"
 
@@ -13,13 +12,6 @@ constexpr double kAway = 1e7;   // [m] where no sensor reaches
 
 double size_of(const VehicleParameters& vehicle) {
   return std::max(vehicle.radius, std::hypot(vehicle.hull_length, vehicle.hull_width) / 2);
-}
-
-/// [m] Radius of a circle about the middle of a robot's body.
-double size_of(const algo::Obstacle& robot) {
-  if (const auto* cylinder = std::get_if<algo::Cylinder>(&robot.shape)) return cylinder->radius;
-  const auto& box = std::get<algo::Box>(robot.shape);
-  return std::hypot(box.length, box.width) / 2;
 }
 
 }  // namespace
@@ -63,17 +55,20 @@ double World::sight() const {
   return std::max(reach, size_of(parameters_) + kSolid) + way;
 }
 
-void World::meet(std::span<const algo::Obstacle> robots, std::size_t self) {
+void World::meet(std::span<const Peer> robots, std::size_t self) {
   used_ = true;
   slot_of_.resize(robots.size(), kNoSlot);
+  close_.clear();
   const algo::Vec2 here = vehicle_->state().pose_W.position();
   for (std::size_t k = 0; k < robots.size(); ++k) {
     if (k == self) continue;
-    const double reach = sight_ + size_of(robots[k]);
+    const Peer& robot = robots[k];
+    const double reach = sight_ + robot.radius;
     std::size_t& slot = slot_of_[k];
-    if ((robots[k].pose_W.position() - here).squaredNorm() < reach * reach) {
-      if (slot == kNoSlot) slot = free_slot(robots[k]);
-      place_peer(slot, robots[k].pose_W);
+    if ((robot.pose_W.position() - here).squaredNorm() < reach * reach) {
+      if (slot == kNoSlot) slot = free_slot(*robot.body);
+      place_peer(slot, robot.pose_W);
+      if (slots_[slot].solid) close_.push_back(k);
     } else if (slot != kNoSlot) {
       hide_peer(slot);
       slot = kNoSlot;
@@ -132,9 +127,8 @@ void World::feel_peers() {
   touched_.reset();
   const algo::Pose2& pose_W = vehicle_->state().pose_W;
   const bool contact = vehicle_->state().contact;
-  const double nearest = contact ? std::max(0.0, obstacles_.clearance(hull_, pose_W)) : 0.0;
-  for (std::size_t k = 0; k < slot_of_.size(); ++k) {
-    if (slot_of_[k] == kNoSlot || !slots_[slot_of_[k]].solid) continue;
+  const double nearest = contact ? std::max(0.0, obstacles_.clearance(hull_, pose_W)) : 0;
+  for (const std::size_t k : close_) {
     const double clearance = obstacles_.clearance(slots_[slot_of_[k]].index, hull_, pose_W);
     bumped_ = bumped_ || clearance < 0;
     if (contact && clearance <= nearest) touched_ = k;
