@@ -35,6 +35,16 @@ std::uint64_t hash_of(const RunSpec& spec) {
   return result.telemetry_hash;
 }
 
+TEST(Determinism, SeveralRobotsGiveTheSameBytesAgain) {
+  const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("swap"), {});
+  HeadlessOptions options;
+  options.hash_frames = true;
+  const auto once = run_headless(spec, *make_robot(spec), options, {});
+  const auto again = run_headless(spec, *make_robot(spec), options, {});
+  EXPECT_EQ(once.telemetry_hash, again.telemetry_hash);
+  EXPECT_EQ(once.run.outcome, algo::Outcome::Reached) << once.run.reason;
+}
+
 TEST(Determinism, TheSameSpecGivesTheSameBytesAndAnotherSeedOthers) {
   for (const char* vehicle : {"bullet", "kinematic"}) {
     SCOPED_TRACE(vehicle);
@@ -128,6 +138,21 @@ TEST_F(RecordedRun, FedBackItGivesTheSameCommands) {
     const Verification verification = verify(record(case1(vehicle), {}));
     EXPECT_EQ(verification.ticks, result_.metrics.ticks);
     EXPECT_EQ(verification.difference, std::nullopt);
+  }
+}
+
+TEST_F(RecordedRun, OfTheFirstOfSeveralRobotsFedBackItGivesTheSameCommands) {
+  const algo::Obstacle obstacle{.id = 9, .pose_W = {1.0, 1.0, 0}, .shape = algo::Cylinder{0.2}};
+  for (const char* vehicle : {"bullet", "kinematic"}) {
+    SCOPED_TRACE(vehicle);
+    RunOverrides overrides;
+    overrides.vehicle = vehicle;
+    const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("swap"), overrides);
+    const db::RunId first = record(spec, {{50, algo::AddObstacle{obstacle}}});
+    const Verification verification = verify(first);
+    EXPECT_EQ(verification.ticks, result_.metrics.ticks);
+    EXPECT_EQ(verification.difference, std::nullopt);
+    EXPECT_EQ(verification.incomplete, std::nullopt);
   }
 }
 
