@@ -21,10 +21,11 @@ struct Family {
   std::string_view rows{};
   void (*run)(Pass&) = nullptr;
 };
-constexpr std::array<Family, 9> kFamilies{{
+constexpr std::array<Family, 10> kFamilies{{
     {"P1 P1r P2 P3 P4 P5", bench::scans},
     {"P6 P7 P11", bench::ticks},
     {"P9", bench::headless},
+    {"P10", bench::fleets},
     {"P12", bench::filters},
     {"P13", bench::control},
     {"P14 P16 P17", bench::streaming},
@@ -33,9 +34,7 @@ constexpr std::array<Family, 9> kFamilies{{
     {"P22", bench::timers},
 }};
 constexpr std::string_view kElsewhere =
-    "Not here: P8 and P15 compare with other programs and are measured outside this repository; "
-    "P10 "
-    "needs several robots in one world, which this server does not have.";
+    "Not here: P8 and P15 compare with other programs and are measured outside this repository.";
 
 /// Whether `row` is one of the words of `rows`.
 bool lists(std::string_view rows, std::string_view row) {

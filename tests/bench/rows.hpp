@@ -7,6 +7,7 @@ namespace bench {
 
 void scans(Pass& pass);      // P1 P1r P2 P3 P4 P5
 void ticks(Pass& pass);      // P6 P7 P11
+void fleets(Pass& pass);     // P10
 void control(Pass& pass);    // P13
 void filters(Pass& pass);    // P12
 void frames(Pass& pass);     // P18

@@ -1,0 +1,189 @@
+// tests/bench/fleet_rows.cpp: a hundred robots in one room, each seeing and avoiding the others.
+#include <algorithm>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "tests/bench/rooms.hpp"
+#include "tests/bench/rows.hpp"
+#include <fmt/core.h>
+
+#include "algo/pipeline/pipeline.hpp"
+#include "sim/fleet.hpp"
+
+namespace bench {
+namespace {
+
+using sim::Vehicle;
+
+constexpr std::size_t kRobots = 100;
+constexpr std::uint32_t kAsMany = 180;  // obstacles of the W(K) whose room is 30 m wide
+constexpr std::size_t kObstacles = 20;  // of them that are kept
+constexpr double kHalf = 15;            // [m] of the room
+
+/// The room with 20 obstacles and walls.
+std::vector<algo::Obstacle> hall() {
+  std::vector<algo::Obstacle> world = reference::room(kAsMany);
+  world.erase(world.begin() + kObstacles, world.begin() + kAsMany);
+  return world;
+}
+
+/// Places in the hall at least `clear` [m] from every surface.
+class Places {
+ public:
+  Places(const std::vector<algo::Obstacle>& world, std::uint64_t seed) : random_(seed) {
+    for (const algo::Obstacle& obstacle : world) set_.add(obstacle);
+  }
+  algo::Vec2 next(double clear) {
+    for (;;) {
+      const algo::Vec2 p{reference::uniform(random_, -kHalf, kHalf),
+                         reference::uniform(random_, -kHalf, kHalf)};
+      if (set_.distance(p) > clear) return p;
+    }
+  }
+  double heading() { return reference::uniform(random_, -std::numbers::pi, std::numbers::pi); }
+
+ private:
+  std::mt19937_64 random_;
+  sim::ObstacleSet set_{};
+};
+
+sim::Scenario hall_scenario(Vehicle vehicle, const sim::LaserConfig& laser) {
+  sim::Scenario scenario;
+  scenario.name = "hall";
+  scenario.vehicle = vehicle;
+  scenario.period = kTick;
+  scenario.obstacles = hall();
+  scenario.lasers = {laser};
+  Places places(scenario.obstacles, 11);
+  std::vector<algo::Pose2> starts;
+  while (starts.size() < kRobots) {
+    const algo::Vec2 p = places.next(0.5);
+    const bool free = std::ranges::all_of(
+        starts, [&](const algo::Pose2& other) { return (other.position() - p).norm() > 1.0; });
+    if (free) starts.push_back({p.x(), p.y(), places.heading()});
+  }
+  scenario.start = starts.front();
+  for (std::size_t k = 1; k < kRobots; ++k) scenario.robots.emplace_back().start = starts[k];
+  return scenario;
+}
+
+/// All robots with their pipelines; one that has arrived, or is stuck, gets another goal.
+class Crowd {
+ public:
+  explicit Crowd(const sim::Scenario& scenario)
+      : fleet_(scenario, 1), places_(scenario.obstacles, 12) {
+    algo::PipelineConfig config;
+    config.parameters.set(algo::kFilterHalfWidth, 2);
+    config.by_hand = false;
+    ticks_.resize(fleet_.size());
+    for (std::size_t k = 0; k < fleet_.size(); ++k) {
+      pipelines_.emplace_back(config, fleet_.robot(k).spec());
+      fleet_.read(k, ticks_[k].observation);
+      pipelines_[k].reset(ticks_[k].observation.odometry.pose);
+      control(k);
+    }
+  }
+  void tick() {
+    for (std::size_t k = 0; k < fleet_.size(); ++k) fleet_.write(k, ticks_[k].command);
+    fleet_.advance();
+    for (std::size_t k = 0; k < fleet_.size(); ++k) {
+      fleet_.read(k, ticks_[k].observation);
+      control(k);
+    }
+  }
+  sim::Fleet& fleet() { return fleet_; }
+  const algo::Telemetry& telemetry(std::size_t k) const { return ticks_[k]; }
+  /// Of the robots, those that drive.
+  double driving() const {
+    const auto drives = [](const algo::Telemetry& t) { return t.command.base != algo::Twist2{}; };
+    return static_cast<double>(std::ranges::count_if(ticks_, drives)) / kRobots;
+  }
+
+ private:
+  void control(std::size_t k) {
+    algo::Telemetry& t = ticks_[k];
+    t.requests.clear();
+    if (t.mission != algo::Mission::Driving) {
+      t.requests.push_back(algo::SetGoal{places_.next(0.6), std::nullopt});
+    }
+    pipelines_[k].tick(t);
+  }
+
+  sim::Fleet fleet_;
+  Places places_;
+  std::vector<algo::Pipeline> pipelines_{};
+  std::vector<algo::Telemetry> ticks_{};
+};
+
+/// With an ideal scanner every robot sees obstacles and robots where they are.
+void check_sight(int ticks) {
+  sim::LaserConfig ideal = sim::LaserConfig::ideal(0.5);
+  ideal.height = kPlane;
+  const sim::Scenario scenario = hall_scenario(Vehicle::Kinematic, ideal);
+  Crowd crowd(scenario);
+  std::size_t off = 0;
+  std::size_t met = 0;  // beams that end at a robot
+  for (int tick = 0; tick < ticks; ++tick) {
+    crowd.tick();
+    std::vector<algo::Obstacle> all = scenario.obstacles;
+    for (std::size_t k = 0; k < kRobots; ++k) {
+      const algo::Pose2& pose_W = crowd.fleet().robot(k).pose_W();
+      all.push_back(sim::robot_body(scenario, scenario.robot, pose_W));
+    }
+    for (std::size_t k = static_cast<std::size_t>(tick) % 7; k < kRobots; k += 7) {
+      const algo::Pose2& pose_W = crowd.fleet().robot(k).pose_W();
+      std::vector<algo::Obstacle> others = all;
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(scenario.obstacles.size() + k));
+      const algo::LaserScan& scan = crowd.telemetry(k).observation.scans[0];
+      for (std::size_t i = 0; i < kBeams; i += 5) {
+        const double angle = pose_W.heading + bearing(i);
+        const double range =
+            scan.status[i] == algo::Beam::Ok ? scan.ranges[i] : static_cast<double>(kNearRange);
+        if (!reference::agrees(others, pose_W.position(), angle, kNearRange, range, 1e-3)) ++off;
+        const double empty =
+            reference::range(scenario.obstacles, pose_W.position(), angle, kNearRange);
+        if (range < empty - 0.01) ++met;
+      }
+    }
+  }
+  require(off == 0, fmt::format("P10: {} beams see something else than what is there", off));
+  require(met > 100, fmt::format("P10: only {} beams meet a robot", met));
+}
+
+void time_crowd(Pass& pass, Vehicle vehicle, Figure figure) {
+  Crowd crowd(hall_scenario(vehicle, full_laser()));
+  const int warm = pass.count(400, 5);  // until they are everywhere on their ways
+  for (int tick = 0; tick < warm; ++tick) crowd.tick();
+  const int ticks = pass.count(400, 5);
+  std::vector<double> rates;
+  double driving = 0;
+  for (int part = 0; part < 5; ++part) {
+    const double before = thread_cpu();
+    for (int tick = 0; tick < ticks; ++tick) crowd.tick();
+    rates.push_back(ticks * kTick / (thread_cpu() - before));
+    driving += crowd.driving() / 5;
+  }
+  figure.value = median(rates);
+  figure.unit = "s/s";
+  figure.noise = spread(rates);
+  figure.note = fmt::format("{} a robot and tick; {:.0f} % of the robots drive",
+                            duration(kTick / figure.value / kRobots),
+                            100 * driving);
+  pass.add(std::move(figure));
+}
+
+}  // namespace
+
+void fleets(Pass& pass) {
+  check_sight(pass.count(60, 8));
+  time_crowd(pass,
+             Vehicle::Bullet,
+             {.row = "P10", .name = "100 robots, full physics", .floor = 3, .stretch = 6});
+  time_crowd(pass,
+             Vehicle::Kinematic,
+             {.row = "P10", .name = "100 robots, kinematic", .floor = 15, .stretch = 40});
+}
+
+}  // namespace bench
