@@ -152,25 +152,14 @@ void check_sight(int ticks) {
   require(met > 100, fmt::format("P10: only {} beams meet a robot", met));
 }
 
-void time_crowd(Pass& pass, Vehicle vehicle, Figure figure) {
-  Crowd crowd(hall_scenario(vehicle, full_laser()));
-  const int warm = pass.count(400, 5);  // until they are everywhere on their ways
-  for (int tick = 0; tick < warm; ++tick) crowd.tick();
-  const int ticks = pass.count(400, 5);
-  std::vector<double> rates;
-  double driving = 0;
-  for (int part = 0; part < 5; ++part) {
-    const double before = thread_cpu();
-    for (int tick = 0; tick < ticks; ++tick) crowd.tick();
-    rates.push_back(ticks * kTick / (thread_cpu() - before));
-    driving += crowd.driving() / 5;
-  }
-  figure.value = median(rates);
+/// [s] of the run clock in a second of CPU time.
+void add_rate(Pass& pass, Figure figure, const Timing& tick, const Crowd& crowd) {
+  figure.value = kTick / tick.seconds;
   figure.unit = "s/s";
-  figure.noise = spread(rates);
-  figure.note = fmt::format("{} a robot and tick; {:.0f} % of the robots drive",
-                            duration(kTick / figure.value / kRobots),
-                            100 * driving);
+  figure.noise = tick.spread;
+  figure.note = fmt::format("{} a robot and tick, one thread; {:.0f} % of them drive",
+                            duration(tick.seconds / kRobots),
+                            100 * crowd.driving());
   pass.add(std::move(figure));
 }
 
@@ -178,12 +167,22 @@ void time_crowd(Pass& pass, Vehicle vehicle, Figure figure) {
 
 void fleets(Pass& pass) {
   check_sight(pass.count(60, 8));
-  time_crowd(pass,
-             Vehicle::Bullet,
-             {.row = "P10", .name = "100 robots, full physics", .floor = 3, .stretch = 6});
-  time_crowd(pass,
-             Vehicle::Kinematic,
-             {.row = "P10", .name = "100 robots, kinematic", .floor = 15, .stretch = 40});
+  Crowd full(hall_scenario(Vehicle::Bullet, full_laser()));
+  Crowd flat(hall_scenario(Vehicle::Kinematic, full_laser()));
+  for (int tick = 0; tick < pass.count(150, 3); ++tick) {  // until they are on their ways
+    full.tick();
+    flat.tick();
+  }
+  const auto times =
+      pass.time("P10", {{"full", [&] { full.tick(); }}, {"kinematic", [&] { flat.tick(); }}});
+  add_rate(pass,
+           {.row = "P10", .name = "100 robots, full physics", .floor = 3, .stretch = 6},
+           times[0],
+           full);
+  add_rate(pass,
+           {.row = "P10", .name = "100 robots, kinematic", .floor = 15, .stretch = 40},
+           times[1],
+           flat);
 }
 
 }  // namespace bench
