@@ -162,6 +162,11 @@ export interface RunItem {
 }
 
 /** What a run was made of. */
-export interface RunDocument { scenario: ScenarioDocument; robot?: RobotInfo; [key: string]: unknown }
+export interface RunDocument {
+  scenario: ScenarioDocument;
+  robot?: RobotInfo;
+  others?: ObstacleJson[]; // the other robots of the world, as obstacles at their starts
+  [key: string]: unknown;
+}
 
 export interface Page<T> { items: T[]; next: string | number | null; total?: number }

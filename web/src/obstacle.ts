@@ -139,6 +139,19 @@ export function include_obstacle(bounds: Bounds, o: Obstacle): void {
   for (const p of outline(o)) include(bounds, p.x, p.y);
 }
 
+/** Robot n of a world, counted from 1, has the id kRobotIds + n among its obstacles. */
+const kRobotIds = 1_000_000_000;
+
+/** Another robot drives where it likes: people cannot move it. */
+export function is_robot(o: Obstacle): boolean {
+  return o.id > kRobotIds;
+}
+
+/** "Cylinder 3", "Robot 2". */
+export function obstacle_title(o: Obstacle): string {
+  return is_robot(o) ? `Robot ${o.id - kRobotIds}` : `${obstacle_name(o)} ${o.id}`;
+}
+
 export function obstacle_name(o: Obstacle): string {
   return { cylinder: "Cylinder", box: "Box", polygon: "Polygon", wall: "Wall" }[o.kind];
 }

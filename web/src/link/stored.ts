@@ -75,7 +75,8 @@ export class StoredRun {
     this.scene.world = item.vehicle !== "log";
     this.scene.goal = doc?.goal
       ? { x: doc.goal.x, y: doc.goal.y, heading: doc.goal.heading ?? null } : null;
-    this.scene.obstacles = (doc?.obstacles ?? []).map(numbered);
+    const others = (item.document?.others ?? []).map(obstacle_from_json);
+    this.scene.obstacles = [...(doc?.obstacles ?? []).map(numbered), ...others];
     take_parameters(this.scene, item.parameters ?? {});
     this.worlds_.push({ row: -1, obstacles: this.scene.obstacles });
   }

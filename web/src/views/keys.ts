@@ -3,7 +3,7 @@
 import { App } from "../app";
 import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
 import { Pose, wrap_angle } from "../geometry";
-import { Obstacle } from "../obstacle";
+import { Obstacle, obstacle_title } from "../obstacle";
 import type { Hand } from "./drive";
 
 const kArrows: Record<string, [number, number]> = {
@@ -135,7 +135,8 @@ function select_next(app: App): void {
     app.ui.set({ selection: next === undefined ? null : { kind: "obstacle", id: next } });
   }
   const now = app.ui.value.selection;
-  app.say(now === null ? "Nothing selected" : now.kind === "goal" ? "Goal selected" : `Obstacle ${now.id} selected`);
+  const obstacle = selected_obstacle(app);
+  app.say(obstacle ? `${obstacle_title(obstacle)} selected` : now ? "Goal selected" : "Nothing selected");
 }
 
 function moves_selection(app: App, e: KeyboardEvent): boolean {

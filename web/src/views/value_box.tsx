@@ -4,7 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import { use_app } from "../app";
 import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
 import { Goal } from "../link/frame";
-import { Obstacle, obstacle_name } from "../obstacle";
+import { Obstacle, is_robot, obstacle_name, obstacle_title } from "../obstacle";
 import { robot_pose } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
 import { NumberField } from "../ui/controls";
@@ -94,14 +94,14 @@ function ObstacleValues(props: { obstacle: Obstacle; editable: boolean }): JSX.E
       : `${o.length.toFixed(2)} × ${o.width.toFixed(2)} m`;
   return (
     <form class="card values" noValidate onSubmit={apply} aria-label={obstacle_name(o)} data-testid="obstacle-values">
-      <b>{obstacle_name(o)} {o.id}</b>
+      <b>{obstacle_title(o)}</b>
       <span class="quiet num">{size}</span>
       <NumberField label="x" unit="m" name="obstacle-x" value={v.x} on_change={(x) => type({ x: x ?? 0 })} />
       <NumberField label="y" unit="m" name="obstacle-y" value={v.y} on_change={(y) => type({ y: y ?? 0 })} />
       {o.kind !== "cylinder" &&
         <NumberField label="turn" unit="°" name="obstacle-turn" value={v.turn} step={5}
           on_change={(turn) => type({ turn: turn ?? 0 })} />}
-      {props.editable && <>
+      {props.editable && !is_robot(o) && <>
         <button type="submit" class="small primary" disabled={!changed}>Move</button>
         <button type="button" class="icon" aria-label="Remove" title="Remove (Delete)" data-testid="obstacle-remove"
           onClick={() => void app.edit(remove_edit(o))}>{icons.trash}</button>
