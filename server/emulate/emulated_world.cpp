@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "algo/diff_drive.hpp"
@@ -42,6 +43,10 @@ EmulatedWorld::EmulatedWorld(const sim::Scenario& scenario,
       world_(bare(scenario), seed),
       trail_(sim::Substeps(scenario.period).length, Mirror::memory() + scenario.period),
       sonars_(scenario) {
+  if (!scenario.robots.empty()) {
+    throw std::invalid_argument(
+        "Only a robot that is alone has its devices emulated; this scenario has several robots.");
+  }
   for (std::uint32_t i = 0; i < links_.scanners.size(); ++i) {
     mirrors_.emplace_back(scenario_, seed, i);
   }
