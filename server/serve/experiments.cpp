@@ -211,7 +211,7 @@ std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
 
 /// The next run of the queue as a job; waits for one, and for a store that takes it.
 experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
-  stand_back();
+  give_way();
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, stop, [this] { return !queue_.empty(); });

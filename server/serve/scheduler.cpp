@@ -10,7 +10,8 @@
 namespace server {
 namespace {
 
-constexpr int kFastNice = 5;  // before the experiments, behind all else
+constexpr int kFastNice = 5;     // before the experiments, behind all else
+constexpr int kTimedNice = -10;  // before viewers and the record, which may be a little late
 
 }  // namespace
 
@@ -57,6 +58,7 @@ void Scheduler::remove(Task& task) {
 void Scheduler::work_timed(const std::stop_token& stop) {
   drivers::ask_for_punctual_timers();
   drivers::name_this_thread("runs");
+  give_way(kTimedNice);
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (!timed_.empty() && timed_.begin()->first <= Clock::now()) {
@@ -79,7 +81,7 @@ void Scheduler::work_timed(const std::stop_token& stop) {
 
 void Scheduler::work_fast(const std::stop_token& stop) {
   drivers::name_this_thread("fast runs");
-  stand_back(kFastNice);
+  give_way(kFastNice);
   std::unique_lock lock(mutex_);
   while (!stop.stop_requested()) {
     if (fast_.empty()) {

@@ -48,7 +48,7 @@ void Workers::stop() {
 }
 
 void Workers::work(const std::stop_token& stop, const std::string& database) {
-  stand_back();
+  give_way();
   Worker worker(database);
   while (true) {
     Job job;
@@ -62,7 +62,7 @@ void Workers::work(const std::stop_token& stop, const std::string& database) {
   }
 }
 
-void stand_back(int nice) {
+void give_way(int nice) {
   // Of this thread alone: on Linux each has a nice value of its own.
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
 }

@@ -64,6 +64,6 @@ class Workers {
 
 /// Lets the calling thread run when those that drive robots leave room. `nice`: the higher the
 /// farther behind.
-void stand_back(int nice = 10);
+void give_way(int nice = 10);
 
 }  // namespace server
