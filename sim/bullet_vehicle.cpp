@@ -18,7 +18,6 @@ constexpr double kStillSpeed = 0.05;  // [m/s] under which parking begins
 constexpr double kStillTurn = 0.10;   // [rad/s]
 constexpr double kStillTime = 0.5;    // [s]
 constexpr double kSettleTime = 0.5;   // [s] for the wheels to find the floor
-constexpr double kNear = 1.0;         // [m] beyond the hull: obstacles the dynamics know
 constexpr double kRegather = 0.5;     // [m] driven before they are chosen anew
 constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
 constexpr double kSideways = 0.1;     // z of a contact's normal below which it holds nothing up

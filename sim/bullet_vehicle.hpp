@@ -19,6 +19,8 @@ namespace sim {
 /// twenty and among a thousand. Rays never go through Bullet.
 class BulletVehicle final : public VehicleModel {
  public:
+  static constexpr double kNear = 1.0;  // [m] beyond the hull: obstacles the dynamics know
+
   BulletVehicle(const VehicleParameters& vehicle, double period);
   ~BulletVehicle() override;
 

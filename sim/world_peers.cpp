@@ -2,13 +2,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/bullet_vehicle.hpp"
 #include "sim/world.hpp"
 
 namespace sim {
 namespace {
 
-constexpr double kSolid = 1.5;  // [m] beyond both hulls and a tick's way: bodies in the dynamics
-constexpr double kAway = 1e7;   // [m] where no sensor reaches
+constexpr double kSolid = BulletVehicle::kNear + 0.01;  // [m] beyond hull, body and a tick's way
+constexpr double kAway = 1e7;                           // [m] where no sensor reaches
 
 double size_of(const VehicleParameters& vehicle) {
   return std::max(vehicle.radius, std::hypot(vehicle.hull_length, vehicle.hull_width) / 2);
