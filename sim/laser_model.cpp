@@ -54,8 +54,6 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
 
   const std::size_t beams = pattern_.beams;
   fired_.reserve(beams);
-  way_.resize(beams);
-  way_turns_.resize(beams);
   ux_.resize(beams);
   uy_.resize(beams);
   for (std::size_t i = 0; i < beams; ++i) {
@@ -70,14 +68,20 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
       fired_.push_back(turned * config_.mirror_period);
     }
   }
-  rays_.resize(beams);
-  ranges_.resize(beams);
-  hits_.resize(beams);
-  draws_.resize(beams);
-  turns_.resize(beams);
-  first_.resize(beams + 1);
-  edge_flags_.resize(beams);  // the last stays 0
-  edges_.resize(beams);
+}
+
+void LaserWorkspace::resize(std::size_t beams) {
+  if (ranges.size() == beams) return;
+  way.resize(beams);
+  way_turns.resize(beams);
+  rays.resize(beams);
+  ranges.resize(beams);
+  hits.resize(beams);
+  draws.resize(beams);
+  turns.resize(beams);
+  edge_flags.assign(beams, 0);
+  edges.resize(beams);
+  first.resize(beams + 1);
 }
 
 double LaserModel::memory() const {
@@ -99,6 +103,8 @@ void LaserModel::remove(std::uint32_t id) {
 }
 
 bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan) {
+  static thread_local LaserWorkspace workspace;
+  work_ = &workspace;
   double end = now;
   double sweep = 0;
   if (config_.rolling) {
@@ -117,6 +123,7 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   scan.turn_period = config_.rolling ? config_.mirror_period : 0;
   scan.turns = config_.rolling ? config_.turns : 1;
   scan.resize(pattern_.beams);
+  work_->resize(pattern_.beams);
 
   if (config_.rolling) {
     aim(end, trail);
@@ -126,14 +133,16 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   }
   const bool surfaces = config_.reflectivity && !plain_;
   const bool with_hits = config_.mixed_pixels || surfaces;
-  const std::span<std::uint32_t> hits = with_hits ? std::span(hits_) : std::span<std::uint32_t>();
+  const std::span<std::uint32_t> hits =
+      with_hits ? std::span(work_->hits) : std::span<std::uint32_t>();
   if (config_.rolling || config_.mixed_pixels) {
-    caster_.cast_rolling(reference_W_, pattern_, rays_, spread_, config_.range_max, ranges_, hits);
+    caster_.cast_rolling(
+        reference_W_, pattern_, work_->rays, spread_, config_.range_max, work_->ranges, hits);
   } else {
-    caster_.cast(reference_W_, pattern_, config_.range_max, ranges_, hits);
+    caster_.cast(reference_W_, pattern_, config_.range_max, work_->ranges, hits);
   }
   if (config_.mixed_pixels) mark_edges();
-  if (surfaces) apply_surfaces(rays_, ranges_, hits);
+  if (surfaces) apply_surfaces(work_->rays, work_->ranges, hits);
   if (config_.mixed_pixels) mix_pixels();
   report(scan);
   spoil(scan);
@@ -176,11 +185,15 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
   const StepClock clock{(begin - trail.newest()) * per_step + static_cast<double>(oldest),
                         per_step};
   for (std::size_t i = 0; i < beams;) i = follow_motion(clock, i);
-  interlace(way_.x.data(), beams, config_.turns, rays_.x.data());
-  interlace(way_.y.data(), beams, config_.turns, rays_.y.data());
-  interlace(way_turns_.data(), beams, config_.turns, turns_.data());
-  turn_directions(
-      ux_.data(), uy_.data(), turns_.data(), turns_.size(), rays_.ux.data(), rays_.uy.data());
+  interlace(work_->way.x.data(), beams, config_.turns, work_->rays.x.data());
+  interlace(work_->way.y.data(), beams, config_.turns, work_->rays.y.data());
+  interlace(work_->way_turns.data(), beams, config_.turns, work_->turns.data());
+  turn_directions(ux_.data(),
+                  uy_.data(),
+                  work_->turns.data(),
+                  work_->turns.size(),
+                  work_->rays.ux.data(),
+                  work_->rays.uy.data());
 }
 
 /// Where the scanner is when the beams from fired_[first] on leave, as many as lie within one
@@ -198,18 +211,18 @@ std::size_t LaserModel::follow_motion(const StepClock& clock, std::size_t first)
          clock,
          fired_.data(),
          {first, end},
-         way_.x.data(),
-         way_.y.data(),
-         way_turns_.data());
+         work_->way.x.data(),
+         work_->way.y.data(),
+         work_->way_turns.data());
   return end;
 }
 
 /// The rays of a scan without motion.
 void LaserModel::aim_still() {
-  std::fill(rays_.x.begin(), rays_.x.end(), 0.0);
-  std::fill(rays_.y.begin(), rays_.y.end(), 0.0);
-  std::copy(ux_.begin(), ux_.end(), rays_.ux.begin());
-  std::copy(uy_.begin(), uy_.end(), rays_.uy.begin());
+  std::fill(work_->rays.x.begin(), work_->rays.x.end(), 0.0);
+  std::fill(work_->rays.y.begin(), work_->rays.y.end(), 0.0);
+  std::copy(ux_.begin(), ux_.end(), work_->rays.ux.begin());
+  std::copy(uy_.begin(), uy_.end(), work_->rays.uy.begin());
   spread_ = {};
   allow_for_spot();
 }
@@ -218,17 +231,17 @@ void LaserModel::aim_still() {
 /// (algo::quantise() would change nothing).
 void LaserModel::report(algo::LaserScan& scan) {
   if (config_.noise > 0 && config_.noise_shape == NoiseShape::Gaussian) {
-    noise_.fill_normal(draws_);
+    noise_.fill_normal(work_->draws);
   } else if (config_.noise > 0) {
-    noise_.fill_uniform(draws_);
+    noise_.fill_uniform(work_->draws);
   }
-  read_ranges(ranges_.data(), draws_.data(), draws_.size(), reading_);
+  read_ranges(work_->ranges.data(), work_->draws.data(), work_->draws.size(), reading_);
   const double range_max = config_.range_max;
   const bool echoes = config_.reflectivity && !plain_;
   static_assert(static_cast<int>(algo::Beam::Ok) == 0 && static_cast<int>(algo::Beam::Free) == 1 &&
                 static_cast<int>(algo::BeamCode::None) == 0);
-  split_readings(draws_.data(),
-                 draws_.size(),
+  split_readings(work_->draws.data(),
+                 work_->draws.size(),
                  range_max,
                  static_cast<std::uint8_t>(algo::BeamCode::BeyondRange),
                  {scan.ranges.data(),
@@ -236,7 +249,7 @@ void LaserModel::report(algo::LaserScan& scan) {
                   reinterpret_cast<std::uint8_t*>(scan.codes.data())});
   if (!echoes) return;
   for (std::size_t i = 0; i < pattern_.beams; ++i) {
-    if (scan.status[i] == algo::Beam::Free && hits_[i] == kNoEcho) {
+    if (scan.status[i] == algo::Beam::Free && work_->hits[i] == kNoEcho) {
       scan.set_invalid(i, algo::BeamCode::NoEcho);
     }
   }
@@ -245,7 +258,7 @@ void LaserModel::report(algo::LaserScan& scan) {
 /// Beams lost or false, independent of what they met.
 void LaserModel::spoil(algo::LaserScan& scan) {
   pepper_.draw(scan.size(), [&](std::size_t i) {
-    double near = pepper_.random().uniform(0, ranges_[i]);
+    double near = pepper_.random().uniform(0, work_->ranges[i]);
     double truth = 0;  // stands in for the range: only the rounding is wanted
     read_ranges(&truth, &near, 1, {0, 1, reading_.per_metre, config_.range_max, reading_.most});
     scan.set_ok(i, near);

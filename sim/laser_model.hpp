@@ -16,6 +16,28 @@
 
 namespace sim {
 
+/// Numbers of one sweep, one entry a beam unless said otherwise. Nothing in it outlives the sweep:
+/// all scanners of a thread take turns with one, which so stays in the processor's cache.
+struct LaserWorkspace {
+  Rays way{};  // x and y, one mirror turn after another
+  std::vector<double> way_turns{};
+  Rays rays{};
+  std::vector<double> ranges{};
+  std::vector<std::uint32_t> hits{};
+  std::vector<double> draws{};
+  std::vector<double> turns{};             // [rad] of the scanner off the reference at a beam
+  std::vector<std::uint8_t> edge_flags{};  // between a beam and the next; the last stays 0
+  std::vector<std::uint32_t> edges{};      // beams whose spot may lie on an edge, in front
+  Rays more{};                             // further rays for each of them
+  std::vector<std::uint32_t> first{};      // of those rays, for each beam
+  std::vector<double> more_ranges{};
+  std::vector<std::uint32_t> more_hits{};
+  std::vector<double> spot_ranges{};  // rows as judge_spots() has them
+  std::vector<std::uint32_t> spot_hits{};
+
+  void resize(std::size_t beams);
+};
+
 /// What is wrong with the configuration as a sentence part, or nothing.
 std::optional<std::string> defect(const LaserConfig& config);
 
@@ -79,27 +101,15 @@ class LaserModel {
 
   std::size_t spots_ = 0;
 
-  // Tables and workspace, one entry a beam unless said otherwise.
-  std::vector<double> fired_{};  // [s] after the sweep's start, one mirror turn after another
-  Rays way_{};                   // x and y, one mirror turn after another
-  std::vector<double> way_turns_{};
-  std::vector<double> ux_{}, uy_{};    // directions in the scanner's frame
-  std::vector<algo::Pose2> motion_{};  // the scanner at the physics steps of the sweep
+  // Tables, one entry a beam.
+  std::vector<double> fired_{};      // [s] after the sweep's start, one mirror turn after another
+  std::vector<double> ux_{}, uy_{};  // directions in the scanner's frame
+
+  // Of the sweep at hand.
+  std::vector<algo::Pose2> motion_{};  // the scanner at the physics steps
   algo::Pose2 reference_W_{};
   RaySpread spread_{};
-  Rays rays_{};
-  std::vector<double> ranges_{};
-  std::vector<std::uint32_t> hits_{};
-  std::vector<double> draws_{};
-  std::vector<double> turns_{};  // [rad] of the scanner off the reference when a beam leaves
-  std::vector<std::uint8_t> edge_flags_{};  // between a beam and the next
-  std::vector<std::uint32_t> edges_{};      // beams whose spot may lie on an edge, spots_ of them
-  Rays more_{};                             // kSubRays - 1 rays for each of them
-  std::vector<std::uint32_t> first_{};      // of those rays, for each beam
-  std::vector<double> more_ranges_{};
-  std::vector<std::uint32_t> more_hits_{};
-  std::vector<double> spot_ranges_{};  // kSpotRays rows, as judge_spots() has them
-  std::vector<std::uint32_t> spot_hits_{};
+  LaserWorkspace* work_ = nullptr;  // the thread's
 };
 
 }  // namespace sim

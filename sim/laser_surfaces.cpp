@@ -76,11 +76,15 @@ void LaserModel::apply_surfaces(const Rays& rays,
 /// on one (convex) obstacle have no edge between them, however steeply it recedes. Every beam is
 /// written down and only those at an edge are counted, as which are is not predictable.
 void LaserModel::mark_edges() {
-  flag_edges(ranges_.data(), hits_.data(), ranges_.size(), kJump, edge_flags_.data());
-  std::uint32_t* const edges = edges_.data();
-  std::uint32_t* const first = first_.data();
-  const std::uint8_t* const flags = edge_flags_.data();
-  const auto beams = static_cast<std::uint32_t>(ranges_.size());
+  flag_edges(work_->ranges.data(),
+             work_->hits.data(),
+             work_->ranges.size(),
+             kJump,
+             work_->edge_flags.data());
+  std::uint32_t* const edges = work_->edges.data();
+  std::uint32_t* const first = work_->first.data();
+  const std::uint8_t* const flags = work_->edge_flags.data();
+  const auto beams = static_cast<std::uint32_t>(work_->ranges.size());
   std::uint32_t count = 0;
   unsigned before = 0;
   for (std::uint32_t i = 0; i < beams; ++i) {
@@ -96,45 +100,47 @@ void LaserModel::mark_edges() {
 /// Casts the sub-rays of the beams at edges and replaces their ranges by what the whole spot gives.
 void LaserModel::mix_pixels() {
   if (spots_ == 0) return;
-  more_.resize(spots_ * kSubRays.size());
-  more_ranges_.resize(more_.size());
-  more_hits_.resize(more_.size());
+  work_->more.resize(spots_ * kSubRays.size());
+  work_->more_ranges.resize(work_->more.size());
+  work_->more_hits.resize(work_->more.size());
   std::array<algo::Vec2, kSubRays.size()> turn{};
   for (std::size_t k = 0; k < turn.size(); ++k) {
     turn[k] = algo::direction(kSubRays[k] * kSpotHalfAngle);
   }
   std::size_t ray = 0;
-  for (const std::uint32_t edge : std::span(edges_).first(spots_)) {
-    const double ux = rays_.ux[edge];
-    const double uy = rays_.uy[edge];
+  for (const std::uint32_t edge : std::span(work_->edges).first(spots_)) {
+    const double ux = work_->rays.ux[edge];
+    const double uy = work_->rays.uy[edge];
     for (std::size_t k = 0; k < turn.size(); ++k, ++ray) {
       const double aside = kSubRays[k] * kSpotHalfWidth;
-      more_.x[ray] = rays_.x[edge] - aside * uy;
-      more_.y[ray] = rays_.y[edge] + aside * ux;
-      more_.ux[ray] = turn[k].x() * ux - turn[k].y() * uy;
-      more_.uy[ray] = turn[k].y() * ux + turn[k].x() * uy;
+      work_->more.x[ray] = work_->rays.x[edge] - aside * uy;
+      work_->more.y[ray] = work_->rays.y[edge] + aside * ux;
+      work_->more.ux[ray] = turn[k].x() * ux - turn[k].y() * uy;
+      work_->more.uy[ray] = turn[k].y() * ux + turn[k].x() * uy;
     }
   }
 
-  caster_.cast_more(more_, first_, config_.range_max, more_ranges_, more_hits_);
-  if (config_.reflectivity && !plain_) apply_surfaces(more_, more_ranges_, more_hits_);
+  caster_.cast_more(
+      work_->more, work_->first, config_.range_max, work_->more_ranges, work_->more_hits);
+  if (config_.reflectivity && !plain_)
+    apply_surfaces(work_->more, work_->more_ranges, work_->more_hits);
   judge();
 }
 
 /// Replaces the ranges of the beams at edges by what their whole spots give.
 void LaserModel::judge() {
   const std::size_t spots = spots_;
-  spot_ranges_.resize(spots * kSpotRays);
-  spot_hits_.resize(spots * kSpotRays);
-  double* const own = spot_ranges_.data() + kSubRays.size() * spots;
-  std::uint32_t* const own_hits = spot_hits_.data() + kSubRays.size() * spots;
+  work_->spot_ranges.resize(spots * kSpotRays);
+  work_->spot_hits.resize(spots * kSpotRays);
+  double* const own = work_->spot_ranges.data() + kSubRays.size() * spots;
+  std::uint32_t* const own_hits = work_->spot_hits.data() + kSubRays.size() * spots;
   for (std::size_t i = 0; i < spots; ++i) {
     for (std::size_t k = 0; k < kSubRays.size(); ++k) {
-      spot_ranges_[k * spots + i] = more_ranges_[i * kSubRays.size() + k];
-      spot_hits_[k * spots + i] = more_hits_[i * kSubRays.size() + k];
+      work_->spot_ranges[k * spots + i] = work_->more_ranges[i * kSubRays.size() + k];
+      work_->spot_hits[k * spots + i] = work_->more_hits[i * kSubRays.size() + k];
     }
-    own[i] = ranges_[edges_[i]];
-    own_hits[i] = hits_[edges_[i]];
+    own[i] = work_->ranges[work_->edges[i]];
+    own_hits[i] = work_->hits[work_->edges[i]];
   }
   judge_spots({.jump = kJump,
                .mixed_gap = kMixedGap,
@@ -142,11 +148,11 @@ void LaserModel::judge() {
                .range_max = config_.range_max,
                .no_echo = kNoEcho},
               spots,
-              spot_ranges_.data(),
-              spot_hits_.data());
+              work_->spot_ranges.data(),
+              work_->spot_hits.data());
   for (std::size_t i = 0; i < spots; ++i) {
-    ranges_[edges_[i]] = own[i];
-    hits_[edges_[i]] = own_hits[i];
+    work_->ranges[work_->edges[i]] = own[i];
+    work_->hits[work_->edges[i]] = own_hits[i];
   }
 }
 

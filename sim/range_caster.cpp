@@ -237,22 +237,26 @@ std::uint32_t RangeCaster::first_beam(const Corner& corner) const {
 }
 
 void RangeCaster::start(std::size_t rays, double range_max, bool with_hits) {
-  inverse_.assign(rays, 1 / range_max);
-  if (with_hits) tags_.assign(rays, -1.0);
-  depth_ = {inverse_.data(), with_hits ? tags_.data() : nullptr};
+  // Of no use after a cast: all casters of a thread take turns with one.
+  static thread_local std::vector<double> inverse;
+  static thread_local std::vector<double> tags;
+  inverse.assign(rays, 1 / range_max);
+  if (with_hits) tags.assign(rays, -1.0);
+  depth_ = {inverse.data(), with_hits ? tags.data() : nullptr};
+  rays_ = rays;
 }
 
 void RangeCaster::finish(double range_max,
                          std::span<double> ranges,
                          std::span<std::uint32_t> hits) const {
-  write_ranges(inverse_.data(), range_max, ranges);
-  if (!hits.empty()) write_hits(tags_.data(), hits);
+  write_ranges(depth_.inverse, range_max, ranges);
+  if (!hits.empty()) write_hits(depth_.tag, hits);
 }
 
 /// The sensor is inside obstacle `index`: every ray reads 0.
 void RangeCaster::fill_inside(std::uint32_t index) {
-  std::fill(inverse_.begin(), inverse_.end(), kInfinity);
-  if (depth_.tag != nullptr) std::fill(tags_.begin(), tags_.end(), static_cast<double>(index));
+  std::fill_n(depth_.inverse, rays_, kInfinity);
+  if (depth_.tag != nullptr) std::fill_n(depth_.tag, rays_, static_cast<double>(index));
 }
 
 void RangeCaster::cast(const algo::Pose2& sensor_W,

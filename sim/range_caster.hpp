@@ -164,9 +164,8 @@ class RangeCaster {
   double cosine_ = 1, sine_ = 0;
   std::vector<std::uint32_t> near_{};       // obstacles that may be met
   std::vector<Corner> outline_{};           // of the obstacle at hand
-  std::vector<double> inverse_{};           // [1/m] of each ray
-  std::vector<double> tags_{};              // what it met; see DepthBuffer
-  DepthBuffer depth_{};                     // the two above
+  DepthBuffer depth_{};                     // [1/m] of each ray, and what it met
+  std::size_t rays_ = 0;                    // in it
   std::vector<Primitive> primitives_{};     // of the last cast_rolling()
   std::vector<std::uint32_t> enclosing_{};  // outlines a ray of it may start inside
 };

@@ -151,8 +151,8 @@ void RangeCaster::trace_enclosing(const Rays& rays) {
                  cross(a.x - rays.x[i], a.y - rays.y[i], b.x - rays.x[i], b.y - rays.y[i]) >= 0;
       }
       if (!inside) continue;
-      inverse_[i] = kInfinity;
-      if (depth_.tag != nullptr) tags_[i] = index;
+      depth_.inverse[i] = kInfinity;
+      if (depth_.tag != nullptr) depth_.tag[i] = index;
     }
   }
 }
