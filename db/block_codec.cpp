@@ -63,7 +63,12 @@ void write_floats(std::span<const std::byte> window,
 
 }  // namespace
 
-BlockEncoder::BlockEncoder() : sweeps_(new Sweeps), compressor_(new Compressor) {}
+std::shared_ptr<Compressor> make_compressor() {
+  return std::make_shared<Compressor>();
+}
+
+BlockEncoder::BlockEncoder(std::shared_ptr<Compressor> compressor)
+    : sweeps_(new Sweeps), compressor_(compressor ? std::move(compressor) : make_compressor()) {}
 
 void BlockEncoder::clear() {
   table_.clear();

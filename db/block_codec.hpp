@@ -111,13 +111,14 @@ class TurnedScan;
 struct Compressor;    // a zstd context and its output buffer
 struct Decompressor;  // the same for unpacking
 struct Deleter {
-  void operator()(Compressor* compressor) const noexcept;
   void operator()(Decompressor* decompressor) const noexcept;
   void operator()(Sweeps* sweeps) const noexcept;
   void operator()(TurnedScan* turned) const noexcept;
 };
 
 }  // namespace detail
+
+std::shared_ptr<detail::Compressor> make_compressor();
 
 /// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
 ///
@@ -128,7 +129,8 @@ struct Deleter {
 /// stream by stream, and is stored as it is where zstd does not pay.
 class BlockEncoder {
  public:
-  BlockEncoder();
+  /// `compressor`: shared by encoders of one thread, as it is large; null: one of its own.
+  explicit BlockEncoder(std::shared_ptr<detail::Compressor> compressor = {});
 
   /// Appends a copy of the frame. Windows are in order of offset and do not overlap.
   /// Throws CodecError when a window leaves the frame or the block is full (see fits()).
@@ -158,7 +160,7 @@ class BlockEncoder {
   detail::RestOrder rest_order_{};
   std::vector<std::byte> packed_{};
   std::unique_ptr<detail::Sweeps, detail::Deleter> sweeps_;
-  std::unique_ptr<detail::Compressor, detail::Deleter> compressor_;
+  std::shared_ptr<detail::Compressor> compressor_;
 };
 
 /// Unpacks blocks. Not thread-safe.

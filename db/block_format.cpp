@@ -94,9 +94,6 @@ void Deleter::operator()(Sweeps* sweeps) const noexcept {
 void Deleter::operator()(TurnedScan* turned) const noexcept {
   delete turned;
 }
-void Deleter::operator()(Compressor* compressor) const noexcept {
-  delete compressor;
-}
 void Deleter::operator()(Decompressor* decompressor) const noexcept {
   delete decompressor;
 }

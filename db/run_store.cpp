@@ -187,7 +187,7 @@ RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId
 RunId RunStore::begin_run(const NewRun& what, std::optional<RunId> wanted) {
   return guarded([&] {
     const RunId run = insert(what, RunStatus::Recording, wanted);
-    open_.emplace(run, std::make_unique<Recording>());
+    open_.emplace(run, std::make_unique<Recording>(compressor_));
     return run;
   });
 }
@@ -199,7 +199,7 @@ RunId RunStore::queue_run(const NewRun& what, std::optional<RunId> wanted) {
 std::optional<std::uint64_t> RunStore::resume_run(RunId run) {
   return guarded([&]() -> std::optional<std::uint64_t> {
     begin();
-    auto recording = std::make_unique<Recording>();
+    auto recording = std::make_unique<Recording>(compressor_);
     {
       Statement& found = sql_->resume_run.reset() << run;
       const ResetLater reset(found);
@@ -240,7 +240,7 @@ void RunStore::start_run(RunId run, std::string_view started) {
     return sql_->start_run.step();
   });
   if (!found) throw StoreError(name_of(run) + " is not waiting to be started");
-  open_.emplace(run, std::make_unique<Recording>());
+  open_.emplace(run, std::make_unique<Recording>(compressor_));
 }
 
 RunStore::Recording& RunStore::recording_of(RunId run) {

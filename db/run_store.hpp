@@ -176,6 +176,7 @@ class RunStore {
   std::unique_ptr<FileLock> lock_{};  // outlives the connection
   std::optional<detail::Connection> connection_{};
   std::unique_ptr<Statements> sql_;
+  std::shared_ptr<detail::Compressor> compressor_ = make_compressor();  // of all recordings
   std::map<RunId, std::unique_ptr<Recording>> open_;
   std::vector<RunId> interrupted_{};
   std::optional<FileIdentity> known_{};  // the file whose unfinished runs are this store's own

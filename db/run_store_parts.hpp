@@ -1,12 +1,18 @@
 // db/run_store_parts.hpp: what the store's source files share: its statements and open runs.
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "db/run_store.hpp"
 
 namespace db {
 
 struct RunStore::Recording {
-  BlockEncoder pending{};          // frames of the newest block, which may still grow
+  explicit Recording(std::shared_ptr<detail::Compressor> compressor)
+      : pending(std::move(compressor)) {}
+
+  BlockEncoder pending;            // frames of the newest block, which may still grow
   std::uint64_t first_tick = 0;    // of that block
   std::size_t written_frames = 0;  // of pending, those already in the block row
   std::uint64_t sealed_bytes = 0;  // of the blocks before it

@@ -21,19 +21,20 @@ constexpr double kMiddle = 4.0;           // [m] the robot may be from the windo
 
 }  // namespace
 
-LocalMap::LocalMap()
+LocalMap::LocalMap(Distances distances)
     : hits_(static_cast<std::size_t>(kSize) * kSize),
       seen_(std::make_unique_for_overwrite<std::uint16_t[]>(hits_.size())),
       means_(std::make_unique_for_overwrite<Offset[]>(hits_.size())) {
   active_.reserve(hits_.size());
   moved_.reserve(hits_.size());
   suspects_.reserve(kMostBeams);
+  if (distances == Distances::Kept) field_.emplace();
   reset({0, 0});
 }
 
 void LocalMap::reset(const Vec2& centre_W) {
   std::ranges::fill(hits_, std::uint8_t{0});
-  field_.reset();
+  if (field_) field_->reset();
   active_.clear();
   occupied_ = 0;
   scans_ = 0;
@@ -68,7 +69,7 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
   move_cells(hits_, kSize, columns, rows, std::uint8_t{0});
-  field_.shift(tile_columns, tile_rows);
+  if (field_) field_->shift(tile_columns, tile_rows);
   occupied_ = 0;
   moved_.clear();
   for (const std::uint32_t old : active_) {
@@ -99,7 +100,7 @@ void LocalMap::insert(const LaserScan& scan,
   space_.look(scan, sensor_W);
   doubt_suspects();
   if (scans_ % kAgeEvery == 0) age();
-  field_.rebuild(hits_, kOccupied);
+  if (field_) field_->rebuild(hits_, kOccupied);
 }
 
 void LocalMap::hit(const Vec2& point_W) {
@@ -122,7 +123,7 @@ void LocalMap::hit(const Vec2& point_W) {
   if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
   if (before >= kOccupied || hits_[cell] < kOccupied) return;
   ++occupied_;
-  field_.occupy(column, row);
+  if (field_) field_->occupy(column, row);
 }
 
 /// Takes hits from a cell. False when it has none left.
@@ -131,7 +132,7 @@ bool LocalMap::weaken(std::size_t cell, int by) {
   hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
   if (before >= kOccupied && hits_[cell] < kOccupied) {
     --occupied_;
-    field_.free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
+    if (field_) field_->free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
   }
   return hits_[cell] > 0;
 }
@@ -215,7 +216,7 @@ double LocalMap::distance(const Vec2& p_W) const {
   const int row = static_cast<int>(y);
   const double u = x - column;
   const double v = y - row;
-  const std::int16_t* low = field_.from(column, row);
+  const std::int16_t* low = field_->from(column, row);
   const std::int16_t* high = low + kSize;
   const double below = low[0] + u * (low[1] - low[0]);
   const double above = high[0] + u * (high[1] - high[0]);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "algo/full_strip/distance_field.hpp"
@@ -30,7 +31,11 @@ class LocalMap {
   static constexpr double kReach = DistanceField::kReach;  // [m] distances are known up to here
   static constexpr std::uint8_t kOccupied = 3;  // hits from which on a cell is occupied: two
 
-  LocalMap();
+  /// Whether the distance to the nearest occupied cell is kept: half of a map's memory, and most of
+  /// its work. Without it distance(), gradient(), sees() and cell_distance() must not be called.
+  enum class Distances : std::uint8_t { Kept, None };
+  explicit LocalMap(Distances distances = Distances::Kept);
+  bool keeps_distances() const { return field_.has_value(); }
 
   /// Forgets everything; the window is centred on `centre_W`.
   void reset(const Vec2& centre_W);
@@ -91,7 +96,7 @@ class LocalMap {
   bool inside(const Vec2& p_W) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.
-  std::int16_t cell_distance(int column, int row) const { return field_.at(column, row); }
+  std::int16_t cell_distance(int column, int row) const { return field_->at(column, row); }
   std::size_t occupied() const { return occupied_; }
   /// Where it has looked at all: what is neither occupied nor seen is anyone's guess.
   const SeenSpace& seen() const { return space_; }
@@ -143,7 +148,7 @@ class LocalMap {
   std::vector<Moved> moved_;
   std::vector<std::uint32_t> active_;    // cells with hits
   std::vector<std::uint32_t> suspects_;  // cells that the last scan hit for the first time
-  DistanceField field_{};
+  std::optional<DistanceField> field_{};
   SeenSpace space_{};
   std::size_t occupied_ = 0;
   std::uint16_t age_after_ = 20 * 30;

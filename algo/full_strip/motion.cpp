@@ -97,6 +97,7 @@ void HullCheck::take_place(SeenSpace& seen, const Pose2& pose_W) const {
 }
 
 double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
+  if (!map.keeps_distances()) return exact(map, pose_W);
   const Vec2 ahead = direction(pose_W.heading);
   double least = LocalMap::kReach;
   for (std::size_t i = 0; i < count_; ++i) {

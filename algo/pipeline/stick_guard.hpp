@@ -45,7 +45,7 @@ class StickGuard {
   bool safe(const Resource& in, const Twist2& command, Answer answer) const;
 
   HullCheck hull_{};
-  LocalMap map_{};
+  LocalMap map_{LocalMap::Distances::None};  // it only asks who is very near
   const Tracker nothing_moves_{};  // this map holds moving obstacles like all others
   ScanPoints points_{};
   RearWatch rear_{};

@@ -34,7 +34,9 @@ HeadlessResult run_headless(const RunSpec& spec,
               : FramePool::make(kNowAndNext);
   std::unique_ptr<RecordSink> sink;
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
-  algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
+  algo::PipelineConfig config = pipeline_config(spec);
+  config.by_hand = false;  // nobody is there
+  algo::Pipeline pipeline(config, robot.spec());
   Pacer pacer({.speed = options.pace});
   std::stop_source over;
   const std::stop_callback wake(stop, [&] { over.request_stop(); });

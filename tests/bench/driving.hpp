@@ -27,7 +27,7 @@ inline sim::Scenario room_scenario(std::uint32_t obstacles,
 
 /// Pipeline of the papers' filter with N = 2.
 inline algo::Pipeline make_pipeline(const algo::RobotSpec& spec) {
-  algo::PipelineConfig config;
+  algo::PipelineConfig config{.by_hand = false};  // as in a headless run
   config.parameters.set(algo::kFilterHalfWidth, 2);
   return {config, spec};
 }

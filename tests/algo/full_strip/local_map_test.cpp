@@ -41,6 +41,24 @@ TEST(LocalMap, DistancesAreThoseToTheSurfaceSeen) {
   EXPECT_EQ(map.distance({1000, 0}), LocalMap::kReach);
 }
 
+TEST(LocalMap, WithoutDistancesItHoldsTheSameSurfaces) {
+  LocalMap with;
+  LocalMap without(LocalMap::Distances::None);
+  const auto surfaces = [](const LocalMap& map) {
+    std::vector<double> out;
+    map.each_near({2, 0}, 2, [&](const Vec2& p) { out.insert(out.end(), {p.x(), p.y()}); });
+    return out;
+  };
+  for (LocalMap* map : {&with, &without}) {
+    see(*map, post(2, 0, 0.3), {0, 0, 0}, 3);
+    map->follow({6, 0}, 1);  // moves the window
+    see(*map, {{{{6, 0}, 0.5}}, {}}, {0, 0, 0}, 5);
+  }
+  EXPECT_FALSE(surfaces(with).empty());
+  EXPECT_EQ(surfaces(with), surfaces(without));
+  EXPECT_EQ(with.occupied(), without.occupied());
+}
+
 LaserScan three_beams() {
   LaserScan scan;
   scan.angle_increment = 0.01;
