@@ -46,7 +46,7 @@ class StickGuard {
 
   HullCheck hull_{};
   LocalMap map_{LocalMap::Distances::None};  // it only asks who is very near
-  const Tracker nothing_moves_{};  // this map holds moving obstacles like all others
+  const Tracker nothing_moves_{};            // this map holds moving obstacles like all others
   ScanPoints points_{};
   RearWatch rear_{};
   bool placed_ = false;                          // the place of the start is entered into the map

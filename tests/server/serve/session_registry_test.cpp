@@ -3,8 +3,8 @@
 #include "server/serve/session_registry.hpp"
 
 #include <chrono>
-#include <cstdlib>
 #include <cstdint>
+#include <cstdlib>
 #include <random>
 #include <set>
 #include <string>
