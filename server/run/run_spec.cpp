@@ -109,6 +109,7 @@ std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
 
 std::vector<RobotPlan> plans_of_others(const sim::Scenario& scenario) {
   std::vector<RobotPlan> plans;
+  plans.reserve(scenario.robots.size());
   for (const sim::OtherRobot& robot : scenario.robots) {
     plans.push_back({.pipeline = pipeline_config(robot, scenario),
                      .first = requests_of(robot.goals ? *robot.goals : way_of(scenario))});
