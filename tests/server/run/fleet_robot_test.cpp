@@ -44,7 +44,7 @@ void drive(const RunSpec& spec, algo::Robot& robot, double seconds, See see) {
 }
 
 TEST(FleetRobot, EachRobotDrivesToItsOwnGoal) {
-  const RunSpec spec = make_spec(swap(sim::Vehicle::Kinematic), {});
+  const RunSpec spec = make_spec(swap(sim::Vehicle::Bullet), {});
   const auto robot = make_robot(spec);
   const auto* fleet = dynamic_cast<const FleetRobot*>(robot.get());
   ASSERT_NE(fleet, nullptr);
@@ -64,7 +64,7 @@ TEST(FleetRobot, EachRobotDrivesToItsOwnGoal) {
 /// The numbers of a run of the first robot.
 std::vector<double> numbers(const RunSpec& spec, algo::Robot& robot) {
   std::vector<double> out;
-  drive(spec, robot, 2.5, [&](const algo::Telemetry& t) {
+  drive(spec, robot, 8, [&](const algo::Telemetry& t) {
     out.insert(out.end(),
                {t.command.base.v, t.command.base.omega, t.ground_truth->pose.x, t.clearance});
     for (const algo::LaserScan& scan : t.observation.scans) {
@@ -86,31 +86,37 @@ std::vector<RobotPlan> plans(const sim::Scenario& scenario) {
   return out;
 }
 
-TEST(FleetRobot, TheSameSpecGivesTheSameRunOnAnyNumberOfThreads) {
-  for (const sim::Vehicle vehicle : {sim::Vehicle::Kinematic, sim::Vehicle::Bullet}) {
-    const RunSpec spec = make_spec(swap(vehicle), {});
-    const std::vector<double> expected = numbers(spec, *make_robot(spec));
-    EXPECT_EQ(numbers(spec, *make_robot(spec)), expected);
-    for (const std::size_t threads : {2U, 4U}) {
-      FleetRobot robot(spec.scenario,
-                       spec.seed,
-                       plans(spec.scenario),
-                       [threads](std::size_t count, const std::function<void(std::size_t)>& call) {
-                         std::atomic<std::size_t> next{0};
-                         std::vector<std::jthread> crew;
-                         for (std::size_t i = 0; i < threads; ++i) {
-                           crew.emplace_back([&] {
-                             for (std::size_t k = next++; k < count; k = next++) call(k);
-                           });
-                         }
-                       });
-      EXPECT_EQ(numbers(spec, robot), expected) << threads << " threads";
-      EXPECT_EQ(numbers(spec, robot), expected) << threads << " threads, again after a reset";
-    }
-    RunSpec other = spec;
-    other.seed = 2;
-    EXPECT_NE(numbers(other, *make_robot(other)), expected);
+void expect_the_same_on_any_threads(sim::Vehicle vehicle) {
+  const RunSpec spec = make_spec(swap(vehicle), {});
+  const std::vector<double> expected = numbers(spec, *make_robot(spec));
+  EXPECT_EQ(numbers(spec, *make_robot(spec)), expected);
+  for (const std::size_t threads : {2U, 4U}) {
+    FleetRobot robot(spec.scenario,
+                     spec.seed,
+                     plans(spec.scenario),
+                     [threads](std::size_t count, const std::function<void(std::size_t)>& call) {
+                       std::atomic<std::size_t> next{0};
+                       std::vector<std::jthread> crew;
+                       for (std::size_t i = 0; i < threads; ++i) {
+                         crew.emplace_back([&] {
+                           for (std::size_t k = next++; k < count; k = next++) call(k);
+                         });
+                       }
+                     });
+    EXPECT_EQ(numbers(spec, robot), expected) << threads << " threads";
+    EXPECT_EQ(numbers(spec, robot), expected) << threads << " threads, again after a reset";
   }
+  RunSpec other = spec;
+  other.seed = 2;
+  EXPECT_NE(numbers(other, *make_robot(other)), expected);
+}
+
+TEST(FleetRobot, TheSameSpecGivesTheSameRunOnAnyNumberOfThreads) {
+  expect_the_same_on_any_threads(sim::Vehicle::Kinematic);
+}
+
+TEST(FleetRobot, SoItDoesWithFullPhysics) {
+  expect_the_same_on_any_threads(sim::Vehicle::Bullet);
 }
 
 TEST(FleetRobot, OverridesOfControllerAndParametersReachTheOthers) {
