@@ -26,9 +26,9 @@ using ForEach =
 /// obstacles at their poses of the tick. A robot meets another as a thing that does not yield:
 /// nobody is pushed. In a sweep of a scanner the others stand where the sweep's tick ends.
 ///
-/// A period has two phases: all drive among the others as they stood, then all are placed anew.
-/// Nobody's step reads what another's writes in the same phase, so that the result is the same bit
-/// for bit whatever the number of threads.
+/// A period has two phases: all robots drive among the others as they stood, then all are placed
+/// anew. Within a phase no robot reads a value that another one writes. The result is therefore the
+/// same bit for bit with any number of threads.
 class Fleet {
  public:
   /// Robot 0 has the noise that it would have alone. Throws std::invalid_argument with a sentence

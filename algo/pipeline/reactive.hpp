@@ -36,7 +36,7 @@ struct Resource {
   bool manual = false;  // a driver's stick is live
 };
 
-/// What a behaviour allows at most, whoever drives, and why.
+/// Bounds that a behaviour sets for the twist of any behaviour, with the reason.
 struct TwistLimits {
   double v_min = -std::numeric_limits<double>::infinity();      // [m/s]
   double v_max = std::numeric_limits<double>::infinity();       // [m/s]
