@@ -141,20 +141,21 @@ TEST_F(RecordedRun, FedBackItGivesTheSameCommands) {
   }
 }
 
-TEST_F(RecordedRun, OfTheFirstOfSeveralRobotsFedBackItGivesTheSameCommands) {
+class RecordedSwap : public RecordedRun, public ::testing::WithParamInterface<const char*> {};
+
+TEST_P(RecordedSwap, OfTheFirstRobotFedBackGivesTheSameCommands) {
   const algo::Obstacle obstacle{.id = 9, .pose_W = {1.0, 1.0, 0}, .shape = algo::Cylinder{0.2}};
-  for (const char* vehicle : {"bullet", "kinematic"}) {
-    SCOPED_TRACE(vehicle);
-    RunOverrides overrides;
-    overrides.vehicle = vehicle;
-    const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("swap"), overrides);
-    const db::RunId first = record(spec, {{50, algo::AddObstacle{obstacle}}});
-    const Verification verification = verify(first);
-    EXPECT_EQ(verification.ticks, result_.metrics.ticks);
-    EXPECT_EQ(verification.difference, std::nullopt);
-    EXPECT_EQ(verification.incomplete, std::nullopt);
-  }
+  RunOverrides overrides;
+  overrides.vehicle = GetParam();
+  const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("swap"), overrides);
+  const db::RunId first = record(spec, {{50, algo::AddObstacle{obstacle}}});
+  const Verification verification = verify(first);
+  EXPECT_EQ(verification.ticks, result_.metrics.ticks);
+  EXPECT_EQ(verification.difference, std::nullopt);
+  EXPECT_EQ(verification.incomplete, std::nullopt);
 }
+
+INSTANTIATE_TEST_SUITE_P(Physics, RecordedSwap, ::testing::Values("bullet", "kinematic"));
 
 TEST_F(RecordedRun, FedBackWithEditsStickAndStopItGivesTheSameCommands) {
   const algo::Obstacle obstacle{.id = 9, .pose_W = {1.0, -1.0, 0}, .shape = algo::Cylinder{0.2}};
