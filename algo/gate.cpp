@@ -29,7 +29,6 @@ bool leaves_bumpers(const Observation& observation, double v) {
 
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
   if (in.stopped) return holds::kStopped;
-  if (in.link_lost) return holds::kLinkLost;
   if (observation.halt != Halt::None) return holds::kHalted;
   if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
     return holds::kNotFinite;

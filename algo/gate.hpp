@@ -18,8 +18,7 @@ inline constexpr ParameterInfo kScanTimeout{
     .alias = "scan_timeout"};
 
 struct GateInput {
-  bool stopped = false;  // Stop is latched
-  bool link_lost = false;
+  bool stopped = false;                // Stop is latched
   double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
   bool blinded = false;                // most of the newest scan tells nothing: it does not count
@@ -39,7 +38,6 @@ inline constexpr Hold kDazzled{
     "dazzled", "Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
-inline constexpr Hold kLinkLost{"link_lost", "Holding still", "The link to the robot is lost."};
 /// By the robot itself: observation.halt says why.
 inline constexpr Hold kHalted{"halted", "Holding still", "The robot holds its wheels still."};
 

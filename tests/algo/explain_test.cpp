@@ -107,7 +107,6 @@ TEST(Explain, EveryStateHasItsSentences) {
                           holds::kBumper,
                           holds::kStaleScan,
                           holds::kNotFinite,
-                          holds::kLinkLost,
                           holds::kDazzled}) {
     for (const Mission mission :
          {Mission::Idle, Mission::Driving, Mission::Arrived, Mission::Stuck, Mission::Held}) {

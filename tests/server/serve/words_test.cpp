@@ -90,7 +90,6 @@ std::vector<Tick> ticks() {
                                  algo::holds::kBumper,
                                  algo::holds::kStaleScan,
                                  algo::holds::kNotFinite,
-                                 algo::holds::kLinkLost,
                                  algo::holds::kDazzled}) {
     add().hold = hold;
   }

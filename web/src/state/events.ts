@@ -15,7 +15,6 @@ const kHoldWords: Record<string, string> = {
   stale_scan: "Scan too old",
   dazzled: "Laser dazzled",
   not_finite: "A number was not finite",
-  link_lost: "Link to the robot lost",
   halted: "Held by the robot",
 };
 
