@@ -215,6 +215,62 @@ test("a recorded log plays through the page and is kept as a run", {
     await p.shot("runs-replay");
   }));
 
+/** Keeps what comes over the WebSocket while `window.held` is a list; counts drawings of scenes. */
+function hold_and_count() {
+  const { set } = Object.getOwnPropertyDescriptor(WebSocket.prototype, "onmessage");
+  Object.defineProperty(WebSocket.prototype, "onmessage", {
+    set(act) {
+      set.call(this, (event) => (window.held ? window.held.push(() => act(event)) : act(event)));
+    },
+  });
+  window.draws = { seen: 0, left: 0 };
+  const plain = CanvasRenderingContext2D.prototype.setTransform;
+  CanvasRenderingContext2D.prototype.setTransform = function (...numbers) {
+    if (this.canvas.classList.contains("scene-canvas")) ++window.draws[this.canvas.isConnected ? "seen" : "left"];
+    return plain.apply(this, numbers);
+  };
+}
+
+test("a scene that was left is drawn no more; its view rests again at the way back", { timeout: 90_000 }, () =>
+  with_page({ scenario: "demo" }, async (p, { base }) => {
+    await p.page.addInitScript(hold_and_count);
+    await p.page.reload();
+    const control = (action) => json(base, "/session/control", { method: "POST", body: JSON.stringify({ action }) });
+    await control("pause");
+    await p.pixels(0, 0); // nothing is about to be drawn
+    await p.page.evaluate(() => {
+      const plain = window.cancelAnimationFrame;
+      window.cancelAnimationFrame = () => undefined; // as on a quick machine, where its frame came before
+      setTimeout(() => (window.cancelAnimationFrame = plain), 500);
+      location.hash = "#/runs";
+    });
+    await p.get("scene").waitFor({ state: "detached" });
+    await p.page.waitForTimeout(600);
+    await control("play");
+    await p.page.evaluate(() => {
+      window.held = [];
+      // Frames that come when the new canvas is there but not yet set up.
+      new MutationObserver((_, watch) => {
+        if (!document.querySelector(".scene-canvas")) return;
+        watch.disconnect();
+        requestAnimationFrame(() => {
+          const { held } = window;
+          window.held = null;
+          for (const act of held) act();
+        });
+      }).observe(document.body, { childList: true, subtree: true });
+    });
+    await p.page.waitForFunction(() => window.held.length > 3);
+    await p.page.evaluate(() => (location.hash = "#/drive"));
+    await p.get("scene").waitFor();
+    await p.page.waitForTimeout(500);
+    await control("pause");
+    await p.pixels(0, 0);
+    const { seen, left } = await p.page.evaluate(() => window.draws);
+    assert.ok(seen > 0);
+    assert.equal(left, 0);
+  }));
+
 test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1" }, async (p, { base }) => {
     await p.get("three").click();

@@ -54,7 +54,9 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
     const draw = (now: number) => {
       pending = 0;
       const { view, scene } = latest.current;
-      if (view.width < 2 || view.height < 2) return;
+      // Messages ask the canvas that was left until the next is there. Both would fit the one view, each
+      // undoing the other's move, for ever.
+      if (!canvas.isConnected || view.width < 2 || view.height < 2) return;
       const ratio = canvas.width / view.width;
       g.setTransform(ratio, 0, 0, ratio, 0, 0);
       palette.current ??= read_palette();
