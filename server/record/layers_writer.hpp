@@ -22,12 +22,14 @@ struct News;
 namespace server {
 
 /// What only people look at: nobody sees less than a millimetre, and the record would keep it at
-/// twice the size.
+/// twice the size. To the next even one of two equally near, as lrint() does, but many at once.
 inline float rounded(float value) {
   constexpr float kSteps = 1024;
-  constexpr float kMost = 0x1p20F;  // beyond it a float resolves little more
-  if (!(std::abs(value) < kMost)) return value;
-  return static_cast<float>(std::lrint(value * kSteps)) / kSteps;
+  constexpr float kWhole = 0x1p23F;  // from here on a float has no fraction
+  const float steps = value * kSteps;
+  const float push = std::copysign(kWhole, steps);  // leaves the fraction no room
+  const float whole = (steps + push) - push;
+  return std::abs(steps) < kWhole ? whole / kSteps : value;
 }
 
 /// Layers of the pipeline come first, then the controller's, in every list. Keeps its buffers. What

@@ -271,6 +271,20 @@ TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
   EXPECT_EQ(values[5], 0);
 }
 
+TEST(FrameCodec, RoundingGivesTheNearestStepAndTheEvenOneOfTwo) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> exponent(-14, 22);
+  for (int i = 0; i < 20'000; ++i) {
+    const float power = std::exp2(exponent(random));
+    const float near_half = (std::floor(power) + 0.5F) / 1024;
+    for (const float value :
+         {power, -power, near_half, -near_half, std::nextafter(near_half, 0.F)}) {
+      EXPECT_EQ(rounded(value), static_cast<float>(std::nearbyint(double{value} * 1024) / 1024))
+          << value;
+    }
+  }
+}
+
 /// What the encoder keeps of the tick before changes no byte.
 TEST(FrameCodec, LayersThatComeAndGoAreWrittenAsByAFreshEncoder) {
   FrameEncoder kept;
