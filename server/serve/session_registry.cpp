@@ -29,7 +29,8 @@ struct Parting {
 SessionRegistry::SessionRegistry(SessionHouse house, const SessionRules& rules)
     : house_(std::move(house)),
       rules_(rules),
-      main_(std::make_shared<OpenSession>(std::string(kMain), house_, 0)) {}
+      main_(std::make_shared<OpenSession>(std::string(kMain), house_, 0)),
+      all_{main_.get()} {}
 
 SessionRegistry::~SessionRegistry() = default;
 
@@ -39,12 +40,6 @@ OpenSession* SessionRegistry::find(std::string_view id) {
   if (found == sessions_.end()) return nullptr;
   found->second->used(Clock::now());
   return found->second.get();
-}
-
-std::vector<OpenSession*> SessionRegistry::all() {
-  std::vector<OpenSession*> out{main_.get()};
-  for (const auto& [id, session] : sessions_) out.push_back(session.get());
-  return out;
 }
 
 void SessionRegistry::open(SessionLoader::Make make, Opened done) {
@@ -74,6 +69,7 @@ void SessionRegistry::loaded(const OpenSession* session,
   }
   made->used(Clock::now());
   sessions_.emplace(made->id(), made);
+  all_.push_back(made.get());
   done(made.get(), nullptr);
 }
 
@@ -82,6 +78,7 @@ bool SessionRegistry::end(std::string_view id) {
   if (found == sessions_.end()) return false;
   const std::shared_ptr<OpenSession> session = std::move(found->second);
   sessions_.erase(found);
+  std::erase(all_, session.get());
   see_off(*session);
   ending_.push_back(session);
   bury();
@@ -118,7 +115,8 @@ void SessionRegistry::bury() {
 
 bool SessionRegistry::take_news(Clock::time_point now) {
   bool left = false;
-  for (OpenSession* session : all()) {
+  in_turn_ = all_;  // one may open or end another
+  for (OpenSession* session : in_turn_) {
     if (!session->has_news()) continue;
     if (now - session->last_tended() < kLeast) {
       left = true;
@@ -131,7 +129,8 @@ bool SessionRegistry::take_news(Clock::time_point now) {
 
 void SessionRegistry::tend(Clock::time_point now) {
   std::vector<std::string> idle;
-  for (OpenSession* session : all()) {
+  in_turn_ = all_;
+  for (OpenSession* session : in_turn_) {
     session->tend(now);
     if (session->bridge().hub().clients() > 0) session->used(now);
     if (session != main_.get() && now - session->last_used() > rules_.idle) {

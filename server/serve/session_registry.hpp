@@ -52,8 +52,8 @@ class SessionRegistry {
   /// Ends it, and tells its viewers. False when there is none; `main` cannot be ended.
   bool end(std::string_view id);
 
-  /// Those that can be found, `main` first.
-  std::vector<OpenSession*> all();
+  /// Those that can be found, `main` first, then in the order of their opening.
+  const std::vector<OpenSession*>& all() const { return all_; }
   const SessionRules& rules() const { return rules_; }
 
   /// Tends the sessions that have news, each `kLeast` after the last time. True when some are left
@@ -85,6 +85,8 @@ class SessionRegistry {
   SessionRules rules_;
   std::shared_ptr<OpenSession> main_;
   std::map<std::string, std::shared_ptr<OpenSession>, std::less<>> sessions_{};  // without main
+  std::vector<OpenSession*> all_{};  // main and those of sessions_: looked through for each frame
+  std::vector<OpenSession*> in_turn_{};  // workspace
   std::vector<std::shared_ptr<OpenSession>> opening_{};
   std::vector<std::shared_ptr<OpenSession>> ending_{};  // their last load is still under way
   std::map<std::uint32_t, Client> clients_{};           // by WsClient::id()
