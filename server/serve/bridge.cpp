@@ -337,6 +337,8 @@ std::shared_ptr<const std::string> Bridge::with_news(const Frame& frame) {
 void Bridge::publish_frame(const FrameRef& frame) {
   const algo::Telemetry& t = frame->telemetry;
   const std::uint64_t time_ns = now_ns();
+  const auto now = std::chrono::steady_clock::now();
+  hub_.broadcast_time(time_ns, now);  // first: it goes with the frame
   if (hub_.wanted(telemetry_)) {
     // News of frames that were passed over since the last one shown.
     const bool passed_over =
@@ -359,13 +361,11 @@ void Bridge::publish_frame(const FrameRef& frame) {
   publish(layers_, [&] { return layers_json(t); });
   publish(goal_, [&] { return goal_json(t); });
   const PathTrail& path = session_.path();
-  const auto now = std::chrono::steady_clock::now();
   if (path.changes() != path_published_ && now - path_sent_ >= kPathPeriod) {
     path_published_ = path.changes();
     path_sent_ = now;
     publish(trajectory_, [&] { return path.message(t.observation.stamp); });
   }
-  hub_.broadcast_time(time_ns, now);
 }
 
 void Bridge::state_changed() {

@@ -25,6 +25,9 @@ class SilentClient final : public server::net::WsClient {
     if (header.size() > 16) std::abort();
     return true;
   }
+  void ride(std::span<const std::byte> message) override {
+    if (message.size() > 16) std::abort();
+  }
   void forget(std::uint32_t) override {}
   void close(std::uint16_t, std::string_view) override { std::abort(); }
   server::net::WsCounters counters() const override { return {}; }

@@ -104,6 +104,7 @@ void Hub::publish(ChannelId channel, std::uint64_t t_ns, Payload payload) {
   for (const Subscriber& subscriber : to.subscribers) {
     const MessageHeader header = message_header(subscriber.subscription_id, t_ns);
     subscriber.client->socket->send_latest(channel, header, payload);
+    subscriber.client->served = true;
   }
   to.last = {t_ns, std::move(payload)};
 }
@@ -131,7 +132,12 @@ void Hub::broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_poi
   if (time_sent_ && now - *time_sent_ < kTimePeriod) return;
   time_sent_ = now;
   const TimeMessage message = time_message(t_ns);
-  for (auto& [id, client] : clients_) client.socket->send_latest(kTimeKey, message, nullptr);
+  for (auto& [id, client] : clients_) {
+    client.socket->ride(client.served ? std::span<const std::byte>(message)
+                                      : std::span<const std::byte>());
+    if (!client.served) client.socket->send_latest(kTimeKey, message, nullptr);
+    client.served = false;
+  }
 }
 
 void Hub::parameters_changed(std::span<const std::string> names) {

@@ -115,7 +115,8 @@ class Hub {
   /// Log-like data: a slow client gets the newest kEventRing of them and a status for the rest.
   void publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload);
   static constexpr std::size_t kEventRing = 64;
-  /// Tells all clients the run clock, ten times a second at most by `now`.
+  /// Tells all clients the run clock, ten times a second at most by `now`: those that were sent
+  /// something since the last time together with the next message, so that it costs no write.
   void broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_point now);
   /// Sends the current values of `names` (empty: all) to whoever asked for updates of them.
   void parameters_changed(std::span<const std::string> names = {});
@@ -135,6 +136,7 @@ class Hub {
     bool all_parameters = false;
     std::set<std::string> parameters{};
     bool dropping_events = false;
+    bool served = false;  // sent something since it was told the time
   };
   struct Subscriber {
     Client* client = nullptr;

@@ -42,13 +42,20 @@ iovec piece(const void* data, std::size_t size) {
 
 FrameSocket::Sent FrameSocket::send(FrameKind kind,
                                     std::span<const std::byte> header,
-                                    std::string_view payload) {
+                                    std::string_view payload,
+                                    std::span<const std::byte> rider) {
   State& state = *state_;
   if (state.writers > 0 || !state.rest.empty()) return Sent::Nothing;
   const FrameHead head(kind, header.size() + payload.size());
-  std::array<iovec, 3> pieces{piece(head.bytes.data(), head.size),
-                              piece(header.data(), header.size()),
-                              piece(payload.data(), payload.size())};
+  const FrameHead rider_head(FrameKind::Binary, rider.size());
+  std::array<iovec, 5> all{piece(rider_head.bytes.data(), rider_head.size),
+                           piece(rider.data(), rider.size()),
+                           piece(head.bytes.data(), head.size),
+                           piece(header.data(), header.size()),
+                           piece(payload.data(), payload.size())};
+  const auto pieces = std::span(all).subspan(rider.empty() ? 2 : 0);
+  std::size_t size = 0;
+  for (const iovec& part : pieces) size += part.iov_len;
   msghdr message{};
   message.msg_iov = pieces.data();
   message.msg_iovlen = pieces.size();
@@ -56,7 +63,7 @@ FrameSocket::Sent FrameSocket::send(FrameKind kind,
       ::sendmsg(state.socket.native_handle(), &message, MSG_DONTWAIT | MSG_NOSIGNAL);
   if (sent <= 0) return Sent::Nothing;
   auto skip = static_cast<std::size_t>(sent);
-  if (skip == head.size + header.size() + payload.size()) return Sent::Whole;
+  if (skip == size) return Sent::Whole;
   for (const iovec& part : pieces) {
     const std::size_t gone = std::min(skip, part.iov_len);
     skip -= gone;

@@ -36,8 +36,12 @@ class FrameSocket {
   executor_type get_executor() { return state_->socket.get_executor(); }
   Socket& socket() { return state_->socket; }
 
-  /// One unmasked WebSocket frame of `header` + `payload`, whole or in part; never waits.
-  Sent send(FrameKind kind, std::span<const std::byte> header, std::string_view payload);
+  /// One unmasked WebSocket frame of `header` + `payload`, whole or in part; never waits. Before it
+  /// a binary frame of the `rider`, where that is not empty: both are one write.
+  Sent send(FrameKind kind,
+            std::span<const std::byte> header,
+            std::string_view payload,
+            std::span<const std::byte> rider = {});
 
   /// Completes with what has become of the rest that send() kept.
   template <typename Handler>

@@ -55,6 +55,9 @@ class WsClient {
                            std::span<const std::byte> header,
                            const Payload& payload,
                            std::size_t keep = 1) = 0;
+  /// Puts a binary message of at most 16 bytes before the next one that goes straight to the
+  /// kernel, in one write with it. A newer one takes its place; an empty one takes it back.
+  virtual void ride(std::span<const std::byte> message) = 0;
   /// Drops what is still queued under `key`.
   virtual void forget(std::uint32_t key) = 0;
 

@@ -64,6 +64,7 @@ class WsConnection final : public Connection,
                    std::span<const std::byte> header,
                    const Payload& payload,
                    std::size_t keep) override;
+  void ride(std::span<const std::byte> message) override;
   void forget(std::uint32_t key) override { queue_.forget(key); }
   void close(std::uint16_t code, std::string_view reason) override;
   WsCounters counters() const override;
@@ -100,6 +101,8 @@ class WsConnection final : public Connection,
   beast::flat_buffer input_{};
   SendQueue queue_;
   Outgoing current_{};
+  std::array<std::byte, 16> rider_{};
+  std::size_t rider_size_ = 0;
   bool writing_ = false;
   bool pinging_ = false;
   Clock::time_point deadline_{};  // of the handshake or the closing
@@ -252,13 +255,22 @@ bool WsConnection::send_latest(std::uint32_t key,
   return kept;
 }
 
+void WsConnection::ride(std::span<const std::byte> message) {
+  if (message.size() > rider_.size()) throw std::invalid_argument("a rider has at most 16 bytes");
+  std::ranges::copy(message, rider_.begin());
+  rider_size_ = message.size();
+}
+
 /// @return whether the message was taken; its rest, if any, is then on its way
 bool WsConnection::send_now(FrameKind kind,
                             std::span<const std::byte> header,
                             const Payload& payload) {
   const std::string_view body = payload ? std::string_view(*payload) : std::string_view();
-  const FrameSocket::Sent sent = stream_->next_layer().send(kind, header, body);
+  const auto rider = std::span(rider_).first(rider_size_);
+  const FrameSocket::Sent sent = stream_->next_layer().send(kind, header, body, rider);
   if (sent == FrameSocket::Sent::Nothing) return false;
+  if (!rider.empty()) count(rider.size());
+  rider_size_ = 0;
   const std::size_t bytes = header.size() + body.size();
   if (sent == FrameSocket::Sent::Whole) {
     count(bytes);

@@ -38,6 +38,9 @@ class FakeSocket final : public net::WsClient {
     data.push_back({key, bytes + (payload ? *payload : ""), keep});
     return !slow;
   }
+  void ride(std::span<const std::byte> message) override {
+    rider.assign(reinterpret_cast<const char*>(message.data()), message.size());
+  }
   void forget(std::uint32_t key) override { forgotten.push_back(key); }
   void close(std::uint16_t, std::string_view) override { ADD_FAILURE() << "the hub never closes"; }
   net::WsCounters counters() const override { return {}; }
@@ -50,6 +53,7 @@ class FakeSocket final : public net::WsClient {
   std::vector<json> texts{};
   std::vector<std::string> binaries{};
   std::vector<Data> data{};
+  std::string rider{};  // not taken by a message here
   std::vector<std::uint32_t> forgotten{};
   bool slow = false;
 
@@ -305,6 +309,23 @@ TEST_F(FoxgloveHub, TimeGoesToEverybodyTenTimesASecondAtMost) {
   EXPECT_EQ(std::string("\x02\0\0\0\0\0\0\0\0", 9), socket->data[0].bytes);
   // 104 ms = 104000000 ns = 0x0632ea00.
   EXPECT_EQ(std::string("\x02\x00\xea\x32\x06\0\0\0\0", 9), socket->data[1].bytes);
+}
+
+TEST_F(FoxgloveHub, TimeRidesWithTheNextMessageOfWhoIsServed) {
+  const auto served = greeted(1);
+  const auto idle = greeted(2);
+  subscribe(*served, 7, scan_);
+  hub_.publish(scan_, 1, payload("x"));
+  served->data.clear();
+  const steady_clock::time_point start{};
+  hub_.broadcast_time(104'000'000, start);
+  EXPECT_TRUE(served->data.empty());
+  EXPECT_EQ(std::string("\x02\x00\xea\x32\x06\0\0\0\0", 9), served->rider);
+  ASSERT_EQ(1U, idle->data.size());
+  // Nothing was published since: it is told at once, and nothing rides.
+  hub_.broadcast_time(208'000'000, start + milliseconds(104));
+  ASSERT_EQ(1U, served->data.size());
+  EXPECT_EQ("", served->rider);
 }
 
 TEST_F(FoxgloveHub, ParametersAreReadWrittenAndWatched) {

@@ -143,6 +143,33 @@ TEST_F(NetWs, SendsHeaderAndSharedPayloadAsOneMessage) {
   EXPECT_EQ("\x01\x02\x03", client.read().payload);
 }
 
+TEST_F(NetWs, ARiderComesBeforeTheNextMessageOnce) {
+  serve();
+  WsTestClient client(port());
+  ASSERT_TRUE(eventually([&] { return opened() == 1; }));
+  const WsCounters counters = running_->on_io([&] {
+    const auto bytes = [](std::string_view text) {
+      return std::as_bytes(std::span(text.data(), text.size()));
+    };
+    const auto& to = recorder_.clients.begin()->second;
+    to->ride(bytes("first"));
+    to->ride(bytes("rider"));  // takes its place
+    to->send_latest(1, bytes("ab"), std::make_shared<const std::string>("cd"));
+    to->send_latest(1, bytes("ef"), nullptr);
+    to->ride(bytes("first"));
+    to->ride({});  // taken back
+    to->send_latest(1, bytes("gh"), nullptr);
+    EXPECT_THROW(to->ride(bytes("seventeen letters")), std::invalid_argument);
+    return to->counters();
+  });
+  for (const char* expected : {"rider", "abcd", "ef", "gh"}) {
+    const Frame frame = client.read();
+    EXPECT_EQ(2, frame.opcode);
+    EXPECT_EQ(expected, frame.payload);
+  }
+  EXPECT_EQ(counters.sent_messages, 4U);
+}
+
 TEST_F(NetWs, TenMalformedFramesEndTheirConnectionOnly) {
   serve();
   WsTestClient healthy(port());
