@@ -71,7 +71,7 @@ void DistanceField::free(int column, int row) {
   }
 }
 
-void DistanceField::rebuild(const std::vector<std::uint8_t>& hits, std::uint8_t occupied) {
+void DistanceField::rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied) {
   const std::size_t now = std::min(kTilesATick, tiles_.size());
   for (std::size_t k = 0; k < now; ++k) {
     soiled_[tiles_[k]] = 0;
@@ -84,7 +84,7 @@ void DistanceField::rebuild(const std::vector<std::uint8_t>& hits, std::uint8_t 
 }
 
 /// The first half of a distance transform: along the columns, once upwards and once downwards.
-void DistanceField::measure_gaps(const std::vector<std::uint8_t>& hits,
+void DistanceField::measure_gaps(std::span<const std::uint8_t> hits,
                                  std::uint8_t occupied,
                                  int left,
                                  int bottom) {

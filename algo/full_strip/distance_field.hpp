@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <vector>
 
 namespace algo {
@@ -53,7 +54,7 @@ class DistanceField {
   void free(int column, int row);
   /// Rebuilds the tiles that wait for it longest. A cell counts as occupied when its `hits` are at
   /// least `occupied`.
-  void rebuild(const std::vector<std::uint8_t>& hits, std::uint8_t occupied);
+  void rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied);
   /// Moves the window by whole tiles; what comes in is far from everything.
   void shift(int tile_columns, int tile_rows);
 
@@ -73,7 +74,7 @@ class DistanceField {
   static std::size_t index(int column, int row) {
     return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
   }
-  void measure_gaps(const std::vector<std::uint8_t>& hits,
+  void measure_gaps(std::span<const std::uint8_t> hits,
                     std::uint8_t occupied,
                     int left,
                     int bottom);

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
+#include <span>
 
 namespace algo {
 namespace {
@@ -16,24 +18,26 @@ constexpr double kClearRange = 8.0;      // [m] cells farther than this are left
 constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells' ages
 constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
 
+constexpr std::size_t kCells = std::size_t{LocalMap::kSize} * LocalMap::kSize;
 constexpr std::size_t kMostBeams = 4096;  // of a scan, for which there is room from the start
 constexpr double kMiddle = 4.0;           // [m] the robot may be from the window's middle
 
 }  // namespace
 
 LocalMap::LocalMap(Distances distances)
-    : hits_(static_cast<std::size_t>(kSize) * kSize),
-      seen_(std::make_unique_for_overwrite<std::uint16_t[]>(hits_.size())),
-      means_(std::make_unique_for_overwrite<Offset[]>(hits_.size())) {
-  active_.reserve(hits_.size());
-  moved_.reserve(hits_.size());
+    : hits_(static_cast<std::uint8_t*>(std::calloc(kCells, 1))),
+      seen_(std::make_unique_for_overwrite<std::uint16_t[]>(kCells)),
+      means_(std::make_unique_for_overwrite<Offset[]>(kCells)) {
+  if (hits_ == nullptr) throw std::bad_alloc();
+  active_.reserve(kCells);
+  moved_.reserve(kCells);
   suspects_.reserve(kMostBeams);
   if (distances == Distances::Kept) field_.emplace();
   reset({0, 0});
 }
 
 void LocalMap::reset(const Vec2& centre_W) {
-  std::ranges::fill(hits_, std::uint8_t{0});
+  for (const std::uint32_t cell : active_) hits_[cell] = 0;
   if (field_) field_->reset();
   active_.clear();
   occupied_ = 0;
@@ -68,7 +72,6 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
   const int columns = tile_columns * DistanceField::kTile;
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
-  move_cells(hits_, kSize, columns, rows, std::uint8_t{0});
   if (field_) field_->shift(tile_columns, tile_rows);
   occupied_ = 0;
   moved_.clear();
@@ -76,13 +79,16 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
     const int column = static_cast<int>(old) % kSize - columns;
     const int row = static_cast<int>(old) / kSize - rows;
     if (column < 0 || row < 0 || column >= kSize || row >= kSize) continue;
-    moved_.push_back({static_cast<std::uint32_t>(index(column, row)), seen_[old], means_[old]});
+    moved_.push_back(
+        {static_cast<std::uint32_t>(index(column, row)), seen_[old], hits_[old], means_[old]});
   }
+  for (const std::uint32_t old : active_) hits_[old] = 0;
   active_.clear();
   for (const Moved& moved : moved_) {
     active_.push_back(moved.cell);
     seen_[moved.cell] = moved.seen;
     means_[moved.cell] = moved.mean;
+    hits_[moved.cell] = moved.hits;
     if (hits_[moved.cell] >= kOccupied) ++occupied_;
   }
 }
@@ -100,7 +106,7 @@ void LocalMap::insert(const LaserScan& scan,
   space_.look(scan, sensor_W);
   doubt_suspects();
   if (scans_ % kAgeEvery == 0) age();
-  if (field_) field_->rebuild(hits_, kOccupied);
+  if (field_) field_->rebuild(std::span(hits_.get(), kCells), kOccupied);
 }
 
 void LocalMap::hit(const Vec2& point_W) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -112,6 +113,7 @@ class LocalMap {
   struct Moved {
     std::uint32_t cell = 0;
     std::uint16_t seen = 0;
+    std::uint8_t hits = 0;
     Offset mean{};
   };
   int column_of(double x_W) const {
@@ -141,8 +143,12 @@ class LocalMap {
   void shift(int tile_columns, int tile_rows);
 
   Vec2 corner_W_{0, 0};
-  std::vector<std::uint8_t> hits_;
-  // Only of cells with hits, and never written elsewhere: most of a window costs no memory.
+  struct Release {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+
+  // Only cells with hits are written: most of a window costs no memory.
+  std::unique_ptr<std::uint8_t[], Release> hits_;
   std::unique_ptr<std::uint16_t[]> seen_;  // scan number of the last hit
   std::unique_ptr<Offset[]> means_;        // of the hits
   std::vector<Moved> moved_;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::chrono::milliseconds kTendPeriod{40};
 
 // Of all fast runs together: some 200 MB.
-constexpr std::size_t kSharedFrames = 4096;
+constexpr std::size_t kSharedFrames = 1024;
 
 std::string prepared(const std::filesystem::path& database) {
   std::error_code error;
