@@ -1,6 +1,6 @@
-// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, the
-// coverage page claims nothing built without a file and a test, and the page on hardware has what
-// became of every fault that the trials inject.
+// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, and
+// every section that the code cites; the coverage page claims nothing built without a file and a
+// test, and the page on hardware has what became of every fault that the trials inject.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -95,6 +95,52 @@ std::vector<std::string> cells_of(const std::string& line) {
     cells.push_back(first == std::string::npos ? "" : part.substr(first, last - first + 1));
   }
   return cells;
+}
+
+/// "equations.md E.4": the sections of docs/ that the file `text` cites.
+std::vector<std::string> citations_in(const std::string& text) {
+  static const std::regex citation(R"(\b([a-z0-9-]+\.md) ([A-Z](\.[0-9]+)?|[0-9]+)\b)");
+  std::vector<std::string> found;
+  for (std::sregex_iterator it(text.begin(), text.end(), citation), end; it != end; ++it) {
+    found.push_back(it->str(1) + " " + it->str(2));
+  }
+  return found;
+}
+
+/// The sections of `page` that have a letter or a number, as citations_in() gives them.
+std::set<std::string> sections_of(const fs::path& page) {
+  static const std::regex heading(R"(^#+ ([A-Z](\.[0-9]+)?|[0-9]+)\.? .*)");
+  std::set<std::string> found;
+  std::istringstream lines(text_of(page));
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, heading)) {
+      found.insert(page.filename().string() + " " + match.str(1));
+    }
+  }
+  return found;
+}
+
+TEST(Docs, EverySectionThatTheCodeCitesIsThere) {
+  EXPECT_THAT(citations_in("thesis Eq. 3; equations.md E.4 and physics.md 3. Then (sensors.md 2)"),
+              ElementsAre("equations.md E.4", "physics.md 3", "sensors.md 2"));
+  std::set<std::string> sections;
+  for (const fs::path& page : pages()) sections.merge(sections_of(page));
+  std::set<std::string> missing;
+  int cited = 0;
+  for (const char* folder : {"algo", "sim", "drivers", "db", "server", "web/src", "tests"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(root() / folder)) {
+      const std::string kind = entry.path().extension();
+      if (kind != ".hpp" && kind != ".cpp" && kind != ".ts" && kind != ".tsx") continue;
+      if (entry.path().filename() == "docs_test.cpp") continue;
+      for (const std::string& citation : citations_in(text_of(entry.path()))) {
+        ++cited;
+        if (!sections.contains(citation)) missing.insert(citation);
+      }
+    }
+  }
+  EXPECT_GT(cited, 20);
+  EXPECT_THAT(missing, IsEmpty());
 }
 
 TEST(Docs, LinksAreFoundAsMarkdownHasThem) {
