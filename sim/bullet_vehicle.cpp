@@ -24,8 +24,8 @@ constexpr double kSideways = 0.1;     // z of a contact's normal below which it 
 constexpr int kHullPart = 0;
 
 /// Which wheel side a part of the chassis belongs to, by its sign.
-int side_of(const btCompoundShape& chassis, int part, std::size_t supports) {
-  if (part <= kHullPart || part > static_cast<int>(2 * supports)) return 0;
+int side_of(const btCompoundShape& chassis, int part, std::size_t wheels) {
+  if (part <= kHullPart || part > static_cast<int>(2 * wheels)) return 0;
   return chassis.getChildTransform(part).getOrigin().y() > 0 ? 1 : -1;
 }
 
@@ -55,8 +55,8 @@ void drop_wheel_sides(btBroadphasePair& pair,
 
 }  // namespace
 
-BulletVehicle::BulletVehicle(const VehicleParameters& vehicle, double period)
-    : vehicle_(vehicle), substeps_(period) {}
+BulletVehicle::BulletVehicle(const RobotModel& robot, double period)
+    : robot_(robot), substeps_(period) {}
 
 BulletVehicle::~BulletVehicle() {
   if (world_ == nullptr) return;
@@ -92,12 +92,12 @@ void BulletVehicle::build_world() {
 }
 
 void BulletVehicle::build_chassis() {
-  const VehicleParameters& p = vehicle_;
+  const RobotModel& p = robot_;
   parts_.clear();
   chassis_shape_ = make_bullet<btCompoundShape>();
   const auto add = [this](BulletPtr<btCollisionShape> part, double x, double y, double z) {
     btTransform at = btTransform::getIdentity();
-    at.setOrigin(btVector3(x, y, z - vehicle_.mass_height));  // the body's origin is its mass
+    at.setOrigin(btVector3(x, y, z - robot_.mass_height));  // the body's origin is its mass
     chassis_shape_->addChildShape(at, part.get());
     parts_.push_back(std::move(part));
   };
@@ -110,13 +110,12 @@ void BulletVehicle::build_chassis() {
   }
   hull->setMargin(kMargin);
   add(std::move(hull), 0, 0, p.hull_low + hull_half);
-  for (std::size_t k = 0; k < p.supports; ++k) {
+  for (const double x : p.wheels) {
     for (const double y : {p.half_track, -p.half_track}) {
-      add(make_bullet<btSphereShape>(p.wheel_radius), p.support_x[k], y, p.wheel_radius);
+      add(make_bullet<btSphereShape>(p.wheel_radius), x, y, p.wheel_radius);
     }
   }
-  for (std::size_t k = 0; k < p.caster_count; ++k) {
-    const Caster& c = p.casters[k];
+  for (const Caster& c : p.casters) {
     add(make_bullet<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
   }
 
@@ -129,14 +128,12 @@ void BulletVehicle::build_chassis() {
   info.m_friction = 0;
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
   chassis_ = make_bullet<btRigidBody>(info);
-  chassis_->setUserIndex(static_cast<int>(2 * p.supports));  // its last wheel; -1 on all else
+  chassis_->setUserIndex(static_cast<int>(2 * p.wheels.size()));  // its last wheel; -1 on all else
   chassis_->setActivationState(DISABLE_DEACTIVATION);        // parking is ours
   world_->addRigidBody(chassis_.get());
 
   double axle_x = 0;
-  for (std::size_t k = 0; k < p.supports; ++k) {
-    axle_x += p.support_x[k] / static_cast<double>(p.supports);
-  }
+  for (const double x : p.wheels) axle_x += x / static_cast<double>(p.wheels.size());
   drive_ = make_bullet<DriveConstraint>(
       *chassis_, *floor_, DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
   world_->addConstraint(drive_.get());
@@ -169,7 +166,7 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   const btTransform settled = chassis_->getWorldTransform();
   const btMatrix3x3 turn(btQuaternion(btVector3(0, 0, 1), start.heading));
   btTransform at(turn * settled.getBasis());
-  const btVector3 under = at.getBasis() * btVector3(0, 0, -vehicle_.mass_height);
+  const btVector3 under = at.getBasis() * btVector3(0, 0, -robot_.mass_height);
   at.setOrigin(btVector3(start.x - under.x(), start.y - under.y(), settled.getOrigin().z()));
   chassis_->setWorldTransform(at);
   chassis_->setInterpolationWorldTransform(at);
@@ -195,7 +192,7 @@ void BulletVehicle::settle() {
 void BulletVehicle::drive(const algo::Twist2& command,
                           const ObstacleSet& obstacles,
                           PoseTrail& trail) {
-  wanted_ = within_limits(command, vehicle_);
+  wanted_ = within_limits(command, robot_);
   if (wanted_ != algo::Twist2{}) {
     parked_ = false;
     still_for_ = 0;
@@ -204,10 +201,10 @@ void BulletVehicle::drive(const algo::Twist2& command,
   for (std::size_t k = 0; k < substeps_.count; ++k) {
     if (!parked_) {
       gather_near(obstacles);
-      target_ = ramped(target_, wanted_, vehicle_, substeps_.length);
+      target_ = ramped(target_, wanted_, robot_, substeps_.length);
       substep();
-      const double turn = target_.omega * vehicle_.half_track;
-      const double per_step = substeps_.length / vehicle_.wheel_radius;
+      const double turn = target_.omega * robot_.half_track;
+      const double per_step = substeps_.length / robot_.wheel_radius;
       state_.left_angle += (target_.v - turn) * per_step;
       state_.right_angle += (target_.v + turn) * per_step;
       read_state();
@@ -219,7 +216,7 @@ void BulletVehicle::drive(const algo::Twist2& command,
 
 /// One step of the physics under `target_`.
 void BulletVehicle::substep() {
-  const double turn = target_.omega * vehicle_.half_track;
+  const double turn = target_.omega * robot_.half_track;
   drive_->set({target_.v - turn, target_.v + turn, left_load_, right_load_, normal_});
   world_->stepSimulation(substeps_.length, 0);
   read_contacts();
@@ -244,7 +241,7 @@ void BulletVehicle::read_contacts() {
         if (touching && std::abs(up.z()) < 0.5) state_.contact = true;
         continue;
       }
-      const int side = side_of(*chassis_shape_, part, vehicle_.supports);
+      const int side = side_of(*chassis_shape_, part, robot_.wheels.size());
       if (side > 0) left += impulse;
       if (side < 0) right += impulse;
       if (side != 0) normal += up * impulse;
@@ -258,7 +255,7 @@ void BulletVehicle::read_contacts() {
 
 algo::Pose2 BulletVehicle::pose() const {
   const btTransform& at = chassis_->getWorldTransform();
-  const btVector3 ground = at * btVector3(0, 0, -vehicle_.mass_height);
+  const btVector3 ground = at * btVector3(0, 0, -robot_.mass_height);
   const btVector3 ahead = at.getBasis().getColumn(0);
   return {ground.x(), ground.y(), std::atan2(ahead.y(), ahead.x())};
 }
@@ -267,7 +264,7 @@ void BulletVehicle::read_state() {
   const btMatrix3x3& basis = chassis_->getWorldTransform().getBasis();
   state_.pose_W = pose();
   const btVector3 velocity =
-      chassis_->getVelocityInLocalPoint(basis * btVector3(0, 0, -vehicle_.mass_height));
+      chassis_->getVelocityInLocalPoint(basis * btVector3(0, 0, -robot_.mass_height));
   const algo::Vec2 ahead = algo::direction(state_.pose_W.heading);
   state_.twist = {velocity.x() * ahead.x() + velocity.y() * ahead.y(),
                   chassis_->getAngularVelocity().z()};
@@ -296,7 +293,7 @@ void BulletVehicle::gather_near(const ObstacleSet& obstacles) {
   gathered_at_ = here;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     Body& body = bodies_[k];
-    const bool near = obstacles.may_reach(k, here, vehicle_.radius + kNear);
+    const bool near = obstacles.may_reach(k, here, robot_.radius + kNear);
     if (near && !body.present) {
       world_->addCollisionObject(body.object.get(),
                                  btBroadphaseProxy::StaticFilter,

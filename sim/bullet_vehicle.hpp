@@ -21,7 +21,7 @@ class BulletVehicle final : public VehicleModel {
  public:
   static constexpr double kNear = 1.0;  // [m] beyond the hull: obstacles the dynamics know
 
-  BulletVehicle(const VehicleParameters& vehicle, double period);
+  BulletVehicle(const RobotModel& robot, double period);
   ~BulletVehicle() override;
 
   void reset(const algo::Pose2& start) override;
@@ -52,7 +52,7 @@ class BulletVehicle final : public VehicleModel {
   void withdraw(Body& body);
   algo::Pose2 pose() const;
 
-  VehicleParameters vehicle_{};
+  RobotModel robot_{};
   Substeps substeps_;
   VehicleState state_{};
 

@@ -21,10 +21,10 @@ std::uint32_t id_of(std::size_t k) {
 algo::Obstacle body_of(const Scenario& scenario, std::size_t k) {
   algo::Obstacle body;
   if (k == 0) {
-    body = robot_body(scenario, scenario.robot, scenario.start);
+    body = robot_body(scenario.robot, scenario.start);
   } else {
     const OtherRobot& robot = scenario.robots[k - 1];
-    body = robot_body(scenario, robot.robot.value_or(scenario.robot), robot.start);
+    body = robot_body(robot.robot.value_or(scenario.robot), robot.start);
   }
   body.id = id_of(k);
   return body;

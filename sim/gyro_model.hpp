@@ -6,7 +6,7 @@
 #include <string>
 
 #include "sim/random.hpp"
-#include "sim/scenario.hpp"
+#include "sim/sensor_configs.hpp"
 
 namespace sim {
 

@@ -5,9 +5,9 @@
 
 namespace sim {
 
-KinematicVehicle::KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps)
-    : vehicle_(vehicle),
-      hull_(hull_of(vehicle)),
+KinematicVehicle::KinematicVehicle(const RobotModel& robot, double period, bool with_ramps)
+    : robot_(robot),
+      hull_(hull_of(robot)),
       period_(period),
       substeps_(period),
       with_ramps_(with_ramps) {}
@@ -21,8 +21,8 @@ void KinematicVehicle::reset(const algo::Pose2& start) {
 void KinematicVehicle::drive(const algo::Twist2& command,
                              const ObstacleSet& obstacles,
                              PoseTrail& trail) {
-  const algo::Twist2 wanted = within_limits(command, vehicle_);
-  target_ = with_ramps_ ? ramped(target_, wanted, vehicle_, period_) : wanted;
+  const algo::Twist2 wanted = within_limits(command, robot_);
+  target_ = with_ramps_ ? ramped(target_, wanted, robot_, period_) : wanted;
   const algo::Pose2 from = state_.pose_W;
   algo::Twist2 twist = target_;
   algo::Pose2 to = algo::integrate_arc(from, twist, period_);
@@ -31,7 +31,7 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   // it overlaps is not known.
   const double clearance = obstacles.clearance(hull_, to);
   const auto was_clear = [&] {
-    return obstacles.clearance(hull_, from) > (vehicle_.round ? clearance : 0);
+    return obstacles.clearance(hull_, from) > (robot_.round ? clearance : 0);
   };
   if (clearance < 0 && was_clear()) {
     state_.contact = true;
@@ -45,9 +45,9 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   trail.push(to);
   state_.pose_W = to;
   state_.twist = twist;
-  const double turn = twist.omega * vehicle_.half_track;
-  state_.left_angle += (twist.v - turn) / vehicle_.wheel_radius * period_;
-  state_.right_angle += (twist.v + turn) / vehicle_.wheel_radius * period_;
+  const double turn = twist.omega * robot_.half_track;
+  state_.left_angle += (twist.v - turn) / robot_.wheel_radius * period_;
+  state_.right_angle += (twist.v + turn) / robot_.wheel_radius * period_;
 }
 
 }  // namespace sim

@@ -10,7 +10,7 @@ namespace sim {
 class KinematicVehicle final : public VehicleModel {
  public:
   /// `with_ramps`: the acceleration limits act. The papers know none.
-  KinematicVehicle(const VehicleParameters& vehicle, double period, bool with_ramps = false);
+  KinematicVehicle(const RobotModel& robot, double period, bool with_ramps = false);
 
   void reset(const algo::Pose2& start) override;
   void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
@@ -18,7 +18,7 @@ class KinematicVehicle final : public VehicleModel {
   const VehicleState& state() const override { return state_; }
 
  private:
-  VehicleParameters vehicle_{};
+  RobotModel robot_{};
   Hull hull_{};
   double period_ = 0;  // [s]
   Substeps substeps_;

@@ -5,7 +5,7 @@
 
 #include "algo/units.hpp"
 #include "sim/laser_model.hpp"
-#include "sim/scenario.hpp"
+#include "sim/sensor_configs.hpp"
 
 namespace sim {
 

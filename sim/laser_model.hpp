@@ -12,7 +12,7 @@
 #include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
 #include "sim/range_caster.hpp"
-#include "sim/scenario.hpp"
+#include "sim/sensor_configs.hpp"
 
 namespace sim {
 

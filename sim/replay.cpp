@@ -121,9 +121,9 @@ void Replay::time_scans() {
   }
 }
 
-/// The recording robot is unknown: it is taken for the first one of the table.
+/// The recording robot is unknown: it is taken for a Silvermate.
 void Replay::describe() {
-  const VehicleParameters& stand_in = vehicle_table().front();
+  const RobotModel stand_in;
   std::vector<double> periods;
   for (std::size_t i = 1; i < scans_.size(); ++i) {
     periods.push_back(scans_[i].stamp - scans_[i - 1].stamp);

@@ -1,4 +1,4 @@
-// sim/scenario.hpp: a world to run in, as plain values: robot, start, goal, obstacles, sensors.
+// sim/scenario.hpp: a world to run in, as plain values: robot, start, goal, obstacles.
 #pragma once
 
 #include <cstddef>
@@ -13,41 +13,12 @@
 #include "algo/parameters.hpp"
 #include "algo/request.hpp"
 #include "algo/types.hpp"
-#include "sim/sensor.hpp"
+#include "sim/robot_model.hpp"
 
 namespace sim {
 
-enum class Vehicle : std::uint8_t { Bullet, Kinematic };
-enum class LaserUnit : std::uint8_t { Millimetre, Centimetre };
-enum class NoiseShape : std::uint8_t { Gaussian, Uniform };
-
-/// The LMS200 model (physics.md 6). Every imperfection can be switched off, down to ideal().
-struct LaserConfig {
-  algo::Pose2 mount_R{};
-  double height = 0.30;        // [m] of the scan plane
-  double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg on an LMS200
-  double angle_increment = 0;  // [rad]
-  std::uint32_t turns = 1;     // interlaced mirror turns in a sweep
-  bool rolling = true;         // beams fired one by one; false: all from one pose at the tick
-  double mirror_period = 1.0 / 75.0;  // [s] one turn
-  LaserUnit unit = LaserUnit::Millimetre;
-  double range_max = 8.191;  // [m] 81.91 in centimetre mode
-  double bias = 0.015;       // [m] uniform in +-bias, drawn once a run
-  double noise = 0.005;      // [m] standard deviation, or half width when Uniform
-  NoiseShape noise_shape = NoiseShape::Gaussian;
-  bool mixed_pixels = true;
-  bool reflectivity = true;  // range falls with the surface's reflectivity; specular surfaces
-  double dropout = 0.002;    // probability of a no-echo code per beam
-  double salt = 0;           // probability of maximum range per beam
-  double pepper = 0;         // probability of a false near reading per beam
-
-  /// 1, 0.5 or 0.25 degree; throws std::invalid_argument on another.
-  static LaserConfig with_resolution(double degrees);
-  /// Flat-time, noise-free: every beam from the pose at the tick.
-  static LaserConfig ideal(double degrees);
-  /// A scanner of another make, flat-time: `beams` over `field_of_view` [rad], Gaussian noise only.
-  static LaserConfig flat(double field_of_view, std::uint32_t beams, double range_max);
-};
+/// What moves the robot: a Bullet world, or its command alone.
+enum class PhysicsKind : std::uint8_t { Bullet, Kinematic };
 
 /// How a simulated base departs from the robot's table, from what it is told, and from what it
 /// reports. The odometry drifts by what a gyro and worn wheels leave over: equations.md I.
@@ -81,39 +52,6 @@ struct ObstaclePath {
   algo::Vec2 at(double stamp) const;
 };
 
-/// A ring of sonars (sensors.md 3), evenly over `field` on the hull, pinging in turn.
-struct SonarConfig {
-  std::uint32_t count = 12;
-  double field = 2 * std::numbers::pi;      // [rad] that the axes are spread over
-  double cone = std::numbers::pi / 6;       // [rad] whole beam
-  double ping = 0.04;                       // [s] from one sensor's ping to the next one's
-  double range_min = 0.15;                  // [m] nearer things read as that
-  double range_max = 5.0;                   // [m] nothing within it: Free
-  double noise = 0.01;                      // [m] standard deviation
-  double incidence = std::numbers::pi / 3;  // [rad] a surface met more obliquely gives no echo
-  double height = 0.30;                     // [m] of the ring
-};
-
-/// An infrared range scanner, by the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams,
-/// low on the hull, where it meets what lies under the laser's plane.
-struct InfraredConfig {
-  algo::Pose2 mount_R{};
-  double height = 0.10;                         // [m] of the fan
-  std::uint32_t beams = 121;                    // over the field
-  double field = 212 * std::numbers::pi / 180;  // [rad] about the mount's heading
-  double period = 0.18;                         // [s] from one scan to the next
-  double range_min = 0.10;                      // [m] nearer things read as that
-  double range_max = 3.5;                       // [m] nothing within it: Free
-  double noise = 0.02;                          // [m] standard deviation
-};
-
-/// A yaw gyro (sensors.md 4): rate = true + bias + noise, the bias on a random walk.
-struct GyroConfig {
-  double bias = 0;       // [rad/s] standard deviation of the bias a run begins with
-  double bias_walk = 0;  // [rad/s] that it wanders off in a second, standard deviation
-  double noise = 0;      // [rad/s] standard deviation of a reading
-};
-
 /// What the odometry is made of.
 enum class Localization : std::uint8_t {
   Encoders,  // the wheels alone
@@ -121,10 +59,10 @@ enum class Localization : std::uint8_t {
 };
 
 /// Another robot in the world of a scenario, by its own pipeline on its way. It has the scenario's
-/// sensors and drive. What is absent is as the scenario's first robot has it.
+/// drive. What is absent is as the scenario's first robot has it.
 struct OtherRobot {
   algo::Pose2 start{};
-  std::optional<std::string> robot{};
+  std::optional<RobotModel> robot{};
   /// Waypoints and goal, in order; empty: it stands where it is.
   std::optional<std::vector<algo::SetGoal>> goals{};
   std::optional<std::string> controller{};
@@ -140,8 +78,8 @@ struct Scenario {
   std::string name{};  // [a-z0-9_-]+, at most 64
   std::string title{};
   std::string description{};
-  std::string robot = "silvermate";
-  Vehicle vehicle = Vehicle::Bullet;
+  RobotModel robot{};
+  PhysicsKind physics = PhysicsKind::Bullet;
   double period = 0.026;  // [s] one tick
   algo::Pose2 start{};
   std::optional<algo::SetGoal> goal{};
@@ -150,15 +88,6 @@ struct Scenario {
   std::vector<algo::Obstacle> obstacles{};
   std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
   std::vector<OtherRobot> robots{};   // besides the first, which all else here is about
-  std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
-  std::optional<SonarConfig> sonar{};
-  std::vector<InfraredConfig> infrared{};
-  std::vector<SensorConfig> sensors{};  // further ones, each with a channel of its own
-  /// Absent: an ideal one with dynamics, none without.
-  std::optional<GyroConfig> gyro{};
-  bool has_gyro = true;
-  std::uint32_t bumpers = 1;  // evenly round the hull from straight ahead, each its share of it
-  bool encoders = true;
   Localization localization = Localization::Encoders;
   std::string controller = "modified";
   std::string filter = "pseudomedian";
@@ -166,8 +95,5 @@ struct Scenario {
   double time_limit = 0;  // [s] run clock for headless runs; 0 = 5 x straight line / v_max
   std::string log{};      // path of a CARMEN log to replay instead of a world
 };
-
-/// Whether a scanner looks ahead; with a sonar ring and none, the ring stands in for it.
-bool has_laser(const Scenario& scenario);
 
 }  // namespace sim

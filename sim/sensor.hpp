@@ -12,27 +12,10 @@
 
 #include "algo/observation.hpp"
 #include "sim/obstacle_set.hpp"
+#include "sim/sensor_configs.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
-
-/// A number, or a list of them, that a sensor of a scenario is set up with.
-struct Setting {
-  std::string name{};
-  std::vector<double> values{};
-};
-
-/// A sensor as a scenario has it.
-struct SensorConfig {
-  std::string sensor{};   // which kind: a file of sim/sensors
-  std::string channel{};  // its name in frames and exports: "battery.voltage"
-  std::string unit{};     // of its values; empty: the kind's own
-  std::vector<Setting> settings{};
-
-  const std::vector<double>* find(std::string_view name) const;
-  /// The one number of a setting.
-  double number(std::string_view name, double fallback) const;
-};
 
 /// What a sensor may sense in one tick.
 struct Surroundings {

@@ -23,14 +23,14 @@ bool finite(const algo::Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
 }
 
-/// `vehicle` with the limits that `drive` gives instead of its own.
-VehicleParameters limited(VehicleParameters vehicle, const DriveConfig& drive) {
-  vehicle.max_v = drive.max_v.value_or(vehicle.max_v);
-  vehicle.max_omega = drive.max_omega.value_or(vehicle.max_omega);
-  vehicle.max_acceleration = drive.max_acceleration.value_or(vehicle.max_acceleration);
-  vehicle.max_angular_acceleration =
-      drive.max_angular_acceleration.value_or(vehicle.max_angular_acceleration);
-  return vehicle;
+/// `robot` with the limits that `drive` gives instead of its own.
+RobotModel limited(RobotModel robot, const DriveConfig& drive) {
+  robot.max_v = drive.max_v.value_or(robot.max_v);
+  robot.max_omega = drive.max_omega.value_or(robot.max_omega);
+  robot.max_acceleration = drive.max_acceleration.value_or(robot.max_acceleration);
+  robot.max_angular_acceleration =
+      drive.max_angular_acceleration.value_or(robot.max_angular_acceleration);
+  return robot;
 }
 
 /// Counts of an encoder after `angle` [rad] of its wheel, modulo 2^32.
@@ -41,35 +41,27 @@ std::uint32_t counts(double angle, double per_turn) {
 
 }  // namespace
 
-bool has_laser(const Scenario& scenario) {
-  // A scanner that looks back says nothing about the way ahead.
-  const bool looks_ahead = std::ranges::any_of(scenario.lasers, [](const LaserConfig& laser) {
-    return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
-  });
-  return looks_ahead || !scenario.sonar;
-}
-
 World::World(const Scenario& scenario, std::uint64_t seed)
     : scenario_(scenario),
       seed_(seed),
-      parameters_(limited(vehicle_named(scenario.robot), scenario.drive)),
-      hull_(hull_of(parameters_)),
+      robot_(limited(scenario.robot, scenario.drive)),
+      hull_(hull_of(robot_)),
       errors_(scenario.drive, seed) {
   check();
-  spec_ = {.name = std::string(parameters_.name),
-           .radius = parameters_.radius,
+  spec_ = {.name = robot_.name,
+           .radius = robot_.radius,
            .half_length = hull_.half_length,
            .half_width = hull_.half_width,
-           .half_track = parameters_.half_track,
+           .half_track = robot_.half_track,
            .period = scenario_.period,
-           .max_v = parameters_.max_v,
-           .max_omega = parameters_.max_omega,
-           .max_acceleration = parameters_.max_acceleration,
-           .max_angular_acceleration = parameters_.max_angular_acceleration,
+           .max_v = robot_.max_v,
+           .max_omega = robot_.max_omega,
+           .max_acceleration = robot_.max_acceleration,
+           .max_angular_acceleration = robot_.max_angular_acceleration,
            .command_delay = scenario_.period * scenario_.drive.delay_ticks,
            .drives = true};
-  spec_.has_laser = has_laser(scenario_);
-  for (const SensorConfig& config : scenario_.sensors) {
+  spec_.has_laser = robot_.sensors.has_laser();
+  for (const SensorConfig& config : robot_.sensors.further) {
     spec_.channels.push_back(channel_of(config));
   }
   sight_ = sight();
@@ -85,23 +77,26 @@ void World::check() const {
   if (!finite(scenario_.start)) {
     throw std::invalid_argument("The scenario's start must be finite numbers.");
   }
+  if (const auto problem = defect(robot_)) {
+    throw std::invalid_argument("The scenario's robot: " + *problem + ".");
+  }
   if (const auto problem = defect(scenario_.drive)) {
     throw std::invalid_argument("The scenario's drive: " + *problem + ".");
   }
-  if (scenario_.bumpers > kMostBumpers) {
+  if (robot_.sensors.bumpers > kMostBumpers) {
     throw std::invalid_argument("The scenario's bumpers must be 0 to 8.");
   }
-  if (scenario_.sensors.size() > kMostSensors) {
+  if (robot_.sensors.further.size() > kMostSensors) {
     throw std::invalid_argument("The scenario may have 16 further sensors at most.");
   }
-  for (const SensorConfig& config : scenario_.sensors) {
+  for (const SensorConfig& config : robot_.sensors.further) {
     if (const auto problem = defect(config)) {
       throw std::invalid_argument("The scenario's sensor " + config.channel + ": " + *problem +
                                   ".");
     }
   }
   const bool has_gyro =
-      scenario_.has_gyro && (scenario_.gyro || scenario_.vehicle == Vehicle::Bullet);
+      robot_.sensors.has_gyro && (robot_.sensors.gyro || scenario_.physics == PhysicsKind::Bullet);
   if (scenario_.localization == Localization::Gyro && !has_gyro) {
     throw std::invalid_argument("The scenario's localization needs a gyro.");
   }
@@ -111,11 +106,11 @@ void World::check() const {
 void World::start() {
   obstacles_.clear();
   lasers_.clear();
-  if (scenario_.vehicle == Vehicle::Bullet) {
-    vehicle_ = std::make_unique<BulletVehicle>(parameters_, scenario_.period);
+  if (scenario_.physics == PhysicsKind::Bullet) {
+    vehicle_ = std::make_unique<BulletVehicle>(robot_, scenario_.period);
   } else {
     vehicle_ =
-        std::make_unique<KinematicVehicle>(parameters_, scenario_.period, scenario_.drive.ramps);
+        std::make_unique<KinematicVehicle>(robot_, scenario_.period, scenario_.drive.ramps);
   }
   algo::Pose2 pose = scenario_.start;
   pose.heading = algo::wrap_angle(pose.heading);
@@ -124,22 +119,22 @@ void World::start() {
   errors_.reset(pose);
 
   double memory = 0;
-  for (const LaserConfig& config : scenario_.lasers) {
+  for (const LaserConfig& config : robot_.sensors.lasers) {
     lasers_.emplace_back(config, seed_, static_cast<std::uint32_t>(lasers_.size()));
     memory = std::max(memory, lasers_.back().memory());
   }
   sonar_.reset();
-  if (scenario_.sonar) {
-    sonar_.emplace(*scenario_.sonar, parameters_.radius, seed_);
-    memory = std::max(memory, scenario_.sonar->ping);
+  if (robot_.sensors.sonar) {
+    sonar_.emplace(*robot_.sensors.sonar, robot_.radius, seed_);
+    memory = std::max(memory, robot_.sensors.sonar->ping);
   }
   infrared_.clear();
-  for (const InfraredConfig& config : scenario_.infrared) {
+  for (const InfraredConfig& config : robot_.sensors.infrared) {
     infrared_.emplace_back(config, seed_, static_cast<std::uint32_t>(infrared_.size()));
     memory = std::max(memory, config.period);
   }
   sensors_.clear();
-  for (const SensorConfig& config : scenario_.sensors) {
+  for (const SensorConfig& config : robot_.sensors.further) {
     sensors_.push_back(make_sensor(config, seed_ + sensors_.size()));
   }
   start_localization(pose);
@@ -170,7 +165,7 @@ void World::start_localization(const algo::Pose2& pose_W) {
   wheels_W_ = pose_W;
   sensed_W_ = pose_W;
   gyro_.reset();
-  if (scenario_.has_gyro && scenario_.gyro) gyro_.emplace(*scenario_.gyro, seed_);
+  if (robot_.sensors.has_gyro && robot_.sensors.gyro) gyro_.emplace(*robot_.sensors.gyro, seed_);
   localization_ = {};
   if (scenario_.localization == Localization::Gyro && gyro_) {
     const auto readings = static_cast<int>(kGyroRest / scenario_.period);
@@ -243,18 +238,18 @@ void World::sense(algo::Observation& observation) {
 void World::sense_motion(algo::Observation& observation) {
   const double now = observation.stamp;
   const VehicleState& state = vehicle_->state();
-  const std::uint32_t left = counts(state.left_angle, parameters_.counts_per_turn);
-  const std::uint32_t right = counts(state.right_angle, parameters_.counts_per_turn);
-  if (scenario_.vehicle == Vehicle::Kinematic) {
+  const std::uint32_t left = counts(state.left_angle, robot_.counts_per_turn);
+  const std::uint32_t right = counts(state.right_angle, robot_.counts_per_turn);
+  if (scenario_.physics == PhysicsKind::Kinematic) {
     odometry_.pose = state.pose_W;
     odometry_.twist = state.twist;
   } else {
-    const algo::DriveGeometry geometry{parameters_.wheel_radius, parameters_.half_track};
+    const algo::DriveGeometry geometry{robot_.wheel_radius, robot_.half_track};
     const algo::WheelCounts moved{algo::count_difference(left, encoders_.left),
                                   algo::count_difference(right, encoders_.right)};
     odometry_.pose =
-        algo::integrate_counts(geometry, parameters_.counts_per_turn, odometry_.pose, moved);
-    const double radians = 2 * std::numbers::pi / parameters_.counts_per_turn / scenario_.period;
+        algo::integrate_counts(geometry, robot_.counts_per_turn, odometry_.pose, moved);
+    const double radians = 2 * std::numbers::pi / robot_.counts_per_turn / scenario_.period;
     odometry_.twist = algo::forward_kinematics(
         geometry,
         {static_cast<double>(moved.left) * radians, static_cast<double>(moved.right) * radians});
@@ -263,7 +258,7 @@ void World::sense_motion(algo::Observation& observation) {
   odometry_.stamp = now;
   encoders_ = {now, left, right};
   observation.odometry = errors_.report(odometry_);
-  if (scenario_.encoders) observation.encoders = encoders_;
+  if (robot_.sensors.encoders) observation.encoders = encoders_;
   sense_turn(observation);
 }
 
@@ -278,7 +273,7 @@ void World::sense_turn(algo::Observation& observation) {
   if (gyro_) {
     const double rate = gyro_->read(turned / scenario_.period, scenario_.period);
     observation.gyro = algo::YawGyro{observation.stamp, rate};
-  } else if (scenario_.has_gyro && scenario_.vehicle == Vehicle::Bullet) {
+  } else if (robot_.sensors.has_gyro && scenario_.physics == PhysicsKind::Bullet) {
     observation.gyro = algo::YawGyro{observation.stamp, state.twist.omega};
   }
   if (scenario_.localization != Localization::Gyro) return;
@@ -302,16 +297,16 @@ double World::contact_bearing() const {
 
 /// A contact presses the bumper whose share of the hull it lies in.
 void World::sense_contact(algo::Observation& observation) {
-  if (scenario_.bumpers == 0) return;
+  if (robot_.sensors.bumpers == 0) return;
   const bool contact = this->contact();
-  const double share = 2 * std::numbers::pi / scenario_.bumpers;
-  const double bearing = contact && scenario_.bumpers > 1 ? contact_bearing() : 0;
+  const double share = 2 * std::numbers::pi / robot_.sensors.bumpers;
+  const double bearing = contact && robot_.sensors.bumpers > 1 ? contact_bearing() : 0;
   const auto pressed =
-      static_cast<std::uint32_t>(std::lround(bearing / share) + scenario_.bumpers) %
-      scenario_.bumpers;
-  for (std::uint32_t k = 0; k < scenario_.bumpers; ++k) {
+      static_cast<std::uint32_t>(std::lround(bearing / share) + robot_.sensors.bumpers) %
+      robot_.sensors.bumpers;
+  for (std::uint32_t k = 0; k < robot_.sensors.bumpers; ++k) {
     const double heading = algo::wrap_angle(share * k);
-    const algo::Vec2 place = parameters_.radius * algo::direction(heading);
+    const algo::Vec2 place = robot_.radius * algo::direction(heading);
     observation.bumpers.append() = {.mount_R = {place.x(), place.y(), heading},
                                     .stamp = observation.stamp,
                                     .pressed = contact && k == pressed};
@@ -332,7 +327,7 @@ std::optional<algo::GroundTruth> World::ground_truth() const {
   const VehicleState& state = vehicle_->state();
   const double distance = obstacles_.distance(state.pose_W.position());
   const double clearance = hull_.half_length > 0 ? obstacles_.clearance(hull_, state.pose_W)
-                                                 : distance - parameters_.radius;
+                                                 : distance - robot_.radius;
   return algo::GroundTruth{.pose = state.pose_W,
                            .obstacle_distance = distance,
                            .clearance = clearance,

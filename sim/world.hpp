@@ -114,7 +114,7 @@ class World final : public algo::Robot, public algo::Editing {
 
   Scenario scenario_{};
   std::uint64_t seed_ = 0;
-  VehicleParameters parameters_{};
+  RobotModel robot_{};
   Hull hull_{};
   algo::RobotSpec spec_{};
 
@@ -144,10 +144,7 @@ class World final : public algo::Robot, public algo::Editing {
   bool used_ = false;    // something happened since start()
 };
 
-/// A `robot` of the scenario as others see it: its hull, as high as its highest sensor where that
-/// is higher. Throws std::invalid_argument when there is no such robot.
-algo::Obstacle robot_body(const Scenario& scenario,
-                          const std::string& robot,
-                          const algo::Pose2& pose_W);
+/// `robot` as others see it: its hull, as high as its highest sensor where that is higher.
+algo::Obstacle robot_body(const RobotModel& robot, const algo::Pose2& pose_W);
 
 }  // namespace sim

@@ -11,30 +11,20 @@ namespace {
 constexpr double kSolid = BulletVehicle::kNear + 0.01;  // [m] beyond hull, body and a tick's way
 constexpr double kAway = 1e7;                           // [m] where no sensor reaches
 
-double size_of(const VehicleParameters& vehicle) {
-  return std::max(vehicle.radius, std::hypot(vehicle.hull_length, vehicle.hull_width) / 2);
+double size_of(const RobotModel& robot) {
+  return std::max(robot.radius, std::hypot(robot.hull_length, robot.hull_width) / 2);
 }
 
 }  // namespace
 
-algo::Obstacle robot_body(const Scenario& scenario,
-                          const std::string& robot,
-                          const algo::Pose2& pose_W) {
-  const VehicleParameters& vehicle = vehicle_named(robot);
+algo::Obstacle robot_body(const RobotModel& robot, const algo::Pose2& pose_W) {
   algo::Obstacle body;
   body.pose_W = pose_W;
-  body.height = vehicle.hull_high;
-  for (const LaserConfig& laser : scenario.lasers) {
-    body.height = std::max(body.height, laser.height);
-  }
-  if (scenario.sonar) body.height = std::max(body.height, scenario.sonar->height);
-  for (const InfraredConfig& scanner : scenario.infrared) {
-    body.height = std::max(body.height, scanner.height);
-  }
-  if (vehicle.round) {
-    body.shape = algo::Cylinder{vehicle.radius};
+  body.height = std::max(robot.hull_high, robot.sensors.height());
+  if (robot.round) {
+    body.shape = algo::Cylinder{robot.radius};
   } else {
-    body.shape = algo::Box{vehicle.hull_length, vehicle.hull_width};
+    body.shape = algo::Box{robot.hull_length, robot.hull_width};
   }
   return body;
 }
@@ -44,16 +34,16 @@ algo::Obstacle robot_body(const Scenario& scenario,
 double World::sight() const {
   double reach = 0;
   double memory = 0;  // [s]
-  for (const LaserConfig& laser : scenario_.lasers) {
+  for (const LaserConfig& laser : robot_.sensors.lasers) {
     reach = std::max(reach, laser.range_max + laser.mount_R.position().norm());
     if (laser.rolling) memory = std::max(memory, 2 * laser.turns * laser.mirror_period);
   }
-  if (scenario_.sonar) reach = std::max(reach, scenario_.sonar->range_max + parameters_.radius);
-  for (const InfraredConfig& scanner : scenario_.infrared) {
+  if (robot_.sensors.sonar) reach = std::max(reach, robot_.sensors.sonar->range_max + robot_.radius);
+  for (const InfraredConfig& scanner : robot_.sensors.infrared) {
     reach = std::max(reach, scanner.range_max + scanner.mount_R.position().norm());
   }
-  const double way = parameters_.max_v * (memory + scenario_.period);
-  return std::max(reach, size_of(parameters_) + kSolid) + way;
+  const double way = robot_.max_v * (memory + scenario_.period);
+  return std::max(reach, size_of(robot_) + kSolid) + way;
 }
 
 void World::meet(std::span<const Peer> robots, std::size_t self) {
@@ -102,7 +92,7 @@ void World::place_peer(std::size_t number, const algo::Pose2& pose_W) {
   Slot& slot = slots_[number];
   obstacles_.move(slot.index, pose_W);
   show(slot.id, pose_W);
-  const double reach = parameters_.radius + kSolid + parameters_.max_v * scenario_.period;
+  const double reach = robot_.radius + kSolid + robot_.max_v * scenario_.period;
   const bool solid = obstacles_.may_reach(slot.index, vehicle_->state().pose_W.position(), reach);
   if (solid || slot.solid) vehicle_->moved(slot.index, obstacles_[slot.index]);
   slot.solid = solid;

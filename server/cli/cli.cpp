@@ -2,13 +2,14 @@
 #include "server/cli/cli.hpp"
 
 #include <cstdio>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
+#include "server/run/robot_json.hpp"
+#include "server/run/scenario_json.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server {
@@ -16,14 +17,21 @@ namespace server {
 void RunFlags::add_to(CLI::App& command) {
   command.add_option("--controller", overrides.controller, "Instead of the scenario's own");
   command.add_option("--filter", overrides.filter, "pseudomedian, median, lulu or none");
-  command.add_option("--vehicle", overrides.vehicle, "bullet or kinematic");
+  command.add_option("--physics,--vehicle", physics, "bullet or kinematic");
+  add_robot_option(command, robot);
   command.add_option("--seed", overrides.seed, "Seed of the sensor noise (default 1)");
   command.add_option("--set", settings, "A parameter, such as k_r=0.3; may be given again")
       ->type_name("NAME=VALUE");
 }
 
-RunOverrides RunFlags::resolved() const {
+RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   RunOverrides out = overrides;
+  if (!physics.empty()) out.physics = physics_named(physics, "--physics");
+  if (names_file(robot)) {
+    out.robot = robot_document(robots.load_file_or_name(robot));
+  } else if (!robot.empty()) {
+    out.robot = robot;
+  }
   for (const std::string& setting : settings) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) {
@@ -40,14 +48,24 @@ RunOverrides RunFlags::resolved() const {
   return out;
 }
 
+RobotLibrary own_robots() {
+  return RobotLibrary(state_folder() / "robots");
+}
+
+void add_robot_option(CLI::App& command, std::string& robot) {
+  command
+      .add_option(
+          "--robot-model",
+          robot,
+          "Drive this robot: a file, or a name such as jackal; another than the scenario's brings "
+          "its own sensors")
+      ->type_name("FILE|NAME");
+}
+
 sim::Scenario find_scenario(const std::string& name) {
-  std::error_code error;
-  const std::filesystem::path path(name);
-  const bool looks_like_path = name.find('/') != std::string::npos || path.has_extension();
-  if (looks_like_path || std::filesystem::is_regular_file(path, error)) {
-    return ScenarioLibrary::from_file(path);
-  }
-  return ScenarioLibrary(state_folder() / "scenarios", state_folder() / "logs").load(name);
+  if (names_file(name)) return ScenarioLibrary::from_file(name, own_robots());
+  return ScenarioLibrary(state_folder() / "scenarios", state_folder() / "logs", own_robots())
+      .load(name);
 }
 
 CLI::Validator file_to_write() {

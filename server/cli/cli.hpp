@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "server/run/robot_library.hpp"
 #include "server/run/run_spec.hpp"
 
 namespace server {
@@ -37,13 +38,20 @@ void add_doctor_command(CLI::App& app, int& status);
 void add_lms200_command(CLI::App& app, int& status);
 void add_map_command(CLI::App& app, int& status);
 
+/// Built in, and the user's own.
+RobotLibrary own_robots();
+/// --robot-model, for RobotLibrary::load_file_or_name().
+void add_robot_option(CLI::App& command, std::string& robot);
+
 /// Options that several commands share.
 struct RunFlags {
   RunOverrides overrides{};
   std::vector<std::string> settings{};  // k=v
+  std::string physics{};
+  std::string robot{};  // --robot-model
   void add_to(CLI::App& command);
-  /// Throws DocumentError on a malformed --set.
-  RunOverrides resolved() const;
+  /// Throws DocumentError on a malformed --set, LibraryError where there is no such robot.
+  RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;
 };
 
 /// `name` as a path when there is such a file or it looks like one, else a name of the library.

@@ -22,6 +22,7 @@ struct BarnCommand {
   std::string file{};
   std::string physics = "bullet";
   std::string scanner = "flat";
+  std::string robot{};
   std::vector<std::uint64_t> only{};
   bool as_json = false;
   std::string scenarios{};
@@ -120,8 +121,10 @@ int execute(BarnCommand command) {
     });
     if (worlds.empty()) throw std::runtime_error("no world of the file has such a number");
   }
-  command.options.conditions.vehicle =
-      command.physics == "kinematic" ? sim::Vehicle::Kinematic : sim::Vehicle::Bullet;
+  command.options.conditions.physics = physics_named(command.physics, "--physics");
+  if (!command.robot.empty()) {
+    command.options.conditions.robot = own_robots().load_file_or_name(command.robot);
+  }
   command.options.conditions.scanner =
       command.scanner == "lms200" ? barn::Scanner::Lms200 : barn::Scanner::Flat;
   if (!command.scenarios.empty()) {
@@ -160,6 +163,7 @@ void add_barn_command(CLI::App& app, int& status) {
                  "Short scanner, slow base, delay, slip, drifting odometry");
   barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
       ->check(CLI::IsMember({"bullet", "kinematic"}));
+  add_robot_option(*barn, command->robot);
   barn->add_option("--scanner",
                    command->scanner,
                    "flat (default): the benchmark's, which sees all at one instant; lms200: the "

@@ -227,7 +227,7 @@ void add_emulate_command(CLI::App& app, int& status) {
   robot->callback([options, &status] {
     EmulationOptions& emulation = options->emulation;
     std::filesystem::create_directories(options->links);
-    const std::size_t scanners = find_scenario(options->scenario).lasers.size();
+    const std::size_t scanners = find_scenario(options->scenario).robot.sensors.lasers.size();
     for (std::size_t i = 0; i < scanners; ++i) {
       emulation.scanner_links.push_back(options->links /
                                         (i == 0 ? "scanner" : fmt::format("scanner{}", i + 1)));

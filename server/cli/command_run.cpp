@@ -62,8 +62,7 @@ void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t
   const bool log = !spec.scenario.log.empty();
   fmt::print("{} · {} · {}", spec.scenario.name, spec.scenario.controller, spec.scenario.filter);
   if (!log) {
-    const bool bullet = spec.scenario.vehicle == sim::Vehicle::Bullet;
-    fmt::print(" · {} · seed {}", bullet ? "bullet" : "kinematic", spec.seed);
+    fmt::print(" · {} · seed {}", physics_of(spec), spec.seed);
   }
   fmt::print("\n");
   fmt::print("  outcome          {}\n", algo::name(result.run.outcome));
@@ -120,7 +119,8 @@ int execute(const Options& options) {
                 {"reason", result.run.reason},
                 {"metrics", to_json(result.run.metrics)},
                 {"telemetry_hash", fmt::format("{:016x}", result.telemetry_hash)}};
-    out["vehicle"] = spec.scenario.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic";
+    out["physics"] = physics_of(spec);
+    out["vehicle"] = physics_of(spec);  // its old name
     if (run_id > 0) out["run"] = run_id;
     fmt::print("{}\n", out.dump(2));
   } else {

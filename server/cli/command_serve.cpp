@@ -32,13 +32,15 @@ struct Options {
 
 /// The spec to begin with: of the devices of a robot's file, or of a scenario.
 RunSpec first_spec(const Options& options) {
-  const RunOverrides overrides = options.flags.resolved();
+  const RobotLibrary robots(options.app.robots);
+  const RunOverrides overrides = options.flags.resolved(robots);
   if (options.robot.empty()) {
-    const ScenarioLibrary library(options.app.scenarios, options.app.logs);
-    const bool file = options.scenario.find_first_of("/.") != std::string::npos;
-    return make_spec(
-        file ? ScenarioLibrary::from_file(options.scenario) : library.load(options.scenario),
-        overrides);
+    const ScenarioLibrary library(options.app.scenarios, options.app.logs, robots);
+    return make_spec(names_file(options.scenario)
+                         ? ScenarioLibrary::from_file(options.scenario, robots)
+                         : library.load(options.scenario),
+                     overrides,
+                     robots);
   }
   const drivers::RobotFile file = drivers::read_robot_file(options.robot);
   const bool locked = drivers::lock_memory();
@@ -104,6 +106,7 @@ void add_serve_command(CLI::App& app, int& status) {
   net.web_root = web_folder();
   options->app.database = state_folder() / "runs.db";
   options->app.scenarios = state_folder() / "scenarios";
+  options->app.robots = state_folder() / "robots";
   options->app.logs = state_folder() / "logs";
 
   CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
@@ -154,6 +157,8 @@ void add_serve_command(CLI::App& app, int& status) {
                     "A live run stops as soon as it is not recorded; else the robot drives on");
   command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
       ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--robots", options->app.robots, "Folder of your own robot models")
       ->capture_default_str();
   command->add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
       ->type_name("DIR")

@@ -19,15 +19,13 @@ sim::Scenario bare(sim::Scenario scenario) {
   const sim::Substeps substeps(scenario.period);
   scenario.period = substeps.length;
   scenario.drive.delay_ticks *= static_cast<std::uint32_t>(substeps.count);
-  scenario.lasers.clear();
-  scenario.sonar.reset();
+  scenario.robot.sensors.lasers.clear();
+  scenario.robot.sensors.sonar.reset();
   return scenario;
 }
 
-double metres_per_count(const std::string& robot) {
-  const sim::VehicleParameters* const vehicle = sim::find_vehicle(robot);
-  if (vehicle == nullptr) return 0;  // the world says so in a sentence
-  return 2 * std::numbers::pi * vehicle->wheel_radius / vehicle->counts_per_turn;
+double metres_per_count(const sim::RobotModel& robot) {
+  return 2 * std::numbers::pi * robot.wheel_radius / robot.counts_per_turn;
 }
 
 }  // namespace

@@ -214,20 +214,17 @@ std::string only(const VerbRow& row, std::size_t scanners, bool base) {
 }
 
 std::unique_ptr<emulators::Base> make_base(const EmulationOptions& options) {
-  const sim::VehicleParameters* const vehicle = sim::find_vehicle(options.scenario.robot);
-  if (vehicle == nullptr) {
-    throw std::invalid_argument("There is no robot named \"" + options.scenario.robot + "\".");
-  }
+  const sim::RobotModel& robot = options.scenario.robot;
   if (options.base == BaseKind::P2os) {
     drivers::p2os::EmulatorOptions made;
-    made.half_track = vehicle->half_track;
+    made.half_track = robot.half_track;
     made.seed = options.seed + 100;
     if (options.watchdog > 0) made.watchdog = options.watchdog;
     if (options.near_wrap) made.first_x_mm = made.first_y_mm = 0x7FFF - 100;
     return std::make_unique<drivers::p2os::Emulator>(made);
   }
   drivers::roboteq::EmulatorOptions made;
-  made.wheel_radius = vehicle->wheel_radius;
+  made.wheel_radius = robot.wheel_radius;
   made.seed = options.seed + 100;
   if (options.watchdog > 0) made.watchdog_ms = static_cast<int>(1000 * options.watchdog);
   if (options.near_wrap) made.first_count = std::numeric_limits<std::int32_t>::max() - 5000;
@@ -243,9 +240,10 @@ std::string command_help() {
 }
 
 Emulation::Emulation(const EmulationOptions& options) : record_(options.record) {
-  if (options.scanner_links.size() > options.scenario.lasers.size()) {
-    throw std::invalid_argument(
-        "The scenario has " + std::to_string(options.scenario.lasers.size()) + " laser scanners.");
+  if (options.scanner_links.size() > options.scenario.robot.sensors.lasers.size()) {
+    throw std::invalid_argument("The scenario has " +
+                                std::to_string(options.scenario.robot.sensors.lasers.size()) +
+                                " laser scanners.");
   }
   for (std::size_t i = 0; i < options.scanner_links.size(); ++i) add_scanner(options, i);
   if (options.base != BaseKind::None) add_base(options);

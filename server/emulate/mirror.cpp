@@ -30,13 +30,13 @@ double Mirror::offset(std::uint8_t part) {
 
 std::uint64_t Mirror::turn_of(const algo::LaserScan& scan) const {
   constexpr double kRounding = 1e-6;
-  const double period = scenario_.lasers[index_].mirror_period;
+  const double period = scenario_.robot.sensors.lasers[index_].mirror_period;
   return static_cast<std::uint64_t>(scan.stamp / period + kRounding);
 }
 
 sim::LaserConfig Mirror::config_for(const drivers::lms200::Variant& variant,
                                     std::optional<std::uint8_t> part) const {
-  sim::LaserConfig config = scenario_.lasers[index_];
+  sim::LaserConfig config = scenario_.robot.sensors.lasers[index_];
   config.rolling = true;
   config.range_max = kFarthest;
   config.field_of_view = variant.angle_degrees * kDegree;

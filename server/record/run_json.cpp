@@ -48,7 +48,7 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
   row.document = dump_json(run_document(spec, robot));
   row.controller = spec.scenario.controller;
   row.filter = spec.scenario.filter;
-  row.vehicle = vehicle_of(spec);
+  row.vehicle = physics_of(spec);
   row.seed = spec.seed;
   row.parameters = to_json(spec.parameters).dump();
   row.version = kVersion;
@@ -116,7 +116,8 @@ json to_json(const db::RunRow& row) {
               {"scenario", row.what.scenario},
               {"controller", row.what.controller},
               {"filter", row.what.filter},
-              {"vehicle", row.what.vehicle},
+              {"physics", row.what.vehicle},
+              {"vehicle", row.what.vehicle},  // its old name
               {"seed", row.what.seed},
               {"parameters", parsed(row.what.parameters)},
               {"version", row.what.version},

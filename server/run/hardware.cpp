@@ -83,8 +83,8 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
   scenario.controller = file.controller;
   scenario.filter = file.filter;
   if (!file.spec.has_laser) {
-    scenario.lasers.clear();
-    scenario.sonar.emplace();
+    scenario.robot.sensors.lasers.clear();
+    scenario.robot.sensors.sonar.emplace();
   }
   // The robot's own limits hold in any case; controllers should plan by them too.
   scenario.parameters = {{&algo::kMaxSpeed, allowed(algo::kMaxSpeed, file.limits.speed)},
@@ -95,6 +95,9 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
 }
 
 RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrides& overrides) {
+  if (!overrides.robot.is_null()) {
+    throw DocumentError("robot", "cannot be chosen: this is real hardware");
+  }
   RunSpec spec = make_spec(hardware->scenario, overrides);
   spec.hardware = std::move(hardware);
   return spec;

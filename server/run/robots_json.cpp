@@ -1,6 +1,8 @@
 // server/run/robots_json.cpp: one reader and one writer.
 #include "server/run/robots_json.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -11,8 +13,9 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/run/pose_json.hpp"
+#include "server/run/robot_json.hpp"
 #include "server/run/scenario_json.hpp"
-#include "sim/vehicle.hpp"
+#include "server/run/sensor_json.hpp"
 
 namespace server {
 namespace {
@@ -51,17 +54,25 @@ std::optional<algo::SetGoal> first_goal(const sim::OtherRobot& robot,
   return robot.goals->front();
 }
 
-sim::OtherRobot robot_from_json(const JsonReader& in, const sim::Scenario& scenario) {
+/// Whether the document of a robot says what sensors it has.
+bool brings_sensors(const json& robot) {
+  constexpr std::array kSensors{
+      "lasers", "sonar", "infrared", "sensors", "gyro", "bumpers", "encoders"};
+  return robot.is_object() &&
+         std::ranges::any_of(kSensors, [&](const char* key) { return robot.contains(key); });
+}
+
+sim::OtherRobot other_from_json(const JsonReader& in,
+                                const RobotLibrary& robots,
+                                const sim::Scenario& scenario) {
   in.only({"start", "robot", "goal", "waypoints", "controller", "filter", "parameters"});
   sim::OtherRobot robot;
   if (!in.has("start")) in.fail("start", "is missing");
   robot.goals = goals_from_json(in);
   robot.start = start_from_json(in, first_goal(robot, scenario));
   if (in.has("robot")) {
-    robot.robot = in.text("robot", 64);
-    if (sim::find_vehicle(*robot.robot) == nullptr) {
-      in.fail("robot", fmt::format("'{}' is unknown", *robot.robot));
-    }
+    robot.robot = read_robot(in, robots);
+    if (!brings_sensors(in.raw()["robot"])) robot.robot->sensors = scenario.robot.sensors;
   }
   if (in.has("controller")) {
     robot.controller = in.text("controller", 64);
@@ -85,9 +96,20 @@ sim::OtherRobot robot_from_json(const JsonReader& in, const sim::Scenario& scena
   return robot;
 }
 
-json robot_to_json(const sim::OtherRobot& robot) {
+bool same_sensors(const sim::Sensors& a, const sim::Sensors& b) {
+  json first = json::object();
+  json second = json::object();
+  write_sensors(a, first);
+  write_sensors(b, second);
+  return first == second;
+}
+
+json other_to_json(const sim::OtherRobot& robot, const sim::Scenario& scenario) {
   json out = {{"start", to_json(robot.start)}};
-  if (robot.robot) out["robot"] = *robot.robot;
+  if (robot.robot) {
+    const bool alike = same_sensors(robot.robot->sensors, scenario.robot.sensors);
+    out["robot"] = alike ? robot_reference(*robot.robot) : robot_document(*robot.robot);
+  }
   if (robot.goals && robot.goals->empty()) out["goal"] = nullptr;
   if (robot.goals && !robot.goals->empty()) {
     out["goal"] = to_json(robot.goals->back());
@@ -105,12 +127,12 @@ json robot_to_json(const sim::OtherRobot& robot) {
 
 }  // namespace
 
-void read_robots(const JsonReader& in, sim::Scenario& scenario) {
+void read_robots(const JsonReader& in, const RobotLibrary& robots, sim::Scenario& scenario) {
   if (!in.has("robots")) return;
   const json& list = in.array("robots", sim::kMostRobots - 1);
   for (std::size_t i = 0; i < list.size(); ++i) {
     scenario.robots.push_back(
-        robot_from_json({list[i], fmt::format("{}/{}", in.at("robots"), i)}, scenario));
+        other_from_json({list[i], fmt::format("{}/{}", in.at("robots"), i)}, robots, scenario));
   }
   if ((list.size() + 1) * scenario.obstacles.size() > kMostBodies) {
     in.fail("robots",
@@ -123,7 +145,9 @@ void read_robots(const JsonReader& in, sim::Scenario& scenario) {
 }
 
 void write_robots(const sim::Scenario& s, json& out) {
-  for (const sim::OtherRobot& robot : s.robots) out["robots"].push_back(robot_to_json(robot));
+  for (const sim::OtherRobot& robot : s.robots) {
+    out["robots"].push_back(other_to_json(robot, s));
+  }
 }
 
 }  // namespace server

@@ -80,7 +80,7 @@ void check_others(const sim::Scenario& scenario) {
     check_choices(at,
                   robot.controller.value_or(scenario.controller),
                   robot.filter.value_or(scenario.filter),
-                  sim::has_laser(scenario));
+                  scenario.robot.sensors.has_laser());
     const algo::PipelineConfig config = pipeline_config(robot, scenario);
     check_parameters(at, config.controller, config.parameters);
   }
@@ -124,7 +124,8 @@ RunOverrides overrides_from_json(const json& body) {
   RunOverrides out;
   if (in.has("controller")) out.controller = in.text("controller", 64);
   if (in.has("filter")) out.filter = in.text("filter", 64);
-  if (in.has("vehicle")) out.vehicle = in.text("vehicle", 64);
+  out.physics = physics_from_json(in);
+  if (in.has("robot")) out.robot = body["robot"];
   if (in.has("seed")) out.seed = in.whole("seed", kMaxSeed);
   if (in.has("parameters")) out.parameters = in.object("parameters").raw();
   return out;
@@ -137,19 +138,19 @@ double pace_from_json(const json& body, const char* key, double fallback) {
   return pace;
 }
 
-RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides) {
+RunSpec make_spec(sim::Scenario scenario,
+                  const RunOverrides& overrides,
+                  const RobotLibrary& robots) {
+  if (!overrides.robot.is_null()) {
+    if (!scenario.log.empty()) throw DocumentError("robot", "cannot be chosen for a recorded log");
+    const json document = {{"robot", overrides.robot}};
+    // A scenario's own robot keeps the sensors that the scenario gives it.
+    if (overrides.robot != scenario.robot.name) scenario.robot = read_robot({document, ""}, robots);
+  }
   if (overrides.controller) scenario.controller = *overrides.controller;
   if (overrides.filter) scenario.filter = *overrides.filter;
-  if (overrides.vehicle) {
-    if (*overrides.vehicle != "bullet" && *overrides.vehicle != "kinematic") {
-      throw DocumentError(
-          "vehicle",
-          fmt::format("'{}' is unknown; known are bullet, kinematic", *overrides.vehicle));
-    }
-    const bool bullet = *overrides.vehicle == "bullet";
-    scenario.vehicle = bullet ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
-  }
-  check_choices("", scenario.controller, scenario.filter, sim::has_laser(scenario));
+  if (overrides.physics) scenario.physics = *overrides.physics;
+  check_choices("", scenario.controller, scenario.filter, scenario.robot.sensors.has_laser());
   RunSpec spec;
   spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
   check_parameters("", scenario.controller, spec.parameters);
@@ -166,10 +167,10 @@ const char* source_of(const RunSpec& spec) {
   return spec.scenario.log.empty() ? "simulation" : "replay";
 }
 
-const char* vehicle_of(const RunSpec& spec) {
+const char* physics_of(const RunSpec& spec) {
   if (spec.hardware) return "hardware";
   if (!spec.scenario.log.empty()) return "log";
-  return spec.scenario.vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic";
+  return spec.scenario.physics == sim::PhysicsKind::Bullet ? "bullet" : "kinematic";
 }
 
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {

@@ -11,13 +11,14 @@
 
 #include "algo/pipeline/pipeline.hpp"
 #include "algo/robot.hpp"
+#include "server/run/robot_library.hpp"
 #include "sim/scenario.hpp"
 
 namespace server {
 
 struct Hardware;
 
-/// Same spec, same run, bit for bit. Controller, filter and vehicle are the scenario's own.
+/// Same spec, same run, bit for bit. Controller, filter and physics are the scenario's own.
 struct RunSpec {
   sim::Scenario scenario{};
   algo::Parameters parameters{};
@@ -29,24 +30,30 @@ struct RunSpec {
 /// "simulation", "replay" or "hardware".
 const char* source_of(const RunSpec& spec);
 /// "bullet", "kinematic", "log" or "hardware".
-const char* vehicle_of(const RunSpec& spec);
+const char* physics_of(const RunSpec& spec);
 
 /// What a caller may put in place of the scenario's own choices; read from JSON or flags.
 struct RunOverrides {
   std::optional<std::string> controller{};
   std::optional<std::string> filter{};
-  std::optional<std::string> vehicle{};
+  std::optional<sim::PhysicsKind> physics{};
+  /// A name, or a whole model, which brings its own sensors; null: as the scenario has it. The name
+  /// of the scenario's own robot changes nothing.
+  nlohmann::json robot{};
   std::optional<std::uint64_t> seed{};
   nlohmann::json parameters = nlohmann::json::object();
 };
-/// Reads the optional fields controller, filter, vehicle, seed, parameters. Throws DocumentError.
+/// Reads the optional fields controller, filter, physics, robot, seed, parameters. Throws
+/// DocumentError.
 RunOverrides overrides_from_json(const nlohmann::json& body);
 
 /// Times real time: 0 (as fast as it goes) or 0.01 to 1000. Throws DocumentError.
 double pace_from_json(const nlohmann::json& body, const char* key, double fallback);
 
 /// Throws DocumentError naming the field that is unknown or out of limits.
-RunSpec make_spec(sim::Scenario scenario, const RunOverrides& overrides);
+RunSpec make_spec(sim::Scenario scenario,
+                  const RunOverrides& overrides,
+                  const RobotLibrary& robots = RobotLibrary());
 
 /// Builds the simulated world, with all its robots, or opens the log. Throws std::exception with a
 /// sentence.

@@ -3,12 +3,15 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
 #include "algo/parameters.hpp"
+#include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
+#include "server/run/robot_library.hpp"
 #include "sim/scenario.hpp"
 
 namespace server {
@@ -16,9 +19,16 @@ namespace server {
 constexpr std::size_t kMaxObstacles = 2000;
 
 /// Reads a whole scenario; throws DocumentError saying which field is wrong and how. Names of
-/// controllers and filters are checked, overlaps with the robot are not (the world does that).
-sim::Scenario scenario_from_json(const nlohmann::json& document);
+/// controllers, filters and robots are checked, overlaps with the robot are not (the world does
+/// that).
+sim::Scenario scenario_from_json(const nlohmann::json& document,
+                                 const RobotLibrary& robots = RobotLibrary());
 nlohmann::json to_json(const sim::Scenario& scenario);
+
+/// Throws DocumentError about `path`.
+sim::PhysicsKind physics_named(const std::string& name, const std::string& path);
+/// The field "physics" of a scenario or a request; as of old, "vehicle". Throws DocumentError.
+std::optional<sim::PhysicsKind> physics_from_json(const JsonReader& in);
 
 nlohmann::json to_json(const algo::Parameters& parameters);
 
@@ -27,8 +37,5 @@ nlohmann::json to_json(const algo::Parameters& parameters);
 algo::Parameters parameters_from_json(const nlohmann::json& value,
                                       const std::string& path,
                                       const algo::Parameters& base);
-
-/// Whether `name` may name a scenario: [a-z0-9_-], 1 to 64 characters.
-bool valid_scenario_name(std::string_view name);
 
 }  // namespace server

@@ -3,17 +3,17 @@
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
 #include <mutex>
 #include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "server/run/embedded_worlds.hpp"
+#include "server/run/embedded_documents.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/library_files.hpp"
 #include "server/run/scenario_json.hpp"
 
 namespace server {
@@ -24,23 +24,16 @@ using Kind = LibraryError::Kind;
 
 std::mutex writing;  // two savers must not share a draft
 
-sim::Scenario parse(const std::string& text, const std::string& where) {
+sim::Scenario parse(const std::string& text, const std::string& where, const RobotLibrary& robots) {
   try {
-    return scenario_from_json(parse_json(text, kOwnDocument));
+    return scenario_from_json(parse_json(text, kOwnDocument), robots);
   } catch (const std::exception& e) {
     throw LibraryError(Kind::Unreadable, fmt::format("{}: {}", where, e.what()));
   }
 }
 
-/// @param shown  the file as it is named to people: visitors need not know where it lies
-std::string read_file(const fs::path& path, const std::string& shown) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw LibraryError(Kind::NotFound, fmt::format("Cannot read {}.", shown));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-const EmbeddedWorld* find_embedded(const std::string& name) {
-  for (const EmbeddedWorld& world : embedded_worlds()) {
+const EmbeddedDocument* find_embedded(const std::string& name) {
+  for (const EmbeddedDocument& world : embedded_worlds()) {
     if (world.name == name) return &world;
   }
   return nullptr;
@@ -51,41 +44,27 @@ sim::Scenario log_scenario(const fs::path& path) {
   s.name = path.stem().string();
   s.title = "Log " + path.filename().string();
   s.description = "A recorded laser log, replayed through the same pipeline.";
-  s.robot = "log";
+  s.robot.name = "log";
   s.log = path.string();
   return s;
 }
 
-template <typename F>
-void for_each_file(const fs::path& folder, const char* extension, F visit) {
-  std::error_code error;
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.is_regular_file(error) && entry.path().extension() == extension &&
-        valid_scenario_name(entry.path().stem().string())) {
-      paths.push_back(entry.path());
-    }
-  }
-  std::sort(paths.begin(), paths.end());
-  for (const fs::path& path : paths) visit(path);
-}
-
 }  // namespace
 
-ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs)
-    : own_(std::move(own)), logs_(std::move(logs)) {}
+ScenarioLibrary::ScenarioLibrary(fs::path own, fs::path logs, RobotLibrary robots)
+    : own_(std::move(own)), logs_(std::move(logs)), robots_(std::move(robots)) {}
 
 std::vector<ScenarioEntry> ScenarioLibrary::list() const {
   net::not_on_io_thread("Listing scenarios");
   std::vector<ScenarioEntry> entries;
-  for (const EmbeddedWorld& world : embedded_worlds()) {
-    const sim::Scenario s = parse(std::string(world.json), std::string(world.name));
+  for (const EmbeddedDocument& world : embedded_worlds()) {
+    const sim::Scenario s = parse(std::string(world.json), std::string(world.name), robots_);
     entries.push_back({s.name, s.title, s.description, true, false});
   }
   for_each_file(own_, ".json", [&](const fs::path& path) {
     try {
       const std::string shown = path.filename().string();
-      const sim::Scenario s = parse(read_file(path, shown), shown);
+      const sim::Scenario s = parse(read_file(path, shown), shown, robots_);
       entries.push_back({path.stem().string(), s.title, s.description, false, false});
     } catch (const LibraryError& e) {
       entries.push_back({path.stem().string(), path.stem().string(), e.what(), false, false});
@@ -100,15 +79,15 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
 
 sim::Scenario ScenarioLibrary::load(const std::string& name) const {
   net::not_on_io_thread("Reading a scenario");
-  if (const EmbeddedWorld* world = find_embedded(name)) {
-    return parse(std::string(world->json), name);
+  if (const EmbeddedDocument* world = find_embedded(name)) {
+    return parse(std::string(world->json), name, robots_);
   }
-  if (valid_scenario_name(name)) {
+  if (valid_name(name)) {
     std::error_code error;
     const fs::path own = own_ / (name + ".json");
     if (!own_.empty() && fs::is_regular_file(own, error)) {
       const std::string shown = own.filename().string();
-      return parse(read_file(own, shown), shown);
+      return parse(read_file(own, shown), shown, robots_);
     }
     const fs::path log = logs_ / (name + ".log");
     if (!logs_.empty() && fs::is_regular_file(log, error)) return log_scenario(log);
@@ -120,7 +99,7 @@ sim::Scenario ScenarioLibrary::load(const std::string& name) const {
 }
 
 void ScenarioLibrary::save(const sim::Scenario& scenario) const {
-  if (!valid_scenario_name(scenario.name)) {
+  if (!valid_name(scenario.name)) {
     throw LibraryError(
         Kind::BadName,
         fmt::format("'{}' is no name: 1 to 64 of the characters a-z, 0-9, _ and -", scenario.name));
@@ -133,7 +112,7 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
   }
   net::not_on_io_thread("Saving a scenario");
   const std::string text = dump_json(to_json(scenario)) + '\n';
-  parse(text, scenario.name);  // what could not be loaded again is not kept
+  parse(text, scenario.name, robots_);  // what could not be loaded again is not kept
   const std::lock_guard lock(writing);
   std::error_code error;
   fs::create_directories(own_, error);
@@ -157,14 +136,14 @@ void ScenarioLibrary::remove(const std::string& name) const {
   net::not_on_io_thread("Deleting a scenario");
   const std::lock_guard lock(writing);
   std::error_code error;
-  if (!valid_scenario_name(name) || !fs::remove(own_ / (name + ".json"), error)) {
+  if (!valid_name(name) || !fs::remove(own_ / (name + ".json"), error)) {
     throw LibraryError(Kind::NotFound, fmt::format("You have no scenario '{}' of your own.", name));
   }
 }
 
-sim::Scenario ScenarioLibrary::from_file(const fs::path& path) {
+sim::Scenario ScenarioLibrary::from_file(const fs::path& path, const RobotLibrary& robots) {
   if (path.extension() == ".log") return log_scenario(path);
-  return parse(read_file(path, path.string()), path.string());
+  return parse(read_file(path, path.string()), path.string(), robots);
 }
 
 }  // namespace server

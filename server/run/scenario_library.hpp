@@ -3,26 +3,14 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "server/run/library_files.hpp"
+#include "server/run/robot_library.hpp"
 #include "sim/scenario.hpp"
 
 namespace server {
-
-/// A scenario that is not there, may not be changed, or does not read. what() is a sentence.
-class LibraryError : public std::runtime_error {
- public:
-  enum class Kind { NotFound, Builtin, BadName, Unreadable };
-  LibraryError(Kind kind, const std::string& sentence)
-      : std::runtime_error(sentence), kind_(kind) {}
-  Kind kind() const { return kind_; }
-
- private:
-  Kind kind_;
-};
 
 struct ScenarioEntry {
   std::string name{};
@@ -37,7 +25,12 @@ class ScenarioLibrary {
  public:
   /// `own`: folder for the user's *.json, made on the first save; `logs`: folder of CARMEN *.log
   /// files. Either may be empty: none.
-  ScenarioLibrary(std::filesystem::path own, std::filesystem::path logs);
+  ScenarioLibrary(std::filesystem::path own,
+                  std::filesystem::path logs,
+                  RobotLibrary robots = RobotLibrary());
+
+  /// Those that its scenarios may name.
+  const RobotLibrary& robots() const { return robots_; }
 
   std::vector<ScenarioEntry> list() const;
   /// Throws LibraryError, or DocumentError when a file does not say what it must.
@@ -48,11 +41,13 @@ class ScenarioLibrary {
 
   /// A scenario from a file of its own, or a log when it ends in .log (command line only: a name
   /// from the network is never used as a path).
-  static sim::Scenario from_file(const std::filesystem::path& path);
+  static sim::Scenario from_file(const std::filesystem::path& path,
+                                 const RobotLibrary& robots = RobotLibrary());
 
  private:
   std::filesystem::path own_;
   std::filesystem::path logs_;
+  RobotLibrary robots_;
 };
 
 }  // namespace server

@@ -10,8 +10,10 @@
 
 #include "algo/name.hpp"
 #include "algo/units.hpp"
+#include "server/run/laser_json.hpp"
 #include "sim/gyro_model.hpp"
 #include "sim/infrared_model.hpp"
+#include "sim/sensor.hpp"
 #include "sim/sonar_model.hpp"
 
 namespace server {
@@ -31,7 +33,7 @@ algo::Pose2 mount_from_json(const JsonReader& in) {
           algo::wrap_angle(in.number_or("heading", 0, {-100, 100}))};
 }
 
-sim::SonarConfig sonar_from_json(const JsonReader& in) {
+sim::SonarConfig sonar_from_json(const JsonReader& in, const std::string& path) {
   in.only({"count",
            "field_deg",
            "cone_deg",
@@ -55,7 +57,7 @@ sim::SonarConfig sonar_from_json(const JsonReader& in) {
   sonar.noise = in.number_or("noise", sonar.noise);
   sonar.incidence = degrees("incidence_deg", sonar.incidence);
   sonar.height = in.number_or("height", sonar.height);
-  if (const auto complaint = sim::defect(sonar)) throw DocumentError("sonar", *complaint);
+  if (const auto complaint = sim::defect(sonar)) throw DocumentError(path, *complaint);
   return sonar;
 }
 
@@ -101,10 +103,10 @@ json to_json(const sim::InfraredConfig& scanner) {
 }
 
 /// `false`: none; an object: one with those errors; absent: as the vehicle has it.
-void read_gyro(const JsonReader& in, sim::Scenario& scenario) {
+void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
   if (!in.has("gyro")) return;
   if (in.raw()["gyro"].is_boolean()) {
-    scenario.has_gyro = in.flag_or("gyro", true);
+    sensors.has_gyro = in.flag_or("gyro", true);
     return;
   }
   const JsonReader gyro = in.object("gyro");
@@ -113,8 +115,8 @@ void read_gyro(const JsonReader& in, sim::Scenario& scenario) {
   config.bias = gyro.number_or("bias", config.bias);
   config.bias_walk = gyro.number_or("bias_walk", config.bias_walk);
   config.noise = gyro.number_or("noise", config.noise);
-  if (const auto complaint = sim::defect(config)) throw DocumentError("gyro", *complaint);
-  scenario.gyro = config;
+  if (const auto complaint = sim::defect(config)) in.fail("gyro", *complaint);
+  sensors.gyro = config;
 }
 
 /// Besides sensor, channel and unit every field is a setting: a number or a list of them.
@@ -151,14 +153,15 @@ json to_json(const sim::SensorConfig& config) {
   return out;
 }
 
-void read_channels(const JsonReader& in, sim::Scenario& scenario) {
+void read_channels(const JsonReader& in, sim::Sensors& sensors) {
   if (!in.has("sensors")) return;
   const json& list = in.array("sensors", sim::kMostSensors);
+  sensors.further.clear();
   std::set<std::string> channels;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string path = fmt::format("sensors/{}", i);
-    scenario.sensors.push_back(sensor_from_json({list[i], path}, path));
-    const std::string& channel = scenario.sensors.back().channel;
+    const std::string path = fmt::format("{}/{}", in.at("sensors"), i);
+    sensors.further.push_back(sensor_from_json({list[i], path}, path));
+    const std::string& channel = sensors.further.back().channel;
     if (!channels.insert(channel).second) {
       throw DocumentError(path + "/channel", fmt::format("'{}' is used twice", channel));
     }
@@ -167,31 +170,36 @@ void read_channels(const JsonReader& in, sim::Scenario& scenario) {
 
 }  // namespace
 
-void read_sensors(const JsonReader& in, sim::Scenario& scenario) {
-  if (in.has("sonar")) scenario.sonar = sonar_from_json(in.object("sonar"));
-  if (in.has("infrared")) {
-    const json& list = in.array("infrared", 4);
+void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
+  if (in.has("lasers")) {
+    sensors.lasers.clear();
+    const json& list = in.array("lasers", 4);
     for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::string path = fmt::format("infrared/{}", i);
-      scenario.infrared.push_back(infrared_from_json({list[i], path}, path));
+      sensors.lasers.push_back(
+          laser_from_json({list[i], fmt::format("{}/{}", in.at("lasers"), i)}));
     }
   }
-  read_channels(in, scenario);
-  read_gyro(in, scenario);
-  scenario.bumpers = static_cast<std::uint32_t>(in.whole_or("bumpers", scenario.bumpers, 8));
-  scenario.encoders = in.flag_or("encoders", scenario.encoders);
-  const std::string localization = in.text_or("localization", "encoders");
-  if (localization != "encoders" && localization != "gyro") {
-    in.fail("localization", "must be \"encoders\" or \"gyro\"");
+  if (in.has("sonar")) sensors.sonar = sonar_from_json(in.object("sonar"), in.at("sonar"));
+  if (in.has("infrared")) {
+    sensors.infrared.clear();
+    const json& list = in.array("infrared", 4);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const std::string path = fmt::format("{}/{}", in.at("infrared"), i);
+      sensors.infrared.push_back(infrared_from_json({list[i], path}, path));
+    }
   }
-  scenario.localization =
-      localization == "gyro" ? sim::Localization::Gyro : sim::Localization::Encoders;
+  read_channels(in, sensors);
+  read_gyro(in, sensors);
+  sensors.bumpers = static_cast<std::uint32_t>(in.whole_or("bumpers", sensors.bumpers, 8));
+  sensors.encoders = in.flag_or("encoders", sensors.encoders);
 }
 
-void write_sensors(const sim::Scenario& s, nlohmann::json& out) {
+void write_sensors(const sim::Sensors& s, nlohmann::json& out) {
+  out["lasers"] = json::array();
+  for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
   if (s.sonar) out["sonar"] = to_json(*s.sonar);
   for (const sim::InfraredConfig& scanner : s.infrared) out["infrared"].push_back(to_json(scanner));
-  for (const sim::SensorConfig& sensor : s.sensors) out["sensors"].push_back(to_json(sensor));
+  for (const sim::SensorConfig& sensor : s.further) out["sensors"].push_back(to_json(sensor));
   if (!s.has_gyro) out["gyro"] = false;
   if (s.has_gyro && s.gyro) {
     out["gyro"] = {
@@ -199,7 +207,6 @@ void write_sensors(const sim::Scenario& s, nlohmann::json& out) {
   }
   if (s.bumpers != 1) out["bumpers"] = s.bumpers;
   if (!s.encoders) out["encoders"] = false;
-  if (s.localization == sim::Localization::Gyro) out["localization"] = "gyro";
 }
 
 }  // namespace server

@@ -1,18 +1,18 @@
-// server/run/sensor_json.hpp: the sensors of a scenario besides its laser scanners, as JSON.
+// server/run/sensor_json.hpp: the sensors of a simulated robot as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
 
 #include "server/run/json_reader.hpp"
-#include "sim/scenario.hpp"
+#include "sim/sensor_configs.hpp"
 
 namespace server {
 
-/// `sonar`, `infrared`, `gyro`, `bumpers`, `encoders`, and what the odometry is made of,
-/// `localization`, where the document `in` has them. Throws DocumentError.
-void read_sensors(const JsonReader& in, sim::Scenario& scenario);
+/// `lasers`, `sonar`, `infrared`, `sensors`, `gyro`, `bumpers` and `encoders` where the document
+/// `in` has them; the others stay. Throws DocumentError.
+void read_sensors(const JsonReader& in, sim::Sensors& sensors);
 
-/// The same fields into `out`, but for those that are as a scenario has them anyway.
-void write_sensors(const sim::Scenario& s, nlohmann::json& out);
+/// The same fields into `out`; all but the lasers only where they are not as usual.
+void write_sensors(const sim::Sensors& s, nlohmann::json& out);
 
 }  // namespace server

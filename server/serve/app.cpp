@@ -41,7 +41,7 @@ RecorderOptions recorder_options_for(const AppOptions& options) {
 struct App::Impl {
   explicit Impl(AppOptions options)
       : recorder(prepared(options.database), recorder_options_for(options)),
-        library(options.scenarios, options.logs),
+        library(options.scenarios, options.logs, RobotLibrary(options.robots)),
         scheduler(options.threads),
         workers(options.database.string()),
         experiments(recorder),

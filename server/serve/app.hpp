@@ -16,6 +16,7 @@ struct AppOptions {
   net::ServerOptions net{};
   std::filesystem::path database{};
   std::filesystem::path scenarios{};  // the user's own
+  std::filesystem::path robots{};     // the user's own robot models
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
   std::uint64_t keep_bytes = std::uint64_t{2} << 30;
   bool evict_oldest = false;    // finished runs may be deleted for room

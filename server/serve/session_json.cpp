@@ -27,7 +27,8 @@ json state_json(const Session& session) {
       {"scenario", to_json(s.spec.scenario)},
       {"controller", s.spec.scenario.controller},
       {"filter", s.spec.scenario.filter},
-      {"vehicle", vehicle_of(s.spec)},
+      {"physics", physics_of(s.spec)},
+      {"vehicle", physics_of(s.spec)},  // its old name
       {"seed", s.spec.seed},
       {"robot", to_json(s.robot)},
       {"pace", {{"paused", s.pace.paused}, {"speed", s.pace.speed}}},
@@ -114,16 +115,17 @@ json catalog_json() {
                           {"initial", p->initial},
                           {"help", p->help}});
   }
-  json vehicles = json::array();
-  vehicles.push_back({{"name", "bullet"},
-                      {"label", "Bullet"},
-                      {"help", "Rigid-body physics with wheel slip and acceleration limits."}});
-  vehicles.push_back({{"name", "kinematic"},
-                      {"label", "Kinematic"},
-                      {"help", "Goes exactly as told: fast, and the paper's conditions."}});
+  json physics = json::array();
+  physics.push_back({{"name", "bullet"},
+                     {"label", "Bullet"},
+                     {"help", "Rigid-body physics with wheel slip and acceleration limits."}});
+  physics.push_back({{"name", "kinematic"},
+                     {"label", "Kinematic"},
+                     {"help", "Goes exactly as told: fast, and the paper's conditions."}});
   return {{"controllers", std::move(controllers)},
           {"filters", std::move(filters)},
-          {"vehicles", std::move(vehicles)},
+          {"physics", physics},
+          {"vehicles", std::move(physics)},  // their old name
           {"common_parameters", keys(algo::common_parameters())},
           {"parameters", std::move(parameters)}};
 }

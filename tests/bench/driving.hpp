@@ -14,14 +14,14 @@
 namespace bench {
 
 inline sim::Scenario room_scenario(std::uint32_t obstacles,
-                                   sim::Vehicle vehicle,
+                                   sim::PhysicsKind physics,
                                    std::vector<sim::LaserConfig> lasers) {
   sim::Scenario scenario;
   scenario.name = "w" + std::to_string(obstacles);
-  scenario.vehicle = vehicle;
+  scenario.physics = physics;
   scenario.period = kTick;
   scenario.obstacles = reference::room(obstacles);
-  scenario.lasers = std::move(lasers);
+  scenario.robot.sensors.lasers = std::move(lasers);
   return scenario;
 }
 

@@ -15,7 +15,7 @@
 namespace bench {
 namespace {
 
-using sim::Vehicle;
+using sim::PhysicsKind;
 
 constexpr std::size_t kRobots = 100;
 constexpr std::uint32_t kAsMany = 180;  // obstacles of the W(K) whose room is 30 m wide
@@ -49,13 +49,13 @@ class Places {
   sim::ObstacleSet set_{};
 };
 
-sim::Scenario hall_scenario(Vehicle vehicle, const sim::LaserConfig& laser) {
+sim::Scenario hall_scenario(PhysicsKind physics, const sim::LaserConfig& laser) {
   sim::Scenario scenario;
   scenario.name = "hall";
-  scenario.vehicle = vehicle;
+  scenario.physics = physics;
   scenario.period = kTick;
   scenario.obstacles = hall();
-  scenario.lasers = {laser};
+  scenario.robot.sensors.lasers = {laser};
   Places places(scenario.obstacles, 11);
   std::vector<algo::Pose2> starts;
   while (starts.size() < kRobots) {
@@ -121,7 +121,7 @@ class Crowd {
 void check_sight(int ticks) {
   sim::LaserConfig ideal = sim::LaserConfig::ideal(0.5);
   ideal.height = kPlane;
-  const sim::Scenario scenario = hall_scenario(Vehicle::Kinematic, ideal);
+  const sim::Scenario scenario = hall_scenario(PhysicsKind::Kinematic, ideal);
   Crowd crowd(scenario);
   std::size_t off = 0;
   std::size_t met = 0;  // beams that end at a robot
@@ -130,7 +130,7 @@ void check_sight(int ticks) {
     std::vector<algo::Obstacle> all = scenario.obstacles;
     for (std::size_t k = 0; k < kRobots; ++k) {
       const algo::Pose2& pose_W = crowd.fleet().robot(k).pose_W();
-      all.push_back(sim::robot_body(scenario, scenario.robot, pose_W));
+      all.push_back(sim::robot_body(scenario.robot, pose_W));
     }
     for (std::size_t k = static_cast<std::size_t>(tick) % 7; k < kRobots; k += 7) {
       const algo::Pose2& pose_W = crowd.fleet().robot(k).pose_W();
@@ -167,8 +167,8 @@ void add_rate(Pass& pass, Figure figure, const Timing& tick, const Crowd& crowd)
 
 void fleets(Pass& pass) {
   check_sight(pass.count(60, 8));
-  Crowd full(hall_scenario(Vehicle::Bullet, full_laser()));
-  Crowd flat(hall_scenario(Vehicle::Kinematic, full_laser()));
+  Crowd full(hall_scenario(PhysicsKind::Bullet, full_laser()));
+  Crowd flat(hall_scenario(PhysicsKind::Kinematic, full_laser()));
   for (int tick = 0; tick < pass.count(150, 3); ++tick) {  // until they are on their ways
     full.tick();
     flat.tick();

@@ -135,7 +135,7 @@ void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
 
 /// Driving ticks, their strip drawn out to `nodes` along the same line (0: as it is).
 std::vector<algo::Telemetry> driving_ticks(std::size_t count, std::size_t nodes) {
-  Driving driving(room_scenario(20, sim::Vehicle::Bullet, {full_laser()}));
+  Driving driving(room_scenario(20, sim::PhysicsKind::Bullet, {full_laser()}));
   std::vector<algo::Telemetry> ticks;
   while (ticks.size() < count) {
     driving.tick();

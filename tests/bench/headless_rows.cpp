@@ -92,9 +92,9 @@ void check_record(const std::string& database, double seconds) {
 }
 
 /// One run of 600 simulated seconds. @return simulated seconds per second of CPU time
-double run_once(Pass& pass, sim::Vehicle vehicle, std::uint64_t& seen) {
+double run_once(Pass& pass, sim::PhysicsKind physics, std::uint64_t& seen) {
   const double seconds = pass.count(600.0, 20.0);
-  sim::Scenario scenario = room_scenario(20, vehicle, {full_laser()});
+  sim::Scenario scenario = room_scenario(20, physics, {full_laser()});
   // Slow enough to be on its way all the time.
   scenario.goal = algo::SetGoal{{4.3, 4.3}, std::nullopt};
   scenario.parameters = {{&algo::kMaxSpeed, 0.01}, {&algo::kFilterHalfWidth, 2}};
@@ -123,11 +123,11 @@ double run_once(Pass& pass, sim::Vehicle vehicle, std::uint64_t& seen) {
   return stamp / used;
 }
 
-void run_headless(Pass& pass, sim::Vehicle vehicle, Figure figure) {
+void run_headless(Pass& pass, sim::PhysicsKind physics, Figure figure) {
   std::vector<double> speeds;
   std::uint64_t seen = 0;
   for (int repetition = 0; repetition < pass.count(5, 1); ++repetition) {
-    speeds.push_back(run_once(pass, vehicle, seen));
+    speeds.push_back(run_once(pass, physics, seen));
   }
   figure.row = "P9";
   figure.value = median(speeds);
@@ -142,10 +142,10 @@ void run_headless(Pass& pass, sim::Vehicle vehicle, Figure figure) {
 
 void headless(Pass& pass) {
   run_headless(pass,
-               sim::Vehicle::Bullet,
+               sim::PhysicsKind::Bullet,
                {.name = "headless server, full physics", .floor = 250, .stretch = 400});
   run_headless(pass,
-               sim::Vehicle::Kinematic,
+               sim::PhysicsKind::Kinematic,
                {.name = "headless server, kinematic", .floor = 800, .stretch = 1500});
 }
 

@@ -35,7 +35,7 @@ std::vector<Stored> ticks_of_a_drive(std::size_t count, std::size_t nodes, doubl
   sim::LaserConfig laser = full_laser();
   laser.noise_shape = sim::NoiseShape::Uniform;
   laser.noise = noise;
-  Driving driving(room_scenario(20, sim::Vehicle::Kinematic, {laser}));
+  Driving driving(room_scenario(20, sim::PhysicsKind::Kinematic, {laser}));
   server::FrameEncoder encoder;
   std::vector<Stored> ticks;
   while (ticks.size() < count) {

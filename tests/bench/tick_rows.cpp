@@ -16,14 +16,14 @@
 namespace bench {
 namespace {
 
-using sim::Vehicle;
+using sim::PhysicsKind;
 
 /// The same robot, its scan taken by Bullet's rays: from one pose, then the same noise and
 /// rounding.
 class ReferenceDriving {
  public:
-  explicit ReferenceDriving(Vehicle vehicle)
-      : scenario_(room_scenario(20, vehicle, {})),
+  explicit ReferenceDriving(PhysicsKind physics)
+      : scenario_(room_scenario(20, physics, {})),
         driving_(scenario_),
         room_(scenario_.obstacles) {}
 
@@ -67,11 +67,11 @@ class ReferenceDriving {
 };
 
 /// With an ideal scanner both see the same and command the same, tick by tick.
-void check_ticks(Vehicle vehicle, int ticks, const std::string& row) {
+void check_ticks(PhysicsKind physics, int ticks, const std::string& row) {
   sim::LaserConfig ideal = sim::LaserConfig::ideal(0.5);
   ideal.height = kPlane;
-  Driving ours(room_scenario(20, vehicle, {ideal}));
-  ReferenceDriving theirs(vehicle);
+  Driving ours(room_scenario(20, physics, {ideal}));
+  ReferenceDriving theirs(physics);
   algo::Pipeline pipeline = make_pipeline(ours.world().spec());
   pipeline.reset(ours.t.observation.odometry.pose);
   algo::Telemetry t;
@@ -110,7 +110,7 @@ class Circling {
 
 /// Where the time of our tick goes: the world with ever less of its scanner, driven in a circle.
 /// Beside Bullet's physics the scanner's parts are less than the noise of the machine.
-void shares(Pass& pass, Vehicle vehicle, const std::string& row, double whole) {
+void shares(Pass& pass, PhysicsKind physics, const std::string& row, double whole) {
   const auto share = [&](const std::string& name, double seconds) {
     pass.add_detail(
         row, name, 1e6 * seconds, "us", fmt::format("{:.0f} % of the tick", 100 * seconds / whole));
@@ -120,37 +120,37 @@ void shares(Pass& pass, Vehicle vehicle, const std::string& row, double whole) {
   sim::LaserConfig clean = smooth;
   clean.mixed_pixels = false;
   clean.dropout = 0;
-  Circling full(room_scenario(20, vehicle, {full_laser()}));
-  Circling silent(room_scenario(20, vehicle, {smooth}));
-  Circling bare(room_scenario(20, vehicle, {clean}));
-  Circling blind(room_scenario(20, vehicle, {}));
+  Circling full(room_scenario(20, physics, {full_laser()}));
+  Circling silent(room_scenario(20, physics, {smooth}));
+  Circling bare(room_scenario(20, physics, {clean}));
+  Circling blind(room_scenario(20, physics, {}));
   const auto times = pass.time(row + " share",
                                {{"full", [&] { full.step(); }},
                                 {"silent", [&] { silent.step(); }},
                                 {"bare", [&] { bare.step(); }},
                                 {"blind", [&] { blind.step(); }}});
   share("of it vehicle and odometry", times[3].seconds);
-  if (vehicle == Vehicle::Bullet) return;
+  if (physics == PhysicsKind::Bullet) return;
   share("of it scan, rolling sweep", times[2].seconds - times[3].seconds);
   share("of it scan, spots and mixed pixels", times[1].seconds - times[2].seconds);
   share("of it scan, noise", times[0].seconds - times[1].seconds);
   share("of it filter and control", whole - times[0].seconds);
 }
 
-void time_tick(Pass& pass, Vehicle vehicle, Figure figure) {
-  check_ticks(vehicle, pass.count(600, 100), figure.row);
-  Driving ours(room_scenario(20, vehicle, {full_laser()}));
-  ReferenceDriving theirs(vehicle);
+void time_tick(Pass& pass, PhysicsKind physics, Figure figure) {
+  check_ticks(physics, pass.count(600, 100), figure.row);
+  Driving ours(room_scenario(20, physics, {full_laser()}));
+  ReferenceDriving theirs(physics);
   const auto times =
       pass.time(figure.row, {{"ours", [&] { ours.tick(); }}, {"bullet", [&] { theirs.tick(); }}});
   const std::string row = figure.row;
   pass.add_ratio(std::move(figure), times[0], times[1]);
-  if (!pass.quick()) shares(pass, vehicle, row, times[0].seconds);
+  if (!pass.quick()) shares(pass, physics, row, times[0].seconds);
 }
 
 void many_obstacles(Pass& pass) {
-  Circling few(room_scenario(20, Vehicle::Bullet, {}));
-  Circling many(room_scenario(1000, Vehicle::Bullet, {}));
+  Circling few(room_scenario(20, PhysicsKind::Bullet, {}));
+  Circling many(room_scenario(1000, PhysicsKind::Bullet, {}));
   for (int tick = 0; tick < pass.count(800, 100); ++tick) {
     few.step();
     many.step();
@@ -196,7 +196,7 @@ class Pinned {
 /// Ticks of a drive with what was commanded, to be fed to a fresh pipeline.
 struct Recording {
   explicit Recording(std::size_t count) {
-    Driving driving(room_scenario(20, Vehicle::Kinematic, {full_laser()}));
+    Driving driving(room_scenario(20, PhysicsKind::Kinematic, {full_laser()}));
     spec = driving.world().spec();
     start = driving.t.observation.odometry.pose;
     for (std::size_t i = 0; i < count; ++i) {
@@ -215,14 +215,14 @@ struct Recording {
 
 void ticks(Pass& pass) {
   time_tick(pass,
-            Vehicle::Bullet,
+            PhysicsKind::Bullet,
             {.row = "P6",
              .name = "tick, full physics",
              .floor = 9,
              .stretch = 14,
              .note = "full sensor model, the controller's 3-node strip"});
   time_tick(pass,
-            Vehicle::Kinematic,
+            PhysicsKind::Kinematic,
             {.row = "P7",
              .name = "tick, kinematic",
              .floor = 100,

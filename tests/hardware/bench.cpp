@@ -28,7 +28,7 @@ std::string robot_file(const BenchOptions& options, const sim::Scenario& scenari
       "[base]\ntype = \"{}\"\nport = \"{}\"\ntrack = 0.5\nwatchdog = {}\nbattery_low = {}\n",
       scenario.period,
       (options.folder / "scanner").string(),
-      scenario.lasers.front().mount_R.x,
+      scenario.robot.sensors.lasers.front().mount_R.x,
       p2os ? "pioneer" : "roboteq",
       (options.folder / "base").string(),
       p2os ? 2.0 : options.watchdog,

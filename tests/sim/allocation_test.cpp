@@ -29,9 +29,9 @@ namespace sim {
 namespace {
 
 TEST(Allocation, ASteadyTickAllocatesNothing) {
-  for (const Vehicle vehicle : {Vehicle::Bullet, Vehicle::Kinematic}) {
+  for (const PhysicsKind physics : {PhysicsKind::Bullet, PhysicsKind::Kinematic}) {
     Scenario scenario;
-    scenario.vehicle = vehicle;
+    scenario.physics = physics;
     scenario.obstacles = reference::room(20);
     World world(scenario, 1);
     algo::Observation seen;

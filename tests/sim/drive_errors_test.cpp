@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/run/robot_library.hpp"
 #include "sim/world.hpp"
 
 namespace sim {
@@ -81,9 +82,9 @@ TEST(ObstaclePath, IsLinearBetweenKeysAndJumpsBack) {
   EXPECT_EQ(later.at(0), algo::Vec2(2.5, 0));
 }
 
-Scenario moving_scenario(Vehicle vehicle) {
+Scenario moving_scenario(PhysicsKind physics) {
   Scenario scenario;
-  scenario.vehicle = vehicle;
+  scenario.physics = physics;
   scenario.period = 0.1;
   scenario.obstacles = {{.id = 1, .pose_W = {2, 0, 0}, .shape = algo::Cylinder{0.3}}};
   scenario.paths = {path()};
@@ -91,8 +92,8 @@ Scenario moving_scenario(Vehicle vehicle) {
 }
 
 TEST(World, AnObstacleFollowsItsPathAndTheScannerSeesIt) {
-  for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
-    World world(moving_scenario(vehicle), 1);
+  for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
+    World world(moving_scenario(physics), 1);
     algo::Observation observation;
     world.reset(observation);
     EXPECT_NEAR(world.ground_truth()->obstacle_distance, 1.7, 1e-9);
@@ -109,7 +110,7 @@ TEST(World, AnObstacleFollowsItsPathAndTheScannerSeesIt) {
 }
 
 TEST(World, SomethingThatDrivesIntoTheRobotIsACollision) {
-  Scenario scenario = moving_scenario(Vehicle::Kinematic);
+  Scenario scenario = moving_scenario(PhysicsKind::Kinematic);
   scenario.paths[0].keys = {{0, {2, 0}}, {2, {0.2, 0}}};
   World world(scenario, 1);
   algo::Observation observation;
@@ -123,7 +124,7 @@ TEST(World, SomethingThatDrivesIntoTheRobotIsACollision) {
 TEST(World, APostBesideTheWheelsIsNotInTheWay) {
   // The wheels' support balls are wider than the hull; 3 cm beside it there is room.
   Scenario scenario;
-  scenario.robot = "jackal";
+  scenario.robot = server::builtin_robot("jackal");
   scenario.period = 0.05;
   scenario.obstacles = {
       {.id = 1, .pose_W = {1, 0.215 + 0.03 + 0.075, 0}, .shape = algo::Cylinder{0.075}}};

@@ -12,14 +12,17 @@
 #include "tests/sim/reference_world.hpp"
 #include <gtest/gtest.h>
 
+#include "server/run/robot_library.hpp"
+
 namespace sim {
 namespace {
 
 /// Robots of `robot` with an ideal scanner, the first at the origin looking along x.
-Scenario scenario_with(std::vector<algo::Pose2> others, Vehicle vehicle = Vehicle::Kinematic) {
+Scenario scenario_with(std::vector<algo::Pose2> others,
+                       PhysicsKind physics = PhysicsKind::Kinematic) {
   Scenario scenario;
-  scenario.vehicle = vehicle;
-  scenario.lasers = {LaserConfig::ideal(0.5)};
+  scenario.physics = physics;
+  scenario.robot.sensors.lasers = {LaserConfig::ideal(0.5)};
   for (const algo::Pose2& start : others) scenario.robots.emplace_back().start = start;
   return scenario;
 }
@@ -66,7 +69,7 @@ TEST(Fleet, ARobotSeesAnotherWhereItStands) {
 
 TEST(Fleet, ARectangularRobotIsSeenAsARectangle) {
   Scenario scenario = scenario_with({{3, 0, 0}});
-  scenario.robots[0].robot = "jackal";  // 0.508 m long
+  scenario.robots[0].robot = server::builtin_robot("jackal");  // 0.508 m long
   Fleet fleet(scenario, 1);
   algo::Observation seen;
   fleet.read(0, seen);
@@ -74,8 +77,8 @@ TEST(Fleet, ARectangularRobotIsSeenAsARectangle) {
 }
 
 TEST(Fleet, ARobotThatDrivesIsSeenWhereItHasGot) {
-  for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
-    Fleet fleet(scenario_with({{3, 0, 0}}, vehicle), 1);
+  for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
+    Fleet fleet(scenario_with({{3, 0, 0}}, physics), 1);
     algo::Observation seen;
     algo::Observation other;
     fleet.read(0, seen);
@@ -134,8 +137,8 @@ TEST(Fleet, AloneItIsTheSameAsAWorld) {
 
 /// One drives into another that stands: both feel it, neither is pushed.
 TEST(Fleet, ARobotDrivenAgainstStopsTheOtherAndBothFeelIt) {
-  for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
-    Fleet fleet(scenario_with({{1.5, 0, 0}}, vehicle), 1);
+  for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
+    Fleet fleet(scenario_with({{1.5, 0, 0}}, physics), 1);
     algo::Observation a;
     algo::Observation b;
     bool pressed_a = false;
@@ -201,30 +204,30 @@ std::vector<double> wander(Fleet& fleet) {
   return numbers;
 }
 
-Scenario crowd(Vehicle vehicle) {
+Scenario crowd(PhysicsKind physics) {
   Scenario scenario;
-  scenario.vehicle = vehicle;
+  scenario.physics = physics;
   scenario.obstacles = reference::room(20);
-  scenario.lasers.front().salt = 0.01;
+  scenario.robot.sensors.lasers.front().salt = 0.01;
   for (int k = 1; k < 9; ++k) {
     const double bearing = 0.7 * k;
     const algo::Vec2 at = 1.25 * algo::direction(bearing);
     scenario.robots.emplace_back().start = {at.x(), at.y(), bearing + 2.5};
   }
-  scenario.robots[2].robot = "robhaz";
+  scenario.robots[2].robot = server::builtin_robot("robhaz");
   return scenario;
 }
 
 TEST(Fleet, TheSameBitForBitOnOneTwoAndFourThreads) {
-  for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
-    Fleet alone(crowd(vehicle), 3);
+  for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
+    Fleet alone(crowd(physics), 3);
     const std::vector<double> expected = wander(alone);
     EXPECT_EQ(wander(alone), expected) << "again after restart";
     for (const std::size_t threads : {1U, 2U, 4U}) {
-      Fleet fleet(crowd(vehicle), 3, on_threads(threads));
+      Fleet fleet(crowd(physics), 3, on_threads(threads));
       EXPECT_EQ(wander(fleet), expected) << threads << " threads";
     }
-    Fleet other(crowd(vehicle), 4);
+    Fleet other(crowd(physics), 4);
     EXPECT_NE(wander(other), expected) << "another seed";
   }
 }
@@ -259,10 +262,9 @@ TEST(Fleet, RefusesStartsThatOverlap) {
   EXPECT_EQ(complaint_about(scenario),
             "Robot 2: Obstacle 1 would overlap the robot: 0.25 m too close.");
   scenario.obstacles.clear();
-  scenario.robots[0].robot = "tank";
+  scenario.robots[0].robot.emplace().wheels.clear();
   EXPECT_EQ(complaint_about(scenario),
-            "Robot 2: There is no robot named \"tank\"; there are silvermate, masuda, jackal, "
-            "robhaz.");
+            "Robot 2: The scenario's robot: wheels: there must be one on each side at least.");
   scenario.robots.assign(kMostRobots, {});
   EXPECT_EQ(complaint_about(scenario), "A world holds at most 200 robots.");
 }

@@ -18,20 +18,20 @@ using algo::Command;
 using algo::Observation;
 using algo::Robot;
 
-Scenario scenario(Vehicle vehicle) {
+Scenario scenario(PhysicsKind physics) {
   Scenario result;
-  result.vehicle = vehicle;
+  result.physics = physics;
   result.obstacles = reference::room(20);
-  result.lasers.front().salt = 0.01;
-  result.lasers.front().pepper = 0.01;
+  result.robot.sensors.lasers.front().salt = 0.01;
+  result.robot.sensors.lasers.front().pepper = 0.01;
   return result;
 }
 
 std::unique_ptr<Robot> bullet(std::uint64_t seed) {
-  return std::make_unique<World>(scenario(Vehicle::Bullet), seed);
+  return std::make_unique<World>(scenario(PhysicsKind::Bullet), seed);
 }
 std::unique_ptr<Robot> kinematic(std::uint64_t seed) {
-  return std::make_unique<World>(scenario(Vehicle::Kinematic), seed);
+  return std::make_unique<World>(scenario(PhysicsKind::Kinematic), seed);
 }
 /// A log as another seed would have recorded it: the seed is in the readings.
 std::unique_ptr<Robot> log(std::uint64_t seed) {

@@ -97,13 +97,13 @@ struct Turn {
   algo::Pose2 odometry{};
   algo::Pose2 truth{};
 };
-Turn turn(Vehicle vehicle, Localization localization) {
+Turn turn(PhysicsKind physics, Localization localization) {
   Scenario scenario;
-  scenario.vehicle = vehicle;
-  scenario.lasers.clear();
+  scenario.physics = physics;
+  scenario.robot.sensors.lasers.clear();
   scenario.period = 0.05;
   scenario.drive.odometry_slip = 0.05;
-  scenario.gyro = GyroConfig{.bias = 0.01, .bias_walk = 1e-4, .noise = 0.005};
+  scenario.robot.sensors.gyro = GyroConfig{.bias = 0.01, .bias_walk = 1e-4, .noise = 0.005};
   scenario.localization = localization;
   World world(scenario, 3);
   algo::Observation observation;
@@ -113,9 +113,9 @@ Turn turn(Vehicle vehicle, Localization localization) {
 }
 
 TEST(World, TheGyroMakesGoodWhatTheWheelsSlip) {
-  for (const Vehicle vehicle : {Vehicle::Kinematic, Vehicle::Bullet}) {
+  for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
     const auto error = [&](Localization localization) {
-      const Turn drive = turn(vehicle, localization);
+      const Turn drive = turn(physics, localization);
       return std::abs(algo::wrap_angle(drive.odometry.heading - drive.truth.heading));
     };
     EXPECT_GT(error(Localization::Encoders), 0.3);  // 5 % of 10 rad
@@ -126,7 +126,7 @@ TEST(World, TheGyroMakesGoodWhatTheWheelsSlip) {
 TEST(World, ThreeBumpersTellWhereTheContactIs) {
   Scenario scenario;
   scenario.period = 0.05;
-  scenario.bumpers = 3;
+  scenario.robot.sensors.bumpers = 3;
   // Behind, to the left; the robot backs into it.
   scenario.obstacles = {post(1, -0.75, 0.15)};
   World world(scenario, 1);
@@ -145,9 +145,9 @@ TEST(World, ThreeBumpersTellWhereTheContactIs) {
 
 TEST(World, EachSensorCanBeLeftOut) {
   Scenario scenario;
-  scenario.has_gyro = false;
-  scenario.bumpers = 0;
-  scenario.encoders = false;
+  scenario.robot.sensors.has_gyro = false;
+  scenario.robot.sensors.bumpers = 0;
+  scenario.robot.sensors.encoders = false;
   World world(scenario, 1);
   algo::Observation observation;
   world.reset(observation);
@@ -162,10 +162,10 @@ TEST(World, EachSensorCanBeLeftOut) {
 
 TEST(World, FrontAndRearScannersReportFromTheirMounts) {
   Scenario scenario;
-  scenario.vehicle = Vehicle::Kinematic;
+  scenario.physics = PhysicsKind::Kinematic;
   InfraredConfig rear;
   rear.mount_R = {-0.3, 0, std::numbers::pi};
-  scenario.infrared = {InfraredConfig{}, rear};
+  scenario.robot.sensors.infrared = {InfraredConfig{}, rear};
   scenario.obstacles = {post(1, -1.5, 0, 0.15)};
   World world(scenario, 1);
   algo::Observation observation;

@@ -21,10 +21,10 @@ SensorConfig battery() {
 
 Scenario with(std::vector<SensorConfig> sensors) {
   Scenario scenario;
-  scenario.vehicle = Vehicle::Kinematic;
+  scenario.physics = PhysicsKind::Kinematic;
   scenario.period = 0.1;
   scenario.start = {0, 0, 0.5};
-  scenario.sensors = std::move(sensors);
+  scenario.robot.sensors.further = std::move(sensors);
   return scenario;
 }
 

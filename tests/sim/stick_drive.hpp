@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "algo/pipeline/pipeline.hpp"
+#include "server/run/robot_library.hpp"
 #include "sim/random.hpp"
 #include "sim/world.hpp"
 
@@ -126,11 +127,11 @@ inline constexpr std::array<const char*, 4> kWorlds{"room", "corridor", "slalom"
 /// One of kWorlds for `robot`, with the default scanner and nothing that looks back.
 inline sim::Scenario world(const std::string& name,
                            const std::string& robot,
-                           sim::Vehicle vehicle) {
+                           sim::PhysicsKind physics) {
   sim::Scenario s;
   s.name = "stick-" + name;
-  s.robot = robot;
-  s.vehicle = vehicle;
+  s.robot = server::builtin_robot(robot);
+  s.physics = physics;
   if (name == "room") {
     add_room(s, 3, 2.5);
     add(s, {1.4, 0.9, 0.3}, algo::Box{0.6, 0.4});

@@ -4,15 +4,15 @@
 
 namespace {
 
-struct StickTest : ::testing::TestWithParam<std::tuple<const char*, sim::Vehicle>> {};
+struct StickTest : ::testing::TestWithParam<std::tuple<const char*, sim::PhysicsKind>> {};
 
 TEST_P(StickTest, TouchesNothingWhileItMoves) {
-  const auto& [robot, vehicle] = GetParam();
+  const auto& [robot, physics] = GetParam();
   stick::Outcome sum;
   for (const char* name : stick::kWorlds) {
     for (const std::uint64_t seed : {1U, 2U}) {
       const stick::Outcome one =
-          stick::drive(stick::world(name, robot, vehicle), seed, 20, stick::RandomStick(seed));
+          stick::drive(stick::world(name, robot, physics), seed, 20, stick::RandomStick(seed));
       for (const std::string& where : one.where) ADD_FAILURE() << name << ": " << where;
       sum.driven += one.driven;
       sum.turned += one.turned;
@@ -26,7 +26,7 @@ TEST_P(StickTest, TouchesNothingWhileItMoves) {
 /// Commands that act late are what it must brake for, too.
 TEST(Stick, TouchesNothingWithADelay) {
   for (const char* robot : {"silvermate", "jackal"}) {
-    sim::Scenario scenario = stick::world("room", robot, sim::Vehicle::Bullet);
+    sim::Scenario scenario = stick::world("room", robot, sim::PhysicsKind::Bullet);
     scenario.drive.delay_ticks = 3;
     const stick::Outcome one = stick::drive(scenario, 3, 40, stick::RandomStick(3));
     for (const std::string& where : one.where) ADD_FAILURE() << robot << ": " << where;
@@ -36,7 +36,7 @@ TEST(Stick, TouchesNothingWithADelay) {
 INSTANTIATE_TEST_SUITE_P(DiscAndRectangle,
                          StickTest,
                          ::testing::Combine(::testing::Values("silvermate", "jackal"),
-                                            ::testing::Values(sim::Vehicle::Kinematic,
-                                                              sim::Vehicle::Bullet)));
+                                            ::testing::Values(sim::PhysicsKind::Kinematic,
+                                                              sim::PhysicsKind::Bullet)));
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "tests/sim/stick_drive.hpp"
 
 #include "server/lab/soak/random_world.hpp"
+#include "server/run/robot_library.hpp"
 
 namespace {
 
@@ -16,7 +17,7 @@ struct Row {
 };
 
 /// `seconds` over all of kWorlds and over as many random rooms again.
-int row(const char* robot, sim::Vehicle vehicle, const Row& about) {
+int row(const char* robot, sim::PhysicsKind physics, const Row& about) {
   stick::Outcome sum;
   const auto take = [&](const std::string& name,
                         const sim::Scenario& scenario,
@@ -38,13 +39,13 @@ int row(const char* robot, sim::Vehicle vehicle, const Row& about) {
   const double each = about.seconds / stick::kWorlds.size();
   std::uint64_t seed = about.seed;
   for (const char* name : stick::kWorlds)
-    take(name, stick::world(name, robot, vehicle), seed++, each);
+    take(name, stick::world(name, robot, physics), seed++, each);
   const int in_worlds = sum.contacts;
   for (int k = 0; k < about.worlds; ++k) {
     sim::Scenario scenario =
         server::soak::random_world(about.seed + static_cast<unsigned>(k), "strip");
-    scenario.robot = robot;
-    scenario.vehicle = vehicle;
+    scenario.robot = server::builtin_robot(robot);
+    scenario.physics = physics;
     take(scenario.name,
          scenario,
          about.seed + static_cast<unsigned>(k),
@@ -54,7 +55,7 @@ int row(const char* robot, sim::Vehicle vehicle, const Row& about) {
       "%-10s %-9s: %.0f s in the four worlds: %d contacts, as many in random rooms: %d; "
       "%.0f m driven, %.0f m of it back, at most %.2f m/s back, least clearance %.3f m\n",
       robot,
-      vehicle == sim::Vehicle::Bullet ? "bullet" : "kinematic",
+      physics == sim::PhysicsKind::Bullet ? "bullet" : "kinematic",
       about.seconds,
       in_worlds,
       sum.contacts - in_worlds,
@@ -74,8 +75,8 @@ int main(int argc, char** argv) {
   if (argc > 3) about.worlds = std::atoi(argv[3]);
   int contacts = 0;
   for (const char* robot : {"silvermate", "jackal"}) {
-    for (const sim::Vehicle vehicle : {sim::Vehicle::Kinematic, sim::Vehicle::Bullet}) {
-      contacts += row(robot, vehicle, about);
+    for (const sim::PhysicsKind physics : {sim::PhysicsKind::Kinematic, sim::PhysicsKind::Bullet}) {
+      contacts += row(robot, physics, about);
     }
   }
   return contacts == 0 ? 0 : 3;

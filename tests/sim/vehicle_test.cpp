@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "server/run/robot_library.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
 
@@ -27,7 +28,7 @@ TEST(Substeps, AreEqualAndNeverSlowerThan240Hertz) {
 }
 
 TEST(WithinLimits, KeepsTheCurvatureAndDropsWhatIsNoNumber) {
-  const VehicleParameters& robot = *find_vehicle("silvermate");  // 0.5 m/s, 1 rad/s
+  const RobotModel robot = server::builtin_robot("silvermate");  // 0.5 m/s, 1 rad/s
   EXPECT_EQ(within_limits({0.4, -0.9}, robot), (Twist2{0.4, -0.9}));
   const Twist2 fast = within_limits({1.0, 0.5}, robot);
   EXPECT_NEAR(fast.v, 0.5, 1e-12);
@@ -38,23 +39,11 @@ TEST(WithinLimits, KeepsTheCurvatureAndDropsWhatIsNoNumber) {
   EXPECT_EQ(within_limits({std::nan(""), 0.5}, robot), (Twist2{0, 0.5}));
 }
 
-TEST(VehicleTable, EveryRobotIsComplete) {
-  EXPECT_EQ(find_vehicle("nobody"), nullptr);
-  for (const VehicleParameters& robot : vehicle_table()) {
-    SCOPED_TRACE(robot.name);
-    EXPECT_EQ(find_vehicle(robot.name), &robot);
-    EXPECT_GT(robot.radius, robot.half_track * 0.9);
-    EXPECT_GT(robot.mass, 0);
-    EXPECT_GT(robot.supports, 0u);
-    EXPECT_GT(robot.hull_high, robot.hull_low);
-  }
-}
-
 /// A Bullet vehicle with nothing around, driven tick by tick.
 class Track {
  public:
   explicit Track(const std::string& name, double period = kPeriod)
-      : robot(*find_vehicle(name)),
+      : robot(server::builtin_robot(name)),
         period_(period),
         vehicle(robot, period),
         trail(Substeps(period).length, 0.2) {
@@ -69,7 +58,7 @@ class Track {
   }
   const VehicleState& state() const { return vehicle.state(); }
 
-  const VehicleParameters& robot;
+  const RobotModel robot;
 
  private:
   double period_ = 0;
@@ -237,7 +226,7 @@ TEST(BulletVehicle, SameCommandsSameBits) {
 }
 
 TEST(KinematicVehicle, DrivesTheExactArc) {
-  const VehicleParameters& robot = *find_vehicle("silvermate");
+  const RobotModel robot = server::builtin_robot("silvermate");
   KinematicVehicle vehicle(robot, 0.05);
   PoseTrail trail(Substeps(0.05).length, 0.2);
   const ObstacleSet nothing;
@@ -251,7 +240,7 @@ TEST(KinematicVehicle, DrivesTheExactArc) {
 }
 
 TEST(KinematicVehicle, RampsOnlyWhenAskedTo) {
-  const VehicleParameters& robot = *find_vehicle("silvermate");
+  const RobotModel robot = server::builtin_robot("silvermate");
   const ObstacleSet nothing;
   PoseTrail trail(Substeps(0.05).length, 0.2);
   KinematicVehicle plain(robot, 0.05);
@@ -266,7 +255,7 @@ TEST(KinematicVehicle, RampsOnlyWhenAskedTo) {
 }
 
 TEST(KinematicVehicle, RefusesToMoveIntoAnObstacleButTurnsAndLeaves) {
-  const VehicleParameters& robot = *find_vehicle("silvermate");
+  const RobotModel robot = server::builtin_robot("silvermate");
   KinematicVehicle vehicle(robot, 0.1);
   PoseTrail trail(Substeps(0.1).length, 0.2);
   ObstacleSet obstacles;

@@ -36,9 +36,10 @@ std::string failure(const Scenario& scenario) {
 
 TEST(World, RefusesScenariosInASentence) {
   Scenario scenario;
-  scenario.robot = "hal";
+  scenario.robot.casters.clear();
   EXPECT_EQ(failure(scenario),
-            "There is no robot named \"hal\"; there are silvermate, masuda, jackal, robhaz.");
+            "The scenario's robot: casters: the robot would tip over; its wheels and casters must "
+            "surround the middle of the hull.");
   scenario = {};
   scenario.period = 0;
   EXPECT_EQ(failure(scenario), "The scenario's period must be 0.001 to 1 s.");
@@ -53,14 +54,14 @@ TEST(World, RefusesScenariosInASentence) {
   scenario.obstacles = {cylinder(4, 2, 0, -1)};
   EXPECT_NE(failure(scenario), "");
   scenario = {};
-  scenario.lasers.front().noise = -1;
+  scenario.robot.sensors.lasers.front().noise = -1;
   EXPECT_EQ(failure(scenario), "Laser 1: noise must be 0 or more.");
 }
 
 TEST(World, EditsAreCarriedOutOrRefusedWithTheReason) {
-  for (const Vehicle vehicle : {Vehicle::Bullet, Vehicle::Kinematic}) {
+  for (const PhysicsKind physics : {PhysicsKind::Bullet, PhysicsKind::Kinematic}) {
     Scenario scenario;
-    scenario.vehicle = vehicle;
+    scenario.physics = physics;
     const auto world = world_of(scenario);
     Observation seen;
     world->reset(seen);
@@ -85,10 +86,10 @@ TEST(World, EditsAreCarriedOutOrRefusedWithTheReason) {
 }
 
 TEST(World, AnAddedObstacleIsSeenAndInTheWay) {
-  for (const Vehicle vehicle : {Vehicle::Bullet, Vehicle::Kinematic}) {
+  for (const PhysicsKind physics : {PhysicsKind::Bullet, PhysicsKind::Kinematic}) {
     Scenario scenario;
-    scenario.vehicle = vehicle;
-    scenario.lasers = {LaserConfig::ideal(0.5)};
+    scenario.physics = physics;
+    scenario.robot.sensors.lasers = {LaserConfig::ideal(0.5)};
     const auto world = world_of(scenario);
     Observation seen;
     world->reset(seen);
@@ -155,7 +156,7 @@ TEST(World, EncoderCountsAreTheOdometry) {
 
 TEST(World, KinematicOdometryIsTheTruth) {
   Scenario scenario;
-  scenario.vehicle = Vehicle::Kinematic;
+  scenario.physics = PhysicsKind::Kinematic;
   const auto world = world_of(scenario);
   Observation seen;
   world->reset(seen);
@@ -169,8 +170,8 @@ TEST(World, KinematicOdometryIsTheTruth) {
 TEST(World, SensorsOfEachVehicle) {
   Observation seen;
   Scenario scenario;
-  scenario.lasers.push_back(LaserConfig::with_resolution(1));
-  scenario.lasers.back().mount_R = {-0.25, 0, std::numbers::pi};
+  scenario.robot.sensors.lasers.push_back(LaserConfig::with_resolution(1));
+  scenario.robot.sensors.lasers.back().mount_R = {-0.25, 0, std::numbers::pi};
   const auto bullet = world_of(scenario);
   bullet->reset(seen);
   for (int tick = 0; tick < 100; ++tick) ASSERT_TRUE(bullet->step({{0, 0.8}}, seen));
@@ -184,7 +185,7 @@ TEST(World, SensorsOfEachVehicle) {
   ASSERT_EQ(seen.scans.size(), 2u);
   EXPECT_EQ(seen.scans[1].size(), 181u);
 
-  scenario.vehicle = Vehicle::Kinematic;
+  scenario.physics = PhysicsKind::Kinematic;
   const auto kinematic = world_of(scenario);
   kinematic->reset(seen);
   EXPECT_FALSE(seen.gyro.has_value());

@@ -1,7 +1,7 @@
 // tests/web/e2e.mjs: the page in a real browser against the real program. Run with
 // TAUTLINE_BIN=build/release/server/tautline node --test tests/web/e2e.mjs
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
+import { existsSync, mkdirSync, writeFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { join } from "node:path";
 import { main_job } from "./main_job.mjs";
@@ -28,9 +28,9 @@ async function with_page(options, act) {
   }
 }
 
-for (const vehicle of ["bullet", "kinematic"]) {
-  test(`the main job with the ${vehicle} vehicle`, { timeout: 240_000 }, () =>
-    with_page({ scenario: "demo" }, (p, { base }) => main_job(p, base, vehicle)));
+for (const physics of ["bullet", "kinematic"]) {
+  test(`the main job with ${physics} physics`, { timeout: 240_000 }, () =>
+    with_page({ scenario: "demo" }, (p, { base }) => main_job(p, base, physics)));
 }
 
 test("by keyboard alone: goal, obstacle, undo, gain, stop and release", { timeout: 120_000 }, () =>
@@ -270,6 +270,43 @@ test("a scene that was left is drawn no more; its view rests again at the way ba
     assert.ok(seen > 0);
     assert.equal(left, 0);
   }));
+
+test("a robot of one's own is chosen in the page, and stays when the controller changes", { timeout: 90_000 }, async () => {
+  const place = scratch();
+  const robots = join(place.folder, "robots");
+  mkdirSync(robots);
+  writeFileSync(join(robots, "carrier.json"), JSON.stringify({
+    name: "carrier", title: "Carrier", description: "Carries 200 kg.", hull: { length: 1.2, width: 0.7 }, mass: 200,
+    track: 0.6, wheel_radius: 0.1, limits: { speed: 0.8, turn: 1.2 },
+    lasers: [{ mount: { x: 0.55, y: 0, heading: 0 } }, { mount: { x: -0.55, y: 0, heading: 3.14159 } }],
+  }));
+  writeFileSync(join(robots, "broken.json"), '{"name": "broken", "hull": 3}');
+  const server = await serve({ database: place.database, scenario: "case3", more: ["--robots", robots] });
+  const p = await open(browser, server.base, {});
+  const session = () => json(server.base, "/session");
+  try {
+    const pick = p.get("robot");
+    assert.equal(await pick.inputValue(), "silvermate");
+    assert.deepEqual(await pick.locator("option").evaluateAll((all) => all.map((o) => o.value)),
+      ["jackal", "masuda", "robhaz", "silvermate", "carrier"]);
+    await p.page.getByText("broken.json: limits: is missing").waitFor();
+    await pick.selectOption("carrier");
+    await until("the carrier drives", 20, session, (s) => s.robot.name === "carrier" && s.scenario.name === "case3");
+    await p.page.getByText("Carries 200 kg.").waitFor();
+    await p.get("controller").selectOption("strip");
+    await until("the strip drives it", 20, session, (s) => s.controller === "strip" && s.robot.name === "carrier");
+    await p.pick_radio("physics", "kinematic");
+    await until("without dynamics", 20, session, (s) => s.physics === "kinematic" && s.robot.half_length === 0.6);
+    await p.page.waitForTimeout(500);
+    await p.shot("drive-carrier");
+    await pick.selectOption("silvermate");
+    await until("the first robot again", 20, session, (s) => s.robot.name === "silvermate" && s.controller === "strip");
+  } finally {
+    await p.close();
+    await server.stop();
+    place.remove();
+  }
+});
 
 test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1" }, async (p, { base }) => {

@@ -4,11 +4,11 @@ import assert from "node:assert/strict";
 import { json, near, until } from "./program.mjs";
 
 /** On the open page `p` of the server at `base`. */
-export async function main_job(p, base, vehicle) {
-  // Load case1, choose the vehicle and the controller.
+export async function main_job(p, base, physics) {
+  // Load case1, choose the physics and the controller.
   await p.load("case1");
-  await p.pick_radio("vehicle", vehicle);
-  await until("the vehicle is chosen", 10, () => json(base, "/session"), (s) => s.vehicle === vehicle);
+  await p.pick_radio("physics", physics);
+  await until("the physics is chosen", 10, () => json(base, "/session"), (s) => s.physics === physics);
   for (const controller of ["original", "modified"]) {
     await p.get("controller").selectOption(controller);
     await until(`${controller} is chosen`, 10, () => json(base, "/session"), (s) => s.controller === controller);
@@ -42,13 +42,13 @@ export async function main_job(p, base, vehicle) {
   await p.get("speed").selectOption("8");
   await p.get("play").click();
   await until("the page shows it driving", 20, () => p.get("state").textContent(), (w) => w === "Driving");
-  await p.shot(`drive-${vehicle}-under-way`);
+  await p.shot(`drive-${physics}-under-way`);
   await until("the page shows it arrived", 150, () => p.get("state").textContent(), (w) => w === "Arrived");
   assert.ok(Number.parseFloat(await p.get("figure-to-goal").textContent()) < 0.2);
   assert.match(await p.get("explain").textContent(), /\w/);
   const session = await json(base, "/session");
   assert.equal(session.run.outcome, "reached");
-  await p.shot(`drive-${vehicle}-arrived`);
+  await p.shot(`drive-${physics}-arrived`);
 
   // Open that run and scrub it.
   const run = session.run.id;
@@ -71,7 +71,7 @@ export async function main_job(p, base, vehicle) {
   assert.equal(await p.get("run-explain").textContent(), words, "the same instant has the same sentence");
   await p.get("run-play").click();
   await until("it plays", 10, () => p.get("run-time").textContent(), (t) => t !== middle);
-  await p.shot(`runs-${vehicle}`);
+  await p.shot(`runs-${physics}`);
   const csv = await fetch(`${base}/api/v1/runs/${run}/csv`);
   assert.equal(csv.status, 200);
   assert.equal(await p.get("csv").getAttribute("href"), `/api/v1/runs/${run}/csv`);

@@ -1,7 +1,7 @@
 // web/src/app.ts: what the page knows and can do: one link, one scene, one set of controls' state.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
-import { Accepted, Catalog, Page, RequestJson, ScenarioItem, SessionState } from "./contract";
+import { Accepted, Catalog, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
 import { Selection } from "./draw/scene";
 import { View } from "./draw/view";
 import { Pose } from "./geometry";
@@ -38,6 +38,7 @@ export interface UiState {
   session: SessionState | null;
   catalog: Catalog | null;
   scenarios: ScenarioItem[];
+  robots: RobotItem[];
   toasts: Toast[];
   /** The sentence a screen reader hears next. */
   spoken: string;
@@ -68,6 +69,11 @@ const kFrameWait = 600; // [ms] a run that goes on has sent a frame by then
 const kHeardLimit = 1000; // [ms] who hears nothing for so long sees nothing of the robot either
 const kMoveMs = 90; // between two requests of one drag
 
+/** What is to be another. */
+export interface LoadChange {
+  scenario?: string; controller?: string; filter?: string; physics?: string; robot?: string;
+}
+
 export class App {
   readonly scene: SceneState = new_scene(kPathRows);
   readonly view = new View();
@@ -85,7 +91,7 @@ export class App {
   constructor() {
     this.ui = new Store<UiState>({
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
-      locked: false, gone: null, session: null, catalog: null, scenarios: [], toasts: [], spoken: "", view: "drive", run: null,
+      locked: false, gone: null, session: null, catalog: null, scenarios: [], robots: [], toasts: [], spoken: "", view: "drive", run: null,
       theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
       force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
     });
@@ -134,12 +140,13 @@ export class App {
     this.sign_.start();
   }
 
-  /** The catalog and the scenarios; asked again after each connection. */
+  /** The catalog, the scenarios and the robots; asked again after each connection. */
   async fetch_lists(): Promise<void> {
     try {
-      const [catalog, page] = await Promise.all([
-        rest.get<Catalog>("/catalog"), rest.get<Page<ScenarioItem>>("/scenarios?limit=200")]);
-      this.ui.set({ catalog, scenarios: page.items });
+      const [catalog, page, robots] = await Promise.all([
+        rest.get<Catalog>("/catalog"), rest.get<Page<ScenarioItem>>("/scenarios?limit=200"),
+        rest.get<Page<RobotItem>>("/robots")]);
+      this.ui.set({ catalog, scenarios: page.items, robots: robots.items });
     } catch (error) {
       if (this.link.is_open) this.toast("bad", sentence_of(error));
     }
@@ -222,25 +229,29 @@ export class App {
       .finally(() => (drag.busy = false));
   }
 
-  /** Loads a scenario, or the same one with another controller, filter or vehicle. */
-  async load(change: { scenario?: string; controller?: string; filter?: string; vehicle?: string }):
-    Promise<void> {
+  /** Loads a scenario, or the same one with another controller, filter, physics or robot. */
+  async load(change: LoadChange): Promise<void> {
     const s = this.ui.value.session;
     if (!s || this.ui.value.loading) return;
     const other = change.scenario !== undefined && change.scenario !== s.scenario.name;
     const scenario = change.scenario ?? s.scenario.name;
-    const log = this.ui.value.scenarios.find((x) => x.name === scenario)?.kind === "log";
-    const vehicle = change.vehicle ?? s.vehicle;
-    const known = this.ui.value.catalog?.vehicles.some((v) => v.name === vehicle) ?? false;
+    const item = this.ui.value.scenarios.find((x) => x.name === scenario);
+    const log = item?.kind === "log";
+    // The scenario of the session goes on as it is; one of the list is read anew: a robot that
+    // comes back finds the sensors that the scenario gives it.
+    const anew = item && (other || change.scenario !== undefined || change.robot !== undefined);
+    const physics = change.physics ?? s.physics;
+    const known = this.ui.value.catalog?.physics.some((v) => v.name === physics) ?? false;
     const body = {
-      scenario,
+      ...(anew ? { scenario } : {}),
+      ...(change.robot === undefined ? {} : { robot: change.robot }),
       filter: change.filter ?? s.filter,
-      // A log has no controller and no vehicle; a scenario brings its own gains.
+      // A log has no controller and no physics; a scenario brings its own gains.
       ...(log ? {} : { controller: change.controller ?? s.controller }),
-      ...(log || !known ? {} : { vehicle }),
+      ...(log || !known ? {} : { physics }),
       ...(other ? {} : { seed: s.seed, parameters: s.parameters }),
     };
-    this.ui.set({ loading: body.scenario, selection: null });
+    this.ui.set({ loading: scenario, selection: null });
     await this.ask("/load", body);
     this.history.clear();
     this.view.fitted = true;

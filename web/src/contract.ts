@@ -69,7 +69,7 @@ export interface SessionState {
   scenario: ScenarioDocument;
   controller: string;
   filter: string;
-  vehicle: string;
+  physics: string;
   seed: number;
   robot: RobotInfo;
   pace: { paused: boolean; speed: number };
@@ -114,10 +114,13 @@ export interface Controller extends Choice { parameters?: string[] }
 export interface Catalog {
   controllers: Controller[];
   filters: Choice[];
-  vehicles: Choice[];
+  physics: Choice[];
   parameters: ParameterInfo[];
   common_parameters?: string[]; // read whichever controller drives
 }
+
+/** A robot model; one that is not usable says why in its description. */
+export interface RobotItem { name: string; title: string; description: string; builtin: boolean; usable: boolean }
 
 export interface ScenarioItem {
   name: string;
@@ -148,7 +151,7 @@ export interface RunItem {
   scenario: string;
   controller: string;
   filter: string;
-  vehicle: string;
+  physics: string;
   seed: number;
   parameters: Record<string, number>;
   version: string;

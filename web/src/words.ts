@@ -116,8 +116,8 @@ export function run_word(status: string, outcome: string): { word: string; tone:
 }
 
 /** Who drove: the controller, or nobody when a log was replayed. */
-export function driver_word(run: { controller: string; vehicle: string }): string {
-  return run.vehicle === "log" ? "Replay" : titled(run.controller);
+export function driver_word(run: { controller: string; physics: string }): string {
+  return run.physics === "log" ? "Replay" : titled(run.controller);
 }
 
 export function speed_word(speed: number): string {

@@ -9,6 +9,7 @@
 #include "algo/strip/strip_law.hpp"
 #include "algo/units.hpp"
 #include "server/run/json_reader.hpp"
+#include "server/run/robot_library.hpp"
 
 namespace server::barn {
 namespace {
@@ -97,7 +98,7 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
   if (conditions.stress) {
     sim::LaserConfig laser = sim::LaserConfig::flat(180_deg, 361, 8.0);
     laser.noise = 0.02;
-    scenario.lasers = {laser};
+    scenario.robot.sensors.lasers = {laser};
     drive.max_omega = 1.5;
     drive.max_acceleration = 1.5;
     drive.max_angular_acceleration = 4;
@@ -107,17 +108,24 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
   } else {
     sim::LaserConfig laser = sim::LaserConfig::flat(270_deg, 720, 30.0);
     laser.noise = 0.01;
-    scenario.lasers = {laser};
+    scenario.robot.sensors.lasers = {laser};
     drive.max_omega = 2.5;
     drive.max_acceleration = 3;
     drive.max_angular_acceleration = 8;
     drive.delay_ticks = 1;
   }
   if (conditions.scanner == Scanner::Lms200) {
-    scenario.lasers = {sim::LaserConfig::with_resolution(0.5)};
+    scenario.robot.sensors.lasers = {sim::LaserConfig::with_resolution(0.5)};
   }
   // Low enough for every obstacle, and clear of the hull.
-  scenario.lasers.front().height = 0.30;
+  scenario.robot.sensors.lasers.front().height = 0.30;
+  if (conditions.robot) {
+    scenario.robot = *conditions.robot;
+    drive.max_v.reset();
+    drive.max_omega.reset();
+    drive.max_acceleration.reset();
+    drive.max_angular_acceleration.reset();
+  }
 }
 
 }  // namespace
@@ -150,8 +158,8 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
   const bool moving = !world.paths.empty();
   scenario.name = fmt::format("{}-{}", moving ? "dynabarn" : "barn", world.id);
   scenario.title = fmt::format("{} world {}", moving ? "DynaBARN" : "BARN", world.id);
-  scenario.robot = "jackal";
-  scenario.vehicle = conditions.vehicle;
+  scenario.robot = builtin_robot("jackal");
+  scenario.physics = conditions.physics;
   scenario.period = 0.05;
   scenario.start = world.start;
   scenario.goal = algo::SetGoal{world.goal, std::nullopt};
@@ -164,14 +172,16 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
     obstacle.pose_W = {at_W.x(), at_W.y(), 0};
   }
   equip(scenario, conditions);
+  const double max_v = scenario.drive.max_v.value_or(scenario.robot.max_v);
+  const double max_omega = scenario.drive.max_omega.value_or(scenario.robot.max_omega);
   scenario.controller = conditions.controller;
   if (scenario.controller.empty()) scenario.controller = moving ? "strip_moving" : "strip";
   scenario.filter = "median";
   scenario.parameters = {{&algo::kContractionGain, 0.4},
                          {&algo::kRepulsionGain, 0.6},
                          {&algo::kSafetyDistance, 0.75},
-                         {&algo::kMaxSpeed, 2.0},
-                         {&algo::kMaxTurnRate, *scenario.drive.max_omega},
+                         {&algo::kMaxSpeed, max_v},
+                         {&algo::kMaxTurnRate, max_omega},
                          {&algo::kGoalReach, std::min(0.3, world.goal_radius)},
                          {&algo::kFilterHalfWidth, 2}};
   scenario.time_limit = 100;

@@ -33,7 +33,9 @@ enum class Scanner : std::uint8_t { Flat, Lms200 };
 struct Conditions {
   bool stress = false;
   Scanner scanner = Scanner::Flat;
-  sim::Vehicle vehicle = sim::Vehicle::Bullet;
+  sim::PhysicsKind physics = sim::PhysicsKind::Bullet;
+  /// Instead of the benchmark's Jackal: with its own scanners and limits.
+  std::optional<sim::RobotModel> robot{};
   std::string controller{};  // empty: `strip`, or `strip_moving` where something moves
   double phase = 0;          // [s] of the moving obstacles' paths when a run begins
 };

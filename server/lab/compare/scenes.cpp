@@ -95,10 +95,11 @@ sim::Scenario bottleneck(double gap) {
 
 RunSpec make_run(sim::Scenario scene, const Contestant& contestant, std::uint64_t seed) {
   if (contestant.sensing == Sensing::Sonar) {
-    scene.lasers.clear();
-    scene.sonar = sim::SonarConfig{};
-    scene.sonar->count = 24;
-    scene.sonar->ping = 0.01;
+    sim::Sensors& sensors = scene.robot.sensors;
+    sensors.lasers.clear();
+    sensors.sonar = sim::SonarConfig{};
+    sensors.sonar->count = 24;
+    sensors.sonar->ping = 0.01;
   }
   RunOverrides overrides;
   overrides.controller = contestant.controller;

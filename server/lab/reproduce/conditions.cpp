@@ -36,9 +36,9 @@ sim::Scenario under(const PaperConditions& paper,
                     sim::Scenario scenario,
                     const Conditions& conditions) {
   const double v_max = scenario.parameters[algo::kMaxSpeed];
-  scenario.vehicle = conditions.base ? sim::Vehicle::Bullet : sim::Vehicle::Kinematic;
+  scenario.physics = conditions.base ? sim::PhysicsKind::Bullet : sim::PhysicsKind::Kinematic;
   if (!conditions.fast_period) scenario.period = period_of(paper, v_max);
-  if (!conditions.scanner) scenario.lasers = {paper_scanner(paper, conditions.noise)};
+  if (!conditions.scanner) scenario.robot.sensors.lasers = {paper_scanner(paper, conditions.noise)};
   scenario.filter = paper.filter;
   algo::Parameters& parameters = scenario.parameters;
   parameters.set(algo::kSafetyDistance, paper.safety_distance);

@@ -76,7 +76,7 @@ sim::Scenario random_world(std::uint64_t seed, const std::string& controller) {
   sim::Scenario scenario;
   scenario.name = "soak-" + std::to_string(seed);
   scenario.title = "Random world " + std::to_string(seed);
-  scenario.vehicle = sim::Vehicle::Kinematic;
+  scenario.physics = sim::PhysicsKind::Kinematic;
   scenario.drive.ramps = true;
   scenario.controller = controller;
   if (below(random, 3) > 0) close_room(scenario);

@@ -91,12 +91,22 @@ net::Response list_runs(ApiContext& context, const net::Request& request, Worker
 
 Experiment experiment_from_json(const ApiContext& context, const json& body) {
   const JsonReader in(body, "");
-  in.only({"scenario", "controller", "filter", "vehicle", "parameters", "seed", "repeats", "pace"});
+  in.only({"scenario",
+           "controller",
+           "filter",
+           "physics",
+           "vehicle",
+           "robot",
+           "parameters",
+           "seed",
+           "repeats",
+           "pace"});
   sim::Scenario scenario = body.contains("scenario") && body["scenario"].is_object()
-                               ? scenario_from_json(body["scenario"])
+                               ? scenario_from_json(body["scenario"], context.library.robots())
                                : context.library.load(in.text("scenario", 64));
   Experiment experiment;
-  experiment.spec = make_spec(std::move(scenario), overrides_from_json(body));
+  experiment.spec =
+      make_spec(std::move(scenario), overrides_from_json(body), context.library.robots());
   experiment.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
   if (experiment.repeats == 0) in.fail("repeats", "must be at least 1");
   experiment.pace = pace_from_json(body, "pace", 0);

@@ -1,5 +1,7 @@
-// server/serve/api/scenario_routes.cpp: scenarios by name; only one's own can be changed.
+// server/serve/api/scenario_routes.cpp: scenarios and robots by name; only one's own can be
+// changed.
 #include "server/run/json_reader.hpp"
+#include "server/run/robot_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"
@@ -17,6 +19,18 @@ json to_json(const ScenarioEntry& entry) {
           {"kind", entry.is_log ? "log" : "world"}};
 }
 
+json robots_json(const RobotLibrary& robots) {
+  json items = json::array();
+  for (const RobotEntry& entry : robots.list()) {
+    items.push_back({{"name", entry.name},
+                     {"title", entry.title},
+                     {"description", entry.description},
+                     {"builtin", entry.builtin},
+                     {"usable", entry.usable}});
+  }
+  return {{"items", std::move(items)}, {"next", nullptr}};
+}
+
 }  // namespace
 
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
@@ -25,6 +39,16 @@ void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
 }
 
 void add_scenario_routes(net::Router& router, ApiContext& context) {
+  router.add(
+      "GET", "/api/v1/robots", made_on_worker(context, [&context](const net::Request&, Worker&) {
+        return json_response(200, robots_json(context.library.robots()));
+      }));
+  router.add("GET",
+             "/api/v1/robots/{name}",
+             made_on_worker(context, [&context](const net::Request& request, Worker&) {
+               return json_response(
+                   200, robot_document(context.library.robots().load(request.params.at("name"))));
+             }));
   router.add(
       "GET", "/api/v1/scenarios", made_on_worker(context, [&context](const net::Request&, Worker&) {
         json items = json::array();
@@ -45,7 +69,7 @@ void add_scenario_routes(net::Router& router, ApiContext& context) {
                json body = body_json(request);
                const std::string name = request.params.at("name");
                if (body.is_object() && !body.contains("name")) body["name"] = name;
-               const sim::Scenario scenario = scenario_from_json(body);
+               const sim::Scenario scenario = scenario_from_json(body, context.library.robots());
                if (scenario.name != name) {
                  throw DocumentError("name", "differs from the name in the path");
                }

@@ -275,7 +275,8 @@ bool load_from_json(ApiContext& context,
                     const json& body,
                     SessionLoader::Done done) {
   const JsonReader in(body, "");
-  in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
+  in.only(
+      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
   const RunOverrides overrides = overrides_from_json(body);
   std::optional<std::string> name;
   if (in.has("scenario")) name = in.text("scenario", 64);
@@ -293,7 +294,7 @@ bool load_from_json(ApiContext& context,
     sim::Scenario now;
     if (!name) now = session.session().state().spec.scenario;
     return [&library = context.library, name, now, overrides] {
-      return make_spec(name ? library.load(*name) : now, overrides);
+      return make_spec(name ? library.load(*name) : now, overrides, library.robots());
     };
   };
   return session.loader().load(plan, std::move(done));

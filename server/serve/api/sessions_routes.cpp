@@ -43,13 +43,16 @@ json list(ApiContext& context) {
 /// The fields of `/load`; without a scenario, what the server began with.
 SessionLoader::Make make_from(ApiContext& context, const json& body) {
   const JsonReader in(body, "");
-  in.only({"scenario", "controller", "filter", "vehicle", "seed", "parameters"});
+  in.only(
+      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
   RunOverrides overrides = overrides_from_json(body);
   if (!overrides.seed) overrides.seed = context.first.seed;
   std::optional<std::string> name;
   if (in.has("scenario")) name = in.text("scenario", 64);
   return [&context, name, overrides] {
-    return make_spec(name ? context.library.load(*name) : context.first.scenario, overrides);
+    return make_spec(name ? context.library.load(*name) : context.first.scenario,
+                     overrides,
+                     context.library.robots());
   };
 }
 

@@ -23,10 +23,10 @@ using ::testing::ThrowsMessage;
 RunSpec short_run(std::uint64_t seed = 1) {
   sim::Scenario scenario;
   scenario.name = "short";
-  scenario.vehicle = sim::Vehicle::Kinematic;
+  scenario.physics = sim::PhysicsKind::Kinematic;
   scenario.controller = "modified";
   scenario.goal = algo::SetGoal{{1, 0}, std::nullopt};
-  scenario.lasers = {sim::LaserConfig::with_resolution(0.5)};
+  scenario.robot.sensors.lasers = {sim::LaserConfig::with_resolution(0.5)};
   algo::Obstacle post{.id = 1, .shape = algo::Cylinder{.radius = 0.1}};
   post.pose_W = {0.5, 0.9, 0};
   scenario.obstacles.push_back(post);

@@ -89,16 +89,16 @@ TEST(BarnFile, ItsScenariosComeBackFromTheirDocuments) {
 TEST(BarnFile, TheScannerMayBeOneThatSweeps) {
   const World world = worlds_from_json(lane()).at(0);
   const sim::Scenario flat = scenario_of(world, {});
-  EXPECT_FALSE(flat.lasers.front().rolling);
+  EXPECT_FALSE(flat.robot.sensors.lasers.front().rolling);
   const sim::Scenario sweeping = scenario_of(world, {.scanner = Scanner::Lms200});
-  EXPECT_TRUE(sweeping.lasers.front().rolling);
-  EXPECT_DOUBLE_EQ(sweeping.lasers.front().range_max, 8.191);
+  EXPECT_TRUE(sweeping.robot.sensors.lasers.front().rolling);
+  EXPECT_DOUBLE_EQ(sweeping.robot.sensors.lasers.front().range_max, 8.191);
 }
 
 TEST(BarnRun, ScoresByTheOfficialFormula) {
   const auto worlds = worlds_from_json(lane());
   Options options;
-  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  options.conditions.physics = sim::PhysicsKind::Kinematic;
   options.repeats = 2;
   options.pool.threads = 2;
   const Result result = run_worlds(worlds, options);
@@ -139,7 +139,7 @@ TEST(BarnRun, ACollisionScoresNothing) {
   document["worlds"][0]["obstacles"] = {{0, 3}};
   Options options;
   options.conditions.controller = "go_to_goal";
-  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  options.conditions.physics = sim::PhysicsKind::Kinematic;
   const Result result = run_worlds(worlds_from_json(document), options);
   EXPECT_EQ(result.runs[0].row.outcome, Outcome::Collided);
   EXPECT_EQ(result.runs[0].row["barn_score"], 0);
@@ -165,7 +165,7 @@ TEST(BarnRun, AShardHasItsOwnWorldsAndSeeds) {
   document["worlds"].push_back(document["worlds"][0]);
   document["worlds"][1]["id"] = 9;
   Options options;
-  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  options.conditions.physics = sim::PhysicsKind::Kinematic;
   options.repeats = 2;
   options.pool.shard = {.index = 1, .count = 2};
   const Result result = run_worlds(worlds_from_json(document), options);
@@ -184,7 +184,7 @@ TEST(BarnRun, AContactWithWhatMovesIsJudgedWithHindsight) {
   document["worlds"][0]["obstacles"][0]["keys"] = {{0, 8, 0}, {10, -8, 0}, {20, 8, 0}};
   Options options;
   options.conditions.controller = "go_to_goal";
-  options.conditions.vehicle = sim::Vehicle::Kinematic;
+  options.conditions.physics = sim::PhysicsKind::Kinematic;
   const Result result = run_worlds(worlds_from_json(document), options);
   EXPECT_EQ(result.runs[0].row.outcome, Outcome::Collided);
   EXPECT_EQ(result.runs[0].contact(), experiment::Contact::Avoidable);

@@ -76,7 +76,7 @@ TEST(Contestants, ThoseThatCanAlsoDriveBySonar) {
   EXPECT_THROW(contestants(unknown), std::runtime_error);
   for (const Contestant& each : contestants({})) {
     const RunSpec spec = make_run(bottleneck(1.0), each, 3);  // refuses who needs a laser
-    EXPECT_EQ(sim::has_laser(spec.scenario), each.sensing == Sensing::Laser);
+    EXPECT_EQ(spec.scenario.robot.sensors.has_laser(), each.sensing == Sensing::Laser);
     EXPECT_EQ(spec.seed, 3U);
   }
 }

@@ -100,24 +100,24 @@ TEST(StudyFile, BecomesARunUnderThePapersConditions) {
   const StudyFile file = embedded_study_file();
   const RunSpec spec =
       make_run(file.conditions, file.scenarios[4], "original", kPaper, 7);  // exp1, 40 mm/s
-  EXPECT_EQ(spec.scenario.vehicle, sim::Vehicle::Kinematic);
+  EXPECT_EQ(spec.scenario.physics, sim::PhysicsKind::Kinematic);
   EXPECT_DOUBLE_EQ(spec.scenario.period, 0.1);
   EXPECT_DOUBLE_EQ(spec.scenario.time_limit, 5 * 2.0 / 0.04);
   EXPECT_EQ(spec.seed, 7u);
-  ASSERT_EQ(spec.scenario.lasers.size(), 1u);
-  const sim::LaserConfig& laser = spec.scenario.lasers[0];
+  ASSERT_EQ(spec.scenario.robot.sensors.lasers.size(), 1u);
+  const sim::LaserConfig& laser = spec.scenario.robot.sensors.lasers[0];
   EXPECT_FALSE(laser.rolling);
   EXPECT_EQ(laser.noise_shape, sim::NoiseShape::Uniform);
   EXPECT_DOUBLE_EQ(laser.noise, 0.015);
   EXPECT_EQ(laser.bias, 0);
   EXPECT_EQ(laser.dropout, 0);
   const RunSpec quiet = make_run(file.conditions, file.scenarios[0], "original", kNoiseFree, 1);
-  EXPECT_EQ(quiet.scenario.lasers[0].noise, 0);
+  EXPECT_EQ(quiet.scenario.robot.sensors.lasers[0].noise, 0);
   EXPECT_DOUBLE_EQ(quiet.scenario.period, 0.05);
   const RunSpec full = make_run(file.conditions, file.scenarios[0], "original", kFullSimulator, 1);
-  EXPECT_EQ(full.scenario.vehicle, sim::Vehicle::Bullet);
+  EXPECT_EQ(full.scenario.physics, sim::PhysicsKind::Bullet);
   EXPECT_DOUBLE_EQ(full.scenario.period, 0.026);
-  EXPECT_TRUE(full.scenario.lasers[0].rolling);
+  EXPECT_TRUE(full.scenario.robot.sensors.lasers[0].rolling);
 }
 
 TEST(StudyFile, AMalformedOneSaysWhere) {

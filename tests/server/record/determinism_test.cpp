@@ -14,14 +14,15 @@
 #include "server/record/record_sink.hpp"
 #include "server/record/run_json.hpp"
 #include "server/record/verify.hpp"
+#include "server/run/scenario_json.hpp"
 #include "server/run/scenario_library.hpp"
 
 namespace server {
 namespace {
 
-RunSpec case1(const std::string& vehicle, std::uint64_t seed = 1) {
+RunSpec case1(const std::string& physics, std::uint64_t seed = 1) {
   RunOverrides overrides;
-  overrides.vehicle = vehicle;
+  overrides.physics = physics_named(physics, "physics");
   overrides.seed = seed;
   return make_spec(ScenarioLibrary({}, {}).load("case1"), overrides);
 }
@@ -146,7 +147,7 @@ class RecordedSwap : public RecordedRun, public ::testing::WithParamInterface<co
 TEST_P(RecordedSwap, OfTheFirstRobotFedBackGivesTheSameCommands) {
   const algo::Obstacle obstacle{.id = 9, .pose_W = {1.0, 1.0, 0}, .shape = algo::Cylinder{0.2}};
   RunOverrides overrides;
-  overrides.vehicle = GetParam();
+  overrides.physics = physics_named(GetParam(), "physics");
   const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("swap"), overrides);
   const db::RunId first = record(spec, {{50, algo::AddObstacle{obstacle}}});
   const Verification verification = verify(first);

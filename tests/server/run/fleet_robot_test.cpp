@@ -22,9 +22,9 @@
 namespace server {
 namespace {
 
-sim::Scenario swap(sim::Vehicle vehicle) {
+sim::Scenario swap(sim::PhysicsKind physics) {
   sim::Scenario scenario = ScenarioLibrary({}, {}).load("swap");
-  scenario.vehicle = vehicle;
+  scenario.physics = physics;
   return scenario;
 }
 
@@ -44,7 +44,7 @@ void drive(const RunSpec& spec, algo::Robot& robot, double seconds, See see) {
 }
 
 TEST(FleetRobot, EachRobotDrivesToItsOwnGoal) {
-  const RunSpec spec = make_spec(swap(sim::Vehicle::Bullet), {});
+  const RunSpec spec = make_spec(swap(sim::PhysicsKind::Bullet), {});
   const auto robot = make_robot(spec);
   const auto* fleet = dynamic_cast<const FleetRobot*>(robot.get());
   ASSERT_NE(fleet, nullptr);
@@ -86,8 +86,8 @@ std::vector<RobotPlan> plans(const sim::Scenario& scenario) {
   return out;
 }
 
-void expect_the_same_on_any_threads(sim::Vehicle vehicle) {
-  const RunSpec spec = make_spec(swap(vehicle), {});
+void expect_the_same_on_any_threads(sim::PhysicsKind physics) {
+  const RunSpec spec = make_spec(swap(physics), {});
   const std::vector<double> expected = numbers(spec, *make_robot(spec));
   EXPECT_EQ(numbers(spec, *make_robot(spec)), expected);
   for (const std::size_t threads : {2U, 4U}) {
@@ -112,15 +112,15 @@ void expect_the_same_on_any_threads(sim::Vehicle vehicle) {
 }
 
 TEST(FleetRobot, TheSameSpecGivesTheSameRunOnAnyNumberOfThreads) {
-  expect_the_same_on_any_threads(sim::Vehicle::Kinematic);
+  expect_the_same_on_any_threads(sim::PhysicsKind::Kinematic);
 }
 
 TEST(FleetRobot, SoItDoesWithFullPhysics) {
-  expect_the_same_on_any_threads(sim::Vehicle::Bullet);
+  expect_the_same_on_any_threads(sim::PhysicsKind::Bullet);
 }
 
 TEST(FleetRobot, OverridesOfControllerAndParametersReachTheOthers) {
-  sim::Scenario scenario = swap(sim::Vehicle::Kinematic);
+  sim::Scenario scenario = swap(sim::PhysicsKind::Kinematic);
   scenario.robots[1].controller = "original";
   scenario.robots[2].parameters = {{algo::find_parameter("v_max"), 0.1}};
   RunOverrides overrides;
@@ -141,7 +141,7 @@ TEST(FleetRobot, OverridesOfControllerAndParametersReachTheOthers) {
 }
 
 TEST(FleetRobot, EditsReachTheOthersAndRobotsRefuseThem) {
-  const RunSpec spec = make_spec(swap(sim::Vehicle::Kinematic), {});
+  const RunSpec spec = make_spec(swap(sim::PhysicsKind::Kinematic), {});
   const auto robot = make_robot(spec);
   algo::Observation seen;
   robot->reset(seen);
@@ -160,7 +160,7 @@ TEST(FleetRobot, EditsReachTheOthersAndRobotsRefuseThem) {
 }
 
 TEST(FleetRobot, RefusesScenariosWhoseRobotsOverlap) {
-  sim::Scenario scenario = swap(sim::Vehicle::Kinematic);
+  sim::Scenario scenario = swap(sim::PhysicsKind::Kinematic);
   scenario.robots[3].start = {0.2, 6.1, 0};
   try {
     make_robot(make_spec(scenario, {}));

@@ -28,14 +28,14 @@ void expect_same(const sim::Scenario& a, const sim::Scenario& b) {
   EXPECT_EQ(a.goal, b.goal);
   EXPECT_EQ(a.obstacles, b.obstacles);
   EXPECT_EQ(a.parameters, b.parameters);
-  EXPECT_EQ(a.vehicle, b.vehicle);
-  ASSERT_EQ(a.lasers.size(), b.lasers.size());
-  for (std::size_t i = 0; i < a.lasers.size(); ++i) {
-    EXPECT_EQ(a.lasers[i].angle_increment, b.lasers[i].angle_increment);
-    EXPECT_EQ(a.lasers[i].field_of_view, b.lasers[i].field_of_view);
-    EXPECT_EQ(a.lasers[i].turns, b.lasers[i].turns);
-    EXPECT_EQ(a.lasers[i].mirror_period, b.lasers[i].mirror_period);
-    EXPECT_EQ(a.lasers[i].unit, b.lasers[i].unit);
+  EXPECT_EQ(a.physics, b.physics);
+  ASSERT_EQ(a.robot.sensors.lasers.size(), b.robot.sensors.lasers.size());
+  for (std::size_t i = 0; i < a.robot.sensors.lasers.size(); ++i) {
+    EXPECT_EQ(a.robot.sensors.lasers[i].angle_increment, b.robot.sensors.lasers[i].angle_increment);
+    EXPECT_EQ(a.robot.sensors.lasers[i].field_of_view, b.robot.sensors.lasers[i].field_of_view);
+    EXPECT_EQ(a.robot.sensors.lasers[i].turns, b.robot.sensors.lasers[i].turns);
+    EXPECT_EQ(a.robot.sensors.lasers[i].mirror_period, b.robot.sensors.lasers[i].mirror_period);
+    EXPECT_EQ(a.robot.sensors.lasers[i].unit, b.robot.sensors.lasers[i].unit);
   }
   EXPECT_EQ(to_json(a), to_json(b));
 }
@@ -151,7 +151,10 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
       {R"({"name":"a","goal":{"x":1e6,"y":0}})", "goal/x: is 1e+06, must lie in -100000 to 100000"},
       {R"({"name":"a","start":{"x":0,"y":0,"z":0}})", "start: unknown field 'z'"},
       {R"({"name":"a","goal":{"x":0,"y":0,"z":0}})", "goal: unknown field 'z'"},
-      {R"({"name":"a","vehicle":"car"})", "vehicle: must be \"bullet\" or \"kinematic\""},
+      {R"({"name":"a","vehicle":"car"})", "vehicle: is 'car', must be bullet or kinematic"},
+      {R"({"name":"a","physics":"car"})", "physics: is 'car', must be bullet or kinematic"},
+      {R"({"name":"a","physics":"bullet","vehicle":"bullet"})",
+       "vehicle: cannot stand beside physics, its new name"},
       {R"({"name":"a","controller":"x"})", "controller: 'x' is unknown"},
       {R"({"name":"a","filter":"x"})", "filter: 'x' is unknown"},
       {R"({"name":"a","parameters":{"x":1}})", "parameters/x: there is no such parameter"},

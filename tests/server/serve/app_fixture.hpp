@@ -101,7 +101,7 @@ class AppTest : public ::testing::Test {
 
   static RunSpec kinematic_case1() {
     RunOverrides kinematic;
-    kinematic.vehicle = "kinematic";
+    kinematic.physics = sim::PhysicsKind::Kinematic;
     return make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
   }
 

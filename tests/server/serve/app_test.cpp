@@ -325,7 +325,7 @@ TEST(App, ARunCutByTheEndOfTheProgramIsInterrupted) {
     options.net.port = 0;
     options.database = database;
     RunOverrides kinematic;
-    kinematic.vehicle = "kinematic";
+    kinematic.physics = sim::PhysicsKind::Kinematic;
     options.first = make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
     App app(std::move(options));
     std::jthread serving([&] { app.run(); });

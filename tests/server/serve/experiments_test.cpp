@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 RunSpec case1() {
   RunOverrides kinematic;
-  kinematic.vehicle = "kinematic";
+  kinematic.physics = sim::PhysicsKind::Kinematic;
   return make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
 }
 

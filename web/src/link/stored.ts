@@ -72,7 +72,7 @@ export class StoredRun {
     this.scene.controller = item.controller;
     take_robot(this.scene, item.document?.robot);
     this.scene.start = doc?.start ?? null;
-    this.scene.world = item.vehicle !== "log";
+    this.scene.world = item.physics !== "log";
     this.scene.goal = doc?.goal
       ? { x: doc.goal.x, y: doc.goal.y, heading: doc.goal.heading ?? null } : null;
     const others = (item.document?.others ?? []).map(obstacle_from_json);

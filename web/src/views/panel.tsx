@@ -1,4 +1,4 @@
-// web/src/views/panel.tsx: the right panel of Drive: four figures, controller, filter, vehicle and
+// web/src/views/panel.tsx: the right panel of Drive: four figures, robot, controller, filter, physics and
 // gains; below them the signals.
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
@@ -53,6 +53,7 @@ export function Tuning(): JSX.Element {
   }
   return (
     <>
+      {session.robot.drives && session.source === "simulation" && <RobotPick session={session} />}
       <Choices session={session} catalog={catalog} />
       {session.robot.drives && <Gains session={session} catalog={catalog} />}
       <Signals />
@@ -82,8 +83,29 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
       <Segments label="Filter" name="filter" choices={short(catalog.filters)} value={session.filter}
         disabled={loading} on_pick={(name) => void app.load({ filter: name })} />
       {session.robot.drives && session.source === "simulation" &&
-        <Segments label="Vehicle" name="vehicle" choices={catalog.vehicles} value={session.vehicle}
-          disabled={loading} on_pick={(name) => void app.load({ vehicle: name })} />}
+        <Segments label="Physics" name="physics" choices={catalog.physics} value={session.physics}
+          disabled={loading} on_pick={(name) => void app.load({ physics: name })} />}
+    </section>
+  );
+}
+
+/** The robot models; one whose file does not read is listed with why, and cannot be chosen. */
+function RobotPick(props: { session: SessionState }): JSX.Element | null {
+  const app = use_app();
+  const loading = use_store(app.ui, (u) => u.loading) !== null;
+  const robots = use_store(app.ui, (u) => u.robots);
+  const name = props.session.robot.name;
+  if (robots.length === 0) return null;
+  const known = robots.some((r) => r.name === name);
+  const choices = robots.filter((r) => r.usable).map((r) => ({ value: r.name, label: r.title }));
+  const help = robots.find((r) => r.name === name)?.description;
+  return (
+    <section>
+      <h2>Robot</h2>
+      <Pick label="Robot" name="robot" choices={known ? choices : [{ value: name, label: titled(name) }, ...choices]}
+        value={name} disabled={loading} class="wide-pick" on_pick={(robot) => void app.load({ robot })} />
+      {help && <p class="help">{help}</p>}
+      {robots.filter((r) => !r.usable).map((r) => <p key={r.name} class="help bad" role="note">{r.description}</p>)}
     </section>
   );
 }

@@ -28,7 +28,7 @@ export function Runs(): JSX.Element {
 
   const words = text.toLowerCase().split(/\s+/).filter(Boolean);
   const shown = list.items.filter((r) => {
-    const hay = `${r.id} ${r.scenario} ${r.controller} ${r.filter} ${r.vehicle} ${r.outcome} ${r.status}`
+    const hay = `${r.id} ${r.scenario} ${r.controller} ${r.filter} ${r.physics} ${r.outcome} ${r.status}`
       .toLowerCase();
     return words.every((w) => hay.includes(w));
   });

@@ -1,0 +1,156 @@
+// server/run/robot_json.cpp: one reader and one writer.
+#include "server/run/robot_json.hpp"
+
+#include <string>
+
+#include <fmt/format.h>
+
+#include "server/run/library_files.hpp"
+#include "server/run/sensor_json.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+
+constexpr NumberRange kLength{0.01, 20};   // [m]
+constexpr NumberRange kHeight{0, 5};       // [m] over the floor
+constexpr NumberRange kPlace{-10, 10};     // [m] in R
+constexpr NumberRange kMass{0.01, 1e5};    // [kg]
+constexpr NumberRange kSpeed{1e-3, 20};    // [m/s]
+constexpr NumberRange kTurn{1e-3, 20};     // [rad/s]
+constexpr NumberRange kChange{1e-3, 100};  // [m/s2] and [rad/s2]
+
+void read_hull(const JsonReader& in, sim::RobotModel& robot) {
+  in.only({"radius", "length", "width", "low", "high"});
+  if (in.has("radius")) {
+    for (const char* key : {"length", "width"}) {
+      if (in.has(key)) in.fail(key, "cannot stand beside radius: a hull is a disc or a rectangle");
+    }
+    robot.set_disc(in.number("radius", kLength));
+  } else {
+    if (!in.has("length")) in.fail("length", "is missing, or radius for a round hull");
+    robot.set_box(in.number("length", kLength), in.number("width", kLength));
+  }
+  robot.hull_low = in.number_or("low", robot.hull_low, kHeight);
+  robot.hull_high = in.number_or("high", robot.hull_high, kHeight);
+}
+
+sim::Caster caster_from_json(const JsonReader& in) {
+  in.only({"x", "y", "radius", "raised"});
+  sim::Caster caster;
+  caster.x = in.number("x", kPlace);
+  caster.y = in.number_or("y", 0, kPlace);
+  caster.radius = in.number("radius", {0.001, 1});
+  caster.raised = in.number_or("raised", 0, {0, 1});
+  return caster;
+}
+
+/// One ahead and one behind, where the wheels lie in one line.
+std::vector<sim::Caster> usual_casters(const sim::RobotModel& robot) {
+  constexpr double kRadius = 0.04;   // [m]
+  constexpr double kRaised = 0.001;  // [m] so that the drive wheels carry
+  constexpr double kShare = 0.77;    // of the way from R to the hull
+  const double x = kShare * robot.hull_length / 2;
+  return {{x, 0, kRadius, kRaised}, {-x, 0, kRadius, kRaised}};
+}
+
+void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
+  robot.half_track = in.number("track", kLength) / 2;
+  robot.wheel_radius = in.number("wheel_radius", {0.005, 5});
+  if (in.has("wheels")) {
+    robot.wheels.clear();
+    for (const json& each : in.array("wheels", sim::kMostWheels)) {
+      const std::string at = fmt::format("{}/{}", in.at("wheels"), robot.wheels.size());
+      robot.wheels.push_back(finite_number(each, at, kPlace));
+    }
+  }
+  robot.casters.clear();
+  if (in.has("casters")) {
+    for (const json& each : in.array("casters", sim::kMostCasters)) {
+      const std::string at = fmt::format("{}/{}", in.at("casters"), robot.casters.size());
+      robot.casters.push_back(caster_from_json({each, at}));
+    }
+  } else if (robot.wheels.size() == 1) {
+    robot.casters = usual_casters(robot);
+  }
+  robot.friction = in.number_or("friction", robot.friction, {0.01, 5});
+  robot.counts_per_turn = in.number_or("counts_per_turn", robot.counts_per_turn, {1, 1e7});
+}
+
+void read_limits(const JsonReader& in, sim::RobotModel& robot) {
+  in.only({"speed", "turn", "acceleration", "turn_acceleration"});
+  robot.max_v = in.number("speed", kSpeed);
+  robot.max_omega = in.number("turn", kTurn);
+  robot.max_acceleration = in.number_or("acceleration", robot.max_acceleration, kChange);
+  robot.max_angular_acceleration =
+      in.number_or("turn_acceleration", robot.max_angular_acceleration, kChange);
+}
+
+/// `problem` begins with the field that it is about.
+[[noreturn]] void refuse(const JsonReader& in, const std::string& problem) {
+  const std::size_t colon = problem.find(": ");
+  in.fail(problem.substr(0, colon), problem.substr(colon + 2));
+}
+
+}  // namespace
+
+sim::RobotModel robot_from_json(const JsonReader& in) {
+  in.only({"name",        "title",    "description", "hull",         "mass",
+           "mass_height", "track",    "wheels",      "wheel_radius", "casters",
+           "limits",      "friction", "lasers",      "sonar",        "infrared",
+           "sensors",     "gyro",     "bumpers",     "encoders",     "counts_per_turn"});
+  sim::RobotModel robot;
+  robot.name = in.text("name", 64);
+  if (!valid_name(robot.name)) {
+    in.fail("name", "must be 1 to 64 of the characters a-z, 0-9, _ and -");
+  }
+  if (!in.has("hull")) in.fail("hull", "is missing");
+  if (!in.has("limits")) in.fail("limits", "is missing");
+  read_hull(in.object("hull"), robot);
+  robot.mass = in.number("mass", kMass);
+  robot.mass_height =
+      in.number_or("mass_height", (robot.hull_low + robot.hull_high) / 2, {0.001, 5});
+  read_wheels(in, robot);
+  read_limits(in.object("limits"), robot);
+  read_sensors(in, robot.sensors);
+  if (const auto problem = sim::defect(robot)) refuse(in, *problem);
+  return robot;
+}
+
+json to_json(const sim::RobotModel& robot) {
+  json hull = {{"low", robot.hull_low}, {"high", robot.hull_high}};
+  if (robot.round) {
+    hull["radius"] = robot.radius;
+  } else {
+    hull["length"] = robot.hull_length;
+    hull["width"] = robot.hull_width;
+  }
+  json casters = json::array();
+  for (const sim::Caster& c : robot.casters) {
+    casters.push_back({{"x", c.x}, {"y", c.y}, {"radius", c.radius}, {"raised", c.raised}});
+  }
+  return {{"name", robot.name},
+          {"hull", std::move(hull)},
+          {"mass", robot.mass},
+          {"mass_height", robot.mass_height},
+          {"track", 2 * robot.half_track},
+          {"wheel_radius", robot.wheel_radius},
+          {"wheels", robot.wheels},
+          {"casters", std::move(casters)},
+          {"limits",
+           {{"speed", robot.max_v},
+            {"turn", robot.max_omega},
+            {"acceleration", robot.max_acceleration},
+            {"turn_acceleration", robot.max_angular_acceleration}}},
+          {"friction", robot.friction},
+          {"counts_per_turn", robot.counts_per_turn}};
+}
+
+json robot_document(const sim::RobotModel& robot) {
+  json document = to_json(robot);
+  write_sensors(robot.sensors, document);
+  return document;
+}
+
+}  // namespace server

@@ -1,0 +1,116 @@
+// sim/robot_model.cpp: outline, and whether the machine stands on its wheels.
+#include "sim/robot_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "algo/types.hpp"
+
+namespace sim {
+namespace {
+
+constexpr double kTouching = 0.005;  // [m] a caster raised by more does not carry
+constexpr double kFirmly = 0.01;     // [m] from the middle of the mass to the line of two supports
+constexpr int kDirections = 72;
+
+/// Whether the supports reach beyond R in every direction.
+bool stands(const RobotModel& robot) {
+  std::vector<algo::Vec2> supports;
+  for (const double x : robot.wheels) {
+    supports.emplace_back(x, robot.half_track);
+    supports.emplace_back(x, -robot.half_track);
+  }
+  for (const Caster& caster : robot.casters) {
+    if (caster.raised <= kTouching) supports.emplace_back(caster.x, caster.y);
+  }
+  for (int k = 0; k < kDirections; ++k) {
+    const algo::Vec2 way = algo::direction(2 * std::numbers::pi * k / kDirections);
+    const bool reached =
+        std::ranges::any_of(supports, [&](const algo::Vec2& p) { return p.dot(way) > kFirmly; });
+    if (!reached) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool Sensors::has_laser() const {
+  // A scanner that looks back says nothing about the way ahead.
+  const bool looks_ahead = std::ranges::any_of(lasers, [](const LaserConfig& laser) {
+    return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
+  });
+  return looks_ahead || !sonar;
+}
+
+double Sensors::height() const {
+  double highest = 0;
+  for (const LaserConfig& laser : lasers) highest = std::max(highest, laser.height);
+  if (sonar) highest = std::max(highest, sonar->height);
+  for (const InfraredConfig& scanner : infrared) highest = std::max(highest, scanner.height);
+  return highest;
+}
+
+void RobotModel::set_box(double length, double width) {
+  round = false;
+  hull_length = length;
+  hull_width = width;
+  radius = std::hypot(length / 2, width / 2);
+}
+
+void RobotModel::set_disc(double radius_m) {
+  round = true;
+  radius = radius_m;
+  hull_length = 2 * radius_m;
+  hull_width = 2 * radius_m;
+}
+
+bool same_machine(const RobotModel& a, const RobotModel& b) {
+  const auto numbers = [](const RobotModel& r) {
+    return std::tie(r.name,
+                    r.round,
+                    r.radius,
+                    r.hull_length,
+                    r.hull_width,
+                    r.hull_low,
+                    r.hull_high,
+                    r.mass,
+                    r.mass_height,
+                    r.half_track,
+                    r.wheel_radius,
+                    r.wheels,
+                    r.casters,
+                    r.max_v,
+                    r.max_omega,
+                    r.max_acceleration,
+                    r.max_angular_acceleration,
+                    r.friction,
+                    r.counts_per_turn);
+  };
+  return numbers(a) == numbers(b);
+}
+
+std::optional<std::string> defect(const RobotModel& robot) {
+  if (!(robot.hull_low < robot.hull_high)) return "hull/high: must be above hull/low";
+  if (robot.wheels.empty()) return "wheels: there must be one on each side at least";
+  if (robot.mass_height > robot.hull_high) return "mass_height: must not be above the hull";
+  for (const Caster& caster : robot.casters) {
+    if (std::hypot(caster.x, caster.y) > robot.radius) return "casters: must be under the hull";
+  }
+  for (const double x : robot.wheels) {
+    if (std::abs(x) > robot.radius) return "wheels: must be under the hull";
+  }
+  if (!stands(robot)) {
+    return "casters: the robot would tip over; its wheels and casters must surround the middle "
+           "of the hull";
+  }
+  return std::nullopt;
+}
+
+Hull hull_of(const RobotModel& robot) {
+  if (robot.round) return {.radius = robot.radius};
+  return {robot.radius, robot.hull_length / 2, robot.hull_width / 2};
+}
+
+}  // namespace sim

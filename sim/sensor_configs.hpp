@@ -1,0 +1,116 @@
+// sim/sensor_configs.hpp: the sensors of a simulated robot as plain values.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "algo/types.hpp"
+
+namespace sim {
+
+enum class LaserUnit : std::uint8_t { Millimetre, Centimetre };
+enum class NoiseShape : std::uint8_t { Gaussian, Uniform };
+
+/// The LMS200 model (physics.md 6). Every imperfection can be switched off, down to ideal().
+struct LaserConfig {
+  algo::Pose2 mount_R{};
+  double height = 0.30;        // [m] of the scan plane
+  double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg on an LMS200
+  double angle_increment = 0;  // [rad]
+  std::uint32_t turns = 1;     // interlaced mirror turns in a sweep
+  bool rolling = true;         // beams fired one by one; false: all from one pose at the tick
+  double mirror_period = 1.0 / 75.0;  // [s] one turn
+  LaserUnit unit = LaserUnit::Millimetre;
+  double range_max = 8.191;  // [m] 81.91 in centimetre mode
+  double bias = 0.015;       // [m] uniform in +-bias, drawn once a run
+  double noise = 0.005;      // [m] standard deviation, or half width when Uniform
+  NoiseShape noise_shape = NoiseShape::Gaussian;
+  bool mixed_pixels = true;
+  bool reflectivity = true;  // range falls with the surface's reflectivity; specular surfaces
+  double dropout = 0.002;    // probability of a no-echo code per beam
+  double salt = 0;           // probability of maximum range per beam
+  double pepper = 0;         // probability of a false near reading per beam
+
+  /// 1, 0.5 or 0.25 degree; throws std::invalid_argument on another.
+  static LaserConfig with_resolution(double degrees);
+  /// Flat-time, noise-free: every beam from the pose at the tick.
+  static LaserConfig ideal(double degrees);
+  /// A scanner of another make, flat-time: `beams` over `field_of_view` [rad], Gaussian noise only.
+  static LaserConfig flat(double field_of_view, std::uint32_t beams, double range_max);
+};
+
+/// A ring of sonars (sensors.md 3), evenly over `field` on the hull, pinging in turn.
+struct SonarConfig {
+  std::uint32_t count = 12;
+  double field = 2 * std::numbers::pi;      // [rad] that the axes are spread over
+  double cone = std::numbers::pi / 6;       // [rad] whole beam
+  double ping = 0.04;                       // [s] from one sensor's ping to the next one's
+  double range_min = 0.15;                  // [m] nearer things read as that
+  double range_max = 5.0;                   // [m] nothing within it: Free
+  double noise = 0.01;                      // [m] standard deviation
+  double incidence = std::numbers::pi / 3;  // [rad] a surface met more obliquely gives no echo
+  double height = 0.30;                     // [m] of the ring
+};
+
+/// An infrared range scanner, by the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams,
+/// low on the hull, where it meets what lies under the laser's plane.
+struct InfraredConfig {
+  algo::Pose2 mount_R{};
+  double height = 0.10;                         // [m] of the fan
+  std::uint32_t beams = 121;                    // over the field
+  double field = 212 * std::numbers::pi / 180;  // [rad] about the mount's heading
+  double period = 0.18;                         // [s] from one scan to the next
+  double range_min = 0.10;                      // [m] nearer things read as that
+  double range_max = 3.5;                       // [m] nothing within it: Free
+  double noise = 0.02;                          // [m] standard deviation
+};
+
+/// A yaw gyro (sensors.md 4): rate = true + bias + noise, the bias on a random walk.
+struct GyroConfig {
+  double bias = 0;       // [rad/s] standard deviation of the bias a run begins with
+  double bias_walk = 0;  // [rad/s] that it wanders off in a second, standard deviation
+  double noise = 0;      // [rad/s] standard deviation of a reading
+};
+
+/// A number, or a list of them, that a sensor of a scenario is set up with.
+struct Setting {
+  std::string name{};
+  std::vector<double> values{};
+};
+
+/// A sensor as a scenario has it.
+struct SensorConfig {
+  std::string sensor{};   // which kind: a file of sim/sensors
+  std::string channel{};  // its name in frames and exports: "battery.voltage"
+  std::string unit{};     // of its values; empty: the kind's own
+  std::vector<Setting> settings{};
+
+  const std::vector<double>* find(std::string_view name) const;
+  /// The one number of a setting.
+  double number(std::string_view name, double fallback) const;
+};
+
+/// All sensors of one robot.
+struct Sensors {
+  std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
+  std::optional<SonarConfig> sonar{};
+  std::vector<InfraredConfig> infrared{};
+  std::vector<SensorConfig> further{};  // each with a channel of its own
+  /// Absent: an ideal one with dynamics, none without.
+  std::optional<GyroConfig> gyro{};
+  bool has_gyro = true;
+  std::uint32_t bumpers = 1;  // evenly round the hull from straight ahead, each its share of it
+  bool encoders = true;
+
+  /// Whether a scanner looks ahead; with a sonar ring and none, the ring stands in for it.
+  bool has_laser() const;
+  /// [m] over the floor, of the highest scanner, ring or fan.
+  double height() const;
+};
+
+}  // namespace sim

@@ -1,0 +1,254 @@
+// tests/server/run/robot_json_test.cpp: robot models as files: the built-in ones, a user's own, and
+// what is said of bad ones.
+#include "server/run/robot_json.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/run/robot_library.hpp"
+#include "server/run/run_spec.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/scenario_library.hpp"
+#include "sim/world.hpp"
+
+namespace server {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// 1.2 x 0.7 m, two scanners, 200 kg.
+json carrier() {
+  return json::parse(R"({
+    "name": "carrier",
+    "hull": {"length": 1.2, "width": 0.7, "low": 0.05, "high": 0.5},
+    "mass": 200,
+    "track": 0.6,
+    "wheel_radius": 0.1,
+    "limits": {"speed": 0.8, "turn": 1.2, "acceleration": 0.6, "turn_acceleration": 2},
+    "lasers": [{"resolution_deg": 0.5, "mount": {"x": 0.55, "y": 0, "heading": 0}},
+               {"resolution_deg": 1, "mount": {"x": -0.55, "y": 0, "heading": 3.141592653589793}}]
+  })");
+}
+
+sim::RobotModel read(const json& document) {
+  return robot_from_json({document, ""});
+}
+
+std::string complaint(const json& document) {
+  try {
+    read(document);
+  } catch (const DocumentError& e) {
+    return e.what();
+  }
+  return "read";
+}
+
+/// A folder of its own, gone afterwards.
+class RobotFolder : public testing::Test {
+ protected:
+  RobotFolder() { std::filesystem::create_directories(folder); }
+  ~RobotFolder() override { std::filesystem::remove_all(folder); }
+  void write(const std::string& file, const std::string& text) const {
+    std::ofstream(folder / file) << text;
+  }
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) /
+      ("robots-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+};
+
+TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
+  const std::vector<RobotEntry> entries = RobotLibrary().list();
+  EXPECT_EQ(entries.size(), 4U);
+  for (const RobotEntry& entry : entries) {
+    SCOPED_TRACE(entry.name);
+    EXPECT_TRUE(entry.builtin && entry.usable);
+    const sim::RobotModel robot = builtin_robot(entry.name);
+    const sim::RobotModel again = read(robot_document(robot));
+    EXPECT_TRUE(sim::same_machine(robot, again));
+    EXPECT_EQ(robot_document(robot), robot_document(again));
+    EXPECT_EQ(robot_reference(robot), entry.name);
+  }
+}
+
+TEST(RobotJson, TheRobotOfAScenarioThatNamesNoneIsTheSilvermate) {
+  EXPECT_TRUE(sim::same_machine(sim::RobotModel(), builtin_robot("silvermate")));
+  EXPECT_EQ(robot_document(sim::RobotModel()), robot_document(builtin_robot("silvermate")));
+}
+
+TEST(RobotJson, AFileSaysWhatItMustAndTheRestIsUsual) {
+  const sim::RobotModel robot = read(carrier());
+  EXPECT_FALSE(robot.round);
+  EXPECT_DOUBLE_EQ(robot.radius, std::hypot(0.6, 0.35));
+  EXPECT_DOUBLE_EQ(robot.half_track, 0.3);
+  EXPECT_DOUBLE_EQ(robot.mass_height, 0.275);
+  EXPECT_EQ(robot.wheels, std::vector<double>{0});
+  ASSERT_EQ(robot.casters.size(), 2U);
+  EXPECT_GT(robot.casters[0].x, 0.3);
+  ASSERT_EQ(robot.sensors.lasers.size(), 2U);
+  EXPECT_EQ(robot_document(robot), robot_document(read(robot_document(robot))));
+}
+
+TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
+  using Change = std::pair<const char*, const char*>;  // merge patch, what is said
+  const std::vector<Change> changes{
+      {R"({"name": null})", "name: is missing"},
+      {R"({"name": 7})", "name: must be"},
+      {R"({"name": "My Robot"})", "name: must be 1 to 64 of the characters"},
+      {R"({"hull": null})", "hull: is missing"},
+      {R"({"hull": 3})", "hull: must be an object, not number"},
+      {R"({"hull": {"length": null}})", "hull/length: is missing, or radius for a round hull"},
+      {R"({"hull": {"width": null}})", "hull/width: is missing"},
+      {R"({"hull": {"radius": 0.4}})", "hull/length: cannot stand beside radius"},
+      {R"({"hull": {"length": -1}})", "hull/length: is -1, must lie in 0.01 to 20"},
+      {R"({"hull": {"width": "wide"}})", "hull/width: must be a number, not string"},
+      {R"({"hull": {"low": 0.6}})", "hull/high: must be above hull/low"},
+      {R"({"hull": {"depth": 1}})", "hull: unknown field 'depth'"},
+      {R"({"mass": null})", "mass: is missing"},
+      {R"({"mass": 0})", "mass: is 0, must lie in"},
+      {R"({"mass_height": 2})", "mass_height: must not be above the hull"},
+      {R"({"track": null})", "track: is missing"},
+      {R"({"track": 50})", "track: is 50, must lie in"},
+      {R"({"wheel_radius": null})", "wheel_radius: is missing"},
+      {R"({"wheel_radius": [0.1]})", "wheel_radius: must be a number, not array"},
+      {R"({"wheels": []})", "wheels: there must be one on each side"},
+      {R"({"wheels": 2})", "wheels: must be"},
+      {R"({"wheels": ["front"]})", "wheels/0: must be a number, not string"},
+      {R"({"wheels": [0.2, 3]})", "wheels: must be under the hull"},
+      {R"({"casters": []})", "casters: the robot would tip over"},
+      {R"({"casters": [{"x": 0.4, "radius": 0.04}]})", "casters: the robot would tip over"},
+      {R"({"casters": [{"x": 0.4}]})", "casters/0/radius: is missing"},
+      {R"({"casters": [{"x": 5, "radius": 0.04}]})", "casters: must be under the hull"},
+      {R"({"casters": [{"x": 0.4, "radius": 0.04, "z": 1}]})", "casters/0: unknown field 'z'"},
+      {R"({"limits": null})", "limits: is missing"},
+      {R"({"limits": {"speed": null}})", "limits/speed: is missing"},
+      {R"({"limits": {"turn": 0}})", "limits/turn: is 0, must lie in"},
+      {R"({"limits": {"acceleration": 1e9}})", "limits/acceleration: is 1e+09, must lie in"},
+      {R"({"limits": {"jerk": 1}})", "limits: unknown field 'jerk'"},
+      {R"({"friction": -0.1})", "friction: is -0.1, must lie in"},
+      {R"({"counts_per_turn": 0})", "counts_per_turn: is 0, must lie in"},
+      {R"({"lasers": {}})", "lasers: must be"},
+      {R"({"lasers": [{"resolution_deg": 0.3}]})", "lasers/0/resolution_deg: "},
+      {R"({"lasers": [{"range": 30}]})", "lasers/0: unknown field 'range'"},
+      {R"({"sonar": {"count": 0}})", "sonar: "},
+      {R"({"infrared": [{"beams": 1000}]})", "infrared/0/beams: is 1000, must be at most 361"},
+      {R"({"bumpers": 9})", "bumpers: is 9, must be at most 8"},
+      {R"({"sensors": [{"sensor": "nose", "channel": "smell"}]})", "sensors/0: "},
+      {R"({"colour": "red"})", "document: unknown field 'colour'"},
+  };
+  EXPECT_GE(changes.size(), 30U);
+  for (const auto& [patch, said] : changes) {
+    json document = carrier();
+    document.merge_patch(json::parse(patch));
+    EXPECT_THAT(complaint(document), StartsWith(said)) << patch;
+  }
+  EXPECT_THAT(complaint(json::array()), HasSubstr("must be an object, not array"));
+}
+
+TEST_F(RobotFolder, FilesThatDoNotReadAreListedWithTheReasonAndNotLoaded) {
+  write("carrier.json", carrier().dump());
+  write("other.json", carrier().dump());
+  write("broken.json", "{\"name\": ");
+  write("jackal.json", carrier().dump());  // the built-in one keeps its name
+  write("Not A Name.json", carrier().dump());
+  const RobotLibrary library(folder);
+  std::vector<std::string> usable;
+  std::vector<std::string> not_usable;
+  for (const RobotEntry& entry : library.list()) {
+    if (entry.builtin) continue;
+    (entry.usable ? usable : not_usable).push_back(entry.name);
+    if (entry.name == "other") {
+      EXPECT_EQ(entry.description, "other.json: name: is 'carrier', must be 'other' as the file's");
+    }
+  }
+  EXPECT_EQ(usable, std::vector<std::string>{"carrier"});
+  EXPECT_EQ(not_usable, (std::vector<std::string>{"broken", "other"}));
+  EXPECT_EQ(library.load("carrier").mass, 200);
+  EXPECT_EQ(library.load("jackal").mass, 17);
+  EXPECT_THROW(library.load("broken"), LibraryError);
+  EXPECT_THROW(library.load("../carrier"), LibraryError);
+  try {
+    library.load("tank");
+    ADD_FAILURE() << "there is no tank";
+  } catch (const LibraryError& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "'tank' is unknown; known are jackal, masuda, robhaz, silvermate, broken, carrier, "
+        "other");
+  }
+  EXPECT_EQ(library.load_file_or_name((folder / "other.json").string()).name, "carrier");
+}
+
+TEST_F(RobotFolder, AScenarioKeepsTheWholeModelOfAUsersRobot) {
+  write("carrier.json", carrier().dump());
+  const RobotLibrary library(folder);
+  const sim::Scenario scenario = scenario_from_json(
+      json::parse(R"({"name":"hall","robot":"carrier","goal":{"x":4,"y":1}})"), library);
+  EXPECT_EQ(scenario.robot.sensors.lasers.size(), 2U);
+  const json written = to_json(scenario);
+  const sim::Scenario again = scenario_from_json(written);  // without the folder
+  EXPECT_EQ(written, to_json(again));
+  EXPECT_EQ(again.robot.mass, 200);
+  EXPECT_EQ(again.robot.sensors.lasers.size(), 2U);
+}
+
+TEST_F(RobotFolder, TheSensorsOfAScenarioComeBeforeThoseOfItsRobot) {
+  write("carrier.json", carrier().dump());
+  const sim::Scenario scenario = scenario_from_json(
+      json::parse(R"({"name":"a","robot":"carrier","lasers":[{}]})"), RobotLibrary(folder));
+  EXPECT_EQ(scenario.robot.sensors.lasers.size(), 1U);
+}
+
+TEST_F(RobotFolder, ARobotIsChosenByNameOrWhole) {
+  write("carrier.json", carrier().dump());
+  const RobotLibrary library(folder);
+  const sim::Scenario sensors = ScenarioLibrary({}, {}).load("sensors");
+  RunOverrides overrides;
+  overrides.robot = "carrier";
+  const RunSpec by_name = make_spec(sensors, overrides, library);
+  EXPECT_EQ(by_name.scenario.robot.name, "carrier");
+  EXPECT_FALSE(by_name.scenario.robot.sensors.sonar);  // the scenario's ring is the Silvermate's
+  overrides.robot = carrier();
+  EXPECT_EQ(make_spec(sensors, overrides).scenario.robot.mass, 200);
+  overrides.robot = "silvermate";  // its own
+  EXPECT_EQ(to_json(make_spec(sensors, overrides).scenario)["sonar"], to_json(sensors)["sonar"]);
+  overrides.robot = "tank";
+  EXPECT_THROW(make_spec(sensors, overrides), DocumentError);
+}
+
+TEST(RobotJson, AUsersRobotDrivesWithItsTwoScanners) {
+  for (const sim::PhysicsKind physics : {sim::PhysicsKind::Bullet, sim::PhysicsKind::Kinematic}) {
+    SCOPED_TRACE(physics == sim::PhysicsKind::Bullet ? "bullet" : "kinematic");
+    RunOverrides overrides;
+    overrides.robot = carrier();
+    overrides.physics = physics;
+    const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("case3"), overrides);
+    sim::World world(spec.scenario, 1);
+    EXPECT_EQ(world.spec().name, "carrier");
+    EXPECT_DOUBLE_EQ(world.spec().half_length, 0.6);
+    EXPECT_DOUBLE_EQ(world.spec().max_v, 0.8);
+    algo::Observation seen;
+    world.reset(seen);
+    std::set<double> mounts;  // [m] x of those that scanned
+    for (int i = 0; i < 40; ++i) {
+      world.step({{0.4, 0}}, seen);
+      for (const algo::LaserScan& scan : seen.scans) mounts.insert(scan.mount_R.x);
+    }
+    EXPECT_EQ(mounts, (std::set<double>{-0.55, 0.55}));
+    const algo::GroundTruth truth = *world.ground_truth();
+    EXPECT_NEAR(truth.pose.position().norm(), 0.4 * 40 * spec.scenario.period, 0.15);
+    EXPECT_FALSE(truth.collided);
+  }
+}
+
+}  // namespace
+}  // namespace server
