@@ -3,24 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "sim/obstacle_body.hpp"
+#include <utility>
 
 namespace sim {
 namespace {
 
-constexpr int kPooledPairs = 64;
-constexpr double kGravity = 9.81;     // [m/s2]
-constexpr int kIterations = 10;       // enough on a flat floor
-constexpr double kMargin = 0.001;     // [m] the default of 0.04 rounds small edges away
 constexpr double kLoadLag = 0.010;    // [s] low-pass of the wheel loads
 constexpr double kStillSpeed = 0.05;  // [m/s] under which parking begins
 constexpr double kStillTurn = 0.10;   // [rad/s]
 constexpr double kStillTime = 0.5;    // [s]
 constexpr double kSettleTime = 0.5;   // [s] for the wheels to find the floor
-constexpr double kRegather = 0.5;     // [m] driven before they are chosen anew
 constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
-constexpr double kSideways = 0.1;     // z of a contact's normal below which it holds nothing up
 constexpr int kHullPart = 0;
 
 /// Which wheel side a part of the chassis belongs to, by its sign.
@@ -29,66 +22,21 @@ int side_of(const btCompoundShape& chassis, int part, std::size_t wheels) {
   return chassis.getChildTransform(part).getOrigin().y() > 0 ? 1 : -1;
 }
 
-/// Lets go of the contacts at the sides of a wheel. A support ball stands in for a wheel: it
-/// reaches out farther than that, and what stands beside the robot is for the hull to touch.
-void drop_wheel_sides(btBroadphasePair& pair,
-                      btCollisionDispatcher& dispatcher,
-                      const btDispatcherInfo& info) {
-  btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
-  if (pair.m_algorithm == nullptr) return;
-  static thread_local btManifoldArray manifolds;  // keeps its memory
-  manifolds.resize(0);
-  pair.m_algorithm->getAllContactManifolds(manifolds);
-  for (int m = 0; m < manifolds.size(); ++m) {
-    btPersistentManifold& manifold = *manifolds[m];
-    const int last_wheel =
-        std::max(manifold.getBody0()->getUserIndex(), manifold.getBody1()->getUserIndex());
-    const bool first = manifold.getBody0()->getUserIndex() == last_wheel;
-    for (int c = manifold.getNumContacts() - 1; c >= 0; --c) {
-      const btManifoldPoint& point = manifold.getContactPoint(c);
-      const int part = first ? point.m_index0 : point.m_index1;
-      const bool wheel = part > kHullPart && part <= last_wheel;
-      if (wheel && std::abs(point.m_normalWorldOnB.z()) < kSideways) manifold.removeContactPoint(c);
-    }
-  }
-}
-
 }  // namespace
 
 BulletVehicle::BulletVehicle(const RobotModel& robot, double period)
     : robot_(robot), substeps_(period) {}
 
 BulletVehicle::~BulletVehicle() {
-  if (world_ == nullptr) return;
-  for (Body& body : bodies_) withdraw(body);
-  world_->removeConstraint(drive_.get());
-  world_->removeRigidBody(chassis_.get());
-  world_->removeRigidBody(floor_.get());
+  take_down();
 }
 
-void BulletVehicle::build_world() {
-  // Bullet's own choice is room for thousands of pairs in contact, seven megabytes a world; what
-  // goes beyond comes from the heap.
-  btDefaultCollisionConstructionInfo room;
-  room.m_defaultMaxPersistentManifoldPoolSize = kPooledPairs;
-  room.m_defaultMaxCollisionAlgorithmPoolSize = kPooledPairs;
-  configuration_ = make_bullet<btDefaultCollisionConfiguration>(room);
-  dispatcher_ = make_bullet<btCollisionDispatcher>(configuration_.get());
-  dispatcher_->setNearCallback(drop_wheel_sides);
-  broadphase_ = make_bullet<btDbvtBroadphase>();
-  solver_ = make_bullet<btSequentialImpulseConstraintSolver>();
-  world_ = make_bullet<btDiscreteDynamicsWorld>(
-      dispatcher_.get(), broadphase_.get(), solver_.get(), configuration_.get());
-  world_->setGravity(btVector3(0, 0, -kGravity));
-  world_->setForceUpdateAllAabbs(false);
-  world_->getSolverInfo().m_numIterations = kIterations;
-  world_->getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-
-  floor_shape_ = make_bullet<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
-  btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, floor_shape_.get());
-  info.m_friction = 0;
-  floor_ = make_bullet<btRigidBody>(info);
-  world_->addRigidBody(floor_.get());
+void BulletVehicle::take_down() {
+  if (chassis_ == nullptr) return;
+  physics_.world().removeConstraint(drive_.get());
+  physics_.world().removeRigidBody(chassis_.get());
+  drive_.reset();
+  chassis_.reset();
 }
 
 void BulletVehicle::build_chassis() {
@@ -108,7 +56,7 @@ void BulletVehicle::build_chassis() {
   } else {
     hull = make_bullet<btBoxShape>(btVector3(p.hull_length / 2, p.hull_width / 2, hull_half));
   }
-  hull->setMargin(kMargin);
+  hull->setMargin(Physics::kMargin);
   add(std::move(hull), 0, 0, p.hull_low + hull_half);
   for (const double x : p.wheels) {
     for (const double y : {p.half_track, -p.half_track}) {
@@ -129,31 +77,23 @@ void BulletVehicle::build_chassis() {
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
   chassis_ = make_bullet<btRigidBody>(info);
   chassis_->setUserIndex(static_cast<int>(2 * p.wheels.size()));  // its last wheel; -1 on all else
-  chassis_->setActivationState(DISABLE_DEACTIVATION);        // parking is ours
-  world_->addRigidBody(chassis_.get());
+  chassis_->setActivationState(DISABLE_DEACTIVATION);             // parking is ours
+  physics_.world().addRigidBody(chassis_.get());
 
   double axle_x = 0;
   for (const double x : p.wheels) axle_x += x / static_cast<double>(p.wheels.size());
   drive_ = make_bullet<DriveConstraint>(
-      *chassis_, *floor_, DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
-  world_->addConstraint(drive_.get());
+      *chassis_,
+      physics_.floor(),
+      DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
+  physics_.world().addConstraint(drive_.get());
 }
 
 void BulletVehicle::reset(const algo::Pose2& start) {
-  if (world_ != nullptr) {
-    for (Body& body : bodies_) withdraw(body);
-    world_->removeConstraint(drive_.get());
-    world_->removeRigidBody(chassis_.get());
-    world_->removeRigidBody(floor_.get());
-    drive_.reset();
-    chassis_.reset();
-    floor_.reset();
-    world_.reset();
-    solver_.reset();
-    broadphase_.reset();
-    dispatcher_.reset();
+  if (chassis_ != nullptr) {
+    take_down();
+    physics_.restart();
   }
-  build_world();
   build_chassis();
   wanted_ = {};
   target_ = {};
@@ -170,10 +110,7 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   at.setOrigin(btVector3(start.x - under.x(), start.y - under.y(), settled.getOrigin().z()));
   chassis_->setWorldTransform(at);
   chassis_->setInterpolationWorldTransform(at);
-  broadphase_->getOverlappingPairCache()->cleanProxyFromPairs(chassis_->getBroadphaseHandle(),
-                                                              dispatcher_.get());
-  world_->updateSingleAabb(chassis_.get());
-  gathered_ = false;
+  physics_.set_down(*chassis_);
   state_ = {};
   read_state();
   state_.pose_W = start;  // exactly
@@ -200,7 +137,7 @@ void BulletVehicle::drive(const algo::Twist2& command,
   if (!parked_) state_.contact = false;
   for (std::size_t k = 0; k < substeps_.count; ++k) {
     if (!parked_) {
-      gather_near(obstacles);
+      physics_.gather(obstacles, state_.pose_W.position(), robot_.radius + kNear);
       target_ = ramped(target_, wanted_, robot_, substeps_.length);
       substep();
       const double turn = target_.omega * robot_.half_track;
@@ -218,7 +155,7 @@ void BulletVehicle::drive(const algo::Twist2& command,
 void BulletVehicle::substep() {
   const double turn = target_.omega * robot_.half_track;
   drive_->set({target_.v - turn, target_.v + turn, left_load_, right_load_, normal_});
-  world_->stepSimulation(substeps_.length, 0);
+  physics_.step(substeps_.length);
   read_contacts();
 }
 
@@ -228,8 +165,9 @@ void BulletVehicle::read_contacts() {
   double left = 0;
   double right = 0;
   btVector3 normal(0, 0, 0);
-  for (int m = 0; m < dispatcher_->getNumManifolds(); ++m) {
-    const btPersistentManifold& manifold = *dispatcher_->getManifoldByIndexInternal(m);
+  btDispatcher& touches = *physics_.world().getDispatcher();
+  for (int m = 0; m < touches.getNumManifolds(); ++m) {
+    const btPersistentManifold& manifold = *touches.getManifoldByIndexInternal(m);
     const bool first = manifold.getBody0() == chassis_.get();
     for (int c = 0; c < manifold.getNumContacts(); ++c) {
       const btManifoldPoint& point = manifold.getContactPoint(c);
@@ -283,55 +221,6 @@ void BulletVehicle::update_parking() {
   chassis_->setLinearVelocity(btVector3(0, 0, 0));
   chassis_->setAngularVelocity(btVector3(0, 0, 0));
   state_.twist = {};
-}
-
-/// Brings the obstacles around the robot into the dynamics world and takes the others out.
-void BulletVehicle::gather_near(const ObstacleSet& obstacles) {
-  const algo::Vec2 here = state_.pose_W.position();
-  if (gathered_ && (here - gathered_at_).squaredNorm() < kRegather * kRegather) return;
-  gathered_ = true;
-  gathered_at_ = here;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    Body& body = bodies_[k];
-    const bool near = obstacles.may_reach(k, here, robot_.radius + kNear);
-    if (near && !body.present) {
-      world_->addCollisionObject(body.object.get(),
-                                 btBroadphaseProxy::StaticFilter,
-                                 btBroadphaseProxy::AllFilter ^ btBroadphaseProxy::StaticFilter);
-      body.present = true;
-    } else if (!near) {
-      withdraw(body);
-    }
-  }
-}
-
-void BulletVehicle::withdraw(Body& body) {
-  if (body.present) world_->removeCollisionObject(body.object.get());
-  body.present = false;
-}
-
-void BulletVehicle::added(const algo::Obstacle& obstacle) {
-  Body body;
-  body.shape = obstacle_shape(obstacle, kMargin);
-  body.object = make_bullet<btCollisionObject>();
-  body.object->setCollisionShape(body.shape.get());
-  body.object->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
-  body.object->setFriction(0);
-  body.object->setWorldTransform(obstacle_transform(obstacle));
-  bodies_.push_back(std::move(body));
-  gathered_ = false;
-}
-
-void BulletVehicle::moved(std::size_t index, const algo::Obstacle& obstacle) {
-  withdraw(bodies_[index]);
-  bodies_[index].object->setWorldTransform(obstacle_transform(obstacle));
-  gathered_ = false;
-}
-
-void BulletVehicle::removed(std::size_t index) {
-  withdraw(bodies_[index]);
-  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(index));
-  gathered_ = false;
 }
 
 }  // namespace sim

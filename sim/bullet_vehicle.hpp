@@ -1,4 +1,4 @@
-// sim/bullet_vehicle.hpp: a vehicle with mass, friction and contacts, in a Bullet world of its own.
+// sim/bullet_vehicle.hpp: a base with mass, friction and contacts, in a Bullet world of its own.
 #pragma once
 
 #include <vector>
@@ -7,6 +7,7 @@
 
 #include "sim/bullet_ptr.hpp"
 #include "sim/drive_constraint.hpp"
+#include "sim/physics.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -14,9 +15,6 @@ namespace sim {
 /// A rigid chassis on frictionless support balls; all traction comes from a DriveConstraint
 /// (physics.md 3). Commands pass through the acceleration limits. Standing still, it is parked: no
 /// step is computed and nothing moves, not by a bit.
-///
-/// Only obstacles near the robot are in the dynamics world, so that a step costs the same among
-/// twenty and among a thousand. Rays never go through Bullet.
 class BulletVehicle final : public VehicleModel {
  public:
   static constexpr double kNear = 1.0;  // [m] beyond the hull: obstacles the dynamics know
@@ -29,49 +27,31 @@ class BulletVehicle final : public VehicleModel {
   void halt() noexcept override { target_ = {}; }
   const VehicleState& state() const override { return state_; }
 
-  void added(const algo::Obstacle& obstacle) override;
-  void moved(std::size_t index, const algo::Obstacle& obstacle) override;
-  void removed(std::size_t index) override;
+  void added(const algo::Obstacle& obstacle) override { physics_.added(obstacle); }
+  void moved(std::size_t index, const algo::Obstacle& obstacle) override {
+    physics_.moved(index, obstacle);
+  }
+  void removed(std::size_t index) override { physics_.removed(index); }
 
  private:
-  /// An obstacle as Bullet sees it, whether or not it is in the dynamics world now.
-  struct Body {
-    BulletPtr<btCollisionShape> shape{};
-    BulletPtr<btCollisionObject> object{};
-    bool present = false;
-  };
-
-  void build_world();
+  void take_down();
   void build_chassis();
   void settle();
   void substep();
   void read_contacts();
   void read_state();
   void update_parking();
-  void gather_near(const ObstacleSet& obstacles);
-  void withdraw(Body& body);
   algo::Pose2 pose() const;
 
   RobotModel robot_{};
   Substeps substeps_;
   VehicleState state_{};
 
-  // Bullet, in the order of construction; torn down in reverse.
-  BulletPtr<btDefaultCollisionConfiguration> configuration_{};
-  BulletPtr<btCollisionDispatcher> dispatcher_{};
-  BulletPtr<btDbvtBroadphase> broadphase_{};
-  BulletPtr<btSequentialImpulseConstraintSolver> solver_{};
-  BulletPtr<btDiscreteDynamicsWorld> world_{};
-  BulletPtr<btStaticPlaneShape> floor_shape_{};
-  BulletPtr<btRigidBody> floor_{};
+  Physics physics_{};
   std::vector<BulletPtr<btCollisionShape>> parts_{};  // of the chassis: hull, supports, casters
   BulletPtr<btCompoundShape> chassis_shape_{};
   BulletPtr<btRigidBody> chassis_{};
   BulletPtr<DriveConstraint> drive_{};
-  std::vector<Body> bodies_{};  // in the order of the ObstacleSet
-
-  algo::Vec2 gathered_at_{0, 0};  // where the near obstacles were last chosen
-  bool gathered_ = false;
 
   algo::Twist2 wanted_{};
   algo::Twist2 target_{};  // wanted_ behind the acceleration limits

@@ -11,7 +11,7 @@
 #include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
 #include "sim/range_caster.hpp"
-#include "sim/sensor_configs.hpp"
+#include "sim/sensor.hpp"
 
 namespace sim {
 
@@ -20,15 +20,19 @@ std::optional<std::string> defect(const InfraredConfig& config);
 
 /// Scan n is taken at (n + phase) x period [s, run clock], all beams at once; the phase is drawn
 /// once a run, so that two scanners do not fire together.
-class InfraredModel {
+class InfraredModel final : public Sensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index);
 
   const InfraredConfig& config() const { return config_; }
-  void add(const algo::Obstacle& obstacle) { caster_.add(obstacle); }
-  void move(std::uint32_t id, const algo::Pose2& pose_W) { caster_.move(id, pose_W); }
-  void remove(std::uint32_t id) { caster_.remove(id); }
+  void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
+  void move(std::uint32_t id, const algo::Pose2& pose_W) override { caster_.move(id, pose_W); }
+  void remove(std::uint32_t id) override { caster_.remove(id); }
+  void sense(const Surroundings& around, algo::Observation& observation) override {
+    sense(around.stamp, around.trail, observation.infrared);
+  }
+  double memory() const override { return config_.period; }
 
   /// Appends the readings of the newest scan taken by `now` [s, run clock], unless it was reported
   /// before.

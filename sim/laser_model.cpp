@@ -102,6 +102,10 @@ void LaserModel::remove(std::uint32_t id) {
   note_surfaces();
 }
 
+void LaserModel::sense(const Surroundings& around, algo::Observation& observation) {
+  if (!sense(around.stamp, around.trail, observation.scans.append())) observation.scans.pop_back();
+}
+
 bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan) {
   static thread_local LaserWorkspace workspace;
   work_ = &workspace;

@@ -12,7 +12,7 @@
 #include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
 #include "sim/range_caster.hpp"
-#include "sim/sensor_configs.hpp"
+#include "sim/sensor.hpp"
 
 namespace sim {
 
@@ -48,8 +48,8 @@ std::optional<std::string> defect(const LaserConfig& config);
 /// a new one is normal. With `rolling` off, every call brings a scan of that instant.
 ///
 /// Order of effects: ray, surface (reflectivity), spot (mixed pixels), bias and noise, rounding;
-/// then dropout, salt and pepper, each from a generator of its own.
-class LaserModel {
+/// then pepper, salt and dropout, each from a generator of its own.
+class LaserModel final : public Sensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index);
@@ -58,11 +58,12 @@ class LaserModel {
   std::size_t beams() const { return pattern_.beams; }
   /// [s] How far back in time a scan reaches at most: the newest sweep may have ended almost one
   /// sweep ago.
-  double memory() const;
+  double memory() const override;
 
-  void add(const algo::Obstacle& obstacle);
-  void move(std::uint32_t id, const algo::Pose2& pose_W);
-  void remove(std::uint32_t id);
+  void add(const algo::Obstacle& obstacle) override;
+  void move(std::uint32_t id, const algo::Pose2& pose_W) override;
+  void remove(std::uint32_t id) override;
+  void sense(const Surroundings& around, algo::Observation& observation) override;
 
   /// Fills `scan` with the newest sweep completed by `now` [s, run clock]. False when that one was
   /// delivered before; `scan` is then meaningless.

@@ -82,7 +82,7 @@ std::optional<std::string> defect(const SensorConfig& config) {
   return kind->defect ? kind->defect(config) : std::nullopt;
 }
 
-std::unique_ptr<Sensor> make_sensor(const SensorConfig& config, std::uint64_t seed) {
+std::unique_ptr<ChannelSensor> make_sensor(const SensorConfig& config, std::uint64_t seed) {
   return find_kind(config.sensor)->make(config, seed);
 }
 

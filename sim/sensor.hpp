@@ -1,4 +1,5 @@
-// sim/sensor.hpp: further sensors of a simulated robot, each a file that fills a channel.
+// sim/sensor.hpp: what every sensor of a simulated robot is, and those that fill a channel, each a
+// file.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +12,10 @@
 #include <vector>
 
 #include "algo/observation.hpp"
+#include "algo/obstacle.hpp"
 #include "sim/obstacle_set.hpp"
+#include "sim/pose_trail.hpp"
+#include "sim/robot_model.hpp"
 #include "sim/sensor_configs.hpp"
 #include "sim/vehicle.hpp"
 
@@ -21,14 +25,43 @@ namespace sim {
 struct Surroundings {
   double stamp = 0;  // [s] run clock
   const VehicleState& vehicle;
+  const PoseTrail& trail;  // where the robot was
   const ObstacleSet& obstacles;
+  bool contact = false;  // something touched the robot within the tick
 };
 
 class Sensor {
  public:
   virtual ~Sensor() = default;
+  Sensor(const Sensor&) = delete;
+  Sensor& operator=(const Sensor&) = delete;
+  Sensor(Sensor&&) = default;
+  Sensor& operator=(Sensor&&) = default;
+
+  // The obstacles as they change, for a sensor that keeps its own picture of them.
+  virtual void add(const algo::Obstacle& /*obstacle*/) {}
+  virtual void move(std::uint32_t /*id*/, const algo::Pose2& /*pose_W*/) {}
+  virtual void remove(std::uint32_t /*id*/) {}
+
+  /// Appends to `observation` the readings that are new.
+  virtual void sense(const Surroundings& around, algo::Observation& observation) = 0;
+  /// [s] How far back along the trail a reading reaches at most.
+  virtual double memory() const { return 0; }
+
+ protected:
+  Sensor() = default;
+};
+
+/// All sensors of `robot`, in the order of their readings; throws std::invalid_argument with a
+/// sentence.
+std::vector<std::unique_ptr<Sensor>> make_sensors(const RobotModel& robot, std::uint64_t seed);
+
+/// A sensor of one channel.
+class ChannelSensor {
+ public:
+  virtual ~ChannelSensor() = default;
   /// Overwrites `values`; false, when there is no new reading in this tick.
-  virtual bool sense(const Surroundings& around, std::vector<double>& values) = 0;
+  virtual bool read(const Surroundings& around, std::vector<double>& values) = 0;
 };
 
 /// What a scenario may set, and within which limits.
@@ -51,7 +84,7 @@ struct SensorKind {
   std::vector<SettingInfo> settings{};
   /// Why settings do not go together, beside their own limits; may be empty.
   std::function<std::optional<std::string>(const SensorConfig&)> defect{};
-  std::function<std::unique_ptr<Sensor>(const SensorConfig&, std::uint64_t seed)> make{};
+  std::function<std::unique_ptr<ChannelSensor>(const SensorConfig&, std::uint64_t seed)> make{};
 };
 
 constexpr std::size_t kMostSensors = 16;
@@ -62,7 +95,7 @@ std::span<const SensorKind> sensor_table();
 /// What is wrong with `config`, as "times must ascend"; nothing when a sensor can be made of it.
 std::optional<std::string> defect(const SensorConfig& config);
 /// Of a config without defect.
-std::unique_ptr<Sensor> make_sensor(const SensorConfig& config, std::uint64_t seed);
+std::unique_ptr<ChannelSensor> make_sensor(const SensorConfig& config, std::uint64_t seed);
 algo::ChannelInfo channel_of(const SensorConfig& config);
 
 /// Lets a sensor read once in a period: at the first tick, then at each whole multiple.

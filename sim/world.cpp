@@ -105,12 +105,10 @@ void World::check() const {
 /// Everything as the scenario says, at time 0.
 void World::start() {
   obstacles_.clear();
-  lasers_.clear();
   if (scenario_.physics == PhysicsKind::Bullet) {
     vehicle_ = std::make_unique<BulletVehicle>(robot_, scenario_.period);
   } else {
-    vehicle_ =
-        std::make_unique<KinematicVehicle>(robot_, scenario_.period, scenario_.drive.ramps);
+    vehicle_ = std::make_unique<KinematicVehicle>(robot_, scenario_.period, scenario_.drive.ramps);
   }
   algo::Pose2 pose = scenario_.start;
   pose.heading = algo::wrap_angle(pose.heading);
@@ -118,25 +116,9 @@ void World::start() {
   errors_ = DriveErrors(scenario_.drive, seed_);
   errors_.reset(pose);
 
+  sensors_ = make_sensors(robot_, seed_);
   double memory = 0;
-  for (const LaserConfig& config : robot_.sensors.lasers) {
-    lasers_.emplace_back(config, seed_, static_cast<std::uint32_t>(lasers_.size()));
-    memory = std::max(memory, lasers_.back().memory());
-  }
-  sonar_.reset();
-  if (robot_.sensors.sonar) {
-    sonar_.emplace(*robot_.sensors.sonar, robot_.radius, seed_);
-    memory = std::max(memory, robot_.sensors.sonar->ping);
-  }
-  infrared_.clear();
-  for (const InfraredConfig& config : robot_.sensors.infrared) {
-    infrared_.emplace_back(config, seed_, static_cast<std::uint32_t>(infrared_.size()));
-    memory = std::max(memory, config.period);
-  }
-  sensors_.clear();
-  for (const SensorConfig& config : robot_.sensors.further) {
-    sensors_.push_back(make_sensor(config, seed_ + sensors_.size()));
-  }
+  for (const auto& sensor : sensors_) memory = std::max(memory, sensor->memory());
   start_localization(pose);
   const Substeps substeps(scenario_.period);
   trail_ = std::make_unique<PoseTrail>(substeps.length, memory + scenario_.period);
@@ -224,13 +206,8 @@ void World::sense(algo::Observation& observation) {
   observation.clear_sensors();
   observation.stamp = now;
   sense_motion(observation);
-  for (LaserModel& laser : lasers_) {
-    if (!laser.sense(now, *trail_, observation.scans.append())) observation.scans.pop_back();
-  }
-  if (sonar_) sonar_->sense(now, *trail_, observation.sonar);
-  for (InfraredModel& scanner : infrared_) scanner.sense(now, *trail_, observation.infrared);
-  sense_contact(observation);
-  sense_channels(observation);
+  const Surroundings around{now, vehicle_->state(), *trail_, obstacles_, contact()};
+  for (const auto& sensor : sensors_) sensor->sense(around, observation);
 }
 
 /// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
@@ -283,51 +260,11 @@ void World::sense_turn(algo::Observation& observation) {
   observation.odometry.twist.omega = rate - localization_.bias();
 }
 
-/// [rad] In R, of the surface nearest to the robot's centre: against the slope of the distance.
-double World::contact_bearing() const {
-  constexpr double kStep = 1e-4;  // [m]
-  const algo::Pose2& pose_W = vehicle_->state().pose_W;
-  const algo::Vec2 p_W = pose_W.position();
-  const auto slope = [&](const algo::Vec2& step) {
-    return obstacles_.distance(p_W + step) - obstacles_.distance(p_W - step);
-  };
-  const double bearing = std::atan2(-slope({0, kStep}), -slope({kStep, 0}));
-  return algo::wrap_angle(bearing - pose_W.heading);
-}
-
-/// A contact presses the bumper whose share of the hull it lies in.
-void World::sense_contact(algo::Observation& observation) {
-  if (robot_.sensors.bumpers == 0) return;
-  const bool contact = this->contact();
-  const double share = 2 * std::numbers::pi / robot_.sensors.bumpers;
-  const double bearing = contact && robot_.sensors.bumpers > 1 ? contact_bearing() : 0;
-  const auto pressed =
-      static_cast<std::uint32_t>(std::lround(bearing / share) + robot_.sensors.bumpers) %
-      robot_.sensors.bumpers;
-  for (std::uint32_t k = 0; k < robot_.sensors.bumpers; ++k) {
-    const double heading = algo::wrap_angle(share * k);
-    const algo::Vec2 place = robot_.radius * algo::direction(heading);
-    observation.bumpers.append() = {.mount_R = {place.x(), place.y(), heading},
-                                    .stamp = observation.stamp,
-                                    .pressed = contact && k == pressed};
-  }
-}
-
-void World::sense_channels(algo::Observation& observation) {
-  const Surroundings around{observation.stamp, vehicle_->state(), obstacles_};
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    algo::ChannelReading& reading = observation.channels.append();
-    reading.channel = static_cast<std::uint8_t>(i);
-    reading.stamp = observation.stamp;
-    if (!sensors_[i]->sense(around, reading.values)) observation.channels.pop_back();
-  }
-}
-
 std::optional<algo::GroundTruth> World::ground_truth() const {
   const VehicleState& state = vehicle_->state();
   const double distance = obstacles_.distance(state.pose_W.position());
-  const double clearance = hull_.half_length > 0 ? obstacles_.clearance(hull_, state.pose_W)
-                                                 : distance - robot_.radius;
+  const double clearance =
+      hull_.half_length > 0 ? obstacles_.clearance(hull_, state.pose_W) : distance - robot_.radius;
   return algo::GroundTruth{.pose = state.pose_W,
                            .obstacle_distance = distance,
                            .clearance = clearance,

@@ -14,13 +14,10 @@
 #include "algo/robot.hpp"
 #include "sim/drive_errors.hpp"
 #include "sim/gyro_model.hpp"
-#include "sim/infrared_model.hpp"
-#include "sim/laser_model.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
 #include "sim/sensor.hpp"
-#include "sim/sonar_model.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -99,9 +96,6 @@ class World final : public algo::Robot, public algo::Editing {
   void sense(algo::Observation& observation);
   void sense_motion(algo::Observation& observation);
   void sense_turn(algo::Observation& observation);
-  void sense_contact(algo::Observation& observation);
-  void sense_channels(algo::Observation& observation);
-  double contact_bearing() const;
 
   /// An obstacle that stands for one of the robots near, whichever needs it.
   struct Slot {
@@ -120,11 +114,8 @@ class World final : public algo::Robot, public algo::Editing {
 
   ObstacleSet obstacles_{};
   std::unique_ptr<VehicleModel> vehicle_{};
-  std::vector<LaserModel> lasers_{};
-  std::optional<SonarModel> sonar_{};
-  std::vector<InfraredModel> infrared_{};
+  std::vector<std::unique_ptr<Sensor>> sensors_{};
   std::optional<GyroModel> gyro_{};
-  std::vector<std::unique_ptr<Sensor>> sensors_{};  // one a channel
   algo::LocalLocalization localization_{};
   std::unique_ptr<PoseTrail> trail_{};
   DriveErrors errors_;

@@ -86,9 +86,7 @@ std::optional<std::string> World::objection(const algo::RemoveObstacle& remove) 
 void World::insert(const algo::Obstacle& obstacle) {
   obstacles_.add(obstacle);
   vehicle_->added(obstacle);
-  for (LaserModel& laser : lasers_) laser.add(obstacle);
-  if (sonar_) sonar_->add(obstacle);
-  for (InfraredModel& scanner : infrared_) scanner.add(obstacle);
+  for (const auto& sensor : sensors_) sensor->add(obstacle);
 }
 
 void World::place(std::size_t index, const algo::Pose2& pose_W) {
@@ -99,18 +97,14 @@ void World::place(std::size_t index, const algo::Pose2& pose_W) {
 
 /// Moves obstacle `id` for the sensors.
 void World::show(std::uint32_t id, const algo::Pose2& pose_W) {
-  for (LaserModel& laser : lasers_) laser.move(id, pose_W);
-  if (sonar_) sonar_->move(id, pose_W);
-  for (InfraredModel& scanner : infrared_) scanner.move(id, pose_W);
+  for (const auto& sensor : sensors_) sensor->move(id, pose_W);
 }
 
 void World::remove(std::uint32_t id) {
   const std::size_t index = *obstacles_.find(id);
   obstacles_.remove(index);
   vehicle_->removed(index);
-  for (LaserModel& laser : lasers_) laser.remove(id);
-  if (sonar_) sonar_->remove(id);
-  for (InfraredModel& scanner : infrared_) scanner.remove(id);
+  for (const auto& sensor : sensors_) sensor->remove(id);
   find_slots();
 }
 

@@ -38,7 +38,8 @@ double World::sight() const {
     reach = std::max(reach, laser.range_max + laser.mount_R.position().norm());
     if (laser.rolling) memory = std::max(memory, 2 * laser.turns * laser.mirror_period);
   }
-  if (robot_.sensors.sonar) reach = std::max(reach, robot_.sensors.sonar->range_max + robot_.radius);
+  if (robot_.sensors.sonar)
+    reach = std::max(reach, robot_.sensors.sonar->range_max + robot_.radius);
   for (const InfraredConfig& scanner : robot_.sensors.infrared) {
     reach = std::max(reach, scanner.range_max + scanner.mount_R.position().norm());
   }

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kPurpose = 0x434f4d50;  // of its noise: no other sensor's
 
-class Compass final : public Sensor {
+class Compass final : public ChannelSensor {
  public:
   Compass(const SensorConfig& config, std::uint64_t seed)
       : north_(config.number("north", 0)),
@@ -19,7 +19,7 @@ class Compass final : public Sensor {
         every_(config.number("period", 0.1)),
         random_(seed, kPurpose) {}
 
-  bool sense(const Surroundings& around, std::vector<double>& values) override {
+  bool read(const Surroundings& around, std::vector<double>& values) override {
     if (!every_.due(around.stamp)) return false;
     std::array<double, 1> draw{};
     random_.fill_normal(draw);

@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kAny = 1e9;
 
-class Scripted final : public Sensor {
+class Scripted final : public ChannelSensor {
  public:
   explicit Scripted(const SensorConfig& config)
       : times_(*config.find("times")),
         values_(*config.find("values")),
         every_(config.number("period", 1.0)) {}
 
-  bool sense(const Surroundings& around, std::vector<double>& values) override {
+  bool read(const Surroundings& around, std::vector<double>& values) override {
     if (!every_.due(around.stamp)) return false;
     values.assign(1, at(around.stamp));
     return true;
