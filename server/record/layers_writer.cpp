@@ -89,15 +89,14 @@ LayersWriter::Shown LayersWriter::write_shown(Builder& b, const algo::Telemetry&
   });
   if (!more_.empty()) out.more = b.CreateVector(more_);
 
-  float* value = nullptr;
-  out.values = b.CreateUninitializedVector(values, &value);
+  float* first = nullptr;
+  out.values = b.CreateUninitializedVector(values, &first);
+  float* value = first;
   each_layer(t, [&](const algo::Layer& layer) {
-    value =
-        std::transform(layer.values.data(), layer.values.data() + count_of(layer), value, rounded);
+    value = std::copy_n(layer.values.data(), count_of(layer), value);
   });
-  for (const algo::Measure& each : t.output.measures) {
-    *value++ = rounded(static_cast<float>(each.value));
-  }
+  for (const algo::Measure& each : t.output.measures) *value++ = static_cast<float>(each.value);
+  std::transform(first, value, first, rounded);  // all in one go: in vectors
   std::uint16_t* count = nullptr;
   out.counts = b.CreateUninitializedVector(index, &count);
   each_layer(
