@@ -34,6 +34,13 @@ bool stands(const RobotModel& robot) {
   return true;
 }
 
+/// Bullet would stop the robot at what the ball meets, and the hull would not have touched it.
+bool under_hull(const RobotModel& robot, const Caster& caster) {
+  if (robot.round) return std::hypot(caster.x, caster.y) + caster.radius <= robot.radius;
+  return std::abs(caster.x) + caster.radius <= robot.hull_length / 2 &&
+         std::abs(caster.y) + caster.radius <= robot.hull_width / 2;
+}
+
 }  // namespace
 
 bool Sensors::has_laser() const {
@@ -96,10 +103,10 @@ std::optional<std::string> defect(const RobotModel& robot) {
   if (robot.wheels.empty()) return "wheels: there must be one on each side at least";
   if (robot.mass_height > robot.hull_high) return "mass_height: must not be above the hull";
   for (const Caster& caster : robot.casters) {
-    if (std::hypot(caster.x, caster.y) > robot.radius) return "casters: must be under the hull";
+    if (!under_hull(robot, caster)) return "casters: must be under the hull";
   }
   for (const double x : robot.wheels) {
-    if (std::abs(x) > robot.radius) return "wheels: must be under the hull";
+    if (std::abs(x) > robot.hull_length / 2) return "wheels: must be under the hull";
   }
   if (!stands(robot)) {
     return "casters: the robot would tip over; its wheels and casters must surround the middle "

@@ -52,8 +52,8 @@ RobotLibrary own_robots() {
   return RobotLibrary(state_folder() / "robots");
 }
 
-void add_robot_option(CLI::App& command, std::string& robot) {
-  command
+CLI::Option* add_robot_option(CLI::App& command, std::string& robot) {
+  return command
       .add_option(
           "--robot-model",
           robot,

@@ -41,7 +41,7 @@ void add_map_command(CLI::App& app, int& status);
 /// Built in, and the user's own.
 RobotLibrary own_robots();
 /// --robot-model, for RobotLibrary::load_file_or_name().
-void add_robot_option(CLI::App& command, std::string& robot);
+CLI::Option* add_robot_option(CLI::App& command, std::string& robot);
 
 /// Options that several commands share.
 struct RunFlags {

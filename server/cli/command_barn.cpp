@@ -158,17 +158,20 @@ void add_barn_command(CLI::App& app, int& status) {
   barn->add_option("--controller",
                    command->options.conditions.controller,
                    "Default: strip; strip_moving where something moves");
-  barn->add_flag("--stress",
-                 command->options.conditions.stress,
-                 "Short scanner, slow base, delay, slip, drifting odometry");
+  barn->add_flag(
+      "--stress",
+      command->options.conditions.stress,
+      "Short scanner, slow base, delay, slip, drifting odometry; another robot keeps its own "
+      "scanners and limits");
   barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
       ->check(CLI::IsMember({"bullet", "kinematic"}));
-  add_robot_option(*barn, command->robot);
+  CLI::Option* const robot = add_robot_option(*barn, command->robot);
   barn->add_option("--scanner",
                    command->scanner,
                    "flat (default): the benchmark's, which sees all at one instant; lms200: the "
                    "default LMS200, which sweeps")
-      ->check(CLI::IsMember({"flat", "lms200"}));
+      ->check(CLI::IsMember({"flat", "lms200"}))
+      ->excludes(robot);
   barn->add_option("--repeats", command->options.repeats, "Seeds of each world (default 1)")
       ->check(CLI::Range(1, 10'000));
   barn->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")

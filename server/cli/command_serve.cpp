@@ -159,6 +159,7 @@ void add_serve_command(CLI::App& app, int& status) {
       ->type_name("DIR")
       ->capture_default_str();
   command->add_option("--robots", options->app.robots, "Folder of your own robot models")
+      ->type_name("DIR")
       ->capture_default_str();
   command->add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
       ->type_name("DIR")

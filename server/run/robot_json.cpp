@@ -1,6 +1,7 @@
 // server/run/robot_json.cpp: one reader and one writer.
 #include "server/run/robot_json.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,13 +14,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr NumberRange kLength{0.01, 20};   // [m]
-constexpr NumberRange kHeight{0, 5};       // [m] over the floor
-constexpr NumberRange kPlace{-10, 10};     // [m] in R
-constexpr NumberRange kMass{0.01, 1e5};    // [kg]
-constexpr NumberRange kSpeed{1e-3, 20};    // [m/s]
-constexpr NumberRange kTurn{1e-3, 20};     // [rad/s]
-constexpr NumberRange kChange{1e-3, 100};  // [m/s2] and [rad/s2]
+constexpr NumberRange kLength{0.01, 20};      // [m]
+constexpr NumberRange kHeight{0, 5};          // [m] over the floor
+constexpr NumberRange kMassHeight{0.001, 5};  // [m]
+constexpr NumberRange kPlace{-10, 10};        // [m] in R
+constexpr NumberRange kMass{0.01, 1e5};       // [kg]
+constexpr NumberRange kSpeed{1e-3, 20};       // [m/s]
+constexpr NumberRange kTurn{1e-3, 20};        // [rad/s]
+constexpr NumberRange kChange{1e-3, 100};     // [m/s2] and [rad/s2]
 
 void read_hull(const JsonReader& in, sim::RobotModel& robot) {
   in.only({"radius", "length", "width", "low", "high"});
@@ -48,11 +50,13 @@ sim::Caster caster_from_json(const JsonReader& in) {
 
 /// One ahead and one behind, where the wheels lie in one line.
 std::vector<sim::Caster> usual_casters(const sim::RobotModel& robot) {
-  constexpr double kRadius = 0.04;   // [m]
+  constexpr double kRadius = 0.04;   // [m] at most
+  constexpr double kOfHull = 0.2;    // of half its length
   constexpr double kRaised = 0.001;  // [m] so that the drive wheels carry
   constexpr double kShare = 0.77;    // of the way from R to the hull
   const double x = kShare * robot.hull_length / 2;
-  return {{x, 0, kRadius, kRaised}, {-x, 0, kRadius, kRaised}};
+  const double radius = std::min(kRadius, kOfHull * robot.hull_length / 2);
+  return {{x, 0, radius, kRaised}, {-x, 0, radius, kRaised}};
 }
 
 void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
@@ -105,12 +109,15 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
   if (!valid_name(robot.name)) {
     in.fail("name", "must be 1 to 64 of the characters a-z, 0-9, _ and -");
   }
+  in.text_or("title", "");
+  in.text_or("description", "");
   if (!in.has("hull")) in.fail("hull", "is missing");
   if (!in.has("limits")) in.fail("limits", "is missing");
   read_hull(in.object("hull"), robot);
   robot.mass = in.number("mass", kMass);
-  robot.mass_height =
-      in.number_or("mass_height", (robot.hull_low + robot.hull_high) / 2, {0.001, 5});
+  const double middle = (robot.hull_low + robot.hull_high) / 2;
+  robot.mass_height = in.number_or(
+      "mass_height", std::clamp(middle, kMassHeight.min, kMassHeight.max), kMassHeight);
   read_wheels(in, robot);
   read_limits(in.object("limits"), robot);
   read_sensors(in, robot.sensors);

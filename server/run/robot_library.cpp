@@ -1,7 +1,6 @@
 // server/run/robot_library.cpp: built-in robots come from sim/robots, embedded at build time.
 #include "server/run/robot_library.hpp"
 
-#include <algorithm>
 #include <map>
 #include <system_error>
 
@@ -13,6 +12,7 @@
 #include "server/run/json_limits.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/robot_json.hpp"
+#include "server/run/sensor_json.hpp"
 
 namespace server {
 namespace {
@@ -118,9 +118,43 @@ sim::RobotModel read_robot(const JsonReader& in, const RobotLibrary& robots) {
   }
 }
 
+void replace_robot(sim::Scenario& scenario, const sim::RobotModel& robot) {
+  for (sim::OtherRobot& other : scenario.robots) {
+    if (other.robot && same_sensors(other.robot->sensors, scenario.robot.sensors)) {
+      other.robot->sensors = robot.sensors;
+    }
+  }
+  scenario.robot = robot;
+  scenario.drive.max_v.reset();
+  scenario.drive.max_omega.reset();
+  scenario.drive.max_acceleration.reset();
+  scenario.drive.max_angular_acceleration.reset();
+}
+
+void choose_robot(sim::Scenario& scenario, const json& choice, const RobotLibrary& robots) {
+  if (!scenario.log.empty()) throw DocumentError("robot", "cannot be chosen for a recorded log");
+  const json document = {{"robot", choice}};
+  if (choice != scenario.robot.name) {
+    replace_robot(scenario, read_robot({document, ""}, robots));
+    return;
+  }
+  try {
+    sim::RobotModel again = robots.load(scenario.robot.name);
+    again.sensors = scenario.robot.sensors;
+    scenario.robot = std::move(again);
+  } catch (const LibraryError& e) {
+    if (e.kind() != Kind::NotFound) throw DocumentError("robot", e.what());
+    // Written out in the scenario alone: there is no newer one.
+  }
+}
+
 json robot_reference(const sim::RobotModel& robot) {
+  // A name stands for the usual sensors too, of which a document says only what differs.
   const auto found = builtin().find(robot.name);
-  if (found != builtin().end() && sim::same_machine(found->second.robot, robot)) return robot.name;
+  if (found != builtin().end() && sim::same_machine(found->second.robot, robot) &&
+      same_sensors(found->second.robot.sensors, {})) {
+    return robot.name;
+  }
   return to_json(robot);
 }
 

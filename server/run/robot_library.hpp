@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/run/json_reader.hpp"
-#include "sim/robot_model.hpp"
+#include "sim/scenario.hpp"
 
 namespace server {
 
@@ -43,6 +43,14 @@ sim::RobotModel builtin_robot(const std::string& name);
 
 /// The field "robot" of `in`: a name, or a whole model. Throws DocumentError.
 sim::RobotModel read_robot(const JsonReader& in, const RobotLibrary& robots);
+/// Puts `robot` in place of the scenario's: it drives with its own sensors and limits. The
+/// scenario's other robots that have the first one's sensors have the new ones.
+void replace_robot(sim::Scenario& scenario, const sim::RobotModel& robot);
+/// The same by a name or a whole model. The name of the scenario's own robot keeps its sensors and
+/// limits. Throws DocumentError about "robot".
+void choose_robot(sim::Scenario& scenario,
+                  const nlohmann::json& choice,
+                  const RobotLibrary& robots);
 /// The field that read_robot() reads: the name of a built-in one, else the whole model but for its
 /// sensors, so that the document needs no other file.
 nlohmann::json robot_reference(const sim::RobotModel& robot);

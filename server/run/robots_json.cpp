@@ -96,14 +96,6 @@ sim::OtherRobot other_from_json(const JsonReader& in,
   return robot;
 }
 
-bool same_sensors(const sim::Sensors& a, const sim::Sensors& b) {
-  json first = json::object();
-  json second = json::object();
-  write_sensors(a, first);
-  write_sensors(b, second);
-  return first == second;
-}
-
 json other_to_json(const sim::OtherRobot& robot, const sim::Scenario& scenario) {
   json out = {{"start", to_json(robot.start)}};
   if (robot.robot) {

@@ -80,7 +80,7 @@ void check_others(const sim::Scenario& scenario) {
     check_choices(at,
                   robot.controller.value_or(scenario.controller),
                   robot.filter.value_or(scenario.filter),
-                  scenario.robot.sensors.has_laser());
+                  (robot.robot ? *robot.robot : scenario.robot).sensors.has_laser());
     const algo::PipelineConfig config = pipeline_config(robot, scenario);
     check_parameters(at, config.controller, config.parameters);
   }
@@ -142,10 +142,7 @@ RunSpec make_spec(sim::Scenario scenario,
                   const RunOverrides& overrides,
                   const RobotLibrary& robots) {
   if (!overrides.robot.is_null()) {
-    if (!scenario.log.empty()) throw DocumentError("robot", "cannot be chosen for a recorded log");
-    const json document = {{"robot", overrides.robot}};
-    // A scenario's own robot keeps the sensors that the scenario gives it.
-    if (overrides.robot != scenario.robot.name) scenario.robot = read_robot({document, ""}, robots);
+    choose_robot(scenario, overrides.robot, robots);
   }
   if (overrides.controller) scenario.controller = *overrides.controller;
   if (overrides.filter) scenario.filter = *overrides.filter;

@@ -37,8 +37,7 @@ struct RunOverrides {
   std::optional<std::string> controller{};
   std::optional<std::string> filter{};
   std::optional<sim::PhysicsKind> physics{};
-  /// A name, or a whole model, which brings its own sensors; null: as the scenario has it. The name
-  /// of the scenario's own robot changes nothing.
+  /// As for choose_robot(); null: as the scenario has it.
   nlohmann::json robot{};
   std::optional<std::uint64_t> seed{};
   nlohmann::json parameters = nlohmann::json::object();

@@ -102,7 +102,7 @@ json to_json(const sim::InfraredConfig& scanner) {
       {"noise", scanner.noise}};
 }
 
-/// `false`: none; an object: one with those errors; absent: as the vehicle has it.
+/// `false`: none; an object: one with those errors; absent: as the robot has it.
 void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
   if (!in.has("gyro")) return;
   if (in.raw()["gyro"].is_boolean()) {
@@ -116,6 +116,7 @@ void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
   config.bias_walk = gyro.number_or("bias_walk", config.bias_walk);
   config.noise = gyro.number_or("noise", config.noise);
   if (const auto complaint = sim::defect(config)) in.fail("gyro", *complaint);
+  sensors.has_gyro = true;
   sensors.gyro = config;
 }
 
@@ -179,7 +180,11 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
           laser_from_json({list[i], fmt::format("{}/{}", in.at("lasers"), i)}));
     }
   }
-  if (in.has("sonar")) sensors.sonar = sonar_from_json(in.object("sonar"), in.at("sonar"));
+  if (in.has("sonar") && in.raw()["sonar"] == false) {
+    sensors.sonar.reset();
+  } else if (in.has("sonar")) {
+    sensors.sonar = sonar_from_json(in.object("sonar"), in.at("sonar"));
+  }
   if (in.has("infrared")) {
     sensors.infrared.clear();
     const json& list = in.array("infrared", 4);
@@ -207,6 +212,14 @@ void write_sensors(const sim::Sensors& s, nlohmann::json& out) {
   }
   if (s.bumpers != 1) out["bumpers"] = s.bumpers;
   if (!s.encoders) out["encoders"] = false;
+}
+
+bool same_sensors(const sim::Sensors& a, const sim::Sensors& b) {
+  json first = json::object();
+  json second = json::object();
+  write_sensors(a, first);
+  write_sensors(b, second);
+  return first == second;
 }
 
 }  // namespace server

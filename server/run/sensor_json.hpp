@@ -14,5 +14,6 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors);
 
 /// The same fields into `out`; all but the lasers only where they are not as usual.
 void write_sensors(const sim::Sensors& s, nlohmann::json& out);
+bool same_sensors(const sim::Sensors& a, const sim::Sensors& b);
 
 }  // namespace server

@@ -16,7 +16,7 @@ namespace {
 // How often is done what is due by the clock; frames and answers ring a bell.
 constexpr std::chrono::milliseconds kTendPeriod{40};
 
-// Of all fast runs together: some 200 MB.
+// Of all fast runs together: some 50 MB.
 constexpr std::size_t kSharedFrames = 1024;
 
 std::string prepared(const std::filesystem::path& database) {

@@ -17,7 +17,7 @@ nlohmann::json accepted_json(const Session& session, bool stop);
 nlohmann::json state_json(const Session& session);
 /// The same with the newest tick: pose, clearance, mission, hold and the two sentences.
 nlohmann::json session_json(const Session& session);
-/// Controllers, filters, vehicles and parameters by name, with labels and help.
+/// Controllers, filters, physics and parameters by name, with labels and help.
 nlohmann::json catalog_json();
 
 }  // namespace server

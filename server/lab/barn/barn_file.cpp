@@ -119,13 +119,7 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
   }
   // Low enough for every obstacle, and clear of the hull.
   scenario.robot.sensors.lasers.front().height = 0.30;
-  if (conditions.robot) {
-    scenario.robot = *conditions.robot;
-    drive.max_v.reset();
-    drive.max_omega.reset();
-    drive.max_acceleration.reset();
-    drive.max_angular_acceleration.reset();
-  }
+  if (conditions.robot) replace_robot(scenario, *conditions.robot);
 }
 
 }  // namespace
@@ -172,8 +166,12 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
     obstacle.pose_W = {at_W.x(), at_W.y(), 0};
   }
   equip(scenario, conditions);
-  const double max_v = scenario.drive.max_v.value_or(scenario.robot.max_v);
-  const double max_omega = scenario.drive.max_omega.value_or(scenario.robot.max_omega);
+  const auto most = [](const algo::ParameterInfo& limit, double value) {
+    return std::clamp(value, limit.min, limit.max);
+  };
+  const double max_v = most(algo::kMaxSpeed, scenario.drive.max_v.value_or(scenario.robot.max_v));
+  const double max_omega =
+      most(algo::kMaxTurnRate, scenario.drive.max_omega.value_or(scenario.robot.max_omega));
   scenario.controller = conditions.controller;
   if (scenario.controller.empty()) scenario.controller = moving ? "strip_moving" : "strip";
   scenario.filter = "median";

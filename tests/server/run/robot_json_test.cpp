@@ -128,6 +128,8 @@ TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
       {R"({"casters": [{"x": 0.4, "radius": 0.04}]})", "casters: the robot would tip over"},
       {R"({"casters": [{"x": 0.4}]})", "casters/0/radius: is missing"},
       {R"({"casters": [{"x": 5, "radius": 0.04}]})", "casters: must be under the hull"},
+      {R"({"casters": [{"x": 0.58, "radius": 0.04}]})", "casters: must be under the hull"},
+      {R"({"title": 7})", "title: must be"},
       {R"({"casters": [{"x": 0.4, "radius": 0.04, "z": 1}]})", "casters/0: unknown field 'z'"},
       {R"({"limits": null})", "limits: is missing"},
       {R"({"limits": {"speed": null}})", "limits/speed: is missing"},
@@ -223,6 +225,80 @@ TEST_F(RobotFolder, ARobotIsChosenByNameOrWhole) {
   EXPECT_EQ(to_json(make_spec(sensors, overrides).scenario)["sonar"], to_json(sensors)["sonar"]);
   overrides.robot = "tank";
   EXPECT_THROW(make_spec(sensors, overrides), DocumentError);
+}
+
+TEST(RobotJson, AGyroOfTheScenarioTakesThePlaceOfNone) {
+  json robot = carrier();
+  robot["gyro"] = false;
+  json document = {{"name", "a"}, {"robot", robot}};
+  EXPECT_FALSE(scenario_from_json(document).robot.sensors.has_gyro);
+  document["gyro"] = {{"noise", 0.01}};
+  const sim::Scenario scenario = scenario_from_json(document);
+  EXPECT_TRUE(scenario.robot.sensors.has_gyro);
+  EXPECT_EQ(to_json(scenario), to_json(scenario_from_json(to_json(scenario))));
+}
+
+TEST(RobotJson, ASonarCanBeTakenAway) {
+  json robot = carrier();
+  robot["sonar"] = json::object();
+  const json document = {{"name", "a"}, {"robot", robot}, {"sonar", false}};
+  EXPECT_FALSE(scenario_from_json(document).robot.sensors.sonar);
+}
+
+TEST(RobotJson, AFurtherRobotIsCheckedByItsOwnScanners) {
+  json blind = carrier();
+  blind["lasers"] = json::array();
+  blind["sonar"] = json::object();
+  json document = {{"name", "a"},
+                   {"controller", "modified"},
+                   {"robots", {{{"start", {{"x", 5}, {"y", 5}}}, {"robot", blind}}}}};
+  try {
+    make_spec(scenario_from_json(document), {});
+    ADD_FAILURE() << "it cannot see";
+  } catch (const DocumentError& e) {
+    EXPECT_THAT(e.what(), StartsWith("robots/0/controller: 'modified' needs a laser"));
+  }
+  document["robots"][0]["controller"] = "vfh";
+  EXPECT_NO_THROW(make_spec(scenario_from_json(document), {}));
+}
+
+TEST(RobotJson, AChosenRobotDrivesWithinItsOwnLimits) {
+  sim::Scenario people = ScenarioLibrary({}, {}).load("people");
+  ASSERT_TRUE(people.drive.max_v);
+  people.robots.push_back({.start = {50, 0, 0}, .robot = builtin_robot("jackal")});
+  people.robots.back().robot->sensors = people.robot.sensors;
+  RunOverrides overrides;
+  overrides.robot = carrier();
+  const sim::Scenario chosen = make_spec(people, overrides).scenario;
+  EXPECT_FALSE(chosen.drive.max_v || chosen.drive.max_omega || chosen.drive.max_acceleration);
+  EXPECT_EQ(chosen.robots.back().robot->sensors.lasers.size(), 2U);
+  overrides.robot = people.robot.name;
+  EXPECT_EQ(make_spec(people, overrides).scenario.drive, people.drive);
+}
+
+TEST_F(RobotFolder, TheNewestModelOfTheSameNameDrivesWithTheScenariosSensors) {
+  write("carrier.json", carrier().dump());
+  sim::Scenario scenario = scenario_from_json(
+      json::parse(R"({"name":"a","robot":"carrier","lasers":[{}]})"), RobotLibrary(folder));
+  json heavier = carrier();
+  heavier["mass"] = 300;
+  write("carrier.json", heavier.dump());
+  RunOverrides overrides;
+  overrides.robot = "carrier";
+  const sim::RobotModel robot = make_spec(scenario, overrides, RobotLibrary(folder)).scenario.robot;
+  EXPECT_EQ(robot.mass, 300);
+  EXPECT_EQ(robot.sensors.lasers.size(), 1U);
+  EXPECT_EQ(make_spec(scenario, overrides).scenario.robot.mass, 200);  // no newer one there
+}
+
+TEST(RobotJson, WhatIsAcceptedReadsAgain) {
+  for (const char* patch : {R"({"hull": {"low": 0, "high": 0.0015}})",
+                            R"({"hull": {"length": 0.05, "width": 0.05}, "track": 0.05})"}) {
+    json document = carrier();
+    document.merge_patch(json::parse(patch));
+    const json written = robot_document(read(document));
+    EXPECT_EQ(written, robot_document(read(written))) << patch;
+  }
 }
 
 TEST(RobotJson, AUsersRobotDrivesWithItsTwoScanners) {

@@ -96,8 +96,8 @@ function RobotPick(props: { session: SessionState }): JSX.Element | null {
   const robots = use_store(app.ui, (u) => u.robots);
   const name = props.session.robot.name;
   if (robots.length === 0) return null;
-  const known = robots.some((r) => r.name === name);
   const choices = robots.filter((r) => r.usable).map((r) => ({ value: r.name, label: r.title }));
+  const known = choices.some((c) => c.value === name);
   const help = robots.find((r) => r.name === name)?.description;
   return (
     <section>
