@@ -27,6 +27,7 @@ json robots_json(const RobotLibrary& robots) {
                      {"description", entry.description},
                      {"builtin", entry.builtin},
                      {"usable", entry.usable}});
+    if (entry.usable) items.back()["model"] = robot_document(robots.load(entry.name));
   }
   return {{"items", std::move(items)}, {"next", nullptr}};
 }
@@ -43,12 +44,6 @@ void add_scenario_routes(net::Router& router, ApiContext& context) {
       "GET", "/api/v1/robots", made_on_worker(context, [&context](const net::Request&, Worker&) {
         return json_response(200, robots_json(context.library.robots()));
       }));
-  router.add("GET",
-             "/api/v1/robots/{name}",
-             made_on_worker(context, [&context](const net::Request& request, Worker&) {
-               return json_response(
-                   200, robot_document(context.library.robots().load(request.params.at("name"))));
-             }));
   router.add(
       "GET", "/api/v1/scenarios", made_on_worker(context, [&context](const net::Request&, Worker&) {
         json items = json::array();

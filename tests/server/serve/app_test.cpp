@@ -109,7 +109,7 @@ TEST_F(AppTest, EveryReadAnswersWithTheKeysItsSchemaRequires) {
   EXPECT_GE(read, 18);
 }
 
-TEST_F(AppTest, ElevenMalformedScenariosAreRefusedByFieldAndNotKept) {
+TEST_F(AppTest, TwelveMalformedScenariosAreRefusedByFieldAndNotKept) {
   const std::vector<std::pair<std::string, std::string>> cases{
       {R"({"period":"fast"})", "period"},
       {R"({"obstacles":[{"type":"cylinder","x":3,"y":3,"radius":-1}]})", "obstacles/0: radius"},
@@ -122,7 +122,8 @@ TEST_F(AppTest, ElevenMalformedScenariosAreRefusedByFieldAndNotKept) {
       {R"({"obstacles":[{"id":1,"type":"cylinder","x":3,"y":3,"radius":1},)"
        R"({"id":1,"type":"cylinder","x":6,"y":3,"radius":1}]})",
        "obstacles/1/id: 1 is used twice"},
-      {R"({"robot":"tank"})", "robot named \"tank\""},
+      {R"({"robot":"tank"})", "robot: 'tank' is unknown"},
+      {R"({"robot":{"name":"tank"}})", "robot/hull: is missing"},
       {R"({"obstacles":[{"id":7,"type":"cylinder","x":0,"y":0.1,"radius":0.3}]})", "overlap"},
   };
   for (const auto& [body, word] : cases) {
