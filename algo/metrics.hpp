@@ -1,4 +1,4 @@
-// algo/metrics.hpp: the figures of one run, as defined in scenarios.json `metrics`.
+// algo/metrics.hpp: the figures of one run.
 #pragma once
 
 #include <cstdint>

@@ -9,8 +9,8 @@
 
 namespace algo {
 
-/// All positions of the last window lie within 60 mm of the present one (scenarios.json
-/// `stuck_rule`): window = max(20 s, 0.8 m / v_max). Allocates only in reset().
+/// All positions of the last window lie within 60 mm of the present one: window = max(20 s, 0.8 m /
+/// v_max). Allocates only in reset().
 class StuckDetector {
  public:
   /// `period` [s] of one tick, > 0.
