@@ -14,7 +14,7 @@ namespace {
 
 int carry_out(int argc,
               char** argv,
-              std::initializer_list<AddCommand> commands,
+              const std::vector<AddCommand>& commands,
               const std::string& footer) {
   CLI::App app{"Tautline: simulation and teleoperation of mobile robots, in the browser."};
   app.name("tautline");
@@ -42,9 +42,20 @@ int carry_out(int argc,
 
 }  // namespace
 
+std::vector<AddCommand> serving_commands() {
+  return {add_serve_command,
+          add_run_command,
+          add_replay_command,
+          add_export_command,
+          add_verify_command,
+          add_health_command,
+          add_doctor_command,
+          add_lms200_command};
+}
+
 int run_program(int argc,
                 char** argv,
-                std::initializer_list<AddCommand> commands,
+                const std::vector<AddCommand>& commands,
                 const std::string& footer) {
   const int status = carry_out(argc, argv, commands, footer);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
