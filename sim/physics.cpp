@@ -17,9 +17,9 @@ constexpr double kRegather = 0.5;  // [m] driven before the near obstacles are c
 constexpr double kSideways = 0.1;  // z of a contact's normal below which it holds nothing up
 constexpr int kHullPart = 0;
 
-/// Lets go of the contacts at the sides of a wheel. A support ball stands in for a wheel: it
-/// reaches out farther than that, and what stands beside the robot is for the hull to touch. A
-/// chassis has the number of its last wheel as its user index; all else has -1.
+/// Drops contacts at the sides of a wheel. A support ball replaces the wheel and reaches farther
+/// out than a wheel does; the hull alone touches obstacles beside the robot. The user index of a
+/// chassis is the number of its last wheel; every other body has -1.
 void drop_wheel_sides(btBroadphasePair& pair,
                       btCollisionDispatcher& dispatcher,
                       const btDispatcherInfo& info) {

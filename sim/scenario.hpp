@@ -17,7 +17,7 @@
 
 namespace sim {
 
-/// What moves the robot: a Bullet world, or its command alone.
+/// Bullet moves the robot by forces and contacts; Kinematic as commanded, within its limits.
 enum class PhysicsKind : std::uint8_t { Bullet, Kinematic };
 
 /// How a simulated base departs from the robot's table, from what it is told, and from what it
