@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <ctime>
+#include <tuple>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -19,6 +21,12 @@ int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   const char l = lower(c);
   return l >= 'a' && l <= 'f' ? l - 'a' + 10 : -1;
+}
+
+// The text before and after the first mark; where there is none, the whole text and nothing.
+std::pair<std::string_view, std::string_view> cut_at(std::string_view text, char mark) {
+  const std::size_t end = std::min(text.find(mark), text.size());
+  return {text.substr(0, end), text.substr(std::min(end + 1, text.size()))};
 }
 
 void append_header(std::string& head, std::string_view name, std::string_view value) {
@@ -220,22 +228,19 @@ std::optional<std::string> parse_target(std::string_view target, Request& reques
   if (target.empty() || target.front() != '/') {
     return "the request target must be a path that starts with '/'";
   }
-  target = target.substr(0, target.find('#'));
-  const std::size_t mark = target.find('?');
-  const std::optional<std::string> path = percent_decode(target.substr(0, mark), false);
+  auto [encoded, rest] = cut_at(cut_at(target, '#').first, '?');
+  const std::optional<std::string> path = percent_decode(encoded, false);
   if (!path) return "the path has a broken percent escape or an encoded NUL";
   if (!valid_utf8(*path)) return "the path is not valid UTF-8";
   request.path = *path;
 
-  std::string_view rest = mark == std::string_view::npos ? "" : target.substr(mark + 1);
   while (!rest.empty()) {
-    const std::size_t end = std::min(rest.find('&'), rest.size());
-    const std::string_view pair = rest.substr(0, end);
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    std::string_view pair;
+    std::tie(pair, rest) = cut_at(rest, '&');
     if (pair.empty()) continue;
-    const std::size_t equals = std::min(pair.find('='), pair.size());
-    const auto name = percent_decode(pair.substr(0, equals), true);
-    const auto value = percent_decode(pair.substr(std::min(equals + 1, pair.size())), true);
+    const auto [encoded_name, encoded_value] = cut_at(pair, '=');
+    const auto name = percent_decode(encoded_name, true);
+    const auto value = percent_decode(encoded_value, true);
     if (!name || !value || !valid_utf8(*name) || !valid_utf8(*value)) {
       return "the query has a broken percent escape, an encoded NUL or invalid UTF-8";
     }
