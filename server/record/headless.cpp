@@ -1,7 +1,9 @@
 // server/record/headless.cpp: the run loop without rings.
 #include "server/record/headless.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <span>
 
 #include "server/record/record_sink.hpp"
@@ -10,10 +12,15 @@
 namespace server {
 namespace {
 
-std::uint64_t fnv1a(std::span<const std::byte> bytes, std::uint64_t hash) {
-  for (const std::byte b : bytes) {
-    hash ^= static_cast<std::uint64_t>(b);
-    hash *= 0x100000001b3ULL;
+/// The hash goes on over `bytes`, eight at a time: one at a time took 15 % of a kinematic run.
+std::uint64_t hash_on(std::uint64_t hash, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    std::uint64_t word = 0;
+    const std::size_t count = std::min(bytes.size(), sizeof word);
+    std::memcpy(&word, bytes.data(), count);
+    hash = (hash ^ word) * 0x9E3779B97F4A7C15ULL;
+    hash ^= hash >> 29U;
+    bytes = bytes.subspan(count);
   }
   return hash;
 }
@@ -25,7 +32,6 @@ HeadlessResult run_headless(const RunSpec& spec,
                             const HeadlessOptions& options,
                             const std::stop_token& stop) {
   HeadlessResult result;
-  result.telemetry_hash = 0xcbf29ce484222325ULL;
   const bool encodes = options.record != nullptr || options.hash_frames;
   constexpr std::size_t kNowAndNext = 2;  // frames in use where nobody keeps one
   const std::shared_ptr<FramePool> pool =
@@ -49,7 +55,7 @@ HeadlessResult run_headless(const RunSpec& spec,
   links.pacer = &pacer;
   links.listeners.push_back([&](const Frame& frame) {
     if (options.hash_frames) {
-      result.telemetry_hash = fnv1a(encoded(frame).bytes(), result.telemetry_hash);
+      result.telemetry_hash = hash_on(result.telemetry_hash, encoded(frame).bytes());
     }
     if (options.watch) ending = options.watch(frame.telemetry);
     if (ending) over.request_stop();

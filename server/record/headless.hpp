@@ -35,7 +35,7 @@ struct HeadlessOptions {
 
 struct HeadlessResult {
   RunResult run{};
-  std::uint64_t telemetry_hash = 0;  // FNV-1a over the bytes of all frames, in order
+  std::uint64_t telemetry_hash = 0;  // over the bytes of all frames, in order
 };
 
 /// Runs `robot`, which make_robot(spec) made, until reached, stuck, collided, out of time, the end
