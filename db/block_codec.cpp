@@ -7,7 +7,7 @@
 
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
-#include "db/sweeps.hpp"
+#include "db/samples.hpp"
 
 namespace db {
 
@@ -39,15 +39,14 @@ std::size_t cost(std::span<const std::byte> window,
   return bits;
 }
 
-void write_floats(std::span<const std::byte> window,
-                  std::span<const std::byte> reference,
-                  const Window& shape,
-                  Streams& streams) {
+Choice write_floats(std::span<const std::byte> window,
+                    std::span<const std::byte> reference,
+                    const Window& shape,
+                    Streams& streams) {
   const Choice choice = !reference.empty() && cost(window, reference, shape, Choice::Reference) <
                                                   cost(window, reference, shape, Choice::Within)
                             ? Choice::Reference
                             : Choice::Within;
-  streams[kLayout].push_back(static_cast<std::uint8_t>(choice));
   // Field by field, so that the zeros of an unused field lie together.
   for (std::size_t field = 0; field < shape.stride; ++field) {
     for (std::size_t i = field; i < shape.count; i += shape.stride) {
@@ -59,6 +58,7 @@ void write_floats(std::span<const std::byte> window,
       }
     }
   }
+  return choice;
 }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::shared_ptr<Compressor> make_compressor() {
 }
 
 BlockEncoder::BlockEncoder(std::shared_ptr<Compressor> compressor)
-    : sweeps_(new Sweeps), compressor_(compressor ? std::move(compressor) : make_compressor()) {}
+    : compressor_(compressor ? std::move(compressor) : make_compressor()) {}
 
 void BlockEncoder::clear() {
   table_.clear();
@@ -76,7 +76,7 @@ void BlockEncoder::clear() {
   references_.clear();
   rest_.clear();
   rest_starts_.assign(1, 0);
-  sweeps_->clear();
+  newest_.clear();
 }
 
 bool BlockEncoder::fits(std::size_t bytes) const {
@@ -138,19 +138,22 @@ void BlockEncoder::encode_frame(std::size_t i) {
   }
 
   std::size_t done = 0;
-  std::size_t sweep = 0;
+  std::size_t scan = 0;
   for (std::size_t k = 0; k < windows.size(); ++k) {
     const Window& window = windows[k];
     append_bytes(rest_, frame.subspan(done, window.offset - done));
     const auto here = part(frame, window);
     done = window.offset + here.size();
-    const auto there =
-        distance == 0 ? std::span<const std::byte>{} : part(reference, reference_windows[k]);
+    Choice choice{};
     if (window.kind == Window::Kind::Samples) {
-      sweeps_->write(sweep++, here, window.per_half_turn, streams_);
+      choice = write_samples(here, newest_.get(table_, scan, here.size()), streams_);
+      newest_.set(scan++, table_.entries[i].offset + window.offset, here.size());
     } else {
-      write_floats(here, there, window, streams_);
+      const auto there =
+          distance == 0 ? std::span<const std::byte>{} : part(reference, reference_windows[k]);
+      choice = write_floats(here, there, window, streams_);
     }
+    layout.push_back(static_cast<std::uint8_t>(choice));
   }
   append_bytes(rest_, frame.subspan(done));
   rest_starts_.push_back(rest_.size());
@@ -160,7 +163,7 @@ void BlockEncoder::write_rest() {
   auto& out = streams_[kRest];
   out.clear();
   out.reserve(rest_.size());
-  rest_order_.set(rest_starts_, kFormatVersion);
+  rest_order_.set(rest_starts_);
   rest_order_.walk([&](std::size_t i, std::size_t k) {
     const std::size_t from = i - references_[i];
     const bool predicted = references_[i] != 0 && k < rest_starts_[from + 1] - rest_starts_[from];

@@ -28,8 +28,6 @@ struct Window {
   std::uint32_t count = 0;   // values, not bytes
   Kind kind = Kind::Samples;
   std::uint32_t stride = 1;  // floats in a record; `count` is a multiple of it. 1 for samples
-  std::uint32_t per_half_turn =
-      0;  // samples in 180 degrees, counted ccw; 0 unknown, and for floats
   bool operator==(const Window&) const = default;
 };
 
@@ -59,34 +57,47 @@ struct FrameTable {
   std::span<const Window> windows_of(std::size_t i) const;
 };
 
+/// The newest window of samples at each place in a frame, by its ordinal: the next one there is
+/// predicted from it. Keeps its buffer.
+class NewestSamples {
+ public:
+  void clear() { found_.clear(); }
+  /// Empty when there is none of `bytes` [bytes].
+  std::span<const std::byte> get(const FrameTable& table,
+                                 std::size_t ordinal,
+                                 std::size_t bytes) const;
+  void set(std::size_t ordinal, std::size_t offset, std::size_t bytes);
+
+ private:
+  struct Place {
+    std::size_t offset = 0;  // into FrameTable::bytes
+    std::size_t bytes = 0;
+  };
+  std::vector<Place> found_{};
+};
+
 /// The block's values sorted by kind, so that each compressor call sees one sort of number.
 constexpr std::size_t kLayout = 0;  // sizes, references, windows, choices
+constexpr std::size_t kLow = 1;     // low bytes of the sample residuals
+constexpr std::size_t kHigh = 2;    // their high bytes
 constexpr std::size_t kFloat0 = 3;  // bytes 0..3 of the float residuals in four streams
 constexpr std::size_t kRest = 7;    // all outside the windows, in the order of RestOrder
-constexpr std::size_t kMotion = 8;  // how each window of samples is foretold
-constexpr std::size_t kClasses = 3;
-constexpr std::array<std::size_t, kClasses> kLow{1, 9, 11};    // low bytes of the sample residuals
-constexpr std::array<std::size_t, kClasses> kHigh{2, 10, 12};  // their high bytes, by roughness
-constexpr std::size_t kStreams = 13;
-constexpr std::size_t kOldStreams = 8;  // of format 2
+constexpr std::size_t kStreams = 8;
 using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
 
 /// In which order the bytes outside the windows are stored: frames of one length together, as they
-/// mostly hold the same fields; of those by position and then by frame. Format 2 had all frames
-/// together. Keeps its buffer.
+/// mostly hold the same fields; of those by position and then by frame. Keeps its buffer.
 class RestOrder {
  public:
   /// `starts` of each frame's bytes, and their end; they must outlive walk().
-  void set(std::span<const std::size_t> starts, std::uint8_t format);
+  void set(std::span<const std::size_t> starts);
   /// Calls `visit(frame, position)` for every byte.
   template <typename Visit>
   void walk(const Visit& visit) const {
     for (const Group& group : groups_) {
       const std::span frames = std::span(frames_).subspan(group.first, group.end - group.first);
-      for (std::size_t k = 0; k < group.longest; ++k) {
-        for (const std::size_t frame : frames) {
-          if (k < group.shortest || k < size(frame)) visit(frame, k);
-        }
+      for (std::size_t k = 0; k < group.length; ++k) {
+        for (const std::size_t frame : frames) visit(frame, k);
       }
     }
   }
@@ -95,8 +106,7 @@ class RestOrder {
   struct Group {
     std::size_t first = 0;  // into frames_
     std::size_t end = 0;
-    std::size_t longest = 0;   // [bytes]
-    std::size_t shortest = 0;  // or less
+    std::size_t length = 0;  // [bytes] of each of its frames
   };
   std::size_t size(std::size_t frame) const { return starts_[frame + 1] - starts_[frame]; }
 
@@ -106,14 +116,10 @@ class RestOrder {
 };
 
 class Cursor;
-class Sweeps;
-class TurnedScan;
 struct Compressor;    // a zstd context and its output buffer
 struct Decompressor;  // the same for unpacking
 struct Deleter {
   void operator()(Decompressor* decompressor) const noexcept;
-  void operator()(Sweeps* sweeps) const noexcept;
-  void operator()(TurnedScan* turned) const noexcept;
 };
 
 }  // namespace detail
@@ -122,11 +128,11 @@ std::shared_ptr<detail::Compressor> make_compressor();
 
 /// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
 ///
-/// Samples are predicted from the map of those before (see db/range_map.hpp), or from their left
-/// neighbour, whichever leaves less in that window. All else is predicted from an earlier frame of
-/// the block laid out alike (its reference): floats by the line through the two records before, or
-/// from the reference; all other bytes from the byte at their place. What is left goes through zstd
-/// stream by stream, and is stored as it is where zstd does not pay.
+/// Samples are predicted from their left neighbour, or from that and the newest scan of the same
+/// size. All else is predicted from an earlier frame of the block laid out alike (its reference):
+/// floats by the line through the two records before, or from the reference; other bytes from the
+/// byte at their place. Of two ways a window takes the one that leaves less. The residuals go
+/// through zstd stream by stream, and are stored as they are where zstd does not pay.
 class BlockEncoder {
  public:
   /// `compressor`: shared by encoders of one thread, as it is large; null: one of its own.
@@ -154,12 +160,12 @@ class BlockEncoder {
 
   detail::FrameTable table_{};
   detail::Streams streams_{};
+  detail::NewestSamples newest_{};
   std::vector<std::size_t> references_{};    // distance back to each frame's reference; 0 = none
   std::vector<std::uint8_t> rest_{};         // the frames without their windows, end to end
   std::vector<std::size_t> rest_starts_{0};  // of each frame, and the end
   detail::RestOrder rest_order_{};
   std::vector<std::byte> packed_{};
-  std::unique_ptr<detail::Sweeps, detail::Deleter> sweeps_;
   std::shared_ptr<detail::Compressor> compressor_;
 };
 
@@ -189,13 +195,11 @@ class BlockDecoder {
   detail::FrameTable table_{};
   detail::Streams streams_{};
   std::vector<std::size_t> references_{};
-  std::vector<std::array<std::uint8_t, 3>> choices_{};  // of each window, in format 2 with its turn
+  detail::NewestSamples newest_{};
+  std::vector<std::uint8_t> choices_{};  // detail::Choice of each window
   std::vector<std::uint8_t> rest_{};
   std::vector<std::size_t> rest_starts_{};
   detail::RestOrder rest_order_{};
-  std::uint8_t format_ = 0;  // of the block in hand
-  std::unique_ptr<detail::Sweeps, detail::Deleter> sweeps_;
-  std::unique_ptr<detail::TurnedScan, detail::Deleter> turned_;  // for format 2
   std::unique_ptr<detail::Decompressor, detail::Deleter> decompressor_;
 };
 

@@ -6,8 +6,7 @@
 #include "db/block_codec.hpp"
 #include "db/block_format.hpp"
 #include "db/residuals.hpp"
-#include "db/sweeps.hpp"
-#include "db/turned_scan.hpp"
+#include "db/samples.hpp"
 
 namespace db {
 
@@ -17,29 +16,6 @@ namespace {
 
 std::size_t bytes_of(const Window& window) {
   return std::size_t{window.count} * (window.kind == Window::Kind::Samples ? 2U : 4U);
-}
-
-/// Samples as format 2 has them: from their left neighbours, or from the reference as it was
-/// turned.
-void read_old_samples(std::span<std::byte> window,
-                      std::span<const std::byte> reference,
-                      const std::array<std::uint8_t, 3>& how,
-                      TurnedScan& turned,
-                      const Streams& streams,
-                      std::size_t& at) {
-  const bool from_reference = how[0] == static_cast<std::uint8_t>(Choice::Reference);
-  std::span<const std::uint16_t> expected{};
-  if (from_reference) {
-    turned.set_reference(reference);
-    expected = turned.expect({how[1], how[2]});
-  }
-  for (std::size_t i = 0; i < window.size() / sizeof(std::uint16_t); ++i, ++at) {
-    const unsigned folded = streams[kLow[0]][at] | (streams[kHigh[0]][at] * 256U);
-    const unsigned before = from_reference ? expected[i] : left_of(window, i);
-    store(window,
-          i,
-          static_cast<std::uint16_t>(unfold16(static_cast<std::uint16_t>(folded)) + before));
-  }
 }
 
 void read_floats(std::span<std::byte> window,
@@ -62,18 +38,14 @@ void read_floats(std::span<std::byte> window,
 
 }  // namespace
 
-BlockDecoder::BlockDecoder()
-    : sweeps_(new Sweeps), turned_(new TurnedScan), decompressor_(new Decompressor) {}
+BlockDecoder::BlockDecoder() : decompressor_(new Decompressor) {}
 
 void BlockDecoder::decode(std::span<const std::byte> block) {
   table_.clear();
   try {
     Cursor cursor(block);
     const Header header = read_header(cursor);
-    format_ = header.version;
-    const std::size_t streams = format_ == kOldFormatVersion ? kOldStreams : kStreams;
-    for (std::size_t k = 0; k < streams; ++k) read_stream(cursor, *decompressor_, streams_[k]);
-    for (std::size_t k = streams; k < kStreams; ++k) streams_[k].clear();
+    for (auto& stream : streams_) read_stream(cursor, *decompressor_, stream);
     if (!cursor.at_end()) throw CodecError("the block is followed by other bytes");
     read_layout(header.frames, header.bytes);
     check_sizes();
@@ -120,7 +92,7 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   } else {
     count = listed - 1;
     if (count > kMaxFrameWindows) throw CodecError("a frame of the block has too many windows");
-    for (std::size_t k = 0; k < count; ++k) windows[k] = layout.window(format_);
+    for (std::size_t k = 0; k < count; ++k) windows[k] = layout.window();
   }
   const std::span<const Window> used(windows.data(), count);
   if (const char* wrong = window_defect(used, size)) {
@@ -135,21 +107,14 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   table_.append(size, used);
 }
 
-/// How a window is predicted; samples tell it in a stream of their own since format 3.
+/// How a window is predicted.
 void BlockDecoder::read_choice(Cursor& layout, const Window& window, bool has_reference) {
-  choices_.push_back({0, kNotTurned, kNotTurned});
-  const bool samples = window.kind == Window::Kind::Samples;
-  if (samples && format_ != kOldFormatVersion) return;
-  auto& how = choices_.back();
-  how[0] = layout.byte();
-  if (how[0] > static_cast<std::uint8_t>(Choice::Reference) || (how[0] != 0 && !has_reference)) {
+  const std::uint8_t choice = layout.byte();
+  const bool from_frame = choice != 0 && window.kind == Window::Kind::Floats;
+  if (choice > static_cast<std::uint8_t>(Choice::Reference) || (from_frame && !has_reference)) {
     throw CodecError("a window of the block is predicted in an unknown way");
   }
-  if (how[0] == 0 || !samples) return;
-  for (std::size_t parity = 1; parity <= 2; ++parity) {
-    how[parity] = layout.byte();
-    if (how[parity] > kMostTurned) throw CodecError("a window of the block is turned too far");
-  }
+  choices_.push_back(choice);
 }
 
 void BlockDecoder::check_sizes() const {
@@ -161,23 +126,17 @@ void BlockDecoder::check_sizes() const {
   const bool floats_fit = std::all_of(streams_.begin() + kFloat0,
                                       streams_.begin() + kFloat0 + 4,
                                       [&](const auto& s) { return s.size() == numbers; });
-  std::size_t residuals = 0;
-  bool samples_fit = true;
-  for (std::size_t kind = 0; kind < kClasses; ++kind) {
-    residuals += streams_[kLow[kind]].size();
-    samples_fit = samples_fit && streams_[kLow[kind]].size() == streams_[kHigh[kind]].size();
-  }
-  if (residuals != samples || !samples_fit || !floats_fit ||
+  if (streams_[kLow].size() != samples || streams_[kHigh].size() != samples || !floats_fit ||
       streams_[kRest].size() != rest_starts_.back()) {
     throw CodecError("the block's streams do not match its layout");
   }
-  // A window predicted from its reference needs one there of the same form.
+  // Floats predicted from their frame's reference need a window there of the same form.
   std::size_t at = 0;
   for (std::size_t i = 0; i < table_.entries.size(); ++i) {
     const auto windows = table_.windows_of(i);
     const auto reference = table_.windows_of(i - references_[i]);
     for (std::size_t k = 0; k < windows.size(); ++k, ++at) {
-      if (choices_[at][0] == 0) continue;
+      if (choices_[at] == 0 || windows[k].kind == Window::Kind::Samples) continue;
       if (k >= reference.size() || reference[k].kind != windows[k].kind ||
           reference[k].count != windows[k].count || reference[k].stride != windows[k].stride) {
         throw CodecError("a window of the block refers to another kind of window");
@@ -188,7 +147,7 @@ void BlockDecoder::check_sizes() const {
 
 void BlockDecoder::read_rest() {
   rest_.resize(rest_starts_.back());
-  rest_order_.set(rest_starts_, format_);
+  rest_order_.set(rest_starts_);
   const std::uint8_t* next = streams_[kRest].data();
   std::uint8_t* const bytes = rest_.data();
   const std::size_t* const starts = rest_starts_.data();
@@ -209,10 +168,9 @@ void BlockDecoder::read_rest() {
 
 void BlockDecoder::fill_frames() {
   std::size_t number = 0;  // of the floats
-  std::size_t sample = 0;  // in format 2
-  std::size_t choice = 0;
-  sweeps_->clear();
-  Cursor motions(std::as_bytes(std::span(streams_[kMotion])));
+  std::size_t window = 0;
+  std::size_t sample = 0;
+  newest_.clear();
   for (std::size_t i = 0; i < table_.entries.size(); ++i) {
     const auto frame = table_.frame(i);
     const auto windows = table_.windows_of(i);
@@ -221,33 +179,33 @@ void BlockDecoder::fill_frames() {
     const auto rest = std::as_bytes(std::span(rest_)).subspan(rest_starts_[i]);
     std::size_t done = 0;
     std::size_t taken = 0;
-    std::size_t sweep = 0;
+    std::size_t scan = 0;
     const auto copy_rest = [&](std::size_t until) {
       std::ranges::copy(rest.subspan(taken, until - done),
                         frame.begin() + static_cast<std::ptrdiff_t>(done));
       taken += until - done;
     };
-    for (std::size_t k = 0; k < windows.size(); ++k, ++choice) {
+    for (std::size_t k = 0; k < windows.size(); ++k, ++window) {
       copy_rest(windows[k].offset);
-      const auto& how = choices_[choice];
+      const auto choice = static_cast<Choice>(choices_[window]);
       const auto here = frame.subspan(windows[k].offset, bytes_of(windows[k]));
-      const auto there = how[0] == static_cast<std::uint8_t>(Choice::Reference)
-                             ? reference.subspan(reference_windows[k].offset, here.size())
-                             : std::span<const std::byte>{};
+      const bool referred = choice == Choice::Reference;
       if (windows[k].kind == Window::Kind::Floats) {
-        read_floats(here, there, windows[k], static_cast<Choice>(how[0]), streams_, number);
-      } else if (format_ == kOldFormatVersion) {
-        read_old_samples(here, there, how, *turned_, streams_, sample);
+        const auto there = referred ? reference.subspan(reference_windows[k].offset, here.size())
+                                    : std::span<const std::byte>{};
+        read_floats(here, there, windows[k], choice, streams_, number);
       } else {
-        sweeps_->read(sweep++, here, windows[k].per_half_turn, streams_, motions);
+        const auto there = newest_.get(table_, scan, referred ? here.size() : 0);
+        if (there.empty() && referred && !here.empty()) {
+          throw CodecError("a window of the block refers to another kind of window");
+        }
+        read_samples(here, there, streams_, sample);
+        newest_.set(scan++, table_.entries[i].offset + windows[k].offset, here.size());
       }
       done = windows[k].offset + here.size();
     }
     copy_rest(frame.size());
   }
-  const bool all_used =
-      motions.at_end() && (format_ == kOldFormatVersion || sweeps_->at_end(streams_));
-  if (!all_used) throw CodecError("the block's streams do not match its layout");
 }
 
 }  // namespace db

@@ -7,9 +7,6 @@
 #include <new>
 #include <string>
 
-#include "db/sweeps.hpp"
-#include "db/turned_scan.hpp"
-
 namespace db::detail {
 
 namespace {
@@ -64,36 +61,34 @@ std::span<const Window> FrameTable::windows_of(std::size_t i) const {
   return std::span(windows).subspan(entries[i].first_window, entries[i].window_count);
 }
 
-void RestOrder::set(std::span<const std::size_t> starts, std::uint8_t format) {
+std::span<const std::byte> NewestSamples::get(const FrameTable& table,
+                                              std::size_t ordinal,
+                                              std::size_t bytes) const {
+  if (ordinal >= found_.size() || found_[ordinal].bytes != bytes) return {};
+  return std::span(table.bytes).subspan(found_[ordinal].offset, bytes);
+}
+
+void NewestSamples::set(std::size_t ordinal, std::size_t offset, std::size_t bytes) {
+  if (ordinal >= found_.size()) found_.resize(ordinal + 1);
+  found_[ordinal] = {offset, bytes};
+}
+
+void RestOrder::set(std::span<const std::size_t> starts) {
   starts_ = starts;
   frames_.resize(starts.size() - 1);
   for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i] = i;
   groups_.clear();
-  if (format == kOldFormatVersion) {
-    groups_.push_back({0, frames_.size(), 0, 0});
-    for (const std::size_t i : frames_) {
-      groups_[0].longest = std::max(groups_[0].longest, size(i));
-    }
-    return;
-  }
   // By length, then by number: what a stable sort gives, but without its allocation.
   std::ranges::sort(frames_, [&](std::size_t a, std::size_t b) {
     return size(a) != size(b) ? size(a) < size(b) : a < b;
   });
   for (std::size_t j = 0; j < frames_.size(); ++j) {
     const std::size_t length = size(frames_[j]);
-    if (groups_.empty() || groups_.back().longest != length)
-      groups_.push_back({j, j, length, length});
+    if (groups_.empty() || groups_.back().length != length) groups_.push_back({j, j, length});
     groups_.back().end = j + 1;
   }
 }
 
-void Deleter::operator()(Sweeps* sweeps) const noexcept {
-  delete sweeps;
-}
-void Deleter::operator()(TurnedScan* turned) const noexcept {
-  delete turned;
-}
 void Deleter::operator()(Decompressor* decompressor) const noexcept {
   delete decompressor;
 }
@@ -132,7 +127,6 @@ const char* window_defect(std::span<const Window> windows, std::size_t frame_byt
         window.count % window.stride != 0) {
       return "a window's stride does not fit its values";
     }
-    if (!samples && window.per_half_turn != 0) return "a window of floats has bearings";
     done = window.offset + std::size_t{window.count} * (samples ? 2U : 4U);
     if (done > frame_bytes) return "a window reaches beyond the frame's end";
   }
@@ -142,10 +136,6 @@ const char* window_defect(std::span<const Window> windows, std::size_t frame_byt
 std::uint64_t check_of(const FrameTable& table) {
   std::uint64_t hash = 0x7461757420212121ULL;
   for (const FrameTable::Entry& entry : table.entries) hash = mix(hash, entry.size);
-  // Frames may come back right from wrong bearings. Format 2 had none.
-  for (const Window& window : table.windows) {
-    if (window.per_half_turn != 0) hash = mix(hash, window.per_half_turn);
-  }
   const std::size_t whole = table.bytes.size() / 8 * 8;
   for (std::size_t i = 0; i < whole; i += 8) {
     std::uint64_t word = 0;
@@ -160,7 +150,7 @@ std::uint64_t check_of(const FrameTable& table) {
 
 void put_header(std::vector<std::byte>& out, const Header& header) {
   for (const std::uint8_t byte :
-       {std::uint8_t{'T'}, std::uint8_t{'B'}, header.version, std::uint8_t{0}}) {
+       {std::uint8_t{'T'}, std::uint8_t{'B'}, kFormatVersion, std::uint8_t{0}}) {
     out.push_back(static_cast<std::byte>(byte));
   }
   put(out, static_cast<std::uint32_t>(header.frames));
@@ -181,7 +171,6 @@ void put_window(std::vector<std::uint8_t>& out, const Window& window) {
   put_varint(out, window.offset);
   put_varint(out, window.count);
   put_varint(out, window.stride);
-  if (window.kind == Window::Kind::Samples) put_varint(out, window.per_half_turn);
 }
 
 void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes) {
@@ -217,7 +206,7 @@ std::size_t Cursor::varint() {
   throw CodecError("the block holds a number that is too large");
 }
 
-Window Cursor::window(std::uint8_t version) {
+Window Cursor::window() {
   Window window{};
   const std::uint8_t kind = byte();
   if (kind > static_cast<std::uint8_t>(Window::Kind::Floats)) {
@@ -227,23 +216,18 @@ Window Cursor::window(std::uint8_t version) {
   window.offset = static_cast<std::uint32_t>(varint());
   window.count = static_cast<std::uint32_t>(varint());
   window.stride = static_cast<std::uint32_t>(varint());
-  if (version != kOldFormatVersion && window.kind == Window::Kind::Samples) {
-    window.per_half_turn = static_cast<std::uint32_t>(varint());
-  }
   return window;
 }
 
 Header read_header(Cursor& cursor) {
   if (cursor.byte() != 'T' || cursor.byte() != 'B') throw CodecError("these bytes are not a block");
   const std::uint8_t version = cursor.byte();
-  if (version != kFormatVersion && version != kOldFormatVersion) {
+  if (version != kFormatVersion) {
     throw CodecError("the block has format " + std::to_string(version) +
-                     ", this program reads formats " + std::to_string(kOldFormatVersion) + " and " +
-                     std::to_string(kFormatVersion));
+                     ", this program reads format " + std::to_string(kFormatVersion));
   }
   if (cursor.byte() != 0) throw CodecError("the block's header is damaged");
   Header header{};
-  header.version = version;
   header.frames = cursor.u32();
   header.bytes = cursor.u32();
   header.check = cursor.u64();

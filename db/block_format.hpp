@@ -2,8 +2,7 @@
 //
 // Little-endian: "TB", version, 0; u32 frames; u32 bytes of all frames; u64 check; then the
 // streams in the order of detail::kLayout .., each u32 raw size, u32 stored size, bytes. Stored as
-// it is when both sizes are equal, else one zstd frame. Version 2 had fewer streams, and its
-// windows did not tell per_half_turn.
+// it is when both sizes are equal, else one zstd frame.
 #pragma once
 
 #include <cstddef>
@@ -17,12 +16,10 @@
 
 namespace db::detail {
 
-constexpr std::uint8_t kFormatVersion = 3;
-constexpr std::uint8_t kOldFormatVersion = 2;  // samples from the scan before; read, never written
+constexpr std::uint8_t kFormatVersion = 4;
 constexpr std::size_t kHeaderBytes = 20;
 
 struct Header {
-  std::uint8_t version = kFormatVersion;
   std::size_t frames = 0;
   std::size_t bytes = 0;
   std::uint64_t check = 0;
@@ -71,14 +68,14 @@ class Cursor {
   std::uint32_t u32();
   std::uint64_t u64();
   std::size_t varint();  // at most 2^32 - 1
-  Window window(std::uint8_t version);
+  Window window();
   bool at_end() const { return bytes_.empty(); }
 
  private:
   std::span<const std::byte> bytes_;
 };
 
-/// Throws CodecError when `cursor` is not at a block of a format we read or it is too large.
+/// Throws CodecError when `cursor` is not at a block of our format or it is too large.
 Header read_header(Cursor& cursor);
 
 /// Reads the next stream into `out`, which never grows beyond kMaxBlockBytes.

@@ -42,28 +42,13 @@ enum class RunStatus : std::uint8_t {
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> find_status(std::string_view name);
 
-/// The columns kept in plain sight for queries; the frame beside them holds everything.
-struct TickRow {
-  std::uint64_t tick = 0;
-  double t = 0;             // [s] run clock
-  double x = 0;             // [m] of R in W, as odometry has it
-  double y = 0;             // [m]
-  double heading = 0;       // [rad]
-  double v = 0;             // [m/s] commanded
-  double omega = 0;         // [rad/s] commanded
-  double clearance = 0;     // [m] hull to nearest filtered return
-  std::string hold{};       // name; empty: not held
-  std::string behaviour{};  // name
-  bool operator==(const TickRow&) const = default;
-};
-
 /// All that is known of a run before its first tick; enough to run it again.
 struct NewRun {
   std::string scenario{};  // its name
   std::string document{};  // the scenario as JSON text
   std::string controller{};
   std::string filter{};
-  std::string vehicle{};
+  std::string physics{};
   std::uint64_t seed = 0;
   std::string parameters = "{}";  // JSON text
   std::string version{};          // of the program
@@ -124,10 +109,6 @@ struct RunFilter {
 struct RunPage {
   std::vector<RunRow> runs{};
   std::optional<RunId> next{};
-};
-struct TickPage {
-  std::vector<TickRow> ticks{};
-  std::optional<std::uint64_t> next{};  // first tick of the next page
 };
 
 }  // namespace db

@@ -20,7 +20,7 @@ using detail::Statement;
 namespace {
 
 constexpr std::string_view kRunColumns =
-    "id, status, outcome, reason, scenario, controller, filter, vehicle, seed, parameters,"
+    "id, status, outcome, reason, scenario, controller, filter, physics, seed, parameters,"
     " version, started, ticks, time, lost_ticks, bytes, metrics";
 
 RunRow row_of(const Statement& found) {
@@ -32,7 +32,7 @@ RunRow row_of(const Statement& found) {
   row.what.scenario = found.text(4);
   row.what.controller = found.text(5);
   row.what.filter = found.text(6);
-  row.what.vehicle = found.text(7);
+  row.what.physics = found.text(7);
   row.what.seed = static_cast<std::uint64_t>(found.integer(8));
   row.what.parameters = found.text(9);
   row.what.version = found.text(10);
@@ -42,21 +42,6 @@ RunRow row_of(const Statement& found) {
   row.lost_ticks = static_cast<std::uint64_t>(found.integer(14));
   row.bytes = static_cast<std::uint64_t>(found.integer(15));
   row.metrics = found.text(16);
-  return row;
-}
-
-TickRow tick_of(const Statement& found) {
-  TickRow row{};
-  row.tick = static_cast<std::uint64_t>(found.integer(0));
-  row.t = found.number(1);
-  row.x = found.number(2);
-  row.y = found.number(3);
-  row.heading = found.number(4);
-  row.v = found.number(5);
-  row.omega = found.number(6);
-  row.clearance = found.number(7);
-  row.hold = found.text(8);
-  row.behaviour = found.text(9);
   return row;
 }
 
@@ -93,12 +78,7 @@ struct RunReader::Tables {
                              ", (SELECT text FROM document WHERE run ="
                              " coalesce(run.document, run.id))"
                              " FROM run WHERE id = ? AND status <> 'deleted'");
-    // A deleted run is gone at once, though its ticks may take a while to be swept away.
-    ticks = connection.prepare(
-        "SELECT tick, t, x, y, heading, v, omega, clearance, hold, behaviour FROM tick"
-        " WHERE run = ?1 AND tick >= ?2"
-        " AND EXISTS (SELECT 1 FROM run WHERE id = ?1 AND status <> 'deleted')"
-        " ORDER BY tick LIMIT ?3");
+    // A deleted run is gone at once, though its blocks may take a while to be swept away.
     exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
     block = connection.prepare(
         "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
@@ -127,7 +107,7 @@ struct RunReader::Tables {
   }
 
   Connection connection;
-  Statement get{}, ticks{}, exists{}, block{};
+  Statement get{}, exists{}, block{};
   Statement gaps{};
   std::map<unsigned, Statement> listings{};  // by which filters are set
 };
@@ -198,28 +178,6 @@ std::optional<RunRow> RunReader::get(RunId run) {
                         .sentence = from.gaps.text(3)});
   }
   return row;
-}
-
-template <typename Each>
-std::optional<std::uint64_t> RunReader::each_tick(RunId run,
-                                                  std::uint64_t from,
-                                                  std::size_t limit,
-                                                  const Each& each) {
-  Statement& ticks = tables().ticks;
-  ticks.reset() << run << signed_tick(from) << signed_limit(limit == SIZE_MAX ? limit : limit + 1);
-  const ResetLater reset(ticks);
-  for (std::size_t done = 0; ticks.step(); ++done) {
-    const TickRow row = tick_of(ticks);
-    if (done == limit) return row.tick;
-    each(row);
-  }
-  return std::nullopt;
-}
-
-TickPage RunReader::ticks(RunId run, std::uint64_t from, std::size_t limit) {
-  TickPage page{};
-  page.next = each_tick(run, from, limit, [&](const TickRow& row) { page.ticks.push_back(row); });
-  return page;
 }
 
 bool RunReader::exists(RunId run) {

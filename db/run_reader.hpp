@@ -38,9 +38,6 @@ class RunReader {
   /// With its document and gaps; nothing when there is no such run.
   std::optional<RunRow> get(RunId run);
 
-  /// Up to `limit` ticks of a run from tick `from` on. Empty for a run that does not exist.
-  TickPage ticks(RunId run, std::uint64_t from, std::size_t limit);
-
   using FrameSink = std::function<void(std::uint64_t tick, std::span<const std::byte> frame)>;
   /// Hands up to `limit` frames from tick `from` on to `sink`, in order, each valid during the
   /// call. Returns the tick to go on with, or nothing after the last. Throws StoreError when a
@@ -55,11 +52,6 @@ class RunReader {
 
   Tables& tables();
   std::optional<std::uint64_t> seek(RunId run, std::uint64_t tick, bool unpack);
-  template <typename Each>
-  std::optional<std::uint64_t> each_tick(RunId run,
-                                         std::uint64_t from,
-                                         std::size_t limit,
-                                         const Each& each);
 
   std::string path_;
   std::optional<FileIdentity> opened_{};

@@ -170,7 +170,7 @@ RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId
   RunId run = wanted.value_or(0);
   while (run <= 0 || taken(run)) run = options_.numbers->take();
   sql_->insert_run.reset() << run << to_string(status) << what.scenario << what.controller
-                           << what.filter << what.vehicle << static_cast<std::int64_t>(what.seed)
+                           << what.filter << what.physics << static_cast<std::int64_t>(what.seed)
                            << what.parameters << what.version << what.started;
   sql_->insert_run.run();
   // The runs of a batch, and resets, have the document of the run before.
@@ -205,17 +205,17 @@ std::optional<std::uint64_t> RunStore::resume_run(RunId run) {
       const ResetLater reset(found);
       if (!found.step()) return std::nullopt;
       recording->ticks = static_cast<std::uint64_t>(found.integer(0));
-      recording->last.t = found.number(1);
+      recording->last_time = found.number(1);
       recording->sealed_bytes = static_cast<std::uint64_t>(found.integer(2));
     }
     std::uint64_t next = 0;
     if (recording->ticks > 0) {
       const ResetLater reset(sql_->newest_tick.reset() << run);
       if (!sql_->newest_tick.step()) return std::nullopt;
-      recording->last.tick = static_cast<std::uint64_t>(sql_->newest_tick.integer(0));
-      next = recording->last.tick + 1;
-      const ResetLater reset_time(sql_->tick_time.reset() << run << std::int64_t{0});
-      if (sql_->tick_time.step()) recording->kept_from = sql_->tick_time.number(1);
+      recording->last_tick = static_cast<std::uint64_t>(sql_->newest_tick.integer(0));
+      next = recording->last_tick + 1;
+      const ResetLater reset_oldest(sql_->oldest_blocks.reset() << run);
+      if (sql_->oldest_blocks.step()) recording->kept_from = sql_->oldest_blocks.number(2);
     }
     open_.insert_or_assign(run, std::move(recording));
     return next;
@@ -250,19 +250,20 @@ RunStore::Recording& RunStore::recording_of(RunId run) {
 }
 
 void RunStore::append_tick(RunId run,
-                           const TickRow& row,
+                           std::uint64_t tick,
+                           double time,
                            std::span<const std::byte> frame,
                            std::span<const Window> windows) {
   require_open();
   Recording& recording = recording_of(run);
-  if (recording.ticks > 0 && row.tick <= recording.last.tick) {
-    throw StoreError(name_of(run) + ": tick " + std::to_string(row.tick) +
-                     " does not follow tick " + std::to_string(recording.last.tick));
+  if (recording.ticks > 0 && tick <= recording.last_tick) {
+    throw StoreError(name_of(run) + ": tick " + std::to_string(tick) + " does not follow tick " +
+                     std::to_string(recording.last_tick));
   }
   guarded([&] {
     begin();
     // Ticks of a block follow each other without a gap, so that it need not store their numbers.
-    const bool gap = recording.ticks > 0 && row.tick != recording.last.tick + 1;
+    const bool gap = recording.ticks > 0 && tick != recording.last_tick + 1;
     const bool full =
         recording.pending.frames() >= kMaxPendingFrames || !recording.pending.fits(frame.size());
     if (recording.pending.frames() > 0 && (gap || full)) {
@@ -272,19 +273,17 @@ void RunStore::append_tick(RunId run,
     if (recording.pending.frames() == 0) {
       recording.sealed_bytes += std::exchange(recording.block_bytes, 0);
       recording.written_frames = 0;
-      recording.first_tick = row.tick;
+      recording.first_tick = tick;
+      recording.first_time = time;
     }
     try {
       recording.pending.add(frame, windows);
     } catch (const CodecError& error) {
-      throw StoreError(name_of(run) + ", tick " + std::to_string(row.tick) + ": " + error.what());
+      throw StoreError(name_of(run) + ", tick " + std::to_string(tick) + ": " + error.what());
     }
-    Statement& insert = sql_->insert_tick.reset();
-    insert << run << static_cast<std::int64_t>(row.tick) << row.t << row.x << row.y << row.heading
-           << row.v << row.omega << row.clearance << row.hold << row.behaviour;
-    insert.run();
-    if (recording.ticks == 0) recording.kept_from = row.t;
-    recording.last = row;
+    if (recording.ticks == 0) recording.kept_from = time;
+    recording.last_tick = tick;
+    recording.last_time = time;
     ++recording.ticks;
     recording.dirty = true;
   });
@@ -295,14 +294,14 @@ void RunStore::write_block(RunId run, Recording& recording) {
   const auto packed = recording.pending.encode();
   const std::uint64_t last = recording.first_tick + recording.pending.frames() - 1;
   (sql_->write_block.reset() << run << static_cast<std::int64_t>(recording.first_tick)
-                             << static_cast<std::int64_t>(last) << packed)
+                             << static_cast<std::int64_t>(last) << recording.first_time << packed)
       .run();
   recording.written_frames = recording.pending.frames();
   recording.block_bytes = packed.size();
 }
 
 void RunStore::write_progress(RunId run, const Recording& recording) {
-  (sql_->progress.reset() << static_cast<std::int64_t>(recording.ticks) << recording.last.t
+  (sql_->progress.reset() << static_cast<std::int64_t>(recording.ticks) << recording.last_time
                           << static_cast<std::int64_t>(recording.sealed_bytes +
                                                        recording.block_bytes)
                           << run)

@@ -78,17 +78,18 @@ class RunStore {
   /// takes its old ticks away first. False when it is not there or not interrupted, cancelled or
   /// failed.
   bool requeue_run(RunId run);
-  /// Removes up to `ticks` ticks of a queued run and commits. True while there are more.
-  bool clear_run(RunId run, std::size_t ticks = 10'000);
+  /// Removes up to `blocks` blocks of a queued run and commits. True while there are more.
+  bool clear_run(RunId run, std::size_t blocks = kSweptBlocks);
   std::optional<RunStatus> status_of(RunId run);
 
   /// Says why ticks of a run being recorded are missing. One stretch once.
   void note_gap(RunId run, const Gap& gap);
 
-  /// Appends one tick with its frame. Ticks grow; a gap is allowed. The first frames of a run
-  /// grow the buffers, after that nothing is allocated here but by SQLite.
+  /// Appends the frame of one tick. `time`: [s] run clock. Ticks grow; a gap is allowed. The first
+  /// frames of a run grow the buffers, after that nothing is allocated here but by SQLite.
   void append_tick(RunId run,
-                   const TickRow& row,
+                   std::uint64_t tick,
+                   double time,
                    std::span<const std::byte> frame,
                    std::span<const Window> windows);
 
@@ -114,9 +115,9 @@ class RunStore {
   /// Takes a run out of every list at once; sweep() gives its room back piece by piece.
   Deletion delete_run(RunId run);
 
-  /// Removes the data of up to `ticks` ticks of deleted runs and commits. True while there is more.
+  /// Removes up to `blocks` blocks of deleted runs and commits. True while there is more.
   /// A run that is too damaged for it is left as it is, with a StoreError that names it.
-  bool sweep(std::size_t ticks = 10'000);
+  bool sweep(std::size_t blocks = kSweptBlocks);
 
   /// Gives up to `blocks` of the oldest blocks of a run being recorded up for newer ones, as far as
   /// all their ticks are older than `before` [s]; the newest block stays. Commits. Returns how many
@@ -145,6 +146,8 @@ class RunStore {
   std::uint64_t spare_bytes();
 
  private:
+  static constexpr std::size_t kSweptBlocks = 128;  // some 10,000 ticks
+
   struct Recording;  // a run with its pending frames
   struct Statements;
 
@@ -158,7 +161,7 @@ class RunStore {
   void write_block(RunId run, Recording& recording);
   void write_progress(RunId run, const Recording& recording);
   void interrupt_unfinished();
-  std::optional<std::uint64_t> slice_end(RunId run, std::size_t ticks);
+  std::optional<std::uint64_t> slice_end(RunId run, std::size_t blocks);
   void delete_before(RunId run, std::int64_t tick);
   std::optional<RunId> first_deleted();
   /// What is left of a recorded run while its oldest blocks go.

@@ -18,7 +18,9 @@ struct RunStore::Recording {
   std::uint64_t sealed_bytes = 0;  // of the blocks before it
   std::uint64_t block_bytes = 0;   // of that block's row
   std::uint64_t ticks = 0;
-  TickRow last{};
+  double first_time = 0;  // [s] of that block's first tick
+  std::uint64_t last_tick = 0;
+  double last_time = 0;  // [s]
   double kept_from = 0;  // [s] of the oldest tick
   bool dirty = false;    // the run row does not show the newest tick
 };
@@ -28,7 +30,7 @@ struct RunStore::Statements {
       : begin(c.prepare("BEGIN IMMEDIATE")),
         commit(c.prepare("COMMIT")),
         insert_run(c.prepare(
-            "INSERT INTO run (id, status, scenario, controller, filter, vehicle, seed, parameters,"
+            "INSERT INTO run (id, status, scenario, controller, filter, physics, seed, parameters,"
             " version, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
         insert_document(c.prepare("INSERT INTO document (run, text) VALUES (?, ?)")),
         same_document(c.prepare("SELECT 1 FROM document WHERE run = ? AND text = ?")),
@@ -43,11 +45,10 @@ struct RunStore::Statements {
             "UPDATE run SET status = 'queued', outcome = 'running', reason = '', metrics = '',"
             " ticks = 0, time = 0, lost_ticks = 0, bytes = 0"
             " WHERE id = ? AND status IN ('interrupted', 'cancelled', 'failed') RETURNING id")),
-        insert_tick(c.prepare("INSERT INTO tick VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        write_block(
-            c.prepare("INSERT INTO block (run, first_tick, last_tick, frames) VALUES (?, ?, ?, ?)"
-                      " ON CONFLICT (run, first_tick) DO UPDATE"
-                      " SET last_tick = excluded.last_tick, frames = excluded.frames")),
+        write_block(c.prepare("INSERT INTO block (run, first_tick, last_tick, first_time, frames)"
+                              " VALUES (?, ?, ?, ?, ?)"
+                              " ON CONFLICT (run, first_tick) DO UPDATE"
+                              " SET last_tick = excluded.last_tick, frames = excluded.frames")),
         insert_gap(c.prepare("INSERT OR REPLACE INTO gap VALUES (?, ?, ?, ?, ?)")),
         lost_ticks(c.prepare("SELECT coalesce(sum(last_tick - first_tick + 1), 0) FROM gap"
                              " WHERE run = ? AND cause NOT IN ('pause', 'dropped')")),
@@ -64,29 +65,28 @@ struct RunStore::Statements {
             " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1")),
         deleted(c.prepare("SELECT id FROM run WHERE status = 'deleted' AND id > ?"
                           " ORDER BY id LIMIT 1")),
-        slice_end(c.prepare("SELECT tick FROM tick WHERE run = ? ORDER BY tick LIMIT 1 OFFSET ?")),
-        delete_ticks(c.prepare("DELETE FROM tick WHERE run = ? AND tick < ?")),
+        slice_end(c.prepare("SELECT first_tick FROM block WHERE run = ?"
+                            " ORDER BY first_tick LIMIT 1 OFFSET ?")),
         delete_blocks(c.prepare("DELETE FROM block WHERE run = ? AND first_tick < ?")),
         delete_gaps(c.prepare("DELETE FROM gap WHERE run = ? AND first_tick < ?")),
         delete_run(c.prepare("DELETE FROM run WHERE id = ? RETURNING coalesce(document, id)")),
         delete_document(c.prepare("DELETE FROM document WHERE run = ?1"
                                   " AND NOT EXISTS (SELECT 1 FROM run WHERE id = ?1)"
                                   " AND NOT EXISTS (SELECT 1 FROM run WHERE document = ?1)")),
-        oldest_block(c.prepare("SELECT first_tick, last_tick, length(frames) FROM block"
-                               " WHERE run = ? ORDER BY first_tick LIMIT 1")),
-        tick_time(c.prepare("SELECT tick, t FROM tick WHERE run = ? AND tick >= ?"
-                            " ORDER BY tick LIMIT 1")),
-        newest_tick(c.prepare("SELECT tick FROM tick WHERE run = ? ORDER BY tick DESC LIMIT 1")),
+        oldest_blocks(c.prepare("SELECT first_tick, last_tick, first_time, length(frames)"
+                                " FROM block WHERE run = ? ORDER BY first_tick LIMIT 2")),
+        newest_tick(c.prepare("SELECT last_tick FROM block WHERE run = ?"
+                              " ORDER BY first_tick DESC LIMIT 1")),
         page_count(c.prepare("PRAGMA page_count")),
         free_pages(c.prepare("PRAGMA freelist_count")),
         page_bytes(static_cast<std::uint64_t>(c.query_integer("PRAGMA page_size"))) {}
 
   detail::Statement begin, commit, insert_run, insert_document, same_document, share_document;
   detail::Statement start_run, resume_run, requeue_run;
-  detail::Statement insert_tick, write_block, insert_gap, lost_ticks, progress, set_result, end_run;
-  detail::Statement status, mark_deleted, oldest_ended, deleted, slice_end, delete_ticks;
-  detail::Statement delete_blocks, delete_gaps, delete_run, delete_document, oldest_block;
-  detail::Statement tick_time, newest_tick, page_count, free_pages;
+  detail::Statement write_block, insert_gap, lost_ticks, progress, set_result, end_run;
+  detail::Statement status, mark_deleted, oldest_ended, deleted, slice_end;
+  detail::Statement delete_blocks, delete_gaps, delete_run, delete_document, oldest_blocks;
+  detail::Statement newest_tick, page_count, free_pages;
   std::uint64_t page_bytes = 0;
   RunId newest_document = 0;  // the run it is stored with
 };

@@ -31,16 +31,15 @@ RunStore::Deletion RunStore::delete_run(RunId run) {
   });
 }
 
-/// The first tick after the first `ticks` of a run; nothing when it has no more.
-std::optional<std::uint64_t> RunStore::slice_end(RunId run, std::size_t ticks) {
-  Statement& found = sql_->slice_end.reset() << run << static_cast<std::int64_t>(ticks);
+/// The first tick after the first `blocks` of a run; nothing when it has no more.
+std::optional<std::uint64_t> RunStore::slice_end(RunId run, std::size_t blocks) {
+  Statement& found = sql_->slice_end.reset() << run << static_cast<std::int64_t>(blocks);
   const ResetLater reset(found);
   if (!found.step()) return std::nullopt;
   return static_cast<std::uint64_t>(found.integer(0));
 }
 
 void RunStore::delete_before(RunId run, std::int64_t tick) {
-  (sql_->delete_ticks.reset() << run << tick).run();
   (sql_->delete_blocks.reset() << run << tick).run();
   (sql_->delete_gaps.reset() << run << tick).run();
 }
@@ -51,13 +50,13 @@ std::optional<RunId> RunStore::first_deleted() {
   return sql_->deleted.integer(0);
 }
 
-bool RunStore::sweep(std::size_t ticks) {
+bool RunStore::sweep(std::size_t blocks) {
   require_open();
   const auto run = first_deleted();
   if (!run) return false;
   try {
     return alone([&] {
-      const auto end = slice_end(*run, ticks);
+      const auto end = slice_end(*run, blocks);
       delete_before(*run, end ? static_cast<std::int64_t>(*end) : kEveryTick);
       if (!end) {
         const ResetLater reset(sql_->delete_run.reset() << *run);
@@ -83,9 +82,9 @@ bool RunStore::requeue_run(RunId run) {
   });
 }
 
-bool RunStore::clear_run(RunId run, std::size_t ticks) {
+bool RunStore::clear_run(RunId run, std::size_t blocks) {
   return alone([&] {
-    const auto end = slice_end(run, ticks);
+    const auto end = slice_end(run, blocks);
     delete_before(run, end ? static_cast<std::int64_t>(*end) : kEveryTick);
     return end.has_value();
   });
@@ -113,29 +112,21 @@ std::optional<RunRow> RunStore::retire_oldest(std::uint64_t limit) {
 
 /// Counts in `left` what goes, and takes it out of the run's row.
 bool RunStore::drop_block(RunId run, Remains& left, double before, std::string_view sentence) {
-  std::int64_t last = 0;
-  std::uint64_t first = 0;
-  std::uint64_t bytes = 0;
-  {
-    Statement& block = sql_->oldest_block.reset() << run;
-    const ResetLater reset(block);
-    if (!block.step()) return false;
-    first = static_cast<std::uint64_t>(block.integer(0));
-    last = block.integer(1);
-    bytes = static_cast<std::uint64_t>(block.integer(2));
-  }
+  Statement& oldest = sql_->oldest_blocks.reset() << run;
+  const ResetLater reset(oldest);
+  if (!oldest.step()) return false;
+  const std::int64_t first = oldest.integer(0);
+  const std::int64_t last = oldest.integer(1);
+  const auto bytes = static_cast<std::uint64_t>(oldest.integer(3));
   if (static_cast<std::uint64_t>(last) >= left.newest_block) return false;
   // The first tick that stays: it says how old the block before it is, to a tick.
-  Statement& stays = sql_->tick_time.reset() << run << last + 1;
-  const ResetLater reset(stays);
-  if (!stays.step() || stays.number(1) > before) return false;
-  left.kept_from = stays.number(1);
-  const std::int64_t kept = stays.integer(0);
-  (sql_->delete_ticks.reset() << run << kept).run();
-  left.ticks -= std::min<std::uint64_t>(left.ticks, connection_->changes());
+  if (!oldest.step() || oldest.number(2) > before) return false;
+  const std::int64_t kept = oldest.integer(0);
+  left.kept_from = oldest.number(2);
+  left.ticks -= std::min(left.ticks, static_cast<std::uint64_t>(last - first + 1));
   left.bytes -= std::min(left.bytes, bytes);
-  (sql_->delete_blocks.reset() << run << static_cast<std::int64_t>(first) + 1).run();
-  (sql_->delete_gaps.reset() << run << kept).run();
+  oldest.reset();
+  delete_before(run, kept);
   (sql_->insert_gap.reset() << run << std::int64_t{0} << kept - 1 << to_string(GapCause::Dropped)
                             << sentence)
       .run();
@@ -152,7 +143,7 @@ std::size_t RunStore::drop_oldest(RunId run,
   if (found == open_.end() || found->second->ticks == 0) return 0;
   Recording& recording = *found->second;
   const bool growing = recording.pending.frames() > 0;
-  Remains left{.newest_block = growing ? recording.first_tick : recording.last.tick,
+  Remains left{.newest_block = growing ? recording.first_tick : recording.last_tick,
                .ticks = recording.ticks,
                .bytes = recording.sealed_bytes,
                .kept_from = recording.kept_from};
@@ -160,7 +151,7 @@ std::size_t RunStore::drop_oldest(RunId run,
     std::size_t count = 0;
     while (count < blocks && drop_block(run, left, before, sentence)) ++count;
     if (count == 0) return count;
-    (sql_->progress.reset() << static_cast<std::int64_t>(left.ticks) << recording.last.t
+    (sql_->progress.reset() << static_cast<std::int64_t>(left.ticks) << recording.last_time
                             << static_cast<std::int64_t>(left.bytes + recording.block_bytes) << run)
         .run();
     return count;
@@ -174,7 +165,7 @@ std::size_t RunStore::drop_oldest(RunId run,
 RunStore::Span RunStore::span(RunId run) const {
   const auto found = open_.find(run);
   if (found == open_.end()) return {};
-  return {found->second->kept_from, found->second->last.t};
+  return {found->second->kept_from, found->second->last_time};
 }
 
 std::uint64_t RunStore::pages(Statement& statement) {

@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": tells our files from others
 
 // The version counts the forms of the tables and of the frames in their blocks; a file of another
-// one is not read. 6: frames hold layers by legend; holds and behaviours are names.
-constexpr std::int64_t kVersion = 6;
+// one is not read. 7: blocks say their time; there is no row a tick beside its frame.
+constexpr std::int64_t kVersion = 7;
 
 // SI units throughout. A run with the same document as the one before it shares that one's, which
 // stays as long as a run has it: ten thousand repeats of a world would fill the store with copies.
@@ -26,7 +26,7 @@ constexpr const char* kTables = R"(
       scenario TEXT NOT NULL,
       controller TEXT NOT NULL,
       filter TEXT NOT NULL,
-      vehicle TEXT NOT NULL,
+      physics TEXT NOT NULL,
       seed INTEGER NOT NULL,
       parameters TEXT NOT NULL,
       version TEXT NOT NULL,
@@ -42,18 +42,11 @@ constexpr const char* kTables = R"(
     CREATE INDEX run_by_status ON run (status, id);
     CREATE INDEX run_by_document ON run (document) WHERE document IS NOT NULL;
     CREATE TABLE document (run INTEGER PRIMARY KEY, text TEXT NOT NULL);
-    CREATE TABLE tick (
-      run INTEGER NOT NULL,
-      tick INTEGER NOT NULL,
-      t REAL, x REAL, y REAL, heading REAL, v REAL, omega REAL, clearance REAL,
-      hold TEXT NOT NULL,
-      behaviour TEXT NOT NULL,
-      PRIMARY KEY (run, tick)
-    ) WITHOUT ROWID;
     CREATE TABLE block (
       run INTEGER NOT NULL,
       first_tick INTEGER NOT NULL,
       last_tick INTEGER NOT NULL,
+      first_time REAL NOT NULL,
       frames BLOB NOT NULL,
       PRIMARY KEY (run, first_tick)
     );

@@ -3,8 +3,6 @@
 
 #include <stdexcept>
 
-#include "server/record/run_json.hpp"
-
 namespace server {
 
 void EncodedFrame::encode_once() const {
@@ -26,10 +24,6 @@ std::span<const std::byte> EncodedFrame::bytes() const {
 std::span<const db::Window> EncodedFrame::windows() const {
   encode_once();
   return encoder_.windows();
-}
-
-db::TickRow EncodedFrame::row() const {
-  return tick_row(telemetry);
 }
 
 EncodedFrame& encoded(Frame& frame) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "server/record/frame_codec.hpp"
@@ -17,7 +18,8 @@ class EncodedFrame final : public Frame, public RecordedFrame {
   /// and share the result. Never called by the control thread of a live robot.
   std::span<const std::byte> bytes() const override;
   std::span<const db::Window> windows() const override;
-  db::TickRow row() const override;
+  std::uint64_t tick() const override { return telemetry.tick; }
+  double time() const override { return telemetry.observation.stamp; }
   void release() noexcept override { intrusive_ptr_release(this); }
 
  private:

@@ -2,7 +2,6 @@
 // telemetry.fbs.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -249,13 +248,6 @@ void FrameWriter::stamps() {
   }
 }
 
-/// Beams in 180 degrees, 0 where they do not go ccw or do not tell.
-std::uint32_t half_turn(const fb::LaserScan& scan) {
-  constexpr double kFinest = 1e-4;  // [rad]
-  if (!(scan.angle_increment() >= kFinest)) return 0;
-  return static_cast<std::uint32_t>(std::lround(std::numbers::pi / scan.angle_increment()));
-}
-
 }  // namespace
 
 /// FlatBuffers writes from the leaves to the root and from the end of the buffer to its front. What
@@ -329,18 +321,12 @@ void FrameEncoder::find_windows(const algo::Telemetry& t) {
   const auto add = [&](const std::uint8_t* data,
                        std::uint32_t count,
                        db::Window::Kind kind,
-                       std::uint32_t stride,
-                       std::uint32_t per_half_turn) {
-    windows_.push_back(
-        {static_cast<std::uint32_t>(data - bytes), count, kind, stride, per_half_turn});
+                       std::uint32_t stride) {
+    windows_.push_back({static_cast<std::uint32_t>(data - bytes), count, kind, stride});
   };
   if (const auto* scans = frame->scans()) {
     for (const fb::LaserScan* scan : *scans) {
-      add(scan->ranges()->Data(),
-          scan->ranges()->size(),
-          db::Window::Kind::Samples,
-          1,
-          half_turn(*scan));
+      add(scan->ranges()->Data(), scan->ranges()->size(), db::Window::Kind::Samples, 1);
     }
   }
   layers_.add_windows(t,

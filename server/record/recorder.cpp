@@ -285,13 +285,13 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
   guarded([&] {
     try {
       resume(channel);
-      const db::TickRow row = frame.row();
-      if (row.tick > channel.next_tick_) {
-        store_.note_gap(channel.run(), channel.gap_until(row.tick, after_pause));
+      const std::uint64_t tick = frame.tick();
+      if (tick > channel.next_tick_) {
+        store_.note_gap(channel.run(), channel.gap_until(tick, after_pause));
       }
-      store_.append_tick(channel.run(), row, frame.bytes(), frame.windows());
+      store_.append_tick(channel.run(), tick, frame.time(), frame.bytes(), frame.windows());
       uncommitted_ += frame.bytes().size();
-      channel.next_tick_ = row.tick + 1;
+      channel.next_tick_ = tick + 1;
       channel.missing_.reset();
     } catch (const db::DatabaseError&) {
       throw;

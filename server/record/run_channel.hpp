@@ -29,7 +29,8 @@ class RecordedFrame {
  public:
   virtual std::span<const std::byte> bytes() const = 0;
   virtual std::span<const db::Window> windows() const = 0;
-  virtual db::TickRow row() const = 0;
+  virtual std::uint64_t tick() const = 0;
+  virtual double time() const = 0;  // [s] run clock
   /// Gives up one reference; the last one returns the frame to its pool. Any thread.
   virtual void release() noexcept = 0;
 

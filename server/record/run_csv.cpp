@@ -1,4 +1,4 @@
-// server/record/run_csv.cpp: the columns from the rows, the channels from the frames.
+// server/record/run_csv.cpp: columns and channels from the frames.
 #include "server/record/run_csv.hpp"
 
 #include <array>
@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "server/record/frame_codec.hpp"
+#include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/run_spec.hpp"
 
@@ -22,33 +23,39 @@ void put_number(std::string& out, double value) {
   out.append(digits.data(), end);
 }
 
-void put_row(std::string& out, const db::TickRow& row) {
-  out += std::to_string(row.tick);
-  for (const double value : {row.t, row.x, row.y, row.heading, row.v, row.omega, row.clearance}) {
+void put_columns(std::string& out, const algo::Telemetry& t) {
+  const algo::Pose2& pose = t.observation.odometry.pose;
+  out += std::to_string(t.tick);
+  for (const double value : {t.observation.stamp,
+                             pose.x,
+                             pose.y,
+                             pose.heading,
+                             t.command.base.v,
+                             t.command.base.omega,
+                             stored_clearance(t)}) {
     out += ',';
     put_number(out, value);
   }
   out += ',';
-  out += row.hold.empty() ? "none" : row.hold;
+  out += t.hold.name.empty() ? "none" : t.hold.name.view();
   out += ',';
-  out += row.behaviour;
+  out += t.behaviour.view();
 }
 
 /// ",1.5,,3" for channels of 1, 1 and 1 values of which the second has no reading.
-std::string cells_of(const algo::Observation& observation,
-                     const std::vector<algo::ChannelInfo>& channels) {
-  std::string cells;
+void put_channels(std::string& out,
+                  const algo::Observation& observation,
+                  const std::vector<algo::ChannelInfo>& channels) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     const algo::ChannelReading* found = nullptr;
     for (const algo::ChannelReading& reading : observation.channels) {
       if (reading.channel == i) found = &reading;
     }
     for (std::uint32_t k = 0; k < channels[i].values; ++k) {
-      cells += ',';
-      if (found != nullptr && k < found->values.size()) put_number(cells, found->values[k]);
+      out += ',';
+      if (found != nullptr && k < found->values.size()) put_number(out, found->values[k]);
     }
   }
-  return cells;
 }
 
 }  // namespace
@@ -69,31 +76,17 @@ std::string RunCsv::header() const {
   return out + '\n';
 }
 
-std::vector<std::string> RunCsv::channel_cells(db::RunReader& reader,
-                                               std::uint64_t from,
-                                               std::size_t limit) const {
-  std::vector<std::string> cells;
-  algo::Telemetry t;
-  reader.frames(run_, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
-    decode_frame(frame, t);
-    cells.push_back(cells_of(t.observation, channels_));
-  });
-  return cells;
-}
-
 std::optional<std::uint64_t> RunCsv::lines(db::RunReader& reader,
                                            std::uint64_t from,
                                            std::size_t limit,
                                            std::string& out) const {
-  const db::TickPage page = reader.ticks(run_, from, limit);
-  std::vector<std::string> cells;
-  if (!channels_.empty()) cells = channel_cells(reader, from, page.ticks.size());
-  for (std::size_t i = 0; i < page.ticks.size(); ++i) {
-    put_row(out, page.ticks[i]);
-    if (i < cells.size()) out += cells[i];
+  algo::Telemetry t;
+  return reader.frames(run_, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
+    decode_frame(frame, t);
+    put_columns(out, t);
+    put_channels(out, t.observation, channels_);
     out += '\n';
-  }
-  return page.next;
+  });
 }
 
 }  // namespace server

@@ -28,10 +28,6 @@ class RunCsv {
                                      std::string& out) const;
 
  private:
-  std::vector<std::string> channel_cells(db::RunReader& reader,
-                                         std::uint64_t from,
-                                         std::size_t limit) const;
-
   db::RunId run_ = 0;
   std::vector<algo::ChannelInfo> channels_{};
 };

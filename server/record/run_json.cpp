@@ -48,7 +48,7 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
   row.document = dump_json(run_document(spec, robot));
   row.controller = spec.scenario.controller;
   row.filter = spec.scenario.filter;
-  row.vehicle = physics_of(spec);
+  row.physics = physics_of(spec);
   row.seed = spec.seed;
   row.parameters = to_json(spec.parameters).dump();
   row.version = kVersion;
@@ -81,20 +81,6 @@ db::RunEnd run_end(const RunResult& result, bool cut) {
   return end;
 }
 
-db::TickRow tick_row(const algo::Telemetry& t) {
-  const algo::Pose2& pose = t.observation.odometry.pose;
-  return {.tick = t.tick,
-          .t = t.observation.stamp,
-          .x = pose.x,
-          .y = pose.y,
-          .heading = pose.heading,
-          .v = t.command.base.v,
-          .omega = t.command.base.omega,
-          .clearance = t.clearance,
-          .hold = std::string(t.hold.name.view()),
-          .behaviour = std::string(t.behaviour.view())};
-}
-
 RecorderOptions recorder_options() {
   RecorderOptions options;
   options.ring_frames = kRecordRing;
@@ -116,8 +102,8 @@ json to_json(const db::RunRow& row) {
               {"scenario", row.what.scenario},
               {"controller", row.what.controller},
               {"filter", row.what.filter},
-              {"physics", row.what.vehicle},
-              {"vehicle", row.what.vehicle},  // its old name
+              {"physics", row.what.physics},
+              {"vehicle", row.what.physics},  // its old name
               {"seed", row.what.seed},
               {"parameters", parsed(row.what.parameters)},
               {"version", row.what.version},
@@ -158,17 +144,22 @@ algo::FilterKind stored_filter(const db::RunRow& row) {
   return *filter;
 }
 
-json to_json(const db::TickRow& row) {
-  return {{"tick", row.tick},
-          {"t", row.t},
-          {"x", row.x},
-          {"y", row.y},
-          {"heading", row.heading},
-          {"v", row.v},
-          {"omega", row.omega},
-          {"clearance", row.clearance},
-          {"hold", row.hold.empty() ? "none" : row.hold},
-          {"behaviour", row.behaviour}};
+double stored_clearance(const algo::Telemetry& t) {
+  return std::round(t.clearance * 1e6) / 1e6;  // a frame holds it as a float
+}
+
+json tick_json(const algo::Telemetry& t) {
+  const algo::Pose2& pose = t.observation.odometry.pose;
+  return {{"tick", t.tick},
+          {"t", t.observation.stamp},
+          {"x", pose.x},
+          {"y", pose.y},
+          {"heading", pose.heading},
+          {"v", t.command.base.v},
+          {"omega", t.command.base.omega},
+          {"clearance", stored_clearance(t)},
+          {"hold", t.hold.name.empty() ? "none" : t.hold.name.view()},
+          {"behaviour", t.behaviour.view()}};
 }
 
 }  // namespace server

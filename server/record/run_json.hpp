@@ -26,7 +26,6 @@ db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, doubl
 /// The row's end. A run ended by a person is finished all the same; its outcome says `stopped`.
 /// One that was `cut` by the end of the program before it came to an outcome is interrupted.
 db::RunEnd run_end(const RunResult& result, bool cut = false);
-db::TickRow tick_row(const algo::Telemetry& t);
 
 /// What the run began with, as it was: what today's program would refuse was accepted once. Throws
 /// std::runtime_error for what this program has not.
@@ -38,7 +37,9 @@ RecorderOptions recorder_options();
 
 /// A run as GET /api/v1/runs lists it; with its document when the row holds one.
 nlohmann::json to_json(const db::RunRow& row);
-nlohmann::json to_json(const db::TickRow& row);
+/// The plain columns of a tick. Its clearance is that of the frame, to the micrometre.
+nlohmann::json tick_json(const algo::Telemetry& t);
+double stored_clearance(const algo::Telemetry& t);  // [m]
 
 /// [UTC] now as ISO 8601 with milliseconds.
 std::string wall_time();

@@ -1,10 +1,8 @@
 // server/record/verify.cpp: replay of the record.
 #include "server/record/verify.hpp"
 
-#include <cmath>
 #include <span>
 #include <stdexcept>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -40,18 +38,6 @@ algo::Pipeline pipeline_of(const db::RunRow& row) {
   return {config, spec};
 }
 
-/// Not a number, which a clearance without a return is, is the same as itself.
-bool same(double a, double b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
-/// Of the columns the frame keeps only the clearance as a float.
-bool same(const db::TickRow& a, const db::TickRow& b) {
-  return a.tick == b.tick && same(a.t, b.t) && same(a.x, b.x) && same(a.y, b.y) &&
-         same(a.heading, b.heading) && same(a.v, b.v) && same(a.omega, b.omega) &&
-         same(static_cast<float>(a.clearance), static_cast<float>(b.clearance)) &&
-         a.hold == b.hold && a.behaviour == b.behaviour;
-}
-
 /// Feeds the frames of one run, in order, to a pipeline of its own.
 class Comparison {
  public:
@@ -59,15 +45,11 @@ class Comparison {
 
   /// Up to `limit` ticks from `from` on. Returns the tick to go on with, or nothing.
   std::optional<std::uint64_t> read(db::RunReader& reader, std::uint64_t from, std::size_t limit) {
-    rows_.clear();
-    const auto next =
-        reader.frames(row_.id, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
+    return reader.frames(
+        row_.id, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
           decode_frame(frame, t_);
-          rows_.push_back(tick_row(t_));
           compare();
         });
-    compare_rows(reader.ticks(row_.id, from, rows_.size()).ticks);
-    return next;
   }
   const Verification& result() const { return result_; }
 
@@ -94,17 +76,6 @@ class Comparison {
                     t_.command.base.omega);
   }
 
-  void compare_rows(const std::vector<db::TickRow>& stored) {
-    for (std::size_t i = 0; i < rows_.size() && !result_.difference; ++i) {
-      if (i < stored.size() && same(stored[i], rows_[i])) continue;
-      result_.difference = fmt::format("Tick {}: the row of its columns is {}.",
-                                       rows_[i].tick,
-                                       i < stored.size() && stored[i].tick == rows_[i].tick
-                                           ? "not what its frame says"
-                                           : "missing");
-    }
-  }
-
   std::string why_missing(std::uint64_t first, std::uint64_t last) const {
     std::string why;
     for (const db::Gap& gap : row_.gaps) {
@@ -121,7 +92,6 @@ class Comparison {
   const db::RunRow& row_;
   algo::Pipeline pipeline_;
   algo::Telemetry t_{};
-  std::vector<db::TickRow> rows_{};  // of the frames just read
   Verification result_{};
 };
 

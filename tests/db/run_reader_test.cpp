@@ -72,21 +72,29 @@ TEST_F(RunReaderTest, FiltersByEachColumnAndAll) {
   EXPECT_THAT(ids(reader.list({.outcome = "stuck"}, 1, page.next)), ElementsAre(b));
 }
 
-TEST_F(RunReaderTest, TicksComeByPage) {
+TEST_F(RunReaderTest, FramesComeByPage) {
   RunStore store(path);
   const auto run = record(store, 25);
   RunReader reader(path);
-  auto page = reader.ticks(run, 3, 10);
-  EXPECT_EQ(page.ticks.front().tick, 3U);
-  EXPECT_EQ(page.ticks.size(), 10U);
-  EXPECT_EQ(page.next, 13U);
-  page = reader.ticks(run, 15, 10);
-  EXPECT_EQ(page.ticks.size(), 10U);
-  EXPECT_FALSE(page.next);
-  EXPECT_EQ(reader.ticks(run, 0, 0).next, 0U);
-  EXPECT_THAT(reader.ticks(run, UINT64_MAX, 10).ticks, IsEmpty());
-  EXPECT_THAT(reader.ticks(run + 1, 0, 10).ticks, IsEmpty());
-  EXPECT_EQ(reader.ticks(run, 0, SIZE_MAX).ticks.size(), 25U);
+  std::vector<std::uint64_t> seen;
+  const auto page = [&](db::RunId of, std::uint64_t from, std::size_t limit) {
+    seen.clear();
+    return reader.frames(of, from, limit, [&](std::uint64_t tick, std::span<const std::byte>) {
+      seen.push_back(tick);
+    });
+  };
+  EXPECT_EQ(page(run, 3, 10), 13U);
+  EXPECT_EQ(seen.front(), 3U);
+  EXPECT_EQ(seen.size(), 10U);
+  EXPECT_EQ(page(run, 15, 10), std::nullopt);
+  EXPECT_EQ(seen.size(), 10U);
+  EXPECT_EQ(page(run, 0, 0), 0U);
+  EXPECT_EQ(page(run, UINT64_MAX, 10), std::nullopt);
+  EXPECT_THAT(seen, IsEmpty());
+  EXPECT_EQ(page(run + 1, 0, 10), std::nullopt);
+  EXPECT_THAT(seen, IsEmpty());
+  EXPECT_EQ(page(run, 0, SIZE_MAX), std::nullopt);
+  EXPECT_EQ(seen.size(), 25U);
 }
 
 TEST_F(RunReaderTest, FramesStartAnywhere) {

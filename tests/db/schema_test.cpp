@@ -66,12 +66,12 @@ TEST_F(SchemaTest, ADatabaseOfTheVersionBeforeLayersIsRefusedToo) {
   Connection(path, Connection::Mode::Write).execute("PRAGMA user_version = 4");
   EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("has version 4"));
   EXPECT_THAT(refusal([&] { const RunStore store(path); }), HasSubstr("has version 4"));
-  EXPECT_EQ(ask("SELECT count(*) FROM tick"), 3);
+  EXPECT_EQ(ask("SELECT sum(ticks) FROM run"), 3);
 }
 
 TEST_F(SchemaTest, AnEmptyFileIsSetUp) {
   { const RunStore store(path); }
-  EXPECT_EQ(ask("PRAGMA user_version"), 6);
+  EXPECT_EQ(ask("PRAGMA user_version"), 7);
   EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
   Connection((folder / "empty.db").string(), Connection::Mode::Write);
   EXPECT_THAT(refusal([&] { const RunReader reader((folder / "empty.db").string()); }),

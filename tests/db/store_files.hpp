@@ -28,27 +28,14 @@ class StoreFiles : public testing::Test {
             .document = R"({"name":")" + scenario + R"("})",
             .controller = "modified",
             .filter = "pseudomedian",
-            .vehicle = "kinematic",
+            .physics = "kinematic",
             .seed = 0xFFFFFFFFFFFFFFF1ULL,
             .parameters = R"({"k_r":0.6})",
             .version = "0.1.0",
             .started = "2026-11-21T10:40:47Z"};
   }
-  static db::TickRow row(std::uint64_t tick) {
-    const auto k = static_cast<double>(tick);
-    return {.tick = tick,
-            .t = 0.026 * k,
-            .x = 0.1 * k,
-            .y = -0.2 * k,
-            .heading = 0.001 * k,
-            .v = 0.5,
-            .omega = 1.0 / 3.0,
-            .clearance = 0.65,
-            .hold = tick % 3 == 0   ? ""
-                    : tick % 3 == 1 ? "stopped"
-                                    : "bumper",
-            .behaviour = "avoid"};
-  }
+  /// [s] run clock
+  static double time_of(std::uint64_t tick) { return 0.026 * static_cast<double>(tick); }
   /// Frames 0 .. count-1 of a run, the same for the same seed.
   static std::vector<Frame> frames(std::size_t count, std::uint64_t seed = 1) {
     FrameMaker maker(seed, 3);
@@ -57,7 +44,7 @@ class StoreFiles : public testing::Test {
     return made;
   }
   static void append(db::RunStore& store, db::RunId run, std::uint64_t tick, const Frame& frame) {
-    store.append_tick(run, row(tick), frame.bytes, frame.windows);
+    store.append_tick(run, tick, time_of(tick), frame.bytes, frame.windows);
   }
   /// A whole run of `count` ticks, committed.
   static db::RunId record(db::RunStore& store,

@@ -66,20 +66,20 @@ def ask(port, method, path, body=None, timeout=60):
         connection.close()
 
 
-def add_long_run(database):
-    """Writes a finished run whose CSV has 55 MB into a store that nobody has open; its number."""
+def add_long_run(database, like):
+    """Writes a finished run whose CSV has some 55 MB into a store that nobody has open, of the blocks
+    of run `like` over and over; its number."""
     store = sqlite3.connect(database)
     run = store.execute(
-        "INSERT INTO run (status, outcome, scenario, controller, filter, vehicle, seed, parameters,"
-        " version, started, ticks) VALUES ('finished', 'reached', 'case1', 'modified',"
-        " 'pseudomedian', 'kinematic', 1, '{}', 'test', '2026-01-01T00:00:00.000Z', ?)",
-        (CSV_ROWS,)).lastrowid
-    store.execute("INSERT INTO document (run, text) VALUES (?, '{}')", (run,))
-    store.executemany(
-        "INSERT INTO tick (run, tick, t, x, y, heading, v, omega, clearance, hold, behaviour)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, 0, 0)",
-        ((run, k, k * 0.0266, k / 3, k / 7, k % 6 / 11, k % 5 / 13, k % 9 / 17, k % 8 / 19)
-         for k in range(CSV_ROWS)))
+        "INSERT INTO run (status, outcome, scenario, controller, filter, physics, seed, parameters,"
+        " version, started, ticks) SELECT status, outcome, scenario, controller, filter, physics, seed,"
+        " parameters, version, started, ? FROM run WHERE id = ?", (CSV_ROWS, like)).lastrowid
+    store.execute("INSERT INTO document SELECT ?, text FROM document WHERE run ="
+                  " (SELECT coalesce(document, id) FROM run WHERE id = ?)", (run, like))
+    ticks = store.execute("SELECT max(last_tick) + 1 FROM block WHERE run = ?", (like,)).fetchone()[0]
+    for first in range(0, CSV_ROWS, ticks):
+        store.execute("INSERT INTO block SELECT ?, first_tick + ?, last_tick + ?, first_time, frames"
+                      " FROM block WHERE run = ?", (run, first, first, like))
     store.commit()
     store.close()
     return run

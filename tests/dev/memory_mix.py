@@ -36,7 +36,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         database = os.path.join(folder, "runs.db")
         heavy = load.record_heavy_run(PROGRAM, database)
-        long = load.add_long_run(database)
+        long = load.add_long_run(database, heavy)
         server = load.Server(PROGRAM, folder, "--db", database)
         port = server.port
         with contextlib.ExitStack() as mix:

@@ -100,7 +100,7 @@ def measure(name, server, devices, under=contextlib.nullcontext(), address="127.
 def all_loads(folder):
     database = os.path.join(folder, "runs.db")
     heavy = load.record_heavy_run(PROGRAM, database)
-    long = load.add_long_run(database)
+    long = load.add_long_run(database, heavy)
     devices = Devices(PROGRAM, folder)
     robot = robot_file(folder)
     well = True

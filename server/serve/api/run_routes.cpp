@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "server/record/filtered_scans.hpp"
+#include "server/record/frame_codec.hpp"
 #include "server/record/run_csv.hpp"
 #include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
@@ -207,11 +208,14 @@ net::Response list_ticks(ApiContext& context, const net::Request& request, Worke
   std::size_t left = limit_of(request, 1000, 10'000);
   const std::size_t room = context.room.page();
   std::string list = "[";
+  algo::Telemetry t;
   while (next && left > 0 && list.size() < room) {
-    const db::TickPage page = reader.ticks(run, *next, std::min(left, kRows));
-    for (const db::TickRow& row : page.ticks) append_item(list, to_json(row));
-    left -= page.ticks.size();
-    next = page.next;
+    next = reader.frames(
+        run, *next, std::min(left, kRows), [&](std::uint64_t, std::span<const std::byte> frame) {
+          decode_frame(frame, t);
+          append_item(list, tick_json(t));
+          --left;
+        });
   }
   return page_response(std::move(list), next ? json(*next) : json(nullptr));
 }

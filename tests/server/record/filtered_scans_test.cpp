@@ -56,7 +56,7 @@ class FilteredScansTest : public test::StoreFiles {
         entered += t.scene.scan.ranges[i] < raw.ranges[i] - 0.5 ? 1U : 0U;
       }
       const auto bytes = encoder.encode(t);
-      store.append_tick(run, tick_row(t), bytes, encoder.windows());
+      store.append_tick(run, t.tick, t.observation.stamp, bytes, encoder.windows());
       t.requests.clear();
       robot->step(t.command, t.observation);
     }

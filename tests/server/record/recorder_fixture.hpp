@@ -18,13 +18,14 @@ namespace test {
 /// A frame that counts how many of its kind are still referred to.
 class CountedFrame final : public server::RecordedFrame {
  public:
-  CountedFrame(const Frame& frame, const db::TickRow& row, std::atomic<int>& alive)
-      : frame_(frame), row_(row), alive_(alive) {
+  CountedFrame(const Frame& frame, std::uint64_t tick, double time, std::atomic<int>& alive)
+      : frame_(frame), tick_(tick), time_(time), alive_(alive) {
     ++alive_;
   }
   std::span<const std::byte> bytes() const override { return frame_.bytes; }
   std::span<const db::Window> windows() const override { return frame_.windows; }
-  db::TickRow row() const override { return row_; }
+  std::uint64_t tick() const override { return tick_; }
+  double time() const override { return time_; }
   void release() noexcept override {
     --alive_;
     delete this;
@@ -33,14 +34,16 @@ class CountedFrame final : public server::RecordedFrame {
  private:
   ~CountedFrame() = default;
   const Frame& frame_;
-  db::TickRow row_{};
+  std::uint64_t tick_ = 0;
+  double time_ = 0;  // [s]
   std::atomic<int>& alive_;
 };
 
 class RecorderFiles : public StoreFiles {
  protected:
   server::FrameHandle handle(std::uint64_t tick) {
-    return server::FrameHandle(new CountedFrame(made[tick % made.size()], row(tick), alive));
+    return server::FrameHandle(
+        new CountedFrame(made[tick % made.size()], tick, time_of(tick), alive));
   }
   /// As a simulated run does it: waits when the ring is full.
   void push(server::RunChannel& channel, std::uint64_t tick) {

@@ -216,7 +216,7 @@ TEST_F(RecorderHealthTest, AStoreOfAnOlderProgramIsSetAsideWhole) {
   }
   ASSERT_EQ(aside.size(), 1u);
   const Connection kept(aside[0].string(), Connection::Mode::Write);
-  EXPECT_EQ(kept.query_integer("SELECT count(*) FROM tick"), 100);
+  EXPECT_EQ(kept.query_integer("SELECT sum(ticks) FROM run"), 100);
   EXPECT_EQ(kept.query_integer("PRAGMA user_version"), 4);
 }
 
@@ -247,7 +247,7 @@ TEST_F(RecorderHealthTest, OneDamagedOldRunDoesNotEndANewOne) {
   std::int64_t pages = 0;
   {
     db::RunStore store(path);
-    old = record(store, 2400);  // few enough for one page to list those of its rows
+    old = record(store, 4800);
   }
   pages = static_cast<std::int64_t>(std::filesystem::file_size(path) / 4096);
   ASSERT_GT(pages, 200);

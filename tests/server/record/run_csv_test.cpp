@@ -43,18 +43,28 @@ class RunCsvTest : public test::StoreFiles {
 TEST_F(RunCsvTest, IsExactAndInPieces) {
   db::RunStore store(path);
   const db::RunId run = store.begin_run(of_robot(paper_robot()));
-  db::TickRow odd = row(1);
-  odd.t = 0.1;
-  odd.x = 1e-9;
-  odd.y = -3;
-  odd.v = 1.0 / 3.0;
+  FrameEncoder encoder;
+  const auto add = [&](const algo::Telemetry& t) {
+    const auto bytes = encoder.encode(t);
+    store.append_tick(run, t.tick, t.observation.stamp, bytes, encoder.windows());
+  };
+  algo::Telemetry odd;
+  odd.tick = 1;
+  odd.observation.stamp = 0.1;
+  odd.observation.odometry.pose = {1e-9, -3, 0.001};
+  odd.command.base = {1.0 / 3.0, 1.0 / 3.0};
   odd.clearance = std::nan("");
-  odd.hold = "stopped";
-  const auto made = frames(1);
-  store.append_tick(run, odd, made[0].bytes, made[0].windows);
-  db::TickRow free = row(2);
-  free.hold.clear();
-  store.append_tick(run, free, made[0].bytes, made[0].windows);
+  odd.hold.name = "stopped";
+  odd.behaviour = "avoid";
+  add(odd);
+  algo::Telemetry free = odd;
+  free.tick = 2;
+  free.observation.stamp = 0.052;
+  free.observation.odometry.pose = {0.2, -0.4, 0.002};
+  free.command.base = {0.5, 1.0 / 3.0};
+  free.clearance = 0.65;
+  free.hold = {};
+  add(free);
   store.commit();
   const std::string expected =
       "tick,t,x,y,heading,v,omega,clearance,hold,behaviour\n"
@@ -78,7 +88,7 @@ TEST_F(RunCsvTest, ChannelsAreColumnsWithACellWhereThereIsAReading) {
     }
     if (tick == 2) t.observation.channels.append() = {.channel = 0, .stamp = 0, .values = {24.5}};
     const auto bytes = encoder.encode(t);
-    store.append_tick(run, tick_row(t), bytes, encoder.windows());
+    store.append_tick(run, t.tick, t.observation.stamp, bytes, encoder.windows());
   }
   store.commit();
   for (const std::size_t limit : {1U, 2U, 100U}) {

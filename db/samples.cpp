@@ -1,0 +1,77 @@
+// db/samples.cpp: predicting the ranges of a scan.
+#include "db/samples.hpp"
+
+namespace db::detail {
+namespace {
+
+/// Sample `i` should be as its left neighbour; or, where that and the reference see one surface,
+/// between the two: the mean of two readings is less noisy than either.
+std::uint16_t expected_sample(std::uint16_t left,
+                              std::span<const std::byte> reference,
+                              std::size_t i) {
+  constexpr int kSameSurface = 24;  // [mm]
+  if (reference.empty()) return left;
+  const auto there = load<std::uint16_t>(reference, i);
+  const int apart = int{left} - int{there};
+  const bool same = apart <= kSameSurface && apart >= -kSameSurface;
+  return static_cast<std::uint16_t>(same ? (left + there) / 2 : there);
+}
+
+std::uint16_t residual(std::span<const std::byte> samples,
+                       std::span<const std::byte> reference,
+                       std::size_t i) {
+  const std::uint16_t expected = expected_sample(left_of(samples, i), reference, i);
+  return fold16(static_cast<std::uint16_t>(load<std::uint16_t>(samples, i) - expected));
+}
+
+/// Bits left of every fourth sample: enough to choose by.
+std::size_t cost(std::span<const std::byte> samples, std::span<const std::byte> reference) {
+  const std::size_t count = samples.size() / sizeof(std::uint16_t);
+  std::size_t bits = 0;
+  for (std::size_t i = 1; i < count; i += 4) {
+    bits += static_cast<std::size_t>(std::bit_width(residual(samples, reference, i)));
+  }
+  return bits;
+}
+
+}  // namespace
+
+Choice write_samples(std::span<const std::byte> samples,
+                     std::span<const std::byte> reference,
+                     Streams& streams) {
+  const bool refers = !reference.empty() && cost(samples, reference) < cost(samples, {});
+  if (!refers) reference = {};
+  const std::size_t count = samples.size() / sizeof(std::uint16_t);
+  const std::size_t before = streams[kLow].size();
+  streams[kLow].resize(before + count);
+  streams[kHigh].resize(before + count);
+  std::uint8_t* const low = streams[kLow].data() + before;
+  std::uint8_t* const high = streams[kHigh].data() + before;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint16_t folded = residual(samples, reference, i);
+    low[i] = static_cast<std::uint8_t>(folded & 0xFFU);
+    high[i] = static_cast<std::uint8_t>(folded >> 8U);
+  }
+  return refers ? Choice::Reference : Choice::Within;
+}
+
+void read_samples(std::span<std::byte> samples,
+                  std::span<const std::byte> reference,
+                  const Streams& streams,
+                  std::size_t& at) {
+  const std::size_t count = samples.size() / sizeof(std::uint16_t);
+  if (streams[kLow].size() - at < count) {
+    throw CodecError("the block's streams do not match its layout");
+  }
+  const std::uint8_t* const low = streams[kLow].data() + at;
+  const std::uint8_t* const high = streams[kHigh].data() + at;
+  std::uint16_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto folded = static_cast<std::uint16_t>(low[i] | (high[i] * 256U));
+    left = static_cast<std::uint16_t>(unfold16(folded) + expected_sample(left, reference, i));
+    store(samples, i, left);
+  }
+  at += count;
+}
+
+}  // namespace db::detail
