@@ -55,8 +55,8 @@ class Machine {
   virtual bool left() const = 0;
 };
 
-/// Orders on their way to the line. Those that do not fit are left out: whoever gives so many has
-/// lost its line.
+/// Orders on their way to the line. Those that do not fit are left out: a
+/// machine that gives so many has lost its line.
 class LineOrders {
  public:
   void send(ByteView bytes, double pause = 0) {

@@ -3,8 +3,8 @@
 //   FA FB  COUNT  BODY...  SUM_HI SUM_LO      COUNT = bytes of BODY + 2; words low byte first
 //
 // Sources: the manuals of the Pioneer 2 and 3, checked against two public clients. No I/O and no
-// clock. The base stops by itself when it has heard nothing for its watchdog's time, so whoever
-// has no fresh command sends nothing.
+// clock. The base stops by itself when it has heard nothing for its watchdog's time, so a
+// program without a fresh command sends nothing.
 #pragma once
 
 #include <array>

@@ -124,7 +124,7 @@ void SerialPort::open_device(unsigned baud) {
   fd_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd_ < 0) fail(open_error_text(path_, errno));
   if (::isatty(fd_) == 0) fail(open_error_text(path_, ENOTTY));
-  // The lock keeps out whoever asks for it, root too; exclusive mode all others but root.
+  // The lock keeps out each program that asks for it, root too; exclusive mode all others but root.
   if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) fail(open_error_text(path_, errno));
   ::ioctl(fd_, TIOCEXCL);
   set_baud(baud);

@@ -181,7 +181,7 @@ void World::advance() {
   vehicle_->drive(errors_.act(command_.base), obstacles_, *trail_);
 }
 
-/// Obstacles that move by themselves go where they are at `now`, whoever stands there.
+/// Obstacles that move by themselves go where they are at `now`, through robots too.
 void World::follow_paths(double now) {
   for (const ObstaclePath& path : scenario_.paths) {
     const auto index = obstacles_.find(path.id);

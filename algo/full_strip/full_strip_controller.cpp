@@ -207,25 +207,25 @@ void FullStripController::take_plan(const ControlInput& in) {
   no_way_ = false;
   planner_.path(path_W_);
   straighten(map_, settings_.rest_distance, path_W_);
-  rival_.lay(path_W_);
-  rival_.follow(in.odometry.pose.position());
+  candidate_.lay(path_W_);
+  candidate_.follow(in.odometry.pose.position());
   StripSettings settings = settings_;
   settings.least_clearance = least_clearance() - break_room_;
-  rival_.relax(map_, settings, kSweepsNew);
-  if (rival_.broken_at(map_, settings) >= 0) {
+  candidate_.relax(map_, settings, kSweepsNew);
+  if (candidate_.broken_at(map_, settings) >= 0) {
     // Relaxed out of its way: take the plan as it is.
-    rival_.lay(path_W_);
-    rival_.follow(in.odometry.pose.position());
+    candidate_.lay(path_W_);
+    candidate_.follow(in.odometry.pose.position());
   }
   // A strip that ends short of the goal, as that lay beyond the map or something stands on it, may
   // well cost less than one that ends nearer.
   const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
   const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
-  const bool better = strip_.empty() || broken_at_ >= 0 || left(rival_) < left(strip_) - nearer ||
-                      (left(rival_) < kAtGoal && left(strip_) >= kAtGoal) ||
-                      rival_.cost(map_) < kOtherShare * strip_.cost(map_);
+  const bool better = strip_.empty() || broken_at_ >= 0 || left(candidate_) < left(strip_) - nearer ||
+                      (left(candidate_) < kAtGoal && left(strip_) >= kAtGoal) ||
+                      candidate_.cost(map_) < kOtherShare * strip_.cost(map_);
   if (better) {
-    std::swap(strip_, rival_);
+    std::swap(strip_, candidate_);
     broken_at_ = -1;
   }
   level_ = 0;  // the next search begins with the widest again

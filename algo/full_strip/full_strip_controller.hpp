@@ -92,7 +92,7 @@ class FullStripController final : public Controller {
   SpaceTimeSearch space_time_{};
   Planner planner_{};
   NodeStrip strip_{};
-  NodeStrip rival_{};
+  NodeStrip candidate_{};
   VelocityStage stage_{};
   ManeuverSearch search_{};
   ManeuverDrive maneuver_{};

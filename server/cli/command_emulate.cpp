@@ -1,5 +1,5 @@
-// server/cli/command_emulate.cpp: `tautline emulate`: devices on pseudo-terminals for whoever has
-// none.
+// server/cli/command_emulate.cpp: `tautline emulate`: devices on pseudo-terminals, for users
+// without any.
 #include <array>
 #include <csignal>
 #include <cstdio>

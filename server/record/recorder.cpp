@@ -339,7 +339,7 @@ bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t tic
 void Recorder::end_closed() {
   for (std::size_t i = 0; i < channels_.size();) {
     RunChannel& channel = *channels_[i];
-    // In this order: whoever closed and then let go is seen to have closed, and what was pushed
+    // In this order: a run that closed and then let go is seen to have closed, and what was pushed
     // before close() is seen in the ring.
     const bool held = channels_[i].use_count() > 1;
     const bool closed = channel.closed_.load(std::memory_order_acquire);

@@ -51,7 +51,7 @@ tidy_file() {
   if [[ $2 == server/* ]]; then
     checks=(--checks='-clang-analyzer-*')
   fi
-  if clang-tidy-16 -p build/release --quiet "${checks[@]}" "$2" >"$log" 2>&1; then
+  if clang-tidy-16 -p "$work/tidy" --quiet "${checks[@]}" "$2" >"$log" 2>&1; then
     mv -- "$log" "$work/tidy/$1.ok"
   else
     grep -vE '^[0-9]+ warnings? (and [0-9]+ errors? )?generated' -- "$log" || true
@@ -62,6 +62,9 @@ tidy_file() {
 tidy_all() {
   local keys key source todo=()
   mkdir -p "$work/tidy"
+  # As the compiler is called, but for what is of g++ alone: precompiled headers, its memory.
+  sed -E 's/ (-fpch-preprocess|-Winvalid-pch -include [^ ]+cmake_pch\.hxx|--param ggc-[^ ]+)//g' \
+    build/release/compile_commands.json >"$work/tidy/compile_commands.json"
   keys=$(tidy_keys)
   [[ -n "$keys" ]] || { echo "the release build knows no source of ours"; return 1; }
   while IFS=$'\t' read -r key source; do

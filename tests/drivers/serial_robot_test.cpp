@@ -244,7 +244,7 @@ TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
   f.base->now.bumper_front = false;
   f.steps(1);
   EXPECT_FALSE(f.moves());
-  // Whoever arms it with the bumper pressed knows.
+  // A person who arms it with the bumper pressed knows.
   f.base->now.bumper_front = true;
   f.arm();
   f.step(0.05, 0.2);

@@ -130,10 +130,10 @@ HeadlessResult Bench::drive(const std::stop_token& stop) {
     std::string said;
     bool moved = false;
     while (!done.stop_requested()) {
-      // Until it moves for the first time; whoever disarms it then has a reason.
+      // Until it moves for the first time; a later disarming has its reason.
       moved = moved || robot_->health().halt == algo::Halt::None;
       if (!moved) arm(0.1);
-      // What holds the robot, as it changes: whoever reads the trial's figures wants to know.
+      // What holds the robot, as it changes: a reader of the trial's figures wants to know.
       const algo::HealthReport report = robot_->health();
       if (report.trouble != said) fmt::print(stderr, "{}: {}\n", options_.scenario, report.trouble);
       said = report.trouble;

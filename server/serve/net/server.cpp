@@ -261,7 +261,7 @@ void Server::Impl::begin_stop() {
     core.context.stop();
     return;
   }
-  // Whoever does not take the goodbye in time is cut off by run().
+  // A client that does not take the goodbye in time is cut off by run().
   sweep_timer.expires_after(std::chrono::milliseconds(300));
   sweep_timer.async_wait([this](boost::system::error_code) { core.context.stop(); });
 }

@@ -31,9 +31,9 @@ worlds::World dead_end() {
   return {{}, {box(3, -1.5, 3.2, 1.5), box(1.5, 1.5, 3.2, 1.7), box(1.5, -1.7, 3.2, -1.5)}};
 }
 
-class EveryRival : public ::testing::TestWithParam<std::string> {};
+class EveryBaseline : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(EveryRival, ReachesAGoalInTheOpen) {
+TEST_P(EveryBaseline, ReachesAGoalInTheOpen) {
   const Outcome outcome = Drive(GetParam(), {}, {4, 1}).run();
   EXPECT_EQ(outcome.name, "reached");
   EXPECT_LT(outcome.path, 4.5);
@@ -41,7 +41,7 @@ TEST_P(EveryRival, ReachesAGoalInTheOpen) {
 
 INSTANTIATE_TEST_SUITE_P(
     Baselines,
-    EveryRival,
+    EveryBaseline,
     ::testing::Values(
         "go_to_goal", "edge_detection", "potential_field", "certainty_grid", "vff", "vfh", "dwa"),
     [](const auto& about) { return about.param; });

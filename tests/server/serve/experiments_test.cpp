@@ -94,7 +94,7 @@ TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
   options.disk = [&](const std::string&) { return DiskSpace{.free = free, .total = 160 << 20}; };
   Recorder recorder(path, std::move(options));
   Experiments experiments(recorder);
-  const auto runs = start(experiments, {.spec = case1(), .repeats = 3, .pace = 4});
+  const auto runs = start(experiments, {.spec = case1(), .repeats = 3, .pace = 16});
   RunReader reader(path);
   ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
   free = 0;
