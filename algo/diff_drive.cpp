@@ -26,15 +26,14 @@ void require_sound(const DriveGeometry& geometry) {
 
 Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& speeds) {
   require_sound(geometry);
-  const double v_l = geometry.wheel_radius * speeds.left;
-  const double v_r = geometry.wheel_radius * speeds.right;
-  return {(v_r + v_l) / 2, (v_r - v_l) / (2 * geometry.half_track)};
+  return twist_of({geometry.wheel_radius * speeds.left, geometry.wheel_radius * speeds.right},
+                  geometry.half_track);
 }
 
 WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twist) {
   require_sound(geometry);
-  const double turn = twist.omega * geometry.half_track;
-  return {(twist.v - turn) / geometry.wheel_radius, (twist.v + turn) / geometry.wheel_radius};
+  const SideMotion sides = sides_of(twist, geometry.half_track);
+  return {sides.left / geometry.wheel_radius, sides.right / geometry.wheel_radius};
 }
 
 Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt) {
@@ -64,9 +63,9 @@ Pose2 integrate_counts(const DriveGeometry& geometry,
   require_sound(geometry);
   require_positive("counts_per_turn", counts_per_turn);
   const double per_count = 2 * std::numbers::pi * geometry.wheel_radius / counts_per_turn;
-  const double s_l = per_count * static_cast<double>(counts.left);
-  const double s_r = per_count * static_cast<double>(counts.right);
-  return integrate_arc(pose, {(s_r + s_l) / 2, (s_r - s_l) / (2 * geometry.half_track)}, 1.0);
+  const SideMotion rolled{per_count * static_cast<double>(counts.left),
+                          per_count * static_cast<double>(counts.right)};
+  return integrate_arc(pose, twist_of(rolled, geometry.half_track), 1.0);
 }
 
 std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits) {

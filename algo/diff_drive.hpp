@@ -26,6 +26,22 @@ struct WheelCounts {
   std::int64_t right = 0;
 };
 
+/// What the two sides of a base do on the ground: speeds [m/s], or ways [m].
+struct SideMotion {
+  double left = 0;
+  double right = 0;
+};
+
+/// left = v - w l, right = v + w l. `half_track`: l [m].
+inline SideMotion sides_of(const Twist2& twist, double half_track) {
+  const double turn = twist.omega * half_track;
+  return {twist.v - turn, twist.v + turn};
+}
+/// v = (left + right) / 2, w = (right - left) / (2 l). `half_track`: l [m], above 0.
+inline Twist2 twist_of(const SideMotion& sides, double half_track) {
+  return {(sides.left + sides.right) / 2, (sides.right - sides.left) / (2 * half_track)};
+}
+
 /// v = r (q_r + q_l) / 2, w = r (q_r - q_l) / (2 l).
 /// Throws std::invalid_argument when r or l is not above 0.
 Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& speeds);

@@ -7,8 +7,6 @@
 namespace algo {
 namespace {
 
-constexpr double kHeadingReach = 0.05;  // [rad] a wanted heading counts as reached within this
-
 bool finite(const Pose2& pose) {
   return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
 }

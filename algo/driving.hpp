@@ -70,6 +70,9 @@ Twist2 drive_along(const Pose2& pose_W,
                    double speed,
                    const Parameters& parameters);
 
+/// [rad] A wanted heading counts as reached within this: for turning as for arriving.
+inline constexpr double kHeadingReach = 0.05;
+
 /// Turns in place to a wanted heading; at rest when there is none or it is reached.
 Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters);
 

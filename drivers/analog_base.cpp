@@ -33,8 +33,8 @@ void AnalogBase::drive(const algo::Twist2& twist) {
   const std::lock_guard lock(mutex_);
   measure();
   const algo::Twist2 wanted = limited(twist, setup_.limits);
-  const double turn = wanted.omega * setup_.half_track;
-  const std::array<double, 2> speeds{wanted.v - turn, wanted.v + turn};
+  const algo::SideMotion sides = algo::sides_of(wanted, setup_.half_track);
+  const std::array<double, 2> speeds{sides.left, sides.right};
   std::array<double, 2> volts{};
   for (std::size_t i = 0; i < volts.size(); ++i) {
     // At rest nothing but zero: noise of the encoders must not creep.
@@ -63,8 +63,7 @@ void AnalogBase::measure() {
     const double metres = 2 * std::numbers::pi * setup_.wheel_radius / setup_.counts_per_turn;
     speeds_ = {static_cast<double>(moved.left) * metres / dt,
                static_cast<double>(moved.right) * metres / dt};
-    state_.twist = {(speeds_[0] + speeds_[1]) / 2,
-                    (speeds_[1] - speeds_[0]) / (2 * setup_.half_track)};
+    state_.twist = algo::twist_of({speeds_[0], speeds_[1]}, setup_.half_track);
   }
   counts_ = counts;
   state_.counts = counts;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "algo/diff_drive.hpp"
 #include "algo/units.hpp"
 #include "drivers/text.hpp"
 
@@ -232,10 +233,8 @@ void PioneerMachine::take_state(double now, ByteView body) {
                               {ahead.dot(way),
                                ahead.x() * way.y() - ahead.y() * way.x(),
                                algo::wrap_angle(at.heading - found_at_.heading)});
-  const double difference = packet_.right_speed - packet_.left_speed;
-  const double track = 2 * setup_.half_track;
-  state_.twist = {(packet_.left_speed + packet_.right_speed) / 2,
-                  track > 0 ? difference / track : 0};
+  state_.twist = algo::twist_of({packet_.left_speed, packet_.right_speed}, setup_.half_track);
+  if (!(setup_.half_track > 0)) state_.twist.omega = 0;
   state_.motors_on = packet_.motors_on();
   state_.stop_button = packet_.stop_button();
   state_.bumper_front = packet_.front_bumpers != 0;

@@ -243,11 +243,9 @@ void RoboteqMachine::take_counts(double now) {
                                     static_cast<std::uint32_t>((*counts_)[i]));
     };
     const auto [left, right] = by_side(std::array<std::int64_t, 2>{difference(0), difference(1)});
-    const double l = setup_.wheel.metres(left);
-    const double r = setup_.wheel.metres(right);
+    const algo::SideMotion rolled{setup_.wheel.metres(left), setup_.wheel.metres(right)};
     // The way of both wheels as if it had been driven in one second: the arc is the same.
-    state_.pose =
-        algo::integrate_arc(state_.pose, {(l + r) / 2, (r - l) / (2 * setup_.half_track)}, 1.0);
+    state_.pose = algo::integrate_arc(state_.pose, algo::twist_of(rolled, setup_.half_track), 1.0);
   }
   counts_ = counts;
   const auto [left, right] = by_side(std::array<std::int64_t, 2>{counts[0], counts[1]});
@@ -264,9 +262,8 @@ void RoboteqMachine::judge(double now) {
   }
   if (values_.rpm) {
     const auto [left, right] = by_side(*values_.rpm);
-    const double l = setup_.wheel.speed(left);
-    const double r = setup_.wheel.speed(right);
-    state_.twist = {(l + r) / 2, (r - l) / (2 * setup_.half_track)};
+    state_.twist =
+        algo::twist_of({setup_.wheel.speed(left), setup_.wheel.speed(right)}, setup_.half_track);
   }
   const std::uint16_t faults = values_.faults.value_or(0);
   const bool stopped = (faults & kStopFault) != 0;
@@ -326,10 +323,10 @@ void RoboteqMachine::drive(double now, const algo::Twist2& twist) {
   }
   if (braking_) set_deceleration(wheel_ramp());
   braking_ = false;
-  const double turn = wanted.omega * setup_.half_track;
+  const algo::SideMotion speeds = algo::sides_of(wanted, setup_.half_track);
   const double limit = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
-  const std::array<int, 2> sides{setup_.wheel.command_for(wanted.v - turn, limit),
-                                 setup_.wheel.command_for(wanted.v + turn, limit)};
+  const std::array<int, 2> sides{setup_.wheel.command_for(speeds.left, limit),
+                                 setup_.wheel.command_for(speeds.right, limit)};
   std::array<int, 2> channels{setup_.reversed[0] ? -sides[0] : sides[0],
                               setup_.reversed[1] ? -sides[1] : sides[1]};
   if (setup_.swapped) std::swap(channels[0], channels[1]);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algo/diff_drive.hpp"
+
 namespace drivers {
 namespace {
 
@@ -37,8 +39,8 @@ void WheelWatch::restart() {
 
 WheelWatch::Axes WheelWatch::axes_of(const algo::Twist2& twist) const {
   if (!dynamics_.ramp_of_wheels) return {twist.v, twist.omega};
-  const double turn = twist.omega * half_track_;
-  return {twist.v - turn, twist.v + turn};
+  const algo::SideMotion sides = algo::sides_of(twist, half_track_);
+  return {sides.left, sides.right};
 }
 
 void WheelWatch::command(double now, const algo::Twist2& twist, bool braking) {

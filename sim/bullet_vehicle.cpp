@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "algo/diff_drive.hpp"
+
 namespace sim {
 namespace {
 
@@ -140,10 +142,10 @@ void BulletVehicle::drive(const algo::Twist2& command,
       physics_.gather(obstacles, state_.pose_W.position(), robot_.radius + kNear);
       target_ = ramped(target_, wanted_, robot_, substeps_.length);
       substep();
-      const double turn = target_.omega * robot_.half_track;
+      const algo::SideMotion sides = algo::sides_of(target_, robot_.half_track);
       const double per_step = substeps_.length / robot_.wheel_radius;
-      state_.left_angle += (target_.v - turn) * per_step;
-      state_.right_angle += (target_.v + turn) * per_step;
+      state_.left_angle += sides.left * per_step;
+      state_.right_angle += sides.right * per_step;
       read_state();
       update_parking();
     }
@@ -153,8 +155,8 @@ void BulletVehicle::drive(const algo::Twist2& command,
 
 /// One step of the physics under `target_`.
 void BulletVehicle::substep() {
-  const double turn = target_.omega * robot_.half_track;
-  drive_->set({target_.v - turn, target_.v + turn, left_load_, right_load_, normal_});
+  const algo::SideMotion sides = algo::sides_of(target_, robot_.half_track);
+  drive_->set({sides.left, sides.right, left_load_, right_load_, normal_});
   physics_.step(substeps_.length);
   read_contacts();
 }

@@ -45,9 +45,10 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   trail.push(to);
   state_.pose_W = to;
   state_.twist = twist;
-  const double turn = twist.omega * robot_.half_track;
-  state_.left_angle += (twist.v - turn) / robot_.wheel_radius * period_;
-  state_.right_angle += (twist.v + turn) / robot_.wheel_radius * period_;
+  const algo::WheelSpeeds speeds =
+      algo::inverse_kinematics({robot_.wheel_radius, robot_.half_track}, twist);
+  state_.left_angle += speeds.left * period_;
+  state_.right_angle += speeds.right * period_;
 }
 
 }  // namespace sim

@@ -12,13 +12,12 @@ namespace {
 constexpr double kStuckRadius = 0.060;    // [m]
 constexpr double kStuckWindow = 20.0;     // [s] at least
 constexpr double kStuckDistance = 0.800;  // [m] nominal travel within the window
-constexpr double kGoalHeading = 0.05;     // [rad]
 
 bool at_goal(const SetGoal& goal, const Pose2& pose_W, double reach) {
   const double distance = (goal.position_W - pose_W.position()).norm();
   if (!(distance < reach)) return false;
   if (!goal.heading) return true;
-  return std::abs(wrap_angle(*goal.heading - pose_W.heading)) < kGoalHeading;
+  return std::abs(wrap_angle(*goal.heading - pose_W.heading)) < kHeadingReach;
 }
 
 }  // namespace

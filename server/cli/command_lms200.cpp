@@ -2,7 +2,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -20,14 +19,13 @@
 #include "drivers/lms200_device.hpp"
 #include "server/cli/carmen_line.hpp"
 #include "server/cli/cli.hpp"
+#include "server/cli/signals.hpp"
 
 namespace server {
 namespace {
 
 using drivers::lms200::LaserSetup;
 using drivers::lms200::Lms200Device;
-
-volatile std::sig_atomic_t g_interrupted = 0;  // NOLINT: the one thing a signal may touch
 
 struct Options {
   std::string port{};
@@ -60,13 +58,13 @@ void nap() {
 
 /// Waits until the scanner runs. Throws its trouble when it does not.
 void wait_for(Lms200Device& laser, double patience) {
-  const bool runs = laser.comes_to_run(patience, [] { return g_interrupted != 0; });
-  if (!runs && g_interrupted == 0) throw std::runtime_error(laser.details().trouble);
+  const bool runs = laser.comes_to_run(patience, [] { return end_requested(); });
+  if (!runs && !end_requested()) throw std::runtime_error(laser.details().trouble);
 }
 
 void print_info(Lms200Device& laser) {
   const double until = drivers::steady_now() + 1.0;  // for a measured scan rate
-  while (drivers::steady_now() < until && g_interrupted == 0) nap();
+  while (drivers::steady_now() < until && !end_requested()) nap();
   const algo::DeviceReport report = laser.report();
   fmt::print("{}: {}\n", report.port, report.sentence);
   for (const auto& [name, value] : report.facts) fmt::print("  {:<18} {}\n", name, value);
@@ -75,7 +73,7 @@ void print_info(Lms200Device& laser) {
 
 bool next_scan(Lms200Device& laser, algo::LaserScan& scan) {
   const double until = drivers::steady_now() + 5.0;
-  while (g_interrupted == 0) {
+  while (!end_requested()) {
     if (laser.take(scan)) return true;
     if (drivers::steady_now() > until) throw std::runtime_error(laser.details().trouble);
     nap();
@@ -159,8 +157,7 @@ void add_action(CLI::App& parent,
   CLI::App* command = parent.add_subcommand(name, help);
   add_common(*command, *options);
   command->callback([options, &status, action] {
-    std::signal(SIGINT, [](int) { g_interrupted = 1; });
-    std::signal(SIGTERM, [](int) { g_interrupted = 1; });
+    heed_signals();
     try {
       Lms200Device laser("laser", options->port, options->setup());
       wait_for(laser, options->patience);

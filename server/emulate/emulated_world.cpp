@@ -82,9 +82,7 @@ algo::Command EmulatedWorld::command() {
   if (!links_.base) return {};
   const auto held = links_.base->thread->lock();
   motion_ = links_.base->device->turn(machine_time());
-  const double track = 2 * world_.spec().half_track;
-  return {.base = {.v = (motion_.left + motion_.right) / 2,
-                   .omega = (motion_.right - motion_.left) / track}};
+  return {.base = algo::twist_of({motion_.left, motion_.right}, world_.spec().half_track)};
 }
 
 void EmulatedWorld::feel(const algo::Observation& observation, const algo::Pose2& pose_W) {
