@@ -221,7 +221,8 @@ void FullStripController::take_plan(const ControlInput& in) {
   // well cost less than one that ends nearer.
   const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
   const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
-  const bool better = strip_.empty() || broken_at_ >= 0 || left(candidate_) < left(strip_) - nearer ||
+  const bool better = strip_.empty() || broken_at_ >= 0 ||
+                      left(candidate_) < left(strip_) - nearer ||
                       (left(candidate_) < kAtGoal && left(strip_) >= kAtGoal) ||
                       candidate_.cost(map_) < kOtherShare * strip_.cost(map_);
   if (better) {

@@ -17,8 +17,8 @@ namespace server::emulate {
 /// Moves bytes between a device and its port at the device's pace. A host that is set to another
 /// rate hears garbage and is heard as garbage.
 ///
-/// The device belongs to the thread that holds lock(): this thread, the world's, or one that injects
-/// faults.
+/// The device belongs to the thread that holds lock(): this thread, the world's, or one that
+/// injects faults.
 class DeviceThread {
  public:
   /// `device` outlives it.

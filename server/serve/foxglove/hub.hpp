@@ -118,7 +118,8 @@ class Hub {
   /// Tells all clients the run clock, ten times a second at most by `now`: those that were sent
   /// something since the last time together with the next message, so that it costs no write.
   void broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_point now);
-  /// Sends the current values of `names` (empty: all) to the clients that asked for updates of them.
+  /// Sends the current values of `names` (empty: all) to the clients that asked for updates of
+  /// them.
   void parameters_changed(std::span<const std::string> names = {});
   /// A status message to one client, for instance a refusal found out later.
   void warn(ClientId client, std::string_view sentence);

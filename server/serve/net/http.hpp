@@ -1,5 +1,5 @@
-// server/serve/net/http.hpp: requests and responses as plain values; the code that answers REST knows
-// no socket.
+// server/serve/net/http.hpp: requests and responses as plain values; the code that answers REST
+// knows no socket.
 #pragma once
 
 #include <cstdint>
