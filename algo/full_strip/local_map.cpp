@@ -96,13 +96,11 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
 void LocalMap::insert(const LaserScan& scan,
                       const Pose2& sensor_W,
                       const std::vector<Vec2>& points_W,
-                      const Tracker& tracker,
-                      double reach) {
+                      const Tracker& tracker) {
   ++scans_;
   suspects_.clear();
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    const bool counts = scan.status[i] == Beam::Ok && scan.ranges[i] <= reach;
-    if (counts && !tracker.on_moving(i)) hit(points_W[i]);
+    if (scan.status[i] == Beam::Ok && !tracker.on_moving(i)) hit(points_W[i]);
   }
   look_through(scan, sensor_W);
   space_.look(scan, sensor_W);

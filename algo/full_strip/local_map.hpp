@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -49,14 +48,13 @@ class LocalMap {
   /// clock [s].
   bool follow(const Vec2& position_W, double stamp);
 
-  /// Enters the hits of `scan` up to `reach` [m] as points of W, but for those on something that
-  /// moves, and clears what it looked through. `sensor_W` is the scanner's pose at the middle of
-  /// its sweep, `points_W` B points (only those of Ok beams count).
+  /// Enters the hits of `scan` as points of W, but for those on something that moves, and clears
+  /// what it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
+  /// `points_W` B points (only those of Ok beams count).
   void insert(const LaserScan& scan,
               const Pose2& sensor_W,
               const std::vector<Vec2>& points_W,
-              const Tracker& tracker,
-              double reach = std::numeric_limits<double>::infinity());
+              const Tracker& tracker);
   /// Frees each occupied or suspected cell of the square of half edge `reach` [m] about `p_W` for
   /// which `free(point_W)` holds: where the robot itself stands, or what has begun to move.
   template <typename Free>

@@ -58,14 +58,14 @@ void ScanPoints::aim_beams(const LaserScan& scan) {
   beams_step_ = scan.angle_increment;
 }
 
-Pose2 ScanPoints::map(const LaserScan& scan, double reach) {
+Pose2 ScanPoints::map(const LaserScan& scan) {
   points_W_.resize(scan.size());
   aim_beams(scan);
   const bool rolling = scan.turn_period > 0;
   const Pose2 sensor_W = compose(pose_at(scan.stamp - scan.sweep_time() / 2), scan.mount_R);
   Frame at = frame_of(sensor_W);
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.status[i] != Beam::Ok || scan.ranges[i] > reach) continue;
+    if (scan.status[i] != Beam::Ok) continue;
     if (rolling) at = frame_of(compose(pose_at(scan.beam_time(i)), scan.mount_R));
     points_W_[i] =
         at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());

@@ -2,7 +2,6 @@
 // the robot moves.
 #pragma once
 
-#include <limits>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
@@ -17,10 +16,10 @@ class ScanPoints {
   void reset() { trail_.clear(); }
   /// The robot is at `pose_W` at `stamp` [s], by its odometry; once a tick, in order.
   void follow(const Pose2& pose_W, double stamp);
-  /// Maps the believed beams of `scan` up to `reach` [m] into points_W(). The scanner's pose at the
-  /// middle of its sweep. follow() must have been called.
-  Pose2 map(const LaserScan& scan, double reach = std::numeric_limits<double>::infinity());
-  /// One a beam; of the others what was there before.
+  /// Maps the believed beams of `scan` into points_W(). The scanner's pose at the middle of its
+  /// sweep. follow() must have been called.
+  Pose2 map(const LaserScan& scan);
+  /// One a beam; where no distance was measured, what was there before.
   const std::vector<Vec2>& points_W() const { return points_W_; }
 
  private:

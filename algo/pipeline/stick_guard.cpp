@@ -13,9 +13,7 @@ namespace algo {
 namespace {
 
 constexpr double kIdleEvery = 0.25;  // [s] between two looks while nobody holds the stick
-// [m] Surfaces beyond are not kept: nobody gets there but through space that counts as not seen.
-constexpr double kRemembered = 6.0;
-constexpr double kStep = 0.02;  // [s] of a roll-out, at most
+constexpr double kStep = 0.02;       // [s] of a roll-out, at most
 constexpr double kActs = 4;  // ticks a command is taken to act: bases need up to two to hear of it
 constexpr double kRounding = 1e-9;       // [m]
 constexpr double kBack = 0.5;            // of the stick's way: so far back it insists,
@@ -60,8 +58,8 @@ void StickGuard::reset(const Pose2& start_W) {
 void StickGuard::look(const Resource& in, const LaserScan& scan) {
   // A number that is none has no place in a map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
-  const Pose2 sensor_W = points_.map(scan, kRemembered);
-  map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_, kRemembered);
+  const Pose2 sensor_W = points_.map(scan);
+  map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
   // Inside the hull nothing can stand.
   const Pose2& here = in.observation->odometry.pose;
   map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
