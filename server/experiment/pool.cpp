@@ -18,7 +18,8 @@ unsigned one_a_core(unsigned threads) {
 
 }  // namespace
 
-Pool::Pool(unsigned threads, Source source) : source_(std::move(source)) {
+Pool::Pool(unsigned threads, Source source, const std::stop_token& stop)
+    : source_(std::move(source)), cut_(stop, [this] { request_stop(); }) {
   threads = one_a_core(threads);
   for (unsigned i = 0; i < threads; ++i) workers_.emplace_back([this] { work(); });
 }
@@ -65,7 +66,7 @@ void for_each(std::size_t count,
   std::mutex mutex;  // of progress
   std::size_t done = 0;
   const std::size_t threads = std::min<std::size_t>(one_a_core(options.threads), own);
-  Pool pool(static_cast<unsigned>(threads), [&](const std::stop_token& stop) -> Pool::Job {
+  const auto source = [&](const std::stop_token& stop) -> Pool::Job {
     const std::size_t k = next++;
     if (k >= own) return {};
     return [&, k, stop] {
@@ -73,9 +74,8 @@ void for_each(std::size_t count,
       const std::lock_guard lock(mutex);
       if (options.progress) options.progress(++done, own);
     };
-  });
-  const std::stop_callback cut(options.stop, [&] { pool.request_stop(); });
-  pool.join();
+  };
+  Pool(static_cast<unsigned>(threads), source, options.stop).join();
 }
 
 }  // namespace server::experiment

@@ -20,8 +20,8 @@ class Pool {
   /// wait, but returns soon after `stop` is requested.
   using Source = std::function<Job(const std::stop_token& stop)>;
 
-  /// `threads`: 0 is one a core.
-  Pool(unsigned threads, Source source);
+  /// `threads`: 0 is one a core. A request of `stop` is one of the pool's own.
+  Pool(unsigned threads, Source source, const std::stop_token& stop = {});
   ~Pool() { request_stop(); }
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -37,6 +37,7 @@ class Pool {
 
   Source source_;
   std::stop_source stop_{};
+  std::stop_callback<std::function<void()>> cut_;  // before the workers, who may request it
   std::mutex mutex_{};
   std::exception_ptr problem_{};
   std::vector<std::jthread> workers_{};
