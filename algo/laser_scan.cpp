@@ -38,19 +38,20 @@ void pack_beams(const LaserScan& scan, std::span<std::uint16_t> out) {
   pack_ranges(scan.ranges.data(), scan.size(), out.data());
   // Beams without a distance come in stretches: eight are looked at together.
   constexpr std::size_t kTogether = sizeof(std::uint64_t);
-  for (std::size_t first = 0; first < scan.size(); first += kTogether) {
-    const std::size_t last = std::min(first + kTogether, scan.size());
+  std::size_t first = 0;
+  for (; first + kTogether <= scan.size(); first += kTogether) {
     std::uint64_t together = 0;
-    std::memcpy(&together, scan.status.data() + first, last - first);
+    std::memcpy(&together, scan.status.data() + first, kTogether);
     static_assert(static_cast<int>(Beam::Ok) == 0);
     static_assert(static_cast<int>(Beam::Free) == 1);
     constexpr std::uint64_t kAllFree = 0x0101010101010101;
     if (together == kAllFree) {
       std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(first), kTogether, kPackedFree);
     } else if (together != 0) {
-      for (std::size_t i = first; i < last; ++i) out[i] = pack_beam(scan, i);
+      for (std::size_t i = first; i < first + kTogether; ++i) out[i] = pack_beam(scan, i);
     }
   }
+  for (; first < scan.size(); ++first) out[first] = pack_beam(scan, first);
 }
 
 }  // namespace algo

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "db/block_format.hpp"
-#include "db/residuals.hpp"
 #include "db/samples.hpp"
 
 namespace db {
@@ -16,50 +15,6 @@ using namespace detail;
 namespace {
 
 constexpr std::size_t kReferenceReach = 48;  // frames looked back for one laid out alike
-
-std::size_t width_of(const Window& window) {
-  return window.kind == Window::Kind::Samples ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
-}
-
-std::span<const std::byte> part(std::span<const std::byte> frame, const Window& window) {
-  return frame.subspan(window.offset, window.count * width_of(window));
-}
-
-/// Bits left by predicting floats so: the size they will have, near enough to choose by.
-std::size_t cost(std::span<const std::byte> window,
-                 std::span<const std::byte> reference,
-                 const Window& shape,
-                 Choice choice) {
-  std::size_t bits = 0;
-  for (std::size_t i = 0; i < shape.count; ++i) {
-    const std::uint32_t difference =
-        load<std::uint32_t>(window, i) - expected_float(window, reference, i, shape.stride, choice);
-    bits += static_cast<std::size_t>(std::bit_width(fold32(difference)));
-  }
-  return bits;
-}
-
-Choice write_floats(std::span<const std::byte> window,
-                    std::span<const std::byte> reference,
-                    const Window& shape,
-                    Streams& streams) {
-  const Choice choice = !reference.empty() && cost(window, reference, shape, Choice::Reference) <
-                                                  cost(window, reference, shape, Choice::Within)
-                            ? Choice::Reference
-                            : Choice::Within;
-  // Field by field, so that the zeros of an unused field lie together.
-  for (std::size_t field = 0; field < shape.stride; ++field) {
-    for (std::size_t i = field; i < shape.count; i += shape.stride) {
-      const std::uint32_t folded =
-          fold32(load<std::uint32_t>(window, i) -
-                 expected_float(window, reference, i, shape.stride, choice));
-      for (std::size_t byte = 0; byte < 4; ++byte) {
-        streams[kFloat0 + byte].push_back(static_cast<std::uint8_t>(folded >> (8U * byte)));
-      }
-    }
-  }
-  return choice;
-}
 
 }  // namespace
 
@@ -98,9 +53,6 @@ void BlockEncoder::add(std::span<const std::byte> frame, std::span<const Window>
 
 std::size_t BlockEncoder::reference_of(std::size_t i) const {
   const auto windows = table_.windows_of(i);
-  const auto same_kinds = [](const Window& a, const Window& b) {
-    return a.kind == b.kind && a.count == b.count && a.stride == b.stride;
-  };
   std::size_t best = 0;
   int best_score = 0;
   for (std::size_t distance = 1; distance <= std::min(i, kReferenceReach); ++distance) {
@@ -108,7 +60,7 @@ std::size_t BlockEncoder::reference_of(std::size_t i) const {
     int score = 0;
     if (std::ranges::equal(windows, earlier)) {
       score = table_.entries[i].size == table_.entries[i - distance].size ? 3 : 2;
-    } else if (std::ranges::equal(windows, earlier, same_kinds)) {
+    } else if (std::ranges::equal(windows, earlier, {}, &Window::count, &Window::count)) {
       score = 1;
     }
     if (score > best_score) {
@@ -125,34 +77,25 @@ void BlockEncoder::encode_frame(std::size_t i) {
   references_.push_back(distance);
   const auto frame = table_.frame(i);
   const auto windows = table_.windows_of(i);
-  const auto reference = table_.frame(i - distance);
-  const auto reference_windows = table_.windows_of(i - distance);
 
   auto& layout = streams_[kLayout];
   put_varint(layout, frame.size());
   put_varint(layout, distance);
-  const bool as_reference = distance > 0 && std::ranges::equal(windows, reference_windows);
+  const bool as_reference =
+      distance > 0 && std::ranges::equal(windows, table_.windows_of(i - distance));
   put_varint(layout, as_reference ? 0 : windows.size() + 1);
   if (!as_reference) {
     for (const Window& window : windows) put_window(layout, window);
   }
 
   std::size_t done = 0;
-  std::size_t scan = 0;
   for (std::size_t k = 0; k < windows.size(); ++k) {
     const Window& window = windows[k];
     append_bytes(rest_, frame.subspan(done, window.offset - done));
-    const auto here = part(frame, window);
-    done = window.offset + here.size();
-    Choice choice{};
-    if (window.kind == Window::Kind::Samples) {
-      choice = write_samples(here, newest_.get(table_, scan, here.size()), streams_);
-      newest_.set(scan++, table_.entries[i].offset + window.offset, here.size());
-    } else {
-      const auto there =
-          distance == 0 ? std::span<const std::byte>{} : part(reference, reference_windows[k]);
-      choice = write_floats(here, there, window, streams_);
-    }
+    done = window.offset + window.bytes();
+    const auto here = frame.subspan(window.offset, window.bytes());
+    const Choice choice = write_samples(here, newest_.get(table_, k, here.size()), streams_);
+    newest_.set(k, table_.entries[i].offset + window.offset, here.size());
     layout.push_back(static_cast<std::uint8_t>(choice));
   }
   append_bytes(rest_, frame.subspan(done));

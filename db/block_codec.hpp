@@ -17,17 +17,13 @@ class CodecError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A stretch of a frame whose meaning helps to pack it. A window never changes what is stored: a
-/// frame packed without windows, or with the wrong ones, only takes more room.
+/// A stretch of a frame that holds little-endian samples of 16 bits, neighbours alike: the ranges
+/// of a scan. A window never changes what is stored: a frame packed without windows, or with the
+/// wrong ones, only takes more room.
 struct Window {
-  enum class Kind : std::uint8_t {
-    Samples,  // little-endian uint16, neighbours alike: the ranges of a scan
-    Floats,   // little-endian float32, records of `stride` floats that follow a smooth line
-  };
   std::uint32_t offset = 0;  // [bytes] from the start of the frame
-  std::uint32_t count = 0;   // values, not bytes
-  Kind kind = Kind::Samples;
-  std::uint32_t stride = 1;  // floats in a record; `count` is a multiple of it. 1 for samples
+  std::uint32_t count = 0;   // samples
+  std::size_t bytes() const { return std::size_t{count} * sizeof(std::uint16_t); }
   bool operator==(const Window&) const = default;
 };
 
@@ -57,8 +53,8 @@ struct FrameTable {
   std::span<const Window> windows_of(std::size_t i) const;
 };
 
-/// The newest window of samples at each place in a frame, by its ordinal: the next one there is
-/// predicted from it. Keeps its buffer.
+/// The newest window at each place in a frame, by its ordinal: the next one there is predicted from
+/// it. Keeps its buffer.
 class NewestSamples {
  public:
   void clear() { found_.clear(); }
@@ -80,9 +76,8 @@ class NewestSamples {
 constexpr std::size_t kLayout = 0;  // sizes, references, windows, choices
 constexpr std::size_t kLow = 1;     // low bytes of the sample residuals
 constexpr std::size_t kHigh = 2;    // their high bytes
-constexpr std::size_t kFloat0 = 3;  // bytes 0..3 of the float residuals in four streams
-constexpr std::size_t kRest = 7;    // all outside the windows, in the order of RestOrder
-constexpr std::size_t kStreams = 8;
+constexpr std::size_t kRest = 3;    // all outside the windows, in the order of RestOrder
+constexpr std::size_t kStreams = 4;
 using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
 
 /// In which order the bytes outside the windows are stored: frames of one length together, as they
@@ -128,11 +123,10 @@ std::shared_ptr<detail::Compressor> make_compressor();
 
 /// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
 ///
-/// Samples are predicted from their left neighbour, or from that and the newest scan of the same
-/// size. All else is predicted from an earlier frame of the block laid out alike (its reference):
-/// floats by the line through the two records before, or from the reference; other bytes from the
-/// byte at their place. Of two ways a window takes the one that leaves less. The residuals go
-/// through zstd stream by stream, and are stored as they are where zstd does not pay.
+/// Samples are predicted from their left neighbour, or from that and the newest window of the same
+/// size at their place: of the two the way that leaves less. All else is predicted byte by byte
+/// from an earlier frame of the block laid out alike (its reference). The residuals go through zstd
+/// stream by stream, and are stored as they are where zstd does not pay.
 class BlockEncoder {
  public:
   /// `compressor`: shared by encoders of one thread, as it is large; null: one of its own.
@@ -187,7 +181,7 @@ class BlockDecoder {
  private:
   void read_layout(std::size_t frames, std::size_t bytes);
   void read_frame_layout(detail::Cursor& layout, std::size_t bytes_left);
-  void read_choice(detail::Cursor& layout, const Window& window, bool has_reference);
+  void read_choice(detail::Cursor& layout);
   void check_sizes() const;
   void read_rest();
   void fill_frames();

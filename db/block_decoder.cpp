@@ -5,38 +5,11 @@
 
 #include "db/block_codec.hpp"
 #include "db/block_format.hpp"
-#include "db/residuals.hpp"
 #include "db/samples.hpp"
 
 namespace db {
 
 using namespace detail;
-
-namespace {
-
-std::size_t bytes_of(const Window& window) {
-  return std::size_t{window.count} * (window.kind == Window::Kind::Samples ? 2U : 4U);
-}
-
-void read_floats(std::span<std::byte> window,
-                 std::span<const std::byte> reference,
-                 const Window& shape,
-                 Choice choice,
-                 const Streams& streams,
-                 std::size_t& at) {
-  for (std::size_t field = 0; field < shape.stride; ++field) {
-    for (std::size_t i = field; i < shape.count; i += shape.stride, ++at) {
-      std::uint32_t folded = 0;
-      for (std::size_t byte = 0; byte < 4; ++byte) {
-        folded |= std::uint32_t{streams[kFloat0 + byte][at]} << (8U * byte);
-      }
-      store(
-          window, i, unfold32(folded) + expected_float(window, reference, i, shape.stride, choice));
-    }
-  }
-}
-
-}  // namespace
 
 BlockDecoder::BlockDecoder() : decompressor_(new Decompressor) {}
 
@@ -100,18 +73,17 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   }
   std::size_t in_windows = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    read_choice(layout, used[k], distance != 0);
-    in_windows += bytes_of(used[k]);
+    read_choice(layout);
+    in_windows += used[k].bytes();
   }
   rest_starts_.push_back(rest_starts_.back() + size - in_windows);
   table_.append(size, used);
 }
 
 /// How a window is predicted.
-void BlockDecoder::read_choice(Cursor& layout, const Window& window, bool has_reference) {
+void BlockDecoder::read_choice(Cursor& layout) {
   const std::uint8_t choice = layout.byte();
-  const bool from_frame = choice != 0 && window.kind == Window::Kind::Floats;
-  if (choice > static_cast<std::uint8_t>(Choice::Reference) || (from_frame && !has_reference)) {
+  if (choice > static_cast<std::uint8_t>(Choice::Reference)) {
     throw CodecError("a window of the block is predicted in an unknown way");
   }
   choices_.push_back(choice);
@@ -119,29 +91,10 @@ void BlockDecoder::read_choice(Cursor& layout, const Window& window, bool has_re
 
 void BlockDecoder::check_sizes() const {
   std::size_t samples = 0;
-  std::size_t numbers = 0;
-  for (const Window& window : table_.windows) {
-    (window.kind == Window::Kind::Samples ? samples : numbers) += window.count;
-  }
-  const bool floats_fit = std::all_of(streams_.begin() + kFloat0,
-                                      streams_.begin() + kFloat0 + 4,
-                                      [&](const auto& s) { return s.size() == numbers; });
-  if (streams_[kLow].size() != samples || streams_[kHigh].size() != samples || !floats_fit ||
+  for (const Window& window : table_.windows) samples += window.count;
+  if (streams_[kLow].size() != samples || streams_[kHigh].size() != samples ||
       streams_[kRest].size() != rest_starts_.back()) {
     throw CodecError("the block's streams do not match its layout");
-  }
-  // Floats predicted from their frame's reference need a window there of the same form.
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < table_.entries.size(); ++i) {
-    const auto windows = table_.windows_of(i);
-    const auto reference = table_.windows_of(i - references_[i]);
-    for (std::size_t k = 0; k < windows.size(); ++k, ++at) {
-      if (choices_[at] == 0 || windows[k].kind == Window::Kind::Samples) continue;
-      if (k >= reference.size() || reference[k].kind != windows[k].kind ||
-          reference[k].count != windows[k].count || reference[k].stride != windows[k].stride) {
-        throw CodecError("a window of the block refers to another kind of window");
-      }
-    }
   }
 }
 
@@ -167,19 +120,15 @@ void BlockDecoder::read_rest() {
 }
 
 void BlockDecoder::fill_frames() {
-  std::size_t number = 0;  // of the floats
   std::size_t window = 0;
   std::size_t sample = 0;
   newest_.clear();
   for (std::size_t i = 0; i < table_.entries.size(); ++i) {
     const auto frame = table_.frame(i);
     const auto windows = table_.windows_of(i);
-    const auto reference = table_.frame(i - references_[i]);
-    const auto reference_windows = table_.windows_of(i - references_[i]);
     const auto rest = std::as_bytes(std::span(rest_)).subspan(rest_starts_[i]);
     std::size_t done = 0;
     std::size_t taken = 0;
-    std::size_t scan = 0;
     const auto copy_rest = [&](std::size_t until) {
       std::ranges::copy(rest.subspan(taken, until - done),
                         frame.begin() + static_cast<std::ptrdiff_t>(done));
@@ -187,21 +136,14 @@ void BlockDecoder::fill_frames() {
     };
     for (std::size_t k = 0; k < windows.size(); ++k, ++window) {
       copy_rest(windows[k].offset);
-      const auto choice = static_cast<Choice>(choices_[window]);
-      const auto here = frame.subspan(windows[k].offset, bytes_of(windows[k]));
-      const bool referred = choice == Choice::Reference;
-      if (windows[k].kind == Window::Kind::Floats) {
-        const auto there = referred ? reference.subspan(reference_windows[k].offset, here.size())
-                                    : std::span<const std::byte>{};
-        read_floats(here, there, windows[k], choice, streams_, number);
-      } else {
-        const auto there = newest_.get(table_, scan, referred ? here.size() : 0);
-        if (there.empty() && referred && !here.empty()) {
-          throw CodecError("a window of the block refers to another kind of window");
-        }
-        read_samples(here, there, streams_, sample);
-        newest_.set(scan++, table_.entries[i].offset + windows[k].offset, here.size());
+      const auto here = frame.subspan(windows[k].offset, windows[k].bytes());
+      const bool referred = static_cast<Choice>(choices_[window]) == Choice::Reference;
+      const auto there = newest_.get(table_, k, referred ? here.size() : 0);
+      if (there.empty() && referred && !here.empty()) {
+        throw CodecError("a window of the block refers to another kind of window");
       }
+      read_samples(here, there, streams_, sample);
+      newest_.set(k, table_.entries[i].offset + windows[k].offset, here.size());
       done = windows[k].offset + here.size();
     }
     copy_rest(frame.size());

@@ -121,13 +121,8 @@ const char* window_defect(std::span<const Window> windows, std::size_t frame_byt
   if (windows.size() > kMaxFrameWindows) return "it has more than 64 windows";
   std::size_t done = 0;
   for (const Window& window : windows) {
-    const bool samples = window.kind == Window::Kind::Samples;
     if (window.offset < done) return "its windows overlap or are out of order";
-    if (window.stride == 0 || (samples && window.stride != 1) ||
-        window.count % window.stride != 0) {
-      return "a window's stride does not fit its values";
-    }
-    done = window.offset + std::size_t{window.count} * (samples ? 2U : 4U);
+    done = window.offset + window.bytes();
     if (done > frame_bytes) return "a window reaches beyond the frame's end";
   }
   return nullptr;
@@ -167,10 +162,8 @@ void put_varint(std::vector<std::uint8_t>& out, std::size_t value) {
 }
 
 void put_window(std::vector<std::uint8_t>& out, const Window& window) {
-  out.push_back(static_cast<std::uint8_t>(window.kind));
   put_varint(out, window.offset);
   put_varint(out, window.count);
-  put_varint(out, window.stride);
 }
 
 void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes) {
@@ -208,14 +201,8 @@ std::size_t Cursor::varint() {
 
 Window Cursor::window() {
   Window window{};
-  const std::uint8_t kind = byte();
-  if (kind > static_cast<std::uint8_t>(Window::Kind::Floats)) {
-    throw CodecError("the block holds a window of an unknown kind");
-  }
-  window.kind = static_cast<Window::Kind>(kind);
   window.offset = static_cast<std::uint32_t>(varint());
   window.count = static_cast<std::uint32_t>(varint());
-  window.stride = static_cast<std::uint32_t>(varint());
   return window;
 }
 

@@ -16,7 +16,7 @@
 
 namespace db::detail {
 
-constexpr std::uint8_t kFormatVersion = 4;
+constexpr std::uint8_t kFormatVersion = 5;
 constexpr std::size_t kHeaderBytes = 20;
 
 struct Header {

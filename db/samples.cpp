@@ -1,8 +1,32 @@
 // db/samples.cpp: predicting the ranges of a scan.
 #include "db/samples.hpp"
 
+#include <bit>
+#include <cstring>
+
 namespace db::detail {
 namespace {
+
+// Little-endian on every machine the program runs on; asserted rather than swapped.
+static_assert(std::endian::native == std::endian::little);
+
+std::uint16_t load(std::span<const std::byte> window, std::size_t i) {
+  std::uint16_t value = 0;
+  std::memcpy(&value, window.data() + i * sizeof(value), sizeof(value));
+  return value;
+}
+
+/// A difference modulo 2^16 with its sign in the last bit, so that small ones of either sign are
+/// small numbers.
+std::uint16_t fold(std::uint16_t difference) {
+  const bool negative = (difference & 0x8000U) != 0;
+  const auto doubled = static_cast<std::uint16_t>(difference << 1U);
+  return negative ? static_cast<std::uint16_t>(~doubled) : doubled;
+}
+std::uint16_t unfold(std::uint16_t folded) {
+  const auto half = static_cast<std::uint16_t>(folded >> 1U);
+  return (folded & 1U) != 0 ? static_cast<std::uint16_t>(~half) : half;
+}
 
 /// Sample `i` should be as its left neighbour; or, where that and the reference see one surface,
 /// between the two: the mean of two readings is less noisy than either.
@@ -11,7 +35,7 @@ std::uint16_t expected_sample(std::uint16_t left,
                               std::size_t i) {
   constexpr int kSameSurface = 24;  // [mm]
   if (reference.empty()) return left;
-  const auto there = load<std::uint16_t>(reference, i);
+  const std::uint16_t there = load(reference, i);
   const int apart = int{left} - int{there};
   const bool same = apart <= kSameSurface && apart >= -kSameSurface;
   return static_cast<std::uint16_t>(same ? (left + there) / 2 : there);
@@ -20,8 +44,9 @@ std::uint16_t expected_sample(std::uint16_t left,
 std::uint16_t residual(std::span<const std::byte> samples,
                        std::span<const std::byte> reference,
                        std::size_t i) {
-  const std::uint16_t expected = expected_sample(left_of(samples, i), reference, i);
-  return fold16(static_cast<std::uint16_t>(load<std::uint16_t>(samples, i) - expected));
+  const std::uint16_t left = i == 0 ? std::uint16_t{0} : load(samples, i - 1);
+  const std::uint16_t expected = expected_sample(left, reference, i);
+  return fold(static_cast<std::uint16_t>(load(samples, i) - expected));
 }
 
 /// Bits left of every fourth sample: enough to choose by.
@@ -68,8 +93,8 @@ void read_samples(std::span<std::byte> samples,
   std::uint16_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const auto folded = static_cast<std::uint16_t>(low[i] | (high[i] * 256U));
-    left = static_cast<std::uint16_t>(unfold16(folded) + expected_sample(left, reference, i));
-    store(samples, i, left);
+    left = static_cast<std::uint16_t>(unfold(folded) + expected_sample(left, reference, i));
+    std::memcpy(samples.data() + i * sizeof(left), &left, sizeof(left));
   }
   at += count;
 }

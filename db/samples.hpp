@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "db/block_codec.hpp"
-#include "db/residuals.hpp"
 
 namespace db::detail {
+
+/// How a window was predicted.
+enum class Choice : std::uint8_t { Within, Reference };
 
 /// Appends the residuals of a window of samples to the streams.
 /// @param reference an earlier window of the same size, or empty

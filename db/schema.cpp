@@ -11,8 +11,8 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": tells our files from others
 
 // The version counts the forms of the tables and of the frames in their blocks; a file of another
-// one is not read. 7: blocks say their time; there is no row a tick beside its frame.
-constexpr std::int64_t kVersion = 7;
+// one is not read. 8: layers in 16 bits.
+constexpr std::int64_t kVersion = 8;
 
 // SI units throughout. A run with the same document as the one before it shares that one's, which
 // stays as long as a run has it: ten thousand repeats of a world would fill the store with copies.

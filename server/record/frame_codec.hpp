@@ -32,12 +32,11 @@ class FrameEncoder {
   std::span<const std::byte> encode(const algo::Telemetry& t);
   /// A scan on its own, as a message whose root is LaserScan; valid until the next call.
   std::span<const std::byte> encode(const algo::LaserScan& scan);
-  /// Where the last encoded frame holds ranges and long lines, ascending: the record codes them as
-  /// differences.
+  /// Where the last encoded frame holds ranges, ascending: the record codes them as differences.
   std::span<const db::Window> windows() const { return windows_; }
 
  private:
-  void find_windows(const algo::Telemetry& t);
+  void find_windows();
 
   flatbuffers::FlatBufferBuilder builder_{2048};
   std::vector<flatbuffers::Offset<tautline::wire::LaserScan>> scans_{};

@@ -148,7 +148,7 @@ void check_enum(T value, T max, const char* what) {
 
 void read_observation(const fb::Frame& f, algo::Observation& o) {
   o.clear_sensors();
-  o.stamp = f.stamp();
+  o.stamp = f.clock()->stamp();
   check_enum(f.halt(), fb::Halt_MAX, "halt");
   o.halt = static_cast<algo::Halt>(f.halt());
   const fb::Odometry& odometry = *f.odometry();
@@ -223,14 +223,14 @@ algo::Command read_command(const fb::Frame& f) {
 /// What a controller decided, without what it shows.
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output.clear();
-  t.output.waits = f.waits();
-  t.output.state = f.state();
+  t.output.waits = f.decision()->waits();
+  t.output.state = f.decision()->state();
   t.layers.clear();
   const fb::News* news = f.news();
   t.words_fresh = news != nullptr && news->what() != nullptr && news->why() != nullptr;
   t.words = {};
   if (t.words_fresh) t.words = {news->what()->str(), news->why()->str()};
-  t.legend = f.legend();
+  t.legend = f.decision()->legend();
   t.legend_fresh = news != nullptr && news->layers() != nullptr;
   t.scene.fresh = !t.observation.scans.empty();
 }
@@ -249,13 +249,14 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   flatbuffers::Verifier verifier(data, bytes.size());
   if (!fb::VerifyFrameBuffer(verifier)) throw WireError("The bytes are not a telemetry frame.");
   const fb::Frame& f = *fb::GetFrame(data);
-  if (f.odometry() == nullptr || f.command() == nullptr || f.decision() == nullptr) {
-    throw WireError("The frame lacks its odometry, command or decision.");
+  if (f.clock() == nullptr || f.odometry() == nullptr || f.command() == nullptr ||
+      f.decision() == nullptr) {
+    throw WireError("The frame lacks its clock, odometry, command or decision.");
   }
   const fb::Decision& decision = *f.decision();
   check_enum(decision.mission(), fb::Mission_MAX, "mission");
 
-  t.tick = f.tick();
+  t.tick = f.clock()->tick();
   t.requests.clear();
   if (f.requests() != nullptr) {
     for (const fb::RequestBox* box : *f.requests()) t.requests.push_back(read_request(*box));
@@ -289,7 +290,8 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
   t.hold = {.name = read_name(f.hold(), "hold")};
   t.limit = {.name = read_name(f.limit(), "limit")};
   t.mission = static_cast<algo::Mission>(decision.mission());
-  t.behaviour = read_name(f.behaviour(), "behaviour");
+  t.behaviour =
+      f.behaviour() == nullptr ? algo::behaviours::kAvoid : read_name(f.behaviour(), "behaviour");
   t.clearance = decision.clearance();
 }
 

@@ -181,71 +181,67 @@ struct FrameWriter {
   fb::FrameBuilder frame;
   const algo::Telemetry& t;
 
-  void sensors();
+  void doubles();
+  void truth();
   void decision();
-  void stamps();
 };
 
 // Structs live inside the table: the locals only have to outlive their add_ call.
-void FrameWriter::sensors() {
+
+/// All that is aligned to eight bytes, together: between them and the rest no byte is lost. Of the
+/// stamps only those that are not the frame's own.
+void FrameWriter::doubles() {
   const algo::Observation& o = t.observation;
+  const fb::Clock clock(t.tick, o.stamp);
+  frame.add_clock(&clock);
   const fb::Odometry odometry(to_wire(o.odometry.pose), to_wire(o.odometry.twist));
   frame.add_odometry(&odometry);
+  if (o.odometry.stamp != o.stamp) frame.add_odometry_stamp(o.odometry.stamp);
   if (o.gyro) {
     const fb::YawGyro gyro(o.gyro->rate);
     frame.add_gyro(&gyro);
+    if (o.gyro->stamp != o.stamp) frame.add_gyro_stamp(o.gyro->stamp);
   }
   if (o.inclinometer) {
     const fb::Inclinometer inclinometer(o.inclinometer->roll, o.inclinometer->pitch);
     frame.add_inclinometer(&inclinometer);
+    if (o.inclinometer->stamp != o.stamp) frame.add_inclinometer_stamp(o.inclinometer->stamp);
   }
-  if (o.encoders) {
-    const fb::Encoders encoders(o.encoders->left, o.encoders->right);
-    frame.add_encoders(&encoders);
+  if (o.encoders && o.encoders->stamp != o.stamp) frame.add_encoders_stamp(o.encoders->stamp);
+  if (t.hold == algo::holds::kStaleScan && t.scene.scan.size() > 0) {
+    frame.add_newest_scan(t.scene.scan.stamp);
   }
-  if (t.ground_truth) {
-    const algo::GroundTruth& g = *t.ground_truth;
-    const fb::GroundTruth truth(
-        to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
-    frame.add_truth(&truth);
-    frame.add_collided(g.collided);
-    if (g.tilt) {
-      const fb::Tilt tilt(static_cast<float>(g.tilt->z),
-                          static_cast<float>(g.tilt->roll),
-                          static_cast<float>(g.tilt->pitch));
-      frame.add_tilt(&tilt);
-    }
-  }
+  const fb::Twist2 command = to_wire(t.command.base);
+  frame.add_command(&command);
+}
+
+void FrameWriter::truth() {
+  if (!t.ground_truth) return;
+  const algo::GroundTruth& g = *t.ground_truth;
+  const fb::GroundTruth truth(
+      to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
+  frame.add_truth(&truth);
+  frame.add_collided(g.collided);
+  if (!g.tilt) return;
+  const fb::Tilt tilt(static_cast<float>(g.tilt->z),
+                      static_cast<float>(g.tilt->roll),
+                      static_cast<float>(g.tilt->pitch));
+  frame.add_tilt(&tilt);
 }
 
 void FrameWriter::decision() {
   const algo::ControlOutput& out = t.output;
-  const fb::Twist2 command = to_wire(t.command.base);
-  frame.add_command(&command);
-  const fb::Decision decision(static_cast<float>(t.clearance), static_cast<fb::Mission>(t.mission));
+  const fb::Decision decision(static_cast<float>(t.clearance),
+                              t.legend,
+                              static_cast<fb::Mission>(t.mission),
+                              out.state,
+                              out.waits);
   frame.add_decision(&decision);
   frame.add_halt(static_cast<fb::Halt>(t.observation.halt));
-  if (t.goal) {
-    const fb::Vec2f goal = to_float(t.goal->position_W);
-    frame.add_goal(&goal);
-    if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
-  }
-  frame.add_state(out.state);
-  frame.add_waits(out.waits);
-  if (t.hold == algo::holds::kStaleScan && t.scene.scan.size() > 0) {
-    frame.add_newest_scan(t.scene.scan.stamp);
-  }
-}
-
-/// Only those that are not the frame's own.
-void FrameWriter::stamps() {
-  const algo::Observation& o = t.observation;
-  if (o.odometry.stamp != o.stamp) frame.add_odometry_stamp(o.odometry.stamp);
-  if (o.encoders && o.encoders->stamp != o.stamp) frame.add_encoders_stamp(o.encoders->stamp);
-  if (o.gyro && o.gyro->stamp != o.stamp) frame.add_gyro_stamp(o.gyro->stamp);
-  if (o.inclinometer && o.inclinometer->stamp != o.stamp) {
-    frame.add_inclinometer_stamp(o.inclinometer->stamp);
-  }
+  if (!t.goal) return;
+  const fb::Vec2f goal = to_float(t.goal->position_W);
+  frame.add_goal(&goal);
+  if (t.goal->heading) frame.add_goal_heading(static_cast<float>(*t.goal->heading));
 }
 
 }  // namespace
@@ -258,7 +254,8 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   b.Clear();
   const algo::Observation& o = t.observation;
   const auto news = layers_.write_news(b, t);
-  b.Align(sizeof(double));  // so that its length moves nothing else
+  const auto shown = layers_.write_shown(b, t);
+  b.Align(sizeof(double));  // so that their length moves nothing else
   scans_.clear();
   for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
   const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
@@ -273,13 +270,11 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
       t.command.joints == 0 ? 0 : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
   const auto hold = write_name(b, t.hold.name);
   const auto limit = write_name(b, t.limit.name);
-  const auto shown = layers_.write_shown(b, t);
-  const auto behaviour = write_name(b, t.behaviour);
+  const auto behaviour = t.behaviour == algo::behaviours::kAvoid ? 0 : write_name(b, t.behaviour);
 
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;
-  frame.add_tick(t.tick);
-  frame.add_stamp(o.stamp);
+  writer.doubles();
   // Offset 0 is that of what there is not; no field comes of it.
   frame.add_behaviour(behaviour);
   frame.add_news(news);
@@ -288,12 +283,14 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_infrared(infrared);
   frame.add_bumpers(bumpers);
   frame.add_requests(requests);
-  writer.sensors();
+  if (o.encoders) {
+    const fb::Encoders encoders(o.encoders->left, o.encoders->right);
+    frame.add_encoders(&encoders);
+  }
+  writer.truth();
   writer.decision();
-  writer.stamps();
-  frame.add_legend(t.legend);
-  frame.add_counts(shown.counts);
-  frame.add_values(shown.values);
+  frame.add_shown(shown.narrow);
+  frame.add_shown_wide(shown.wide);
   frame.add_more(shown.more);
   frame.add_hold(hold);
   frame.add_limit(limit);
@@ -303,7 +300,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_moved(moved);
   b.Finish(frame.Finish());
 
-  find_windows(t);
+  find_windows();
   return std::as_bytes(std::span(b.GetBufferPointer(), b.GetSize()));
 }
 
@@ -314,28 +311,16 @@ std::span<const std::byte> FrameEncoder::encode(const algo::LaserScan& scan) {
   return std::as_bytes(std::span(builder_.GetBufferPointer(), builder_.GetSize()));
 }
 
-void FrameEncoder::find_windows(const algo::Telemetry& t) {
+void FrameEncoder::find_windows() {
   const std::uint8_t* bytes = builder_.GetBufferPointer();
   const fb::Frame* frame = fb::GetFrame(bytes);
   windows_.clear();
-  const auto add = [&](const std::uint8_t* data,
-                       std::uint32_t count,
-                       db::Window::Kind kind,
-                       std::uint32_t stride) {
-    windows_.push_back({static_cast<std::uint32_t>(data - bytes), count, kind, stride});
-  };
-  if (const auto* scans = frame->scans()) {
-    for (const fb::LaserScan* scan : *scans) {
-      add(scan->ranges()->Data(), scan->ranges()->size(), db::Window::Kind::Samples, 1);
-    }
+  if (frame->scans() == nullptr) return;
+  for (const fb::LaserScan* scan : *frame->scans()) {
+    const auto& ranges = *scan->ranges();
+    windows_.push_back({static_cast<std::uint32_t>(ranges.Data() - bytes), ranges.size()});
   }
-  layers_.add_windows(t,
-                      static_cast<std::uint32_t>(
-                          reinterpret_cast<const std::uint8_t*>(frame->values()->data()) - bytes),
-                      windows_);
-  std::sort(windows_.begin(), windows_.end(), [](const auto& a, const auto& c) {
-    return a.offset < c.offset;
-  });
+  std::ranges::reverse(windows_);  // a frame is written from its end
 }
 
 }  // namespace server

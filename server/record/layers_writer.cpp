@@ -2,9 +2,13 @@
 #include "server/record/layers_writer.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <string_view>
 
 #include "telemetry_generated.h"
+
+#include "algo/wide.hpp"
 
 namespace server {
 namespace {
@@ -13,9 +17,11 @@ namespace fb = tautline::wire;
 
 // Of a layer; a multiple of the numbers of any position, arrow or circle.
 constexpr std::size_t kMostValues = 65532;
-// Points from which on a line is coded as differences; of a shorter one each value follows its own
-// of the tick before better.
-constexpr std::uint32_t kLongLine = 8;
+constexpr float kMostNarrow = 32767;
+constexpr std::uint32_t kNoNumber = 0x8000;  // -32768
+// A float this large has no fraction: whatever smaller is added to it is rounded to the next whole
+// number, the even one of two equally near, and stands in its last bits.
+constexpr float kBase = 0x1.8p23F;
 
 template <typename Visit>
 void each_layer(const algo::Telemetry& t, const Visit& visit) {
@@ -26,6 +32,22 @@ void each_layer(const algo::Telemetry& t, const Visit& visit) {
 
 std::size_t count_of(const algo::Layer& layer) {
   return std::min(layer.values.size(), kMostValues);
+}
+
+/// Writes `count` values as 16 bits each.
+/// @return whether each of them fits
+TAUTLINE_WIDE bool write_narrow(const float* values,
+                                std::size_t count,
+                                std::int16_t* __restrict out) {
+  std::uint32_t too_large = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float steps = values[i] * kSteps;
+    too_large |= std::abs(steps) > kMostNarrow ? 1U : 0U;
+    const std::uint32_t whole =
+        std::bit_cast<std::uint32_t>(steps + kBase) - std::bit_cast<std::uint32_t>(kBase);
+    out[i] = static_cast<std::int16_t>(steps == steps ? whole : kNoNumber);  // or not a number
+  }
+  return too_large == 0;
 }
 
 flatbuffers::Offset<flatbuffers::String> write_text(flatbuffers::FlatBufferBuilder& b,
@@ -57,6 +79,7 @@ LayersWriter::Tables<fb::LayerInfo> LayersWriter::write_legend(Builder& b,
 }
 
 LayersWriter::Offset<fb::News> LayersWriter::write_news(Builder& b, const algo::Telemetry& t) {
+  if (!t.words_fresh && !t.legend_fresh) return 0;
   const auto what = t.words_fresh ? write_text(b, t.words.what) : 0;
   const auto why = t.words_fresh ? write_text(b, t.words.why) : 0;
   if (!t.legend_fresh) return fb::CreateNews(b, what, why);
@@ -74,52 +97,45 @@ LayersWriter::Offset<fb::News> LayersWriter::write_news(Builder& b, const algo::
   return fb::CreateNews(b, what, why, layers, names, units);
 }
 
-LayersWriter::Shown LayersWriter::write_shown(Builder& b, const algo::Telemetry& t) {
-  Shown out;
+LayersWriter::Tables<fb::LayerMore> LayersWriter::write_more(Builder& b, const algo::Telemetry& t) {
   more_.clear();
   std::uint16_t index = 0;
-  std::size_t values = t.output.measures.size();
   each_layer(t, [&](const algo::Layer& layer) {
-    values += count_of(layer);
     if (!layer.empty() && (!layer.cells.empty() || !layer.text.empty())) {
       const auto cells = layer.cells.empty() ? 0 : b.CreateVector(layer.cells);
       more_.push_back(fb::CreateLayerMore(b, index, cells, write_text(b, layer.text)));
     }
     ++index;
   });
-  if (!more_.empty()) out.more = b.CreateVector(more_);
-
-  float* first = nullptr;
-  out.values = b.CreateUninitializedVector(values, &first);
-  float* value = first;
-  each_layer(t, [&](const algo::Layer& layer) {
-    value = std::copy_n(layer.values.data(), count_of(layer), value);
-  });
-  for (const algo::Measure& each : t.output.measures) *value++ = static_cast<float>(each.value);
-  std::transform(first, value, first, rounded);  // all in one go: in vectors
-  std::uint16_t* count = nullptr;
-  out.counts = b.CreateUninitializedVector(index, &count);
-  each_layer(
-      t, [&](const algo::Layer& layer) { *count++ = static_cast<std::uint16_t>(count_of(layer)); });
-  return out;
+  return more_.empty() ? 0 : b.CreateVector(more_);
 }
 
-void LayersWriter::add_windows(const algo::Telemetry& t,
-                               std::uint32_t values_offset,
-                               std::vector<db::Window>& windows) const {
-  std::uint32_t first = 0;
+LayersWriter::Shown LayersWriter::write_shown(Builder& b, const algo::Telemetry& t) {
+  Shown out{.more = write_more(b, t)};
+  std::size_t size = t.output.measures.size();
+  each_layer(t, [&](const algo::Layer& layer) { size += 1 + count_of(layer); });
+  scratch_.resize(size);
+  float* next = scratch_.data();
   each_layer(t, [&](const algo::Layer& layer) {
-    const auto count = static_cast<std::uint32_t>(count_of(layer));
-    const std::uint32_t axes = layer.axes;
-    const bool line = layer.kind == algo::LayerKind::Polyline && count >= kLongLine * axes;
-    if (line && windows.size() < db::kMaxFrameWindows) {
-      windows.push_back({.offset = values_offset + first * std::uint32_t{sizeof(float)},
-                         .count = count - count % axes,
-                         .kind = db::Window::Kind::Floats,
-                         .stride = axes});
-    }
-    first += count;
+    const std::size_t count = count_of(layer);
+    *next++ = static_cast<float>(count) / kSteps;
+    next = std::copy_n(layer.values.data(), count, next);
   });
+  for (const algo::Measure& each : t.output.measures) *next++ = static_cast<float>(each.value);
+
+  narrow_.resize(size);
+  if (write_narrow(scratch_.data(), size, narrow_.data())) {
+    out.narrow = b.CreateVector(narrow_);
+    return out;
+  }
+  float* wide = nullptr;
+  out.wide = b.CreateUninitializedVector(size, &wide);
+  std::ranges::transform(scratch_, wide, rounded);
+  each_layer(t, [&](const algo::Layer& layer) {
+    *wide *= kSteps;  // a number of values
+    wide += 1 + count_of(layer);
+  });
+  return out;
 }
 
 }  // namespace server

@@ -11,7 +11,6 @@
 #include <flatbuffers/flatbuffers.h>
 
 #include "algo/telemetry.hpp"
-#include "db/block_codec.hpp"
 
 namespace tautline::wire {
 struct LayerInfo;
@@ -21,10 +20,12 @@ struct News;
 
 namespace server {
 
-/// What only people look at: nobody sees less than a millimetre, and the record would keep it at
-/// twice the size. To the next even one of two equally near, as lrint() does, but many at once.
+/// Of one metre. Nobody sees less than a millimetre, and the record would keep it at twice the
+/// size.
+constexpr float kSteps = 1024;
+
+/// To the next step, the even one of two equally near, as nearbyint() gives it but many at once.
 inline float rounded(float value) {
-  constexpr float kSteps = 1024;
   constexpr float kWhole = 0x1p23F;  // from here on a float has no fraction
   const float steps = value * kSteps;
   const float push = std::copysign(kWhole, steps);  // leaves the fraction no room
@@ -43,27 +44,24 @@ class LayersWriter {
   using Tables = Offset<flatbuffers::Vector<Offset<T>>>;
 
   struct Shown {
-    Offset<flatbuffers::Vector<std::uint16_t>> counts{};
-    Offset<flatbuffers::Vector<float>> values{};
+    Offset<flatbuffers::Vector<std::int16_t>> narrow{};
+    Offset<flatbuffers::Vector<float>> wide{};  // where a value does not fit into the other
     Tables<tautline::wire::LayerMore> more{};
   };
 
-  /// Empty ones when they are not new, which are nevertheless there: a field that came and went
-  /// would move all that follows the frame's own table.
+  /// None when nothing is new.
   Offset<tautline::wire::News> write_news(Builder& b, const algo::Telemetry& t);
   Shown write_shown(Builder& b, const algo::Telemetry& t);
-  /// Appends the long lines of the `t` that write_shown() wrote last, by where the finished frame
-  /// has its values.
-  void add_windows(const algo::Telemetry& t,
-                   std::uint32_t values_offset,
-                   std::vector<db::Window>& windows) const;
 
  private:
   Tables<tautline::wire::LayerInfo> write_legend(Builder& b, const algo::Telemetry& t);
+  Tables<tautline::wire::LayerMore> write_more(Builder& b, const algo::Telemetry& t);
 
   std::vector<Offset<tautline::wire::LayerInfo>> infos_{};
   std::vector<Offset<tautline::wire::LayerMore>> more_{};
-  std::string lines_{};  // workspace
+  std::string lines_{};  // workspace, as the next two
+  std::vector<float> scratch_{};
+  std::vector<std::int16_t> narrow_{};
 };
 
 }  // namespace server

@@ -118,19 +118,19 @@ void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
     same(document.at("scans")[k] == scan_json(back.observation.scans[k]), "a scan");
   }
   const auto& frame = *tautline::wire::GetFrame(encoder.encode(t).data());
-  const auto& values = *frame.values();
+  const auto& shown = *frame.shown();
   flatbuffers::uoffset_t i = 0;
-  std::size_t written = 0;
-  for (const std::uint16_t count : *frame.counts()) {
-    if (count == 0) continue;
-    const json& layer = document.at("layers").at(written++);
-    same(layer.at("values").size() == count, "the length of a layer");
+  std::size_t layers = t.layers.size() + t.output.layers.size() - document.at("layers").size();
+  for (const json& layer : document.at("layers")) {
+    for (; shown[i] == 0; ++i) --layers;  // of a layer that shows nothing
+    same(layer.at("values").size() == static_cast<std::size_t>(shown[i++]),
+         "the length of a layer");
     for (const double value : layer.at("values")) {
-      same(std::abs(value - values[i++]) < 1e-3, "a value of a layer");
+      same(std::abs(value - shown[i++] / 1024.0) < 1e-3, "a value of a layer");
     }
   }
-  same(document.at("layers").size() == written, "the number of layers");
-  same(document.at("measures").size() == values.size() - i, "the number of measures");
+  for (; layers > 0; --layers) same(shown[i++] == 0, "the number of layers");
+  same(document.at("measures").size() == shown.size() - i, "the number of measures");
 }
 
 /// Driving ticks, their strip drawn out to `nodes` along the same line (0: as it is).

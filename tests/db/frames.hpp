@@ -18,10 +18,12 @@ struct Frame {
 };
 
 /// 361 beams towards a wall that comes nearer, +-15 mm noise, a few free beams; around them
-/// doubles that move smoothly, a strip of `nodes` six-float nodes and a sentence.
+/// doubles that move smoothly, a strip of `nodes` nodes and a sentence.
 class FrameMaker {
  public:
-  explicit FrameMaker(std::uint64_t seed, std::size_t nodes = 50) : random_(seed), nodes_(nodes) {}
+  /// `noise` [mm]: ranges are off by at most this.
+  explicit FrameMaker(std::uint64_t seed, std::size_t nodes = 50, double noise = 15)
+      : random_(seed), nodes_(nodes), noise_(noise) {}
 
   Frame next() {
     Frame frame{};
@@ -51,27 +53,24 @@ class FrameMaker {
         {.offset = static_cast<std::uint32_t>(frame.bytes.size()), .count = 361});
     for (int i = 0; i < 361; ++i) {
       const bool free = random_() % 500 == 0;
-      const double mm = 1000.0 * distance + 5.0 * i + 15.0 * uniform();
+      const double mm = 1000.0 * distance + 5.0 * i + noise_ * uniform();
       put(frame, static_cast<std::uint16_t>(free ? 65535 : static_cast<int>(mm)));
     }
   }
   void put_strip(Frame& frame, float x) {
     if (nodes_ == 0) return;
-    frame.windows.push_back({.offset = static_cast<std::uint32_t>(frame.bytes.size()),
-                             .count = static_cast<std::uint32_t>(6 * nodes_),
-                             .kind = db::Window::Kind::Floats,
-                             .stride = 6});
     const auto bend = static_cast<float>(0.015 * uniform());
     for (std::size_t i = 0; i < nodes_; ++i) {
       const float q = static_cast<float>(i) / static_cast<float>(nodes_);
-      for (const float value : {x + (4 - x) * q, bend + (3 - bend) * q, 0.F, 0.F, 0.F, 0.F}) {
-        put(frame, value);
+      for (const float value : {x + (4 - x) * q, bend + (3 - bend) * q}) {
+        put(frame, static_cast<std::int16_t>(1024 * value));
       }
     }
   }
 
   std::mt19937_64 random_;
   std::size_t nodes_ = 0;
+  double noise_ = 0;
   std::uint64_t tick_ = 0;
 };
 

@@ -71,7 +71,7 @@ TEST_F(SchemaTest, ADatabaseOfTheVersionBeforeLayersIsRefusedToo) {
 
 TEST_F(SchemaTest, AnEmptyFileIsSetUp) {
   { const RunStore store(path); }
-  EXPECT_EQ(ask("PRAGMA user_version"), 7);
+  EXPECT_EQ(ask("PRAGMA user_version"), 8);
   EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
   Connection((folder / "empty.db").string(), Connection::Mode::Write);
   EXPECT_THAT(refusal([&] { const RunReader reader((folder / "empty.db").string()); }),

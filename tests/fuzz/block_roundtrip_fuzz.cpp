@@ -1,7 +1,7 @@
 // tests/fuzz/block_roundtrip_fuzz.cpp: whatever frames and windows, what is packed comes back.
 //
-// Input: frame after frame: length, window count, then per window gap, count, stride (0: samples),
-// one byte each, then the frame's bytes.
+// Input: frame after frame: length, window count, then per window gap and count, one byte
+// each, then the frame's bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -27,11 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (db::Window& window : windows) {
       window.offset = at + next();
       window.count = next();
-      window.stride = next();
-      const bool samples = window.stride == 0;
-      window.kind = samples ? db::Window::Kind::Samples : db::Window::Kind::Floats;
-      if (samples) window.stride = 1;
-      at = window.offset + window.count * (samples ? 2U : 4U);
+      at = window.offset + static_cast<std::uint32_t>(window.bytes());
     }
     const auto frame = std::as_bytes(left.first(std::min(length, left.size())));
     left = left.subspan(frame.size());

@@ -62,6 +62,20 @@ test("a layer is read back, from wherever the bytes lie", () => {
   }
 });
 
+test("values in 16 bits and wide ones are read alike", () => {
+  const lines = (x: number): LayerSpec[] => [
+    { name: "plan", kind: LayerKind.Polyline, values: [] },
+    { name: "strip", kind: LayerKind.Polyline, values: [x, -0.5, NaN, NaN, -31.5, 0.25] },
+    { name: "nodes", kind: LayerKind.Points, values: [1, 2] },
+  ];
+  for (const x of [1.5, 31.9990234375, 32, 0.1, -4000]) {
+    const f = decode_frame(frame_bytes({ tick: 1, layers: lines(x), measures: [["share", "", 0.75]] }), new Legends());
+    assert.deepEqual(f.layers.map((l) => [l.name, ...l.values]),
+      [["strip", Math.fround(x), -0.5, NaN, NaN, -31.5, 0.25], ["nodes", 1, 2]], `x ${x}`);
+    assert.deepEqual(f.measures, [{ name: "share", unit: "", value: 0.75 }]);
+  }
+});
+
 test("layers and measures are told by a legend that came before, or comes in the same page of frames", () => {
   const layers: LayerSpec[] = [
     { name: "strip", kind: LayerKind.Polyline, values: [0, 0, 1, 1] },

@@ -57,6 +57,20 @@ function add_news(b: flatbuffers.Builder, words: Words, layers: LayerSpec[], mea
   return wire.News.createNews(b, what, why, list, names, units);
 }
 
+/** In 16 bits where every number is then exact. */
+function add_shown(b: flatbuffers.Builder, layers: LayerSpec[], measures: [string, string, number][]): { narrow: number; wide: number } {
+  const in_steps = (n: number) => (Number.isNaN(n) ? -32768 : n * 1024);
+  const list = (each: (n: number) => number) => [
+    ...layers.flatMap((l) => [l.values.length, ...l.values.map(each)]),
+    ...measures.map((m) => each(m[2])),
+  ];
+  const steps = list(in_steps);
+  const fits = steps.every((n) => Number.isInteger(n) && n >= -32768 && n <= 32767);
+  return fits
+    ? { narrow: wire.Frame.createShownVector(b, steps), wide: 0 }
+    : { narrow: 0, wide: wire.Frame.createShownWideVector(b, list((n) => n)) };
+}
+
 function add_more(b: flatbuffers.Builder, layers: LayerSpec[]): number {
   const more = layers.flatMap((l, i) => {
     if (!l.cells && l.text === undefined) return [];
@@ -147,9 +161,8 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   const { layers = [], measures = [] } = spec;
   const words: Words = spec.words ?? ["Driving", "On its way."];
   const silent = spec.words === null || (!spec.words && !spec.layers && !spec.measures);
-  const news = silent ? wire.News.createNews(b, 0, 0, 0, 0, 0) : add_news(b, words, layers, measures);
-  const values = wire.Frame.createValuesVector(b, [...layers.flatMap((l) => l.values), ...measures.map((m) => m[2])]);
-  const counts = wire.Frame.createCountsVector(b, layers.map((l) => l.values.length));
+  const news = silent ? 0 : add_news(b, words, layers, measures);
+  const { narrow, wide } = add_shown(b, layers, measures);
   const more = add_more(b, layers);
   const hold = spec.hold ? b.createString(spec.hold) : 0;
   const behaviour = b.createString(spec.behaviour ?? "rest");
@@ -169,8 +182,7 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   }
   const readings = b.endVector();
   wire.Frame.startFrame(b);
-  wire.Frame.addTick(b, BigInt(spec.tick));
-  wire.Frame.addStamp(b, spec.stamp ?? spec.tick * 0.026);
+  wire.Frame.addClock(b, wire.Clock.createClock(b, BigInt(spec.tick), spec.stamp ?? spec.tick * 0.026));
   const [x, y, heading] = spec.pose ?? [0, 0, 0];
   wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, x, y, heading, 0.25, -0.5));
   if (scans) wire.Frame.addScans(b, scans);
@@ -185,13 +197,12 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, d - 0.5));
     wire.Frame.addCollided(b, hit);
   }
-  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.mission ?? wire.Mission.Idle));
+  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.legend ?? legend_of(spec), spec.mission ?? wire.Mission.Idle, 0, false));
   wire.Frame.addMoved(b, places);
   wire.Frame.addSonar(b, readings);
-  wire.Frame.addNews(b, news);
-  wire.Frame.addLegend(b, spec.legend ?? legend_of(spec));
-  wire.Frame.addValues(b, values);
-  wire.Frame.addCounts(b, counts);
+  if (news) wire.Frame.addNews(b, news);
+  if (narrow) wire.Frame.addShown(b, narrow);
+  if (wide) wire.Frame.addShownWide(b, wide);
   wire.Frame.addMore(b, more);
   wire.Frame.addBehaviour(b, behaviour);
   wire.Frame.addChannels(b, channels);

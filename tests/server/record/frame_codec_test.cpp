@@ -245,11 +245,12 @@ TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
   EXPECT_EQ(frame.news()->measures()->str(), "strip.elastic\nstrip.side");
   EXPECT_EQ(frame.news()->units()->str(), "m\n");
 
-  EXPECT_EQ(frame.legend(), t.legend);
-  EXPECT_TRUE(std::ranges::equal(*frame.counts(), std::vector<std::uint16_t>{2, 6, 0, 4, 3}));
-  const std::vector<float> values{
-      1, 0.5, 0, 1, 0.5, 1, 1, 1, -1.5, 2, 0.125, 3, 1, 2, 0.5, 0.25, -1};
-  EXPECT_TRUE(std::ranges::equal(*frame.values(), values));
+  EXPECT_EQ(frame.decision()->legend(), t.legend);
+  EXPECT_EQ(frame.shown_wide(), nullptr);
+  const std::vector<std::int16_t> shown{2,    1024, 512,  6,   0,     1024, 512, 1024,
+                                        1024, 1024, 0,    4,   -1536, 2048, 128, 3072,
+                                        3,    1024, 2048, 512, 256,   -1024};
+  EXPECT_TRUE(std::ranges::equal(*frame.shown(), shown));
   ASSERT_EQ(frame.more()->size(), 2U);
   EXPECT_EQ(frame.more()->Get(0)->layer(), 3);
   EXPECT_TRUE(std::ranges::equal(*frame.more()->Get(0)->cells(), grid.cells));
@@ -263,12 +264,47 @@ TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
   algo::Layer& layer = add_layer(t.output.layers, kStrip);
   layer.values = {1.0004F, -3.9991F, kNan, kNan, 3e30F, 1e-9F};
   FrameEncoder encoder;
-  const auto& values = *read(encoder, t).values();
-  EXPECT_EQ(values[0], 1);
-  EXPECT_EQ(values[1], -4 + 1.0F / 1024);
-  EXPECT_TRUE(std::isnan(values[2]) && std::isnan(values[3]));
-  EXPECT_EQ(values[4], 3e30F);
-  EXPECT_EQ(values[5], 0);
+  const auto& values = *read(encoder, t).shown_wide();
+  EXPECT_EQ(values[0], 6);
+  EXPECT_EQ(values[1], 1);
+  EXPECT_EQ(values[2], -4 + 1.0F / 1024);
+  EXPECT_TRUE(std::isnan(values[3]) && std::isnan(values[4]));
+  EXPECT_EQ(values[5], 3e30F);
+  EXPECT_EQ(values[6], 0);
+
+  layer.values[4] = 30;
+  const auto& narrow = *read(encoder, t).shown();
+  const std::vector<std::int16_t> expected{6, 1024, -4095, -32768, -32768, 30 * 1024, 0};
+  EXPECT_TRUE(std::ranges::equal(narrow, expected));
+}
+
+/// One value that needs more than 16 bits takes the whole frame along.
+TEST(FrameCodec, WhatDoesNotFitInto16BitsIsWide) {
+  const auto is_wide = [](const algo::Telemetry& t) {
+    FrameEncoder encoder;
+    const wire::Frame& frame = read(encoder, t);
+    EXPECT_NE(frame.shown() == nullptr, frame.shown_wide() == nullptr);
+    return frame.shown() == nullptr;
+  };
+  for (const float sign : {1.F, -1.F}) {
+    algo::Telemetry t;
+    algo::Layer& layer = add_layer(t.output.layers, kStrip);
+    layer.values = {sign * 32767 / 1024};
+    EXPECT_FALSE(is_wide(t));
+    layer.values = {sign * 32767.5F / 1024};
+    EXPECT_TRUE(is_wide(t));
+    layer.values = {sign * std::numeric_limits<float>::infinity()};
+    EXPECT_TRUE(is_wide(t));
+  }
+  algo::Telemetry t;
+  t.output.measures.push_back({"window.allowed", "", 189});
+  EXPECT_TRUE(is_wide(t));
+  t.output.measures[0].value = 18.9;
+  EXPECT_FALSE(is_wide(t));
+  add_layer(t.output.layers, kStrip).values.assign(32'767, 1);
+  EXPECT_FALSE(is_wide(t));
+  t.output.layers[0].values.push_back(1);
+  EXPECT_TRUE(is_wide(t));
 }
 
 TEST(FrameCodec, RoundingGivesTheNearestStepAndTheEvenOneOfTwo) {
@@ -320,16 +356,33 @@ TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
   algo::Telemetry t = full_telemetry();
   t.words_fresh = t.legend_fresh = false;
   FrameEncoder encoder;
-  const wire::News& news = *read(encoder, t).news();
-  EXPECT_EQ(news.what(), nullptr);
-  EXPECT_EQ(news.why(), nullptr);
-  EXPECT_EQ(news.layers(), nullptr);
-  EXPECT_EQ(news.measures(), nullptr);
+  EXPECT_EQ(read(encoder, t).news(), nullptr);
+  t.legend_fresh = true;
+  EXPECT_EQ(read(encoder, t).news()->what(), nullptr);
+  EXPECT_EQ(read(encoder, t).news()->why(), nullptr);
+  t.legend_fresh = false;
+  t.words_fresh = true;
+  EXPECT_EQ(read(encoder, t).news()->layers(), nullptr);
+  EXPECT_EQ(read(encoder, t).news()->measures(), nullptr);
+  t.words_fresh = false;
   algo::Telemetry back;
   decode_frame(encoder.encode(full_telemetry()), back);
   decode_frame(encoder.encode(t), back);  // nothing of it stays
   EXPECT_FALSE(back.words_fresh);
   EXPECT_TRUE(back.words.what.empty());
+}
+
+TEST(FrameCodec, EveryBehaviourIsReadBackAndAvoidingTakesNoByte) {
+  FrameEncoder encoder;
+  algo::Telemetry t = full_telemetry();
+  for (const algo::Name& behaviour :
+       {algo::behaviours::kRest, algo::behaviours::kAvoid, algo::behaviours::kManual}) {
+    t.behaviour = behaviour;
+    algo::Telemetry back;
+    decode_frame(encoder.encode(t), back);
+    EXPECT_EQ(back.behaviour, behaviour);
+    EXPECT_EQ(read(encoder, t).behaviour() == nullptr, behaviour == algo::behaviours::kAvoid);
+  }
 }
 
 TEST(FrameCodec, AScanOnItsOwnIsAMessage) {
@@ -371,27 +424,23 @@ TEST(FrameCodec, EncodingIsDeterministicAndReusesItsBuffers) {
   EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size()), 0);
 }
 
-TEST(FrameCodec, WindowsPointAtRangesAndLongLines) {
+TEST(FrameCodec, WindowsPointAtRanges) {
   algo::Telemetry t = full_telemetry();
-  algo::Layer& line = add_layer(t.output.layers, kPlan);
-  for (int k = 0; k < 8; ++k) put(line, algo::Vec2{0.5 * k, -0.25 * k});
+  const algo::LaserScan scan = t.observation.scans[0];
+  t.observation.scans.append() = scan;
   FrameEncoder encoder;
   const auto bytes = encoder.encode(t);
-  ASSERT_EQ(encoder.windows().size(), 2u);  // the ranges and the plan
-  const auto windows = encoder.windows();
-  const db::Window window = windows[0].kind == db::Window::Kind::Samples ? windows[0] : windows[1];
-  ASSERT_EQ(window.kind, db::Window::Kind::Samples);
+  ASSERT_EQ(encoder.windows().size(), 2u);
+  const db::Window window = encoder.windows()[0];
   ASSERT_EQ(window.count, 361u);
   std::uint16_t sample = 0;
   std::memcpy(&sample, bytes.data() + window.offset + 2 * 100, 2);
   EXPECT_EQ(sample, algo::pack_beam(t.observation.scans[0], 100));
-  const db::Window floats = windows[0].kind == db::Window::Kind::Floats ? windows[0] : windows[1];
-  ASSERT_EQ(floats.kind, db::Window::Kind::Floats);
-  ASSERT_EQ(floats.count, 16u);
-  EXPECT_EQ(floats.stride, 2u);
-  float y = 0;
-  std::memcpy(&y, bytes.data() + floats.offset + 4 * 7, 4);
-  EXPECT_EQ(y, -0.75F);
+  const db::Window second = encoder.windows()[1];
+  EXPECT_EQ(second.count, 361u);
+  EXPECT_GE(second.offset, window.offset + 2 * 361);
+  std::memcpy(&sample, bytes.data() + second.offset + 2 * 360, 2);
+  EXPECT_EQ(sample, algo::pack_beam(t.observation.scans[0], 360));
 }
 
 TEST(FrameCodec, ATickOfDrivingStaysSmall) {

@@ -4,7 +4,7 @@ import { Point, Pose } from "../geometry";
 import { LayerView } from "../layer";
 import { Obstacle, ObstacleKind } from "../obstacle";
 import * as wire from "../wire/telemetry_generated";
-import { Legends, Measure, shown } from "./legend";
+import { Legends, Measure, legend_of, shown } from "./legend";
 
 /** Wire value of a beam that met nothing within range. */
 export const kFree = 65535;
@@ -90,16 +90,18 @@ const pose = (p: XYH | null): Pose =>
 export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   const f = root_of(bytes);
   legends.learn(f);
+  const clock = f.clock();
+  const stamp = clock?.stamp() ?? 0;
   const odometry = f.odometry();
   const truth = f.truth();
   const command = f.command();
   const goal = f.goal();
   const decision = f.decision();
   const what = f.news()?.what();
-  const { layers, measures } = shown(f, legends.find(f.legend()));
+  const { layers, measures } = shown(f, legends.find(legend_of(f)));
   return {
-    tick: Number(f.tick()),
-    stamp: f.stamp(),
+    tick: Number(clock?.tick() ?? 0),
+    stamp,
     pose: pose(odometry?.pose() ?? null),
     twist: { v: odometry?.twist()?.v() ?? 0, omega: odometry?.twist()?.omega() ?? 0 },
     sweeps: list(f.scansLength(), (i) => sweep(f.scans(i)!)),
@@ -123,13 +125,13 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     limit: f.limit(),
     halt: kHalts[f.halt()] ?? "none",
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
-    behaviour: f.behaviour() ?? "rest",
+    behaviour: f.behaviour() ?? "avoid",
     clearance: decision?.clearance() ?? 0,
     newest_scan: f.newestScan(),
     words: what ? { what, why: f.news()?.why() ?? "" } : null, // absent where they are not new
     layers,
     measures,
-    readings: list(f.channelsLength(), (i) => channel_reading(f.channels(i)!, f.stamp())),
+    readings: list(f.channelsLength(), (i) => channel_reading(f.channels(i)!, stamp)),
     moved: list(f.movedLength(), (i) => ({ id: f.moved(i)!.id(), pose: pose(f.moved(i)) })),
   };
 }

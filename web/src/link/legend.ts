@@ -21,19 +21,24 @@ export class Legends {
   /** Takes the legend that `f` brings, if it brings one. */
   learn(f: wire.Frame): void {
     const news = f.news();
-    if (!news || (news.layersLength() === 0 && !news.measures()) || this.held_.has(f.legend())) return;
+    if (!news || (news.layersLength() === 0 && !news.measures()) || this.held_.has(legend_of(f))) return;
     const layers: (LayerLook | null)[] = [];
     for (let i = 0; i < news.layersLength(); ++i) layers.push(look_of(news.layers(i)!));
     const names = news.measures()?.split("\n") ?? [];
     const units = news.units()?.split("\n") ?? [];
     const measures = names.map((name, i) => ({ name, unit: units[i] ?? "" }));
-    this.held_.set(f.legend(), { layers, measures });
+    this.held_.set(legend_of(f), { layers, measures });
     if (this.held_.size > kMost) this.held_.delete(this.held_.keys().next().value!);
   }
 
   find(number: number): Legend | null {
     return this.held_.get(number) ?? null;
   }
+}
+
+/** The number of the legend that `f` is to be read by. */
+export function legend_of(f: wire.Frame): number {
+  return f.decision()?.legend() ?? 0;
 }
 
 function look_of(info: wire.LayerInfo): LayerLook | null {
@@ -52,27 +57,32 @@ function look_of(info: wire.LayerInfo): LayerLook | null {
   };
 }
 
+const kSteps = 1024; // of a metre, a radian, ...
+const kNoNumber = -32768;
+
 /** The layers of `f` that have something to show, and its measures; none until their legend is known. */
 export function shown(f: wire.Frame, legend: Legend | null): { layers: LayerView[]; measures: Measure[] } {
-  const values = f.valuesArray() ?? new Float32Array(0);
-  const counts = f.countsArray() ?? new Uint16Array(0);
   if (!legend) return { layers: [], measures: [] };
+  const narrow = f.shownArray();
+  const numbers = narrow ?? f.shownWideArray() ?? new Int16Array(0);
+  const value_of = (n: number | undefined): number =>
+    n === undefined || (narrow && n === kNoNumber) ? NaN : narrow ? n / kSteps : n;
   const more = new Map<number, wire.LayerMore>();
   for (let i = 0; i < f.moreLength(); ++i) more.set(f.more(i)!.layer(), f.more(i)!);
   const layers: LayerView[] = [];
   let at = 0;
-  counts.forEach((count, i) => {
-    const look = legend.layers[i];
+  legend.layers.forEach((look, i) => {
+    const count = numbers[at++] ?? 0;
     if (count > 0 && look) {
       layers.push({
         ...look,
-        values: values.slice(at, at + count),
+        values: Float32Array.from(numbers.subarray(at, at + count), value_of),
         cells: more.get(i)?.cellsArray()?.slice() ?? new Uint8Array(0),
         text: more.get(i)?.text()?.split("\n") ?? [],
       });
     }
     at += count;
   });
-  const measures = legend.measures.map((m, i) => ({ ...m, value: values[at + i] ?? NaN }));
+  const measures = legend.measures.map((m, i) => ({ ...m, value: value_of(numbers[at + i]) }));
   return { layers, measures };
 }
