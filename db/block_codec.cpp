@@ -30,6 +30,7 @@ void BlockEncoder::clear() {
   for (auto& stream : streams_) stream.clear();
   references_.clear();
   rest_.clear();
+  rest_residuals_.clear();
   rest_starts_.assign(1, 0);
   newest_.clear();
 }
@@ -48,7 +49,7 @@ void BlockEncoder::add(std::span<const std::byte> frame, std::span<const Window>
     throw CodecError("frame " + std::to_string(frames()) + " of the block: " + wrong);
   }
   table_.append(frame.size(), windows);
-  std::ranges::copy(frame, table_.frame(frames() - 1).begin());
+  copy_bytes(frame, table_.frame(frames() - 1));
 }
 
 std::size_t BlockEncoder::reference_of(std::size_t i) const {
@@ -100,19 +101,32 @@ void BlockEncoder::encode_frame(std::size_t i) {
   }
   append_bytes(rest_, frame.subspan(done));
   rest_starts_.push_back(rest_.size());
+  predict_rest(i);
+}
+
+/// Appends what is left of the rest of frame `i`, the newest, beside that of its reference.
+void BlockEncoder::predict_rest(std::size_t i) {
+  const std::size_t start = rest_starts_[i];
+  rest_residuals_.insert(
+      rest_residuals_.end(), rest_.begin() + static_cast<std::ptrdiff_t>(start), rest_.end());
+  if (references_[i] == 0) return;
+  const std::size_t from = i - references_[i];
+  const std::size_t shared =
+      std::min(rest_.size() - start, rest_starts_[from + 1] - rest_starts_[from]);
+  std::uint8_t* const here = rest_residuals_.data() + start;
+  const std::uint8_t* const there = rest_.data() + rest_starts_[from];
+  for (std::size_t k = 0; k < shared; ++k) {
+    here[k] = static_cast<std::uint8_t>(here[k] - there[k]);
+  }
 }
 
 void BlockEncoder::write_rest() {
-  auto& out = streams_[kRest];
-  out.clear();
-  out.reserve(rest_.size());
+  streams_[kRest].resize(rest_.size());
+  std::uint8_t* next = streams_[kRest].data();
+  const std::uint8_t* const residuals = rest_residuals_.data();
+  const std::size_t* const starts = rest_starts_.data();
   rest_order_.set(rest_starts_);
-  rest_order_.walk([&](std::size_t i, std::size_t k) {
-    const std::size_t from = i - references_[i];
-    const bool predicted = references_[i] != 0 && k < rest_starts_[from + 1] - rest_starts_[from];
-    const unsigned before = predicted ? rest_[rest_starts_[from] + k] : 0U;
-    out.push_back(static_cast<std::uint8_t>(rest_[rest_starts_[i] + k] - before));
-  });
+  rest_order_.walk([&](std::size_t i, std::size_t k) { *next++ = residuals[starts[i] + k]; });
 }
 
 std::span<const std::byte> BlockEncoder::encode() {

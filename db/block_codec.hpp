@@ -150,13 +150,15 @@ class BlockEncoder {
  private:
   void encode_frame(std::size_t i);
   std::size_t reference_of(std::size_t i) const;
+  void predict_rest(std::size_t i);
   void write_rest();
 
   detail::FrameTable table_{};
   detail::Streams streams_{};
   detail::NewestSamples newest_{};
-  std::vector<std::size_t> references_{};    // distance back to each frame's reference; 0 = none
-  std::vector<std::uint8_t> rest_{};         // the frames without their windows, end to end
+  std::vector<std::size_t> references_{};  // distance back to each frame's reference; 0 = none
+  std::vector<std::uint8_t> rest_{};       // the frames without their windows, end to end
+  std::vector<std::uint8_t> rest_residuals_{};
   std::vector<std::size_t> rest_starts_{0};  // of each frame, and the end
   detail::RestOrder rest_order_{};
   std::vector<std::byte> packed_{};

@@ -130,8 +130,7 @@ void BlockDecoder::fill_frames() {
     std::size_t done = 0;
     std::size_t taken = 0;
     const auto copy_rest = [&](std::size_t until) {
-      std::ranges::copy(rest.subspan(taken, until - done),
-                        frame.begin() + static_cast<std::ptrdiff_t>(done));
+      copy_bytes(rest.subspan(taken, until - done), frame.subspan(done, until - done));
       taken += until - done;
     };
     for (std::size_t k = 0; k < windows.size(); ++k, ++window) {

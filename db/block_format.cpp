@@ -166,6 +166,11 @@ void put_window(std::vector<std::uint8_t>& out, const Window& window) {
   put_varint(out, window.count);
 }
 
+// Not std::ranges::copy(), which g++ 12 makes a copy byte by byte of it.
+void copy_bytes(std::span<const std::byte> from, std::span<std::byte> to) {
+  if (!from.empty()) std::memcpy(to.data(), from.data(), from.size());
+}
+
 void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes) {
   const std::size_t before = out.size();
   out.resize(before + bytes.size());

@@ -57,6 +57,8 @@ std::uint64_t check_of(const FrameTable& table);
 void put_header(std::vector<std::byte>& out, const Header& header);
 void put_varint(std::vector<std::uint8_t>& out, std::size_t value);
 void put_window(std::vector<std::uint8_t>& out, const Window& window);
+/// Copies all of `from` into `to`, which is as long.
+void copy_bytes(std::span<const std::byte> from, std::span<std::byte> to);
 void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes);
 
 /// Reads what put_* wrote and throws CodecError instead of leaving its bytes.
