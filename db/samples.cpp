@@ -1,6 +1,8 @@
 // db/samples.cpp: predicting the ranges of a scan.
 #include "db/samples.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -72,10 +74,17 @@ Choice write_samples(std::span<const std::byte> samples,
   streams[kHigh].resize(before + count);
   std::uint8_t* const low = streams[kLow].data() + before;
   std::uint8_t* const high = streams[kHigh].data() + before;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint16_t folded = residual(samples, reference, i);
+  const auto put = [&](std::size_t i, std::uint16_t folded) {
     low[i] = static_cast<std::uint8_t>(folded & 0xFFU);
     high[i] = static_cast<std::uint8_t>(folded >> 8U);
+  };
+  if (count > 0) put(0, residual(samples, reference, 0));
+  // Many at a time, before they are parted: the compiler makes no vectors of both in one.
+  std::array<std::uint16_t, 64> folded{};
+  for (std::size_t first = 1; first < count; first += folded.size()) {
+    const std::size_t some = std::min(folded.size(), count - first);
+    for (std::size_t k = 0; k < some; ++k) folded[k] = residual(samples, reference, first + k);
+    for (std::size_t k = 0; k < some; ++k) put(first + k, folded[k]);
   }
   return refers ? Choice::Reference : Choice::Within;
 }
