@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "telemetry_generated.h"
@@ -30,11 +31,12 @@ algo::Twist2 from_wire(const fb::Twist2& t) {
   return {t.v(), t.omega()};
 }
 
-/// The library's verifier looks at the length of a vector of structs, not at where its elements
+/// The library's verifier looks at the length of a vector of structs or doubles, not at where they
 /// lie.
-template <typename T>
-void check_alignment(const flatbuffers::Vector<const T*>& structs) {
-  if (reinterpret_cast<std::uintptr_t>(structs.Data()) % alignof(T) == 0) return;
+template <typename Element>
+void check_alignment(const flatbuffers::Vector<Element>& list) {
+  using T = std::remove_pointer_t<Element>;  // itself, or the struct
+  if (reinterpret_cast<std::uintptr_t>(list.Data()) % alignof(T) == 0) return;
   throw WireError("A list in the frame does not lie where its elements can be read.");
 }
 
@@ -191,7 +193,9 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
     reading.channel = r->channel();
     reading.stamp = r->stamp().value_or(o.stamp);
     reading.values.clear();
-    if (r->values() != nullptr) reading.values.assign(r->values()->begin(), r->values()->end());
+    if (r->values() == nullptr) continue;
+    check_alignment(*r->values());
+    reading.values.assign(r->values()->begin(), r->values()->end());
   }
 }
 
@@ -215,6 +219,7 @@ algo::Command read_command(const fb::Frame& f) {
   if (rates->size() > algo::kMostJoints) {
     throw WireError("The frame commands more joints than a robot may have.");
   }
+  check_alignment(*rates);
   command.joints = static_cast<std::uint8_t>(rates->size());
   std::copy(rates->begin(), rates->end(), command.joint_rates.begin());
   return command;

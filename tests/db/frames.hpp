@@ -63,7 +63,7 @@ class FrameMaker {
     for (std::size_t i = 0; i < nodes_; ++i) {
       const float q = static_cast<float>(i) / static_cast<float>(nodes_);
       for (const float value : {x + (4 - x) * q, bend + (3 - bend) * q}) {
-        put(frame, static_cast<std::int16_t>(1024 * value));
+        put(frame, static_cast<std::int16_t>(static_cast<int>(1024 * value)));
       }
     }
   }
