@@ -21,9 +21,7 @@ struct Frame {
 /// doubles that move smoothly, a strip of `nodes` nodes and a sentence.
 class FrameMaker {
  public:
-  /// `noise` [mm]: ranges are off by at most this.
-  explicit FrameMaker(std::uint64_t seed, std::size_t nodes = 50, double noise = 15)
-      : random_(seed), nodes_(nodes), noise_(noise) {}
+  explicit FrameMaker(std::uint64_t seed, std::size_t nodes = 50) : random_(seed), nodes_(nodes) {}
 
   Frame next() {
     Frame frame{};
@@ -53,7 +51,7 @@ class FrameMaker {
         {.offset = static_cast<std::uint32_t>(frame.bytes.size()), .count = 361});
     for (int i = 0; i < 361; ++i) {
       const bool free = random_() % 500 == 0;
-      const double mm = 1000.0 * distance + 5.0 * i + noise_ * uniform();
+      const double mm = 1000.0 * distance + 5.0 * i + 15.0 * uniform();
       put(frame, static_cast<std::uint16_t>(free ? 65535 : static_cast<int>(mm)));
     }
   }
@@ -70,7 +68,6 @@ class FrameMaker {
 
   std::mt19937_64 random_;
   std::size_t nodes_ = 0;
-  double noise_ = 0;
   std::uint64_t tick_ = 0;
 };
 
