@@ -315,8 +315,7 @@ test("frames of an answer are split by their lengths; a cut answer is said", () 
 
 const item: RunItem = {
   id: 3, status: "finished", outcome: "reached", scenario: "case1", controller: "modified", filter: "none",
-  physics: "bullet", seed: 1, parameters: { safety_distance: 1 }, version: "0", started: "", ticks: 1000, time: 26,
-  lost_ticks: 0, bytes: 0, metrics: null,
+  physics: "bullet", seed: 1, parameters: { safety_distance: 1 }, ticks: 1000, time: 26, metrics: null,
   document: { robot: { radius: 0.3, half_length: 0.25, half_width: 0.21, half_track: 0.2 } as RunDocument["robot"], scenario: { name: "case1", start: { x: 0, y: 0, heading: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 1, radius: 0.3 }] } },
 };
 

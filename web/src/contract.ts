@@ -7,11 +7,9 @@ export interface GoalJson { x: number; y: number; heading?: number | null }
 export interface ScenarioDocument {
   name: string;
   title?: string;
-  description?: string;
   start?: Pose;
   goal?: GoalJson | null;
   obstacles?: ObstacleJson[];
-  log?: string;
   [key: string]: unknown;
 }
 
@@ -55,7 +53,7 @@ export interface HardwareInfo {
   real_time: boolean;
   memory_locked: boolean;
   missed_periods: number;
-  /** How late the loop woke: ticks later than the bucket before and below `below` [s]. */
+  /** How late the loop woke up: the number of ticks in each bucket, which ends at `below` [s]. */
   lateness: { ticks: number; worst: number; buckets: { below: number | null; ticks: number }[] };
 }
 
@@ -110,23 +108,22 @@ export interface ParameterInfo {
   initial: number;
   help?: string;
 }
-export interface Controller extends Choice { parameters?: string[] }
+export interface Controller extends Choice { parameters: string[] }
 export interface Catalog {
   controllers: Controller[];
   filters: Choice[];
   physics: Choice[];
   parameters: ParameterInfo[];
-  common_parameters?: string[]; // read whichever controller drives
+  common_parameters: string[]; // read whichever controller drives
 }
 
 /** A robot model; one that is not usable says why in its description. */
-export interface RobotItem { name: string; title: string; description: string; builtin: boolean; usable: boolean }
+export interface RobotItem { name: string; title: string; description: string; usable: boolean }
 
 export interface ScenarioItem {
   name: string;
   title: string;
   description: string;
-  builtin: boolean;
   kind: "world" | "log";
 }
 
@@ -136,11 +133,8 @@ export interface Metrics {
   path_length: number;
   min_clearance: number | null;
   intrusion: number | null;
-  infringed_time: number;
   turning: number;
   via_points: number;
-  ticks: number;
-  collided: boolean;
 }
 
 export interface RunItem {
@@ -154,12 +148,8 @@ export interface RunItem {
   physics: string;
   seed: number;
   parameters: Record<string, number>;
-  version: string;
-  started: string;
   ticks: number;
   time: number;
-  lost_ticks: number;
-  bytes: number;
   metrics: Metrics | null;
   document?: RunDocument;
 }

@@ -27,7 +27,7 @@ export interface LayerView {
 }
 
 /** Byte of a cell of which nothing is known. */
-export const kUnknownCell = 255;
+const kUnknownCell = 255;
 
 /** On the ground of W unless the layer says how high. */
 export interface Place { x: number; y: number; z: number | null }
@@ -106,7 +106,7 @@ export function arcs(layer: LayerView, robot: Pose): Place[][] {
 }
 
 /** A grid's place: the outer corner of its first cell and the way its rows lie, in W. */
-export interface GridPlace { corner: Pose; cell: number; columns: number }
+interface GridPlace { corner: Pose; cell: number; columns: number }
 export function grid_place(layer: LayerView, robot: Pose): GridPlace | null {
   const [x, y, cell, columns] = layer.values;
   if (!(cell > 0) || !(columns >= 1)) return null;

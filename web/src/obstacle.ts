@@ -34,8 +34,6 @@ export interface ObstacleJson {
   height?: number;
   reflectivity?: number;
   specular?: boolean;
-  /** Of one that moves by itself: linear between keys [s, m, m], over and over. */
-  path?: { period: number; phase?: number; keys: [number, number, number][] };
 }
 
 export function obstacle_from_json(json: ObstacleJson): Obstacle {

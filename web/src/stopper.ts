@@ -3,14 +3,14 @@
 
 export const kAnswerTime = 500; // [ms]
 
-export type StopPhase = "none" | "sent" | "failed";
+type StopPhase = "none" | "sent" | "failed";
 export interface StopState {
   phase: StopPhase;
   since: number; // [ms] of the press, by performance.now()
 }
 
 /** Sends a Stop; rejects when it did not get through. */
-export type StopWay = () => Promise<unknown>;
+type StopWay = () => Promise<unknown>;
 
 export class Stopper {
   private press_ = 0; // counts presses, so that an old one's answers do nothing

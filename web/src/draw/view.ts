@@ -3,8 +3,8 @@ import { Bounds, Point } from "../geometry";
 
 export interface Insets { left: number; top: number; right: number; bottom: number }
 
-export const kMinScale = 6;    // [px/m]
-export const kMaxScale = 1200; // [px/m]
+const kMinScale = 6;    // [px/m]
+const kMaxScale = 1200; // [px/m]
 
 export class View {
   width = 1;    // [px]

@@ -268,7 +268,7 @@ function round_cm(v: number): number {
   return Math.round(v * 100) / 100;
 }
 
-export function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal {
+function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal {
   return {
     x: round_cm(at.x),
     y: round_cm(at.y),
@@ -277,7 +277,7 @@ export function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal 
 }
 
 /** A click makes a thing of usual size; a drag from the centre makes it as large as drawn. */
-export function dragged_obstacle(kind: "cylinder" | "box", at: Point, to: Point,
+function dragged_obstacle(kind: "cylinder" | "box", at: Point, to: Point,
   dragged: boolean): Obstacle {
   const x = round_cm(at.x);
   const y = round_cm(at.y);

@@ -3,30 +3,26 @@
 
 export const kSubprotocols = ["foxglove.websocket.v1", "foxglove.sdk.v1"];
 
-export interface Channel { id: number; topic: string; encoding: string; schemaName: string }
-export interface Service { id: number; name: string }
-export interface ParameterValue { name: string; value?: unknown; type?: string }
+export interface ParameterValue { name: string; value?: unknown }
 
-/** The text messages of a server that the page reads. */
+/** The server's text messages, and of each the fields that the page reads. */
 export type ServerText =
-  | { op: "serverInfo"; name: string; capabilities: string[]; sessionId?: string }
-  | { op: "advertise"; channels: Channel[] }
-  | { op: "unadvertise"; channelIds: number[] }
-  | { op: "status"; level: number; message: string; id?: string }
+  | { op: "serverInfo"; sessionId?: string }
+  | { op: "advertise"; channels: { id: number; topic: string }[] }
+  | { op: "status"; level: number; message: string }
   | { op: "parameterValues"; parameters: ParameterValue[]; id?: string }
-  | { op: "advertiseServices"; services: Service[] }
+  | { op: "advertiseServices"; services: { id: number; name: string }[] }
   | { op: "unadvertiseServices"; serviceIds: number[] }
-  | { op: "serviceCallFailure"; serviceId: number; callId: number; message: string };
+  | { op: "serviceCallFailure"; callId: number; message: string };
 
 export type ServerBinary =
-  | { op: "message"; subscription: number; time_ns: bigint; payload: Uint8Array }
-  | { op: "time"; time_ns: bigint }
-  | { op: "service_response"; service: number; call: number; encoding: string; payload: Uint8Array };
+  | { op: "message"; subscription: number; payload: Uint8Array }
+  | { op: "service_response"; call: number; payload: Uint8Array };
 
 const text_encoder = new TextEncoder();
 const text_decoder = new TextDecoder();
 
-/** A server's text frame, or nothing when it is no JSON object with an `op`. */
+/** The message in a text frame; null unless it is a JSON object with an `op`. */
 export function parse_text(text: string): ServerText | null {
   let value: unknown;
   try {
@@ -38,37 +34,19 @@ export function parse_text(text: string): ServerText | null {
   return known ? (value as ServerText) : null;
 }
 
-/** A server's binary frame, or nothing when a declared length does not fit or it is unknown. */
+const kHead = 13; // bytes before the payload of message data, and before the encoding of an answer
+
+/** The message in a binary frame; null when it is cut short or of a kind that the page does not read. */
 export function parse_binary(buffer: ArrayBuffer): ServerBinary | null {
   const view = new DataView(buffer);
-  const size = buffer.byteLength;
-  if (size < 1) return null;
-  switch (view.getUint8(0)) {
-    case 1:
-      if (size < 13) return null;
-      return {
-        op: "message",
-        subscription: view.getUint32(1, true),
-        time_ns: view.getBigUint64(5, true),
-        payload: new Uint8Array(buffer, 13),
-      };
-    case 2:
-      return size < 9 ? null : { op: "time", time_ns: view.getBigUint64(1, true) };
-    case 3: {
-      if (size < 13) return null;
-      const length = view.getUint32(9, true);
-      if (13 + length > size) return null;
-      return {
-        op: "service_response",
-        service: view.getUint32(1, true),
-        call: view.getUint32(5, true),
-        encoding: text_decoder.decode(new Uint8Array(buffer, 13, length)),
-        payload: new Uint8Array(buffer, 13 + length),
-      };
-    }
-    default:
-      return null;
+  if (buffer.byteLength < kHead) return null;
+  const kind = view.getUint8(0);
+  if (kind === 1) {
+    return { op: "message", subscription: view.getUint32(1, true), payload: new Uint8Array(buffer, kHead) };
   }
+  const start = kHead + view.getUint32(9, true); // behind the name of the encoding, which is JSON
+  if (kind !== 3 || start > buffer.byteLength) return null;
+  return { op: "service_response", call: view.getUint32(5, true), payload: new Uint8Array(buffer, start) };
 }
 
 export function payload_json(payload: Uint8Array): unknown {
@@ -79,13 +57,13 @@ export function payload_json(payload: Uint8Array): unknown {
 export function service_request(service: number, call: number, body: unknown): Uint8Array {
   const encoding = text_encoder.encode("json");
   const payload = text_encoder.encode(JSON.stringify(body));
-  const out = new Uint8Array(13 + encoding.length + payload.length);
+  const out = new Uint8Array(kHead + encoding.length + payload.length);
   const view = new DataView(out.buffer);
   view.setUint8(0, 2);
   view.setUint32(1, service, true);
   view.setUint32(5, call, true);
   view.setUint32(9, encoding.length, true);
-  out.set(encoding, 13);
-  out.set(payload, 13 + encoding.length);
+  out.set(encoding, kHead);
+  out.set(payload, kHead + encoding.length);
   return out;
 }

@@ -28,25 +28,20 @@ export interface ChannelReading { channel: number; stamp: number; values: number
 /** What the robot does, and why: a sentence each. */
 export interface Words { what: string; why: string }
 
+/** A request as the page reads it from a frame; joystick requests are left out. */
 export type FrameRequest =
-  | { type: "set_goal"; goal: Goal }
-  | { type: "add_goal"; goal: Goal }
-  | { type: "clear_goal" }
+  | { type: "set_goal" | "add_goal" | "clear_goal" }
   | { type: "add_obstacle"; obstacle: Obstacle }
   | { type: "move_obstacle"; id: number; pose: Pose }
   | { type: "remove_obstacle"; id: number }
-  | { type: "joystick"; forward: number; turn: number }
   | { type: "stop"; engaged: boolean }
   | { type: "set_parameter"; name: string; value: number };
 
-/** Why real hardware holds its own wheels still. */
-export type Halt = "none" | "disarmed" | "base_lost" | "scanner_lost" | "bad_line" | "scanner_fault" |
-  "stop_button" | "base_fault" | "over_current" | "battery_low" | "motors_off" | "late_tick";
-export type Mission = "idle" | "driving" | "arrived" | "stuck" | "held";
-
-const kHalts: Halt[] = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
-  "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"];
-const kMissions: Mission[] = ["idle", "driving", "arrived", "stuck", "held"];
+/** Why real hardware stops its own wheels. */
+const kHalts = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
+  "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"] as const;
+export type Halt = (typeof kHalts)[number];
+const kMissions = ["idle", "driving", "arrived", "stuck", "held"] as const;
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
 
 /** One tick of a run; positions in W, metres, radians, seconds. */
@@ -58,20 +53,16 @@ export interface Frame {
   sweeps: Sweep[];          // only those new in this tick
   sonar: RangeReading[];
   infrared: RangeReading[];
-  bumper: boolean;          // one of the bumpers is pressed
   bumpers: { mount: Pose; pressed: boolean }[];
   requests: FrameRequest[]; // applied before this tick
-  command: { v: number; omega: number };
-  truth: { pose: Pose; obstacle_distance: number; collided: boolean } | null;
+  truth: { pose: Pose; collided: boolean } | null; // simulator only
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
   hold: string;             // "stale_scan", ...: why the command is zero; "none"
-  limit: string | null;     // what keeps the command below the one wanted
   halt: Halt;
-  mission: Mission;
+  mission: (typeof kMissions)[number];
   behaviour: string;        // "rest", "avoid", "manual", ...
   clearance: number;        // [m] hull to nearest filtered return
-  newest_scan: number | null; // [s] its stamp, only while it is too old to drive by
   words: Words | null;      // null: as in the frames before
   layers: LayerView[];      // a grid that is not among them holds
   measures: Measure[];
@@ -94,7 +85,6 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   const stamp = clock?.stamp() ?? 0;
   const odometry = f.odometry();
   const truth = f.truth();
-  const command = f.command();
   const goal = f.goal();
   const decision = f.decision();
   const what = f.news()?.what();
@@ -111,23 +101,15 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
       const bumper = f.bumpers(i)!;
       return { mount: pose(bumper.mount()), pressed: bumper.pressed() };
     }),
-    bumper: list(f.bumpersLength(), (i) => f.bumpers(i)!.pressed()).includes(true),
-    requests: requests(f),
-    command: { v: command?.v() ?? 0, omega: command?.omega() ?? 0 },
-    truth: truth && {
-      pose: pose(truth.pose()),
-      obstacle_distance: truth.obstacleDistance(),
-      collided: f.collided(),
-    },
+    requests: list(f.requestsLength(), (i) => request(f.requests(i)!)).filter((r) => r !== null),
+    truth: truth && { pose: pose(truth.pose()), collided: f.collided() },
     goals_ahead: list(f.goalsAheadLength(), (i) => point(f.goalsAhead(i))),
     goal: goal && { ...point(goal), heading: f.goalHeading() },
     hold: f.hold() ?? "none",
-    limit: f.limit(),
     halt: kHalts[f.halt()] ?? "none",
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
     behaviour: f.behaviour() ?? "avoid",
     clearance: decision?.clearance() ?? 0,
-    newest_scan: f.newestScan(),
     words: what ? { what, why: f.news()?.why() ?? "" } : null, // absent where they are not new
     layers,
     measures,
@@ -143,7 +125,7 @@ export function decode_frames(frames: Uint8Array[], legends = new Legends()): Fr
 }
 
 /** The frame in `bytes`, unread. */
-export function root_of(bytes: Uint8Array): wire.Frame {
+function root_of(bytes: Uint8Array): wire.Frame {
   if (bytes.length < 8) throw new Error(`a frame of ${bytes.length} bytes is too short`);
   return wire.Frame.getRootAsFrame(buffer_of(bytes));
 }
@@ -153,7 +135,7 @@ export function decode_sweep(bytes: Uint8Array): Sweep | null {
   return bytes.length < 8 ? null : sweep(wire.LaserScan.getRootAsLaserScan(buffer_of(bytes)));
 }
 
-/** Numbers are read as typed arrays over the buffer, which must start where they may lie. */
+/** Typed arrays over the buffer need an aligned start, so bytes that are not aligned are copied. */
 function buffer_of(bytes: Uint8Array): flatbuffers.ByteBuffer {
   return new flatbuffers.ByteBuffer(bytes.byteOffset % 4 === 0 ? bytes : bytes.slice());
 }
@@ -183,11 +165,6 @@ function channel_reading(r: wire.Reading, now: number): ChannelReading {
   return { channel: r.channel(), stamp: r.stamp() ?? now, values: [...(r.valuesArray() ?? [])] };
 }
 
-function set_goal(g: wire.SetGoal): Goal {
-  const p = point(g.position());
-  return { x: p.x, y: p.y, heading: g.hasHeading() ? g.heading() : null };
-}
-
 function obstacle(o: wire.Obstacle): Obstacle {
   const kind = kKinds[o.kind()] ?? "cylinder";
   const size = point(o.size());
@@ -204,23 +181,12 @@ function obstacle(o: wire.Obstacle): Obstacle {
   };
 }
 
-function requests(f: wire.Frame): FrameRequest[] {
-  const out: FrameRequest[] = [];
-  for (let i = 0; i < f.requestsLength(); ++i) {
-    const request = one_request(f.requests(i)!);
-    if (request) out.push(request);
-  }
-  return out;
-}
-
-function one_request(box: wire.RequestBox): FrameRequest | null {
+function request(box: wire.RequestBox): FrameRequest | null {
   switch (box.requestType()) {
     case wire.Request.SetGoal:
-      return { type: "set_goal", goal: set_goal(box.request(new wire.SetGoal())) };
-    case wire.Request.AddGoal: {
-      const goal = (box.request(new wire.AddGoal()) as wire.AddGoal).goal();
-      return goal && { type: "add_goal", goal: set_goal(goal) };
-    }
+      return { type: "set_goal" };
+    case wire.Request.AddGoal:
+      return { type: "add_goal" };
     case wire.Request.ClearGoal:
       return { type: "clear_goal" };
     case wire.Request.AddObstacle: {
@@ -236,10 +202,6 @@ function one_request(box: wire.RequestBox): FrameRequest | null {
         type: "remove_obstacle",
         id: (box.request(new wire.RemoveObstacle()) as wire.RemoveObstacle).id(),
       };
-    case wire.Request.Joystick: {
-      const j = box.request(new wire.Joystick()) as wire.Joystick;
-      return { type: "joystick", forward: j.forward(), turn: j.turn() };
-    }
     case wire.Request.Stop:
       return { type: "stop", engaged: (box.request(new wire.Stop()) as wire.Stop).engaged() };
     case wire.Request.SetParameter: {

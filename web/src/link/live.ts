@@ -26,7 +26,7 @@ export interface LinkEvents {
   status(status: LinkStatus): void;
   /** A sentence from the server; level 0 info, 1 warning, 2 error. */
   notice(level: number, message: string): void;
-  log(message: string, level: number): void;
+  log(message: string): void;
   /** The server's process or the session changed: what was known of it no longer holds. */
   new_session(): void;
   /** There is no session at this address; the link rests until reconnect(). */
@@ -329,8 +329,7 @@ export class LiveLink {
       } else if (topic === "/state") {
         this.events_.state(payload_json(payload) as SessionState);
       } else if (topic === "/log") {
-        const entry = payload_json(payload) as { message?: string; level?: number };
-        this.events_.log(entry.message ?? "", entry.level ?? 0);
+        this.events_.log((payload_json(payload) as { message: string }).message);
       }
     } catch (error) {
       console.warn(`Tautline: a message on ${topic} could not be read`, error);

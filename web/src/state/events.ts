@@ -2,7 +2,7 @@
 // what people asked for.
 import { Frame, Halt } from "../link/frame";
 
-export type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
+type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
 export interface RunEvent { t: number; kind: EventKind; label: string }
 
 const kMost = 400;
@@ -56,7 +56,6 @@ export class EventLog {
         case "remove_obstacle": this.add(f.stamp, "edit", "Obstacle removed"); break;
         case "stop": this.add(f.stamp, "hold", r.engaged ? "Stop" : "Released"); break;
         case "set_parameter": this.add(f.stamp, "gain", `${r.name} set`); break;
-        case "joystick": break; // a stick moves all the time
       }
     }
     if (this.mission_ !== "" && f.mission !== this.mission_) {

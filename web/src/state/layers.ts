@@ -53,7 +53,7 @@ export function is_sensed(name: string): boolean {
   return name.startsWith("scan.");
 }
 
-export interface LayerGroup { title: string; keys: LayerKey[] }
+interface LayerGroup { title: string; keys: LayerKey[] }
 
 /** The panel's rows. Of a log there is only what was sensed and the way. */
 export function layer_groups(scene: SceneState, method: string): LayerGroup[] {

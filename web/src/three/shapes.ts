@@ -65,7 +65,7 @@ export function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D 
   return mesh;
 }
 
-export function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
+function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
   if (o.kind === "cylinder") {
     const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
     const mesh = new THREE.Mesh(geometry, material);

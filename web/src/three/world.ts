@@ -10,7 +10,7 @@ import { PlacedSweep, sweep_points } from "../state/sweeps";
 import { build_layer, kScanHeight } from "./layers";
 import { body, clear, goal, goals_ahead, grid, points, ribbon, ring, solid, sun } from "./shapes";
 
-export interface Options { selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean }
+interface Options { selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean }
 
 const kMostPath = 1500;
 

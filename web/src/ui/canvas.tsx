@@ -9,7 +9,7 @@ import { Gestures } from "../edit/gestures";
 import { Bounds } from "../geometry";
 import { SceneState } from "../state/scene";
 
-export interface CanvasProps {
+interface CanvasProps {
   scene: SceneState;
   view: View;
   gestures: Gestures;

@@ -59,13 +59,13 @@ export function Pick(props: {
 }
 
 /** "Repulsion K_r" with the part after the underscore set low. */
-export function Label(props: { text: string }): JSX.Element {
+function Label(props: { text: string }): JSX.Element {
   const parts = props.text.split(/_(\w+)/);
   return <>{parts.map((p, i) => (i % 2 === 1 ? <sub key={i}>{p}</sub> : p))}</>;
 }
 
 /** Digits after the point that a step of this size needs. */
-export function digits_of(step: number): number {
+function digits_of(step: number): number {
   return step >= 1 ? 0 : Math.min(4, Math.max(1, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 

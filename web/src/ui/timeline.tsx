@@ -11,7 +11,7 @@ export function Timeline(props: {
   const end = Math.max(props.end, 1e-6);
   const share = (t: number) => `${Math.min(100, Math.max(0, (t / end) * 100))}%`;
   return (
-    <div class={`timeline ${props.on_seek ? "seekable" : ""}`}>
+    <div class="timeline">
       <div class="rail-line" />
       {props.loaded !== undefined && props.loaded < 1 &&
         <div class="rail-loaded" ref={(e) => e?.style.setProperty("width", `${props.loaded! * 100}%`)} />}

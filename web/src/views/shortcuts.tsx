@@ -3,7 +3,7 @@ import { JSX } from "preact";
 import { use_app } from "../app";
 import { Dialog } from "../ui/controls";
 
-export const kShortcuts: [string[], string][] = [
+const kShortcuts: [string[], string][] = [
   [["Space"], "Stop. Works everywhere but in a text field; Release is a button of its own"],
   [["P"], "Play or pause"],
   [["."], "One tick on"],

@@ -39,7 +39,7 @@ export function measure_words(name: string): { of: string; label: string } {
 }
 
 /** Measures of one thing and one unit share a plot. */
-export function measure_signals(measures: MeasureKey[]): SignalSpec[] {
+function measure_signals(measures: MeasureKey[]): SignalSpec[] {
   const groups = new Map<string, MeasureKey[]>();
   for (const m of measures) {
     const key = `${measure_words(m.name).of} ${m.unit}`;

@@ -8,7 +8,7 @@ import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
 import { clock, speed_word } from "../words";
 
-export const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
+const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
 
 /** What is to be said of the record of the live run, after a comma: nothing while all is well. */
 function record_word(record?: RecordInfo): string {
