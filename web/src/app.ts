@@ -7,70 +7,70 @@ import { View } from "./draw/view";
 import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
-import { add_goal_edit, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
+import { add_edit, add_goal_edit, goal_json, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
 import { Goal } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
 import { Past } from "./link/past";
+import { Obstacle } from "./obstacle";
 import { open_session, session_id, session_path, socket_url } from "./link/session";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { stored_hidden, store_open, stored_open, toggled } from "./state/layers";
 import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
-import { Store } from "./state/store";
+import { Store, keep, kept, use_store } from "./state/store";
 import { StopState, Stopper, sound_alarm } from "./stopper";
 import { sentence_of, titled } from "./words";
 
 export type ViewName = "drive" | "runs" | "system";
+type Theme = "dark" | "light";
 export interface Toast { id: number; tone: "info" | "warn" | "bad"; text: string }
 
-/** A goal for real hardware that nobody has sent off yet: the page's own, drawn dashed. */
+/** A goal for real hardware that is not sent yet; drawn dashed. */
 export interface Preview {
   goal: Goal;
-  further: boolean;        // for when those before it are reached
-  trouble: string | null;  // what is known to be wrong with it
+  further: boolean;        // appended to the goals that the robot has
+  trouble: string | null;  // why the robot may not reach it
 }
 
 export interface UiState {
   link: LinkStatus;
-  /** The server answers, and wants its token first. */
-  locked: boolean;
+  locked: boolean;     // the server asks for its token
   gone: string | null; // why there is no session to show
   session: SessionState | null;
   catalog: Catalog | null;
   scenarios: ScenarioItem[];
   robots: RobotItem[];
   toasts: Toast[];
-  /** The sentence a screen reader hears next. */
-  spoken: string;
+  spoken: string;     // the sentence that a screen reader reads next
   view: ViewName;
   run: number | null; // opened in the Runs view
-  theme: "dark" | "light";
+  theme: Theme;
   tool: Tool;
   selection: Selection;
   three: boolean;
   follow: boolean;
   force_scale: number;
-  hidden: ReadonlySet<string>; // layers that are switched off, by name
-  layers: boolean;             // their panel is open
+  hidden: ReadonlySet<string>; // names of the layers that are switched off
+  layers: boolean;             // the layer panel is open
   shortcuts: boolean;
   sheet: boolean;
   loading: string | null;
   stop: StopState;
   preview: Preview | null;
-  /** A goal was set by hand: the hint how to has done its work. */
-  goal_learnt: boolean;
+  goal_learnt: boolean; // a goal was set by hand, so the hint is not needed any more
   undo: string | null;
   redo: string | null;
 }
 
 const kPathRows = 40_000;
 const kToastTime = { info: 4000, warn: 7000, bad: 9000 };
-const kFrameWait = 600; // [ms] a run that goes on has sent a frame by then
-const kHeardLimit = 1000; // [ms] who hears nothing for so long sees nothing of the robot either
-const kMoveMs = 90; // between two requests of one drag
+const kFrameWait = 600;   // [ms] within which a run that is not paused sends a frame
+const kHeardLimit = 1000; // [ms] of silence after which the page no longer shows the robot as it is
+const kMoveMs = 90;       // [ms] between two requests of one drag
+const kTheme = "tautline.theme";
 
-/** What is to be another. */
-export interface LoadChange {
+/** The parts of a session that a load changes. */
+interface LoadChange {
   scenario?: string; controller?: string; filter?: string; physics?: string; robot?: string;
 }
 
@@ -80,7 +80,7 @@ export class App {
   readonly ui: Store<UiState>;
   readonly link: LiveLink;
   readonly history: EditHistory;
-  /** Asks the canvas to draw once more. */
+  /** Asks the canvas to draw again. */
   redraw: () => void = () => undefined;
   private readonly sign_: SignOfLife;
   private readonly stopper_: Stopper;
@@ -140,7 +140,7 @@ export class App {
     this.sign_.start();
   }
 
-  /** The catalog, the scenarios and the robots; asked again after each connection. */
+  /** Fetches the catalog, the scenarios and the robots; called after each connection. */
   async fetch_lists(): Promise<void> {
     try {
       const [catalog, page, robots] = await Promise.all([
@@ -152,7 +152,7 @@ export class App {
     }
   }
 
-  /** Whether filtered scans are looked at. A paused run sends none: its newest is in the record. */
+  /** Switches filtered scans on or off. A paused run sends none: its newest is in the record. */
   want_filtered(wanted: boolean): void {
     this.past_.wants_filtered = wanted;
     this.link.want_filtered(wanted);
@@ -168,14 +168,18 @@ export class App {
     store_open(open);
   }
 
-  /** Calls a service; a refusal becomes a toast with the server's sentence. */
-  async ask<T>(name: string, body: unknown = {}): Promise<T | null> {
+  /** The answer, or null after a toast with the sentence of the failure. */
+  async attempt<T>(answer: Promise<T>): Promise<T | null> {
     try {
-      return await this.link.call<T>(name, body);
+      return await answer;
     } catch (error) {
       this.toast("warn", sentence_of(error));
       return null;
     }
+  }
+
+  ask<T>(service: string, body: unknown = {}): Promise<T | null> {
+    return this.attempt(this.link.call<T>(service, body));
   }
 
   request(request: RequestJson): Promise<unknown> {
@@ -183,48 +187,57 @@ export class App {
   }
 
   async edit(edit: Edit): Promise<Accepted | null> {
-    try {
-      const answer = await this.history.perform(edit);
-      if (answer.warning) this.toast("warn", answer.warning);
-      return answer;
-    } catch (error) {
-      this.toast("warn", sentence_of(error));
-      return null;
-    }
+    const answer = await this.attempt(this.history.perform(edit));
+    if (answer?.warning) this.toast("warn", answer.warning);
+    return answer;
+  }
+
+  /** Adds the obstacle and selects it. */
+  async add(obstacle: Obstacle): Promise<boolean> {
+    const answer = await this.edit(add_edit(obstacle));
+    if (answer?.id !== undefined) this.ui.set({ selection: { kind: "obstacle", id: answer.id } });
+    return answer !== null;
   }
 
   async undo(): Promise<void> {
-    try {
-      const label = await this.history.undo();
-      if (label) this.say(`Undone: ${label}`);
-    } catch (error) {
-      this.toast("warn", sentence_of(error));
-    }
+    const label = await this.attempt(this.history.undo());
+    if (label) this.say(`Undone: ${label}`);
   }
   async redo(): Promise<void> {
-    try {
-      const label = await this.history.redo();
-      if (label) this.say(`Done again: ${label}`);
-    } catch (error) {
-      this.toast("warn", sentence_of(error));
-    }
+    const label = await this.attempt(this.history.redo());
+    if (label) this.say(`Done again: ${label}`);
   }
 
-  /** A drag: the newest place is sent at a steady pace, the last one always; one step of undo. */
+  pick_tool(tool: Tool): void {
+    this.ui.set({ tool, selection: null });
+  }
+  fit_view(): void {
+    this.view.fitted = true;
+    this.redraw();
+  }
+  get selected_obstacle(): Obstacle | null {
+    const s = this.ui.value.selection;
+    return s?.kind === "obstacle" ? this.scene.obstacles.find((o) => o.id === s.id) ?? null : null;
+  }
+
+  /**
+   * A drag of obstacle `id`. Poses are sent at a steady pace, and the last one always. The whole drag
+   * is one step of undo.
+   */
   drag(id: number, pose: Pose, from: Pose, done: boolean): void {
     const drag = (this.drag_ ??= { busy: false, sent: 0, failed: false });
     if (done) {
       this.drag_ = null;
-      void this.link.call("/request", move_request(id, pose)).then(
-        () => this.history.record(move_edit(id, from, pose)),
-        (error) => this.toast("warn", sentence_of(error)));
+      void this.request(move_request(id, pose)).then((moved) => {
+        if (moved) this.history.record(move_edit(id, from, pose));
+      });
       return;
     }
     const now = performance.now();
     if (drag.busy || now - drag.sent < kMoveMs) return;
     drag.busy = true;
     drag.sent = now;
-    // A place on the way that is refused is no matter: only where the drag ends is said.
+    // A refusal on the way needs no toast: the end of the drag shows one.
     this.link.call("/request", move_request(id, pose)).catch(() => undefined)
       .finally(() => (drag.busy = false));
   }
@@ -237,8 +250,8 @@ export class App {
     const scenario = change.scenario ?? s.scenario.name;
     const item = this.ui.value.scenarios.find((x) => x.name === scenario);
     const log = item?.kind === "log";
-    // The scenario of the session goes on as it is; one of the list is read anew: a robot that
-    // comes back finds the sensors that the scenario gives it.
+    // Without a name the server keeps the scenario of the session. A name reads the scenario again, so
+    // that another robot gets the sensors that the scenario gives it.
     const anew = item && (other || change.scenario !== undefined || change.robot !== undefined);
     const physics = change.physics ?? s.physics;
     const known = this.ui.value.catalog?.physics.some((v) => v.name === physics) ?? false;
@@ -246,7 +259,7 @@ export class App {
       ...(anew ? { scenario } : {}),
       ...(change.robot === undefined ? {} : { robot: change.robot }),
       filter: change.filter ?? s.filter,
-      // A log has no controller and no physics; a scenario brings its own gains.
+      // A log has no controller and no physics; another scenario brings its own gains.
       ...(log ? {} : { controller: change.controller ?? s.controller }),
       ...(log || !known ? {} : { physics }),
       ...(other ? {} : { seed: s.seed, parameters: s.parameters }),
@@ -254,21 +267,20 @@ export class App {
     this.ui.set({ loading: scenario, selection: null });
     await this.ask("/load", body);
     this.history.clear();
-    this.view.fitted = true;
     this.ui.set({ loading: null });
-    this.redraw();
+    this.fit_view();
   }
 
-  /** Stop, by every way there is until the server has answered. */
+  /** Sends Stop over the socket, then also by REST, until the server has answered. */
   stop(): void {
     this.stopper_.press();
   }
-  /** Of real hardware this starts nothing: Stop has cleared its goals. */
+  /** Real hardware stands still afterwards: Stop has cleared its goals. */
   async release(): Promise<void> {
     this.stopper_.forget();
     await this.request({ type: "stop", engaged: false });
   }
-  /** Stops trying to send a Stop that does not get through. */
+  /** No longer repeats a Stop that the server does not answer. */
   give_up_stop(): void {
     this.stopper_.forget();
   }
@@ -277,12 +289,12 @@ export class App {
     return this.ui.value.session?.source === "hardware";
   }
 
-  /** The goal that hands work on: the preview before the one the robot has. */
+  /** The goal that edits change: the preview, else the robot's own. */
   get shown_goal(): Goal | null {
     return this.ui.value.preview?.goal ?? this.scene.goal;
   }
 
-  /** A simulated robot sets off at once; real hardware only with go(). */
+  /** A simulated robot drives at once; real hardware only after go_there(). */
   want_goal(goal: Goal | null, further = false): void {
     if (!this.on_hardware) {
       if (goal) this.ui.set({ goal_learnt: true });
@@ -298,16 +310,14 @@ export class App {
     const preview = { goal, further, trouble: null };
     this.ui.set({ preview, selection: { kind: "goal" } });
     this.redraw();
-    const { x, y, heading } = goal;
-    const body = heading === null ? { x, y } : { x, y, heading };
-    const answer = await this.ask<{ trouble: string | null }>("/check_goal", body);
+    const answer = await this.ask<{ trouble: string | null }>("/check_goal", goal_json(goal));
     if (answer && this.ui.value.preview === preview) this.ui.set({ preview: { ...preview, trouble: answer.trouble } });
   }
   drop_preview(): void {
     this.ui.set({ preview: null });
     this.redraw();
   }
-  /** Sends the robot off to the goal of the preview. No undo leads back: it would send it elsewhere. */
+  /** Sends the goal of the preview. There is no undo: it would drive the robot somewhere else. */
   async go_there(): Promise<void> {
     const preview = this.ui.value.preview;
     if (!preview) return;
@@ -339,12 +349,8 @@ export class App {
     location.hash = run === null ? `#/${view}` : `#/${view}/${run}`;
   }
 
-  set_theme(theme: "dark" | "light"): void {
-    try {
-      localStorage.setItem("tautline.theme", theme);
-    } catch {
-      // private windows may refuse; the theme then lasts as long as the page
-    }
+  set_theme(theme: Theme): void {
+    keep(kTheme, theme);
     this.ui.set({ theme });
     this.apply_theme();
   }
@@ -371,19 +377,17 @@ export class App {
   private take_session(session: SessionState): void {
     const before = this.ui.value.session;
     fold_session(this.scene, session);
-    if (before?.scenario.name !== session.scenario.name) this.view.fitted = true;
-    if (before?.run?.id !== session.run?.id) {
+    const other_world = before?.scenario.name !== session.scenario.name;
+    const other_run = before?.run?.id !== session.run?.id;
+    if (other_world) this.view.fitted = true;
+    if (other_run) {
       if (before) this.history.clear();
       setTimeout(() => void this.past_.fetch_newest(), kFrameWait);
     }
     if (session.problem && session.problem !== before?.problem) this.toast("bad", session.problem);
-    const other_world = before?.scenario.name !== session.scenario.name;
-    const other_run = before?.run?.id !== session.run?.id;
     if (other_world || (other_run && session.source === "hardware")) this.ui.set({ tool: "pan", preview: null });
-    const selection = this.ui.value.selection;
-    const gone = selection?.kind === "obstacle" &&
-      !this.scene.obstacles.some((o) => o.id === selection.id);
-    this.ui.set({ session, selection: gone ? null : selection });
+    const gone = this.ui.value.selection?.kind === "obstacle" && !this.selected_obstacle;
+    this.ui.set({ session, ...(gone ? { selection: null } : {}) });
     this.redraw();
   }
 
@@ -413,7 +417,7 @@ export class App {
     if (status.phase === "lost") void this.look_for_lock();
   }
 
-  /** A socket does not say why it was refused; a request does. */
+  /** A refused socket gives no reason, but a request does. */
   private async look_for_lock(): Promise<void> {
     try {
       await rest.get("/version");
@@ -423,21 +427,21 @@ export class App {
     }
   }
 
-  /** Trades the token for a cookie. Rejects with the server's sentence. */
+  /** Exchanges the token for a cookie. Rejects with the server's sentence. */
   async login(token: string): Promise<void> {
     await rest.post("/login", { token });
     this.ui.set({ locked: false });
     this.link.retry_now();
   }
 
-  /** Opens a session of this page's own and shows it. Rejects with the server's sentence. */
+  /** Opens a new session and shows it. Rejects with the server's sentence. */
   async new_session(): Promise<void> {
     await open_session();
     this.ui.set({ gone: null });
     this.link.reconnect();
   }
 
-  /** A page that asked for none in particular gets one; else the person decides. */
+  /** Opens a new session unless the address names one: then the person decides. */
   private async session_gone(why: string): Promise<void> {
     if (session_id() !== null) {
       this.ui.set({ gone: why });
@@ -450,7 +454,7 @@ export class App {
     }
   }
 
-  /** Gives the cookie back. The server closes what was opened with it, and the page asks for the token. */
+  /** Returns the cookie. The server closes the connections opened with it, and the page asks for the token. */
   async logout(): Promise<void> {
     await rest.post("/logout", {});
     this.ui.set({ locked: true });
@@ -470,17 +474,19 @@ export class App {
   }
 }
 
-function initial_theme(): "dark" | "light" {
-  try {
-    const stored = localStorage.getItem("tautline.theme");
-    if (stored === "dark" || stored === "light") return stored;
-  } catch {
-    // fall through to what the system prefers
-  }
-  return matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+function initial_theme(): Theme {
+  const preferred = matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+  return kept<Theme>(kTheme, preferred, (text) => (text === "dark" || text === "light" ? text : preferred));
 }
 
 export const AppContext = createContext<App | null>(null);
 export function use_app(): App {
   return useContext(AppContext)!;
+}
+
+/** The parts `names` of the page's state; renders again when one of them changes. */
+export function use_ui<K extends keyof UiState>(...names: K[]): Pick<UiState, K> {
+  const { ui } = use_app();
+  use_store(ui, (u) => names.map((name) => u[name]), (a, b) => a.every((v, i) => Object.is(v, b[i])));
+  return ui.value;
 }

@@ -10,7 +10,7 @@ import "./style/hardware.css";
 import "./style/narrow.css";
 import { JSX, render } from "preact";
 import { useEffect } from "preact/hooks";
-import { App, AppContext, use_app } from "./app";
+import { App, AppContext, use_app, use_ui } from "./app";
 import { use_store } from "./state/store";
 import { Drive } from "./views/drive";
 import { SessionGone } from "./views/gone";
@@ -27,9 +27,7 @@ import { TopBar } from "./views/topbar";
 
 function Shell(): JSX.Element {
   const app = use_app();
-  const view = use_store(app.ui, (u) => u.view);
-  const shortcuts = use_store(app.ui, (u) => u.shortcuts);
-  const locked = use_store(app.ui, (u) => u.locked);
+  const { view, shortcuts, locked } = use_ui("view", "shortcuts", "locked");
   const hardware = use_store(app.ui, (u) => u.session?.source === "hardware");
   useEffect(() => {
     const stop = stop_key(app);

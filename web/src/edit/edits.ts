@@ -5,7 +5,7 @@ import { Goal } from "../link/frame";
 import { Obstacle, obstacle_to_json } from "../obstacle";
 import { Edit } from "./history";
 
-function goal_json({ x, y, heading }: Goal): { x: number; y: number; heading?: number } {
+export function goal_json({ x, y, heading }: Goal): { x: number; y: number; heading?: number } {
   return heading === null ? { x, y } : { x, y, heading };
 }
 

@@ -3,6 +3,7 @@
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
 import type { SceneState } from "./scene";
+import { keep, kept } from "./store";
 
 export type Token = Exclude<keyof Palette, "font">;
 
@@ -70,42 +71,24 @@ const kHidden = "tautline.layers.hidden";
 const kOpen = "tautline.layers.open";
 const kRoomFor = 1240; // [px] of a window in which the panel leaves the scene enough
 
-/** What the browser kept under `key`; `usual` where it has nothing or keeps nothing. */
-function kept<T>(key: string, usual: T): T {
-  try {
-    return (JSON.parse(localStorage.getItem(key) ?? "null") as T | null) ?? usual;
-  } catch {
-    return usual;
-  }
-}
-
-function keep(key: string, value: unknown): void {
-  try {
-    localStorage.setItem(key, JSON.stringify(value));
-  } catch {
-    // private windows may refuse; the choice then lasts as long as the page
-  }
-}
-
-/** The layers that were switched off when the page was last here. */
+/** The layers that were switched off at the last visit. */
 export function stored_hidden(): ReadonlySet<string> {
-  const names = kept<unknown>(kHidden, []);
-  return new Set(Array.isArray(names) ? names : []);
+  return kept(kHidden, new Set<string>(), (text) => new Set(JSON.parse(text) as string[]));
 }
 
 /** `hidden` with the layer `name` switched the other way, and kept for the next visit. */
 export function toggled(hidden: ReadonlySet<string>, name: string): ReadonlySet<string> {
   const next = new Set(hidden);
   if (!next.delete(name)) next.add(name);
-  keep(kHidden, [...next]);
+  keep(kHidden, JSON.stringify([...next]));
   return next;
 }
 
-/** Whether the panel was open; at first where there is room for it. */
+/** Whether the panel was open at the last visit; at first it is open in a wide window. */
 export function stored_open(): boolean {
-  return kept(kOpen, innerWidth >= kRoomFor) === true;
+  return kept(kOpen, innerWidth >= kRoomFor, (text) => text === "true");
 }
 
 export function store_open(open: boolean): void {
-  keep(kOpen, open);
+  keep(kOpen, String(open));
 }

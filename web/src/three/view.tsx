@@ -1,9 +1,8 @@
 // web/src/three/view.tsx: the 3D view as a component; three.js is fetched when it is first shown.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { read_palette } from "../draw/palette";
-import { use_store } from "../state/store";
 import type { World3 } from "./world";
 
 /** Why there can be no 3D here, or nothing. */
@@ -17,8 +16,7 @@ function no_webgl(): string | null {
 
 export function SceneThree(): JSX.Element {
   const app = use_app();
-  const theme = use_store(app.ui, (u) => u.theme);
-  const follow = use_store(app.ui, (u) => u.follow);
+  const { theme, follow } = use_ui("theme", "follow");
   const box = useRef<HTMLDivElement>(null);
   const world = useRef<World3 | null>(null);
   const [problem, set_problem] = useState<string | null>(null);

@@ -1,7 +1,7 @@
 // web/src/views/cards.tsx: what lies on the scene: the sentence that explains, and the banner for
 // states that need a person.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
 import { Words } from "../link/frame";
 import { age_words, news_age, scan_age } from "../state/age";
@@ -13,7 +13,7 @@ import { frame_word, link_words, stopped_words } from "../words";
 export function Explain(): JSX.Element | null {
   const app = use_app();
   use_pulse(150);
-  const session = use_store(app.ui, (u) => u.session);
+  const { session } = use_ui("session");
   const words = explain_words(app.scene, session);
   return (
     <div class={`card explain tone-${words.tone}`} id="scene-words" data-testid="explain">
@@ -44,8 +44,7 @@ function explain_words(scene: SceneState, session: SessionState | null): Words &
 /** A strip across the top of the scene for what must not be missed. */
 export function Banner(): JSX.Element | null {
   const app = use_app();
-  const link = use_store(app.ui, (u) => u.link);
-  const session = use_store(app.ui, (u) => u.session);
+  const { link, session } = use_ui("link", "session");
   use_pulse(250);
   if (link.phase === "lost") {
     return (
@@ -88,7 +87,7 @@ export function Banner(): JSX.Element | null {
 export function Staleness(): JSX.Element | null {
   const app = use_app();
   const open = use_store(app.ui, (u) => u.link.phase === "open");
-  const session = use_store(app.ui, (u) => u.session);
+  const { session } = use_ui("session");
   use_pulse(100);
   const news = news_age(app.scene, session, open, performance.now());
   const scan = scan_age(app.scene);

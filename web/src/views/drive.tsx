@@ -1,13 +1,12 @@
 // web/src/views/drive.tsx: the Drive view: the scene and what lies on it, panel and transport.
 import { JSX } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
-import { App, use_app } from "../app";
+import { App, use_app, use_ui } from "../app";
 import { Draft } from "../draw/scene";
 import { Insets } from "../draw/view";
 import { add_edit } from "../edit/edits";
 import { Gestures, Tool } from "../edit/gestures";
 import { scene_bounds } from "../state/scene";
-import { use_store } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { icons } from "../ui/icons";
 import { SceneThree } from "../three/view";
@@ -28,15 +27,8 @@ export interface Hand {
 
 export function Drive(): JSX.Element {
   const app = use_app();
-  const theme = use_store(app.ui, (u) => u.theme);
-  const three = use_store(app.ui, (u) => u.three);
-  const sheet = use_store(app.ui, (u) => u.sheet);
-  const tool = use_store(app.ui, (u) => u.tool);
-  const selection = use_store(app.ui, (u) => u.selection);
-  const force_scale = use_store(app.ui, (u) => u.force_scale);
-  const hidden = use_store(app.ui, (u) => u.hidden);
-  const layers = use_store(app.ui, (u) => u.layers);
-  const preview = use_store(app.ui, (u) => u.preview);
+  const { theme, three, sheet, tool, selection, force_scale, hidden, layers, preview } =
+    use_ui("theme", "three", "sheet", "tool", "selection", "force_scale", "hidden", "layers", "preview");
   const hand = useMemo(() => make_hand(app), [app]);
   const main = useRef<HTMLElement>(null);
 
@@ -156,12 +148,8 @@ function scale_insets(main: HTMLElement | null): Insets {
 
 function Tools(): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const tool = use_store(app.ui, (u) => u.tool);
-  const three = use_store(app.ui, (u) => u.three);
-  const open = use_store(app.ui, (u) => u.layers);
-  const undo = use_store(app.ui, (u) => u.undo);
-  const redo = use_store(app.ui, (u) => u.redo);
+  const { session, tool, three, layers: open, undo, redo } =
+    use_ui("session", "tool", "three", "layers", "undo", "redo");
   const drives = session?.robot.drives ?? false;
   const editable = session?.robot.editable ?? false;
   const threed = (

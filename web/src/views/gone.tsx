@@ -1,13 +1,12 @@
 // web/src/views/gone.tsx: says that the page has no session, and opens a new one.
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
-import { use_app } from "../app";
-import { use_store } from "../state/store";
+import { use_app, use_ui } from "../app";
 import { sentence_of } from "../words";
 
 export function SessionGone(): JSX.Element | null {
   const app = use_app();
-  const gone = use_store(app.ui, (u) => u.gone);
+  const { gone } = use_ui("gone");
   const [problem, set_problem] = useState<string | null>(null);
   if (gone === null) return null;
   const open = async () => {

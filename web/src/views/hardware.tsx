@@ -1,15 +1,13 @@
 // web/src/views/hardware.tsx: real hardware, on every page in words and colour; its devices, and
 // how well the loop keeps its time.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
-import { use_store } from "../state/store";
 import { titled, watchers_words } from "../words";
 
 /** A bar under the top bar. Says what keeps the wheels still, or that they may turn; arms the motors. */
 export function HardwareBar(): JSX.Element | null {
-  const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
+  const { session } = use_ui("session");
   const hardware = session?.hardware;
   if (session?.source !== "hardware") return null;
   const armed = hardware?.armed ?? false;

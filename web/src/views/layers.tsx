@@ -1,7 +1,7 @@
 // web/src/views/layers.tsx: legend and layers as one panel: what each colour means, with its switch.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { LayerKey, kOwn, layer_groups } from "../state/layers";
 import { SceneState } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
@@ -35,8 +35,7 @@ export function LayerButton(props: { open: boolean; on_press: (open: boolean) =>
 /** Every layer there is: swatch, words, switch. */
 export function LayerPanel(props: { scene: SceneState; on_close: () => void }): JSX.Element {
   const app = use_app();
-  const hidden = use_store(app.ui, (u) => u.hidden);
-  const times = use_store(app.ui, (u) => u.force_scale);
+  const { hidden, force_scale: times } = use_ui("hidden", "force_scale");
   use_pulse(500); // a controller's layers come with its frames
   const groups = layer_groups(props.scene, app.controller_label(props.scene.controller));
   const next = { 1: 2, 2: 5, 5: 1 }[times] ?? 1;

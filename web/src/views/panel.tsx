@@ -2,7 +2,7 @@
 // gains; below them the signals.
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { Catalog, Choice, ParameterInfo, SessionState } from "../contract";
 import { goal_distance } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
@@ -14,7 +14,7 @@ import { Signals } from "./signals";
 export function Figures(): JSX.Element {
   const app = use_app();
   use_pulse(100);
-  const session = use_store(app.ui, (u) => u.session);
+  const { session } = use_ui("session");
   const open = use_store(app.ui, (u) => u.link.phase === "open");
   const f = app.scene.frame;
   const state = state_word(f, session, open);
@@ -45,9 +45,7 @@ function Figure(props: { label: string; value: string; unit: string; name: strin
 
 /** Everything of the panel below the figures; on a phone it lies in a sheet. */
 export function Tuning(): JSX.Element {
-  const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const catalog = use_store(app.ui, (u) => u.catalog);
+  const { session, catalog } = use_ui("session", "catalog");
   if (!session || !catalog) {
     return <p class="quiet">Controllers and gains appear here once the server has been reached.</p>;
   }
@@ -93,7 +91,7 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
 function RobotPick(props: { session: SessionState }): JSX.Element | null {
   const app = use_app();
   const loading = use_store(app.ui, (u) => u.loading) !== null;
-  const robots = use_store(app.ui, (u) => u.robots);
+  const { robots } = use_ui("robots");
   const name = props.session.robot.name;
   if (robots.length === 0) return null;
   const choices = robots.filter((r) => r.usable).map((r) => ({ value: r.name, label: r.title }));

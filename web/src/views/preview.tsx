@@ -1,6 +1,6 @@
 // web/src/views/preview.tsx: a goal for real hardware before it is sent off, and where to begin.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
 import { use_store } from "../state/store";
 import { icons } from "../ui/icons";
@@ -16,8 +16,7 @@ function not_yet(session: SessionState | null): string | null {
 /** Nothing moves before Go is pressed. */
 export function PreviewCard(): JSX.Element | null {
   const app = use_app();
-  const preview = use_store(app.ui, (u) => u.preview);
-  const session = use_store(app.ui, (u) => u.session);
+  const { preview, session } = use_ui("preview", "session");
   if (!preview) return null;
   const { goal, further, trouble } = preview;
   const wait = not_yet(session);
@@ -40,9 +39,7 @@ export function PreviewCard(): JSX.Element | null {
 /** The first thing to do in a simulated world; gone once it was done. */
 export function GoalHint(): JSX.Element | null {
   const app = use_app();
-  const tool = use_store(app.ui, (u) => u.tool);
-  const selection = use_store(app.ui, (u) => u.selection);
-  const learnt = use_store(app.ui, (u) => u.goal_learnt);
+  const { tool, selection, goal_learnt: learnt } = use_ui("tool", "selection", "goal_learnt");
   const drives = use_store(app.ui, (u) => u.session?.robot.drives ?? false);
   if (tool !== "pan" || selection || learnt || !drives) return null;
   return (

@@ -1,8 +1,7 @@
 // web/src/views/rail.tsx: the ways to the views: a column at the left, tabs at the bottom of a
 // phone.
 import { JSX } from "preact";
-import { ViewName, use_app } from "../app";
-import { use_store } from "../state/store";
+import { ViewName, use_app, use_ui } from "../app";
 import { icons } from "../ui/icons";
 
 const kViews: { name: ViewName; label: string; icon: JSX.Element }[] = [
@@ -13,8 +12,7 @@ const kViews: { name: ViewName; label: string; icon: JSX.Element }[] = [
 
 export function Rail(): JSX.Element {
   const app = use_app();
-  const view = use_store(app.ui, (u) => u.view);
-  const sheet = use_store(app.ui, (u) => u.sheet);
+  const { view, sheet } = use_ui("view", "sheet");
   return (
     <nav class="rail" aria-label="Views">
       {kViews.map((v) => (

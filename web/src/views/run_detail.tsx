@@ -2,7 +2,7 @@
 // laid over it.
 import { JSX } from "preact";
 import { useEffect, useMemo, useReducer, useRef, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { Metrics, RunItem } from "../contract";
 import { Ghost } from "../draw/scene";
 import { Insets, View } from "../draw/view";
@@ -12,7 +12,6 @@ import { Player } from "../link/player";
 import * as rest from "../link/rest";
 import { FetchFrames, StoredRun } from "../link/stored";
 import { scene_bounds } from "../state/scene";
-import { use_store } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { Dialog, Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
@@ -71,11 +70,8 @@ export function RunDetail(props: {
 function Opened(props: {
   run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
 }): JSX.Element {
-  const app = use_app();
   const { run, other } = props;
-  const theme = use_store(app.ui, (u) => u.theme);
-  const hidden = use_store(app.ui, (u) => u.hidden);
-  const force_scale = use_store(app.ui, (u) => u.force_scale);
+  const { theme, hidden, force_scale } = use_ui("theme", "hidden", "force_scale");
   const [layers, set_layers] = useState(false);
   const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
   const redraw = useRef<() => void>(() => undefined);

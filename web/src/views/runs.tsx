@@ -1,7 +1,7 @@
 // web/src/views/runs.tsx: the Runs view: the list with its filters, and the run that is open.
 import { JSX } from "preact";
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { Page, RunItem } from "../contract";
 import * as rest from "../link/rest";
 import { use_store } from "../state/store";
@@ -16,7 +16,7 @@ const kOutcomes = ["", "reached", "stuck", "collided", "out_of_time"];
 
 export function Runs(): JSX.Element {
   const app = use_app();
-  const open = use_store(app.ui, (u) => u.run);
+  const { run: open } = use_ui("run");
   const connected = use_store(app.ui, (u) => u.link.phase === "open");
   const list = use_runs(connected);
   const [text, set_text] = useState("");

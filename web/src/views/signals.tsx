@@ -2,10 +2,10 @@
 // measures of its controller, by name.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { Line, Plot, gapped } from "../plots/plot";
 import { MeasureKey } from "../state/columns";
-import { use_pulse, use_store } from "../state/store";
+import { use_pulse } from "../state/store";
 import { fixed } from "../words";
 
 const kWindow = 20; // [s] of run clock
@@ -71,7 +71,7 @@ export function Signals(): JSX.Element {
 
 function Signal(props: { spec: SignalSpec }): JSX.Element {
   const app = use_app();
-  const theme = use_store(app.ui, (u) => u.theme);
+  const { theme } = use_ui("theme");
   const box = useRef<HTMLDivElement>(null);
   const values = useRef<HTMLElement[]>([]);
   const plot = useRef<Plot | null>(null);

@@ -1,9 +1,8 @@
 // web/src/views/start_run.tsx: the small form that starts runs in the background.
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import * as rest from "../link/rest";
-import { use_store } from "../state/store";
 import { Dialog, NumberField, Pick } from "../ui/controls";
 import { sentence_of, titled } from "../words";
 
@@ -11,9 +10,7 @@ const kMostRepeats = 100;
 
 export function StartRun(props: { on_close: () => void; on_started: () => void }): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const catalog = use_store(app.ui, (u) => u.catalog);
-  const scenarios = use_store(app.ui, (u) => u.scenarios);
+  const { session, catalog, scenarios } = use_ui("session", "catalog", "scenarios");
   const [scenario, set_scenario] = useState(session?.scenario.name ?? scenarios[0]?.name ?? "");
   const [controller, set_controller] = useState(session?.controller ?? "modified");
   const [seed, set_seed] = useState<number | null>(1);

@@ -1,6 +1,6 @@
 // web/src/views/stop.tsx: Stop and Release, and what became of a Stop: commanded, standing, failed.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { age_words } from "../state/age";
 import { use_pulse, use_store } from "../state/store";
 
@@ -23,7 +23,7 @@ export function StopButtons(): JSX.Element {
 /** Over everything but the Stop button: this must be seen from across the room. */
 export function StopAlarm(): JSX.Element | null {
   const app = use_app();
-  const stop = use_store(app.ui, (u) => u.stop);
+  const { stop } = use_ui("stop");
   use_pulse(stop.phase === "failed" ? 100 : 5000);
   if (stop.phase !== "failed") return null;
   const since = (performance.now() - stop.since) / 1000;

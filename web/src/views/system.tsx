@@ -1,18 +1,16 @@
 // web/src/views/system.tsx: what runs here: versions, connection, the session, and the keys.
 import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import * as rest from "../link/rest";
-import { use_pulse, use_store } from "../state/store";
+import { use_pulse } from "../state/store";
 import { fixed, link_words, sentence_of, titled, watchers_words } from "../words";
 import { Devices } from "./hardware";
 import { ShortcutTable } from "./shortcuts";
 
 export function System(): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const link = use_store(app.ui, (u) => u.link);
-  const theme = use_store(app.ui, (u) => u.theme);
+  const { session, link, theme } = use_ui("session", "link", "theme");
   const [version, set_version] = useState<Record<string, unknown> | null>(null);
   const [problem, set_problem] = useState<string | null>(null);
   use_pulse(500);

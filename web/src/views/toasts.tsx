@@ -1,14 +1,14 @@
 // web/src/views/toasts.tsx: short sentences that come and go, and what a screen reader hears.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { use_app } from "../app";
-import { use_pulse, use_store } from "../state/store";
+import { use_app, use_ui } from "../app";
+import { use_pulse } from "../state/store";
 import { icons } from "../ui/icons";
 import { state_word } from "../words";
 
 export function Toasts(): JSX.Element {
   const app = use_app();
-  const toasts = use_store(app.ui, (u) => u.toasts);
+  const { toasts } = use_ui("toasts");
   return (
     <div class="toasts" role="status" aria-live="polite" data-testid="toasts">
       {toasts.map((t) => (
@@ -24,7 +24,7 @@ export function Toasts(): JSX.Element {
 /** Says changes of state and what the app wants said, politely. */
 export function Spoken(): JSX.Element {
   const app = use_app();
-  const spoken = use_store(app.ui, (u) => u.spoken);
+  const { spoken } = use_ui("spoken");
   use_pulse(500);
   const { session, link } = app.ui.value;
   const word = state_word(app.scene.frame, session, link.phase === "open").word;

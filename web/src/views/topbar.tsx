@@ -1,17 +1,16 @@
 // web/src/views/topbar.tsx: brand, scenario, source, link in words, theme, Stop and Release.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { ScenarioItem } from "../contract";
-import { use_pulse, use_store } from "../state/store";
+import { use_pulse } from "../state/store";
 import { link_words, source_word, titled } from "../words";
 import { Brand, icons } from "../ui/icons";
 import { StopButtons } from "./stop";
 
 export function TopBar(): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const theme = use_store(app.ui, (u) => u.theme);
+  const { session, theme } = use_ui("session", "theme");
   const source = source_word(session);
   const next = theme === "dark" ? "light" : "dark";
   return (
@@ -32,7 +31,7 @@ export function TopBar(): JSX.Element {
 
 function LinkWords(): JSX.Element {
   const app = use_app();
-  const link = use_store(app.ui, (u) => u.link);
+  const { link } = use_ui("link");
   use_pulse(link.phase === "lost" ? 250 : 5000); // the seconds count down
   return (
     <span class={`link ${link.phase}`} data-testid="link">
@@ -46,8 +45,7 @@ function LinkWords(): JSX.Element {
 /** The scenario's name, and a searchable list of all there are. */
 function ScenarioMenu(): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
-  const loading = use_store(app.ui, (u) => u.loading);
+  const { session, loading } = use_ui("session", "loading");
   const [open, set_open] = useState(false);
   const box = useRef<HTMLDivElement>(null);
   const button = useRef<HTMLButtonElement>(null);
@@ -88,8 +86,7 @@ function ScenarioMenu(): JSX.Element {
 function ScenarioList(props: {
   current: string; on_pick: (item: ScenarioItem) => void; on_close: () => void;
 }): JSX.Element {
-  const app = use_app();
-  const all = use_store(app.ui, (u) => u.scenarios);
+  const { scenarios: all } = use_ui("scenarios");
   const [text, set_text] = useState("");
   const words = text.toLowerCase().split(/\s+/).filter(Boolean);
   const shown = all.filter((s) => {

@@ -1,8 +1,8 @@
 // web/src/views/transport.tsx: reset, play and pause, step, run clock, events, speed of the live run.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { RecordInfo } from "../contract";
-import { use_pulse, use_store } from "../state/store";
+import { use_pulse } from "../state/store";
 import { Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
@@ -22,7 +22,7 @@ function record_tone(record?: RecordInfo): string {
 
 export function Transport(): JSX.Element {
   const app = use_app();
-  const session = use_store(app.ui, (u) => u.session);
+  const { session } = use_ui("session");
   use_pulse(100);
   const time = app.scene.frame?.stamp ?? 0;
   const paused = session?.pace.paused ?? false;

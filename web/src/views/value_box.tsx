@@ -1,12 +1,12 @@
 // web/src/views/value_box.tsx: the numbers of what is selected or about to be made, to be typed.
 import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
 import { Goal } from "../link/frame";
 import { Obstacle, is_robot, obstacle_name, obstacle_title } from "../obstacle";
 import { robot_pose } from "../state/scene";
-import { use_pulse, use_store } from "../state/store";
+import { use_pulse } from "../state/store";
 import { NumberField } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { degrees } from "../words";
@@ -14,9 +14,7 @@ import { Hand } from "./drive";
 
 export function ValueBox(props: { hand: Hand }): JSX.Element | null {
   const app = use_app();
-  const selection = use_store(app.ui, (u) => u.selection);
-  const tool = use_store(app.ui, (u) => u.tool);
-  const session = use_store(app.ui, (u) => u.session);
+  const { selection, tool, session } = use_ui("selection", "tool", "session");
   use_pulse(150);
   if (!session) return null;
   if (selection?.kind === "obstacle") {
