@@ -9,6 +9,14 @@ export function wrap_angle(angle: number): number {
   return turns <= -Math.PI ? turns + 2 * Math.PI : turns;
 }
 
+export function degrees(angle: number): number {
+  return (angle * 180) / Math.PI;
+}
+
+export function radians(angle_deg: number): number {
+  return (angle_deg * Math.PI) / 180;
+}
+
 /** A point of the child frame expressed in the parent of `pose`. */
 export function to_parent(pose: Pose, x: number, y: number): Point {
   const c = Math.cos(pose.heading);
@@ -34,7 +42,7 @@ export function distance(a: Point, b: Point): number {
   return Math.hypot(a.x - b.x, a.y - b.y);
 }
 
-/** A rectangle of the world; empty while min > max. */
+/** A rectangle of W; empty if min > max. */
 export interface Bounds { min_x: number; min_y: number; max_x: number; max_y: number }
 
 export function empty_bounds(): Bounds {

@@ -9,9 +9,8 @@ import "./style/runs.css";
 import "./style/hardware.css";
 import "./style/narrow.css";
 import { JSX, render } from "preact";
-import { useEffect } from "preact/hooks";
 import { App, AppContext, use_app, use_ui } from "./app";
-import { use_store } from "./state/store";
+import { use_listener, use_store } from "./state/store";
 import { Drive } from "./views/drive";
 import { SessionGone } from "./views/gone";
 import { stop_key, typing } from "./views/keys";
@@ -29,22 +28,13 @@ function Shell(): JSX.Element {
   const app = use_app();
   const { view, shortcuts, locked } = use_ui("view", "shortcuts", "locked");
   const hardware = use_store(app.ui, (u) => u.session?.source === "hardware");
-  useEffect(() => {
-    const stop = stop_key(app);
-    const help = (e: KeyboardEvent) => {
-      if (e.key !== "?" || typing(e.target)) return;
-      e.preventDefault();
-      app.ui.set({ shortcuts: !app.ui.value.shortcuts });
-    };
-    addEventListener("keydown", stop, true);
-    addEventListener("keyup", stop, true);
-    addEventListener("keydown", help);
-    return () => {
-      removeEventListener("keydown", stop, true);
-      removeEventListener("keyup", stop, true);
-      removeEventListener("keydown", help);
-    };
-  }, [app]);
+  use_listener("keydown", (e) => stop_key(app, e), true);
+  use_listener("keyup", (e) => stop_key(app, e), true);
+  use_listener("keydown", (e) => {
+    if (e.key !== "?" || typing(e.target)) return;
+    e.preventDefault();
+    app.ui.set({ shortcuts: !shortcuts });
+  });
   return (
     <div class={`shell view-${view} ${hardware ? "real" : ""}`}>
       <TopBar />

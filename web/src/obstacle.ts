@@ -1,6 +1,6 @@
-// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. The JSON of
-// REST and /ws writes polygons and walls in world coordinates; here every kind has a pose.
-import { Bounds, Point, Pose, include, to_child, to_parent } from "./geometry";
+// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. In JSON, polygons
+// and walls have their coordinates in W; here every kind has a pose.
+import { Bounds, Point, Pose, distance, include, to_child, to_parent } from "./geometry";
 
 export type ObstacleKind = "cylinder" | "box" | "polygon" | "wall";
 
@@ -13,7 +13,7 @@ export interface Obstacle {
   width: number;     // [m] box; a wall's thickness
   points: Point[];   // polygon, in its own frame
   height: number;    // [m]
-  /** What the JSON said beyond the shape (reflectivity, specular), handed back on undo. */
+  /** Fields of the JSON that the page does not read (reflectivity, specular); undo returns them. */
   extra: Record<string, unknown>;
 }
 
@@ -84,16 +84,10 @@ export function obstacle_to_json(o: Obstacle): ObstacleJson {
   }
 }
 
-/** The mean of the corners: the point a polygon is held by. */
+/** The mean of the corners: the reference point of a polygon. */
 function centroid(points: Point[]): Point {
-  if (points.length === 0) return { x: 0, y: 0 };
-  let x = 0;
-  let y = 0;
-  for (const p of points) {
-    x += p.x;
-    y += p.y;
-  }
-  return { x: x / points.length, y: y / points.length };
+  const mean = (values: number[]) => values.reduce((sum, v) => sum + v, 0) / Math.max(1, values.length);
+  return { x: mean(points.map((p) => p.x)), y: mean(points.map((p) => p.y)) };
 }
 
 /** Corners in W, counter-clockwise; empty for a cylinder. */
@@ -109,27 +103,19 @@ export function outline(o: Obstacle): Point[] {
 /** Whether `p` (W) lies on the obstacle or within `slack` [m] of it. */
 export function covers(o: Obstacle, p: Point, slack: number): boolean {
   if (o.kind === "cylinder") {
-    return Math.hypot(p.x - o.pose.x, p.y - o.pose.y) <= o.radius + slack;
+    return distance(p, o.pose) <= o.radius + slack;
   }
   const corners = outline(o);
   let inside = true;
   for (let i = 0; i < corners.length; ++i) {
     const a = corners[i];
     const b = corners[(i + 1) % corners.length];
-    const edge = Math.hypot(b.x - a.x, b.y - a.y);
+    const edge = distance(a, b);
     if (edge === 0) continue;
     const left = ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) / edge;
     if (left < -slack) inside = false;
   }
   return inside && corners.length > 2;
-}
-
-/** [m] From the obstacle's reference point to its farthest corner. */
-export function reach(o: Obstacle): number {
-  if (o.kind === "cylinder") return o.radius;
-  let far = 0;
-  for (const p of outline(o)) far = Math.max(far, Math.hypot(p.x - o.pose.x, p.y - o.pose.y));
-  return far;
 }
 
 export function include_obstacle(bounds: Bounds, o: Obstacle): void {
@@ -140,7 +126,7 @@ export function include_obstacle(bounds: Bounds, o: Obstacle): void {
 /** Robot n of a world, counted from 1, has the id kRobotIds + n among its obstacles. */
 const kRobotIds = 1_000_000_000;
 
-/** Another robot drives where it likes: people cannot move it. */
+/** True for another robot of the world, which people cannot move. */
 export function is_robot(o: Obstacle): boolean {
   return o.id > kRobotIds;
 }

@@ -140,8 +140,3 @@ export function source_word(session: SessionState | null): { word: string; tone:
 export function sentence_of(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
-
-/** [rad] as degrees in (-180, 180], for people. */
-export function degrees(radians: number): number {
-  return (radians * 180) / Math.PI;
-}

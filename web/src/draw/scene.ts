@@ -43,8 +43,8 @@ export interface Overlay {
   insets: Insets;
   /** A goal that the robot has not been sent to. */
   preview?: Goal | null;
-  /** A path in the strip's colour, as the Runs view draws the first of two. */
-  path_colour?: string;
+  /** Colour of the path, where it is another: the Runs view draws the first of two in the accent. */
+  path?: "accent";
 }
 
 export function draw_scene(g: Context, view: View, palette: Palette,
@@ -87,7 +87,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
 
 /** The travelled path, that of a second run, and what is still to come of a stored one. */
 function draw_ways(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay, travelled: boolean): void {
-  const colour = overlay.path_colour ?? palette.path;
+  const colour = palette[overlay.path ?? "path"];
   if (overlay.future && travelled) draw_path(g, view, scene.columns, 0, scene.columns.length, colour, 2, 0.3);
   if (overlay.ghost) draw_ghost(g, view, palette, overlay.ghost);
   if (travelled) draw_path(g, view, scene.columns, 0, Math.min(scene.rows, scene.columns.length), colour, 3);

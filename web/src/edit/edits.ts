@@ -53,6 +53,15 @@ export function remove_edit(obstacle: Obstacle): Edit {
   };
 }
 
+/** Obstacles that are not drawn to size: [m] radius of a cylinder, sides of a box. */
+export const kUsualRadius = 0.3;
+export const kUsualSide = 0.6;
+
+/** Hands are exact to a centimetre at best, and round values read better. */
+export function round_cm(v: number): number {
+  return Math.round(v * 100) / 100;
+}
+
 export function new_cylinder(x: number, y: number, radius: number): Obstacle {
   return {
     id: 0, kind: "cylinder", pose: { x, y, heading: 0 }, radius, length: 0, width: 0, points: [],

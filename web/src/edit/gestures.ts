@@ -1,17 +1,17 @@
-// web/src/edit/gestures.ts: what a pointer does on the scene, per tool, as drafts and edits. No
-// DOM in here but the numbers of pointer events, so that it can be tested.
+// web/src/edit/gestures.ts: turns pointers on the scene into drafts and edits, by tool. It reads only the
+// numbers of pointer events, so that tests need no DOM.
 import { Draft, Selection } from "../draw/scene";
 import { View } from "../draw/view";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import { Obstacle, covers } from "../obstacle";
 import { SceneState } from "../state/scene";
-import { new_box, new_cylinder } from "./edits";
+import { kUsualRadius, kUsualSide, new_box, new_cylinder, round_cm } from "./edits";
 
-/** `pan` moves the view, and a press shows what is there; it asks the robot for nothing. */
+/** `pan` moves the view, and a press selects. It sends the robot nothing. */
 export type Tool = "goal" | "cylinder" | "box" | "measure" | "pan";
 
-/** What the gestures may do to the world; the page asks the server. */
+/** The effects of gestures; the page sends the edits to the server. */
 export interface GestureTarget {
   scene: SceneState;
   view: View;
@@ -19,9 +19,9 @@ export interface GestureTarget {
   can_edit(): boolean;  // obstacles
   can_drive(): boolean; // goals
   set_goal(goal: Goal): void;
-  add_goal(goal: Goal): void; // for when those before it are reached
+  add_goal(goal: Goal): void; // behind the goals that the robot has
   add(obstacle: Obstacle): void;
-  /** Called along a drag; `done` at its end, with where it began. */
+  /** Called during a drag, with the pose where it began; `done` at its end. */
   move(id: number, pose: Pose, from: Pose, done: boolean): void;
   select(selection: Selection): void;
   draft(draft: Draft): void;
@@ -30,16 +30,19 @@ export interface GestureTarget {
   changed(): void;
 }
 
-const kDragPixels = 6;   // less is a click
-const kGrabPixels = 8;   // beyond an obstacle's edge
-const kLeast = 0.05;     // [m] least radius or half side that is drawn by hand
-const kDefaultRadius = 0.3;
-const kDefaultSide = 0.6;
+const kDragPixels = 6;   // a shorter way is a click
+const kGrabPixels = 8;   // from an obstacle's edge a press still hits it
+const kLeast = 0.05;     // [m] least radius or half side of a drawn obstacle
 
+/** A gesture that draws: the draft while the pointer is at `to` in W, and the edit when it is let go. */
+interface Drawing {
+  kind: "draw";
+  px: Point;
+  draft(to: Point, dragged: boolean): Draft;
+  finish(to: Point, dragged: boolean): void;
+}
 type Active =
-  | { kind: "goal" | "further_goal"; at: Point; px: Point }
-  | { kind: "move_goal"; from: Goal; offset: Point; px: Point }
-  | { kind: "cylinder" | "box"; at: Point; px: Point }
+  | Drawing
   | { kind: "measure"; at: Point }
   | { kind: "move"; id: number; from: Pose; offset: Point; px: Point; moved: boolean }
   | { kind: "pan"; px: Point; inspects: boolean; moved: boolean }
@@ -57,14 +60,14 @@ export class Gestures {
   }
 
   /**
-   * `button` 0 left or touch, 1 middle, 2 right. Pixels from the canvas' corner. With `shift` a goal
-   * is added to those there are.
+   * `button` 0 left or touch, 1 middle, 2 right. Pixels from the corner of the canvas. With `shift` the
+   * goal tool adds a goal behind the others.
    */
   down(id: number, px: Point, button: number, shift = false): void {
     this.pointers_.set(id, px);
     if (this.pointers_.size === 2) {
       const [a, b] = [...this.pointers_.keys()];
-      this.t_.draft(this.rest()); // the first finger meant to pinch, not to draw
+      this.t_.draft(this.rest()); // the first finger began a pinch, not a drawing
       this.active_ = { kind: "pinch", a, b };
       return;
     }
@@ -95,7 +98,7 @@ export class Gestures {
     if (active) this.finish(active, px);
   }
 
-  /** Escape, a lost pointer: nothing happened. */
+  /** For Escape or a lost pointer: puts a moved obstacle back. */
   cancel(): void {
     const active = this.active_;
     this.active_ = null;
@@ -109,71 +112,65 @@ export class Gestures {
   }
 
   private begin(px: Point, shift: boolean): Active | null {
-    const { scene, view } = this.t_;
+    const { scene: { goal }, view } = this.t_;
     const at = view.to_world(px.x, px.y);
     const tool = this.t_.tool();
+    const drives = this.t_.can_drive();
     if (tool === "measure") return { kind: "measure", at };
     if (tool === "pan") return pan(px, true);
     this.measure_ = undefined;
-    if (tool === "goal" && shift && this.t_.can_drive()) return { kind: "further_goal", at, px };
+    const new_goal = (to: Point, dragged: boolean) => dragged_goal(at, to, dragged);
+    if (tool === "goal" && shift && drives) return drawn_goal(px, new_goal, (to) => this.t_.add_goal(to));
     const obstacle = this.obstacle_at(px);
     if (obstacle) {
       this.t_.select({ kind: "obstacle", id: obstacle.id });
       if (!this.t_.can_edit()) return null;
-      const offset = { x: obstacle.pose.x - at.x, y: obstacle.pose.y - at.y };
-      return { kind: "move", id: obstacle.id, from: obstacle.pose, offset, px, moved: false };
+      return { kind: "move", id: obstacle.id, from: obstacle.pose, offset: offset_of(obstacle.pose, at), px, moved: false };
     }
-    if (scene.goal && this.t_.can_drive() && this.on_goal(px)) {
+    if (goal && drives && this.on_goal(px)) {
       this.t_.select({ kind: "goal" });
-      const offset = { x: scene.goal.x - at.x, y: scene.goal.y - at.y };
-      return { kind: "move_goal", from: scene.goal, offset, px };
+      const offset = offset_of(goal, at);
+      return drawn_goal(px, (to) => ({ ...goal, ...shifted(to, offset) }), (to, dragged) => {
+        if (dragged) this.t_.set_goal(to);
+      });
     }
-    if (tool === "goal") {
-      if (this.t_.can_drive()) return { kind: "goal", at, px };
-      this.t_.refuse("goal");
+    if (tool === "goal" ? !drives : !this.t_.can_edit()) {
+      this.t_.refuse(tool === "goal" ? "goal" : "obstacle");
       return null;
     }
-    if (this.t_.can_edit()) return { kind: tool, at, px };
-    this.t_.refuse("obstacle");
-    return null;
+    if (tool === "goal") {
+      return drawn_goal(px, new_goal, (to) => {
+        this.t_.select({ kind: "goal" });
+        this.t_.set_goal(to);
+      });
+    }
+    const drawn = (to: Point, dragged: boolean) => dragged_obstacle(tool, at, to, dragged);
+    return {
+      kind: "draw", px,
+      draft: (to, dragged) => ({ obstacle: drawn(to, dragged) }),
+      finish: (to, dragged) => this.t_.add(drawn(to, dragged)),
+    };
   }
 
   private update(px: Point): void {
     const active = this.active_;
     if (!active) return;
     const to = this.t_.view.to_world(px.x, px.y);
-    switch (active.kind) {
-      case "pan":
-        if (!active.moved && !far(active.px, px)) break;
-        active.moved = true;
-        this.t_.view.pan(px.x - active.px.x, px.y - active.px.y);
-        active.px = px;
-        break;
-      case "goal":
-      case "further_goal":
-        this.t_.draft({ goal: dragged_goal(active.at, to, far(active.px, px)) });
-        break;
-      case "move_goal":
-        this.t_.draft({ goal: { ...active.from, ...shifted(to, active.offset) } });
-        break;
-      case "cylinder":
-      case "box":
-        this.t_.draft({ obstacle: dragged_obstacle(active.kind, active.at, to, far(active.px, px)) });
-        break;
-      case "measure":
-        this.measure_ = { from: active.at, to };
-        this.t_.draft({ measure: this.measure_ });
-        break;
-      case "move": {
-        if (!active.moved && !far(active.px, px)) break;
-        active.moved = true;
+    if (active.kind === "draw") {
+      this.t_.draft(active.draft(to, far(active.px, px)));
+    } else if (active.kind === "measure") {
+      this.measure_ = { from: active.at, to };
+      this.t_.draft({ measure: this.measure_ });
+    } else if (active.kind !== "pinch" && (active.moved || far(active.px, px))) {
+      active.moved = true;
+      if (active.kind === "move") {
         const pose = { ...active.from, ...shifted(to, active.offset) };
         this.t_.draft({ moved: { id: active.id, pose } });
         this.t_.move(active.id, pose, active.from, false);
-        break;
+      } else {
+        this.t_.view.pan(px.x - active.px.x, px.y - active.px.y);
+        active.px = px;
       }
-      case "pinch":
-        break;
     }
     this.t_.changed();
   }
@@ -181,37 +178,15 @@ export class Gestures {
   private finish(active: Active, px: Point): void {
     const to = this.t_.view.to_world(px.x, px.y);
     this.t_.draft(this.rest());
-    switch (active.kind) {
-      case "goal":
-        this.t_.select({ kind: "goal" });
-        this.t_.set_goal(dragged_goal(active.at, to, far(active.px, px)));
-        break;
-      case "further_goal":
-        this.t_.add_goal(dragged_goal(active.at, to, far(active.px, px)));
-        break;
-      case "move_goal":
-        if (far(active.px, px)) this.t_.set_goal({ ...active.from, ...shifted(to, active.offset) });
-        break;
-      case "cylinder":
-      case "box":
-        this.t_.add(dragged_obstacle(active.kind, active.at, to, far(active.px, px)));
-        break;
-      case "move":
-        if (active.moved) {
-          this.t_.move(active.id, { ...active.from, ...shifted(to, active.offset) }, active.from,
-            true);
-        }
-        break;
-      case "pan":
-        if (active.inspects && !active.moved) this.inspect(px);
-        break;
-      default:
-        break;
+    if (active.kind === "draw") active.finish(to, far(active.px, px));
+    else if (active.kind === "pan" && active.inspects && !active.moved) this.inspect(px);
+    else if (active.kind === "move" && active.moved) {
+      this.t_.move(active.id, { ...active.from, ...shifted(to, active.offset) }, active.from, true);
     }
     this.t_.changed();
   }
 
-  /** Shows what is pressed on, and changes nothing. */
+  /** Selects the object under the pointer, and changes nothing. */
   private inspect(px: Point): void {
     const obstacle = this.obstacle_at(px);
     if (obstacle) this.t_.select({ kind: "obstacle", id: obstacle.id });
@@ -224,7 +199,7 @@ export class Gestures {
     const other = this.pointers_.get(id === active.a ? active.b : active.a);
     if (!other) return;
     const middle = (p: Point) => ({ x: (p.x + other.x) / 2, y: (p.y + other.y) / 2 });
-    const length = (p: Point) => Math.max(10, Math.hypot(p.x - other.x, p.y - other.y));
+    const length = (p: Point) => Math.max(10, distance(p, other));
     const m0 = middle(before);
     const m1 = middle(px);
     this.t_.view.pan(m1.x - m0.x, m1.y - m0.y);
@@ -232,7 +207,7 @@ export class Gestures {
     this.t_.changed();
   }
 
-  /** What stays drawn when no gesture is under way: the last measured line. */
+  /** The draft between gestures: the last measured line. */
   private rest(): Draft {
     return this.measure_ ? { measure: this.measure_ } : {};
   }
@@ -247,7 +222,7 @@ export class Gestures {
     const at = this.t_.view.to_world(px.x, px.y);
     const slack = kGrabPixels / this.t_.view.scale;
     const hits = this.t_.scene.obstacles.filter((o) => covers(o, at, slack));
-    return hits.at(-1) ?? null; // drawn last lies on top
+    return hits.at(-1) ?? null; // the last one drawn lies on top
   }
 }
 
@@ -256,16 +231,26 @@ function pan(px: Point, inspects: boolean): Active {
 }
 
 function far(a: Point, b: Point): boolean {
-  return Math.hypot(a.x - b.x, a.y - b.y) >= kDragPixels;
+  return distance(a, b) >= kDragPixels;
+}
+
+/** A gesture that draws or moves a goal. */
+function drawn_goal(px: Point, goal: (to: Point, dragged: boolean) => Goal,
+  finish: (goal: Goal, dragged: boolean) => void): Drawing {
+  return {
+    kind: "draw", px,
+    draft: (to, dragged) => ({ goal: goal(to, dragged) }),
+    finish: (to, dragged) => finish(goal(to, dragged), dragged),
+  };
+}
+
+/** From the pointer to the reference point of an object gripped there. */
+function offset_of(p: Point, at: Point): Point {
+  return { x: p.x - at.x, y: p.y - at.y };
 }
 
 function shifted(p: Point, offset: Point): Point {
   return { x: round_cm(p.x + offset.x), y: round_cm(p.y + offset.y) };
-}
-
-/** Hands are not exact to less than a centimetre; round values read better. */
-function round_cm(v: number): number {
-  return Math.round(v * 100) / 100;
 }
 
 function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal {
@@ -276,16 +261,16 @@ function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal {
   };
 }
 
-/** A click makes a thing of usual size; a drag from the centre makes it as large as drawn. */
+/** A click makes an obstacle of usual size; a drag from the centre makes it as large as drawn. */
 function dragged_obstacle(kind: "cylinder" | "box", at: Point, to: Point,
   dragged: boolean): Obstacle {
   const x = round_cm(at.x);
   const y = round_cm(at.y);
   if (kind === "cylinder") {
-    const radius = dragged ? Math.max(kLeast, distance(at, to)) : kDefaultRadius;
+    const radius = dragged ? Math.max(kLeast, distance(at, to)) : kUsualRadius;
     return new_cylinder(x, y, round_cm(radius));
   }
-  const length = dragged ? Math.max(kLeast, Math.abs(to.x - at.x)) * 2 : kDefaultSide;
-  const width = dragged ? Math.max(kLeast, Math.abs(to.y - at.y)) * 2 : kDefaultSide;
+  const length = dragged ? Math.max(kLeast, Math.abs(to.x - at.x)) * 2 : kUsualSide;
+  const width = dragged ? Math.max(kLeast, Math.abs(to.y - at.y)) * 2 : kUsualSide;
   return new_box(x, y, round_cm(length), round_cm(width));
 }

@@ -1,6 +1,6 @@
 // web/src/link/rest.ts: GET, POST, DELETE on /api/v1, with the server's own sentence on failure.
 
-/** An answer that was not a success; message is a sentence for a person. */
+/** A failed request. The message is a sentence for people; the status is 0 without an answer. */
 export class RestError extends Error {
   constructor(message: string, readonly status: number) {
     super(message);
@@ -27,7 +27,7 @@ async function ask(method: string, path: string, body?: unknown, signal?: AbortS
     const problem = (await response.json()) as { detail?: string; title?: string };
     sentence = problem.detail ?? problem.title ?? sentence;
   } catch {
-    // not a problem document: the status has to do
+    // not a problem document: the sentence names the status alone
   }
   throw new RestError(sentence, response.status);
 }
@@ -51,6 +51,6 @@ export async function post<T>(path: string, body: unknown): Promise<T> {
   return (text === "" ? {} : JSON.parse(text)) as T;
 }
 
-export async function remove(path: string): Promise<void> {
-  await ask("DELETE", path);
+export function remove(path: string): Promise<Response> {
+  return ask("DELETE", path);
 }

@@ -107,12 +107,17 @@ function padded(low: number | null, high: number | null, least: [number, number]
   return [a < 0 || a < least[0] ? a - room : a, b + room];
 }
 
-/** `values` with null where there is none: a gap in the line. */
+/** A copy of every `step`-th of `values`; all of them for a step of 1 or less. */
+export function every(values: Float64Array, step: number): Float64Array {
+  return step <= 1 ? values.slice() : values.filter((_, i) => i % step === 0);
+}
+
+/** `values` with null in place of NaN, which leaves a gap in the line. */
 export function gapped(values: Float64Array): (number | null)[] | Float64Array {
   return values.some(Number.isNaN) ? Array.from(values, (v) => (Number.isNaN(v) ? null : v)) : values;
 }
 
-/** The two columns of two runs on one axis of time: the second is read at the first's times. */
+/** Column `other` of a second run, sampled at the times `t` of the first; null behind its end. */
 export function resampled(t: Float64Array, other_t: Float64Array, other: Float64Array):
   (number | null)[] {
   const out: (number | null)[] = [];

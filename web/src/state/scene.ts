@@ -1,7 +1,7 @@
 // web/src/state/scene.ts: what there is to draw, as one plain object, and how a frame and the
 // session's document are folded into it. Live session and stored run fill the same object.
 import { RobotInfo, SessionState } from "../contract";
-import { Bounds, Point, Pose, empty_bounds, include } from "../geometry";
+import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
 import { Frame, FrameRequest, Goal, Words } from "../link/frame";
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
@@ -173,7 +173,7 @@ export function robot_pose(scene: SceneState): Pose | null {
 export function goal_distance(scene: SceneState): number | null {
   const pose = robot_pose(scene);
   if (!scene.goal || !pose) return null;
-  return Math.hypot(scene.goal.x - pose.x, scene.goal.y - pose.y);
+  return distance(scene.goal, pose);
 }
 
 /** What a fitted view should show: the world and all that moves in it. */

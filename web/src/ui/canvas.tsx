@@ -1,20 +1,21 @@
-// web/src/ui/canvas.tsx: the drawn scene as a component: sizes itself, draws on animation frames
-// when something changed, feeds pointers to gestures, keeps the view fitted until a hand moves it.
-import { JSX } from "preact";
+// web/src/ui/canvas.tsx: the drawn scene as a component. It follows its own size, draws on an animation
+// frame after a change, passes pointers to the gestures, and fits the view until a hand moves it.
+import { JSX, TargetedPointerEvent } from "preact";
 import { useEffect, useRef } from "preact/hooks";
+import { use_ui } from "../app";
 import { Palette, read_palette } from "../draw/palette";
 import { Overlay, draw_scene } from "../draw/scene";
 import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
-import { Bounds } from "../geometry";
+import { Bounds, Point } from "../geometry";
 import { SceneState } from "../state/scene";
+import { use_latest } from "../state/store";
 
 interface CanvasProps {
   scene: SceneState;
   view: View;
   gestures: Gestures;
   label: string;
-  theme: string;
   overlay: () => Overlay;
   bounds: () => Bounds;
   insets: () => Insets;
@@ -24,12 +25,13 @@ interface CanvasProps {
   cursor?: string;
 }
 
-const kFitMs = 140; // time constant of the view's own moves
+const kScaleRoom = 190; // [px] that the scale bar and its words take
+const kFitMs = 140; // [ms] time constant of the view's own moves
 
 export function SceneCanvas(props: CanvasProps): JSX.Element {
+  const { theme } = use_ui("theme");
   const element = useRef<HTMLCanvasElement>(null);
-  const latest = useRef(props);
-  latest.current = props;
+  const latest = use_latest(props);
   const palette = useRef<Palette | null>(null);
   const redraw = useRef<() => void>(() => undefined);
 
@@ -54,8 +56,8 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
     const draw = (now: number) => {
       pending = 0;
       const { view, scene } = latest.current;
-      // Messages ask the canvas that was left until the next is there. Both would fit the one view, each
-      // undoing the other's move, for ever.
+      // Messages ask a removed canvas to draw until the next one exists. Both would fit the one view and
+      // undo each other's moves without end.
       if (!canvas.isConnected || view.width < 2 || view.height < 2) return;
       const ratio = canvas.width / view.width;
       g.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -81,46 +83,15 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
     redraw.current = request;
     latest.current.on_ready(request);
 
-    const at = (e: { clientX: number; clientY: number }) => {
-      const box = canvas.getBoundingClientRect();
-      return { x: e.clientX - box.left, y: e.clientY - box.top };
-    };
-    const down = (e: PointerEvent) => {
-      canvas.focus({ preventScroll: true });
-      canvas.setPointerCapture(e.pointerId);
-      latest.current.gestures.down(e.pointerId, at(e), e.button, e.shiftKey);
-      e.preventDefault();
-      request();
-    };
-    const move = (e: PointerEvent) => {
-      latest.current.gestures.move(e.pointerId, at(e));
-      if (latest.current.gestures.busy) request();
-    };
-    const up = (e: PointerEvent) => {
-      latest.current.gestures.up(e.pointerId, at(e));
-      request();
-    };
-    const cancel = () => {
-      latest.current.gestures.cancel();
-      request();
-    };
     const wheel = (e: WheelEvent) => {
       e.preventDefault();
-      const p = at(e);
+      const p = place_of(e, canvas);
       latest.current.view.zoom_at(p.x, p.y, Math.exp(-e.deltaY * (e.deltaMode === 1 ? 0.05 : 0.0016)));
       request();
     };
-    const menu = (e: Event) => e.preventDefault(); // the right button pans
-    const key = (e: KeyboardEvent) => latest.current.on_key?.(e);
+    canvas.addEventListener("wheel", wheel, { passive: false });
     const observer = new ResizeObserver(size);
     observer.observe(canvas);
-    canvas.addEventListener("pointerdown", down);
-    canvas.addEventListener("pointermove", move);
-    canvas.addEventListener("pointerup", up);
-    canvas.addEventListener("pointercancel", cancel);
-    canvas.addEventListener("wheel", wheel, { passive: false });
-    canvas.addEventListener("contextmenu", menu);
-    canvas.addEventListener("keydown", key);
     size();
     return () => {
       observer.disconnect();
@@ -131,17 +102,50 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
   useEffect(() => {
     palette.current = null; // the theme's colours are read again
     redraw.current();
-  }, [props.theme, props.scene]);
+  }, [theme, props.scene]);
 
+  const { gestures } = props;
+  const down = (e: TargetedPointerEvent<HTMLCanvasElement>) => {
+    e.currentTarget.focus({ preventScroll: true });
+    e.currentTarget.setPointerCapture(e.pointerId);
+    gestures.down(e.pointerId, place_of(e, e.currentTarget), e.button, e.shiftKey);
+    e.preventDefault();
+    redraw.current();
+  };
+  const move = (e: TargetedPointerEvent<HTMLCanvasElement>) => {
+    gestures.move(e.pointerId, place_of(e, e.currentTarget));
+    if (gestures.busy) redraw.current();
+  };
+  const up = (e: TargetedPointerEvent<HTMLCanvasElement>) => {
+    gestures.up(e.pointerId, place_of(e, e.currentTarget));
+    redraw.current();
+  };
   return (
     <canvas ref={element} class="scene-canvas" tabIndex={0} role="application"
       aria-label={props.label} aria-describedby="scene-words" data-testid="scene"
-      data-cursor={props.cursor} />
+      data-cursor={props.cursor} onPointerDown={down} onPointerMove={move} onPointerUp={up}
+      onPointerCancel={() => gestures.cancel()} onKeyDown={props.on_key}
+      onContextMenu={(e) => e.preventDefault() /* the right button pans */} />
   );
 }
 
-/** Says on the element itself what it shows (centre x, y [m], scale [px/m]), so that a script can
- * point at a place of the world. Nothing while the view is on its way. */
+/** [px] Of a pointer from the corner of the canvas. */
+function place_of(e: { clientX: number; clientY: number }, canvas: HTMLElement): Point {
+  const box = canvas.getBoundingClientRect();
+  return { x: e.clientX - box.left, y: e.clientY - box.top };
+}
+
+/** The scale bar stands at the lower right of `view`, above the sentence if that reaches there. */
+export function scale_insets(view: HTMLElement): Insets {
+  const insets = { left: 0, top: 0, right: 0, bottom: 22 };
+  const box = view.getBoundingClientRect();
+  const card = view.querySelector(".explain")?.getBoundingClientRect();
+  if (card && card.right > box.right - kScaleRoom) insets.bottom = box.bottom - card.top + 14;
+  return insets;
+}
+
+/** Writes the view (centre x, y [m], scale [px/m]) on the element, so that a script can point at a
+ * place of the world. Empty while the view moves. */
 function tell_view(canvas: HTMLCanvasElement, view: View, moving: boolean): void {
   const now = moving ? "" : [view.x, view.y, view.scale].map((v) => v.toFixed(4)).join(" ");
   if (canvas.dataset.view !== now) canvas.dataset.view = now;

@@ -2,10 +2,10 @@
 import { ComponentChildren, JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { Choice, ParameterInfo } from "../contract";
-import { fixed } from "../words";
+import { fixed, sentence_of } from "../words";
 import { icons } from "./icons";
 
-/** What was picked, shown until the server's answer is in: then what holds is shown. */
+/** The picked value until the server has answered; then the value that the server holds. */
 function use_picked(value: string, busy: boolean): [string, (picked: string) => void] {
   const [picked, set_picked] = useState<string | null>(null);
   const was_busy = useRef(false);
@@ -17,11 +17,13 @@ function use_picked(value: string, busy: boolean): [string, (picked: string) => 
   return [picked ?? value, set_picked];
 }
 
-/** A row of choices of which one holds, as radio buttons. */
-export function Segments(props: {
+interface PickProps {
   label: string; name: string; choices: Choice[]; value: string; disabled?: boolean;
   on_pick: (name: string) => void;
-}): JSX.Element {
+}
+
+/** A row of radio buttons. */
+export function Segments(props: PickProps): JSX.Element {
   const [value, set_picked] = use_picked(props.value, props.disabled ?? false);
   return (
     <div class="segments" role="radiogroup" aria-label={props.label} data-testid={props.name}>
@@ -39,10 +41,7 @@ export function Segments(props: {
   );
 }
 
-export function Pick(props: {
-  label: string; name: string; choices: { value: string; label: string }[]; value: string;
-  disabled?: boolean; on_pick: (value: string) => void; class?: string;
-}): JSX.Element {
+export function Pick(props: PickProps & { class?: string }): JSX.Element {
   const [value, set_picked] = use_picked(props.value, props.disabled ?? false);
   return (
     <span class={`pick ${props.class ?? ""}`}>
@@ -51,30 +50,29 @@ export function Pick(props: {
           set_picked(e.currentTarget.value);
           props.on_pick(e.currentTarget.value);
         }}>
-        {props.choices.map((c) => <option key={c.value} value={c.value}>{c.label}</option>)}
+        {props.choices.map((c) => <option key={c.name} value={c.name}>{c.label}</option>)}
       </select>
       {icons.down}
     </span>
   );
 }
 
-/** "Repulsion K_r" with the part after the underscore set low. */
+/** "Repulsion K_r" with the part after the underscore as a subscript. */
 function Label(props: { text: string }): JSX.Element {
   const parts = props.text.split(/_(\w+)/);
   return <>{parts.map((p, i) => (i % 2 === 1 ? <sub key={i}>{p}</sub> : p))}</>;
 }
 
-/** Digits after the point that a step of this size needs. */
+/** Digits after the point that show a step of this size. */
 function digits_of(step: number): number {
   return step >= 1 ? 0 : Math.min(4, Math.max(1, Math.ceil(-Math.log10(step) - 1e-9)));
 }
 
 const kSendMs = 120;
 
-/** A gain: moves under the hand, is sent along the way, and falls back to what the server holds. */
+/** A gain. Moving it sends values at a steady pace; afterwards it shows the value that the server holds. */
 export function Slider(props: {
-  info: ParameterInfo; value: number; usual: number; disabled?: boolean;
-  on_set: (value: number) => Promise<number>;
+  info: ParameterInfo; value: number; usual: number; on_set: (value: number) => Promise<unknown>;
 }): JSX.Element {
   const { info } = props;
   const [held, set_held] = useState<number | null>(null);
@@ -88,9 +86,9 @@ export function Slider(props: {
       s.at = performance.now();
       const mine = ++s.count;
       const settle = () => {
-        if (mine === s.count) set_held(null); // what the server holds is shown from now on
+        if (mine === s.count) set_held(null); // from now on the server's value is shown
       };
-      props.on_set(value).then(settle, settle);
+      void props.on_set(value).then(settle);
     };
     const wait = kSendMs - (performance.now() - s.at);
     if (wait <= 0) go();
@@ -110,13 +108,11 @@ export function Slider(props: {
       <label for={id}><Label text={info.label} /></label>
       <button class="mini" data-testid={`reset-${info.name}`} aria-label={`Reset ${info.label} to ${fixed(props.usual, digits)}`}
         title={`Back to ${fixed(props.usual, digits)} ${info.unit}`} hidden={!changed}
-        disabled={props.disabled} onClick={() => change(props.usual)}>{icons.reset}</button>
+        onClick={() => change(props.usual)}>{icons.reset}</button>
       <output for={id} class="num">{fixed(value, digits)}{info.unit && ` ${info.unit}`}</output>
       <span class="bound num" aria-hidden="true">{fixed(info.min, digits)}</span>
       <input id={id} data-testid={id} type="range" min={info.min} max={info.max} step={info.step}
-        value={value} disabled={props.disabled} ref={(e) => {
-          e?.style.setProperty("--share", `${share}%`);
-        }}
+        value={value} ref={(e) => e?.style.setProperty("--share", `${share}%`)}
         aria-valuetext={`${fixed(value, digits)} ${info.unit}`}
         onInput={(e) => change(Number(e.currentTarget.value))} />
       <span class="bound r num" aria-hidden="true">{fixed(info.max, digits)}</span>
@@ -124,7 +120,7 @@ export function Slider(props: {
   );
 }
 
-/** A number to type. Sent on Enter or when left, kept while it is being typed. */
+/** A number to type. While the field has the focus it shows the text as typed. */
 export function NumberField(props: {
   label: string; unit?: string; value: number | null; name: string; empty?: string; step?: number;
   min?: number; on_change: (value: number | null) => void;
@@ -150,9 +146,9 @@ export function NumberField(props: {
   );
 }
 
-/** A dialog that keeps the keyboard inside and gives it back. */
+/** A modal dialog: it holds the focus, and returns it when it closes. */
 export function Dialog(props: {
-  title: string; on_close: () => void; children: ComponentChildren; class?: string; name: string;
+  title: string; on_close: () => void; children: ComponentChildren; name: string;
 }): JSX.Element {
   const box = useRef<HTMLDialogElement>(null);
   useEffect(() => {
@@ -161,7 +157,7 @@ export function Dialog(props: {
     return () => dialog?.close();
   }, []);
   return (
-    <dialog ref={box} class={`dialog ${props.class ?? ""}`} aria-label={props.title}
+    <dialog ref={box} class="dialog" aria-label={props.title}
       data-testid={props.name} onCancel={(e) => {
         e.preventDefault();
         props.on_close();
@@ -177,5 +173,28 @@ export function Dialog(props: {
         {props.children}
       </div>
     </dialog>
+  );
+}
+
+/** The sentence of the last failure, and a function that runs an action and keeps its failure. */
+export function use_problem(): [string | null, (act: () => Promise<unknown>) => Promise<void>] {
+  const [problem, set_problem] = useState<string | null>(null);
+  return [problem, async (act) => {
+    set_problem(null);
+    await act().catch((error) => set_problem(sentence_of(error)));
+  }];
+}
+
+export function Problem(props: { text: string | null; name?: string }): JSX.Element | null {
+  return props.text === null ? null
+    : <p class="problem" role="alert" data-testid={props.name}>{props.text}</p>;
+}
+
+/** A definition list of names and values. */
+export function Facts(props: { rows: [string, ComponentChildren][] }): JSX.Element {
+  return (
+    <dl class="facts-list">
+      {props.rows.map(([name, value]) => <div key={name}><dt>{name}</dt><dd class="num">{value}</dd></div>)}
+    </dl>
   );
 }

@@ -15,10 +15,14 @@ export function Explain(): JSX.Element | null {
   use_pulse(150);
   const { session } = use_ui("session");
   const words = explain_words(app.scene, session);
+  return <Sentence id="scene-words" name="explain" {...words} />;
+}
+
+export function Sentence(props: Words & { tone: string; name: string; id?: string }): JSX.Element {
   return (
-    <div class={`card explain tone-${words.tone}`} id="scene-words" data-testid="explain">
-      <b>{words.what}</b>
-      {words.why && <span>{words.why}</span>}
+    <div class={`card explain tone-${props.tone}`} id={props.id} data-testid={props.name}>
+      <b>{props.what}</b>
+      {props.why && <span>{props.why}</span>}
     </div>
   );
 }

@@ -4,21 +4,20 @@ import { useEffect, useMemo, useRef } from "preact/hooks";
 import { App, use_app, use_ui } from "../app";
 import { Draft } from "../draw/scene";
 import { Insets } from "../draw/view";
-import { add_edit } from "../edit/edits";
 import { Gestures, Tool } from "../edit/gestures";
 import { scene_bounds } from "../state/scene";
-import { SceneCanvas } from "../ui/canvas";
+import { SceneCanvas, scale_insets } from "../ui/canvas";
 import { icons } from "../ui/icons";
 import { SceneThree } from "../three/view";
 import { Banner, Explain, Staleness } from "./cards";
 import { LayerButton, LayerPanel, panel_cover, use_filtered } from "./layers";
 import { GoalHint, PreviewCard } from "./preview";
-import { scene_keys } from "./keys";
+import { crosshair_key, use_scene_keys } from "./keys";
 import { Figures, Tuning } from "./panel";
 import { Transport } from "./transport";
 import { ValueBox } from "./value_box";
 
-/** What the Drive view's gestures and keys share: the draft that is drawn, the hover. */
+/** The state that gestures and keys of the Drive view share: the draft that is drawn, the hover. */
 export interface Hand {
   draft: Draft;
   hovered: number | null;
@@ -27,34 +26,29 @@ export interface Hand {
 
 export function Drive(): JSX.Element {
   const app = use_app();
-  const { theme, three, sheet, tool, selection, force_scale, hidden, layers, preview } =
-    use_ui("theme", "three", "sheet", "tool", "selection", "force_scale", "hidden", "layers", "preview");
+  const { three, sheet, tool, selection, force_scale, hidden, layers, preview } =
+    use_ui("three", "sheet", "tool", "selection", "force_scale", "hidden", "layers", "preview");
   const hand = useMemo(() => make_hand(app), [app]);
   const main = useRef<HTMLElement>(null);
 
   useEffect(() => app.redraw(), [selection, force_scale, hidden, layers, tool, preview]);
   use_filtered((wanted) => app.want_filtered(wanted));
-  useEffect(() => {
-    const keys = scene_keys(app, hand);
-    addEventListener("keydown", keys.window);
-    return () => removeEventListener("keydown", keys.window);
-  }, [app, hand]);
-  const canvas_key = useMemo(() => scene_keys(app, hand).canvas, [app, hand]);
+  use_scene_keys(app, hand);
 
   return (
     <>
       <main class="scene" ref={main} aria-label="Scene">
         {three
           ? <SceneThree />
-          : <SceneCanvas scene={app.scene} view={app.view} gestures={hand.gestures} theme={theme}
-              label="The world from above. Arrow keys move the crosshair or what is selected, Enter places."
+          : <SceneCanvas scene={app.scene} view={app.view} gestures={hand.gestures}
+              label="The world from above. Arrow keys move the crosshair or the selection. Enter places an object."
               cursor={usable_tool(app)} bounds={() => scene_bounds(app.scene)}
-              insets={() => free_insets(main.current)}
-              on_ready={(redraw) => (app.redraw = redraw)} on_key={canvas_key}
+              insets={() => free_insets(main.current!)}
+              on_ready={(redraw) => (app.redraw = redraw)} on_key={(e) => crosshair_key(app, hand, e)}
               overlay={() => ({
                 selection: app.ui.value.selection, hovered: hand.hovered, draft: hand.draft,
                 force_scale: app.ui.value.force_scale, hidden: app.ui.value.hidden, ghost: null, future: false,
-                insets: scale_insets(main.current), preview: app.ui.value.preview?.goal ?? null,
+                insets: scale_insets(main.current!), preview: app.ui.value.preview?.goal ?? null,
               })} />}
         <Tools />
         {!three && <ValueBox hand={hand} />}
@@ -86,15 +80,13 @@ function make_hand(app: App): Hand {
   hand.gestures = new Gestures({
     scene: app.scene,
     view: app.view,
-    // A recorded log takes no goals and no obstacles: dragging then moves the view.
+    // A recorded log takes no goals and no obstacles: a drag then moves the view.
     tool: () => usable_tool(app),
     can_edit,
     can_drive,
     set_goal: (goal) => app.want_goal(goal),
     add_goal: (goal) => app.want_goal(goal, true),
-    add: (obstacle) => void app.edit(add_edit(obstacle)).then((answer) => {
-      if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
-    }),
+    add: (obstacle) => void app.add(obstacle),
     move: (id, pose, from, done) => app.drag(id, pose, from, done),
     select: (selection) => app.ui.set({ selection }),
     draft: (draft) => {
@@ -121,10 +113,9 @@ function usable_tool(app: App): Tool {
   return session.robot.editable ? tool : "pan";
 }
 
-/** What the cards leave free, so that nothing fitted lies under one. */
-function free_insets(main: HTMLElement | null): Insets {
+/** The margins that tools, cards and panel cover, so that the fitted world lies beside them. */
+function free_insets(main: HTMLElement): Insets {
   const insets = { left: 24, top: 24, right: 24, bottom: 48 };
-  if (!main) return insets;
   const box = main.getBoundingClientRect();
   const tools = main.querySelector(".tools")?.getBoundingClientRect();
   if (tools) insets.left = tools.right - box.left + 16;
@@ -134,16 +125,6 @@ function free_insets(main: HTMLElement | null): Insets {
   const cards = main.querySelector(".cards")?.getBoundingClientRect();
   if (cards && cards.height > 0) insets.bottom = box.bottom - cards.top + 12;
   return insets;
-}
-
-/** The scale bar stands at the lower right, above a card that reaches there. */
-function scale_insets(main: HTMLElement | null): Insets {
-  const none = { left: 0, top: 0, right: 0, bottom: 22 };
-  if (!main) return none;
-  const box = main.getBoundingClientRect();
-  const card = main.querySelector(".explain")?.getBoundingClientRect();
-  if (card && card.right > box.right - 190) none.bottom = box.bottom - card.top + 14;
-  return none;
 }
 
 function Tools(): JSX.Element {
@@ -157,12 +138,12 @@ function Tools(): JSX.Element {
       aria-label="3D view" title="3D (3)" onClick={() => app.ui.set({ three: !three })}>3D</button>
   );
   const layers = <LayerButton class="layers-tool" open={open} on_press={(open) => app.show_layers(open)} />;
-  // In 3D one looks; editing is done from above, where a place is one place.
+  // The 3D view only shows: a pixel there is no single place of the world.
   if (three) return <div class="tools" role="toolbar" aria-label="Tools">{layers}{threed}</div>;
   const button = (name: Tool, label: string, key: string, can: boolean) => can && (
     <button class={tool === name ? "on" : ""} aria-pressed={tool === name}
        aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
-      onClick={() => app.ui.set({ tool: name, selection: null })}>
+      onClick={() => app.pick_tool(name)}>
       {icons[name as "goal"]}
     </button>
   );
@@ -179,10 +160,7 @@ function Tools(): JSX.Element {
         title={redo ? `Do again: ${redo} (Ctrl+Shift+Z)` : "Nothing to do again"}
         onClick={() => void app.redo()}>{icons.redo}</button>}
       <button aria-label="Fit the world into the view" title="Fit (F)" data-testid="fit"
-        onClick={() => {
-          app.view.fitted = true;
-          app.redraw();
-        }}>{icons.fit}</button>
+        onClick={() => app.fit_view()}>{icons.fit}</button>
       {layers}
       {threed}
     </div>

@@ -1,11 +1,12 @@
-// web/src/views/hardware.tsx: real hardware, on every page in words and colour; its devices, and
-// how well the loop keeps its time.
+// web/src/views/hardware.tsx: real hardware: the bar that every view shows, its devices, and how well
+// the loop keeps its period.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
+import { Facts } from "../ui/controls";
 import { titled, watchers_words } from "../words";
 
-/** A bar under the top bar. Says what keeps the wheels still, or that they may turn; arms the motors. */
+/** A bar under the top bar: why the wheels stand still, or that they may turn, and the Arm button. */
 export function HardwareBar(): JSX.Element | null {
   const { session } = use_ui("session");
   const hardware = session?.hardware;
@@ -22,7 +23,7 @@ export function HardwareBar(): JSX.Element | null {
   );
 }
 
-/** Nothing moves before somebody has pressed it. */
+/** The robot cannot move before someone has pressed it. */
 function ArmButton({ armed }: { armed: boolean }): JSX.Element {
   const app = use_app();
   return (
@@ -33,7 +34,7 @@ function ArmButton({ armed }: { armed: boolean }): JSX.Element {
   );
 }
 
-/** The System view's card of them. */
+/** A card of the System view. */
 export function Devices(props: { hardware: HardwareInfo }): JSX.Element {
   const h = props.hardware;
   return (
@@ -66,10 +67,7 @@ function Device(props: { device: DeviceInfo }): JSX.Element {
         <b>{titled(d.name)}</b> {d.port}<br />{d.sentence}
       </p>
       {d.remarks.map((r) => <p key={r} class="device-words tone-warn">{r}</p>)}
-      <dl class="facts-list">
-        {Object.entries(d.facts).map(([name, value]) =>
-          <div key={name}><dt>{titled(name)}</dt><dd class="num">{value}</dd></div>)}
-      </dl>
+      <Facts rows={Object.entries(d.facts).map(([name, value]) => [titled(name), value])} />
     </div>
   );
 }

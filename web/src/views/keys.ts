@@ -1,9 +1,10 @@
-// web/src/views/keys.ts: the keyboard of the Drive view. Space stops from everywhere but a text
-// field; the rest acts on the tool and the selection.
+// web/src/views/keys.ts: the keyboard. Space stops everywhere but in a text field; the other keys act
+// on the view, the tool and the selection.
 import { App } from "../app";
-import { add_edit, move_edit, new_box, new_cylinder, remove_edit } from "../edit/edits";
-import { Pose, wrap_angle } from "../geometry";
-import { Obstacle, obstacle_title } from "../obstacle";
+import { kUsualRadius, kUsualSide, move_edit, new_box, new_cylinder, remove_edit, round_cm } from "../edit/edits";
+import { Point, radians, wrap_angle } from "../geometry";
+import { obstacle_title } from "../obstacle";
+import { use_listener } from "../state/store";
 import type { Hand } from "./drive";
 
 const kArrows: Record<string, [number, number]> = {
@@ -11,9 +12,10 @@ const kArrows: Record<string, [number, number]> = {
 };
 const kStep = 0.1;      // [m]
 const kFineStep = 0.01; // [m]
-const kTurn = (5 * Math.PI) / 180;
+const kTurn = radians(5);
+const kStepKeys = [".", ","]; // one tick on, one tick back
 
-/** Whether typing belongs to the element in focus. */
+/** Whether the element in focus takes typed characters. */
 export function typing(target: EventTarget | null): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target instanceof HTMLInputElement) return !["range", "radio", "checkbox"].includes(target.type);
@@ -21,33 +23,54 @@ export function typing(target: EventTarget | null): boolean {
 }
 
 /** Space is Stop in every view, and never a toggle. */
-export function stop_key(app: App): (e: KeyboardEvent) => void {
-  return (e) => {
-    if (e.code !== "Space" || typing(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
-    e.preventDefault(); // a button in focus is pressed with Enter
-    if (e.type === "keydown" && !e.repeat) app.stop();
-  };
+export function stop_key(app: App, e: KeyboardEvent): void {
+  if (e.code !== "Space" || typing(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
+  e.preventDefault(); // a button in focus is pressed with Enter
+  if (e.type === "keydown" && !e.repeat) app.stop();
 }
 
-export function scene_keys(app: App, hand: Hand): {
-  window: (e: KeyboardEvent) => void; canvas: (e: KeyboardEvent) => void;
-} {
+/** Listens to single keys, by name, while the component is shown. A key held down repeats a step only. */
+export function use_keys(acts: Record<string, () => void>): void {
+  use_listener("keydown", (e) => {
+    if (e.ctrlKey || e.metaKey || e.altKey || !hears(e)) return;
+    const act = acts[e.key.toLowerCase()];
+    if (!act || (e.repeat && !kStepKeys.includes(e.key))) return;
+    e.preventDefault();
+    act();
+  });
+}
+
+/** A dialog and a text field keep their keys. */
+function hears(e: KeyboardEvent): boolean {
+  return !typing(e.target) && !document.querySelector("dialog[open]");
+}
+
+/** The keys of the Drive view, wherever the focus is. */
+export function use_scene_keys(app: App, hand: Hand): void {
   const set = app.ui.set.bind(app.ui);
-  const simple: Record<string, () => void> = {
+  use_listener("keydown", (e) => {
+    const key = e.key.toLowerCase();
+    const control = e.ctrlKey || e.metaKey;
+    if (!hears(e)) return;
+    if (control && (key === "z" || key === "y")) {
+      e.preventDefault();
+      void (key === "y" || e.shiftKey ? app.redo() : app.undo());
+    } else if (e.key in kArrows && !control && !e.altKey && moves_selection(app, e)) {
+      e.preventDefault();
+    }
+  });
+  use_keys({
     p: () => void app.toggle_play(),
     ".": () => void app.step(),
-    v: () => set({ tool: "pan", selection: null }),
-    g: () => set({ tool: "goal", selection: null }),
-    c: () => set({ tool: "cylinder", selection: null }),
-    b: () => set({ tool: "box", selection: null }),
-    m: () => set({ tool: "measure", selection: null }),
+    v: () => app.pick_tool("pan"),
+    g: () => app.pick_tool("goal"),
+    c: () => app.pick_tool("cylinder"),
+    b: () => app.pick_tool("box"),
+    m: () => app.pick_tool("measure"),
     n: () => select_next(app),
     l: () => app.show_layers(!app.ui.value.layers),
     "3": () => set({ three: !app.ui.value.three }),
-    f: () => {
-      app.view.fitted = true;
-      app.redraw();
-    },
+    f: () => app.fit_view(),
     "+": () => zoom(app, 1.25),
     "=": () => zoom(app, 1.25),
     "-": () => zoom(app, 0.8),
@@ -61,64 +84,37 @@ export function scene_keys(app: App, hand: Hand): {
       set({ selection: null, sheet: false, preview: null });
       app.redraw();
     },
-  };
-  const window_key = (e: KeyboardEvent) => {
-    if (typing(e.target) || document.querySelector("dialog[open]")) return;
-    if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "z") {
-      e.preventDefault();
-      void (e.shiftKey ? app.redo() : app.undo());
-      return;
-    }
-    if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "y") {
-      e.preventDefault();
-      void app.redo();
-      return;
-    }
-    if (e.ctrlKey || e.metaKey || e.altKey) return;
-    if (e.key in kArrows && moves_selection(app, e)) {
-      e.preventDefault();
-      return;
-    }
-    const act = simple[e.key.toLowerCase()];
-    if (!act || (e.repeat && e.key !== ".")) return;
-    e.preventDefault();
-    act();
-  };
-  // On the scene itself, with nothing selected, arrows lead a crosshair and Enter places.
-  const canvas_key = (e: KeyboardEvent) => {
-    if (e.key in kArrows && !app.ui.value.selection) {
-      const c = hand.draft.cursor ?? { x: round(app.view.x), y: round(app.view.y) };
-      const [dx, dy] = kArrows[e.key];
-      const step = e.shiftKey ? kFineStep : kStep;
-      hand.draft = { cursor: { x: round(c.x + dx * step), y: round(c.y + dy * step) } };
-      const at = hand.draft.cursor!;
-      app.say(`${at.x.toFixed(2)}, ${at.y.toFixed(2)} metres`);
-      app.redraw();
-      e.preventDefault();
-      e.stopPropagation();
-    } else if (e.key === "Enter" && hand.draft.cursor) {
-      place(app, hand.draft.cursor);
-      hand.draft = {};
-      app.redraw();
-      e.preventDefault();
-      e.stopPropagation();
-    }
-  };
-  return { window: window_key, canvas: canvas_key };
+  });
 }
 
-function round(v: number): number {
-  return Math.round(v * 100) / 100;
+/** On the scene itself, with nothing selected, arrows move a crosshair and Enter places an object there. */
+export function crosshair_key(app: App, hand: Hand, e: KeyboardEvent): void {
+  const { cursor } = hand.draft;
+  if (e.key in kArrows && !app.ui.value.selection) {
+    const at = stepped(cursor ?? app.view, e);
+    hand.draft = { cursor: at };
+    app.say(`${at.x.toFixed(2)}, ${at.y.toFixed(2)} metres`);
+  } else if (e.key === "Enter" && cursor) {
+    place(app, cursor);
+    hand.draft = {};
+  } else {
+    return;
+  }
+  app.redraw();
+  e.preventDefault();
+  e.stopPropagation();
+}
+
+/** `from` one step further by the arrow key of `e`. */
+function stepped(from: Point, e: KeyboardEvent): Point {
+  const [dx, dy] = kArrows[e.key];
+  const step = e.shiftKey ? kFineStep : kStep;
+  return { x: round_cm(from.x + dx * step), y: round_cm(from.y + dy * step) };
 }
 
 function zoom(app: App, factor: number): void {
   app.view.zoom_at(app.view.width / 2, app.view.height / 2, factor);
   app.redraw();
-}
-
-function selected_obstacle(app: App): Obstacle | null {
-  const s = app.ui.value.selection;
-  return s?.kind === "obstacle" ? app.scene.obstacles.find((o) => o.id === s.id) ?? null : null;
 }
 
 /** The goal, then each obstacle, then nothing. */
@@ -135,42 +131,38 @@ function select_next(app: App): void {
     app.ui.set({ selection: next === undefined ? null : { kind: "obstacle", id: next } });
   }
   const now = app.ui.value.selection;
-  const obstacle = selected_obstacle(app);
+  const obstacle = app.selected_obstacle;
   app.say(obstacle ? `${obstacle_title(obstacle)} selected` : now ? "Goal selected" : "Nothing selected");
 }
 
 function moves_selection(app: App, e: KeyboardEvent): boolean {
-  const [dx, dy] = kArrows[e.key];
-  const step = e.shiftKey ? kFineStep : kStep;
   const s = app.ui.value.selection;
   // A slider or a list in focus keeps its arrows.
   const focus = document.activeElement;
   if (focus && focus !== document.body && !(focus instanceof HTMLCanvasElement)) return false;
   const g = app.shown_goal;
   if (s?.kind === "goal" && g) {
-    app.want_goal({ ...g, x: round(g.x + dx * step), y: round(g.y + dy * step) });
+    app.want_goal({ ...g, ...stepped(g, e) });
     return true;
   }
-  const o = selected_obstacle(app);
+  const o = app.selected_obstacle;
   if (!o || !app.ui.value.session?.robot.editable) return false;
-  void app.edit(move_edit(o.id, o.pose,
-    { ...o.pose, x: round(o.pose.x + dx * step), y: round(o.pose.y + dy * step) }));
+  void app.edit(move_edit(o.id, o.pose, { ...o.pose, ...stepped(o.pose, e) }));
   return true;
 }
 
 function turn(app: App, by: number): void {
-  const turned = (pose: Pose): Pose => ({ ...pose, heading: wrap_angle(pose.heading + by) });
-  const o = selected_obstacle(app);
+  const o = app.selected_obstacle;
+  const g = app.shown_goal;
   if (o) {
-    void app.edit(move_edit(o.id, o.pose, turned(o.pose)));
-  } else if (app.ui.value.selection?.kind === "goal" && app.shown_goal) {
-    const g = app.shown_goal;
+    void app.edit(move_edit(o.id, o.pose, { ...o.pose, heading: wrap_angle(o.pose.heading + by) }));
+  } else if (app.ui.value.selection?.kind === "goal" && g) {
     app.want_goal({ ...g, heading: wrap_angle((g.heading ?? 0) + by) });
   }
 }
 
 function remove_selected(app: App): void {
-  const o = selected_obstacle(app);
+  const o = app.selected_obstacle;
   if (o && app.ui.value.session?.robot.editable) void app.edit(remove_edit(o));
   else if (app.ui.value.selection?.kind === "goal" && app.shown_goal) {
     app.want_goal(null);
@@ -178,19 +170,13 @@ function remove_selected(app: App): void {
   }
 }
 
-function place(app: App, at: { x: number; y: number }): void {
+function place(app: App, at: Point): void {
   const { tool, session } = app.ui.value;
   if (tool === "goal" && session?.robot.drives) {
     app.want_goal({ ...at, heading: null });
   } else if (tool === "cylinder" && session?.robot.editable) {
-    add(app, new_cylinder(at.x, at.y, 0.3));
+    void app.add(new_cylinder(at.x, at.y, kUsualRadius));
   } else if (tool === "box" && session?.robot.editable) {
-    add(app, new_box(at.x, at.y, 0.6, 0.6));
+    void app.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
   }
-}
-
-function add(app: App, obstacle: Obstacle): void {
-  void app.edit(add_edit(obstacle)).then((answer) => {
-    if (answer?.id !== undefined) app.ui.set({ selection: { kind: "obstacle", id: answer.id } });
-  });
 }

@@ -1,9 +1,11 @@
-// web/src/views/lanes.tsx: the signals of a stored run over its whole time, with a cursor; a second
-// run's in the second colour.
+// web/src/views/lanes.tsx: the signals of a stored run over its whole time, with a cursor. A second run
+// has the second colour.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
+import { use_ui } from "../app";
 import { StoredRun } from "../link/stored";
-import { Plot, gapped, resampled } from "../plots/plot";
+import { Plot, every, gapped, resampled } from "../plots/plot";
+import { use_latest } from "../state/store";
 import { Pick } from "../ui/controls";
 import { fixed } from "../words";
 import { measure_words } from "./signals";
@@ -16,9 +18,11 @@ const kLanes: Lane[] = [
 ];
 const kMostPoints = 2000;
 
-export function Lanes(props: {
-  run: StoredRun; other: StoredRun | null; time: number; theme: string; on_pick: (t: number) => void;
-}): JSX.Element {
+interface LanesProps {
+  run: StoredRun; other: StoredRun | null; time: number; on_pick: (t: number) => void;
+}
+
+export function Lanes(props: LanesProps): JSX.Element {
   const [picked, pick] = useState<string | null>(null);
   const { measures } = props.run.columns;
   const measure = measures.find((m) => m.name === picked) ?? measures.at(0);
@@ -26,7 +30,7 @@ export function Lanes(props: {
   if (measure) {
     const words = measures.map(({ name }) => measure_words(name));
     const choices = words.map(({ of, label }, i) => ({
-      value: measures[i].name,
+      name: measures[i].name,
       label: words.some((other, k) => k !== i && other.label === label) ? `${of}: ${label.toLowerCase()}` : label,
     }));
     rows.push([{ name: measure.name, column: measure.name, unit: measure.unit, least: [0, 0.2], digits: 2 },
@@ -41,29 +45,23 @@ export function Lanes(props: {
   );
 }
 
-function LaneRow(props: {
-  lane: Lane; title?: JSX.Element; run: StoredRun; other: StoredRun | null; time: number; theme: string;
-  on_pick: (t: number) => void;
-}): JSX.Element {
+function LaneRow(props: LanesProps & { lane: Lane; title?: JSX.Element }): JSX.Element {
   const { lane, run, other } = props;
+  const { theme } = use_ui("theme");
   const box = useRef<HTMLDivElement>(null);
   const plot = useRef<Plot | null>(null);
-  const pick = useRef(props.on_pick);
-  pick.current = props.on_pick;
+  const pick = use_latest(props.on_pick);
   useEffect(() => {
     const lines = [{ label: lane.name, colour: "accent" as const, width: 1.8 }];
     const both = other ? [...lines, { label: "second", colour: "elastic" as const, width: 1.8 }] : lines;
     plot.current = new Plot(box.current!, both, 46, lane.least, (t) => pick.current(t));
     return () => plot.current?.destroy();
   }, []);
-  useEffect(() => plot.current?.theme(), [props.theme]);
+  useEffect(() => plot.current?.theme(), [theme]);
   useEffect(() => {
     const t = thinned(run, "t");
-    const columns: ArrayLike<number | null>[] = [t, gapped(thinned(run, lane.column))];
-    if (other) {
-      columns.push(resampled(t, other.columns.get("t"), other.columns.get(lane.column)));
-    }
-    plot.current?.update(columns, 0, run.duration, props.time);
+    const second = other ? [resampled(t, other.columns.get("t"), other.columns.get(lane.column))] : [];
+    plot.current?.update([t, gapped(thinned(run, lane.column)), ...second], 0, run.duration, props.time);
   });
   const row = run.columns.row_at(props.time);
   const value = run.rows > 0 ? run.columns.at(lane.column, row) : null;
@@ -79,6 +77,5 @@ function LaneRow(props: {
 /** A column of the run with no more points than a screen can show. */
 function thinned(run: StoredRun, column: string): Float64Array {
   const all = run.columns.get(column);
-  const step = Math.max(1, Math.ceil(all.length / kMostPoints));
-  return step === 1 ? all.slice() : all.filter((_, i) => i % step === 0);
+  return every(all, Math.ceil(all.length / kMostPoints));
 }

@@ -3,7 +3,7 @@
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
-import { Catalog, Choice, ParameterInfo, SessionState } from "../contract";
+import { Catalog, ParameterInfo, SessionState } from "../contract";
 import { goal_distance } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
 import { Pick, Segments, Slider } from "../ui/controls";
@@ -43,7 +43,7 @@ function Figure(props: { label: string; value: string; unit: string; name: strin
   );
 }
 
-/** Everything of the panel below the figures; on a phone it lies in a sheet. */
+/** The panel below the figures; on a phone it is a sheet. */
 export function Tuning(): JSX.Element {
   const { session, catalog } = use_ui("session", "catalog");
   if (!session || !catalog) {
@@ -68,39 +68,35 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
     <section>
       {session.robot.drives && <>
         <h2>Controller</h2>
-        {catalog.controllers.length <= 3
-          ? <Segments label="Controller" name="controller" choices={catalog.controllers}
-              value={session.controller} disabled={loading}
-              on_pick={(name) => void app.load({ controller: name })} />
-          : <Pick label="Controller" name="controller" choices={options(catalog.controllers)}
-              value={session.controller} disabled={loading} class="wide-pick"
-              on_pick={(name) => void app.load({ controller: name })} />}
+        <Pick label="Controller" name="controller" choices={catalog.controllers}
+          value={session.controller} disabled={loading} class="wide-pick"
+          on_pick={(controller) => void app.load({ controller })} />
         {controller?.help && <p class="help">{controller.help}</p>}
       </>}
       {!session.robot.drives && <h2>Filter</h2>}
-      <Segments label="Filter" name="filter" choices={short(catalog.filters)} value={session.filter}
-        disabled={loading} on_pick={(name) => void app.load({ filter: name })} />
+      <Segments label="Filter" name="filter" choices={catalog.filters} value={session.filter}
+        disabled={loading} on_pick={(filter) => void app.load({ filter })} />
       {session.robot.drives && session.source === "simulation" &&
         <Segments label="Physics" name="physics" choices={catalog.physics} value={session.physics}
-          disabled={loading} on_pick={(name) => void app.load({ physics: name })} />}
+          disabled={loading} on_pick={(physics) => void app.load({ physics })} />}
     </section>
   );
 }
 
-/** The robot models; one whose file does not read is listed with why, and cannot be chosen. */
+/** The robot models. A model whose file cannot be read is listed with the reason, and cannot be chosen. */
 function RobotPick(props: { session: SessionState }): JSX.Element | null {
   const app = use_app();
   const loading = use_store(app.ui, (u) => u.loading) !== null;
   const { robots } = use_ui("robots");
   const name = props.session.robot.name;
   if (robots.length === 0) return null;
-  const choices = robots.filter((r) => r.usable).map((r) => ({ value: r.name, label: r.title }));
-  const known = choices.some((c) => c.value === name);
+  const choices = robots.filter((r) => r.usable).map((r) => ({ name: r.name, label: r.title }));
+  const known = choices.some((c) => c.name === name);
   const help = robots.find((r) => r.name === name)?.description;
   return (
     <section>
       <h2>Robot</h2>
-      <Pick label="Robot" name="robot" choices={known ? choices : [{ value: name, label: titled(name) }, ...choices]}
+      <Pick label="Robot" name="robot" choices={known ? choices : [{ name, label: titled(name) }, ...choices]}
         value={name} disabled={loading} class="wide-pick" on_pick={(robot) => void app.load({ robot })} />
       {help && <p class="help">{help}</p>}
       {robots.filter((r) => !r.usable).map((r) => <p key={r.name} class="help bad" role="note">{r.description}</p>)}
@@ -108,23 +104,13 @@ function RobotPick(props: { session: SessionState }): JSX.Element | null {
   );
 }
 
-function options(choices: Choice[]): { value: string; label: string }[] {
-  return choices.map((c) => ({ value: c.name, label: c.label || titled(c.name) }));
-}
-/** "none" reads better as what it does. */
-function short(filters: Choice[]): Choice[] {
-  return filters.map((f) => (f.name === "none" ? { ...f, label: "None" } : f));
-}
+const kShown = 4; // gains at first; a button shows the others
 
-const kShown = 4; // gains at once; the others on demand
-
-/** The parameters that the chosen controller reads, its own first, then those that always count. */
+/** The parameters that controller `name` reads: its own, then the common ones. */
 function read_by(catalog: Catalog, name: string): ParameterInfo[] {
-  const own = catalog.controllers.find((c) => c.name === name)?.parameters;
-  if (!own) return catalog.parameters;
-  const wanted = [...own, ...(catalog.common_parameters ?? [])];
-  return wanted.map((key) => catalog.parameters.find((p) => p.name === key))
-    .filter((p): p is ParameterInfo => p !== undefined);
+  const own = catalog.controllers.find((c) => c.name === name)?.parameters ?? [];
+  return [...own, ...catalog.common_parameters].map((key) => catalog.parameters.find((p) => p.name === key))
+    .filter((p) => p !== undefined);
 }
 
 function Gains(props: { session: SessionState; catalog: Catalog }): JSX.Element {
@@ -153,15 +139,11 @@ function Gain(props: { info: ParameterInfo; session: SessionState }): JSX.Elemen
     <Slider info={info} value={session.parameters[info.name] ?? info.initial}
       usual={own?.[info.name] ?? info.initial}
       on_set={async (value) => {
-        const held = await app.link.set_parameter(info.name, value).catch((error) => {
-          app.toast("warn", String(error.message));
-          throw error;
-        });
+        const held = await app.attempt(app.link.set_parameter(info.name, value));
         const now = app.ui.value.session;
-        if (now) {
+        if (now && held !== null) {
           app.ui.set({ session: { ...now, parameters: { ...now.parameters, [info.name]: held } } });
         }
-        return held;
       }} />
   );
 }

@@ -1,27 +1,29 @@
-// web/src/views/run_detail.tsx: one stored run: scene, time, lanes, metrics, and a second run
-// laid over it.
+// web/src/views/run_detail.tsx: one stored run: scene, time, lanes, metrics, and a second run drawn
+// over it.
 import { JSX } from "preact";
-import { useEffect, useMemo, useReducer, useRef, useState } from "preact/hooks";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { Metrics, RunItem } from "../contract";
 import { Ghost } from "../draw/scene";
 import { Insets, View } from "../draw/view";
 import { Gestures } from "../edit/gestures";
-import { Bounds, include } from "../geometry";
+import { Bounds, Pose, include } from "../geometry";
 import { Player } from "../link/player";
 import * as rest from "../link/rest";
 import { FetchFrames, StoredRun } from "../link/stored";
 import { scene_bounds } from "../state/scene";
-import { SceneCanvas } from "../ui/canvas";
+import { use_redraw } from "../state/store";
+import { SceneCanvas, scale_insets } from "../ui/canvas";
 import { Dialog, Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
 import { clock, driver_word, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
+import { Sentence } from "./cards";
 import { Lanes } from "./lanes";
 import { LayerButton, LayerPanel, panel_cover, use_filtered } from "./layers";
-import { typing } from "./keys";
+import { use_keys } from "./keys";
 
-/** Fetches a run's row and then its frames; tells `changed` as they come. */
+/** Fetches the row of a run and then its frames; calls `changed` for every page of them. */
 function use_stored(id: number | null, changed: () => void): { run: StoredRun | null; problem: string | null } {
   const [run, set_run] = useState<StoredRun | null>(null);
   const [problem, set_problem] = useState<string | null>(null);
@@ -32,9 +34,7 @@ function use_stored(id: number | null, changed: () => void): { run: StoredRun | 
     const stop = new AbortController();
     const begin = async () => {
       const item = await rest.get<RunItem>(`/runs/${id}`, stop.signal);
-      const pages = (what: string): FetchFrames => (from, limit, signal) =>
-        rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
-      const stored = new StoredRun(item, pages("frames"), pages("filtered"));
+      const stored = new StoredRun(item, frames_of(id, "frames"), frames_of(id, "filtered"));
       set_run(stored);
       await stored.load(changed, stop.signal);
     };
@@ -50,7 +50,7 @@ export function RunDetail(props: {
   id: number; compare: number | null; on_gone: () => void; on_uncompare: () => void;
 }): JSX.Element {
   const app = use_app();
-  const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
+  const redraw_controls = use_redraw();
   const first = use_stored(props.id, redraw_controls);
   const second = use_stored(props.compare, redraw_controls);
   if (!first.run) {
@@ -71,9 +71,9 @@ function Opened(props: {
   run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
 }): JSX.Element {
   const { run, other } = props;
-  const { theme, hidden, force_scale } = use_ui("theme", "hidden", "force_scale");
+  const { hidden, force_scale } = use_ui("hidden", "force_scale");
   const [layers, set_layers] = useState(false);
-  const [, redraw_controls] = useReducer((n: number, _: void) => n + 1, 0);
+  const redraw_controls = use_redraw();
   const redraw = useRef<() => void>(() => undefined);
   const frame = useRef<HTMLElement>(null);
   const view = useMemo(() => new View(), [run]);
@@ -115,24 +115,13 @@ function Opened(props: {
     return () => cancelAnimationFrame(frame);
   }, [player]);
 
-  useEffect(() => {
-    const key = (e: KeyboardEvent) => {
-      if (typing(e.target) || e.ctrlKey || e.metaKey || document.querySelector("dialog[open]")) return;
-      const acts: Record<string, () => void> = {
-        p: () => player.toggle(), ".": () => player.step(1), ",": () => player.step(-1),
-        f: () => {
-          view.fitted = true;
-          redraw.current();
-        },
-      };
-      const act = acts[e.key.toLowerCase()];
-      if (!act) return;
-      e.preventDefault();
-      act();
-    };
-    addEventListener("keydown", key);
-    return () => removeEventListener("keydown", key);
-  }, [player, view]);
+  use_keys({
+    p: () => player.toggle(), ".": () => player.step(1), ",": () => player.step(-1),
+    f: () => {
+      view.fitted = true;
+      redraw.current();
+    },
+  });
 
   const ghost = (): Ghost | null => other && {
     columns: other.columns, rows: other.columns.row_at(player.time) + 1,
@@ -148,14 +137,14 @@ function Opened(props: {
     <>
       <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
       <section class="view" ref={frame} aria-busy={!run.done && !run.error} aria-label={`Run ${run.item.id}`} data-testid="run-view">
-        <SceneCanvas scene={run.scene} view={view} gestures={gestures} theme={theme} cursor="pan"
+        <SceneCanvas scene={run.scene} view={view} gestures={gestures} cursor="pan"
           label={`Run ${run.item.id} from above`} bounds={bounds}
-          insets={() => free_insets(frame.current)}
+          insets={() => free_insets(frame.current!)}
           on_ready={(request) => (redraw.current = request)}
           overlay={() => ({
             selection: null, hovered: null, draft: {}, force_scale,
-            hidden, ghost: ghost(), future: true, insets: scale_insets(frame.current),
-            path_colour: other ? getComputedStyle(document.documentElement).getPropertyValue("--accent").trim() : undefined,
+            hidden, ghost: ghost(), future: true, insets: scale_insets(frame.current!),
+            path: other ? "accent" : undefined,
           })} />
         <LayerButton class="icon layers-tool" open={layers} on_press={set_layers} />
         <Instant run={run} />
@@ -175,15 +164,14 @@ function Opened(props: {
           <Timeline time={player.time} end={run.duration} loaded={run.progress} events={run.events.list}
             on_seek={(t) => player.seek(t)} />
           <Pick label="Speed" name="run-speed" value={String(player.speed)}
-            choices={[0.25, 0.5, 1, 2, 4, 8, 16].map((s) => ({ value: String(s), label: speed_word(s) }))}
+            choices={[0.25, 0.5, 1, 2, 4, 8, 16].map((s) => ({ name: String(s), label: speed_word(s) }))}
             on_pick={(v) => {
               player.speed = Number(v);
               redraw_controls();
             }} />
         </div>
         {run.error && <p class="problem" role="alert">The rest of this run could not be fetched: {run.error}</p>}
-        <Lanes run={run} other={other} time={player.time} theme={theme}
-          on_pick={(t) => player.seek(t)} />
+        <Lanes run={run} other={other} time={player.time} on_pick={(t) => player.seek(t)} />
       </section>
     </>
   );
@@ -194,32 +182,18 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
   const f = props.run.scene.frame;
   if (!f) return null;
   const said = props.run.scene.words ?? { what: frame_word(f).word, why: "" };
-  return (
-    <div class={`card explain tone-${f.hold !== "none" ? "bad" : "accent"}`} data-testid="run-explain">
-      <b>{props.run.scene.world ? said.what : "Replaying the log"}</b>
-      {said.why && <span>{said.why}</span>}
-    </div>
-  );
+  return <Sentence name="run-explain" what={props.run.scene.world ? said.what : "Replaying the log"} why={said.why}
+    tone={f.hold !== "none" ? "bad" : "accent"} />;
 }
 
-/** What the sentence, the button at the upper right and the panel of layers leave free. */
-function free_insets(view: HTMLElement | null): Insets {
-  if (!view) return { left: 20, top: 20, right: 20, bottom: 20 };
+/** The margins that the sentence, the button at the upper right and the layer panel cover. */
+function free_insets(view: HTMLElement): Insets {
   const card = view.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
   const button = view.querySelector(".layers-tool")?.getBoundingClientRect().height ?? 0;
-  const high = view.clientHeight > view.clientWidth; // there is more room above than beside
+  const high = view.clientHeight > view.clientWidth; // then the button takes room above, else beside
   return {
     left: 20, top: 20 + (high ? button : 0), right: 20 + (panel_cover(view) || (high ? 0 : button)), bottom: card + 24,
   };
-}
-
-/** The scale bar stands at the lower right, above the sentence where that reaches there. */
-function scale_insets(view: HTMLElement | null): Insets {
-  const insets = { left: 0, top: 0, right: 0, bottom: 22 };
-  const box = view?.getBoundingClientRect();
-  const card = view?.querySelector(".explain")?.getBoundingClientRect();
-  if (box && card && card.right > box.right - 180) insets.bottom = box.bottom - card.top + 14;
-  return insets;
 }
 
 const kRows: { label: string; unit: string; digits: number; of: (m: Metrics) => number | null }[] = [
@@ -242,18 +216,15 @@ function Facts(props: {
   const has_metrics = runs.some((r) => r.metrics);
   const finished = !["recording", "queued"].includes(item.status);
   const erase = async () => {
-    try {
-      await rest.remove(`/runs/${item.id}`);
+    if (await app.attempt(rest.remove(`/runs/${item.id}`))) {
       app.toast("info", `Run ${item.id} was deleted.`);
       app.go("runs");
       props.on_gone();
-    } catch (error) {
-      app.toast("warn", sentence_of(error));
     }
     set_asking(false);
   };
   return (
-    <section class="facts" aria-label="What came of it" data-testid="facts">
+    <section class="facts" aria-label="Result of the run" data-testid="facts">
       <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
       <b>Run {item.id}</b>
       <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
@@ -284,7 +255,7 @@ function Facts(props: {
         </tbody>
       </table>}
       {asking && <Dialog title={`Delete run ${item.id}?`} name="delete-dialog" on_close={() => set_asking(false)}>
-        <p>Its record goes for good. Other runs stay.</p>
+        <p>This deletes its record for good. Other runs stay.</p>
         <div class="facts-acts">
           <button class="small bad" data-testid="delete-yes" onClick={() => void erase()}>Delete it</button>
           <button class="ghost" onClick={() => set_asking(false)}>Keep it</button>
@@ -294,7 +265,7 @@ function Facts(props: {
   );
 }
 
-/** Hands that may look round but change nothing: a stored run is as it was. */
+/** Gestures that move the view only: nothing changes a stored run. */
 function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
   const nothing = () => undefined;
   return new Gestures({
@@ -304,13 +275,17 @@ function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
   });
 }
 
-function pose_at(run: StoredRun, t: number): { x: number; y: number; heading: number } {
+function frames_of(id: number, what: "frames" | "filtered"): FetchFrames {
+  return (from, limit, signal) => rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
+}
+
+function pose_at(run: StoredRun, t: number): Pose {
   const row = run.columns.row_at(t);
   const at = (c: "x" | "y" | "heading") => run.columns.at(c, row);
   return { x: at("x"), y: at("y"), heading: at("heading") };
 }
 
-/** The whole path is in view from the start, so that nothing jumps while it plays. */
+/** Includes the whole path, so that the view does not jump while the run plays. */
 function widen(b: Bounds, run: StoredRun): void {
   const xs = run.columns.get("x");
   const ys = run.columns.get("y");

@@ -1,9 +1,9 @@
-// web/src/views/signals.tsx: the last seconds of a live run's numbers: what every robot has, and the
-// measures of its controller, by name.
+// web/src/views/signals.tsx: the last seconds of a live run: the signals of every robot, and the
+// measures of its controller by name.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_app, use_ui } from "../app";
-import { Line, Plot, gapped } from "../plots/plot";
+import { Line, Plot, every, gapped } from "../plots/plot";
 import { MeasureKey } from "../state/columns";
 import { use_pulse } from "../state/store";
 import { fixed } from "../words";
@@ -22,7 +22,7 @@ const kSignals: SignalSpec[] = [
       { label: "Turn rate", colour: "path", column: "omega", unit: "rad/s", dash: [5, 3] }] },
 ];
 
-/** A name that says what a colour means has that colour; the others take theirs in turn. */
+/** Measures whose name stands for the meaning of a colour have that colour; the others get one in turn. */
 const kMeaning: Record<string, Pick<Line, "colour" | "dash">> = {
   internal: { colour: "internal" }, elastic: { colour: "elastic" },
   left: { colour: "external" }, right: { colour: "external", dash: [5, 3] },
@@ -88,7 +88,7 @@ function Signal(props: { spec: SignalSpec }): JSX.Element {
       seen = end;
       seen_at = t;
       const from = columns.row_at(t - kWindow);
-      const step = Math.max(1, Math.floor((end - from) / kMostPoints));
+      const step = Math.floor((end - from) / kMostPoints);
       const cut = (column: string) => every(columns.get(column).subarray(from, end), step);
       plot.current!.update([cut("t"), ...lines.map((l) => gapped(cut(l.column)))],
         Math.max(0, t - kWindow), Math.max(t, kWindow), null);
@@ -106,9 +106,7 @@ function Signal(props: { spec: SignalSpec }): JSX.Element {
   }, []);
   useEffect(() => plot.current?.theme(), [theme]);
   const value = (i: number) => (
-    <b class="num" ref={(e) => {
-      if (e) values.current[i] = e;
-    }} />
+    <b class="num" ref={(e) => void (e && (values.current[i] = e))} />
   );
   return (
     <figure class="signal" aria-label={`${name} over the last ${kWindow} seconds`}>
@@ -121,9 +119,4 @@ function Signal(props: { spec: SignalSpec }): JSX.Element {
       </span>}
     </figure>
   );
-}
-
-function every(values: Float64Array, step: number): Float64Array {
-  if (step === 1) return values.slice();
-  return values.filter((_, i) => i % step === 0);
 }

@@ -3,8 +3,8 @@ import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import * as rest from "../link/rest";
-import { Dialog, NumberField, Pick } from "../ui/controls";
-import { sentence_of, titled } from "../words";
+import { Dialog, NumberField, Pick, Problem, use_problem } from "../ui/controls";
+import { titled } from "../words";
 
 const kMostRepeats = 100;
 
@@ -15,13 +15,12 @@ export function StartRun(props: { on_close: () => void; on_started: () => void }
   const [controller, set_controller] = useState(session?.controller ?? "modified");
   const [seed, set_seed] = useState<number | null>(1);
   const [repeats, set_repeats] = useState<number | null>(1);
-  const [problem, set_problem] = useState<string | null>(null);
+  const [problem, attempt] = use_problem();
   const [busy, set_busy] = useState(false);
   const submit = async (e: Event) => {
     e.preventDefault();
     set_busy(true);
-    set_problem(null);
-    try {
+    await attempt(async () => {
       const answer = await rest.post<{ runs: number[] }>("/runs", {
         scenario, controller, seed: Math.max(0, Math.round(seed ?? 1)),
         repeats: Math.min(kMostRepeats, Math.max(1, Math.round(repeats ?? 1))),
@@ -30,9 +29,7 @@ export function StartRun(props: { on_close: () => void; on_started: () => void }
         : `Runs ${answer.runs[0]} to ${answer.runs.at(-1)} are under way.`);
       props.on_started();
       props.on_close();
-    } catch (error) {
-      set_problem(sentence_of(error));
-    }
+    });
     set_busy(false);
   };
   return (
@@ -40,17 +37,17 @@ export function StartRun(props: { on_close: () => void; on_started: () => void }
       <form class="form" noValidate onSubmit={(e) => void submit(e)}>
         <div class="line"><span>Scenario</span>
           <Pick label="Scenario" name="start-scenario" value={scenario} on_pick={set_scenario}
-            choices={scenarios.map((s) => ({ value: s.name, label: titled(s.name) }))} /></div>
+            choices={scenarios.map((s) => ({ name: s.name, label: titled(s.name) }))} /></div>
         <div class="line"><span>Controller</span>
           <Pick label="Controller" name="start-controller" value={controller} on_pick={set_controller}
-            choices={(catalog?.controllers ?? []).map((c) => ({ value: c.name, label: c.label }))} /></div>
+            choices={catalog?.controllers ?? []} /></div>
         <div class="pair">
           <NumberField label="Seed" name="start-seed" value={seed} step={1} min={0} on_change={set_seed} />
           <NumberField label="Repeats" name="start-repeats" value={repeats} step={1} min={1}
             on_change={set_repeats} />
         </div>
-        <p class="quiet">Runs in the background, as fast as it goes. Each repeat takes the next seed.</p>
-        {problem && <p class="problem" role="alert">{problem}</p>}
+        <p class="quiet">Runs in the background, as fast as possible. Each repeat takes the next seed.</p>
+        <Problem text={problem} />
         <button type="submit" class="small primary" disabled={busy} data-testid="start-go">
           {busy ? "Starting" : "Start"}
         </button>

@@ -4,7 +4,8 @@ import { useEffect, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import * as rest from "../link/rest";
 import { use_pulse } from "../state/store";
-import { fixed, link_words, sentence_of, titled, watchers_words } from "../words";
+import { Facts, Problem, use_problem } from "../ui/controls";
+import { fixed, link_words, titled, watchers_words } from "../words";
 import { Devices } from "./hardware";
 import { ShortcutTable } from "./shortcuts";
 
@@ -12,20 +13,16 @@ export function System(): JSX.Element {
   const app = use_app();
   const { session, link, theme } = use_ui("session", "link", "theme");
   const [version, set_version] = useState<Record<string, unknown> | null>(null);
-  const [problem, set_problem] = useState<string | null>(null);
+  const [problem, attempt] = use_problem();
   use_pulse(500);
   useEffect(() => {
-    if (link.phase !== "open") return;
-    rest.get<Record<string, unknown>>("/version").then((v) => {
-      set_version(v);
-      set_problem(null);
-    }, (error) => set_problem(sentence_of(error)));
+    if (link.phase === "open") void attempt(async () => set_version(await rest.get("/version")));
   }, [link.phase]);
   return (
     <main class="system" aria-label="System">
       <section class="card block">
         <h2>Server</h2>
-        {problem && <p class="problem" role="alert">{problem}</p>}
+        <Problem text={problem} />
         <Facts rows={flat_rows(version)} />
       </section>
       <section class="card block">
@@ -41,9 +38,8 @@ export function System(): JSX.Element {
             Use the {theme === "dark" ? "light" : "dark"} theme
           </button>
           <a class="ghost" href="/api/v1/openapi.json" target="_blank" rel="noreferrer">OpenAPI document</a>
-          {version?.signed_in === true && <button class="ghost" data-testid="logout" onClick={() => {
-            app.logout().catch((error) => set_problem(sentence_of(error)));
-          }}>Sign out</button>}
+          {version?.signed_in === true && <button class="ghost" data-testid="logout"
+            onClick={() => void attempt(() => app.logout())}>Sign out</button>}
         </div>
       </section>
       {session?.hardware && <Devices hardware={session.hardware} />}
@@ -71,14 +67,6 @@ export function System(): JSX.Element {
         <p class="quiet">Stop brings the robot to rest by its own brakes. It does not replace an emergency stop.</p>
       </section>
     </main>
-  );
-}
-
-export function Facts(props: { rows: [string, string][] }): JSX.Element {
-  return (
-    <dl class="facts-list">
-      {props.rows.map(([name, value]) => <div key={name}><dt>{name}</dt><dd class="num">{value}</dd></div>)}
-    </dl>
   );
 }
 

@@ -10,7 +10,7 @@ import { clock, speed_word } from "../words";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
 
-/** What is to be said of the record of the live run, after a comma: nothing while all is well. */
+/** A note on the record of the live run, after a comma; empty while it is written as it should be. */
 function record_word(record?: RecordInfo): string {
   const words: Record<string, string> = { paused: ", record rests", full: ", record full",
     failed: ", not recorded", off: ", not recorded" };
@@ -46,7 +46,7 @@ export function Transport(): JSX.Element {
       <span class={`live-words wide ${record_tone(session?.record)}`} title={session?.record?.sentence} data-testid="record-word">
         {session?.source === "replay" ? "from the log" : "live"}{record_word(session?.record)}</span>
       <Pick label="Speed" name="speed" value={String(speed)} disabled={off}
-        choices={speeds.map((s) => ({ value: String(s), label: speed_word(s) }))}
+        choices={speeds.map((s) => ({ name: String(s), label: speed_word(s) }))}
         on_pick={(v) => void app.ask("/speed", { speed: Number(v) })} />
     </div>
   );
