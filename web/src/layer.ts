@@ -1,20 +1,20 @@
-// web/src/layer.ts: what a controller shows, as values of a kind, and those values as shapes in W.
-import { Pose, wrap_angle } from "./geometry";
+// web/src/layer.ts: the layers of a controller: values of a kind, and these values as shapes in W.
+import { Pose, to_parent, wrap_angle } from "./geometry";
 
 export const kLayerKinds =
   ["points", "polyline", "arrows", "circles", "arcs", "grid", "polar", "text"] as const;
 export type LayerKind = (typeof kLayerKinds)[number];
-/** Which meaning a colour has. */
+/** The meaning of a colour. */
 export const kTones = ["accent", "internal", "external", "elastic", "plan", "moving", "muted", "refused", "good"] as const;
 export type Tone = (typeof kTones)[number];
 export const kLayerStyles = ["solid", "dashed", "faint"] as const;
 export type LayerStyle = (typeof kLayerStyles)[number];
 
-/** One thing shown; `values` by kind as telemetry.fbs says. */
+/** One layer; telemetry.fbs says what its `values` are, by kind. */
 export interface LayerView {
-  name: string;    // key of its toggle
+  name: string;    // key of its switch
   label: string;   // for people
-  unit: string;    // of the values that are no positions
+  unit: string;    // of the values other than positions
   kind: LayerKind;
   robot: boolean;  // values are in R, else in W
   tone: Tone;
@@ -26,18 +26,18 @@ export interface LayerView {
   text: string[];    // a line a position
 }
 
-/** Byte of a cell of which nothing is known. */
+/** The byte of an unknown cell. */
 const kUnknownCell = 255;
 
-/** On the ground of W unless the layer says how high. */
+/** A position in W; z is null where the layer gives no height. */
 export interface Place { x: number; y: number; z: number | null }
 
-/** Where the values of `layer` are meant from: the robot's pose, or the origin of W. */
+/** The frame of the layer's values: the robot's pose, or the origin of W. */
 function base_of(layer: LayerView, robot: Pose): Pose {
   return layer.robot ? robot : { x: 0, y: 0, heading: 0 };
 }
 
-/** Calls `each(place, at)` with every position and where it begins in the values, `stride` apart. */
+/** Calls `each` with every position and its index in the values; `more` other values follow each. */
 function each_place(layer: LayerView, robot: Pose, more: number, each: (p: Place, at: number) => void): void {
   const base = base_of(layer, robot);
   const c = Math.cos(base.heading);
@@ -69,13 +69,11 @@ export function lines(layer: LayerView, robot: Pose): Place[][] {
 /** Arrows: from a place, by a vector in W. */
 export function arrows(layer: LayerView, robot: Pose): { at: Place; by: Place }[] {
   const out: { at: Place; by: Place }[] = [];
-  const { heading } = base_of(layer, robot);
-  const c = Math.cos(heading);
-  const s = Math.sin(heading);
+  const turn = { x: 0, y: 0, heading: base_of(layer, robot).heading };
   const { values, axes } = layer;
   each_place(layer, robot, axes, (at, i) => {
-    const [dx, dy] = [values[i + axes], values[i + axes + 1]];
-    out.push({ at, by: { x: c * dx - s * dy, y: s * dx + c * dy, z: axes > 2 ? values[i + axes + 2] : 0 } });
+    const by = to_parent(turn, values[i + axes], values[i + axes + 1]);
+    out.push({ at, by: { ...by, z: axes > 2 ? values[i + axes + 2] : 0 } });
   });
   return out;
 }
@@ -85,6 +83,11 @@ export function circles(layer: LayerView, robot: Pose): { at: Place; radius: num
   each_place(layer, robot, 1, (at, i) => out.push({ at, radius: layer.values[i + layer.axes] }));
   return out;
 }
+
+/** Sizes that both views draw alike. */
+export const kRing = 0.1;    // [m] from the hull to the foot of a polar
+export const kTallest = 0.5; // [m] of a sector at twice the level and above
+export const kAlpha: Record<LayerStyle, number> = { solid: 1, dashed: 1, faint: 0.4 };
 
 const kArcPoints = 8; // corners of an arc
 
@@ -105,28 +108,25 @@ export function arcs(layer: LayerView, robot: Pose): Place[][] {
   return out;
 }
 
-/** A grid's place: the outer corner of its first cell and the way its rows lie, in W. */
-interface GridPlace { corner: Pose; cell: number; columns: number }
-export function grid_place(layer: LayerView, robot: Pose): GridPlace | null {
+/** A grid in W: the outer corner of its first cell, with the heading of its rows, and its cells' edge [m]. */
+export function grid_place(layer: LayerView, robot: Pose): { corner: Pose; cell: number; columns: number } | null {
   const [x, y, cell, columns] = layer.values;
   if (!(cell > 0) || !(columns >= 1)) return null;
   const base = base_of(layer, robot);
-  const c = Math.cos(base.heading);
-  const s = Math.sin(base.heading);
-  return { corner: { x: base.x + c * x - s * y, y: base.y + s * x + c * y, heading: base.heading }, cell, columns };
+  return { corner: { ...to_parent(base, x, y), heading: base.heading }, cell, columns };
 }
 
-const kEven = 127;        // as likely free as occupied
+const kEven = 127;        // the byte of a cell that is as likely free as occupied
 export const kGrades = 6; // shades of occupied cells
 
-/** 0 .. kGrades - 1: how surely a cell is occupied; -1 when it is not. */
+/** 0 .. kGrades - 1: the shade of a cell that is likely occupied; -1 for the others. */
 export function grade_of(cell: number): number {
   if (cell === kUnknownCell || cell <= kEven) return -1;
   return Math.floor(((cell - kEven) * kGrades) / (kUnknownCell - kEven));
 }
 
-/** The sectors of a polar about the robot that something is in: bearings in W, height 0 .. 1. */
-export interface Sector { from: number; to: number; height: number; free: boolean }
+/** A sector of a polar with a density above 0: bearings in W, height 0 .. 1. */
+interface Sector { from: number; to: number; height: number; free: boolean }
 export function sectors(layer: LayerView, robot: Pose): Sector[] {
   const { values, level } = layer;
   if (!(level > 0)) return [];

@@ -1,10 +1,11 @@
-// web/src/draw/layers.ts: what a controller shows, from above: a drawing for each kind of layer.
+// web/src/draw/layers.ts: the layers of a controller from above: a drawing for each kind.
 import { Point, Pose } from "../geometry";
 import {
-  LayerKind, LayerStyle, LayerView, arcs, arrows, circles, grade_of, grid_place, kGrades, lines, places, sectors,
+  LayerKind, LayerView, arcs, arrows, circles, grade_of, grid_place, kGrades, kRing, kTallest, kAlpha, lines, places,
+  sectors,
 } from "../layer";
 import { is_scaled, kTokens } from "../state/layers";
-import { Context, arrow, trace } from "./marks";
+import { Context, arrow, circle, trace } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
@@ -19,10 +20,7 @@ interface Canvas {
 }
 type Draw = (c: Canvas, layer: LayerView, colour: string) => void;
 
-const kFew = 3;         // points up to which each is large, and a line has no room to bend
-const kRing = 0.1;      // [m] from the hull to a polar's foot
-const kTallest = 0.5;   // [m] of a sector at twice the level and above
-const kAlpha: Record<LayerStyle, number> = { solid: 1, dashed: 1, faint: 0.4 };
+const kFew = 3; // up to so many points each is large, and a line has no room to bend
 
 function draw_points(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view, palette } = c;
@@ -43,14 +41,13 @@ function draw_points(c: Canvas, layer: LayerView, colour: string): void {
   g.strokeStyle = palette.bg;
   g.lineWidth = tied ? 2 : large ? 1.5 : 0.75;
   for (const p of all) {
-    g.beginPath();
-    g.arc(view.sx(p.x), view.sy(p.y), radius, 0, 2 * Math.PI);
+    circle(g, view, p, radius);
     g.fill();
     g.stroke();
   }
 }
 
-/** A solid line bends and has no corners, like a string; a dashed one is not there yet, a dotted one planned. */
+/** A solid line is smooth, like a string. A dashed line is predicted, a dotted one planned. */
 function draw_polyline(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
   g.strokeStyle = colour;
@@ -89,14 +86,13 @@ function draw_circles(c: Canvas, layer: LayerView, colour: string): void {
   g.lineWidth = 2;
   if (layer.style === "dashed") g.setLineDash([5, 6]);
   for (const { at, radius } of circles(layer, c.robot)) {
-    g.beginPath();
-    g.arc(view.sx(at.x), view.sy(at.y), radius * view.scale, 0, 2 * Math.PI);
+    circle(g, view, at, radius * view.scale);
     g.stroke();
   }
   g.setLineDash([]);
 }
 
-/** What is muted are the many others beside the one that counts. */
+/** Muted arcs are the many candidates beside the chosen one. */
 function draw_arcs(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
   const among_many = layer.style === "faint" || layer.tone === "muted";
@@ -111,8 +107,8 @@ function draw_arcs(c: Canvas, layer: LayerView, colour: string): void {
 }
 
 /**
- * Cells more likely occupied than free, the surer the stronger. A path a shade, not a call a cell:
- * there are thousands.
+ * Cells that are more likely occupied than free; the likelier, the darker. One outline for each shade,
+ * as there are thousands of cells.
  */
 function draw_grid(c: Canvas, layer: LayerView, colour: string): void {
   const place = grid_place(layer, c.robot);
@@ -137,7 +133,7 @@ function draw_grid(c: Canvas, layer: LayerView, colour: string): void {
   g.restore();
 }
 
-/** A rose about the robot; sectors from the level up in their own colour. */
+/** Sectors about the robot; those at or above the level in the layer's colour. */
 function draw_polar(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
   const x = view.sx(c.robot.x);
@@ -168,7 +164,7 @@ const kDraw: Record<LayerKind, Draw> = {
   grid: draw_grid, polar: draw_polar, text: draw_text,
 };
 
-/** Leaves the context as it was: nothing else is drawn otherwise for it. */
+/** Draws `layer` and leaves the context as it was. */
 export function draw_layer(c: Canvas, layer: LayerView): void {
   c.g.save();
   c.g.globalAlpha = kAlpha[layer.style];
@@ -176,7 +172,7 @@ export function draw_layer(c: Canvas, layer: LayerView): void {
   c.g.restore();
 }
 
-/** What lies below the robot; a strip of one step ends inside the hull, so it lies on top of it. */
+/** Kinds below the robot. A strip of one step ends inside the hull, so a strip lies above it. */
 const kBelow: LayerKind[] = ["grid", "polar", "circles"];
 const kBelowDashed: LayerKind[] = ["polyline", "points"];
 const kOrder: LayerKind[] = [...kBelow, "arcs", "polyline", "points", "arrows", "text"];

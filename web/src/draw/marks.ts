@@ -1,4 +1,4 @@
-// web/src/draw/marks.ts: strokes that several drawings share: arrows, dots, the travelled path.
+// web/src/draw/marks.ts: shapes that several drawings share: lines, circles, arrows, dots, the path.
 import { Point } from "../geometry";
 import { Columns } from "../state/columns";
 import { View } from "./view";
@@ -27,7 +27,7 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   g.restore();
 }
 
-/** An arrow of `v` metres from `at`; too short ones are left out, very long ones are cut at 2 m. */
+/** An arrow by `v` [m] from `at`, `times` enlarged. Arrows below 5 px are left out, and cut at 2 m. */
 export function arrow(g: Context, view: View, at: Point, v: Point, times: number, colour: string,
   width = 3, dash: number[] = []): void {
   const metres = Math.hypot(v.x, v.y) * times;
@@ -55,7 +55,13 @@ export function arrow(g: Context, view: View, at: Point, v: Point, times: number
   g.restore();
 }
 
-/** A line through `points`, in the present stroke. */
+/** Begins a new outline: a circle of `radius` [px] about `at` in W. */
+export function circle(g: Context, view: View, at: Point, radius: number): void {
+  g.beginPath();
+  g.arc(view.sx(at.x), view.sy(at.y), radius, 0, 2 * Math.PI);
+}
+
+/** Adds a line through `points` to the outline. */
 export function trace(g: Context, view: View, points: Point[]): void {
   points.forEach((p, i) => {
     if (i === 0) g.moveTo(view.sx(p.x), view.sy(p.y));
@@ -63,7 +69,7 @@ export function trace(g: Context, view: View, points: Point[]): void {
   });
 }
 
-/** Discs of `radius` [px] at x, y alternating; those outside of the window are left out. */
+/** Discs of `radius` [px]; `xy` holds x, y in turn. Discs outside the window are left out. */
 export function dots(g: Context, view: View, xy: Float32Array, colour: string, radius: number): void {
   g.fillStyle = colour;
   g.beginPath();

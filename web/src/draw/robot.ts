@@ -1,7 +1,7 @@
 // web/src/draw/robot.ts: the robot, its safety circle, and its goals.
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
-import { Context, arrow } from "./marks";
+import { Context, arrow, circle, trace } from "./marks";
 import { Palette } from "./palette";
 import { SceneState } from "../state/scene";
 import { View } from "./view";
@@ -14,8 +14,7 @@ export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose
   g.setLineDash([5, 6]);
   g.globalAlpha = 0.75;
   g.lineWidth = 1.4;
-  g.beginPath();
-  g.arc(view.sx(pose.x), view.sy(pose.y), radius * view.scale, 0, 2 * Math.PI);
+  circle(g, view, pose, radius * view.scale);
   g.stroke();
   g.setLineDash([]);
   g.globalAlpha = 1;
@@ -49,7 +48,7 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.restore();
 }
 
-/** A hull about the origin, `scale` [px/m] large; a disc of `radius` [px] where it is no rectangle. */
+/** Begins an outline: the rectangle `hull` about the origin, at `scale` [px/m], else a disc of `radius` [px]. */
 function trace_hull(g: Context, scale: number, radius: number, hull: Hull): void {
   g.beginPath();
   if (hull) {
@@ -59,7 +58,7 @@ function trace_hull(g: Context, scale: number, radius: number, hull: Hull): void
   }
 }
 
-/** Where the robot truly is, when its own idea of it has drifted visibly. */
+/** The true pose, beside the drifted odometry. */
 export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose, radius: number, hull: Hull): void {
   g.save();
   g.translate(view.sx(pose.x), view.sy(pose.y));
@@ -74,22 +73,17 @@ export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose,
 
 export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, selected: boolean,
   draft = false): void {
-  const x = view.sx(goal.x);
-  const y = view.sy(goal.y);
-  const r = Math.max(9, 0.2 * view.scale);
   g.strokeStyle = palette.ok;
   g.fillStyle = palette.ok;
   g.lineWidth = selected ? 4 : 2.5;
   if (draft) g.setLineDash([4, 4]);
-  g.beginPath();
-  g.arc(x, y, r, 0, 2 * Math.PI);
+  circle(g, view, goal, Math.max(9, 0.2 * view.scale));
   g.stroke();
   g.setLineDash([]);
   g.globalAlpha = 0.16;
   g.fill();
   g.globalAlpha = 1;
-  g.beginPath();
-  g.arc(x, y, 2.5, 0, 2 * Math.PI);
+  circle(g, view, goal, 2.5);
   g.fill();
   if (goal.heading !== null) {
     const length = Math.max(0.46, 26 / view.scale);
@@ -98,7 +92,7 @@ export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, 
   }
 }
 
-/** The goals after `goal`, numbered, and the way through them. */
+/** The goals after `goal` with their numbers, and the line through them. */
 export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal: Point,
   ahead: Point[]): void {
   if (ahead.length === 0) return;
@@ -107,23 +101,18 @@ export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal:
   g.lineWidth = 1.4;
   g.setLineDash([3, 5]);
   g.beginPath();
-  g.moveTo(view.sx(goal.x), view.sy(goal.y));
-  for (const next of ahead) g.lineTo(view.sx(next.x), view.sy(next.y));
+  trace(g, view, [goal, ...ahead]);
   g.stroke();
   g.setLineDash([]);
-  const radius = 9;
   g.font = `600 11px ${palette.font}`;
   g.textAlign = "center";
   g.textBaseline = "middle";
   ahead.forEach((next, i) => {
-    const x = view.sx(next.x);
-    const y = view.sy(next.y);
+    circle(g, view, next, 9);
     g.fillStyle = palette.bg;
-    g.beginPath();
-    g.arc(x, y, radius, 0, 2 * Math.PI);
     g.fill();
     g.stroke();
     g.fillStyle = palette.ok;
-    g.fillText(String(i + 2), x, y + 0.5);
+    g.fillText(String(i + 2), view.sx(next.x), view.sy(next.y) + 0.5);
   });
 }

@@ -1,30 +1,29 @@
-// web/src/draw/scene.ts: the whole picture from above, in the order in which things lie.
+// web/src/draw/scene.ts: the whole scene from above, from the lowest drawing to the uppermost.
 import { Obstacle } from "../obstacle";
-import { Point, Pose } from "../geometry";
+import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
 import { sweep_age } from "../state/age";
 import { is_sensed, kOwn } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
+import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
-import { Context, draw_path } from "./marks";
+import { Context, circle, dots, draw_path, trace } from "./marks";
 import { Palette } from "./palette";
-import { draw_bumpers, draw_ranging } from "./ranging";
 import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
-import { draw_fan, draw_filtered, draw_raw } from "./sensing";
+import { draw_bumpers, draw_fan, draw_ranging } from "./sensing";
 import { Insets, View } from "./view";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
 export type Selection = { kind: "goal" } | { kind: "obstacle"; id: number } | null;
 
-/** What a gesture is about to do; drawn, not yet asked for. */
+/** An edit in progress: drawn, but not sent. */
 export interface Draft {
   goal?: Goal;
   obstacle?: Obstacle;
   measure?: { from: Point; to: Point };
   cursor?: Point; // the keyboard's crosshair
-  /** Obstacle whose drawn pose is the hand's rather than the server's. */
-  moved?: { id: number; pose: Pose };
+  moved?: { id: number; pose: Pose }; // an obstacle in the hand
 }
 
 /** A second run drawn over the first. */
@@ -35,17 +34,16 @@ export interface Overlay {
   hovered: number | null;
   draft: Draft;
   force_scale: number;
-  /** Names of the layers that are switched off. */
-  hidden: ReadonlySet<string>;
+  hidden: ReadonlySet<string>; // names of the layers that are switched off
   ghost: Ghost | null;
-  /** Draws the path still to come, faintly. */
-  future: boolean;
+  future: boolean;             // draws the path still to come, faintly
   insets: Insets;
-  /** A goal that the robot has not been sent to. */
-  preview?: Goal | null;
+  preview?: Goal | null;       // a goal that is not sent yet
   /** Colour of the path, where it is another: the Runs view draws the first of two in the accent. */
   path?: "accent";
 }
+
+const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
 
 export function draw_scene(g: Context, view: View, palette: Palette,
   scene: SceneState, overlay: Overlay): void {
@@ -66,8 +64,8 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   const selected = overlay.selection?.kind === "obstacle" ? overlay.selection.id : null;
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
-  if (on(kOwn.scan)) for (const sweep of scene.sweeps) draw_raw(g, view, palette, sweep);
-  if (filtered) draw_filtered(g, view, palette, filtered, filtered_old);
+  if (on(kOwn.scan)) for (const sweep of scene.sweeps) dots(g, view, sweep_points(sweep).hits, palette.scan, 2.2);
+  if (filtered) dots(g, view, sweep_points(filtered).hits, filtered_old ? palette.scan : palette.filtered, 1.4);
   if (on(kOwn.ranging)) draw_ranging(g, view, palette, scene.readings);
   const grids = below.filter((l) => l.kind === "grid");
   if (canvas) for (const layer of grids) draw_layer(canvas, layer);
@@ -77,7 +75,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
   if (f) draw_bumpers(g, view, palette, f, scene.radius);
-  if (f?.truth && pose && Math.hypot(f.truth.pose.x - pose.x, f.truth.pose.y - pose.y) > 0.03) {
+  if (f?.truth && distance(f.truth.pose, f.pose) > kDrift) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
   }
   if (canvas) for (const layer of above) draw_layer(canvas, layer);
@@ -85,7 +83,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   draw_scale(g, view, palette, overlay.insets);
 }
 
-/** The travelled path, that of a second run, and what is still to come of a stored one. */
+/** The travelled path, the path of a second run, and the path still to come of a stored run. */
 function draw_ways(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay, travelled: boolean): void {
   const colour = palette[overlay.path ?? "path"];
   if (overlay.future && travelled) draw_path(g, view, scene.columns, 0, scene.columns.length, colour, 2, 0.3);
@@ -102,7 +100,7 @@ function draw_goals(g: Context, view: View, palette: Palette, scene: SceneState,
   draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal" && !preview, !!overlay.draft.goal);
 }
 
-/** The obstacles, with the one in the hand where the hand is. */
+/** The obstacles, with the one that is dragged at the pointer. */
 function held_obstacles(obstacles: Obstacle[], draft: Draft): Obstacle[] {
   const moved = draft.moved;
   if (!moved) return obstacles;
@@ -144,25 +142,21 @@ function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): voi
 
 function draw_measure(g: Context, view: View, palette: Palette, from: Point,
   to: Point): void {
-  const a = view.to_screen(from);
-  const b = view.to_screen(to);
   g.strokeStyle = palette.text;
   g.fillStyle = palette.text;
   g.lineWidth = 1.5;
   g.beginPath();
-  g.moveTo(a.x, a.y);
-  g.lineTo(b.x, b.y);
+  trace(g, view, [from, to]);
   g.stroke();
-  for (const p of [a, b]) {
-    g.beginPath();
-    g.arc(p.x, p.y, 3.5, 0, 2 * Math.PI);
+  for (const p of [from, to]) {
+    circle(g, view, p, 3.5);
     g.fill();
   }
-  const text = `${Math.hypot(to.x - from.x, to.y - from.y).toFixed(2)} m`;
+  const text = `${distance(from, to).toFixed(2)} m`;
   g.font = `600 13px ${palette.font}`;
   const w = g.measureText(text).width + 16;
-  const x = (a.x + b.x) / 2;
-  const y = (a.y + b.y) / 2 - 20;
+  const x = (view.sx(from.x) + view.sx(to.x)) / 2;
+  const y = (view.sy(from.y) + view.sy(to.y)) / 2 - 20;
   g.fillStyle = palette.panel;
   g.beginPath();
   g.roundRect(x - w / 2, y - 12, w, 24, 6);

@@ -1,10 +1,15 @@
-// web/src/draw/sensing.ts: what the scanners saw, and what the controller saw of it.
+// web/src/draw/sensing.ts: the free area of the filtered scan, sonar cones, infrared returns, bumpers.
+import { Frame } from "../link/frame";
+import { PlacedReadings } from "../state/ranging";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
-import { Context, dots } from "./marks";
+import { Context } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
-/** The area that the filtered scan says is free, as a soft fan; a beam without a reading is a gap. */
+const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo came from somewhere on the arc
+const kDot = 2;                 // [px]
+
+/** The area that is free by the filtered scan, as a soft fan; a beam without a reading is a gap. */
 export function draw_fan(g: Context, view: View, palette: Palette, placed: PlacedSweep): void {
   const { end } = sweep_points(placed);
   const ox = view.sx(placed.origin.x);
@@ -22,11 +27,45 @@ export function draw_fan(g: Context, view: View, palette: Palette, placed: Place
   g.globalAlpha = 1;
 }
 
-export function draw_raw(g: Context, view: View, palette: Palette, placed: PlacedSweep): void {
-  dots(g, view, sweep_points(placed).hits, palette.scan, 2.2);
+export function draw_ranging(g: Context, view: View, palette: Palette,
+  readings: PlacedReadings): void {
+  const hits = [...readings.values()].filter((r) => r.hit);
+  g.save();
+  g.lineWidth = 2;
+  g.strokeStyle = palette.scan;
+  g.globalAlpha = 0.8;
+  for (const { kind, origin, range } of hits) {
+    if (kind !== "sonar") continue;
+    g.beginPath();
+    // The screen's y axis points down.
+    g.arc(view.sx(origin.x), view.sy(origin.y), range * view.scale, -origin.heading - kHalfCone,
+      -origin.heading + kHalfCone);
+    g.stroke();
+  }
+  g.globalAlpha = 1;
+  g.fillStyle = palette.warn;
+  for (const { kind, origin, range } of hits) { // on top of the arcs
+    if (kind !== "infrared") continue;
+    const px = view.sx(origin.x + range * Math.cos(origin.heading));
+    const py = view.sy(origin.y + range * Math.sin(origin.heading));
+    g.fillRect(px - kDot, py - kDot, 2 * kDot, 2 * kDot);
+  }
+  g.restore();
 }
 
-/** Grey while too `old` to drive by. */
-export function draw_filtered(g: Context, view: View, palette: Palette, placed: PlacedSweep, old: boolean): void {
-  dots(g, view, sweep_points(placed).hits, old ? palette.scan : palette.filtered, 1.4);
+/** Bumpers that are pressed, as thick arcs on the hull. */
+export function draw_bumpers(g: Context, view: View, palette: Palette, f: Frame,
+  radius: number): void {
+  if (f.bumpers.length === 0) return;
+  const half = Math.PI / Math.max(3, f.bumpers.length);
+  g.strokeStyle = palette.bad;
+  g.lineWidth = 5;
+  for (const bumper of f.bumpers) {
+    if (!bumper.pressed) continue;
+    const heading = f.pose.heading + bumper.mount.heading;
+    g.beginPath();
+    g.arc(view.sx(f.pose.x), view.sy(f.pose.y), radius * view.scale, -heading - half,
+      -heading + half);
+    g.stroke();
+  }
 }

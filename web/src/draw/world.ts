@@ -1,10 +1,10 @@
 // web/src/draw/world.ts: the ground: grid, obstacles, scale bar.
 import { Obstacle, outline } from "../obstacle";
-import { Context, trace } from "./marks";
+import { Context, circle, trace } from "./marks";
 import { Palette } from "./palette";
 import { Insets, View } from "./view";
 
-/** A line a metre, stronger every fifth; wider steps when zoomed out. */
+/** A line every metre, every fifth one stronger; wider steps when zoomed out. */
 export function draw_grid(g: Context, view: View, palette: Palette): void {
   const step = view.scale >= 24 ? 1 : view.scale >= 9 ? 5 : 10;
   const a = view.to_world(0, view.height);
@@ -30,11 +30,11 @@ export function draw_grid(g: Context, view: View, palette: Palette): void {
 }
 
 export function trace_obstacle(g: Context, view: View, o: Obstacle): void {
-  g.beginPath();
   if (o.kind === "cylinder") {
-    g.arc(view.sx(o.pose.x), view.sy(o.pose.y), Math.max(1, o.radius * view.scale), 0, 2 * Math.PI);
+    circle(g, view, o.pose, Math.max(1, o.radius * view.scale));
     return;
   }
+  g.beginPath();
   trace(g, view, outline(o));
   g.closePath();
 }

@@ -1,13 +1,14 @@
-// web/src/three/layers.ts: what a controller shows, in space: a drawing for each kind of layer. What
-// does not say how high it is lies at the height that suits its kind.
+// web/src/three/layers.ts: the layers of a controller in 3D: a drawing for each kind. A layer without
+// heights lies at the height of its kind.
 import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Pose } from "../geometry";
 import {
-  LayerKind, LayerStyle, LayerView, Place, arcs, arrows, circles, grade_of, grid_place, kGrades, lines, places, sectors,
+  LayerKind, LayerView, Place, arcs, arrows, circles, grade_of, grid_place, kAlpha, kGrades, kRing, kTallest, lines,
+  places, sectors,
 } from "../layer";
 import { is_scaled, kTokens } from "../state/layers";
-import { dot, push_arrow, ribbon } from "./shapes";
+import { dot, flat, placed, push_arrow, ribbon, vertices } from "./shapes";
 
 /** Where and how a layer is drawn. */
 export interface Stage {
@@ -20,14 +21,11 @@ export interface Stage {
 type Build = (stage: Stage, layer: LayerView, colour: string) => void;
 
 export const kScanHeight = 0.3;   // [m] of the scan plane
-const kStripHeight = 0.36;        // [m] above the hull, within which a strip of one step ends
-const kGround = 0.01;             // [m] of what lies on the floor
-const kRing = 0.1;                // [m] from the hull to a polar's foot
-const kTallest = 0.5;             // [m] of a sector at twice the level and above
+const kStripHeight = 0.36;        // [m] above the hull, which covers a strip of one step
+const kGround = 0.01;             // [m] of drawings on the floor
 const kDash = 0.12;               // [m] of a dash, and of the gap after it
-const kAlpha: Record<LayerStyle, number> = { solid: 1, dashed: 1, faint: 0.4 };
 
-/** What `object` is made of becomes as strong as the layer's style says. */
+/** Gives every material of `object` the opacity `alpha`. */
 function faded<T extends THREE.Object3D>(object: T, alpha: number): T {
   object.traverse((o) => {
     const material = (o as THREE.Mesh).material as THREE.Material | undefined;
@@ -36,7 +34,7 @@ function faded<T extends THREE.Object3D>(object: T, alpha: number): T {
   return object;
 }
 
-/** Every second piece of `kDash` along `line`, however its corners lie. */
+/** Every second piece of length `kDash` along `line`, across its corners. */
 function dashes(line: Place[]): Place[][] {
   const out: Place[][] = [];
   let way = 0; // [m] along the line up to the present corner
@@ -87,13 +85,12 @@ function build_arrows(stage: Stage, layer: LayerView, colour: string): void {
 
 function build_circles(stage: Stage, layer: LayerView, colour: string): void {
   for (const { at, radius } of circles(layer, stage.robot)) {
-    const torus = new THREE.Mesh(new THREE.TorusGeometry(radius, 0.02, 8, 48), new THREE.MeshBasicMaterial({ color: colour }));
-    torus.position.set(at.x, at.y, at.z ?? kScanHeight);
+    const torus = placed(new THREE.TorusGeometry(radius, 0.02, 8, 48), flat(colour), at, at.z ?? kScanHeight);
     stage.group.add(faded(torus, kAlpha[layer.style]));
   }
 }
 
-/** All in one object: there are hundreds. */
+/** Candidates are one object together, as there are hundreds. */
 function build_arcs(stage: Stage, layer: LayerView, colour: string): void {
   const among_many = layer.style === "faint" || layer.tone === "muted";
   const found = arcs(layer, stage.robot);
@@ -107,15 +104,13 @@ function build_arcs(stage: Stage, layer: LayerView, colour: string): void {
       xyz.push(line[i - 1].x, line[i - 1].y, kGround, line[i].x, line[i].y, kGround);
     }
   }
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
   const material = new THREE.LineBasicMaterial({ color: colour, transparent: true, opacity: kAlpha.faint });
-  const object = new THREE.LineSegments(geometry, material);
+  const object = new THREE.LineSegments(vertices(xyz), material);
   object.frustumCulled = false;
   stage.group.add(object);
 }
 
-/** Tiles on the floor, all of a shade in one object. */
+/** Tiles on the floor; one object for each shade. */
 function build_grid(stage: Stage, layer: LayerView, colour: string): void {
   const place = grid_place(layer, stage.robot);
   if (!place) return;
@@ -135,7 +130,7 @@ function build_grid(stage: Stage, layer: LayerView, colour: string): void {
   shades.forEach((xyz, grade) => fill(stage, xyz, colour, (0.7 * (grade + 1)) / kGrades));
 }
 
-/** A rose on the floor about the robot. */
+/** Sectors on the floor about the robot. */
 function build_polar(stage: Stage, layer: LayerView, colour: string): void {
   const foot = stage.radius + kRing;
   const free: number[] = [];
@@ -153,10 +148,8 @@ function build_polar(stage: Stage, layer: LayerView, colour: string): void {
 
 function fill(stage: Stage, xyz: number[], colour: string, alpha: number): void {
   if (xyz.length === 0) return;
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-  const material = new THREE.MeshBasicMaterial({ color: colour, side: THREE.DoubleSide, transparent: true, opacity: alpha, depthWrite: false });
-  stage.group.add(new THREE.Mesh(geometry, material));
+  const material = Object.assign(flat(colour), { transparent: true, opacity: alpha, depthWrite: false });
+  stage.group.add(new THREE.Mesh(vertices(xyz), material));
 }
 
 /** Lines of text that face the eye. */

@@ -1,7 +1,8 @@
-// web/src/three/shapes.ts: the things of the 3D view, one function each: z up, metres.
+// web/src/three/shapes.ts: the shapes of the 3D view: z up, metres.
 import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Point } from "../geometry";
+import { Goal } from "../link/frame";
 import { Obstacle, outline } from "../obstacle";
 import { SceneState } from "../state/scene";
 
@@ -19,7 +20,18 @@ export function clear(group: THREE.Group): void {
   }
 }
 
-/** Points `size` pixels across, however far away. */
+/** A geometry of vertices; `xyz` holds x, y, z in turn. */
+export function vertices(xyz: number[]): THREE.BufferGeometry {
+  return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+}
+
+export function placed(geometry: THREE.BufferGeometry, material: THREE.Material, at: Point, z: number): THREE.Mesh {
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.position.set(at.x, at.y, z);
+  return mesh;
+}
+
+/** Points `size` pixels across at any distance. */
 export function points(size: number): THREE.Points {
   const p = new THREE.Points(new THREE.BufferGeometry(),
     new THREE.PointsMaterial({ size: size * Math.min(2, devicePixelRatio || 1), sizeAttenuation: false }));
@@ -48,9 +60,7 @@ export function grid(p: Palette): THREE.Group {
       if ((k % 5 === 0) !== strong) continue;
       for (let i = -half; i < half; ++i) xyz.push(i, k, 0, i + 1, k, 0, k, i, 0, k, i + 1, 0);
     }
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-    group.add(new THREE.LineSegments(geometry,
+    group.add(new THREE.LineSegments(vertices(xyz),
       new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 })));
   }
   return group;
@@ -68,9 +78,8 @@ export function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D 
 function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
   if (o.kind === "cylinder") {
     const geometry = new THREE.CylinderGeometry(o.radius, o.radius, o.height, 48);
-    const mesh = new THREE.Mesh(geometry, material);
+    const mesh = placed(geometry, material, o.pose, o.height / 2);
     mesh.rotation.x = Math.PI / 2;
-    mesh.position.set(o.pose.x, o.pose.y, o.height / 2);
     return mesh;
   }
   const shape = new THREE.Shape(outline(o).map((c) => new THREE.Vector2(c.x, c.y)));
@@ -78,7 +87,7 @@ function shape_of(o: Obstacle, material: THREE.Material): THREE.Mesh {
     material);
 }
 
-export function goal(at: { x: number; y: number; heading: number | null }, p: Palette): THREE.Group {
+export function goal(at: Goal, p: Palette): THREE.Group {
   const group = new THREE.Group();
   group.add(ring(at, 0.18, 0.22, 0.02, p.ok));
   if (at.heading !== null) {
@@ -88,20 +97,16 @@ export function goal(at: { x: number; y: number; heading: number | null }, p: Pa
 }
 
 export function ring(at: Point, inner: number, outer: number, z: number, colour: string): THREE.Mesh {
-  const mesh = new THREE.Mesh(new THREE.RingGeometry(inner, outer, 72), flat(colour));
-  mesh.position.set(at.x, at.y, z);
-  return mesh;
+  return placed(new THREE.RingGeometry(inner, outer, 72), flat(colour), at, z);
 }
 
-/** The goals after `from`, one or more, and the way through them. */
+/** The goals after `from`, and the line through them. */
 export function goals_ahead(from: Point, ahead: Point[], p: Palette): THREE.Object3D[] {
   return [ribbon([from, ...ahead], 0.015, 0.016, p.ok), ...ahead.map((at) => ring(at, 0.12, 0.15, 0.02, p.ok))];
 }
 
 export function dot(at: Point, radius: number, z: number, colour: string): THREE.Mesh {
-  const mesh = new THREE.Mesh(new THREE.SphereGeometry(radius, 14, 10), flat(colour));
-  mesh.position.set(at.x, at.y, z);
-  return mesh;
+  return placed(new THREE.SphereGeometry(radius, 14, 10), flat(colour), at, z);
 }
 
 /** A flat band `width` wide along `line`, at height `z`. */
@@ -117,13 +122,10 @@ export function ribbon(line: Point[], width: number, z: number, colour: string):
     xyz.push(line[i].x + nx, line[i].y + ny, z, line[i].x - nx, line[i].y - ny, z);
     if (i > 0) faces.push(2 * i - 2, 2 * i - 1, 2 * i, 2 * i, 2 * i - 1, 2 * i + 1);
   }
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
-  geometry.setIndex(faces);
-  return new THREE.Mesh(geometry, flat(colour));
+  return new THREE.Mesh(vertices(xyz).setIndex(faces), flat(colour));
 }
 
-/** A lying arrow of `v` metres, `times` enlarged; too short ones are left out. */
+/** A horizontal arrow by `v` [m], `times` enlarged. Arrows below 3 cm are left out. */
 export function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string,
   z = 0.08): void {
   const length = Math.min(2, Math.hypot(v.x, v.y) * times);
@@ -134,7 +136,7 @@ export function push_arrow(group: THREE.Group, at: Point, v: Point, times: numbe
   group.add(arrow);
 }
 
-/** A hull with wheels, a scanner and a pointer ahead, in R. */
+/** A hull with wheels, a scanner and an arrowhead, in R. */
 export function body(scene: SceneState, p: Palette): THREE.Object3D[] {
   const r = scene.radius;
   const paint = (colour: string) => new THREE.MeshStandardMaterial({ color: colour, roughness: 0.6 });
@@ -162,4 +164,3 @@ export function body(scene: SceneState, p: Palette): THREE.Object3D[] {
   nose.position.z = 0.245;
   return [hull, scanner, ...wheels, nose];
 }
-

@@ -1,4 +1,4 @@
-// web/src/three/world.ts: the scene in 3D from the same state as the view from above: z up, metres.
+// web/src/three/world.ts: the scene in 3D, from the same state as the view from above: z up, metres.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Palette } from "../draw/palette";
@@ -8,7 +8,7 @@ import { kOwn } from "../state/layers";
 import { SceneState, robot_pose, scene_bounds } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
 import { build_layer, kScanHeight } from "./layers";
-import { body, clear, goal, goals_ahead, grid, points, ribbon, ring, solid, sun } from "./shapes";
+import { body, clear, goal, goals_ahead, grid, points, ribbon, ring, solid, sun, vertices } from "./shapes";
 
 interface Options { selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean }
 
@@ -29,7 +29,7 @@ export class World3 {
   private readonly filtered_ = points(3.5);
   private pending_ = 0;
   private built_: unknown[] = [];
-  private hull_: SceneState["hull"] = null; // that the robot was built with
+  private hull_: SceneState["hull"] = null; // of the robot that was built
   private placed_ = false;
   private last_robot_: Point | null = null;
 
@@ -62,7 +62,7 @@ export class World3 {
     this.world_.background = new THREE.Color(palette.bg);
     (this.raw_.material as THREE.PointsMaterial).color.set(palette.scan);
     (this.filtered_.material as THREE.PointsMaterial).color.set(palette.filtered);
-    this.built_ = []; // everything is built again in the new colours
+    this.built_ = []; // so that everything is built again in the new colours
     clear(this.robot_);
     this.request();
   }
@@ -110,7 +110,7 @@ export class World3 {
     this.placed_ = true;
   }
 
-  /** Grid, obstacles and goal are built again only when they are other values. */
+  /** Builds grid, obstacles and goal again only when one of them has changed. */
   private build_statics(scene: SceneState, selection: Selection): void {
     const key = [scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
       selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
@@ -191,6 +191,5 @@ function set_points(points: THREE.Points, sweeps: PlacedSweep[]): void {
     for (let i = 0; i < hits.length; i += 2) xyz.push(hits[i], hits[i + 1], kScanHeight);
   }
   points.geometry.dispose();
-  points.geometry = new THREE.BufferGeometry();
-  points.geometry.setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
+  points.geometry = vertices(xyz);
 }
