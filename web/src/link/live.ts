@@ -1,5 +1,5 @@
 // web/src/link/live.ts: the live session over /ws: subscribes, calls services, sets parameters,
-// measures rate and round trip, and comes back by itself when the connection is lost.
+// measures rate and round trip, and connects again after a loss.
 import { SessionState } from "../contract";
 import { Frame, Sweep, decode_frame, decode_sweep } from "./frame";
 import {
@@ -10,30 +10,27 @@ import { Legends } from "./legend";
 
 export interface LinkStatus {
   phase: "connecting" | "open" | "lost";
-  /** Wall clock [ms] of the next try while lost; Infinity: there is none, as the session is gone. */
-  retry_at: number;
-  /** [frames/s] received over the last second. */
-  rate: number;
-  /** [ms] round trip, or null before the first answer. */
-  latency: number | null;
+  retry_at: number;       // [ms] performance.now() of the next try while lost; Infinity: the session is gone
+  rate: number;           // [frames/s] received over the last second
+  latency: number | null; // [ms] round trip; null before the first answer
 }
 
 export interface LinkEvents {
   frame(frame: Frame): void;
-  /** What the controller saw of a scan; only while it is wanted. */
+  /** A filtered scan; only while it is wanted. */
   filtered(sweep: Sweep): void;
   state(state: SessionState): void;
   status(status: LinkStatus): void;
   /** A sentence from the server; level 0 info, 1 warning, 2 error. */
   notice(level: number, message: string): void;
   log(message: string): void;
-  /** The server's process or the session changed: what was known of it no longer holds. */
+  /** Another server process or session: its run has nothing to do with the run before. */
   new_session(): void;
-  /** There is no session at this address; the link rests until reconnect(). */
+  /** There is no session at this address; the link waits for reconnect(). */
   gone(why: string): void;
 }
 
-/** What the socket must offer; the browser's WebSocket, or a test's. */
+/** The part of a WebSocket that the link uses; tests bring their own. */
 export interface SocketLike {
   binaryType: string;
   readyState: number;
@@ -46,13 +43,14 @@ export interface SocketLike {
 }
 export type OpenSocket = (url: string, protocols: string[]) => SocketLike;
 
-interface PendingCall { resolve(value: unknown): void; reject(error: Error): void; timer: number }
+type Timer = ReturnType<typeof setTimeout>;
+interface Pending { resolve(value: unknown): void; reject(error: Error): void; timer: Timer }
 
 const kTopics = ["/telemetry", "/state", "/log"];
 const kFiltered = "/tautline/filtered";
 const kCallTimeout = 10_000;   // [ms]
 const kConnectTimeout = 8_000; // [ms]
-const kSilenceLimit = 6_000;   // [ms] without any answer the connection counts as lost
+const kSilenceLimit = 6_000;   // [ms] of silence after which the connection counts as lost
 const kPingPeriod = 1_000;     // [ms]
 const kGone = 4404;            // close code: there is no such session
 export const kBackoff = [500, 1000, 2000, 4000, 5000]; // [ms]
@@ -65,17 +63,15 @@ export class LiveLink {
   private subscriptions_ = new Map<number, string>();
   private legends_ = new Legends();
   private wants_filtered_ = false;
-  private calls_ = new Map<number, PendingCall>();
-  private parameter_answers_ = new Map<string, (values: ParameterValue[]) => void>();
+  private pending_ = new Map<number | string, Pending>(); // by number of the call, or id of the parameters
   private next_id_ = 1;
   private session_id_: string | null = null;
   private status_: LinkStatus = { phase: "connecting", retry_at: 0, rate: 0, latency: null };
   private arrivals_: number[] = [];
-  private ping_sent_ = new Map<string, number>();
   private last_heard_ = 0;
   private connect_started_ = 0;
-  private timer_ = 0;
-  private retry_timer_ = 0;
+  private timer_: Timer | undefined;
+  private retry_timer_: Timer | undefined;
   private closed_ = false;
 
   constructor(
@@ -86,7 +82,7 @@ export class LiveLink {
   ) {}
 
   start(): void {
-    this.timer_ = setInterval(() => this.heartbeat(), kPingPeriod) as unknown as number;
+    this.timer_ = setInterval(() => this.heartbeat(), kPingPeriod);
     this.connect();
   }
 
@@ -101,14 +97,14 @@ export class LiveLink {
     return this.status_.phase === "open";
   }
 
-  /** Tries now rather than when the pause is over. */
+  /** Connects at once if the connection is lost. */
   retry_now(): void {
     if (this.status_.phase !== "lost") return;
     clearTimeout(this.retry_timer_);
     this.connect();
   }
 
-  /** Connects anew: the address is another. */
+  /** Connects to another address. */
   reconnect(): void {
     clearTimeout(this.retry_timer_);
     this.attempt_ = 0;
@@ -118,23 +114,23 @@ export class LiveLink {
   /** Calls a service. Rejects with the server's sentence, or ours when there is no connection. */
   call<T = unknown>(name: string, body: unknown = {}): Promise<T> {
     const service = this.services_.get(name);
-    if (!this.is_open || service === undefined) {
-      return Promise.reject(new Error(this.is_open
-        ? `This server does not offer ${name}.`
-        : "There is no connection to the server. Nothing was sent."));
-    }
+    if (this.is_open && service === undefined) return Promise.reject(new Error(`This server does not offer ${name}.`));
     const call = this.next_id_++;
+    return this.ask<T>(call, () => this.send(service_request(service!, call, body)));
+  }
+
+  /** The answer to the message that `send` sends, which comes under `id`. */
+  private ask<T>(id: number | string, send: () => void): Promise<T> {
+    if (!this.is_open) return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
     return new Promise<T>((resolve, reject) => {
-      const timer = setTimeout(() => {
-        this.calls_.delete(call);
-        reject(new Error("The server did not answer within 10 s."));
-      }, kCallTimeout) as unknown as number;
-      this.calls_.set(call, { resolve: resolve as (value: unknown) => void, reject, timer });
-      this.send(service_request(service, call, body));
+      const late = new Error("The server did not answer within 10 s.");
+      const timer = setTimeout(() => this.settle(id, (call) => call.reject(late)), kCallTimeout);
+      this.pending_.set(id, { resolve: resolve as (value: unknown) => void, reject, timer });
+      send();
     });
   }
 
-  /** Whether the server computes filtered scans for this page and sends them. */
+  /** Asks the server to compute and send filtered scans, or no longer to. */
   want_filtered(wanted: boolean): void {
     if (wanted === this.wants_filtered_) return;
     this.wants_filtered_ = wanted;
@@ -157,35 +153,24 @@ export class LiveLink {
     this.send_json({ op: "subscribe", subscriptions: [{ id, channelId: channel }] });
   }
 
-  /** Calls a service whose answer is no matter; does nothing without a connection. */
+  /** Calls a service without waiting for the answer; does nothing without a connection. */
   tell(name: string): void {
     const service = this.services_.get(name);
     if (this.is_open && service !== undefined) this.send(service_request(service, this.next_id_++, {}));
   }
 
-  /** [ms] since the server was last heard. */
+  /** [ms] Since the last message of the server. */
   get silence(): number {
     return now() - this.last_heard_;
   }
 
-  /** Sets a parameter; resolves with the value the server now holds, which may be the old one. */
-  set_parameter(name: string, value: number): Promise<number> {
-    if (!this.is_open) {
-      return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
-    }
+  /** Sets a parameter; resolves with the value that the server holds now, which may be the old one. */
+  async set_parameter(name: string, value: number): Promise<number> {
     const id = `set-${this.next_id_++}`;
-    return new Promise<number>((resolve, reject) => {
-      const timer = setTimeout(() => {
-        this.parameter_answers_.delete(id);
-        reject(new Error("The server did not answer within 10 s."));
-      }, kCallTimeout);
-      this.parameter_answers_.set(id, (values) => {
-        clearTimeout(timer);
-        const held = values.find((v) => v.name === name)?.value;
-        resolve(typeof held === "number" ? held : value);
-      });
-      this.send_json({ op: "setParameters", id, parameters: [{ name, value, type: "float64" }] });
-    });
+    const values = await this.ask<ParameterValue[]>(id, () =>
+      this.send_json({ op: "setParameters", id, parameters: [{ name, value, type: "float64" }] }));
+    const held = values.find((v) => v.name === name)?.value;
+    return typeof held === "number" ? held : value;
   }
 
   private connect(): void {
@@ -230,17 +215,12 @@ export class LiveLink {
     this.services_.clear();
     this.channels_.clear();
     this.subscriptions_.clear();
-    this.ping_sent_.clear();
-    this.parameter_answers_.clear();
-    for (const call of this.calls_.values()) {
-      clearTimeout(call.timer);
-      call.reject(new Error("The connection was lost before the server answered."));
-    }
-    this.calls_.clear();
+    const lost = new Error("The connection was lost before the server answered.");
+    for (const id of this.pending_.keys()) this.settle(id, (call) => call.reject(lost));
     if (this.closed_) return;
     const pause = kBackoff[Math.min(this.attempt_++, kBackoff.length - 1)];
     this.update({ phase: "lost", retry_at: now() + pause, rate: 0, latency: null });
-    this.retry_timer_ = setTimeout(() => this.connect(), pause) as unknown as number;
+    this.retry_timer_ = setTimeout(() => this.connect(), pause);
   }
 
   private receive(data: unknown): void {
@@ -282,26 +262,12 @@ export class LiveLink {
         this.events_.notice(message.level, message.message);
         break;
       case "parameterValues":
-        this.parameters(message.parameters, message.id);
+        if (message.id !== undefined) this.settle(message.id, (call) => call.resolve(message.parameters));
         break;
       case "serviceCallFailure":
         this.settle(message.callId, (call) => call.reject(new Error(message.message)));
         break;
     }
-  }
-
-  private parameters(values: ParameterValue[], id: string | undefined): void {
-    if (id === undefined) return;
-    const sent = this.ping_sent_.get(id);
-    if (sent !== undefined) {
-      this.ping_sent_.delete(id);
-      const round_trip = now() - sent;
-      const old = this.status_.latency;
-      this.update({ latency: old === null ? round_trip : 0.7 * old + 0.3 * round_trip });
-      return;
-    }
-    this.parameter_answers_.get(id)?.(values);
-    this.parameter_answers_.delete(id);
   }
 
   private binary(message: ServerBinary): void {
@@ -336,10 +302,10 @@ export class LiveLink {
     }
   }
 
-  private settle(id: number, act: (call: PendingCall) => void): void {
-    const call = this.calls_.get(id);
+  private settle(id: number | string, act: (call: Pending) => void): void {
+    const call = this.pending_.get(id);
     if (!call) return;
-    this.calls_.delete(id);
+    this.pending_.delete(id);
     clearTimeout(call.timer);
     act(call);
   }
@@ -355,10 +321,17 @@ export class LiveLink {
       }
       while (this.arrivals_.length > 0 && this.arrivals_[0] < t - 1000) this.arrivals_.shift();
       this.update({ rate: this.arrivals_.length });
-      const id = `ping-${this.next_id_++}`;
-      this.ping_sent_.set(id, t);
-      this.send_json({ op: "getParameters", parameterNames: ["k_r"], id });
+      this.ping().catch(() => undefined); // the silence tells of a lost connection
     }
+  }
+
+  private async ping(): Promise<void> {
+    const sent = now();
+    const id = `ping-${this.next_id_++}`;
+    await this.ask(id, () => this.send_json({ op: "getParameters", parameterNames: ["k_r"], id }));
+    const round_trip = now() - sent;
+    const old = this.status_.latency;
+    this.update({ latency: old === null ? round_trip : 0.7 * old + 0.3 * round_trip });
   }
 
   private send(data: string | Uint8Array): void {

@@ -1,29 +1,29 @@
-// web/src/link/past.ts: what a page that came late, or to a paused run, asks of that run's record.
+// web/src/link/past.ts: fetches from the record what a page missed that opens late or at a paused run.
 import { Page } from "../contract";
 import { TickRow } from "../state/columns";
 import { SceneState, fold_frame } from "../state/scene";
 import { decode_frames, decode_sweep } from "./frame";
 import * as rest from "./rest";
 import { session_path } from "./session";
-import { split_frames } from "./stored";
+import { fetch_all, stored_frames } from "./stored";
 
-const kLate = 40;        // [ticks] a page that comes this late asks for what it missed
-const kRecentTicks = 60; // by which the newest scan and words are looked for
+const kLate = 40;        // [ticks] from which a page fetches the rows that it missed
+const kRecentTicks = 60; // ticks back in which the newest scan and words are found
 
 export class Past {
-  /** Filtered scans are looked at. */
+  /** Whether filtered scans are shown. */
   wants_filtered = false;
-  private asked_for_: number | null = null; // run whose past was asked for
+  private asked_for_: number | null = null; // run whose rows were fetched
 
   constructor(private readonly scene_: SceneState, private readonly most_rows_: number,
     private readonly changed_: () => void) {}
 
-  /** Another server process: what was asked for is of another run, even of the same number. */
+  /** For another server process, whose run may have the same number. */
   forget(): void {
     this.asked_for_ = null;
   }
 
-  /** Once a run: a page that came late asks for what it missed. */
+  /** Fetches the missed rows, once for each run. */
   look_back(): void {
     const { run, columns } = this.scene_;
     if (run === null || run <= 0 || run === this.asked_for_ || columns.length === 0) return;
@@ -32,7 +32,7 @@ export class Past {
     if (first > kLate) void this.fetch_rows(first);
   }
 
-  /** A paused run sends no frames: a page that has none shows the last one of the record. */
+  /** A paused run sends no frames: without one, the page shows the last frame of the record. */
   async fetch_newest(): Promise<void> {
     const { run } = this.scene_;
     if (run === null || run <= 0 || this.scene_.frame) return;
@@ -40,13 +40,13 @@ export class Past {
       const { tick } = await rest.get<{ tick?: number }>(session_path());
       if (tick === undefined) return;
       const frames = await recent(run, "frames", tick);
-      if (this.scene_.frame || run !== this.scene_.run) return; // a live one came meanwhile
+      if (this.scene_.frame || run !== this.scene_.run) return; // a live frame came meanwhile
       for (const frame of decode_frames(frames)) fold_frame(this.scene_, frame);
       this.look_back();
       this.changed_();
       if (this.wants_filtered) await this.fetch_filtered();
     } catch {
-      // Nothing is kept of this run: it is shown from the next frame on.
+      // The run has no record: the page shows it from the next frame on.
     }
   }
 
@@ -61,11 +61,11 @@ export class Past {
       if (newest) this.scene_.filtered.take(newest);
       this.changed_();
     } catch {
-      // It is shown from the next scan on.
+      // The page shows filtered scans from the next one on.
     }
   }
 
-  /** The path and the figures of the run before this page came. */
+  /** Fetches the path and the figures before tick `before`. */
   private async fetch_rows(before: number): Promise<void> {
     const { run } = this.scene_;
     const stride = Math.max(1, Math.ceil(before / this.most_rows_) * 2 - 1);
@@ -77,7 +77,7 @@ export class Past {
         from = page.next === null ? null : Number(page.next);
       }
     } catch {
-      return; // the path then begins where this page came in
+      return; // the path then begins at the first live frame
     }
     if (run !== this.scene_.run || rows.length === 0) return;
     this.scene_.columns.prepend(rows);
@@ -86,14 +86,8 @@ export class Past {
   }
 }
 
-/** The last messages of `what` up to tick `last`. */
-async function recent(run: number, what: "frames" | "filtered", last: number): Promise<Uint8Array[]> {
-  const messages: Uint8Array[] = [];
-  for (let from: number | null = Math.max(0, last - kRecentTicks); from !== null && from <= last;) {
-    const page: { bytes: Uint8Array; next: number | null } =
-      await rest.get_bytes(`/runs/${run}/${what}?from=${from}&limit=${kRecentTicks + 1}`);
-    messages.push(...split_frames(page.bytes));
-    from = page.next;
-  }
-  return messages;
+/** The last messages up to tick `last`. */
+function recent(run: number, what: "frames" | "filtered", last: number): Promise<Uint8Array[]> {
+  const from = Math.max(0, last - kRecentTicks);
+  return fetch_all(stored_frames(run, what), from, last - from + 1);
 }

@@ -1,22 +1,29 @@
 // web/src/link/stored.ts: a stored run as a source of frames: fetched page by page, kept within a
 // bound, seekable and playable at any speed. It fills the same SceneState as the live link.
 import { RunItem } from "../contract";
-import { obstacle_from_json } from "../obstacle";
-import { Obstacle } from "../obstacle";
+import { Obstacle, ObstacleJson, obstacle_from_json } from "../obstacle";
 import { EventLog } from "../state/events";
 import { Columns, last_not_after } from "../state/columns";
 import { learn_layers } from "../state/layers";
 import {
-  SceneState, edited, forget_instant, held_of, hold_time, new_scene, show_frame, take_parameters, take_robot,
+  SceneState, edited, forget_instant, goal_from_json, held_of, hold_time, new_scene, show_frame, take_parameters,
+  take_robot,
 } from "../state/scene";
 import { placed } from "../state/sweeps";
+import { sentence_of } from "../words";
 import { Frame, decode_frame, decode_frames, decode_sweep } from "./frame";
 import { Legends } from "./legend";
+import * as rest from "./rest";
 
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
 
-/** A page of frames, and of the filtered scans that stand for them once somebody wants to see those. */
+/** The frames of run `id`, or its filtered scans: one message for each frame, empty without a new scan. */
+export function stored_frames(id: number, what: "frames" | "filtered"): FetchFrames {
+  return (from, limit, signal) => rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
+}
+
+/** A page of frames, and their filtered scans once they are wanted. */
 interface Chunk {
   from_tick: number; first_row: number; count: number; frames: Uint8Array[] | null; filtered: Uint8Array[] | null;
   used: number;
@@ -35,7 +42,7 @@ export function split_frames(bytes: Uint8Array): Uint8Array[] {
     if (at + 4 + length > bytes.length) {
       throw new Error(`a frame of ${length} bytes at byte ${at} runs past the end of the answer`);
     }
-    // A copy each, so that a page of frames can be forgotten frame by frame.
+    // Copies, so that one kept frame does not keep its whole page.
     out.push(bytes.slice(at + 4, at + 4 + length));
     at += 4 + length;
   }
@@ -55,9 +62,9 @@ export class StoredRun {
   private legends_ = new Legends();
   private clock_ = 0;
   private wanted_ = -1;
-  private held_ = new Map<string, number[]>(); // rows that bring what holds after them, by its name
+  private held_ = new Map<string, number[]>(); // rows with values that hold in later rows, by name
   private wants_filtered_ = false;
-  private filtering_ = new Set<Chunk>(); // whose filtered scans are under way, or cannot be had
+  private filtering_ = new Set<Chunk>(); // whose filtered scans were asked for, or are not to be had
 
   constructor(
     readonly item: RunItem,
@@ -73,8 +80,7 @@ export class StoredRun {
     take_robot(this.scene, item.document?.robot);
     this.scene.start = doc?.start ?? null;
     this.scene.world = item.physics !== "log";
-    this.scene.goal = doc?.goal
-      ? { x: doc.goal.x, y: doc.goal.y, heading: doc.goal.heading ?? null } : null;
+    this.scene.goal = goal_from_json(doc?.goal);
     const others = (item.document?.others ?? []).map(obstacle_from_json);
     this.scene.obstacles = [...(doc?.obstacles ?? []).map(numbered), ...others];
     take_parameters(this.scene, item.parameters ?? {});
@@ -95,8 +101,8 @@ export class StoredRun {
   }
 
   /**
-   * Fetches the run once, front to back, reading off columns, events and edits. Of a run that is
-   * still being recorded: what was there when it was opened, or it would never be through.
+   * Fetches the run once from front to back, and reads columns, events and edits. Of a run that is still
+   * recorded it fetches the ticks there were when it was opened, as otherwise it would never end.
    */
   async load(on_progress: () => void, signal?: AbortSignal): Promise<void> {
     let from: number | null = 0;
@@ -113,14 +119,14 @@ export class StoredRun {
       this.done = from === null;
     } catch (error) {
       if (signal?.aborted) return;
-      this.error = error instanceof Error ? error.message : String(error);
+      this.error = sentence_of(error);
     }
     on_progress();
   }
 
   /**
-   * Shows row `row` in `scene`. Returns false when a frame has to be fetched first; `ready` is
-   * then called when it is there and still the one wanted, and once more when its filtered scan is.
+   * Shows `row` in `scene`. Returns false if a frame must be fetched first: then `ready` is called once it
+   * is shown, unless another row was sought. `ready` is called again when its filtered scan is shown.
    */
   seek(row: number, ready: () => void = () => undefined): boolean {
     if (this.rows === 0) return false;
@@ -146,12 +152,12 @@ export class StoredRun {
     return true;
   }
 
-  /** Whether filtered scans are fetched and shown; they are shown from the next seek on. */
+  /** Switches filtered scans on or off, from the next seek on. */
   want_filtered(wanted: boolean): void {
     this.wants_filtered_ = wanted;
   }
 
-  /** The rows that make up the instant of row `at`, itself the last: what it does not bring holds. */
+  /** The rows whose values are shown at row `at`, ascending: itself, and the rows whose values still hold. */
   private rows_for(at: number): number[] {
     const rows = new Set([at]);
     const t = (row: number) => this.columns.at("t", row);
@@ -162,11 +168,11 @@ export class StoredRun {
     return [...rows].sort((a, b) => a - b);
   }
 
-  /** The filtered scan of the newest row up to `at` that brought a scan. */
+  /** Shows the filtered scan of the newest row up to `at` with a new scan. */
   private show_filtered(at: number, ready: () => void): void {
     this.scene.filtered.clear();
     if (!this.wants_filtered_) return;
-    const newest: number[] = []; // of each scanner; only one is filtered, the others' messages are empty
+    const newest: number[] = []; // row of each scanner; only one is filtered, the other messages are empty
     for (const [name, bringing] of this.held_) {
       const last = last_not_after(bringing, at);
       if (name.startsWith("scan ") && last >= 0) newest.push(bringing[last]);
@@ -224,32 +230,27 @@ export class StoredRun {
   }
 
   private chunk_of(row: number): Chunk {
-    let found = this.chunks_[0];
-    for (const chunk of this.chunks_) {
-      if (chunk.first_row > row) break;
-      found = chunk;
-    }
-    return found;
+    return this.chunks_[last_not_after(this.chunks_.map((c) => c.first_row), row)];
   }
 
   private async fetch_chunk(chunk: Chunk): Promise<boolean> {
     try {
-      chunk.frames = await fetch_all(this.fetch_, chunk);
+      chunk.frames = await fetch_all(this.fetch_, chunk.from_tick, chunk.count);
       chunk.used = ++this.clock_;
       this.trim();
       return true;
     } catch (error) {
-      this.error = error instanceof Error ? error.message : String(error);
+      this.error = sentence_of(error);
       return false;
     }
   }
 
-  /** One request at a time for a page; what cannot be filtered is not tried again. */
+  /** Sends one request at a time for a page, and none after a failure. */
   private async fetch_filtered(chunk: Chunk): Promise<boolean> {
     if (this.filtering_.has(chunk)) return false;
     this.filtering_.add(chunk);
     try {
-      chunk.filtered = await fetch_all(this.fetch_filtered_, chunk);
+      chunk.filtered = await fetch_all(this.fetch_filtered_, chunk.from_tick, chunk.count);
       this.filtering_.delete(chunk);
       return true;
     } catch {
@@ -265,9 +266,7 @@ export class StoredRun {
   }
 
   private world_at(row: number): Obstacle[] {
-    let found = this.worlds_[0].obstacles;
-    for (const w of this.worlds_) if (w.row <= row) found = w.obstacles;
-    return found;
+    return this.worlds_[last_not_after(this.worlds_.map((w) => w.row), row)].obstacles;
   }
 
   private set_parameters_at(row: number): void {
@@ -277,19 +276,19 @@ export class StoredRun {
   }
 }
 
-/** All messages of `chunk`: a page ends early where its bytes are too many. */
-async function fetch_all(fetch: FetchFrames, chunk: Chunk): Promise<Uint8Array[]> {
+/** `count` messages from tick `first`, or as many as there are. A page of many bytes holds fewer than asked. */
+export async function fetch_all(fetch: FetchFrames, first: number, count: number): Promise<Uint8Array[]> {
   const out: Uint8Array[] = [];
-  for (let from: number | null = chunk.from_tick; from !== null && out.length < chunk.count;) {
-    const page: { bytes: Uint8Array; next: number | null } = await fetch(from, chunk.count - out.length);
+  for (let from: number | null = first; from !== null && out.length < count;) {
+    const page: { bytes: Uint8Array; next: number | null } = await fetch(from, count - out.length);
     out.push(...split_frames(page.bytes));
     from = page.next;
   }
   return out;
 }
 
-/** Obstacles of a document may go without ids; they are then numbered in order from 1. */
-function numbered(json: Parameters<typeof obstacle_from_json>[0], index: number): Obstacle {
+/** Obstacles of a document may have no ids; then their order from 1 is their id. */
+function numbered(json: ObstacleJson, index: number): Obstacle {
   const o = obstacle_from_json(json);
   return o.id === 0 ? { ...o, id: index + 1 } : o;
 }

@@ -1,28 +1,24 @@
-// web/src/state/columns.ts: the plain numbers of a run by row, for the path and the plots, in
-// growing typed arrays; a number that a row does not have is NaN. A live run is thinned when it grows
-// beyond a bound, so memory stays flat.
+// web/src/state/columns.ts: the numbers of a run by row, for the path and the plots, in growing typed
+// arrays; a missing number is NaN. A live run is thinned beyond a bound, so that memory stays flat.
 import { ChannelInfo } from "../contract";
 import { Frame } from "../link/frame";
 
-/** What every robot has; besides, a column for each measure of its controller, by that name. */
-const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "clearance"];
+/** The columns of every robot. Each measure of its controller has a column of its own name. */
+const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "clearance"] as const;
 
 export interface MeasureKey { name: string; unit: string }
 
 /** A row of GET /runs/{id}/ticks. */
-export interface TickRow {
-  tick: number; t: number; x: number; y: number; heading: number; v: number; omega: number;
-  clearance: number;
-}
+export type TickRow = Record<(typeof kColumns)[number], number>;
 
-/** As in the CSV: "NAME", or "NAME[1]" of several values. */
+/** The column of value `k`, named as in the CSV: "NAME", or "NAME[1]" of several values. */
 const column_of = (info: ChannelInfo, k: number) => (info.values > 1 ? `${info.name}[${k}]` : info.name);
 
 export class Columns {
   length = 0;
-  /** The measures that came so far, in the order in which they first did. */
+  /** The measures so far, in the order of their first frame. */
   measures: MeasureKey[] = [];
-  /** Of the robot; a frame's readings name them by their place. */
+  /** The channels of the robot; a reading names its channel by the index in this list. */
   channels: ChannelInfo[] = [];
   private held_ = new Map<string, number>(); // the newest value of each channel
   private data_ = new Map<string, Float64Array>();
@@ -30,12 +26,12 @@ export class Columns {
   private stride_ = 1;
   private skipped_ = 0;
 
-  /** `most` rows are kept; when reached, every second one goes and later ones are thinned alike. */
+  /** Keeps at most `most` rows: beyond, every second row goes, and later rows are thinned alike. */
   constructor(private readonly most_ = Infinity) {
     for (const name of kColumns) this.add(name);
   }
 
-  /** A view of the rows, valid until the next push; of a column there is not: NaN. */
+  /** A view of the rows, valid until the next push; NaN for an unknown column. */
   get(name: string): Float64Array {
     return this.data_.get(name)?.subarray(0, this.length) ?? new Float64Array(this.length).fill(NaN);
   }
@@ -63,14 +59,8 @@ export class Columns {
     const put = (name: string, value: number) => {
       (this.data_.get(name) ?? this.add(name))[i] = value;
     };
-    put("t", f.stamp);
-    put("tick", f.tick);
-    put("x", f.pose.x);
-    put("y", f.pose.y);
-    put("heading", f.pose.heading);
-    put("v", f.twist.v);
-    put("omega", f.twist.omega);
-    put("clearance", f.clearance);
+    const row: TickRow = { t: f.stamp, tick: f.tick, ...f.pose, ...f.twist, clearance: f.clearance };
+    for (const name of kColumns) put(name, row[name]);
     for (const { name } of this.measures) put(name, NaN);
     const put_named = (name: string, unit: string, value: number) => {
       if (!this.data_.has(name)) this.measures = [...this.measures, { name, unit }];
@@ -83,7 +73,7 @@ export class Columns {
     }
   }
 
-  /** A channel is seldomer read than the robot ticks: its value holds. */
+  /** Keeps the values of channels, which are read less often than every tick. */
   private hold(f: Frame): void {
     for (const { channel, values } of f.readings) {
       const info = this.channels[channel];
@@ -97,7 +87,7 @@ export class Columns {
       Array.from({ length: info.values }, (_, k) => ({ name: column_of(info, k), unit: info.unit })));
   }
 
-  /** Puts rows of the record before those that are here. What they do not say is NaN. */
+  /** Inserts rows of the record at the front. Columns that they lack are NaN there. */
   prepend(rows: TickRow[]): void {
     const count = rows.length;
     while (this.capacity_ < this.length + count) this.grow();
@@ -139,7 +129,7 @@ export class Columns {
   }
 }
 
-/** Index of the last of the ascending `values` that is not after `limit`; -1 when all are. */
+/** Index of the last of the ascending `values` that is at most `limit`; -1 if none is. */
 export function last_not_after(values: ArrayLike<number>, limit: number): number {
   let low = 0;
   let high = values.length;

@@ -1,6 +1,6 @@
-// web/src/state/scene.ts: what there is to draw, as one plain object, and how a frame and the
-// session's document are folded into it. Live session and stored run fill the same object.
-import { RobotInfo, SessionState } from "../contract";
+// web/src/state/scene.ts: the state that is drawn, as one plain object, and how frames and the session's
+// document change it. Live session and stored run fill the same object.
+import { GoalJson, RobotInfo, SessionState } from "../contract";
 import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
 import { Frame, FrameRequest, Goal, Words } from "../link/frame";
@@ -14,13 +14,13 @@ import { FilteredScan, PlacedSweep, newest_sweeps } from "./sweeps";
 export interface SceneState {
   frame: Frame | null;
   sweeps: PlacedSweep[];    // the newest of each scanner
-  filtered: FilteredScan;   // what the controller saw of them
+  filtered: FilteredScan;   // the scan that the controller saw
   readings: PlacedReadings; // of sonar and infrared
   layers: Map<string, LayerView>;  // of the controller; the newest of each grid
-  known: Map<string, LayerKey>;    // all that came so far, shown now or not
+  known: Map<string, LayerKey>;    // of every layer so far, also those without values now
   words: Words | null;             // the newest
   columns: Columns;
-  rows: number;           // of columns that have happened at the shown instant
+  rows: number;           // of the columns, up to the shown instant
   obstacles: Obstacle[];
   start: Pose | null;
   goal: Goal | null;
@@ -29,13 +29,12 @@ export interface SceneState {
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
   safety_distance: number; // [m] about the centre
-  scan_timeout: number; // [s] the age of a scan by which the robot stops
+  scan_timeout: number; // [s] age of a scan at which the robot stops
   events: EventLog;
   run: number | null;
   controller: string;
   heard_at: number | null; // [ms] performance.now() when the newest live frame came
-  /** A world has walls to fit; a log has only what the scanner saw. */
-  world: boolean;
+  world: boolean; // false for a recorded log, which has no obstacles
 }
 
 export function new_scene(most_rows = Infinity): SceneState {
@@ -57,7 +56,7 @@ export function begin_run(scene: SceneState): void {
   scene.events.clear();
 }
 
-/** Forgets the shown instant and all that holds from the frames before it. */
+/** Forgets the shown instant, with the values that hold from earlier frames. */
 export function forget_instant(scene: SceneState): void {
   scene.frame = null;
   scene.sweeps = [];
@@ -77,11 +76,15 @@ export function fold_session(scene: SceneState, s: SessionState): void {
   scene.run = run;
   scene.obstacles = moved_by_themselves((s.obstacles ?? []).map(obstacle_from_json), scene.frame);
   scene.start = s.scenario?.start ?? null;
-  scene.goal = s.goal ? { x: s.goal.x, y: s.goal.y, heading: s.goal.heading ?? null } : null;
+  scene.goal = goal_from_json(s.goal);
   scene.goals_ahead = s.goals_ahead ?? [];
   take_robot(scene, s.robot);
   scene.world = s.source === "simulation";
   take_parameters(scene, s.parameters ?? {});
+}
+
+export function goal_from_json(goal: GoalJson | null | undefined): Goal | null {
+  return goal ? { x: goal.x, y: goal.y, heading: goal.heading ?? null } : null;
 }
 
 export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): void {
@@ -108,7 +111,7 @@ export function fold_frame(scene: SceneState, f: Frame): void {
   scene.filtered.see(f);
 }
 
-/** Makes `f` the shown instant without touching the history. What it does not bring holds. */
+/** Makes `f` the shown instant and leaves the history as it is. Values that `f` does not bring hold. */
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
@@ -117,14 +120,14 @@ export function show_frame(scene: SceneState, f: Frame): void {
   scene.obstacles = moved_by_themselves(scene.obstacles, f);
   for (const [name, layer] of scene.layers) if (layer.kind !== "grid" || !f.goal) scene.layers.delete(name);
   for (const layer of f.layers) {
-    scene.layers.delete(layer.name); // the frame's order is the order in which they lie
+    scene.layers.delete(layer.name); // so that the map has the order of the frame
     scene.layers.set(layer.name, layer);
   }
   scene.sweeps = newest_sweeps(scene.sweeps, f);
   place_readings(scene.readings, f);
 }
 
-/** Names of what `f` says that holds in the frames after it, as `show_frame` has it. */
+/** Names of the values of `f` that hold in later frames, by the rules of `show_frame`. */
 export function held_of(f: Frame): string[] {
   const mount = (m: Pose) => `${m.x} ${m.y} ${m.heading}`;
   return [
@@ -138,19 +141,19 @@ export function held_of(f: Frame): string[] {
   ];
 }
 
-/** [s] for which what `held_of` calls `name` holds. */
+/** [s] For how long the value `name` of `held_of` holds. */
 export function hold_time(name: string): number {
   return /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 
-/** The obstacles, with those that move by themselves where `f` says; the same list if it says nothing. */
+/** The obstacles with the poses of `f` for those that move by themselves; the same list if it has none. */
 function moved_by_themselves(obstacles: Obstacle[], f: Frame | null): Obstacle[] {
   if (!f || f.moved.length === 0) return obstacles;
   const places = new Map(f.moved.map((m) => [m.id, m.pose]));
   return obstacles.map((o) => ({ ...o, pose: places.get(o.id) ?? o.pose }));
 }
 
-/** Obstacles after `request`, as a new list; the old one when it changes nothing. */
+/** The obstacles after `request` as a new list; the same list if it changes nothing. */
 export function edited(obstacles: Obstacle[], request: FrameRequest): Obstacle[] {
   switch (request.type) {
     case "add_obstacle":
@@ -164,7 +167,7 @@ export function edited(obstacles: Obstacle[], request: FrameRequest): Obstacle[]
   }
 }
 
-/** Where the robot is drawn: the newest frame's pose, or the start before the first frame. */
+/** The drawn pose of the robot: that of the newest frame, or the start before the first frame. */
 export function robot_pose(scene: SceneState): Pose | null {
   return scene.frame?.pose ?? scene.start;
 }
@@ -176,7 +179,7 @@ export function goal_distance(scene: SceneState): number | null {
   return distance(scene.goal, pose);
 }
 
-/** What a fitted view should show: the world and all that moves in it. */
+/** The bounds of a fitted view: obstacles, start, goals and robot. */
 export function scene_bounds(scene: SceneState): Bounds {
   const b = empty_bounds();
   const pose = robot_pose(scene);

@@ -10,7 +10,7 @@ import { Gestures } from "../edit/gestures";
 import { Bounds, Pose, include } from "../geometry";
 import { Player } from "../link/player";
 import * as rest from "../link/rest";
-import { FetchFrames, StoredRun } from "../link/stored";
+import { StoredRun, stored_frames } from "../link/stored";
 import { scene_bounds } from "../state/scene";
 import { use_redraw } from "../state/store";
 import { SceneCanvas, scale_insets } from "../ui/canvas";
@@ -34,7 +34,7 @@ function use_stored(id: number | null, changed: () => void): { run: StoredRun | 
     const stop = new AbortController();
     const begin = async () => {
       const item = await rest.get<RunItem>(`/runs/${id}`, stop.signal);
-      const stored = new StoredRun(item, frames_of(id, "frames"), frames_of(id, "filtered"));
+      const stored = new StoredRun(item, stored_frames(id, "frames"), stored_frames(id, "filtered"));
       set_run(stored);
       await stored.load(changed, stop.signal);
     };
@@ -273,10 +273,6 @@ function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
     set_goal: nothing, add_goal: nothing, add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing,
     refuse: nothing, changed: redraw,
   });
-}
-
-function frames_of(id: number, what: "frames" | "filtered"): FetchFrames {
-  return (from, limit, signal) => rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
 }
 
 function pose_at(run: StoredRun, t: number): Pose {
