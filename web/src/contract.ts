@@ -13,7 +13,7 @@ export interface ScenarioDocument {
   [key: string]: unknown;
 }
 
-/** A further sensor of the robot. */
+/** A sensor of the robot beside scanner, sonar, infrared and bumpers. */
 export interface ChannelInfo { name: string; kind: string; unit: string; values: number }
 
 export interface RobotInfo {
@@ -47,7 +47,7 @@ export interface DeviceInfo {
 export interface HardwareInfo {
   armed: boolean;
   halt: string;
-  trouble: string; // why the wheels are held still; empty when they may turn
+  trouble: string; // why the wheels stand still; empty when they may turn
   devices: DeviceInfo[];
   warnings: string[];
   real_time: boolean;
@@ -57,7 +57,7 @@ export interface HardwareInfo {
   lateness: { ticks: number; worst: number; buckets: { below: number | null; ticks: number }[] };
 }
 
-/** How the record of the live run is doing. */
+/** The state of the live run's record. */
 export interface RecordInfo { status: string; sentence: string; deleted: string | null }
 
 /** The /state document. */
@@ -73,16 +73,16 @@ export interface SessionState {
   pace: { paused: boolean; speed: number };
   stop: boolean;
   goal: GoalJson | null;
-  goals_ahead?: GoalJson[];
+  goals_ahead: GoalJson[];
   obstacles: ObstacleJson[];
   parameters: Record<string, number>;
   lost_ticks: number;
   missed_periods: number;
   problem: string | null;
-  hardware?: HardwareInfo | null;
-  watchers?: number;          // pages that are looked at, and one for scripts
-  watched_by_script?: boolean;
-  record?: RecordInfo;
+  hardware: HardwareInfo | null;
+  watchers: number; // pages in sight, and one more if scripts watch
+  watched_by_script: boolean;
+  record: RecordInfo;
 }
 
 export type RequestJson =
@@ -94,7 +94,7 @@ export type RequestJson =
   | { type: "remove_obstacle"; id: number }
   | { type: "stop"; engaged: boolean };
 
-/** The answer to a request; `warning` says what is known to be wrong with a goal. */
+/** The answer to a request; `warning` says why a goal may not be reached. */
 export interface Accepted { id?: number; warning?: string }
 
 export interface Choice { name: string; label: string; help?: string }
@@ -117,7 +117,7 @@ export interface Catalog {
   common_parameters: string[]; // read whichever controller drives
 }
 
-/** A robot model; one that is not usable says why in its description. */
+/** A robot model. The description of an unusable one says why. */
 export interface RobotItem { name: string; title: string; description: string; usable: boolean }
 
 export interface ScenarioItem {
@@ -154,11 +154,11 @@ export interface RunItem {
   document?: RunDocument;
 }
 
-/** What a run was made of. */
+/** The description of a run. */
 export interface RunDocument {
   scenario: ScenarioDocument;
   robot?: RobotInfo;
-  others?: ObstacleJson[]; // the other robots of the world, as obstacles at their starts
+  others?: ObstacleJson[]; // the other robots, as obstacles at their starts
   [key: string]: unknown;
 }
 

@@ -1,4 +1,4 @@
-// web/src/words.ts: states, outcomes and numbers in words; plain, short, no blame.
+// web/src/words.ts: states, outcomes and numbers in words.
 import { SessionState } from "./contract";
 import { LinkStatus } from "./link/live";
 import { Frame } from "./link/frame";
@@ -6,15 +6,16 @@ import { age_words, motion, news_age } from "./state/age";
 import { SceneState } from "./state/scene";
 
 export type Tone = "ok" | "warn" | "bad" | "info" | "muted";
+export interface Word { word: string; tone: Tone }
 
-/** `digits` after the point, a dash when there is no number; the minus sign is a real one. */
+/** `value` with `digits` after the point and a typographic minus; a dash if there is no number. */
 export function fixed(value: number | null | undefined, digits: number): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   const text = Math.abs(value).toFixed(digits);
   return value < 0 && Number(text) !== 0 ? `−${text}` : text;
 }
 
-/** mm:ss.t, or h:mm:ss from an hour on. */
+/** "mm:ss.t"; from an hour on "h:mm:ss". */
 export function clock(seconds: number): string {
   const tenths = Math.max(0, Math.round(seconds * 10));
   const s = Math.floor(tenths / 10);
@@ -35,9 +36,8 @@ export function link_words(status: LinkStatus, now: number): string {
   return parts.join(" · ");
 }
 
-/** The robot's state as one word, with its tone. */
-export function state_word(frame: Frame | null, session: SessionState | null,
-  open: boolean): { word: string; tone: Tone } {
+/** The state of the live robot. */
+export function state_word(frame: Frame | null, session: SessionState | null, open: boolean): Word {
   if (!open) return { word: "No link", tone: "bad" };
   if (!session) return { word: "Waiting", tone: "muted" };
   if (session.stop || frame?.hold === "stopped") return { word: moving(frame) ? "Stopping" : "Stopped", tone: "bad" };
@@ -47,20 +47,20 @@ export function state_word(frame: Frame | null, session: SessionState | null,
   return frame_word(frame);
 }
 
-/** Below what odometry resolves the robot counts as at rest. */
+/** At rest below the resolution of odometry. */
 function moving(frame: Frame | null): boolean {
   return frame !== null && Math.hypot(frame.twist.v, frame.twist.omega) > 0.01;
 }
 
-/** "watched by 1 page", or by a script, or by nobody. */
+/** "watched by 2 pages and a script", "watched by nobody". */
 export function watchers_words(session: SessionState): string {
-  const scripts = session.watched_by_script ?? false;
-  const pages = (session.watchers ?? 0) - (scripts ? 1 : 0);
+  const scripts = session.watched_by_script;
+  const pages = session.watchers - (scripts ? 1 : 0);
   const by = [...(pages > 0 ? [pages === 1 ? "1 page" : `${pages} pages`] : []), ...(scripts ? ["a script"] : [])];
   return by.length > 0 ? `watched by ${by.join(" and ")}` : "watched by nobody";
 }
 
-/** What is known of a robot that was told to stop, and what a release will do. */
+/** Whether a stopped robot stands, and what Release will do. */
 export function stopped_words(scene: SceneState, session: SessionState, open: boolean, now: number): string {
   const after = session.source === "hardware"
     ? "Its goals are cleared: Release moves nothing by itself."
@@ -74,23 +74,23 @@ export function stopped_words(scene: SceneState, session: SessionState, open: bo
   return `Stopped: the robot stands. ${after}`;
 }
 
-/** The same for an instant of a stored run. */
-export function frame_word(frame: Frame | null): { word: string; tone: Tone } {
+/** The state of the robot at the instant of a frame. */
+export function frame_word(frame: Frame | null): Word {
   if (!frame) return { word: "Idle", tone: "muted" };
+  const manual = frame.behaviour === "manual" && ["driving", "idle"].includes(frame.mission);
   if (frame.hold === "stopped") return { word: "Stopped", tone: "bad" };
   if (frame.hold !== "none") return { word: "Held", tone: "bad" };
-  switch (frame.mission) {
-    case "driving": return frame.behaviour === "manual"
-      ? { word: "Manual", tone: "info" } : { word: "Driving", tone: "ok" };
-    case "arrived": return { word: "Arrived", tone: "ok" };
-    case "stuck": return { word: "Stuck", tone: "warn" };
-    case "held": return { word: "Held", tone: "bad" };
-    default: return frame.behaviour === "manual"
-      ? { word: "Manual", tone: "info" } : { word: "Idle", tone: "muted" };
-  }
+  return manual ? { word: "Manual", tone: "info" } : kMissions[frame.mission];
 }
 
-const kOutcomes: Record<string, { word: string; tone: Tone }> = {
+const kMissions: Record<Frame["mission"], Word> = {
+  idle: { word: "Idle", tone: "muted" },
+  driving: { word: "Driving", tone: "ok" },
+  arrived: { word: "Arrived", tone: "ok" },
+  stuck: { word: "Stuck", tone: "warn" },
+  held: { word: "Held", tone: "bad" },
+};
+const kOutcomes: Record<string, Word> = {
   running: { word: "Running", tone: "info" },
   reached: { word: "Reached", tone: "ok" },
   stuck: { word: "Stuck", tone: "warn" },
@@ -100,7 +100,7 @@ const kOutcomes: Record<string, { word: string; tone: Tone }> = {
   end_of_log: { word: "End of log", tone: "info" },
   failed: { word: "Failed", tone: "bad" },
 };
-const kStatuses: Record<string, { word: string; tone: Tone }> = {
+const kStatuses: Record<string, Word> = {
   queued: { word: "Queued", tone: "muted" },
   recording: { word: "Recording", tone: "info" },
   interrupted: { word: "Interrupted", tone: "muted" },
@@ -108,14 +108,14 @@ const kStatuses: Record<string, { word: string; tone: Tone }> = {
   failed: { word: "Failed", tone: "bad" },
 };
 
-/** What became of a run: its outcome when finished, else its status. */
-export function run_word(status: string, outcome: string): { word: string; tone: Tone } {
+/** The outcome of a run once it has one, else its status. */
+export function run_word(status: string, outcome: string): Word {
   const under_way = status === "recording" && outcome !== "running" && outcome !== "";
   if (status !== "finished" && !under_way && kStatuses[status]) return kStatuses[status];
   return kOutcomes[outcome] ?? { word: outcome || "Unknown", tone: "muted" };
 }
 
-/** Who drove: the controller, or nobody when a log was replayed. */
+/** The controller of a run; "Replay" for a log. */
 export function driver_word(run: { controller: string; physics: string }): string {
   return run.physics === "log" ? "Replay" : titled(run.controller);
 }
@@ -124,7 +124,7 @@ export function speed_word(speed: number): string {
   return speed === 0 ? "Max" : `${speed}×`;
 }
 
-/** "modified_c1" as a label when the catalog has none. */
+/** A label made of a name: "Modified c1" of "modified_c1". */
 export function titled(name: string): string {
   const spaced = name.replace(/[_-]+/g, " ").replace(/([a-z]{2})(\d)/g, "$1 $2");
   return spaced.charAt(0).toUpperCase() + spaced.slice(1);
@@ -135,6 +135,11 @@ export function source_word(session: SessionState | null): { word: string; tone:
   if (session.source === "hardware") return { word: "REAL HARDWARE", tone: "bad" };
   if (session.source === "replay") return { word: "Replay", tone: "replay" };
   return { word: "Simulation", tone: "info" };
+}
+
+/** Whether every word of `text` is in `found`, in any case and order. */
+export function matches(found: string, text: string): boolean {
+  return text.toLowerCase().split(/\s+/).every((word) => found.toLowerCase().includes(word));
 }
 
 export function sentence_of(error: unknown): string {

@@ -1,15 +1,15 @@
-// web/src/views/cards.tsx: what lies on the scene: the sentence that explains, and the banner for
-// states that need a person.
-import { JSX } from "preact";
+// web/src/views/cards.tsx: the cards on the scene: the sentence that explains, the banner for states that
+// need a person, and the age of an old picture.
+import { ComponentChildren, JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
 import { Words } from "../link/frame";
 import { age_words, news_age, scan_age } from "../state/age";
 import { SceneState } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
-import { frame_word, link_words, stopped_words } from "../words";
+import { Tone, frame_word, link_words, stopped_words } from "../words";
 
-/** What the robot is doing, and why, with the numbers. */
+/** The sentences of the controller: the robot's action and its reason, with the numbers. */
 export function Explain(): JSX.Element | null {
   const app = use_app();
   use_pulse(150);
@@ -37,7 +37,7 @@ function explain_words(scene: SceneState, session: SessionState | null): Words &
     return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
       why: paused ? "Press play to begin." : "", tone: "muted" };
   }
-  // The server says its words when they are new; who came late has the state until then.
+  // The server sends sentences when they are new. A page that opens late shows the state until then.
   const said = words ?? { what: frame_word(f).word, why: "" };
   if (!session.robot.drives) return { what: "Replaying the log", why: said.why, tone: "accent" };
   const tone = f.hold !== "none" || f.mission === "held" ? "bad"
@@ -45,49 +45,54 @@ function explain_words(scene: SceneState, session: SessionState | null): Words &
   return { ...said, tone };
 }
 
-/** A strip across the top of the scene for what must not be missed. */
+/** A strip across the top of the scene, with buttons. */
+function Strip(props: { tone: Tone; words: string; children?: ComponentChildren }): JSX.Element {
+  return (
+    <div class={`banner ${props.tone}`} role="alert" data-testid="banner"><span>{props.words}</span>{props.children}</div>
+  );
+}
+
+/** The state that a person must not miss. */
 export function Banner(): JSX.Element | null {
   const app = use_app();
   const { link, session } = use_ui("link", "session");
   use_pulse(250);
   if (link.phase === "lost") {
+    const alone = session?.source === "hardware"
+      ? "A robot that nobody watches stops by itself, unless its server was started with --unattended." : "";
     return (
-      <div class="banner bad" role="alert" data-testid="banner">
-        <span>{link_words(link, performance.now())} {session?.source === "hardware" &&
-          "A robot that nobody watches stops by itself, unless its server was started with --unattended."}</span>
+      <Strip tone="bad" words={`${link_words(link, performance.now())} ${alone}`}>
         <button class="text" onClick={() => app.link.retry_now()}>Try now</button>
-      </div>
+      </Strip>
     );
   }
   if (session?.stop) {
     return (
-      <div class="banner bad" role="alert" data-testid="banner">
-        <span>{stopped_words(app.scene, session, link.phase === "open", performance.now())}</span>
+      <Strip tone="bad" words={stopped_words(app.scene, session, link.phase === "open", performance.now())}>
         <button class="text" onClick={() => void app.release()}>Release</button>
-      </div>
+      </Strip>
     );
   }
   const record = session?.record;
   if (record && (record.status === "failed" || record.status === "full")) {
-    return <div class="banner bad" role="alert" data-testid="banner"><span>{record.sentence}</span></div>;
+    return <Strip tone="bad" words={record.sentence} />;
   }
   const outcome = session?.run?.outcome;
   if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
     const words = { collided: "The robot touched an obstacle.",
-      end_of_log: "The log has come to its end.",
-      failed: session?.problem ?? "This run broke off." }[outcome];
+      end_of_log: "The log has ended.",
+      failed: session?.problem ?? "The run failed." }[outcome];
     return (
-      <div class={`banner ${outcome === "end_of_log" ? "info" : "bad"}`} role="alert" data-testid="banner">
-        <span>{words}</span>
+      <Strip tone={outcome === "end_of_log" ? "info" : "bad"} words={words}>
         <button class="text" onClick={() => void app.reset()}>Start again</button>
         {session?.run && <button class="text" onClick={() => app.go("runs", session.run!.id)}>Open the run</button>}
-      </div>
+      </Strip>
     );
   }
   return null;
 }
 
-/** How old what is drawn is, growing, while it is too old to go by. The scene is grey meanwhile. */
+/** The growing age of an old picture, which is drawn grey, or of an old scan. */
 export function Staleness(): JSX.Element | null {
   const app = use_app();
   const open = use_store(app.ui, (u) => u.link.phase === "open");

@@ -99,8 +99,8 @@ function make_hand(app: App): Hand {
       app.redraw();
     },
     refuse: (what) => app.toast("warn", what === "goal"
-      ? "This robot takes no goals: it only shows what was recorded."
-      : "Obstacles can be placed in a simulated world only."),
+      ? "A recorded log takes no goals."
+      : "Only a simulated world takes obstacles."),
     changed: () => app.redraw(),
   });
   return hand;
@@ -149,10 +149,10 @@ function Tools(): JSX.Element {
   );
   return (
     <div class="tools" role="toolbar" aria-label="Tools" aria-orientation="vertical">
-      {button("pan", "Look round: drag to move the view, press to see what is there", "V", true)}
-      {button("goal", "Goal: press where, drag for the heading", "G", drives)}
-      {button("cylinder", "Cylinder: press, drag for its size", "C", editable)}
-      {button("box", "Box: press, drag for its size", "B", editable)}
+      {button("pan", "Look round: drag to move the view, press to select", "V", true)}
+      {button("goal", "Goal: press for the position, drag for the heading", "G", drives)}
+      {button("cylinder", "Cylinder: press for the position, drag for the size", "C", editable)}
+      {button("box", "Box: press for the position, drag for the size", "B", editable)}
       {button("measure", "Measure a distance", "M", true)}
       {(drives || editable) && <button aria-label={undo ? `Undo: ${undo}` : "Undo"} title={undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo"}
         disabled={!undo} data-testid="undo" onClick={() => void app.undo()}>{icons.undo}</button>}

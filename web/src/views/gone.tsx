@@ -1,4 +1,4 @@
-// web/src/views/gone.tsx: says that the page has no session, and opens a new one.
+// web/src/views/gone.tsx: tells that the page has no session, and opens a new one.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { Problem, use_problem } from "../ui/controls";

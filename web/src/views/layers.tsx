@@ -1,18 +1,17 @@
-// web/src/views/layers.tsx: legend and layers as one panel: what each colour means, with its switch.
+// web/src/views/layers.tsx: legend and layers in one panel: the meaning of each colour, and its switch.
 import { JSX } from "preact";
-import { useEffect, useRef } from "preact/hooks";
+import { useEffect } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { LayerKey, kOwn, layer_groups } from "../state/layers";
 import { SceneState } from "../state/scene";
-import { use_pulse, use_store } from "../state/store";
+import { use_latest, use_pulse, use_store } from "../state/store";
 import { icons } from "../ui/icons";
 
-/** Calls `tell` with whether filtered scans are looked at: while their layer is on and the tab seen. */
+/** Calls `tell` with whether filtered scans are needed: while their layer is on and the tab is visible. */
 export function use_filtered(tell: (wanted: boolean) => void): void {
   const app = use_app();
   const on = use_store(app.ui, (u) => !u.hidden.has(kOwn.filtered.name));
-  const latest = useRef(tell);
-  latest.current = tell;
+  const latest = use_latest(tell);
   useEffect(() => {
     const update = () => latest.current(on && document.visibilityState === "visible");
     update();
@@ -26,13 +25,13 @@ export function use_filtered(tell: (wanted: boolean) => void): void {
 
 export function LayerButton(props: { open: boolean; on_press: (open: boolean) => void; class?: string }): JSX.Element {
   return (
-    <button class={`${props.class ?? ""} ${props.open ? "on" : ""}`} aria-label="Layers: what the colours mean"
+    <button class={`${props.class ?? ""} ${props.open ? "on" : ""}`} aria-label="Layers: the meaning of the colours"
       aria-expanded={props.open} title="Layers (L)" data-testid="layers"
       onClick={() => props.on_press(!props.open)}>{icons.layers}</button>
   );
 }
 
-/** Every layer there is: swatch, words, switch. */
+/** Every layer with its swatch, label and switch. */
 export function LayerPanel(props: { scene: SceneState; on_close: () => void }): JSX.Element {
   const app = use_app();
   const { hidden, force_scale: times } = use_ui("hidden", "force_scale");
@@ -63,7 +62,7 @@ export function LayerPanel(props: { scene: SceneState; on_close: () => void }): 
   );
 }
 
-/** Enter switches it; Space is Stop, here as everywhere. */
+/** Enter switches the layer; Space is Stop, as everywhere. */
 function LayerRow(props: { of: LayerKey; on: boolean }): JSX.Element {
   const app = use_app();
   const { name, label, token, kind, style } = props.of;
@@ -77,7 +76,7 @@ function LayerRow(props: { of: LayerKey; on: boolean }): JSX.Element {
   );
 }
 
-/** [px] of `scene`, from its right, that an open panel covers; none where the panel has a place of its own. */
+/** [px] of `scene`, from its right, that the open panel covers; 0 if the panel lies elsewhere. */
 export function panel_cover(scene: HTMLElement): number {
   const panel = scene.parentElement?.querySelector(".layers")?.getBoundingClientRect();
   const box = scene.getBoundingClientRect();

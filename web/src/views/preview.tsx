@@ -1,4 +1,4 @@
-// web/src/views/preview.tsx: a goal for real hardware before it is sent off, and where to begin.
+// web/src/views/preview.tsx: the goal for real hardware before it is sent, and a hint to set the first goal.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
@@ -6,14 +6,14 @@ import { use_store } from "../state/store";
 import { icons } from "../ui/icons";
 import { fixed } from "../words";
 
-/** Why the robot would not set off now, and what to do; nothing when Go works. */
+/** The step that Go still needs; null when Go works. */
 function not_yet(session: SessionState | null): string | null {
   if (!session?.hardware?.armed) return "Arm the motors first. Arming moves nothing by itself.";
   if (session.stop) return "Release Stop first. Releasing moves nothing by itself.";
   return null;
 }
 
-/** Nothing moves before Go is pressed. */
+/** The robot drives only after Go is pressed. */
 export function PreviewCard(): JSX.Element | null {
   const app = use_app();
   const { preview, session } = use_ui("preview", "session");
@@ -24,19 +24,19 @@ export function PreviewCard(): JSX.Element | null {
     <div class="card preview" role="group" aria-label="A goal that is not sent yet" data-testid="preview">
       <p>
         <b>{further ? "A further goal" : "A goal"} at {fixed(goal.x, 2)}, {fixed(goal.y, 2)} m.</b>{" "}
-        <span>The real robot sets off when you press Go.</span>
+        <span>The real robot drives when you press Go.</span>
       </p>
       {trouble && <p class="tone-warn words" role="alert" data-testid="preview-trouble">{trouble}</p>}
       {wait && <p class="tone-muted words" data-testid="preview-wait">{wait}</p>}
       <div class="acts">
         <button class="go" disabled={wait !== null} data-testid="go" onClick={() => void app.go_there()}>Go</button>
-        <button class="ghost" data-testid="preview-drop" onClick={() => app.drop_preview()}>Drop it</button>
+        <button class="ghost" data-testid="preview-drop" onClick={() => app.drop_preview()}>Discard</button>
       </div>
     </div>
   );
 }
 
-/** The first thing to do in a simulated world; gone once it was done. */
+/** Shown until a goal was set by hand. */
 export function GoalHint(): JSX.Element | null {
   const app = use_app();
   const { tool, selection, goal_learnt: learnt } = use_ui("tool", "selection", "goal_learnt");

@@ -1,5 +1,4 @@
-// web/src/views/rail.tsx: the ways to the views: a column at the left, tabs at the bottom of a
-// phone.
+// web/src/views/rail.tsx: links to the views: a column at the left, on a phone tabs at the bottom.
 import { JSX } from "preact";
 import { ViewName, use_app, use_ui } from "../app";
 import { icons } from "../ui/icons";

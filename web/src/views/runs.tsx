@@ -1,4 +1,4 @@
-// web/src/views/runs.tsx: the Runs view: the list with its filters, and the run that is open.
+// web/src/views/runs.tsx: the Runs view: the list with its filters, and the open run.
 import { JSX } from "preact";
 import { useCallback, useEffect, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
@@ -6,7 +6,7 @@ import { Page, RunItem } from "../contract";
 import * as rest from "../link/rest";
 import { use_store } from "../state/store";
 import { icons } from "../ui/icons";
-import { driver_word, fixed, run_word, sentence_of, titled } from "../words";
+import { driver_word, fixed, matches, run_word, sentence_of, titled } from "../words";
 import { RunDetail } from "./run_detail";
 import { StartRun } from "./start_run";
 
@@ -26,12 +26,8 @@ export function Runs(): JSX.Element {
     if (compare === open) set_compare(null);
   }, [open, compare]);
 
-  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
-  const shown = list.items.filter((r) => {
-    const hay = `${r.id} ${r.scenario} ${r.controller} ${r.filter} ${r.physics} ${r.outcome} ${r.status}`
-      .toLowerCase();
-    return words.every((w) => hay.includes(w));
-  });
+  const shown = list.items.filter((r) =>
+    matches(`${r.id} ${r.scenario} ${r.controller} ${r.filter} ${r.physics} ${r.outcome} ${r.status}`, text));
   return (
     <main class={`runs ${open !== null ? "detail-open" : ""}`} aria-label="Runs">
       <div class="find" role="search">
@@ -54,15 +50,15 @@ export function Runs(): JSX.Element {
         {list.error && <p class="empty" role="alert">{list.error}</p>}
         {!list.error && !list.loading && shown.length === 0 &&
           <p class="empty">{list.items.length === 0
-            ? "No runs yet. Drive one, or start some in the background."
-            : "No run matches. Clear the filter to see them all."}</p>}
+            ? "No runs yet. Drive the robot, or start a run in the background."
+            : "No run matches. Clear the filter to see all runs."}</p>}
         {list.next !== null &&
           <button class="ghost more-runs" data-testid="more-runs" onClick={list.more}>Show earlier runs</button>}
       </div>
       {open !== null
         ? <RunDetail key={open} id={open} compare={compare} on_gone={list.refresh}
             on_uncompare={() => set_compare(null)} />
-        : <section class="view none"><p class="empty">Open a run to see it again: scrub it, play it, compare it with another.</p></section>}
+        : <section class="view none"><p class="empty">Open a run to play it, to search it, or to compare it with another.</p></section>}
       {starting && <StartRun on_close={() => set_starting(false)} on_started={list.refresh} />}
     </main>
   );
@@ -73,7 +69,7 @@ interface RunList {
   total: number | null; outcome: string; set_outcome: (o: string) => void; more: () => void; refresh: () => void;
 }
 
-/** The list in pages, newest first; the first page is looked at again while the view is open. */
+/** The list in pages, newest first. While the view is open, the first page is fetched again and again. */
 function use_runs(connected: boolean): RunList {
   const [items, set_items] = useState<RunItem[]>([]);
   const [next, set_next] = useState<string | number | null>(null);
@@ -97,7 +93,7 @@ function use_runs(connected: boolean): RunList {
         set_items((old) => [...old, ...page.items]);
         set_next(page.next);
       } else {
-        // Pages further back stay as they are; only newer and changed runs come in.
+        // Older pages stay as they are; new and changed runs come with the first page.
         set_items((old) => merged(page.items, old, outcome));
         set_next((before) => (before === null ? page.next : before));
       }
@@ -125,6 +121,7 @@ function use_runs(connected: boolean): RunList {
   };
 }
 
+/** The first page and the older runs behind it. */
 function merged(fresh: RunItem[], old: RunItem[], outcome: string): RunItem[] {
   const oldest = fresh.at(-1)?.id ?? Infinity;
   const kept = old.filter((r) => r.id < oldest && (outcome === "" || r.outcome === outcome));
@@ -175,7 +172,7 @@ function RunTable(props: {
               <td class="wide compare-cell">
                 {props.open !== null && !on &&
                   <button class="icon" aria-pressed={second} data-testid={`compare-${r.id}`}
-                    aria-label={`Compare run ${r.id} with the open one`} title="Lay over the open run"
+                    aria-label={`Compare run ${r.id} with the open one`} title="Draw it over the open run"
                     onClick={(e) => {
                       e.stopPropagation();
                       props.on_compare(second ? null : r.id);

@@ -1,4 +1,4 @@
-// web/src/views/stop.tsx: Stop and Release, and what became of a Stop: commanded, standing, failed.
+// web/src/views/stop.tsx: Stop and Release, and the alarm of a Stop that failed.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { age_words } from "../state/age";
@@ -8,19 +8,19 @@ export function StopButtons(): JSX.Element {
   const app = use_app();
   const stopped = use_store(app.ui, (u) => u.session?.stop ?? false);
   const phase = use_store(app.ui, (u) => u.stop.phase);
-  const word = phase === "sent" && !stopped ? "Stopping" : stopped ? "Stopped" : "Stop";
+  const word = phase === "failed" ? "Stop again" : stopped ? "Stopped" : phase === "sent" ? "Stopping" : "Stop";
   return (
     <>
       {stopped &&
         <button class="release" data-testid="release" onClick={() => void app.release()}>Release</button>}
       <button class={`stop ${stopped ? "latched" : ""}`} data-testid="stop" aria-pressed={stopped}
         title="Brings the robot to rest and keeps it there (Space). It does not replace an emergency stop."
-        onClick={() => app.stop()}>{phase === "failed" ? "Stop again" : word}</button>
+        onClick={() => app.stop()}>{word}</button>
     </>
   );
 }
 
-/** Over everything but the Stop button: this must be seen from across the room. */
+/** Covers everything but the Stop button, large enough to read from across the room. */
 export function StopAlarm(): JSX.Element | null {
   const app = use_app();
   const { stop } = use_ui("stop");
@@ -32,8 +32,8 @@ export function StopAlarm(): JSX.Element | null {
       <b>Stop did NOT reach the robot</b>
       <p>Nothing has answered for <span class="num">{age_words(since)}</span>. The robot may still be moving.
         Use the stop button on the robot itself.</p>
-      <p>Stop is sent again and again until it arrives.</p>
-      <button class="ghost" data-testid="stop-alarm-hide" onClick={() => app.give_up_stop()}>Send it no more</button>
+      <p>The page sends Stop again and again until the server answers.</p>
+      <button class="ghost" data-testid="stop-alarm-hide" onClick={() => app.give_up_stop()}>Stop sending it</button>
     </div>
   );
 }

@@ -1,4 +1,4 @@
-// web/src/views/system.tsx: what runs here: versions, connection, the session, and the keys.
+// web/src/views/system.tsx: the System view: server, connection, session, and keys.
 import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
@@ -55,8 +55,8 @@ export function System(): JSX.Element {
           ["Limits", `${fixed(session.robot.max_v, 2)} m/s, ${fixed(session.robot.max_omega, 2)} rad/s`],
           ["Seed", String(session.seed)],
           ["Watched", watchers_words(session)],
-          ...(session.record ? [["Record", session.record.sentence] as [string, string]] : []),
-          ...(session.record?.deleted ? [["Deleted", session.record.deleted] as [string, string]] : []),
+          ["Record", session.record.sentence],
+          ...(session.record.deleted ? [["Deleted", session.record.deleted] as [string, string]] : []),
           ["Lost ticks", String(session.lost_ticks)],
           ["Missed periods", String(session.missed_periods)],
         ]} />
@@ -70,7 +70,7 @@ export function System(): JSX.Element {
   );
 }
 
-/** A document's plain values as rows; one level of nesting is spelled out. */
+/** The plain values of a document as rows, down to one level of nesting. */
 function flat_rows(doc: Record<string, unknown> | null): [string, string][] {
   if (!doc) return [["Version", "not known yet"]];
   const rows: [string, string][] = [];

@@ -1,4 +1,4 @@
-// web/src/views/toasts.tsx: short sentences that come and go, and what a screen reader hears.
+// web/src/views/toasts.tsx: short messages that disappear again, and the sentences for screen readers.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_app, use_ui } from "../app";
@@ -21,7 +21,7 @@ export function Toasts(): JSX.Element {
   );
 }
 
-/** Says changes of state and what the app wants said, politely. */
+/** Tells screen readers the app's sentences and changes of state. */
 export function Spoken(): JSX.Element {
   const app = use_app();
   const { spoken } = use_ui("spoken");

@@ -3,8 +3,8 @@ import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { ScenarioItem } from "../contract";
-import { use_pulse } from "../state/store";
-import { link_words, source_word, titled } from "../words";
+import { use_listener, use_pulse } from "../state/store";
+import { link_words, matches, source_word, titled } from "../words";
 import { Brand, icons } from "../ui/icons";
 import { StopButtons } from "./stop";
 
@@ -49,15 +49,9 @@ function ScenarioMenu(): JSX.Element {
   const [open, set_open] = useState(false);
   const box = useRef<HTMLDivElement>(null);
   const button = useRef<HTMLButtonElement>(null);
-
-  useEffect(() => {
-    if (!open) return;
-    const away = (e: PointerEvent) => {
-      if (!box.current?.contains(e.target as Node)) set_open(false);
-    };
-    addEventListener("pointerdown", away);
-    return () => removeEventListener("pointerdown", away);
-  }, [open]);
+  use_listener("pointerdown", (e) => {
+    if (open && !box.current?.contains(e.target as Node)) set_open(false);
+  });
 
   const close = () => {
     set_open(false);
@@ -88,11 +82,7 @@ function ScenarioList(props: {
 }): JSX.Element {
   const { scenarios: all } = use_ui("scenarios");
   const [text, set_text] = useState("");
-  const words = text.toLowerCase().split(/\s+/).filter(Boolean);
-  const shown = all.filter((s) => {
-    const hay = `${s.name} ${s.title} ${s.description}`.toLowerCase();
-    return words.every((w) => hay.includes(w));
-  });
+  const shown = all.filter((s) => matches(`${s.name} ${s.title} ${s.description}`, text));
   const [active, set_active] = useState(() =>
     Math.max(0, all.findIndex((s) => s.name === props.current)));
   const at = Math.min(active, shown.length - 1);
@@ -133,9 +123,7 @@ function ScenarioList(props: {
       <input type="text" role="combobox" aria-expanded="true" aria-controls="scenario-list"
         aria-label="Find a scenario" placeholder="Find a scenario" autoComplete="off"
         aria-activedescendant={shown[at] ? `scenario-${shown[at].name}` : undefined}
-        ref={(e) => {
-          if (e && document.activeElement !== e) e.focus();
-        }} value={text} onKeyDown={key} onInput={(e) => {
+        ref={(e) => e?.focus()} value={text} onKeyDown={key} onInput={(e) => {
           set_text(e.currentTarget.value);
           set_active(0);
         }} />
@@ -145,7 +133,7 @@ function ScenarioList(props: {
         {logs.length > 0 && <li class="group" role="presentation">Recorded logs</li>}
         {logs.map(option)}
         {shown.length === 0 && <li class="group" role="presentation">
-          {all.length === 0 ? "The list of scenarios has not come yet." : "No scenario has that in its name."}
+          {all.length === 0 ? "The scenarios are still loading." : "No scenario matches."}
         </li>}
       </ul>
     </div>

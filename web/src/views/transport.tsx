@@ -11,13 +11,10 @@ import { clock, speed_word } from "../words";
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
 
 /** A note on the record of the live run, after a comma; empty while it is written as it should be. */
-function record_word(record?: RecordInfo): string {
+function record_word(record: RecordInfo): string {
   const words: Record<string, string> = { paused: ", record rests", full: ", record full",
     failed: ", not recorded", off: ", not recorded" };
-  return record ? words[record.status] ?? "" : "";
-}
-function record_tone(record?: RecordInfo): string {
-  return record && (record.status === "full" || record.status === "failed") ? "tone-bad" : "";
+  return words[record.status] ?? "";
 }
 
 export function Transport(): JSX.Element {
@@ -29,6 +26,7 @@ export function Transport(): JSX.Element {
   const paceable = session?.robot.paceable ?? false;
   const speed = session?.pace.speed ?? 1;
   const speeds = kSpeeds.includes(speed) ? kSpeeds : [speed, ...kSpeeds];
+  const record = session?.record;
   const off = !session || !paceable;
   const why_off = session && !paceable ? "A real robot keeps its own time" : undefined;
   return (
@@ -43,8 +41,9 @@ export function Transport(): JSX.Element {
         title={why_off ?? "One tick (.)"} onClick={() => void app.step()}>{icons.step}</button>
       <span class="num time" data-testid="time">{clock(time)}</span>
       <Timeline time={time} end={Math.max(time, 20)} events={app.scene.events.list} />
-      <span class={`live-words wide ${record_tone(session?.record)}`} title={session?.record?.sentence} data-testid="record-word">
-        {session?.source === "replay" ? "from the log" : "live"}{record_word(session?.record)}</span>
+      <span class={`live-words wide ${["full", "failed"].includes(record?.status ?? "") ? "tone-bad" : ""}`}
+        title={record?.sentence} data-testid="record-word">
+        {session?.source === "replay" ? "from the log" : "live"}{record && record_word(record)}</span>
       <Pick label="Speed" name="speed" value={String(speed)} disabled={off}
         choices={speeds.map((s) => ({ name: String(s), label: speed_word(s) }))}
         on_pick={(v) => void app.ask("/speed", { speed: Number(v) })} />
