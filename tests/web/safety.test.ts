@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { SessionState } from "../../web/src/contract";
 import { decode_frame } from "../../web/src/link/frame";
 import { Legends } from "../../web/src/link/legend";
-import { SignEnvironment, SignOfLife } from "../../web/src/sign_of_life";
+import { SignEnvironment, give_signs_of_life } from "../../web/src/sign_of_life";
 import { age_words, news_age, scan_age } from "../../web/src/state/age";
 import { fold_frame, new_scene } from "../../web/src/state/scene";
 import { StopState, Stopper, kAnswerTime } from "../../web/src/stopper";
@@ -20,7 +20,7 @@ function tab() {
   const env: SignEnvironment = {
     visible: () => seen.visible, next_frame: (act) => void frames.push(act), every: (_, act) => (look = act),
   };
-  new SignOfLife(env, () => seen.stop, () => ++seen.signs).start();
+  give_signs_of_life(env, () => seen.stop, () => ++seen.signs);
   return { seen, look: () => look(), draw: () => frames.splice(0).forEach((act) => act()) };
 }
 

@@ -1,4 +1,4 @@
-// web/src/app.ts: what the page knows and can do: one link, one scene, one set of controls' state.
+// web/src/app.ts: the state of the page and its actions: one link, one scene, the state of the controls.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
 import { Accepted, Catalog, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
@@ -16,7 +16,7 @@ import { Obstacle } from "./obstacle";
 import { open_session, session_id, session_path, socket_url } from "./link/session";
 import { SceneState, begin_run, fold_frame, fold_session, new_scene } from "./state/scene";
 import { stored_hidden, store_open, stored_open, toggled } from "./state/layers";
-import { SignOfLife, browser, stop_in_reach } from "./sign_of_life";
+import { browser, give_signs_of_life, stop_in_reach } from "./sign_of_life";
 import { Store, keep, kept, use_store } from "./state/store";
 import { StopState, Stopper, sound_alarm } from "./stopper";
 import { sentence_of, titled } from "./words";
@@ -82,18 +82,18 @@ export class App {
   readonly history: EditHistory;
   /** Asks the canvas to draw again. */
   redraw: () => void = () => undefined;
-  private readonly sign_: SignOfLife;
   private readonly stopper_: Stopper;
   private readonly past_ = new Past(this.scene, kPathRows, () => this.redraw());
   private next_toast_ = 1;
-  private drag_: { busy: boolean; sent: number; failed: boolean } | null = null;
+  private drag_: { busy: boolean; sent: number } | null = null;
 
   constructor() {
     this.ui = new Store<UiState>({
       link: { phase: "connecting", retry_at: 0, rate: 0, latency: null },
-      locked: false, gone: null, session: null, catalog: null, scenarios: [], robots: [], toasts: [], spoken: "", view: "drive", run: null,
-      theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
-      force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false, sheet: false, loading: null, stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
+      locked: false, gone: null, session: null, catalog: null, scenarios: [], robots: [], toasts: [], spoken: "",
+      view: "drive", run: null, theme: initial_theme(), tool: "pan", selection: null, three: false, follow: false,
+      force_scale: 1, hidden: stored_hidden(), layers: stored_open(), shortcuts: false, sheet: false, loading: null,
+      stop: { phase: "none", since: 0 }, preview: null, goal_learnt: false, undo: null, redo: null,
     });
     this.link = new LiveLink(socket_url, {
       frame: (frame) => {
@@ -124,9 +124,6 @@ export class App {
       () => this.link.call("/request", { type: "stop", engaged: true }),
       () => rest.post(session_path("/control"), { action: "stop" }),
     ], (stop) => this.take_stop(stop));
-    this.sign_ = new SignOfLife(browser,
-      () => this.link.is_open && this.link.silence < kHeardLimit && stop_in_reach(),
-      () => this.link.tell("/watch"));
     this.history = new EditHistory((r) => this.link.call("/request", r), () => {
       this.ui.set({ undo: this.history.can_undo, redo: this.history.can_redo });
     });
@@ -137,7 +134,9 @@ export class App {
     this.read_route();
     addEventListener("hashchange", () => this.read_route());
     this.link.start();
-    this.sign_.start();
+    give_signs_of_life(browser,
+      () => this.link.is_open && this.link.silence < kHeardLimit && stop_in_reach(),
+      () => this.link.tell("/watch"));
   }
 
   /** Fetches the catalog, the scenarios and the robots; called after each connection. */
@@ -225,7 +224,7 @@ export class App {
    * is one step of undo.
    */
   drag(id: number, pose: Pose, from: Pose, done: boolean): void {
-    const drag = (this.drag_ ??= { busy: false, sent: 0, failed: false });
+    const drag = (this.drag_ ??= { busy: false, sent: 0 });
     if (done) {
       this.drag_ = null;
       void this.request(move_request(id, pose)).then((moved) => {

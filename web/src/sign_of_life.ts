@@ -1,40 +1,29 @@
-// web/src/sign_of_life.ts: tells the server that somebody can see this page and press its Stop. The
-// sign comes from the page's script and only after a frame was drawn: a frozen, hidden or closed tab,
-// one that hears nothing, and one whose Stop is out of reach give none, and a real robot stops.
+// web/src/sign_of_life.ts: tells the server that someone can see this page and press its Stop. The sign
+// follows a drawn frame. A tab gives none if it is frozen, hidden or closed, hears nothing, or has its
+// Stop out of reach. Without signs a real robot stops.
 
 const kPeriod = 400; // [ms]; the server waits for 1.5 s
 
 export interface SignEnvironment {
   visible(): boolean;
-  /** Calls back before the next frame is drawn; not at all in a hidden tab. */
+  /** Calls `act` before the next frame is drawn; never in a hidden tab. */
   next_frame(act: () => void): void;
   every(ms: number, act: () => void): void;
 }
 
-export class SignOfLife {
-  private waiting_ = false;
-
-  /** `stop_works` when Stop can be pressed and the server would hear of it. */
-  constructor(private readonly env_: SignEnvironment, private readonly stop_works_: () => boolean,
-    private readonly give_: () => void) {}
-
-  start(): void {
-    this.env_.every(kPeriod, () => this.look());
-  }
-
-  /** Two frames: that the second is begun proves that the first was drawn. */
-  private look(): void {
-    if (this.waiting_ || !this.able()) return;
-    this.waiting_ = true;
-    this.env_.next_frame(() => this.env_.next_frame(() => {
-      this.waiting_ = false;
-      if (this.able()) this.give_();
+/** Gives signs for ever while the page is visible and `stop_works`: a press of Stop reaches the server. */
+export function give_signs_of_life(env: SignEnvironment, stop_works: () => boolean, give: () => void): void {
+  const able = () => env.visible() && stop_works();
+  let waiting = false;
+  env.every(kPeriod, () => {
+    if (waiting || !able()) return;
+    waiting = true;
+    // Two frames: the second one begins only after the first one was drawn.
+    env.next_frame(() => env.next_frame(() => {
+      waiting = false;
+      if (able()) give();
     }));
-  }
-
-  private able(): boolean {
-    return this.env_.visible() && this.stop_works_();
-  }
+  });
 }
 
 export const browser: SignEnvironment = {

@@ -1,5 +1,5 @@
-// web/src/stopper.ts: one press of Stop, until the server has answered: by every way there is, again
-// and again. Without an answer within half a second it has failed, which the page says loudly.
+// web/src/stopper.ts: sends a press of Stop by every way, again and again, until the server has answered.
+// Without an answer within half a second Stop has failed, and the page raises an alarm.
 
 export const kAnswerTime = 500; // [ms]
 
@@ -13,24 +13,24 @@ export interface StopState {
 type StopWay = () => Promise<unknown>;
 
 export class Stopper {
-  private press_ = 0; // counts presses, so that an old one's answers do nothing
+  private press_ = 0; // counts presses, so that answers to an old one have no effect
   private timer_: ReturnType<typeof setTimeout> | undefined;
   private state_: StopState = { phase: "none", since: 0 };
 
-  /** `ways`: the first is taken at once, the others with it when it has not answered in time. */
+  /** The first way is used at once, all of them once it has not answered in time. */
   constructor(private readonly ways_: StopWay[], private readonly changed_: (state: StopState) => void,
     private readonly now_: () => number = () => performance.now()) {}
 
   press(): void {
     const press = ++this.press_;
     clearTimeout(this.timer_);
-    // A press while another has failed does not make that one young again.
+    // Another press after a failure keeps the time of the first one.
     const since = this.state_.phase === "failed" ? this.state_.since : this.now_();
     if (this.state_.phase !== "failed") this.tell({ phase: "sent", since });
     this.send(press, this.ways_.slice(0, 1), since);
   }
 
-  /** The person released, or has seen that it failed: nothing is sent any more. */
+  /** After a release, or once the person has seen the failure: sends nothing any more. */
   forget(): void {
     ++this.press_;
     clearTimeout(this.timer_);
@@ -42,7 +42,7 @@ export class Stopper {
     let left = ways.length;
     for (const way of ways) {
       way().then(() => mine() && this.forget(), () => {
-        // Refused at once: there is no need to wait before the other ways are tried.
+        // Refused: tries the other ways without waiting.
         if (--left === 0 && mine() && ways.length < this.ways_.length) this.send(press, this.ways_, since);
         else if (left === 0 && mine()) this.tell({ phase: "failed", since });
       });
@@ -62,7 +62,7 @@ export class Stopper {
   }
 }
 
-/** Two tones, for eyes that are on the robot. Silent where the browser allows no sound. */
+/** Two tones, for people who look at the robot. Silent if the browser allows no sound. */
 export function sound_alarm(): void {
   try {
     const context = new AudioContext();
@@ -78,6 +78,6 @@ export function sound_alarm(): void {
     });
     setTimeout(() => void context.close(), 1000);
   } catch {
-    // the words have to do
+    // the alarm is then only seen
   }
 }

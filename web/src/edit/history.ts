@@ -1,5 +1,5 @@
-// web/src/edit/history.ts: edits as values that can be done, undone and done again. A value holds
-// the Requests for both ways; a drag is merged into one step.
+// web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the requests for both
+// ways; a drag is one step.
 import { Accepted, RequestJson } from "../contract";
 
 export interface Edit {
@@ -63,7 +63,7 @@ export class EditHistory {
     });
   }
 
-  /** One after the other: what is pressed fast waits for the answer before it. */
+  /** Runs `act` after the answer to the edit before. */
   private in_turn<T>(act: () => Promise<T>): Promise<T> {
     const next = this.last_.then(act, act);
     this.last_ = next.catch(() => undefined);
@@ -73,7 +73,7 @@ export class EditHistory {
   private async move(edit: Edit, request: RequestJson, from: Edit[], to: Edit[]): Promise<string> {
     try {
       const answer = await this.send_(request);
-      // An obstacle that comes back has a new id; every later or earlier edit of it must know.
+      // An obstacle that comes back has a new id, which all other edits of it must use.
       const old = id_of(edit);
       if (request.type === "add_obstacle" && answer.id !== undefined && old !== null) {
         to.push(renumbered(edit, old, answer.id));
@@ -100,7 +100,7 @@ function id_of(edit: Edit): number | null {
   return null;
 }
 
-/** An add learns its id from the answer, so that its undo can remove it. */
+/** Gives an added obstacle the id of the answer, so that undo can remove it. */
 function complete(edit: Edit, id: number | undefined): Edit {
   if (edit.forward.type !== "add_obstacle" || id === undefined) return edit;
   return { ...edit, backward: { type: "remove_obstacle", id } };

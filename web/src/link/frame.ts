@@ -25,7 +25,7 @@ export interface RangeReading { mount: Pose; range: number; status: number }
 
 /** A reading of a further sensor, by its index in the robot's list of channels. */
 export interface ChannelReading { channel: number; stamp: number; values: number[] }
-/** What the robot does, and why: a sentence each. */
+/** The robot's action and its reason: a sentence each. */
 export interface Words { what: string; why: string }
 
 /** A request as the page reads it from a frame; joystick requests are left out. */
@@ -64,7 +64,7 @@ export interface Frame {
   behaviour: string;        // "rest", "avoid", "manual", ...
   clearance: number;        // [m] hull to nearest filtered return
   words: Words | null;      // null: as in the frames before
-  layers: LayerView[];      // a grid that is not among them holds
+  layers: LayerView[];      // a grid of an earlier frame holds
   measures: Measure[];
   readings: ChannelReading[]; // of further sensors; only those new in this tick
   moved: { id: number; pose: Pose }[]; // obstacles that move by themselves
@@ -110,7 +110,7 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
     behaviour: f.behaviour() ?? "avoid",
     clearance: decision?.clearance() ?? 0,
-    words: what ? { what, why: f.news()?.why() ?? "" } : null, // absent where they are not new
+    words: what ? { what, why: f.news()?.why() ?? "" } : null,
     layers,
     measures,
     readings: list(f.channelsLength(), (i) => channel_reading(f.channels(i)!, stamp)),
@@ -118,7 +118,7 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   };
 }
 
-/** Frames of one run: of a frame whose legend comes with a later one too. */
+/** Decodes frames of one run; a later frame may bring the legend of an earlier one. */
 export function decode_frames(frames: Uint8Array[], legends = new Legends()): Frame[] {
   for (const bytes of frames) legends.learn(root_of(bytes));
   return frames.map((bytes) => decode_frame(bytes, legends));

@@ -1,5 +1,5 @@
-// web/src/link/legend.ts: what the values of a frame's layers and measures are. Frames say it only when
-// it has changed and twice a second; the page remembers it.
+// web/src/link/legend.ts: the names, units and kinds of a frame's layers and measures. Frames bring them
+// when they have changed and every two seconds; the page remembers them.
 import { LayerView, kLayerKinds, kLayerStyles, kTones } from "../layer";
 import * as wire from "../wire/telemetry_generated";
 
@@ -8,13 +8,13 @@ export interface Measure { name: string; unit: string; value: number }
 
 type LayerLook = Omit<LayerView, "values" | "cells" | "text">;
 export interface Legend {
-  layers: (LayerLook | null)[]; // null: of a kind that this page is too old to know
+  layers: (LayerLook | null)[]; // null: a kind that this page does not know
   measures: { name: string; unit: string }[];
 }
 
-const kMost = 64; // a run has a few; the oldest goes
+const kMost = 64; // legends; a run has a few, and the oldest one goes first
 
-/** Legends by their number, which tells them apart in every run. */
+/** Legends by their number, which is the same in every run. */
 export class Legends {
   private held_ = new Map<number, Legend>();
 
@@ -36,7 +36,7 @@ export class Legends {
   }
 }
 
-/** The number of the legend that `f` is to be read by. */
+/** The number of the legend of `f`. */
 export function legend_of(f: wire.Frame): number {
   return f.decision()?.legend() ?? 0;
 }
@@ -60,7 +60,7 @@ function look_of(info: wire.LayerInfo): LayerLook | null {
 const kSteps = 1024; // of a metre, a radian, ...
 const kNoNumber = -32768;
 
-/** The layers of `f` that have something to show, and its measures; none until their legend is known. */
+/** The layers of `f` that have values, and its measures; none before their legend is known. */
 export function shown(f: wire.Frame, legend: Legend | null): { layers: LayerView[]; measures: Measure[] } {
   if (!legend) return { layers: [], measures: [] };
   const narrow = f.shownArray();

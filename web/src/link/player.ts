@@ -1,5 +1,4 @@
-// web/src/link/player.ts: plays a stored run: a run clock that goes on by itself, is dragged, or
-// is stepped row by row.
+// web/src/link/player.ts: plays a stored run: its clock runs, is dragged, or steps row by row.
 import { StoredRun } from "./stored";
 
 export class Player {
@@ -35,7 +34,7 @@ export class Player {
     if (this.run.rows > 0) this.seek(this.run.columns.at("t", at));
   }
 
-  /** The shown row anew: something else of it is wanted. */
+  /** Shows the row again, after the wanted parts of it have changed. */
   show_again(): void {
     if (this.row_ >= 0) this.run.seek(this.row_, this.changed_);
     this.changed_();

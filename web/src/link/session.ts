@@ -1,4 +1,4 @@
-// web/src/link/session.ts: which session this page shows: the one its address names, else `main`.
+// web/src/link/session.ts: the session of this page: the one that its address names, else `main`.
 import * as rest from "./rest";
 
 /** The id in the address of this page; null: `main`. */
@@ -13,13 +13,13 @@ export function socket_url(): string {
   return `${scheme}//${location.host}/ws${id === null ? "" : `?session=${encodeURIComponent(id)}`}`;
 }
 
-/** The path of something of the session in REST, such as "/control". */
+/** The REST path of the session, or of a resource `below` it, such as "/control". */
 export function session_path(below = ""): string {
   const id = session_id();
   return (id === null ? "/session" : `/sessions/${encodeURIComponent(id)}`) + below;
 }
 
-/** Opens a session and puts it into the address of this page, which then is to connect anew. */
+/** Opens a session and puts its id into the address of this page. The caller connects again. */
 export async function open_session(): Promise<void> {
   const { id } = await rest.post<{ id: string }>("/sessions", {});
   const url = new URL(location.href);

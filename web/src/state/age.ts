@@ -1,14 +1,14 @@
-// web/src/state/age.ts: how old what is drawn is. Times of arrival are the page's own [ms], stamps
-// the robot's run clock [s].
+// web/src/state/age.ts: the age of the drawn data. Times of arrival are by performance.now() [ms], stamps
+// by the run clock [s].
 import { SessionState } from "../contract";
 import { SceneState } from "./scene";
 import { PlacedSweep } from "./sweeps";
 
-const kNewsLimit = 1.0; // [s] a robot at work is heard of many times a second
-const kScanLimit = 0.5; // [s] at least; a slow scanner's robot waits longer before it stops
-const kAtRest = 0.01;   // [m/s], [rad/s] below what odometry resolves
+const kNewsLimit = 1.0; // [s] a working robot sends many frames a second
+const kScanLimit = 0.5; // [s] at least; a robot with a slow scanner waits longer before it stops
+const kAtRest = 0.01;   // [m/s], [rad/s] below the resolution of odometry
 
-/** [s] Since the robot was last heard of; null while that is no matter. */
+/** [s] Since the last frame; null while that is young, or the run rests. */
 export function news_age(scene: SceneState, session: SessionState | null, open: boolean, now: number):
   number | null {
   if (scene.heard_at === null) return null;
@@ -18,19 +18,19 @@ export function news_age(scene: SceneState, session: SessionState | null, open: 
   return resting || age < kNewsLimit ? null : age;
 }
 
-/** [s] Of a sweep at the newest tick; null while it is young enough to drive by. */
+/** [s] Age of a sweep at the newest tick; null while the robot may still drive by it. */
 export function sweep_age(scene: SceneState, placed: PlacedSweep): number | null {
   const age = (scene.frame?.stamp ?? 0) - placed.sweep.stamp;
   return age > Math.max(kScanLimit, scene.scan_timeout) ? age : null;
 }
 
-/** [s] Of the oldest scanner's newest sweep; null while all are young. */
+/** [s] Age of the oldest of the scanners' newest sweeps; null while the robot may drive by all of them. */
 export function scan_age(scene: SceneState): number | null {
   const ages = scene.sweeps.map((s) => sweep_age(scene, s)).filter((a): a is number => a !== null);
   return ages.length > 0 ? Math.max(...ages) : null;
 }
 
-/** [m/s] or, when it only turns, [rad/s]: how fast the wheels move the robot; 0 at rest. */
+/** Speed of the robot by its wheels: [m/s], or [rad/s] if it only turns; 0 at rest. */
 export function motion(scene: SceneState): { value: number; unit: string } {
   const { v = 0, omega = 0 } = scene.frame?.twist ?? {};
   if (Math.abs(v) >= kAtRest) return { value: v, unit: "m/s" };

@@ -1,13 +1,12 @@
-// web/src/state/events.ts: what is worth a mark on the timeline: changes of mission and hold, and
-// what people asked for.
+// web/src/state/events.ts: the marks of the timeline: changes of mission and hold, and requests.
 import { Frame, Halt } from "../link/frame";
 
 type EventKind = "goal" | "edit" | "good" | "bad" | "hold" | "gain";
 export interface RunEvent { t: number; kind: EventKind; label: string }
 
 const kMost = 400;
-const kFirstScan = 0.5; // [s] every run begins by waiting for the laser
-const kMerge = 1.5; // [s] a drag is one mark, not fifty
+const kFirstScan = 0.5; // [s] within which every run waits for its first scan
+const kMerge = 1.5;     // [s] within which equal events are one mark, as those of a drag
 
 const kHoldWords: Record<string, string> = {
   stopped: "Stop",

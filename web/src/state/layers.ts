@@ -1,5 +1,5 @@
-// web/src/state/layers.ts: the layers there are to show, in the page's own words and in those of the
-// controller, and which of them are switched off.
+// web/src/state/layers.ts: the layers of the page and of the controller, and which of them are switched
+// off.
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
 import type { SceneState } from "./scene";
@@ -7,7 +7,7 @@ import { keep, kept } from "./store";
 
 export type Token = Exclude<keyof Palette, "font">;
 
-/** One palette for what colours mean; Foxglove's views have the same. */
+/** The colour of each meaning; Foxglove's views have the same. */
 export const kTokens: Record<Tone, Token> = {
   accent: "accent", internal: "internal", external: "external", elastic: "elastic", plan: "accent", moving: "warn",
   muted: "muted", refused: "bad", good: "ok",
@@ -20,13 +20,13 @@ export interface LayerKey {
   token: Token;
   kind: LayerKind;
   style: LayerStyle;
-  scaled: boolean; // its arrows are lengths that may be drawn enlarged
+  scaled: boolean; // its arrows may be drawn enlarged
 }
 
 const own = (name: string, label: string, token: Token, kind: LayerKind, style: LayerStyle = "solid"): LayerKey =>
   ({ name, label, token, kind, style, scaled: false });
 
-/** What the page draws of every robot, whatever drives it. */
+/** The layers of every robot, with any controller. */
 export const kOwn = {
   scan: own("scan", "Raw scan", "scan", "points"),
   filtered: own("filtered", "Filtered scan", "filtered", "points"),
@@ -35,12 +35,12 @@ export const kOwn = {
   safety: own("safety", "Safety circle", "safe", "circles", "dashed"),
 };
 
-/** A force is a displacement, so without a unit of its own; too short to be seen, it may be drawn enlarged. */
+/** True for forces: displacements without a unit, which may be drawn enlarged to be seen. */
 export function is_scaled(layer: LayerView): boolean {
   return layer.kind === "arrows" && layer.unit === "";
 }
 
-/** Enters what `layers` are, once each, in the order in which they first came. */
+/** Adds the keys of new `layers` to `known`. */
 export function learn_layers(known: Map<string, LayerKey>, layers: LayerView[]): void {
   for (const layer of layers) {
     if (known.has(layer.name)) continue;
@@ -49,14 +49,14 @@ export function learn_layers(known: Map<string, LayerKey>, layers: LayerView[]):
   }
 }
 
-/** What belongs to the sensors rather than to the controller. */
+/** True for layers of the sensors, false for those of the controller. */
 export function is_sensed(name: string): boolean {
   return name.startsWith("scan.");
 }
 
 interface LayerGroup { title: string; keys: LayerKey[] }
 
-/** The panel's rows. Of a log there is only what was sensed and the way. */
+/** The rows of the panel. A log has only sensors and the path. */
 export function layer_groups(scene: SceneState, method: string): LayerGroup[] {
   const known = [...scene.known.values()];
   return [

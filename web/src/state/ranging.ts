@@ -1,5 +1,4 @@
-// web/src/state/ranging.ts: the newest readings of the sonar ring and the infrared scanners, where
-// they were taken.
+// web/src/state/ranging.ts: the newest readings of sonar and infrared, with their sensor's pose in W.
 import { Pose, compose } from "../geometry";
 import { Frame, RangeReading } from "../link/frame";
 
@@ -9,21 +8,21 @@ export interface PlacedReading {
   kind: RangeKind;
   origin: Pose;  // of the sensor in W, its axis the heading
   range: number; // [m]
-  hit: boolean;  // something returned from there
+  hit: boolean;  // there was a return
   stamp: number; // [s] of the frame it came in
 }
 
 /** By sensor: kind and mount. */
 export type PlacedReadings = Map<string, PlacedReading>;
 
-export const kReadingHolds = 1; // [s] after which a reading says nothing any more
+export const kReadingHolds = 1; // [s] after which a reading is too old
 const kOk = 0;   // BeamStatus.Ok
 
 export function reading_key(kind: RangeKind, mount: Pose): string {
   return `${kind} ${mount.x} ${mount.y} ${mount.heading}`;
 }
 
-/** Takes the frame's readings and forgets what is too old, or of later than the frame. */
+/** Takes the readings of `f`, and forgets readings that are too old or later than `f`. */
 export function place_readings(placed: PlacedReadings, f: Frame): void {
   for (const [key, reading] of placed) {
     if (reading.stamp > f.stamp || f.stamp - reading.stamp > kReadingHolds) placed.delete(key);

@@ -1,16 +1,16 @@
-// web/src/state/sweeps.ts: scans where they were taken, as the scanner saw them and as the server's
-// filter and merge handed them to the controller.
+// web/src/state/sweeps.ts: scans with the pose at which they were taken: raw ones, and the filtered scan
+// that the server gave the controller.
 import { Pose, compose } from "../geometry";
 import { Frame, Sweep, kFree, kMaxRange } from "../link/frame";
 
-/** A sweep where it was taken. Points are worked out when first drawn, not per message. */
+/** A sweep and its pose. Its points are computed when it is first drawn. */
 export interface PlacedSweep {
   sweep: Sweep;
   origin: Pose; // of the scanner in W
   points: SweepPoints | null;
 }
 
-/** Points in W; x, y alternate. `end` holds every beam's end for the field of view, NaN: none. */
+/** Points in W; x, y alternate. `end`: the end of every beam; NaN without a reading. */
 export interface SweepPoints { hits: Float32Array; end: Float32Array }
 
 const same = (a: Pose, b: Pose): boolean => a.x === b.x && a.y === b.y && a.heading === b.heading;
@@ -22,13 +22,13 @@ export function placed(sweep: Sweep, robot: Pose): PlacedSweep {
 /** The newest sweep of each scanner after `f`. */
 export function newest_sweeps(before: PlacedSweep[], f: Frame): PlacedSweep[] {
   if (f.sweeps.length === 0) return before;
-  // Scanners deliver when they are ready, each in its own phase: the others' sweeps stay.
+  // Each scanner delivers in its own phase, so the sweeps of the others stay.
   const others = before.filter((old) => old.sweep.stamp <= f.stamp &&
     !f.sweeps.some((sweep) => same(sweep.mount, old.sweep.mount)));
   return [...others, ...f.sweeps.map((sweep) => placed(sweep, f.pose))];
 }
 
-/** Where the sweep's beams ended. Kept with the sweep. */
+/** The ends of the beams, kept with the sweep. */
 export function sweep_points(of: PlacedSweep): SweepPoints {
   if (of.points) return of.points;
   const { sweep, origin } = of;
@@ -49,8 +49,8 @@ export function sweep_points(of: PlacedSweep): SweepPoints {
 const kRemembered = 32;
 
 /**
- * The filtered scan of a live run. It comes on a channel of its own, before or after the frame of
- * its tick, which alone says where the robot was: the two are joined by the scan's stamp.
+ * The filtered scan of a live run. It comes on its own channel, before or after the frame of its tick.
+ * The pose of the robot is in that frame, so the scan waits for the frame with its stamp.
  */
 export class FilteredScan {
   shown: PlacedSweep | null = null;

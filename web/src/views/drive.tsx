@@ -1,4 +1,4 @@
-// web/src/views/drive.tsx: the Drive view: the scene and what lies on it, panel and transport.
+// web/src/views/drive.tsx: the Drive view: the scene with its cards and tools, panel and transport.
 import { JSX } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { App, use_app, use_ui } from "../app";

@@ -124,8 +124,7 @@ function use_runs(connected: boolean): RunList {
 /** The first page and the older runs behind it. */
 function merged(fresh: RunItem[], old: RunItem[], outcome: string): RunItem[] {
   const oldest = fresh.at(-1)?.id ?? Infinity;
-  const kept = old.filter((r) => r.id < oldest && (outcome === "" || r.outcome === outcome));
-  return fresh.length < kPageSize && kept.length === 0 ? fresh : [...fresh, ...kept];
+  return [...fresh, ...old.filter((r) => r.id < oldest && (outcome === "" || r.outcome === outcome))];
 }
 
 function RunTable(props: {
