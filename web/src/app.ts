@@ -210,6 +210,13 @@ export class App {
   pick_tool(tool: Tool): void {
     this.ui.set({ tool, selection: null });
   }
+  /** The picked tool; `pan` if the robot takes no goals, or its world no obstacles. */
+  get usable_tool(): Tool {
+    const { tool, session } = this.ui.value;
+    const { drives = false, editable = false } = session?.robot ?? {};
+    const usable = { pan: true, measure: true, goal: drives, cylinder: editable, box: editable };
+    return usable[tool] ? tool : "pan";
+  }
   fit_view(): void {
     this.view.fitted = true;
     this.redraw();

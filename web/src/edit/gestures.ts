@@ -8,7 +8,7 @@ import { Obstacle, covers } from "../obstacle";
 import { SceneState } from "../state/scene";
 import { kUsualRadius, kUsualSide, new_box, new_cylinder, round_cm } from "./edits";
 
-/** `pan` moves the view, and a press selects. It sends the robot nothing. */
+/** `pan` moves the view, and a press selects; it changes nothing. */
 export type Tool = "goal" | "cylinder" | "box" | "measure" | "pan";
 
 /** The effects of gestures; the page sends the edits to the server. */
@@ -16,8 +16,7 @@ export interface GestureTarget {
   scene: SceneState;
   view: View;
   tool(): Tool;
-  can_edit(): boolean;  // obstacles
-  can_drive(): boolean; // goals
+  can_edit(): boolean; // whether obstacles may be moved
   set_goal(goal: Goal): void;
   add_goal(goal: Goal): void; // behind the goals that the robot has
   add(obstacle: Obstacle): void;
@@ -26,7 +25,6 @@ export interface GestureTarget {
   select(selection: Selection): void;
   draft(draft: Draft): void;
   hover(id: number | null): void;
-  refuse(what: "goal" | "obstacle"): void;
   changed(): void;
 }
 
@@ -115,28 +113,23 @@ export class Gestures {
     const { scene: { goal }, view } = this.t_;
     const at = view.to_world(px.x, px.y);
     const tool = this.t_.tool();
-    const drives = this.t_.can_drive();
     if (tool === "measure") return { kind: "measure", at };
     if (tool === "pan") return pan(px, true);
     this.measure_ = undefined;
     const new_goal = (to: Point, dragged: boolean) => dragged_goal(at, to, dragged);
-    if (tool === "goal" && shift && drives) return drawn_goal(px, new_goal, (to) => this.t_.add_goal(to));
+    if (tool === "goal" && shift) return drawn_goal(px, new_goal, (to) => this.t_.add_goal(to));
     const obstacle = this.obstacle_at(px);
     if (obstacle) {
       this.t_.select({ kind: "obstacle", id: obstacle.id });
       if (!this.t_.can_edit()) return null;
       return { kind: "move", id: obstacle.id, from: obstacle.pose, offset: offset_of(obstacle.pose, at), px, moved: false };
     }
-    if (goal && drives && this.on_goal(px)) {
+    if (goal && this.on_goal(px)) {
       this.t_.select({ kind: "goal" });
       const offset = offset_of(goal, at);
       return drawn_goal(px, (to) => ({ ...goal, ...shifted(to, offset) }), (to, dragged) => {
         if (dragged) this.t_.set_goal(to);
       });
-    }
-    if (tool === "goal" ? !drives : !this.t_.can_edit()) {
-      this.t_.refuse(tool === "goal" ? "goal" : "obstacle");
-      return null;
     }
     if (tool === "goal") {
       return drawn_goal(px, new_goal, (to) => {

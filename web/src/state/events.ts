@@ -9,7 +9,6 @@ const kFirstScan = 0.5; // [s] within which every run waits for its first scan
 const kMerge = 1.5;     // [s] within which equal events are one mark, as those of a drag
 
 const kHoldWords: Record<string, string> = {
-  stopped: "Stop",
   bumper: "Bumper pressed",
   stale_scan: "Scan too old",
   dazzled: "Laser dazzled",
@@ -33,18 +32,16 @@ const kHaltWords: Record<Exclude<Halt, "none">, string> = {
 
 export class EventLog {
   readonly list: RunEvent[] = [];
-  private mission_ = "";
-  private hold_ = "none";
-  private halt_ = "none";
+  private before_: Frame | null = null;
 
   clear(): void {
     this.list.length = 0;
-    this.mission_ = "";
-    this.hold_ = "none";
-    this.halt_ = "none";
+    this.before_ = null;
   }
 
   push(f: Frame): void {
+    const before = this.before_;
+    this.before_ = f;
     for (const r of f.requests) {
       switch (r.type) {
         case "set_goal": this.add(f.stamp, "goal", "Goal set"); break;
@@ -57,22 +54,18 @@ export class EventLog {
         case "set_parameter": this.add(f.stamp, "gain", `${r.name} set`); break;
       }
     }
-    if (this.mission_ !== "" && f.mission !== this.mission_) {
+    if (before && f.mission !== before.mission) {
       if (f.mission === "arrived") this.add(f.stamp, "good", "Arrived");
       if (f.mission === "stuck") this.add(f.stamp, "bad", "Stuck");
     }
-    const before_first_scan = f.hold === "stale_scan" && f.stamp < kFirstScan;
-    if (f.hold === "halted" && f.halt !== this.halt_ && f.halt !== "none") {
-      this.add(f.stamp, "hold", kHaltWords[f.halt]);
-    } else if (!before_first_scan && f.hold !== this.hold_ && f.hold !== "none" && f.hold !== "stopped") {
-      this.add(f.stamp, "hold", kHoldWords[f.hold] ?? f.hold);
+    const no_mark = ["none", "stopped"].includes(f.hold) || (f.hold === "stale_scan" && f.stamp < kFirstScan);
+    const halt = f.hold === "halted" && f.halt !== "none" ? f.halt : null;
+    if (f.hold !== before?.hold || (halt && halt !== before.halt)) {
+      if (!no_mark) this.add(f.stamp, "hold", halt ? kHaltWords[halt] : kHoldWords[f.hold] ?? f.hold);
     }
     if (f.truth?.collided && this.list.at(-1)?.label !== "Collision") {
       this.add(f.stamp, "bad", "Collision");
     }
-    this.mission_ = f.mission;
-    this.hold_ = f.hold;
-    this.halt_ = f.hold === "halted" ? f.halt : "none";
   }
 
   private add(t: number, kind: EventKind, label: string): void {

@@ -5,7 +5,7 @@ import { use_app, use_ui } from "../app";
 import { read_palette } from "../draw/palette";
 import type { World3 } from "./world";
 
-/** Why there can be no 3D here, or nothing. */
+/** Why this browser cannot show 3D; null if it can. */
 function no_webgl(): string | null {
   const probe = document.createElement("canvas");
   const context = probe.getContext("webgl2");
@@ -31,14 +31,8 @@ export function SceneThree(): JSX.Element {
     const started = async () => {
       const { World3 } = await import("./world");
       if (gone || !box.current) return;
-      world.current = new World3(box.current, read_palette());
+      world.current = new World3(box.current, read_palette(), app.scene, () => app.ui.value);
       app.redraw = () => world.current?.request();
-      world.current.scene = app.scene;
-      world.current.options = () => ({
-        selection: app.ui.value.selection, force_scale: app.ui.value.force_scale,
-        hidden: app.ui.value.hidden, follow: app.ui.value.follow,
-      });
-      world.current.request();
     };
     started().catch(() => set_problem("The 3D part of the page could not be fetched. The view from above shows the same."));
     return () => {

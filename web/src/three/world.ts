@@ -15,8 +15,6 @@ interface Options { selection: Selection; force_scale: number; hidden: ReadonlyS
 const kMostPath = 1500;
 
 export class World3 {
-  scene: SceneState | null = null;
-  options: () => Options = () => ({ selection: null, force_scale: 1, hidden: new Set(), follow: false });
   private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
   private readonly world_ = new THREE.Scene();
   private readonly camera_ = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
@@ -33,7 +31,8 @@ export class World3 {
   private placed_ = false;
   private last_robot_: Point | null = null;
 
-  constructor(private readonly box_: HTMLElement, private palette_: Palette) {
+  constructor(private readonly box_: HTMLElement, private palette_: Palette, private readonly scene_: SceneState,
+    private readonly options_: () => Options) {
     this.renderer_.setPixelRatio(Math.min(2, devicePixelRatio || 1));
     this.renderer_.domElement.setAttribute("aria-label",
       "The world in 3D. Drag to look round it, wheel to come nearer.");
@@ -88,9 +87,8 @@ export class World3 {
 
   private draw(): void {
     this.pending_ = 0;
-    const scene = this.scene;
-    if (!scene) return;
-    const options = this.options();
+    const scene = this.scene_;
+    const options = this.options_();
     if (!this.placed_) this.place_camera(scene);
     this.build_statics(scene, options.selection);
     this.build_moving(scene, options);

@@ -42,7 +42,7 @@ export function Drive(): JSX.Element {
           ? <SceneThree />
           : <SceneCanvas scene={app.scene} view={app.view} gestures={hand.gestures}
               label="The world from above. Arrow keys move the crosshair or the selection. Enter places an object."
-              cursor={usable_tool(app)} bounds={() => scene_bounds(app.scene)}
+              cursor={app.usable_tool} bounds={() => scene_bounds(app.scene)}
               insets={() => free_insets(main.current!)}
               on_ready={(redraw) => (app.redraw = redraw)} on_key={(e) => crosshair_key(app, hand, e)}
               overlay={() => ({
@@ -74,16 +74,12 @@ export function Drive(): JSX.Element {
 }
 
 function make_hand(app: App): Hand {
-  const can_edit = () => app.ui.value.session?.robot.editable ?? false;
-  const can_drive = () => app.ui.value.session?.robot.drives ?? false;
   const hand: Hand = { draft: {}, hovered: null, gestures: null as unknown as Gestures };
   hand.gestures = new Gestures({
     scene: app.scene,
     view: app.view,
-    // A recorded log takes no goals and no obstacles: a drag then moves the view.
-    tool: () => usable_tool(app),
-    can_edit,
-    can_drive,
+    tool: () => app.usable_tool,
+    can_edit: () => app.ui.value.session?.robot.editable ?? false,
     set_goal: (goal) => app.want_goal(goal),
     add_goal: (goal) => app.want_goal(goal, true),
     add: (obstacle) => void app.add(obstacle),
@@ -98,19 +94,9 @@ function make_hand(app: App): Hand {
       hand.hovered = id;
       app.redraw();
     },
-    refuse: (what) => app.toast("warn", what === "goal"
-      ? "A recorded log takes no goals."
-      : "Only a simulated world takes obstacles."),
     changed: () => app.redraw(),
   });
   return hand;
-}
-
-function usable_tool(app: App): Tool {
-  const { tool, session } = app.ui.value;
-  if (!session || tool === "measure" || tool === "pan") return tool === "measure" ? tool : "pan";
-  if (tool === "goal") return session.robot.drives ? tool : "pan";
-  return session.robot.editable ? tool : "pan";
 }
 
 /** The margins that tools, cards and panel cover, so that the fitted world lies beside them. */

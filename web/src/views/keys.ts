@@ -171,12 +171,8 @@ function remove_selected(app: App): void {
 }
 
 function place(app: App, at: Point): void {
-  const { tool, session } = app.ui.value;
-  if (tool === "goal" && session?.robot.drives) {
-    app.want_goal({ ...at, heading: null });
-  } else if (tool === "cylinder" && session?.robot.editable) {
-    void app.add(new_cylinder(at.x, at.y, kUsualRadius));
-  } else if (tool === "box" && session?.robot.editable) {
-    void app.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
-  }
+  const tool = app.usable_tool;
+  if (tool === "goal") app.want_goal({ ...at, heading: null });
+  if (tool === "cylinder") void app.add(new_cylinder(at.x, at.y, kUsualRadius));
+  if (tool === "box") void app.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
 }

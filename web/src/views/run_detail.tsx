@@ -269,9 +269,8 @@ function Facts(props: {
 function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
   const nothing = () => undefined;
   return new Gestures({
-    scene: run.scene, view, tool: () => "pan", can_edit: () => false, can_drive: () => false,
-    set_goal: nothing, add_goal: nothing, add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing,
-    refuse: nothing, changed: redraw,
+    scene: run.scene, view, tool: () => "pan", can_edit: () => false, set_goal: nothing, add_goal: nothing,
+    add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing, changed: redraw,
   });
 }
 
