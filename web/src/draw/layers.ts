@@ -5,7 +5,7 @@ import {
   sectors,
 } from "../layer";
 import { is_scaled, kTokens } from "../state/layers";
-import { Context, arrow, circle, trace } from "./marks";
+import { Context, arrow, circle, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
@@ -27,41 +27,31 @@ function draw_points(c: Canvas, layer: LayerView, colour: string): void {
   const all = places(layer, c.robot);
   const tied = layer.style === "dashed";
   if (tied) {
-    g.strokeStyle = colour;
-    g.setLineDash([3, 4]);
-    g.lineWidth = 1.3;
     g.beginPath();
     for (const p of all) trace(g, view, [c.robot, p]);
-    g.stroke();
-    g.setLineDash([]);
+    stroke(g, colour, 1.3, [3, 4]);
   }
   const large = all.length <= kFew;
   const radius = tied ? 5 : large ? 4.5 : 2.5;
-  g.fillStyle = colour;
-  g.strokeStyle = palette.bg;
-  g.lineWidth = tied ? 2 : large ? 1.5 : 0.75;
   for (const p of all) {
     circle(g, view, p, radius);
-    g.fill();
-    g.stroke();
+    fill(g, colour);
+    stroke(g, palette.bg, tied ? 2 : large ? 1.5 : 0.75);
   }
 }
 
 /** A solid line is smooth, like a string. A dashed line is predicted, a dotted one planned. */
 function draw_polyline(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
-  g.strokeStyle = colour;
+  const dash = layer.tone === "plan" ? [2, 6] : [7, 6];
   g.lineJoin = "round";
   g.lineCap = "round";
-  g.lineWidth = layer.style === "solid" ? 3 : 2.3;
-  if (layer.style === "dashed") g.setLineDash(layer.tone === "plan" ? [2, 6] : [7, 6]);
   g.beginPath();
   for (const line of lines(layer, c.robot)) {
     if (layer.style === "solid" && line.length > kFew) trace_smooth(g, view, line);
     else trace(g, view, line);
   }
-  g.stroke();
-  g.setLineDash([]);
+  stroke(g, colour, layer.style === "solid" ? 3 : 2.3, layer.style === "dashed" ? dash : []);
 }
 
 /** Through the middles of the line's pieces, bent towards its corners. */
@@ -82,14 +72,10 @@ function draw_arrows(c: Canvas, layer: LayerView, colour: string): void {
 
 function draw_circles(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
-  g.strokeStyle = colour;
-  g.lineWidth = 2;
-  if (layer.style === "dashed") g.setLineDash([5, 6]);
   for (const { at, radius } of circles(layer, c.robot)) {
     circle(g, view, at, radius * view.scale);
-    g.stroke();
+    stroke(g, colour, 2, layer.style === "dashed" ? [5, 6] : []);
   }
-  g.setLineDash([]);
 }
 
 /** Muted arcs are the many candidates beside the chosen one. */
@@ -97,13 +83,9 @@ function draw_arcs(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
   const among_many = layer.style === "faint" || layer.tone === "muted";
   if (layer.tone === "muted") g.globalAlpha *= 0.4;
-  g.strokeStyle = colour;
-  g.lineWidth = among_many ? 1 : 3;
-  if (layer.style === "dashed") g.setLineDash([5, 4]);
   g.beginPath();
   for (const line of arcs(layer, c.robot)) trace(g, view, line);
-  g.stroke();
-  g.setLineDash([]);
+  stroke(g, colour, among_many ? 1 : 3, layer.style === "dashed" ? [5, 4] : []);
 }
 
 /**
@@ -141,22 +123,19 @@ function draw_polar(c: Canvas, layer: LayerView, colour: string): void {
   const foot = (c.radius + kRing) * view.scale;
   g.globalAlpha *= 0.6;
   for (const { from, to, height, free } of sectors(layer, c.robot)) {
-    g.fillStyle = free ? c.palette.muted : colour;
     g.beginPath();
     g.arc(x, y, foot + height * kTallest * view.scale, -from, -to, true);
     g.arc(x, y, foot, -to, -from);
     g.closePath();
-    g.fill();
+    fill(g, free ? c.palette.muted : colour);
   }
 }
 
 function draw_text(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
-  g.font = `600 12px ${c.palette.font}`;
-  g.textAlign = "center";
-  g.textBaseline = "middle";
-  g.fillStyle = colour;
-  places(layer, c.robot).forEach((p, i) => g.fillText(layer.text[i] ?? "", view.sx(p.x), view.sy(p.y)));
+  const font = `600 12px ${c.palette.font}`;
+  places(layer, c.robot).forEach((p, i) =>
+    write(g, layer.text[i] ?? "", view.sx(p.x), view.sy(p.y), colour, font));
 }
 
 const kDraw: Record<LayerKind, Draw> = {

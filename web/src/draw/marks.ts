@@ -14,8 +14,6 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   const ys = columns.get("y");
   const step = Math.max(1, Math.floor((to - from) / kMostPathPoints));
   g.save();
-  g.strokeStyle = colour;
-  g.lineWidth = width;
   g.lineJoin = "round";
   g.lineCap = "round";
   g.globalAlpha = alpha;
@@ -23,7 +21,7 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   g.moveTo(view.sx(xs[from]), view.sy(ys[from]));
   for (let i = from + step; i < to; i += step) g.lineTo(view.sx(xs[i]), view.sy(ys[i]));
   g.lineTo(view.sx(xs[to - 1]), view.sy(ys[to - 1]));
-  g.stroke();
+  stroke(g, colour, width);
   g.restore();
 }
 
@@ -38,21 +36,41 @@ export function arrow(g: Context, view: View, at: Point, v: Point, times: number
   g.save();
   g.translate(view.sx(at.x), view.sy(at.y));
   g.rotate(angle);
-  g.strokeStyle = colour;
-  g.fillStyle = colour;
-  g.lineWidth = Math.min(width, length / 3);
   g.lineCap = dash.length > 0 ? "butt" : "round";
-  g.setLineDash(dash);
   g.beginPath();
   g.moveTo(0, 0);
   g.lineTo(Math.max(0, length - head + 2), 0);
-  g.stroke();
+  stroke(g, colour, Math.min(width, length / 3), dash);
   g.beginPath();
   g.moveTo(length, 0);
   g.lineTo(length - head, -head * 0.46);
   g.lineTo(length - head, head * 0.46);
-  g.fill();
+  fill(g, colour);
   g.restore();
+}
+
+/** Strokes the outline with a line `width` [px] wide. */
+export function stroke(g: Context, colour: string, width: number, dash: number[] = []): void {
+  g.strokeStyle = colour;
+  g.lineWidth = width;
+  g.setLineDash(dash);
+  g.stroke();
+  g.setLineDash([]);
+}
+
+export function fill(g: Context, colour: string): void {
+  g.fillStyle = colour;
+  g.fill();
+}
+
+/** Writes `text` at x, y [px]. */
+export function write(g: Context, text: string, x: number, y: number, colour: string, font: string,
+  align: CanvasTextAlign = "center", baseline: CanvasTextBaseline = "middle"): void {
+  g.fillStyle = colour;
+  g.font = font;
+  g.textAlign = align;
+  g.textBaseline = baseline;
+  g.fillText(text, x, y);
 }
 
 /** Begins a new outline: a circle of `radius` [px] about `at` in W. */

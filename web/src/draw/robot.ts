@@ -1,7 +1,7 @@
 // web/src/draw/robot.ts: the robot, its safety circle, and its goals.
 import { Point, Pose } from "../geometry";
 import { Goal } from "../link/frame";
-import { Context, arrow, circle, trace } from "./marks";
+import { Context, arrow, circle, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { SceneState } from "../state/scene";
 import { View } from "./view";
@@ -10,13 +10,9 @@ type Hull = SceneState["hull"];
 
 export function draw_safety(g: Context, view: View, palette: Palette, pose: Pose,
   radius: number): void {
-  g.strokeStyle = palette.safe;
-  g.setLineDash([5, 6]);
   g.globalAlpha = 0.75;
-  g.lineWidth = 1.4;
   circle(g, view, pose, radius * view.scale);
-  g.stroke();
-  g.setLineDash([]);
+  stroke(g, palette.safe, 1.4, [5, 6]);
   g.globalAlpha = 1;
 }
 
@@ -30,12 +26,9 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.globalAlpha = alpha;
   g.translate(view.sx(pose.x), view.sy(pose.y));
   g.rotate(-pose.heading);
-  g.fillStyle = palette.panel;
-  g.strokeStyle = colour;
-  g.lineWidth = Math.max(1.5, Math.min(2.4, r / 8));
   trace_hull(g, s, r, hull);
-  g.fill();
-  g.stroke();
+  fill(g, palette.panel);
+  stroke(g, colour, Math.max(1.5, Math.min(2.4, r / 8)));
   g.fillStyle = colour;
   const wheel = Math.min(half_track, radius * 0.86);
   g.fillRect(-0.29 * r, (-wheel - 0.035) * k, 0.58 * r, 0.07 * k);
@@ -63,28 +56,20 @@ export function draw_truth(g: Context, view: View, palette: Palette, pose: Pose,
   g.save();
   g.translate(view.sx(pose.x), view.sy(pose.y));
   g.rotate(-pose.heading);
-  g.strokeStyle = palette.muted;
-  g.lineWidth = 1.2;
-  g.setLineDash([2, 3]);
   trace_hull(g, view.scale, radius * view.scale, hull);
-  g.stroke();
+  stroke(g, palette.muted, 1.2, [2, 3]);
   g.restore();
 }
 
 export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, selected: boolean,
   draft = false): void {
-  g.strokeStyle = palette.ok;
-  g.fillStyle = palette.ok;
-  g.lineWidth = selected ? 4 : 2.5;
-  if (draft) g.setLineDash([4, 4]);
   circle(g, view, goal, Math.max(9, 0.2 * view.scale));
-  g.stroke();
-  g.setLineDash([]);
+  stroke(g, palette.ok, selected ? 4 : 2.5, draft ? [4, 4] : []);
   g.globalAlpha = 0.16;
-  g.fill();
+  fill(g, palette.ok);
   g.globalAlpha = 1;
   circle(g, view, goal, 2.5);
-  g.fill();
+  fill(g, palette.ok);
   if (goal.heading !== null) {
     const length = Math.max(0.46, 26 / view.scale);
     arrow(g, view, goal, { x: length * Math.cos(goal.heading), y: length * Math.sin(goal.heading) },
@@ -96,23 +81,13 @@ export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, 
 export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal: Point,
   ahead: Point[]): void {
   if (ahead.length === 0) return;
-  g.strokeStyle = palette.ok;
-  g.fillStyle = palette.ok;
-  g.lineWidth = 1.4;
-  g.setLineDash([3, 5]);
   g.beginPath();
   trace(g, view, [goal, ...ahead]);
-  g.stroke();
-  g.setLineDash([]);
-  g.font = `600 11px ${palette.font}`;
-  g.textAlign = "center";
-  g.textBaseline = "middle";
+  stroke(g, palette.ok, 1.4, [3, 5]);
   ahead.forEach((next, i) => {
     circle(g, view, next, 9);
-    g.fillStyle = palette.bg;
-    g.fill();
-    g.stroke();
-    g.fillStyle = palette.ok;
-    g.fillText(String(i + 2), view.sx(next.x), view.sy(next.y) + 0.5);
+    fill(g, palette.bg);
+    stroke(g, palette.ok, 1.4);
+    write(g, String(i + 2), view.sx(next.x), view.sy(next.y) + 0.5, palette.ok, `600 11px ${palette.font}`);
   });
 }

@@ -8,7 +8,7 @@ import { is_sensed, kOwn } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
 import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
-import { Context, circle, dots, draw_path, trace } from "./marks";
+import { Context, circle, dots, draw_path, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
 import { draw_bumpers, draw_fan, draw_ranging } from "./sensing";
@@ -117,52 +117,38 @@ function draw_ghost(g: Context, view: View, palette: Palette, ghost: Ghost): voi
 function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): void {
   if (draft.obstacle) {
     trace_obstacle(g, view, draft.obstacle);
-    g.fillStyle = palette.obst;
     g.globalAlpha = 0.6;
-    g.fill();
+    fill(g, palette.obst);
     g.globalAlpha = 1;
-    g.strokeStyle = palette.accent;
-    g.lineWidth = 2;
-    g.setLineDash([5, 4]);
-    g.stroke();
-    g.setLineDash([]);
+    stroke(g, palette.accent, 2, [5, 4]);
   }
   if (draft.measure) draw_measure(g, view, palette, draft.measure.from, draft.measure.to);
   if (!draft.cursor) return;
   const c = view.to_screen(draft.cursor);
-  g.strokeStyle = palette.text;
-  g.lineWidth = 1.5;
   g.beginPath();
   g.moveTo(c.x - 11, c.y);
   g.lineTo(c.x + 11, c.y);
   g.moveTo(c.x, c.y - 11);
   g.lineTo(c.x, c.y + 11);
-  g.stroke();
+  stroke(g, palette.text, 1.5);
 }
 
-function draw_measure(g: Context, view: View, palette: Palette, from: Point,
-  to: Point): void {
-  g.strokeStyle = palette.text;
-  g.fillStyle = palette.text;
-  g.lineWidth = 1.5;
+function draw_measure(g: Context, view: View, palette: Palette, from: Point, to: Point): void {
   g.beginPath();
   trace(g, view, [from, to]);
-  g.stroke();
+  stroke(g, palette.text, 1.5);
   for (const p of [from, to]) {
     circle(g, view, p, 3.5);
-    g.fill();
+    fill(g, palette.text);
   }
   const text = `${distance(from, to).toFixed(2)} m`;
-  g.font = `600 13px ${palette.font}`;
+  const font = `600 13px ${palette.font}`;
+  g.font = font;
   const w = g.measureText(text).width + 16;
   const x = (view.sx(from.x) + view.sx(to.x)) / 2;
   const y = (view.sy(from.y) + view.sy(to.y)) / 2 - 20;
-  g.fillStyle = palette.panel;
   g.beginPath();
   g.roundRect(x - w / 2, y - 12, w, 24, 6);
-  g.fill();
-  g.fillStyle = palette.text;
-  g.textAlign = "center";
-  g.textBaseline = "middle";
-  g.fillText(text, x, y + 1);
+  fill(g, palette.panel);
+  write(g, text, x, y + 1, palette.text, font);
 }

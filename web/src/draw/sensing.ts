@@ -2,7 +2,7 @@
 import { Frame } from "../link/frame";
 import { PlacedReadings } from "../state/ranging";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
-import { Context } from "./marks";
+import { Context, fill, stroke } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
@@ -14,7 +14,6 @@ export function draw_fan(g: Context, view: View, palette: Palette, placed: Place
   const { end } = sweep_points(placed);
   const ox = view.sx(placed.origin.x);
   const oy = view.sy(placed.origin.y);
-  g.fillStyle = palette.filtered;
   g.globalAlpha = 0.075;
   g.beginPath();
   g.moveTo(ox, oy);
@@ -23,7 +22,7 @@ export function draw_fan(g: Context, view: View, palette: Palette, placed: Place
     else g.lineTo(view.sx(end[i]), view.sy(end[i + 1]));
   }
   g.closePath();
-  g.fill();
+  fill(g, palette.filtered);
   g.globalAlpha = 1;
 }
 
@@ -31,8 +30,6 @@ export function draw_ranging(g: Context, view: View, palette: Palette,
   readings: PlacedReadings): void {
   const hits = [...readings.values()].filter((r) => r.hit);
   g.save();
-  g.lineWidth = 2;
-  g.strokeStyle = palette.scan;
   g.globalAlpha = 0.8;
   for (const { kind, origin, range } of hits) {
     if (kind !== "sonar") continue;
@@ -40,7 +37,7 @@ export function draw_ranging(g: Context, view: View, palette: Palette,
     // The screen's y axis points down.
     g.arc(view.sx(origin.x), view.sy(origin.y), range * view.scale, -origin.heading - kHalfCone,
       -origin.heading + kHalfCone);
-    g.stroke();
+    stroke(g, palette.scan, 2);
   }
   g.globalAlpha = 1;
   g.fillStyle = palette.warn;
@@ -58,14 +55,12 @@ export function draw_bumpers(g: Context, view: View, palette: Palette, f: Frame,
   radius: number): void {
   if (f.bumpers.length === 0) return;
   const half = Math.PI / Math.max(3, f.bumpers.length);
-  g.strokeStyle = palette.bad;
-  g.lineWidth = 5;
   for (const bumper of f.bumpers) {
     if (!bumper.pressed) continue;
     const heading = f.pose.heading + bumper.mount.heading;
     g.beginPath();
     g.arc(view.sx(f.pose.x), view.sy(f.pose.y), radius * view.scale, -heading - half,
       -heading + half);
-    g.stroke();
+    stroke(g, palette.bad, 5);
   }
 }

@@ -1,6 +1,6 @@
 // web/src/draw/world.ts: the ground: grid, obstacles, scale bar.
 import { Obstacle, outline } from "../obstacle";
-import { Context, circle, trace } from "./marks";
+import { Context, circle, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { Insets, View } from "./view";
 
@@ -9,9 +9,7 @@ export function draw_grid(g: Context, view: View, palette: Palette): void {
   const step = view.scale >= 24 ? 1 : view.scale >= 9 ? 5 : 10;
   const a = view.to_world(0, view.height);
   const b = view.to_world(view.width, 0);
-  g.lineWidth = 1;
   for (const strong of [false, true]) {
-    g.strokeStyle = strong ? palette.grid2 : palette.grid;
     g.beginPath();
     for (let i = Math.floor(a.x / step); i <= Math.ceil(b.x / step); ++i) {
       if ((i % 5 === 0) !== strong) continue;
@@ -25,7 +23,7 @@ export function draw_grid(g: Context, view: View, palette: Palette): void {
       g.moveTo(0, y);
       g.lineTo(view.width, y);
     }
-    g.stroke();
+    stroke(g, strong ? palette.grid2 : palette.grid, 1);
   }
 }
 
@@ -43,15 +41,9 @@ export function draw_obstacles(g: Context, view: View, palette: Palette, obstacl
   selected: number | null, hovered: number | null): void {
   for (const o of obstacles) {
     trace_obstacle(g, view, o);
-    g.fillStyle = palette.obst;
-    g.fill();
-    g.lineWidth = 1.5;
-    g.strokeStyle = o.id === hovered ? palette.text : palette.obstline;
-    g.stroke();
-    if (o.id !== selected) continue;
-    g.lineWidth = 2.5;
-    g.strokeStyle = palette.accent;
-    g.stroke();
+    fill(g, palette.obst);
+    stroke(g, o.id === hovered ? palette.text : palette.obstline, 1.5);
+    if (o.id === selected) stroke(g, palette.accent, 2.5);
   }
 }
 
@@ -62,17 +54,11 @@ export function draw_scale(g: Context, view: View, palette: Palette, insets: Ins
   const length = metres * view.scale;
   const x = view.width - insets.right - 20;
   const y = view.height - insets.bottom;
-  g.strokeStyle = palette.muted;
-  g.fillStyle = palette.muted;
-  g.lineWidth = 1.5;
   g.beginPath();
   g.moveTo(x - length, y - 5);
   g.lineTo(x - length, y);
   g.lineTo(x, y);
   g.lineTo(x, y - 5);
-  g.stroke();
-  g.font = `12px ${palette.font}`;
-  g.textAlign = "right";
-  g.textBaseline = "alphabetic";
-  g.fillText(`${metres} m`, x, y - 9);
+  stroke(g, palette.muted, 1.5);
+  write(g, `${metres} m`, x, y - 9, palette.muted, `12px ${palette.font}`, "right", "alphabetic");
 }
