@@ -13,8 +13,8 @@ export interface Obstacle {
   width: number;     // [m] box; a wall's thickness
   points: Point[];   // polygon, in its own frame
   height: number;    // [m]
-  /** Fields of the JSON that the page does not read (reflectivity, specular); undo returns them. */
-  extra: Record<string, unknown>;
+  /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
+  extra: Pick<ObstacleJson, "reflectivity" | "specular" | "height">;
 }
 
 /** The JSON form, as in scenario files. */
@@ -37,10 +37,7 @@ export interface ObstacleJson {
 }
 
 export function obstacle_from_json(json: ObstacleJson): Obstacle {
-  const extra: Record<string, unknown> = {};
-  if (json.reflectivity !== undefined) extra.reflectivity = json.reflectivity;
-  if (json.specular !== undefined) extra.specular = json.specular;
-  if (json.height !== undefined) extra.height = json.height;
+  const { reflectivity, specular, height } = json;
   const out: Obstacle = {
     id: json.id ?? 0,
     kind: json.type,
@@ -49,8 +46,8 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     length: json.length ?? 0,
     width: json.width ?? json.thickness ?? 0,
     points: [],
-    height: json.height ?? 1,
-    extra,
+    height: height ?? 1,
+    extra: { reflectivity, specular, height },
   };
   if (json.type === "wall" && json.from && json.to) {
     const [ax, ay] = json.from;

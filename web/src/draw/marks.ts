@@ -10,17 +10,12 @@ const kMostPathPoints = 3000;
 export function draw_path(g: Context, view: View, columns: Columns, from: number, to: number,
   colour: string, width: number, alpha = 1): void {
   if (to - from < 2) return;
-  const xs = columns.get("x");
-  const ys = columns.get("y");
-  const step = Math.max(1, Math.floor((to - from) / kMostPathPoints));
   g.save();
   g.lineJoin = "round";
   g.lineCap = "round";
   g.globalAlpha = alpha;
   g.beginPath();
-  g.moveTo(view.sx(xs[from]), view.sy(ys[from]));
-  for (let i = from + step; i < to; i += step) g.lineTo(view.sx(xs[i]), view.sy(ys[i]));
-  g.lineTo(view.sx(xs[to - 1]), view.sy(ys[to - 1]));
+  columns.each_place(from, to, kMostPathPoints, (x, y) => g.lineTo(view.sx(x), view.sy(y)));
   stroke(g, colour, width);
   g.restore();
 }

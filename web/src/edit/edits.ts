@@ -1,4 +1,4 @@
-// web/src/edit/edits.ts: the edits people make, each as one value with its way back.
+// web/src/edit/edits.ts: the edits of people, each as one value with its undo.
 import { RequestJson } from "../contract";
 import { Pose } from "../geometry";
 import { Goal } from "../link/frame";
@@ -25,7 +25,7 @@ export function add_goal_edit(goal: Goal): Edit {
   return {
     label: "Add waypoint",
     forward: { type: "add_goal", ...goal_json(goal) },
-    backward: null, // the robot may be on its way to it already
+    backward: null, // the robot may drive there already
   };
 }
 
@@ -33,7 +33,7 @@ export function add_edit(obstacle: Obstacle): Edit {
   return {
     label: "Add obstacle",
     forward: { type: "add_obstacle", obstacle: obstacle_to_json(obstacle) },
-    backward: null, // known once the server has given it an id
+    backward: null, // the history adds it once the server has answered with the id
   };
 }
 
@@ -62,16 +62,12 @@ export function round_cm(v: number): number {
   return Math.round(v * 100) / 100;
 }
 
+const kBlank = { id: 0, radius: 0, length: 0, width: 0, points: [], height: 1, extra: {} };
+
 export function new_cylinder(x: number, y: number, radius: number): Obstacle {
-  return {
-    id: 0, kind: "cylinder", pose: { x, y, heading: 0 }, radius, length: 0, width: 0, points: [],
-    height: 1, extra: {},
-  };
+  return { ...kBlank, kind: "cylinder", pose: { x, y, heading: 0 }, radius };
 }
 
 export function new_box(x: number, y: number, length: number, width: number, heading = 0): Obstacle {
-  return {
-    id: 0, kind: "box", pose: { x, y, heading }, radius: 0, length, width, points: [], height: 1,
-    extra: {},
-  };
+  return { ...kBlank, kind: "box", pose: { x, y, heading }, length, width };
 }

@@ -182,6 +182,7 @@ function obstacle(o: wire.Obstacle): Obstacle {
 }
 
 function request(box: wire.RequestBox): FrameRequest | null {
+  const read = <T>(into: T): T => box.request(into) as T;
   switch (box.requestType()) {
     case wire.Request.SetGoal:
       return { type: "set_goal" };
@@ -190,22 +191,19 @@ function request(box: wire.RequestBox): FrameRequest | null {
     case wire.Request.ClearGoal:
       return { type: "clear_goal" };
     case wire.Request.AddObstacle: {
-      const o = (box.request(new wire.AddObstacle()) as wire.AddObstacle).obstacle();
+      const o = read(new wire.AddObstacle()).obstacle();
       return o && { type: "add_obstacle", obstacle: obstacle(o) };
     }
     case wire.Request.MoveObstacle: {
-      const m = box.request(new wire.MoveObstacle()) as wire.MoveObstacle;
+      const m = read(new wire.MoveObstacle());
       return { type: "move_obstacle", id: m.id(), pose: pose(m.pose()) };
     }
     case wire.Request.RemoveObstacle:
-      return {
-        type: "remove_obstacle",
-        id: (box.request(new wire.RemoveObstacle()) as wire.RemoveObstacle).id(),
-      };
+      return { type: "remove_obstacle", id: read(new wire.RemoveObstacle()).id() };
     case wire.Request.Stop:
-      return { type: "stop", engaged: (box.request(new wire.Stop()) as wire.Stop).engaged() };
+      return { type: "stop", engaged: read(new wire.Stop()).engaged() };
     case wire.Request.SetParameter: {
-      const s = box.request(new wire.SetParameter()) as wire.SetParameter;
+      const s = read(new wire.SetParameter());
       return { type: "set_parameter", name: s.name() ?? "", value: s.value() };
     }
     default:

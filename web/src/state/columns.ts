@@ -100,6 +100,15 @@ export class Columns {
     this.length += count;
   }
 
+  /** Calls `each` with the positions of rows [from, to), thinned to about `most`; the last one always. */
+  each_place(from: number, to: number, most: number, each: (x: number, y: number) => void): void {
+    const xs = this.get("x");
+    const ys = this.get("y");
+    const step = Math.max(1, Math.floor((to - from) / most));
+    for (let i = from; i < to - 1; i += step) each(xs[i], ys[i]);
+    each(xs[to - 1], ys[to - 1]);
+  }
+
   /** The last row with t <= `t`; 0 when there is none. */
   row_at(t: number): number {
     return Math.max(0, last_not_after(this.get("t"), t));

@@ -142,15 +142,10 @@ export class World3 {
   }
 
   private build_path(scene: SceneState): void {
-    const { columns } = scene;
-    const rows = Math.min(scene.rows, columns.length);
+    const rows = Math.min(scene.rows, scene.columns.length);
     if (rows < 2) return;
-    const step = Math.max(1, Math.floor(rows / kMostPath));
-    const xs = columns.get("x");
-    const ys = columns.get("y");
     const line: Point[] = [];
-    for (let i = 0; i < rows; i += step) line.push({ x: xs[i], y: ys[i] });
-    line.push({ x: xs[rows - 1], y: ys[rows - 1] });
+    scene.columns.each_place(0, rows, kMostPath, (x, y) => line.push({ x, y }));
     this.moving_.add(ribbon(line, 0.045, 0.012, this.palette_.path));
   }
 
