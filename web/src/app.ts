@@ -1,4 +1,4 @@
-// web/src/app.ts: the state of the page and its actions: one link, one scene, the state of the controls.
+// web/src/app.ts: the state of the page and its actions: one link, one scene, the controls.
 import { createContext } from "preact";
 import { useContext } from "preact/hooks";
 import { Accepted, Catalog, Page, RequestJson, RobotItem, ScenarioItem, SessionState } from "./contract";
@@ -7,7 +7,9 @@ import { View } from "./draw/view";
 import { Pose } from "./geometry";
 import { Edit, EditHistory } from "./edit/history";
 import { Tool } from "./edit/gestures";
-import { add_edit, add_goal_edit, goal_json, goal_request, move_edit, move_request, set_goal_edit } from "./edit/edits";
+import {
+  add_edit, add_goal_edit, goal_json, goal_request, move_edit, move_request, set_goal_edit,
+} from "./edit/edits";
 import { Goal } from "./link/frame";
 import { LinkStatus, LiveLink } from "./link/live";
 import * as rest from "./link/rest";
@@ -227,8 +229,8 @@ export class App {
   }
 
   /**
-   * A drag of obstacle `id`. Poses are sent at a steady pace, and the last one always. The whole drag
-   * is one step of undo.
+   * A drag of obstacle `id`. Poses are sent at a steady pace, and the last one always. The whole
+   * drag is one step of undo.
    */
   drag(id: number, pose: Pose, from: Pose, done: boolean): void {
     const drag = (this.drag_ ??= { busy: false, sent: 0 });
@@ -256,8 +258,8 @@ export class App {
     const scenario = change.scenario ?? s.scenario.name;
     const item = this.ui.value.scenarios.find((x) => x.name === scenario);
     const log = item?.kind === "log";
-    // Without a name the server keeps the scenario of the session. A name reads the scenario again, so
-    // that another robot gets the sensors that the scenario gives it.
+    // Without a name the server keeps the scenario of the session. A name reads the scenario again,
+    // so that another robot gets the sensors that the scenario gives it.
     const anew = item && (other || change.scenario !== undefined || change.robot !== undefined);
     const physics = change.physics ?? s.physics;
     const known = this.ui.value.catalog?.physics.some((v) => v.name === physics) ?? false;
@@ -460,7 +462,7 @@ export class App {
     }
   }
 
-  /** Returns the cookie. The server closes the connections opened with it, and the page asks for the token. */
+  /** Returns the cookie: the server closes its connections, and the page asks for the token. */
   async logout(): Promise<void> {
     await rest.post("/logout", {});
     this.ui.set({ locked: true });

@@ -37,7 +37,7 @@ function base_of(layer: LayerView, robot: Pose): Pose {
   return layer.robot ? robot : { x: 0, y: 0, heading: 0 };
 }
 
-/** Calls `each` with every position and its index in the values; `more` other values follow each. */
+/** Calls `each` with every position and its index; `more` other values follow a position. */
 function each_place(layer: LayerView, robot: Pose, more: number, each: (p: Place, at: number) => void): void {
   const base = base_of(layer, robot);
   const c = Math.cos(base.heading);
@@ -108,8 +108,9 @@ export function arcs(layer: LayerView, robot: Pose): Place[][] {
   return out;
 }
 
-/** A grid in W: the outer corner of its first cell, with the heading of its rows, and its cells' edge [m]. */
-export function grid_place(layer: LayerView, robot: Pose): { corner: Pose; cell: number; columns: number } | null {
+/** A grid in W: outer corner of its first cell, heading of its rows, edge of a cell [m]. */
+export function grid_place(layer: LayerView, robot: Pose):
+  { corner: Pose; cell: number; columns: number } | null {
   const [x, y, cell, columns] = layer.values;
   if (!(cell > 0) || !(columns >= 1)) return null;
   const base = base_of(layer, robot);

@@ -1,5 +1,5 @@
-// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. In JSON, polygons
-// and walls have their coordinates in W; here every kind has a pose.
+// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. In JSON,
+// polygons and walls have their coordinates in W; here every kind has a pose.
 import { Bounds, Point, Pose, distance, include, to_child, to_parent } from "./geometry";
 
 export type ObstacleKind = "cylinder" | "box" | "polygon" | "wall";

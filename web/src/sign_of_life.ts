@@ -1,6 +1,6 @@
-// web/src/sign_of_life.ts: tells the server that someone can see this page and press its Stop. The sign
-// follows a drawn frame. A tab gives none if it is frozen, hidden or closed, hears nothing, or has its
-// Stop out of reach. Without signs a real robot stops.
+// web/src/sign_of_life.ts: tells the server that someone can see this page and press its Stop. The
+// sign follows a drawn frame. A tab gives none if it is frozen, hidden or closed, hears nothing, or
+// has its Stop out of reach. Without signs a real robot stops.
 
 const kPeriod = 400; // [ms]; the server waits for 1.5 s
 
@@ -11,8 +11,9 @@ export interface SignEnvironment {
   every(ms: number, act: () => void): void;
 }
 
-/** Gives signs for ever while the page is visible and `stop_works`: a press of Stop reaches the server. */
-export function give_signs_of_life(env: SignEnvironment, stop_works: () => boolean, give: () => void): void {
+/** Gives signs while the page is visible and `stop_works`: a press reaches the server. */
+export function give_signs_of_life(env: SignEnvironment, stop_works: () => boolean,
+  give: () => void): void {
   const able = () => env.visible() && stop_works();
   let waiting = false;
   env.every(kPeriod, () => {

@@ -1,5 +1,5 @@
-// web/src/stopper.ts: sends a press of Stop by every way, again and again, until the server has answered.
-// Without an answer within half a second Stop has failed, and the page raises an alarm.
+// web/src/stopper.ts: sends a press of Stop by every way, again and again, until the server has
+// answered. Without an answer within half a second Stop has failed, and the page raises an alarm.
 
 export const kAnswerTime = 500; // [ms]
 

@@ -89,8 +89,8 @@ function draw_arcs(c: Canvas, layer: LayerView, colour: string): void {
 }
 
 /**
- * Cells that are more likely occupied than free; the likelier, the darker. One outline for each shade,
- * as there are thousands of cells.
+ * Cells that are more likely occupied than free; the likelier, the darker. One outline for each
+ * shade, as there are thousands of cells.
  */
 function draw_grid(c: Canvas, layer: LayerView, colour: string): void {
   const place = grid_place(layer, c.robot);

@@ -1,4 +1,4 @@
-// web/src/draw/marks.ts: shapes that several drawings share: lines, circles, arrows, dots, the path.
+// web/src/draw/marks.ts: shapes that drawings share: lines, circles, arrows, dots, the path.
 import { Point } from "../geometry";
 import { Columns } from "../state/columns";
 import { View } from "./view";
@@ -20,7 +20,7 @@ export function draw_path(g: Context, view: View, columns: Columns, from: number
   g.restore();
 }
 
-/** An arrow by `v` [m] from `at`, `times` enlarged. Arrows below 5 px are left out, and cut at 2 m. */
+/** An arrow by `v` [m] from `at`, `times` enlarged; cut at 2 m, left out below 5 px. */
 export function arrow(g: Context, view: View, at: Point, v: Point, times: number, colour: string,
   width = 3, dash: number[] = []): void {
   const metres = Math.hypot(v.x, v.y) * times;

@@ -41,7 +41,7 @@ export function draw_robot(g: Context, view: View, palette: Palette, pose: Pose,
   g.restore();
 }
 
-/** Begins an outline: the rectangle `hull` about the origin, at `scale` [px/m], else a disc of `radius` [px]. */
+/** Begins an outline about the origin: `hull` at `scale` [px/m], or a disc of `radius` [px]. */
 function trace_hull(g: Context, scale: number, radius: number, hull: Hull): void {
   g.beginPath();
   if (hull) {

@@ -39,7 +39,7 @@ export interface Overlay {
   future: boolean;             // draws the path still to come, faintly
   insets: Insets;
   preview?: Goal | null;       // a goal that is not sent yet
-  /** Colour of the path, where it is another: the Runs view draws the first of two in the accent. */
+  /** Another colour of the path: the Runs view draws the first of two runs in the accent. */
   path?: "accent";
 }
 

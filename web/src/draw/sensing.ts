@@ -1,4 +1,4 @@
-// web/src/draw/sensing.ts: the free area of the filtered scan, sonar cones, infrared returns, bumpers.
+// web/src/draw/sensing.ts: the free area of the filtered scan, sonar, infrared, bumpers.
 import { Frame } from "../link/frame";
 import { PlacedReadings } from "../state/ranging";
 import { PlacedSweep, sweep_points } from "../state/sweeps";

@@ -1,5 +1,5 @@
-// web/src/edit/gestures.ts: turns pointers on the scene into drafts and edits, by tool. It reads only the
-// numbers of pointer events, so that tests need no DOM.
+// web/src/edit/gestures.ts: turns pointers on the scene into drafts and edits, by tool. It reads
+// only the numbers of pointer events, so that tests need no DOM.
 import { Draft, Selection } from "../draw/scene";
 import { View } from "../draw/view";
 import { Point, Pose, distance } from "../geometry";
@@ -18,7 +18,7 @@ export interface GestureTarget {
   tool(): Tool;
   can_edit(): boolean; // whether obstacles may be moved
   set_goal(goal: Goal): void;
-  add_goal(goal: Goal): void; // behind the goals that the robot has
+  add_goal(goal: Goal): void; // after the goals that the robot has
   add(obstacle: Obstacle): void;
   /** Called during a drag, with the pose where it began; `done` at its end. */
   move(id: number, pose: Pose, from: Pose, done: boolean): void;
@@ -32,7 +32,7 @@ const kDragPixels = 6;   // a shorter way is a click
 const kGrabPixels = 8;   // from an obstacle's edge a press still hits it
 const kLeast = 0.05;     // [m] least radius or half side of a drawn obstacle
 
-/** A gesture that draws: the draft while the pointer is at `to` in W, and the edit when it is let go. */
+/** A gesture that draws: its draft while the pointer is at `to` in W, and its edit at the end. */
 interface Drawing {
   kind: "draw";
   px: Point;
@@ -58,8 +58,8 @@ export class Gestures {
   }
 
   /**
-   * `button` 0 left or touch, 1 middle, 2 right. Pixels from the corner of the canvas. With `shift` the
-   * goal tool adds a goal behind the others.
+   * `button` 0 left or touch, 1 middle, 2 right. Pixels from the corner of the canvas. With `shift`
+   * the goal tool adds a goal after the others.
    */
   down(id: number, px: Point, button: number, shift = false): void {
     this.pointers_.set(id, px);
@@ -122,7 +122,8 @@ export class Gestures {
     if (obstacle) {
       this.t_.select({ kind: "obstacle", id: obstacle.id });
       if (!this.t_.can_edit()) return null;
-      return { kind: "move", id: obstacle.id, from: obstacle.pose, offset: offset_of(obstacle.pose, at), px, moved: false };
+      const { id, pose } = obstacle;
+      return { kind: "move", id, from: pose, offset: offset_of(pose, at), px, moved: false };
     }
     if (goal && this.on_goal(px)) {
       this.t_.select({ kind: "goal" });

@@ -1,5 +1,5 @@
-// web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the requests for both
-// ways; a drag is one step.
+// web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the requests for
+// both ways; a drag is one step.
 import { Accepted, RequestJson } from "../contract";
 
 export interface Edit {

@@ -36,7 +36,7 @@ export function parse_text(text: string): ServerText | null {
 
 const kHead = 13; // bytes before the payload of message data, and before the encoding of an answer
 
-/** The message in a binary frame; null when it is cut short or of a kind that the page does not read. */
+/** The message in a binary frame; null if it is cut short or of an unknown kind. */
 export function parse_binary(buffer: ArrayBuffer): ServerBinary | null {
   const view = new DataView(buffer);
   if (buffer.byteLength < kHead) return null;

@@ -1,5 +1,5 @@
-// web/src/link/legend.ts: the names, units and kinds of a frame's layers and measures. Frames bring them
-// when they have changed and every two seconds; the page remembers them.
+// web/src/link/legend.ts: the names, units and kinds of a frame's layers and measures. Frames bring
+// them when they have changed and every two seconds; the page remembers them.
 import { LayerView, kLayerKinds, kLayerStyles, kTones } from "../layer";
 import * as wire from "../wire/telemetry_generated";
 

@@ -63,7 +63,7 @@ export class LiveLink {
   private subscriptions_ = new Map<number, string>();
   private legends_ = new Legends();
   private wants_filtered_ = false;
-  private pending_ = new Map<number | string, Pending>(); // by number of the call, or id of the parameters
+  private pending_ = new Map<number | string, Pending>(); // by id of the message
   private next_id_ = 1;
   private session_id_: string | null = null;
   private status_: LinkStatus = { phase: "connecting", retry_at: 0, rate: 0, latency: null };
@@ -114,14 +114,18 @@ export class LiveLink {
   /** Calls a service. Rejects with the server's sentence, or ours when there is no connection. */
   call<T = unknown>(name: string, body: unknown = {}): Promise<T> {
     const service = this.services_.get(name);
-    if (this.is_open && service === undefined) return Promise.reject(new Error(`This server does not offer ${name}.`));
+    if (this.is_open && service === undefined) {
+      return Promise.reject(new Error(`This server does not offer ${name}.`));
+    }
     const call = this.next_id_++;
     return this.ask<T>(call, () => this.send(service_request(service!, call, body)));
   }
 
   /** The answer to the message that `send` sends, which comes under `id`. */
   private ask<T>(id: number | string, send: () => void): Promise<T> {
-    if (!this.is_open) return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
+    if (!this.is_open) {
+      return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
+    }
     return new Promise<T>((resolve, reject) => {
       const late = new Error("The server did not answer within 10 s.");
       const timer = setTimeout(() => this.settle(id, (call) => call.reject(late)), kCallTimeout);
@@ -164,7 +168,7 @@ export class LiveLink {
     return now() - this.last_heard_;
   }
 
-  /** Sets a parameter; resolves with the value that the server holds now, which may be the old one. */
+  /** Sets a parameter; resolves with the server's value, which may be the old one. */
   async set_parameter(name: string, value: number): Promise<number> {
     const id = `set-${this.next_id_++}`;
     const values = await this.ask<ParameterValue[]>(id, () =>

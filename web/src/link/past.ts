@@ -1,4 +1,4 @@
-// web/src/link/past.ts: fetches from the record what a page missed that opens late or at a paused run.
+// web/src/link/past.ts: fetches from the record what a page missed that was opened late.
 import { Page } from "../contract";
 import { TickRow } from "../state/columns";
 import { SceneState, fold_frame } from "../state/scene";

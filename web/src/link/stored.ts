@@ -18,7 +18,7 @@ import * as rest from "./rest";
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
 
-/** The frames of run `id`, or its filtered scans: one message for each frame, empty without a new scan. */
+/** The frames of run `id`, or a message for each: its filtered scan, empty without a new one. */
 export function stored_frames(id: number, what: "frames" | "filtered"): FetchFrames {
   return (from, limit, signal) => rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
 }
@@ -64,7 +64,7 @@ export class StoredRun {
   private wanted_ = -1;
   private held_ = new Map<string, number[]>(); // rows with values that hold in later rows, by name
   private wants_filtered_ = false;
-  private filtering_ = new Set<Chunk>(); // whose filtered scans were asked for, or are not to be had
+  private filtering_ = new Set<Chunk>(); // whose filtered scans were asked for
 
   constructor(
     readonly item: RunItem,
@@ -101,8 +101,8 @@ export class StoredRun {
   }
 
   /**
-   * Fetches the run once from front to back, and reads columns, events and edits. Of a run that is still
-   * recorded it fetches the ticks there were when it was opened, as otherwise it would never end.
+   * Fetches the run once from front to back, and reads columns, events and edits. Of a run that is
+   * still recorded it fetches the ticks up to the opening; otherwise it would never end.
    */
   async load(on_progress: () => void, signal?: AbortSignal): Promise<void> {
     let from: number | null = 0;
@@ -125,8 +125,8 @@ export class StoredRun {
   }
 
   /**
-   * Shows `row` in `scene`. Returns false if a frame must be fetched first: then `ready` is called once it
-   * is shown, unless another row was sought. `ready` is called again when its filtered scan is shown.
+   * Shows `row` in `scene`. Returns false if a frame must be fetched first: then `ready` is called
+   * once it is shown, unless another row was sought; and again for its filtered scan.
    */
   seek(row: number, ready: () => void = () => undefined): boolean {
     if (this.rows === 0) return false;
@@ -157,7 +157,7 @@ export class StoredRun {
     this.wants_filtered_ = wanted;
   }
 
-  /** The rows whose values are shown at row `at`, ascending: itself, and the rows whose values still hold. */
+  /** Row `at` and the rows before it whose values still hold, ascending. */
   private rows_for(at: number): number[] {
     const rows = new Set([at]);
     const t = (row: number) => this.columns.at("t", row);
@@ -172,7 +172,7 @@ export class StoredRun {
   private show_filtered(at: number, ready: () => void): void {
     this.scene.filtered.clear();
     if (!this.wants_filtered_) return;
-    const newest: number[] = []; // row of each scanner; only one is filtered, the other messages are empty
+    const newest: number[] = []; // of each scanner; only one is filtered
     for (const [name, bringing] of this.held_) {
       const last = last_not_after(bringing, at);
       if (name.startsWith("scan ") && last >= 0) newest.push(bringing[last]);
@@ -276,8 +276,9 @@ export class StoredRun {
   }
 }
 
-/** `count` messages from tick `first`, or as many as there are. A page of many bytes holds fewer than asked. */
-export async function fetch_all(fetch: FetchFrames, first: number, count: number): Promise<Uint8Array[]> {
+/** Up to `count` messages from tick `first`. A page may hold fewer messages than asked for. */
+export async function fetch_all(fetch: FetchFrames, first: number,
+  count: number): Promise<Uint8Array[]> {
   const out: Uint8Array[] = [];
   for (let from: number | null = first; from !== null && out.length < count;) {
     const page: { bytes: Uint8Array; next: number | null } = await fetch(from, count - out.length);

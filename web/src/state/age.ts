@@ -1,5 +1,5 @@
-// web/src/state/age.ts: the age of the drawn data. Times of arrival are by performance.now() [ms], stamps
-// by the run clock [s].
+// web/src/state/age.ts: the age of the drawn data. Times of arrival are by performance.now() [ms],
+// stamps by the run clock [s].
 import { SessionState } from "../contract";
 import { SceneState } from "./scene";
 import { PlacedSweep } from "./sweeps";
@@ -24,7 +24,7 @@ export function sweep_age(scene: SceneState, placed: PlacedSweep): number | null
   return age > Math.max(kScanLimit, scene.scan_timeout) ? age : null;
 }
 
-/** [s] Age of the oldest of the scanners' newest sweeps; null while the robot may drive by all of them. */
+/** [s] Age of the oldest scanner's sweep; null while the robot may drive by all of them. */
 export function scan_age(scene: SceneState): number | null {
   const ages = scene.sweeps.map((s) => sweep_age(scene, s)).filter((a): a is number => a !== null);
   return ages.length > 0 ? Math.max(...ages) : null;

@@ -1,5 +1,5 @@
-// web/src/state/columns.ts: the numbers of a run by row, for the path and the plots, in growing typed
-// arrays; a missing number is NaN. A live run is thinned beyond a bound, so that memory stays flat.
+// web/src/state/columns.ts: the numbers of a run by row, for the path and the plots, in growing
+// typed arrays; a missing number is NaN. Beyond a bound, a live run is thinned to save memory.
 import { ChannelInfo } from "../contract";
 import { Frame } from "../link/frame";
 
@@ -100,7 +100,7 @@ export class Columns {
     this.length += count;
   }
 
-  /** Calls `each` with the positions of rows [from, to), thinned to about `most`; the last one always. */
+  /** Calls `each` with the positions of rows [from, to), thinned to about `most`. */
   each_place(from: number, to: number, most: number, each: (x: number, y: number) => void): void {
     const xs = this.get("x");
     const ys = this.get("y");

@@ -1,5 +1,5 @@
-// web/src/state/layers.ts: the layers of the page and of the controller, and which of them are switched
-// off.
+// web/src/state/layers.ts: the layers of the page and of the controller, and which of them are
+// switched off.
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
 import type { SceneState } from "./scene";

@@ -1,4 +1,4 @@
-// web/src/state/ranging.ts: the newest readings of sonar and infrared, with their sensor's pose in W.
+// web/src/state/ranging.ts: the newest readings of sonar and infrared, with poses in W.
 import { Pose, compose } from "../geometry";
 import { Frame, RangeReading } from "../link/frame";
 

@@ -1,5 +1,5 @@
-// web/src/state/scene.ts: the state that is drawn, as one plain object, and how frames and the session's
-// document change it. Live session and stored run fill the same object.
+// web/src/state/scene.ts: the state that is drawn, as one plain object, and how frames and the
+// session's document change it. Live session and stored run fill the same object.
 import { GoalJson, RobotInfo, SessionState } from "../contract";
 import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
@@ -111,7 +111,7 @@ export function fold_frame(scene: SceneState, f: Frame): void {
   scene.filtered.see(f);
 }
 
-/** Makes `f` the shown instant and leaves the history as it is. Values that `f` does not bring hold. */
+/** Makes `f` the shown instant; the history stays. Values that `f` does not bring hold. */
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
@@ -146,7 +146,7 @@ export function hold_time(name: string): number {
   return /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 
-/** The obstacles with the poses of `f` for those that move by themselves; the same list if it has none. */
+/** The obstacles with the poses that `f` brings; the same list if it brings none. */
 function moved_by_themselves(obstacles: Obstacle[], f: Frame | null): Obstacle[] {
   if (!f || f.moved.length === 0) return obstacles;
   const places = new Map(f.moved.map((m) => [m.id, m.pose]));

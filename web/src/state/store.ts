@@ -1,5 +1,5 @@
-// web/src/state/store.ts: a value with listeners, the hooks that let controls read it, and the values
-// that the browser keeps from visit to visit.
+// web/src/state/store.ts: a value with listeners, the hooks that let controls read it, and the
+// values that the browser keeps from visit to visit.
 import { useEffect, useReducer, useRef } from "preact/hooks";
 
 export class Store<T extends object> {
@@ -56,8 +56,8 @@ export function use_pulse(period: number): void {
 }
 
 /** Listens on the window while the component is shown. */
-export function use_listener<K extends keyof WindowEventMap>(type: K, act: (event: WindowEventMap[K]) => void,
-  capture = false): void {
+export function use_listener<K extends keyof WindowEventMap>(type: K,
+  act: (event: WindowEventMap[K]) => void, capture = false): void {
   const latest = use_latest(act);
   useEffect(() => {
     const listen = (event: WindowEventMap[K]) => latest.current(event);

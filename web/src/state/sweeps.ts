@@ -1,5 +1,5 @@
-// web/src/state/sweeps.ts: scans with the pose at which they were taken: raw ones, and the filtered scan
-// that the server gave the controller.
+// web/src/state/sweeps.ts: scans with the pose at which they were taken: raw ones, and the filtered
+// scan that the server gave the controller.
 import { Pose, compose } from "../geometry";
 import { Frame, Sweep, kFree, kMaxRange } from "../link/frame";
 
@@ -49,8 +49,8 @@ export function sweep_points(of: PlacedSweep): SweepPoints {
 const kRemembered = 32;
 
 /**
- * The filtered scan of a live run. It comes on its own channel, before or after the frame of its tick.
- * The pose of the robot is in that frame, so the scan waits for the frame with its stamp.
+ * The filtered scan of a live run. It comes on its own channel, before or after the frame of its
+ * tick. The pose of the robot is in that frame, so the scan waits for the frame with its stamp.
  */
 export class FilteredScan {
   shown: PlacedSweep | null = null;

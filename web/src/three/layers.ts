@@ -1,5 +1,5 @@
-// web/src/three/layers.ts: the layers of a controller in 3D: a drawing for each kind. A layer without
-// heights lies at the height of its kind.
+// web/src/three/layers.ts: the layers of a controller in 3D: a drawing for each kind. A layer
+// without heights lies at the height of its kind.
 import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Pose } from "../geometry";

@@ -25,7 +25,8 @@ export function vertices(xyz: number[]): THREE.BufferGeometry {
   return new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(xyz, 3));
 }
 
-export function placed(geometry: THREE.BufferGeometry, material: THREE.Material, at: Point, z: number): THREE.Mesh {
+export function placed(geometry: THREE.BufferGeometry, material: THREE.Material, at: Point,
+  z: number): THREE.Mesh {
   const mesh = new THREE.Mesh(geometry, material);
   mesh.position.set(at.x, at.y, z);
   return mesh;

@@ -1,4 +1,4 @@
-// web/src/three/world.ts: the scene in 3D, from the same state as the view from above: z up, metres.
+// web/src/three/world.ts: the scene in 3D, from the state of the view from above: z up, metres.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Palette } from "../draw/palette";
@@ -31,8 +31,8 @@ export class World3 {
   private placed_ = false;
   private last_robot_: Point | null = null;
 
-  constructor(private readonly box_: HTMLElement, private palette_: Palette, private readonly scene_: SceneState,
-    private readonly options_: () => Options) {
+  constructor(private readonly box_: HTMLElement, private palette_: Palette,
+    private readonly scene_: SceneState, private readonly options_: () => Options) {
     this.renderer_.setPixelRatio(Math.min(2, devicePixelRatio || 1));
     this.renderer_.domElement.setAttribute("aria-label",
       "The world in 3D. Drag to look round it, wheel to come nearer.");

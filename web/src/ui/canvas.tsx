@@ -1,5 +1,5 @@
-// web/src/ui/canvas.tsx: the drawn scene as a component. It follows its own size, draws on an animation
-// frame after a change, passes pointers to the gestures, and fits the view until a hand moves it.
+// web/src/ui/canvas.tsx: the drawn scene as a component. It follows its size, draws on an animation
+// frame after a change, passes pointers to gestures, and fits the view until a hand moves it.
 import { JSX, TargetedPointerEvent } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_ui } from "../app";
@@ -56,8 +56,8 @@ export function SceneCanvas(props: CanvasProps): JSX.Element {
     const draw = (now: number) => {
       pending = 0;
       const { view, scene } = latest.current;
-      // Messages ask a removed canvas to draw until the next one exists. Both would fit the one view and
-      // undo each other's moves without end.
+      // Messages ask a removed canvas to draw until the next one exists. Both would fit the one
+      // view and undo each other's moves without end.
       if (!canvas.isConnected || view.width < 2 || view.height < 2) return;
       const ratio = canvas.width / view.width;
       g.setTransform(ratio, 0, 0, ratio, 0, 0);

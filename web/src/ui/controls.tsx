@@ -70,7 +70,7 @@ function digits_of(step: number): number {
 
 const kSendMs = 120;
 
-/** A gain. Moving it sends values at a steady pace; afterwards it shows the value that the server holds. */
+/** A gain. Moving it sends values at a steady pace; then it shows the server's value. */
 export function Slider(props: {
   info: ParameterInfo; value: number; usual: number; on_set: (value: number) => Promise<unknown>;
 }): JSX.Element {

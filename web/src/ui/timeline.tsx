@@ -1,5 +1,5 @@
-// web/src/ui/timeline.tsx: the time of a run as a bar, with its events. A stored run can be dragged along
-// it; a live run only shows it.
+// web/src/ui/timeline.tsx: the time of a run as a bar, with its events. A stored run can be dragged
+// along it; a live run only shows it.
 import { JSX } from "preact";
 import { RunEvent } from "../state/events";
 import { clock } from "../words";

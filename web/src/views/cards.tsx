@@ -1,5 +1,5 @@
-// web/src/views/cards.tsx: the cards on the scene: the sentence that explains, the banner for states that
-// need a person, and the age of an old picture.
+// web/src/views/cards.tsx: the cards on the scene: the sentence that explains, the banner for
+// states that need a person, and the age of an old picture.
 import { ComponentChildren, JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
@@ -37,7 +37,7 @@ function explain_words(scene: SceneState, session: SessionState | null): Words &
     return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
       why: paused ? "Press play to begin." : "", tone: "muted" };
   }
-  // The server sends sentences when they are new. A page that opens late shows the state until then.
+  // The server sends new sentences only. A page that opens late shows the state until then.
   const said = words ?? { what: frame_word(f).word, why: "" };
   if (!session.robot.drives) return { what: "Replaying the log", why: said.why, tone: "accent" };
   const tone = f.hold !== "none" || f.mission === "held" ? "bad"
@@ -48,7 +48,9 @@ function explain_words(scene: SceneState, session: SessionState | null): Words &
 /** A strip across the top of the scene, with buttons. */
 function Strip(props: { tone: Tone; words: string; children?: ComponentChildren }): JSX.Element {
   return (
-    <div class={`banner ${props.tone}`} role="alert" data-testid="banner"><span>{props.words}</span>{props.children}</div>
+    <div class={`banner ${props.tone}`} role="alert" data-testid="banner">
+      <span>{props.words}</span>{props.children}
+    </div>
   );
 }
 

@@ -1,12 +1,12 @@
-// web/src/views/hardware.tsx: real hardware: the bar that every view shows, its devices, and how well
-// the loop keeps its period.
+// web/src/views/hardware.tsx: real hardware: the bar that every view shows, its devices, and how
+// well the loop keeps its period.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
 import { Facts } from "../ui/controls";
 import { titled, watchers_words } from "../words";
 
-/** A bar under the top bar: why the wheels stand still, or that they may turn, and the Arm button. */
+/** A bar under the top bar: why the wheels stand still or may turn, and the Arm button. */
 export function HardwareBar(): JSX.Element | null {
   const { session } = use_ui("session");
   const hardware = session?.hardware;

@@ -1,5 +1,5 @@
-// web/src/views/keys.ts: the keyboard. Space stops everywhere but in a text field; the other keys act
-// on the view, the tool and the selection.
+// web/src/views/keys.ts: the keyboard. Space stops everywhere but in a text field; the other keys
+// act on the view, the tool and the selection.
 import { App } from "../app";
 import { kUsualRadius, kUsualSide, move_edit, new_box, new_cylinder, remove_edit, round_cm } from "../edit/edits";
 import { Point, radians, wrap_angle } from "../geometry";
@@ -29,7 +29,7 @@ export function stop_key(app: App, e: KeyboardEvent): void {
   if (e.type === "keydown" && !e.repeat) app.stop();
 }
 
-/** Listens to single keys, by name, while the component is shown. A key held down repeats a step only. */
+/** Listens to keys, by name, while the component is shown. Only steps repeat on a held key. */
 export function use_keys(acts: Record<string, () => void>): void {
   use_listener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || !hears(e)) return;
@@ -87,7 +87,7 @@ export function use_scene_keys(app: App, hand: Hand): void {
   });
 }
 
-/** On the scene itself, with nothing selected, arrows move a crosshair and Enter places an object there. */
+/** On the scene, with nothing selected: arrows move a crosshair, Enter places an object. */
 export function crosshair_key(app: App, hand: Hand, e: KeyboardEvent): void {
   const { cursor } = hand.draft;
   if (e.key in kArrows && !app.ui.value.selection) {

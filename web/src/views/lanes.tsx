@@ -1,5 +1,5 @@
-// web/src/views/lanes.tsx: the signals of a stored run over its whole time, with a cursor. A second run
-// has the second colour.
+// web/src/views/lanes.tsx: the signals of a stored run over its whole time, with a cursor. A second
+// run has the second colour.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { use_ui } from "../app";

@@ -1,4 +1,4 @@
-// web/src/views/layers.tsx: legend and layers in one panel: the meaning of each colour, and its switch.
+// web/src/views/layers.tsx: legend and layers in one panel: each colour's meaning and switch.
 import { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { use_app, use_ui } from "../app";
@@ -7,7 +7,7 @@ import { SceneState } from "../state/scene";
 import { use_latest, use_pulse, use_store } from "../state/store";
 import { icons } from "../ui/icons";
 
-/** Calls `tell` with whether filtered scans are needed: while their layer is on and the tab is visible. */
+/** Tells whether filtered scans are needed: their layer is on and the tab is visible. */
 export function use_filtered(tell: (wanted: boolean) => void): void {
   const app = use_app();
   const on = use_store(app.ui, (u) => !u.hidden.has(kOwn.filtered.name));

@@ -83,7 +83,7 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
   );
 }
 
-/** The robot models. A model whose file cannot be read is listed with the reason, and cannot be chosen. */
+/** The robot models. One that cannot be read is listed with the reason, not as a choice. */
 function RobotPick(props: { session: SessionState }): JSX.Element | null {
   const app = use_app();
   const loading = use_store(app.ui, (u) => u.loading) !== null;

@@ -1,4 +1,4 @@
-// web/src/views/preview.tsx: the goal for real hardware before it is sent, and a hint to set the first goal.
+// web/src/views/preview.tsx: the unsent goal for real hardware, and the hint to set a goal.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
@@ -30,7 +30,8 @@ export function PreviewCard(): JSX.Element | null {
       {wait && <p class="tone-muted words" data-testid="preview-wait">{wait}</p>}
       <div class="acts">
         <button class="go" disabled={wait !== null} data-testid="go" onClick={() => void app.go_there()}>Go</button>
-        <button class="ghost" data-testid="preview-drop" onClick={() => app.drop_preview()}>Discard</button>
+        <button class="ghost" data-testid="preview-drop"
+        onClick={() => app.drop_preview()}>Discard</button>
       </div>
     </div>
   );

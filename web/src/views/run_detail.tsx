@@ -190,7 +190,7 @@ function Instant(props: { run: StoredRun }): JSX.Element | null {
 function free_insets(view: HTMLElement): Insets {
   const card = view.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
   const button = view.querySelector(".layers-tool")?.getBoundingClientRect().height ?? 0;
-  const high = view.clientHeight > view.clientWidth; // then the button takes room above, else beside
+  const high = view.clientHeight > view.clientWidth; // the button takes room above
   return {
     left: 20, top: 20 + (high ? button : 0), right: 20 + (panel_cover(view) || (high ? 0 : button)), bottom: card + 24,
   };

@@ -58,7 +58,9 @@ export function Runs(): JSX.Element {
       {open !== null
         ? <RunDetail key={open} id={open} compare={compare} on_gone={list.refresh}
             on_uncompare={() => set_compare(null)} />
-        : <section class="view none"><p class="empty">Open a run to play it, to search it, or to compare it with another.</p></section>}
+        : <section class="view none">
+            <p class="empty">Open a run to play it, to search it, or to compare it with another.</p>
+          </section>}
       {starting && <StartRun on_close={() => set_starting(false)} on_started={list.refresh} />}
     </main>
   );
@@ -69,7 +71,7 @@ interface RunList {
   total: number | null; outcome: string; set_outcome: (o: string) => void; more: () => void; refresh: () => void;
 }
 
-/** The list in pages, newest first. While the view is open, the first page is fetched again and again. */
+/** The list in pages, newest first. The open view fetches the first page every few seconds. */
 function use_runs(connected: boolean): RunList {
   const [items, set_items] = useState<RunItem[]>([]);
   const [next, set_next] = useState<string | number | null>(null);

@@ -9,7 +9,7 @@ const kShortcuts: [string[], string][] = [
   [["."], "One tick on"],
   [["V"], "Look round: drag to move the view, press to select. Every load returns to this tool"],
   [["G"], "Goal tool: press for the position, drag for the heading. Real hardware drives only after Go"],
-  [["Shift+click"], "Goal tool: add a goal behind the others"],
+  [["Shift+click"], "Goal tool: add a goal after the others"],
   [["C"], "Cylinder tool"],
   [["B"], "Box tool"],
   [["M"], "Measure"],

@@ -22,7 +22,7 @@ const kSignals: SignalSpec[] = [
       { label: "Turn rate", colour: "path", column: "omega", unit: "rad/s", dash: [5, 3] }] },
 ];
 
-/** Measures whose name stands for the meaning of a colour have that colour; the others get one in turn. */
+/** Measures with the name of a meaning have its colour; the others get one in turn. */
 const kMeaning: Record<string, Pick<Line, "colour" | "dash">> = {
   internal: { colour: "internal" }, elastic: { colour: "elastic" },
   left: { colour: "external" }, right: { colour: "external", dash: [5, 3] },

@@ -33,7 +33,8 @@ export function StopAlarm(): JSX.Element | null {
       <p>Nothing has answered for <span class="num">{age_words(since)}</span>. The robot may still be moving.
         Use the stop button on the robot itself.</p>
       <p>The page sends Stop again and again until the server answers.</p>
-      <button class="ghost" data-testid="stop-alarm-hide" onClick={() => app.give_up_stop()}>Stop sending it</button>
+      <button class="ghost" data-testid="stop-alarm-hide"
+        onClick={() => app.give_up_stop()}>Stop sending it</button>
     </div>
   );
 }

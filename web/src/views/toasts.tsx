@@ -1,4 +1,4 @@
-// web/src/views/toasts.tsx: short messages that disappear again, and the sentences for screen readers.
+// web/src/views/toasts.tsx: messages that disappear again, and sentences for screen readers.
 import { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { use_app, use_ui } from "../app";

@@ -10,7 +10,7 @@ import { clock, speed_word } from "../words";
 
 const kSpeeds = [0.25, 0.5, 1, 2, 4, 8, 0];
 
-/** A note on the record of the live run, after a comma; empty while it is written as it should be. */
+/** A note on the live run's record, after a comma; empty while all is well. */
 function record_word(record: RecordInfo): string {
   const words: Record<string, string> = { paused: ", record rests", full: ", record full",
     failed: ", not recorded", off: ", not recorded" };
