@@ -156,7 +156,7 @@ const kBelow: LayerKind[] = ["grid", "polar", "circles"];
 const kBelowDashed: LayerKind[] = ["polyline", "points"];
 const kOrder: LayerKind[] = [...kBelow, "arcs", "polyline", "points", "arrows", "text"];
 
-/** `layers` in the order in which they lie: those below the robot, and those above. */
+/** The layers below and above the robot, each from the lowest to the uppermost. */
 export function stacked(layers: LayerView[]): { below: LayerView[]; above: LayerView[] } {
   const sorted = [...layers].sort((a, b) => kOrder.indexOf(a.kind) - kOrder.indexOf(b.kind));
   const under = (l: LayerView) => kBelow.includes(l.kind) || (l.style === "dashed" && kBelowDashed.includes(l.kind));
