@@ -1,57 +1,208 @@
-// tests/dev/pictures.mjs: remakes docs/pictures/controllers/: the page with each controller in the
-// same scene at the same time of its run; by hand, with the release build:
-//   node tests/dev/pictures.mjs [CONTROLLER ...]
-// Look at what comes out: a picture is for people.
+// tests/dev/pictures.mjs: remakes the screenshots of docs/pictures with the release build, by hand:
+//   node tests/dev/pictures.mjs [NAME ...]
+// NAME is a controller (docs/pictures/controllers/NAME.png) or a key of kFeatures (docs/pictures/NAME.png).
+// `strip` needs a BARN world as a scenario file in TAUTLINE_BARN_WORLD (`tautline barn --scenarios DIR`).
+// Look at each picture before you commit it.
 import assert from "node:assert/strict";
-import { mkdirSync, statSync } from "node:fs";
+import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as pause } from "node:timers/promises";
+import { devices } from "../web/devices.mjs";
 import { launch, open } from "../web/page.mjs";
 import { json, repository, scratch, serve, until } from "../web/program.mjs";
 
 const kScene = "demo";
-const kTime = 11; // [s] into the run: among the obstacles, for who gets so far
-const kPeriod = 0.026; // [s]
-const kShown = 25; // single steps at the end, slow enough that the page gets every frame of them
-const kMost = 120_000; // bytes of a picture
-const folder = join(repository, "docs/pictures/controllers");
+const kTime = 11; // [s] of the run: most controllers are among the obstacles then
+const kShown = 25; // single steps before a picture, slow enough that the page gets each frame
+const kMostController = 120_000; // bytes of a picture
+const kMostFeature = 200_000; // bytes
+const kSize = { width: 1180, height: 780 };
+const kWide = { width: 1440, height: 820 }; // the table of runs has all its columns
+const folder = join(repository, "docs/pictures");
 
-const control = (base, body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
+const post = (base, path, body) => json(base, path, { method: "POST", body: JSON.stringify(body) });
+const control = (base, body) => post(base, "/session/control", body);
+const session = (base) => json(base, "/session");
 
-/** The run is paused at tick `wanted`, or over before: the blind one collides. */
-const at_tick = (base, wanted) =>
-  until(`tick ${wanted}`, 120, () => json(base, "/session"), (s) => s.tick >= wanted || s.run.outcome !== "running");
-
-async function take(p, base, controller) {
-  await control(base, { action: "load", scenario: kScene, controller });
-  const last = Math.round(kTime / kPeriod);
-  await control(base, { action: "step", ticks: last - kShown });
-  await at_tick(base, last - kShown - 1);
+/** Steps the paused run to `time` [s], or to its end. */
+async function step_to(base, time) {
+  const last = Math.round(time / (await session(base)).robot.period);
+  const rest = async () => { // the tick at which the run stands
+    let before = -1;
+    return until("a run that rests", 120, async () => {
+      const { tick, run } = await session(base);
+      const rests = tick === before;
+      before = tick;
+      return { tick, rests, over: run.outcome !== "running" };
+    }, (s) => s.rests);
+  };
+  for (let at = await rest(); at.tick < last - kShown && !at.over; at = await rest()) {
+    await control(base, { action: "step", ticks: last - kShown - at.tick });
+  }
   for (let i = 0; i < kShown; ++i) {
     await control(base, { action: "step", ticks: 1 });
     await pause(40);
   }
-  await until("the page follows", 60, () => p.get("controller").inputValue(), (v) => v === controller);
   await pause(1000);
-  const file = join(folder, `${controller}.png`);
-  await p.get("scene").screenshot({ path: file, timeout: 120_000 });
-  const bytes = statSync(file).size;
-  assert.ok(bytes < kMost, `${file}: ${bytes} bytes`);
-  const { pose, what, why } = await json(base, "/session");
-  console.log(`${controller}: ${bytes} bytes, at (${pose.x.toFixed(2)}, ${pose.y.toFixed(2)}). ${what}. ${why}`);
 }
 
-mkdirSync(folder, { recursive: true });
+/** Loads `what`, paused. */
+async function load(p, base, what) {
+  await control(base, { action: "load", ...what });
+  await control(base, { action: "pause" });
+  await p.get("fit").click();
+}
+
+async function shoot(what, name, most) {
+  const file = join(folder, `${name}.png`);
+  await what.screenshot({ path: file, timeout: 120_000 });
+  const bytes = statSync(file).size;
+  console.log(`${name}: ${bytes} bytes`);
+  assert.ok(bytes < most, `${file}: ${bytes} bytes`);
+}
+
+async function controller(p, base, name) {
+  await load(p, base, { scenario: kScene, controller: name });
+  await step_to(base, kTime);
+  await until("the page follows", 60, () => p.get("controller").inputValue(), (v) => v === name);
+  await shoot(p.get("scene"), `controllers/${name}`, kMostController);
+  const { pose, what, why } = await session(base);
+  console.log(`  at (${pose.x.toFixed(2)}, ${pose.y.toFixed(2)}). ${what}. ${why}`);
+}
+
+const kCarrier = {
+  name: "carrier", title: "Carrier", hull: { length: 1.2, width: 0.7, low: 0.05, high: 0.5 },
+  mass: 200, track: 0.6, wheel_radius: 0.1,
+  limits: { speed: 0.8, turn: 1.2, acceleration: 0.6, turn_acceleration: 2 },
+  lasers: [{ resolution_deg: 0.5, mount: { x: 0.55, y: 0, heading: 0 } },
+    { resolution_deg: 1, mount: { x: -0.55, y: 0, heading: 3.14159 } }],
+};
+
+/** Each takes one picture of a feature. */
+const kFeatures = {
+  async drive(p, base) {
+    await load(p, base, { scenario: "demo", controller: "strip" });
+    await step_to(base, 4);
+    const { pose } = await session(base);
+    const obstacle = { type: "cylinder", radius: 0.3,
+      x: pose.x + 1.9 * Math.cos(pose.heading), y: pose.y + 1.9 * Math.sin(pose.heading) };
+    await post(base, "/session/requests", { type: "add_obstacle", obstacle });
+    await step_to(base, 6);
+    await shoot(p.page, "drive", kMostFeature);
+  },
+  async goal(p, base) {
+    await load(p, base, { scenario: "demo", controller: "strip" });
+    await step_to(base, 8);
+    await p.get("tool-goal").click();
+    for (const goal of [{ x: 9, y: 5.2 }, { x: 4, y: 5.4 }, { x: -1, y: 5, heading: 3.14 }]) {
+      await post(base, "/session/goal", goal);
+    }
+    await step_to(base, 9);
+    await shoot(p.get("scene"), "goals", kMostFeature);
+    await p.page.keyboard.press("v");
+  },
+  async people(p, base) {
+    await load(p, base, { scenario: "people" });
+    await step_to(base, 3);
+    await shoot(p.get("scene"), "people", kMostFeature);
+  },
+  async fleet(p, base) {
+    await load(p, base, { scenario: "swap" });
+    await step_to(base, 11);
+    await shoot(p.get("scene"), "fleet", kMostFeature);
+  },
+  async sensors(p, base) {
+    await load(p, base, { scenario: "sensors" });
+    await step_to(base, 4);
+    await p.get("layers").click();
+    await pause(500);
+    await shoot(p.get("scene"), "sensors", kMostFeature);
+    await p.get("layers").click();
+  },
+  async robot(p, base) {
+    await load(p, base, { scenario: "case3", controller: "strip", robot: "carrier" });
+    await step_to(base, 7);
+    await shoot(p.page, "robot", kMostFeature);
+  },
+  async three(p, base) {
+    await load(p, base, { scenario: "demo", controller: "strip" });
+    await step_to(base, 11);
+    await p.page.keyboard.press("3");
+    await pause(6000);
+    await shoot(p.page, "three", kMostFeature);
+    await p.page.keyboard.press("3");
+  },
+  async runs(p, base) {
+    const { runs: before } = await post(base, "/runs", { scenario: "case3", controller: "original" });
+    const { runs } = await post(base, "/runs", { scenario: "case3", controller: "modified" });
+    await post(base, "/runs", { scenario: "case1", controller: "original" });
+    await post(base, "/runs", { scenario: "case1", controller: "strip" });
+    const last = (await post(base, "/runs", { scenario: "demo", controller: "vfh" })).runs[0];
+    await until("the runs", 120, () => json(base, `/runs/${last}`), (r) => r.status === "finished");
+    await p.page.setViewportSize(kWide);
+    await p.get("nav-runs").click();
+    await p.get(`run-${runs[0]}`).click();
+    await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 60_000 });
+    await p.get(`compare-${before[0]}`).click();
+    await pause(3000);
+    const slider = p.get("timeline");
+    const end = Number(await slider.getAttribute("max"));
+    await slider.fill(String(Number((end / 2).toFixed(2))));
+    await pause(2000);
+    await shoot(p.page, "runs", kMostFeature);
+    await p.get("nav-drive").click();
+    await p.page.setViewportSize(kSize);
+  },
+  async strip(p, base) {
+    const world = JSON.parse(readFileSync(process.env.TAUTLINE_BARN_WORLD));
+    await json(base, `/scenarios/${world.name}`, { method: "PUT", body: JSON.stringify(world) });
+    await load(p, base, { scenario: world.name, controller: "strip" });
+    await step_to(base, 5.5);
+    await shoot(p.get("scene"), "strip", kMostFeature);
+  },
+};
+
+/** The page on emulated devices. */
+async function hardware(browser) {
+  const place = scratch();
+  const robot = await devices(place.folder);
+  const server = await serve({ database: place.database, scenario: null, more: ["--robot", robot.file] });
+  try {
+    const p = await open(browser, server.base, { size: kSize, patience: 180_000 });
+    await until("devices that are well", 60, () => session(server.base), (s) => s.hardware.devices.every((d) => d.well));
+    await p.get("arm").click();
+    await until("armed", 20, () => session(server.base), (s) => s.hardware.armed);
+    await p.get("tool-goal").click();
+    const at = await p.pixels(4, 2.4);
+    await p.page.mouse.click(at.x, at.y);
+    await p.get("go").waitFor();
+    await pause(2000);
+    await shoot(p.page, "hardware", kMostFeature);
+    await p.close();
+  } finally {
+    await server.stop();
+    robot.end();
+    place.remove();
+  }
+}
+
+mkdirSync(join(folder, "controllers"), { recursive: true });
 const place = scratch();
-const server = await serve({ database: place.database, scenario: kScene });
-const browser = await launch();
+const robots = join(place.folder, "robots");
+mkdirSync(robots);
+writeFileSync(join(robots, "carrier.json"), JSON.stringify(kCarrier));
+const server = await serve({ database: place.database, scenario: kScene, more: ["--robots", robots] });
+const browser = await launch(process.env.TAUTLINE_GL ? [process.env.TAUTLINE_GL] : []);
 try {
-  await control(server.base, { action: "pause" }); // stays so over the loads
-  const { controllers } = await json(server.base, "/catalog");
-  const wanted = process.argv.length > 2 ? process.argv.slice(2) : controllers.map((c) => c.name);
-  const p = await open(browser, server.base, { size: { width: 1180, height: 640 }, patience: 180_000 });
-  for (const controller of wanted) await take(p, server.base, controller);
-  await p.close();
+  const names = (await json(server.base, "/catalog")).controllers.map((c) => c.name);
+  const wanted = process.argv.length > 2 ? process.argv.slice(2) : [...Object.keys(kFeatures), "hardware", ...names];
+  const p = await open(browser, server.base, { size: kSize, patience: 180_000 });
+  for (const name of wanted) {
+    if (name === "hardware") await hardware(browser);
+    else if (name in kFeatures) await kFeatures[name](p, server.base);
+    else await controller(p, server.base, name);
+  }
+  await p.context.close();
 } finally {
   await browser.close();
   await server.stop();
