@@ -1,7 +1,7 @@
 // tests/dev/pictures.mjs: remakes the screenshots of docs/pictures with the release build, by hand:
 //   node tests/dev/pictures.mjs [NAME ...]
 // NAME is a controller (docs/pictures/controllers/NAME.png) or a key of kFeatures (docs/pictures/NAME.png).
-// `strip` needs a BARN world as a scenario file in TAUTLINE_BARN_WORLD (`tautline barn --scenarios DIR`).
+// `barn` needs a BARN world as a scenario file in TAUTLINE_BARN_WORLD (`tautline barn --scenarios DIR`).
 // Look at each picture before you commit it.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
@@ -90,7 +90,7 @@ const kFeatures = {
     await step_to(base, 6);
     await shoot(p.page, "drive", kMostFeature);
   },
-  async goal(p, base) {
+  async goals(p, base) {
     await load(p, base, { scenario: "demo", controller: "strip" });
     await step_to(base, 8);
     await p.get("tool-goal").click();
@@ -153,12 +153,12 @@ const kFeatures = {
     await p.get("nav-drive").click();
     await p.page.setViewportSize(kSize);
   },
-  async strip(p, base) {
+  async barn(p, base) {
     const world = JSON.parse(readFileSync(process.env.TAUTLINE_BARN_WORLD));
     await json(base, `/scenarios/${world.name}`, { method: "PUT", body: JSON.stringify(world) });
     await load(p, base, { scenario: world.name, controller: "strip" });
     await step_to(base, 5.5);
-    await shoot(p.get("scene"), "strip", kMostFeature);
+    await shoot(p.get("scene"), "barn", kMostFeature);
   },
 };
 
