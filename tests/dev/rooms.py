@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """tests/dev/rooms.py [OUTPUT=docs/pictures/rooms.svg]: a picture of which room includes which.
 
-A box a room, its height that of its lines; an arrow from a room to each room that it includes,
-without those that another arrow's way implies.
+A box for each room with its number of lines; an arrow from a room to each room that it includes,
+without the arrows that a chain of others implies.
 """
 import collections
 import pathlib
@@ -12,7 +12,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 OUTPUT = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs/pictures/rooms.svg"
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
-WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 150, 46, 24, 54, 16  # [px]
+WIDTH, HEIGHT, GAP_X, GAP_Y, MARGIN = 150, 46, 44, 54, 16  # [px]
+LANE = 12  # [px] between arrows that pass beside boxes
 
 
 def rooms():
@@ -35,7 +36,7 @@ def read(names):
             lines[room] += text.count("\n")
             edges[room] |= {room_of(header, names) for header in INCLUDE.findall(text)}
     for path in (ROOT / "web/src").rglob("*"):
-        if path.suffix in (".ts", ".tsx", ".css"):
+        if path.suffix in (".ts", ".tsx", ".css") and "wire" not in path.parts:  # wire: generated
             lines["web"] += path.read_text().count("\n")
     return lines, {room: edges[room] - {room, None} for room in lines}
 
@@ -48,6 +49,17 @@ def below(room, edges):
             found.add(other)
             todo.append(other)
     return found
+
+
+def lane(start, end, boxes, taken, width):
+    """The x nearest to the middle of an arrow where it passes no box and no other lane."""
+    def free(x):
+        return MARGIN <= x <= width - MARGIN and all(
+            not left - LANE < x < left + WIDTH + LANE for left in boxes) and all(
+            abs(x - other) >= LANE for other in taken)
+
+    steps = sorted(range(-int(width), int(width), 4), key=abs)
+    return next((x for x in ((start + end) / 2 + step for step in steps) if free(x)), end)
 
 
 def draw(lines, edges):
@@ -77,14 +89,23 @@ def draw(lines, edges):
            '<defs><marker id="a" viewBox="0 0 8 8" refX="8" refY="4" markerWidth="7" '
            'markerHeight="7" orient="auto"><path d="M0 0 8 4 0 8z" fill="#667"/></marker></defs>',
            f'<rect width="{width:.0f}" height="{height:.0f}" fill="#fff"/>']
+    taken = []
     for room in sorted(lines):
         implied = set().union(*(below(other, edges) for other in edges[room]), set())
         for other in sorted(edges[room] - implied):
             x, y = at[room][0] + WIDTH / 2, at[room][1] + HEIGHT
             to_x, to_y = at[other][0] + WIDTH / 2, at[other][1]
-            bend = (y + to_y) / 2
-            out.append(f'<path d="M{x:.0f} {y:.0f}C{x:.0f} {bend:.0f} {to_x:.0f} {bend:.0f} '
-                       f'{to_x:.0f} {to_y:.0f}" fill="none" stroke="#667" marker-end="url(#a)"/>')
+            way, half = f"M{x:.0f} {y:.0f}", GAP_Y / 2
+            between = [left for left, top_of in at.values() if y < top_of < to_y]
+            if between:  # beside the boxes of the rows that it passes
+                beside = lane(x, to_x, between, taken, width)
+                taken.append(beside)
+                way += (f"C{x:.0f} {y + half:.0f} {beside:.0f} {y + half:.0f} {beside:.0f} "
+                        f"{y + GAP_Y:.0f}V{to_y - GAP_Y:.0f}")
+                x, y = beside, to_y - GAP_Y
+            way += (f"C{x:.0f} {y + half:.0f} {to_x:.0f} {to_y - half:.0f} {to_x:.0f} "
+                    f"{to_y:.0f}")
+            out.append(f'<path d="{way}" fill="none" stroke="#667" marker-end="url(#a)"/>')
     for room, (x, y) in sorted(at.items()):
         share = 100 * lines[room] / total
         out.append(f'<rect x="{x:.0f}" y="{y:.0f}" width="{WIDTH}" height="{HEIGHT}" rx="5" '
