@@ -24,36 +24,36 @@ std::string seeds_text(const Options& options, std::size_t seeds) {
 
 std::string worlds_text(const Options& options) {
   return fmt::format(
-      "Bullet vehicle, rolling LMS200, the scenarios' own settings, {} of each row; by sonar a "
-      "ring of 24 in place of the scanner. Mean seconds / least clearance of the hull in metres "
-      "where every run reached the goal, else how the runs ended.",
+      "Bullet vehicle, rolling LMS200, the scenarios' own settings, {} of each row; rows by sonar "
+      "have a ring of 24 instead of the scanner. A cell is mean seconds / least clearance of the "
+      "hull in metres if every run reached the goal, otherwise the outcomes of the runs.",
       seeds_text(options, options.seeds));
 }
 
 constexpr const char* kDetails =
-    "Time, path and rest are means, the clearance is the least of all runs. Standing: at rest, "
-    "neither driving nor turning, the end of a stuck run included. A pause is a rest of 0.1 s or "
-    "more from which the robot drives on.";
+    "Time, path and rest are means, the clearance is the least of all runs. Standing is time at "
+    "rest, neither driving nor turning, including the end of a stuck run. A pause is a rest of "
+    "0.1 s or more after which the robot drives on.";
 
 std::string bottlenecks_text(const Options& options) {
   return fmt::format(
-      "A closed hall, 10 m by 8 m, parted by a wall with one gap in the middle of the straight "
-      "way of 6 m to the goal; hull 0.7 m, at most 0.3 m/s, K_r 0.6, {} of each row. Walls "
-      "rather than posts: past posts there are other ways, so that reaching the goal would say "
-      "nothing about the gap. r reached, s stuck, t out of time, C collided; one letter when every "
-      "run ends so. *Passes from*: the narrowest gap such that it and every wider one is passed in "
-      "every run. The line to the goal is free, so that go_to_goal shows what seeing costs here.",
+      "A closed hall, 10 m by 8 m, divided by a wall with one gap in the middle of the straight "
+      "path of 6 m to the goal; hull 0.7 m, at most 0.3 m/s, K_r 0.6, {} of each row. Unlike "
+      "posts, a wall leaves no way around: a run that reaches the goal has passed the gap. r "
+      "reached, s stuck, t out of time, C collided; one letter if every run ends so. *Passes "
+      "from*: the narrowest gap such that it and every wider one is passed in every run. The line "
+      "to the goal is free, so go_to_goal shows what obstacle avoidance costs here.",
       seeds_text(options, options.seeds));
 }
 
 std::string layouts_text(const Options& options) {
   return fmt::format(
-      "Layouts with free gaps of {:g} m and more between surfaces and {:g} m round start and goal; "
-      "{} layouts of each kind, {} of each. How they are drawn is ours: start, goal (5 m, 4 "
-      "m) and 0.1 m/s of case 3; cylinders of 0.25 to 0.4 m radius and boxes of 0.5 to 0.8 m at "
-      "any heading, as likely, with centres up to 2 m beside the line; one at least stands in the "
-      "robot's straight way. Paper conditions as in the reproduction, and `strip` in the full "
-      "simulator as well.",
+      "Layouts with free gaps of {:g} m and more between surfaces and {:g} m around start and "
+      "goal; {} layouts of each kind, {} of each. Their distribution is our choice: start, goal "
+      "(5 m, 4 m) and 0.1 m/s of case 3; cylinders of 0.25 to 0.4 m radius and boxes of 0.5 to "
+      "0.8 m at any heading, equally likely, with centres up to 2 m from the line; at least one "
+      "stands in the robot's straight path. Paper conditions as in the reproduction; `strip` also "
+      "in the full simulator.",
       kFreeGap,
       kFreeRoom,
       options.layouts,
@@ -61,9 +61,9 @@ std::string layouts_text(const Options& options) {
 }
 
 constexpr const char* kBeside =
-    "Layouts where the original strip and the other both reach by every seed, and among them those "
-    "where the original enters the safety circle, and where the other keeps out of it, turns less "
-    "and is faster:";
+    "Layouts that the original strip and the other controller both reach with every seed. Among "
+    "them, those where the original enters the safety circle, and those where the other keeps out "
+    "of it, turns less, or is faster:";
 
 std::string set_title(const LayoutSet& set) {
   return fmt::format("{} obstacles, K_r {:g}", set.obstacles, set.repulsion_gain);
@@ -116,11 +116,11 @@ std::string to_text(const Comparison& comparison) {
 std::string to_markdown(const Comparison& comparison) {
   std::string text =
       "# Comparison\n\nWritten by `tautline compare --markdown`; do not edit. Every controller on "
-      "the papers' worlds and before bottlenecks, what section 1.1 of the thesis says of the "
-      "methods it names, and the strips on random layouts. What the controllers are: "
+      "the papers' worlds and at bottlenecks, the claims of section 1.1 of the thesis about other "
+      "methods, and the strips on random layouts. The controllers are described in "
       "[controllers.md](controllers.md).\n";
   if (!comparison.findings.empty()) {
-    text += "\n## What the thesis says of the others\n";
+    text += "\n## Claims of the thesis about other methods\n";
     for (const Finding& each : comparison.findings) {
       text += fmt::format("\n*{}* **Verdict: {}.** {}\n\nRule: {}\n",
                           each.claim,

@@ -94,10 +94,10 @@ void judge_edge_detection(std::span<const Series> worlds, std::vector<Finding>& 
   }
   Finding finding{.claim = "Edge detection has to stop before an obstacle to take its scan."};
   finding.rule =
-      "Over the worlds whose straight way is blocked (go_to_goal collides there) and the runs that "
-      "were not trapped. Reproduced when edge detection paused in each of its runs, and for a "
-      "larger share of its time than each of the other methods; in part when it paused in some. A "
-      "pause is a rest of 0.1 s or more, without turning, from which the robot drives on.";
+      "Counts the worlds with a blocked straight path (go_to_goal collides there) and the runs "
+      "that were not trapped. Reproduced if edge detection paused in each of its runs, and for a "
+      "larger share of its time than every other method; in part if it paused in some. A pause is "
+      "a rest of 0.1 s or more, without turning, after which the robot drives on.";
   finding.because = fmt::format(
       "It paused in {} of {} runs, {:.1f} times a run, {:.2f} s each: {:.2f} % of its time. The "
       "others' shares: {}.",
@@ -132,10 +132,10 @@ void judge_vff(std::span<const Series> worlds, std::vector<Finding>& findings) {
   if (runs == 0) return;
   Finding finding{.claim = "VFF does not have to stop."};
   finding.rule =
-      "Over all worlds, by laser and by sonar. Reproduced when no run of VFF paused or ended "
-      "stuck; in part when some did not.";
+      "Counts all worlds, by laser and by sonar. Reproduced if no run of VFF paused or ended "
+      "stuck; in part if some did not.";
   finding.because = fmt::format(
-      "{} of {} runs went without; {} paused, {} ended stuck; {:.2f} % of the time was spent in "
+      "{} of {} runs did not stop; {} paused, {} ended stuck; {:.2f} % of the time was spent in "
       "pauses. This is VFF with our change: as printed, its speed law halts the robot for good "
       "when a push comes from straight ahead, so ours always keeps a tenth of the top speed.",
       on_the_move,
@@ -157,11 +157,11 @@ std::string gaps_text(const std::vector<double>& gaps) {
   return text;
 }
 
-/// "vff: in every run at 0.8, 1.0 m; passes from 1.2 m on; of 27 runs 20 passed, ...".
+/// "vff: trapped in every run at 0.8, 1.0 m; passes from 1.2 m on; of 27 runs 20 passed, ...".
 std::string passage_text(const std::string& contestant, const Passage& passage) {
   std::string text = contestant + ": ";
-  text += passage.traps.empty() ? "before no gap in every run; "
-                                : "in every run at " + gaps_text(passage.traps) + " m; ";
+  text += passage.traps.empty() ? "no gap traps every run; "
+                                : "trapped in every run at " + gaps_text(passage.traps) + " m; ";
   text += passage.smallest ? fmt::format("passes from {:.1f} m on", *passage.smallest)
                            : std::string("passes none up to the widest");
   return text + fmt::format("; of {} runs {} passed, {} stuck, {} out of time, {} collided.",
@@ -189,8 +189,8 @@ void judge_bottlenecks(std::span<const Series> bottlenecks,
   }
   if (sensors == 0) return;
   finding.rule =
-      "Trapped means stuck or out of time before a gap wider than the hull; a collision is none. "
-      "Reproduced when, by each sensor that was tried, some gap traps every run; in part when some "
+      "Trapped means stuck or out of time at a gap wider than the hull; a collision does not "
+      "count. Reproduced if, with each tested sensor, some gap traps every run; in part if some "
       "run is trapped.";
   if (always == sensors) {
     finding.verdict = Verdict::Reproduced;

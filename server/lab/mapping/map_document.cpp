@@ -85,8 +85,8 @@ std::string sharpness_sentence(const MapStudy& study) {
   const double logs = static_cast<double>(study.runs.size()) *
                       std::accumulate(study.log_cells.begin(), study.log_cells.end(), 0.0);
   return fmt::format(
-      "Laid along the matched path, the walls of 10 m of way take {:.0f} % of the cells they take "
-      "along the log's own poses; fewer in {} of {} pieces.\n",
+      "Drawn along the matched path, the walls of 10 m of path occupy {:.0f} % of the cells that "
+      "they occupy along the log's own poses; fewer in {} of {} pieces.\n",
       100 * ours / logs,
       thinner,
       pieces);
@@ -94,7 +94,7 @@ std::string sharpness_sentence(const MapStudy& study) {
 
 std::string time_sentence(const MapStudy& study) {
   if (!study.options.match) return "";
-  return fmt::format("Placing a scan and entering it took {:.1f} ms.\n", scan_ms(study));
+  return fmt::format("Matching a scan and adding it to the map took {:.1f} ms.\n", scan_ms(study));
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {

@@ -143,8 +143,7 @@ std::string about_recordings(const FilterStudy& study) {
                "model stands in: 200 scans, all its faults on, 1 % of the beams each far too long "
                "and too short."
              : "A beam that met nothing within range counts as the greatest range, as for the "
-               "product's filters; any other code of the device takes no part. An outlier is a "
-               "beam "
+               "product's filters; any other code of the device is excluded. An outlier is a beam "
                "more than 300 mm off the mean of its neighbours, which are within 150 mm of each "
                "other.";
 }
@@ -163,8 +162,7 @@ std::string flat_changes(const SceneResult& flat) {
 std::string phantom(const SceneResult& first) {
   const auto near = std::ranges::min_element(first.scene.spikes, {}, &Spike::mm);
   return fmt::format(
-      "The near spike at beam {} of the first scene, {:.0f} mm where the surface lies at {:.0f} "
-      "mm, "
+      "The near spike at beam {} of the first scene, {:.0f} mm where the surface is at {:.0f} mm, "
       "becomes a phantom obstacle at {:.0f} mm.",
       near->beam,
       near->mm,
@@ -173,15 +171,15 @@ std::string phantom(const SceneResult& first) {
 }
 
 constexpr std::string_view kAboutTable2 =
-    "The notes this work rests on keep none of the numbers of the thesis' Table 2, so nothing is "
-    "compared with it digit by digit.";
+    "Our notes have none of the numbers of the thesis' Table 2, so there is no comparison with "
+    "them.";
 constexpr std::string_view kAboutSignals =
-    "Left of an impulse or an oscillation, and the largest error at a step (of its height) or in a "
-    "ramp (of its rise per beam).";
+    "The share of an impulse or an oscillation that remains, and the largest error at a step (as "
+    "a share of its height) or in a ramp (as a share of its rise per beam).";
 constexpr std::string_view kAboutCost =
-    "CPU time, pseudomedian / median, over 360 values, by turns in one run. Tuned: this program's "
-    "filters. Plain: Eq. 1 word for word and a sorted window that slides. It differs a little from "
-    "run to run and from machine to machine.";
+    "CPU time, pseudomedian / median, over 360 values, alternating in one run. Tuned: this "
+    "program's filters. Plain: Eq. 1 as written, and a sliding sorted window. The figures vary a "
+    "little between runs and machines.";
 
 }  // namespace
 
@@ -219,16 +217,15 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
   std::string out(kBegin);
   out += "## Chapter 3: the pseudomedian filter\n\n";
   out +=
-      "What the filter makes of a scan, beside the median, our `lulu`, the mean and the midrange. "
-      "Scenes, noise and the height of the spikes are ours where the thesis is silent: a wall 4 m "
-      "ahead between walls 2 m to either side, cylinders, 5 mm of noise in whole millimetres, "
-      "spikes of 8000 mm and, on the obstacle, 200 mm.\n\n";
+      "The effect of the filter on a scan, compared with the median, our `lulu`, the mean and the "
+      "midrange. Scenes, noise and the height of the spikes are our choice where the thesis gives "
+      "none: a wall 4 m ahead between walls 2 m to either side, cylinders, 5 mm of noise in whole "
+      "millimetres, spikes of 8000 mm and, on the obstacle, 200 mm.\n\n";
   out +=
-      "Two sentences are the thesis' own as our notes quote them, on impulses and on the noises of "
-      "the "
-      "figures. The others are in our words: the properties by which the chapter, like Schulze "
-      "(*Mathematical Properties of the Pseudomedian Filter*, University of Texas 1990), tells "
-      "these filters apart.\n\n";
+      "Two sentences, on impulses and on the noises of the figures, are quoted from the thesis by "
+      "our notes. The others are in our words; they are the properties by which the chapter, like "
+      "Schulze (*Mathematical Properties of the Pseudomedian Filter*, University of Texas 1990), "
+      "distinguishes these filters.\n\n";
   out += "| sentence | source | verdict | figures | rule |\n| --- | --- | --- | --- | --- |\n";
   for (const Claim& each : study.claims) {
     out += fmt::format("| {} | {} | **{}** | {} | {} |\n",
@@ -248,9 +245,9 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
                        to_markdown(scene_table(each)));
   }
   out += fmt::format(
-      "\nOscillation: RMS of the second difference on quiet stretches, after / before. "
-      "The spikes of the first scene on a flat layout (3000 mm, 1500 mm at 150..210), "
-      "left after the pseudomedian, beam: mm: {}. {}\n",
+      "\nOscillation: RMS of the second difference on quiet stretches, after / before. The values "
+      "that remain of the first scene's spikes after the pseudomedian, on a flat layout (3000 mm, "
+      "1500 mm at 150..210), as beam: mm: {}. {}\n",
       flat_changes(study.flat),
       phantom(study.scenes.front()));
   out += fmt::format("\n### Test signals\n\n{} {}\n\n{}",

@@ -57,8 +57,8 @@ StripBeside strip_beside(std::span<const Series> strip,
       out.entered.push_back(fmt::format("{} by {:.0f} mm{}",
                                         row.scenario,
                                         depth * kMillimetres,
-                                        must ? fmt::format(" ({:.0f} mm at least, its goal being "
-                                                           "that near)",
+                                        must ? fmt::format(" ({:.0f} mm at least, because its "
+                                                           "goal is that near)",
                                                            asked->second * kMillimetres)
                                              : ""));
     }
@@ -98,7 +98,7 @@ std::string strip_sentences(const StripBeside& beside) {
                                                 : fmt::format("It does not reach in every run: {}",
                                                               fmt::join(beside.not_reached, ", "));
   text += beside.entered.empty() ? std::string(" and keeps out of the safety circle everywhere. ")
-                                 : fmt::format("; into the safety circle it comes in {}. ",
+                                 : fmt::format("; it enters the safety circle in {}. ",
                                                fmt::join(beside.entered, ", "));
   const bool best = beside.turns_less.empty() && beside.bends_less.empty() && beside.faster.empty();
   text += fmt::format(

@@ -23,12 +23,11 @@ std::string conditions_text(const PaperConditions& common, const Study& study) {
       study.first_seed + study.seeds - 1);
   text += fmt::format(
       "**A, paper conditions.** Kinematic robot of 350 mm, one exact arc a tick; tick {:g} s{}; "
-      "361 beams of 0.5 degree fired at once from the robot's centre, {:g} mm reach, uniform noise "
-      "of +-{:g} mm on returns only, beams 31 to 329 used; {} filter, N = {}, replicated border; "
-      "S = {:g} mm, d_safe = {:g} mm, heading gain {:g} /s, at most {:g} rad/s, arrival within "
-      "{:g} "
-      "mm, time limit {:g} x straight line / v_max. One thing differs from the file: ranges come "
-      "in whole millimetres, as the device gives them.\n\n",
+      "361 beams of 0.5 degree fired at once from the robot's centre, {:g} mm reach, uniform "
+      "noise of +-{:g} mm on returns only, beams 31 to 329 used; {} filter, N = {}, replicated "
+      "border; S = {:g} mm, d_safe = {:g} mm, heading gain {:g} /s, at most {:g} rad/s, arrival "
+      "within {:g} mm, time limit {:g} x straight line / v_max. One condition differs from the "
+      "file: ranges are whole millimetres, as the device gives them.\n\n",
       common.period,
       common.slow
           ? fmt::format(" ({:g} s at {:g} mm/s)", common.slow->period, common.slow->v_max * 1000)
@@ -57,18 +56,18 @@ std::string conditions_text(const PaperConditions& common, const Study& study) {
 }
 
 std::string claims_text(const Study& study) {
-  return "*Reproduced*: by Eq. 13-14 as printed (`modified_published`, or `modified_linear` "
-         "without the second branch). *Only with our extension*: by our continuous law "
-         "(`modified_c1`) or with our side choice (`modified`) only. *Not reproduced*: by none. "
-         "Reaching means every run; keeping the circle means not one tick inside it.\n\n" +
+  return "*Reproduced*: with Eq. 13-14 as printed (`modified_published`, or `modified_linear` "
+         "without the second branch). *Only with our extension*: only with our continuous law "
+         "(`modified_c1`) or our side choice (`modified`). *Not reproduced*: with no reading. "
+         "Reaching means in every run; keeping the circle means without one tick inside it.\n\n" +
          to_markdown(claims_table(study));
 }
 
 std::string strip_text(const Study& study) {
   std::string text =
-      "`strip`, our extension of many nodes, under the same conditions and with the same gains and "
-      "top speeds. Cells: turning [rad] / bending [1e-3 rad2/mm] / time [s], means, or how the "
-      "runs ended.\n\n";
+      "`strip`, our extension with many nodes, under the same conditions and with the same gains "
+      "and top speeds. Cells: turning [rad] / bending [1e-3 rad2/mm] / time [s] as means, or the "
+      "outcomes of the runs.\n\n";
   text += fmt::format("**A, paper conditions.** {}\n\n{}",
                       strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_markdown(strip_table(study.strip, study.paper)));
@@ -106,7 +105,7 @@ std::vector<Section> study_sections(const StudyFile& file,
   std::vector<Section> sections;
   sections.push_back({"Conditions", conditions_text(file.conditions, study)});
   if (!study.claims.empty()) {
-    sections.push_back({"What the sources claim", claims_text(study)});
+    sections.push_back({"Claims of the sources", claims_text(study)});
   }
   sections.push_back({"Table A: paper conditions", to_markdown(rows_table(study.paper))});
   if (!study.noise_free.empty()) {
@@ -119,12 +118,12 @@ std::vector<Section> study_sections(const StudyFile& file,
                                     collisions(study.full),
                                     runs(study.full),
                                     to_markdown(rows_table(study.full)))});
-    sections.push_back({"Where B ends otherwise than A",
+    sections.push_back({"Outcomes that differ between A and B",
                         study.differences.empty()
                             ? std::string("Nowhere.\n")
                             : to_markdown(differences_table(study.differences))});
   }
-  sections.push_back({"The full strip beside the readings", strip_text(study)});
+  sections.push_back({"The full strip compared with the readings", strip_text(study)});
   sections.push_back(
       {"Limits", checks_sentence(study.checks) + "\n\n" + to_markdown(checks_table(study.checks))});
   sections.push_back({"Pictures", pictures_text(file, pictures)});
@@ -132,7 +131,7 @@ std::vector<Section> study_sections(const StudyFile& file,
 }
 
 Section sweeps_section(std::span<const Sweep> sweeps, std::size_t seeds) {
-  Section section{.title = "What the parameters do"};
+  Section section{.title = "Effect of the parameters"};
   section.body = fmt::format(
       "One parameter at a time under the conditions of table A, {} runs each.\n\n", seeds);
   for (const Sweep& sweep : sweeps) {
@@ -151,8 +150,8 @@ Section sweeps_section(std::span<const Sweep> sweeps, std::size_t seeds) {
 
 std::string to_markdown(std::span<const Section> sections) {
   std::string text =
-      "# Reproduction\n\nWritten by `tautline reproduce --markdown`; do not edit. Which of the "
-      "sources' claims hold here, with which reading of their equations, and by which figures.\n";
+      "# Reproduction\n\nWritten by `tautline reproduce --markdown`; do not edit. Which claims of "
+      "the sources hold here, with which reading of their equations, and with which figures.\n";
   for (const Section& section : sections) {
     text += fmt::format("\n## {}\n\n{}", section.title, section.body);
     while (text.ends_with("\n\n")) text.pop_back();

@@ -146,7 +146,7 @@ std::string to_text(const Study& study) {
                           each.explanation);
     }
   }
-  text += fmt::format("\nThe full strip beside the readings, paper conditions. {}\n\n{}",
+  text += fmt::format("\nThe full strip compared with the readings, paper conditions. {}\n\n{}",
                       strip_sentences(strip_beside(study.strip, study.paper, study.least_depths)),
                       to_text(strip_table(study.strip, study.paper)));
   if (!study.full.empty()) {
@@ -156,7 +156,7 @@ std::string to_text(const Study& study) {
                     to_text(strip_table(study.strip_full, study.full)));
   }
   if (!study.claims.empty()) {
-    text += "\nWhat the sources claim, and for which readings it holds\n\n";
+    text += "\nClaims of the sources, and the readings for which they hold\n\n";
     text += to_text(claims_table(study));
   }
   return text;

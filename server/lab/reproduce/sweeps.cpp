@@ -86,9 +86,9 @@ Rising rising_lines(const Sweep& sweep, double tolerance_mm) {
 void judge_repulsion(Sweep& sweep, double tolerance_mm) {
   sweep.claim = "A larger K_r repels more.";
   sweep.rule = fmt::format(
-      "A line holds when its least clearance rises with K_r: at no step down by more than {:.0f} "
-      "mm, the noise, and up by more than that in all. The claim holds when every line does, in "
-      "part when some do.",
+      "A line holds if its least clearance rises with K_r: no step falls by more than {:.0f} mm, "
+      "the noise, and the total rise is larger than that. The claim holds if every line does, in "
+      "part if some do.",
       tolerance_mm);
   const Rising rising = rising_lines(sweep, tolerance_mm);
   sweep.verdict = verdict_of(rising.lines, sweep.lines.size());
@@ -171,9 +171,9 @@ void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
   }
   sweep.verdict = verdict_of(held, sweep.lines.size());
   sweep.because = fmt::format(
-      "In {} of {} lines F_int is zero but for rounding: the via is laid on the chord, and K_c "
-      "acts on nothing. In {} of the other {} the share varies less at the largest K_c, where {} "
-      "of their runs reach and {} collide.",
+      "In {} of {} lines F_int is zero except for rounding: the via lies on the chord, and K_c "
+      "has no effect. In {} of the other {} the share varies less at the largest K_c, where {} of "
+      "their runs reach and {} collide.",
       sweep.lines.size() - active,
       sweep.lines.size(),
       held,
@@ -183,7 +183,8 @@ void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
 }
 
 void judge_filter(Sweep& sweep, double /*tolerance_mm*/) {
-  sweep.claim = "(The sources say nothing on what N does to the path; these are figures only.)";
+  sweep.claim = "(The sources say nothing about the effect of N on the path; these are figures "
+                "only.)";
   sweep.rule = "None.";
   sweep.verdict = "no claim";
   double most = 0;
