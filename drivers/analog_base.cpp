@@ -1,78 +1,237 @@
-// drivers/analog_base.cpp: speeds as volts, counts as a pose.
+// drivers/analog_base.cpp: speeds as volts, counts as a pose, a relay that a living tick holds.
 #include "drivers/analog_base.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <numbers>
-
-#include "algo/diff_drive.hpp"
+#include <utility>
 
 namespace drivers {
+namespace {
 
-AnalogBase::AnalogBase(AnalogCard& card, const AnalogSetup& setup, double (*now)())
-    : card_(card), setup_(setup), now_(now), counts_(card.read_counts()) {
-  card_.write_volts({0, 0});
-  card_.enable(false);
-  state_.running = true;
-  state_.set_ups = 1;
-  state_.stamp = now_();
+constexpr std::chrono::seconds kLookAgain{1};
+constexpr double kSpeedWindow = 0.05;     // [s] over which counts become a speed
+constexpr double kLeastInterval = 0.002;  // [s] between two readings of the card
+constexpr double kLongestStep = 0.1;      // [s] of a ramp, after a pause
+constexpr double kFastestWheel = 10;      // [m/s] beyond: the counter was set anew
+
+double towards(double from, double to, double most) {
+  return from + std::clamp(to - from, -most, most);
 }
 
-void AnalogBase::enable(bool on) {
+}  // namespace
+
+AnalogBase::AnalogBase(std::string port, const AnalogSetup& setup, Opener open, double (*now)())
+    : port_(std::move(port)),
+      setup_(setup),
+      open_(std::move(open)),
+      now_(now),
+      thread_([this](const std::stop_token& stop) { look_for_card(stop); }) {}
+
+/// The relay opens by its own watchdog, until which the amplifiers brake.
+AnalogBase::~AnalogBase() {
+  with_card([this](double now) { halt(now); });
+}
+
+WheelDynamics AnalogBase::dynamics() const {
+  return {.ramps = {setup_.limits.acceleration, setup_.limits.turn_acceleration},
+          .resolution = metres(1) / kSpeedWindow};
+}
+
+double AnalogBase::metres(std::int64_t counts) const {
+  return static_cast<double>(counts) * 2 * std::numbers::pi * setup_.wheel_radius /
+         setup_.counts_per_turn;
+}
+
+// ---- the card, there or not ------------------------------------------------------------------
+
+template <class Act>
+void AnalogBase::with_card(Act&& act) noexcept {
   const std::lock_guard lock(mutex_);
-  card_.write_volts({0, 0});
-  card_.enable(on);
+  if (!card_) return;
+  try {
+    act(now_());
+  } catch (const CardError& error) {
+    trouble_ = error.what();
+    gone_ = std::move(card_);
+    on_ = false;
+    off_.cancel();
+    state_.running = false;
+    changed_.notify_one();
+  }
+}
+
+void AnalogBase::look_for_card(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    if (card_) {
+      changed_.wait(lock, stop, [this] { return card_ == nullptr; });
+      continue;
+    }
+    std::unique_ptr<AnalogCard> closing = std::move(gone_);
+    lock.unlock();
+    closing.reset();
+    std::unique_ptr<AnalogCard> card;
+    std::string trouble;
+    try {
+      card = open_();
+    } catch (const CardError& error) {
+      trouble = error.what();
+    }
+    lock.lock();
+    if (card) {
+      take(std::move(card));
+    } else {
+      trouble_ = std::move(trouble);
+      changed_.wait_for(lock, stop, kLookAgain, [] { return false; });
+    }
+  }
+}
+
+/// Begins with a card that was just opened: zero volts, its counts are the new zero.
+void AnalogBase::take(std::unique_ptr<AnalogCard> card) {
+  try {
+    card->write({0, 0});
+    inputs_ = card->read();
+  } catch (const CardError& error) {
+    trouble_ = error.what();
+    return;
+  }
+  card_ = std::move(card);
+  on_ = relay_line_ = false;
+  told_ = {};
+  speeds_ = {};
+  state_.twist = {};
+  state_.stamp = told_at_ = now_();
+  reading_count_ = 0;
+  note_reading(state_.stamp);
+  state_.running = true;
+  ++state_.set_ups;
+}
+
+// ---- what it is told -------------------------------------------------------------------------
+
+void AnalogBase::enable(bool on) {
+  with_card([&](double now) {
+    halt(now);
+    if (on) {
+      switch_power(true);
+      pulse_relay();
+    } else if (on_) {
+      off_.begin(now, braking_time(setup_.limits));
+    }
+  });
 }
 
 void AnalogBase::cut() noexcept {
-  const std::lock_guard lock(mutex_);
-  card_.write_volts({0, 0});
-  card_.enable(false);
+  with_card([this](double now) {
+    switch_power(false);
+    halt(now);
+  });
 }
 
 void AnalogBase::drive(const algo::Twist2& twist) {
-  const std::lock_guard lock(mutex_);
-  measure();
-  const algo::Twist2 wanted = limited(twist, setup_.limits);
-  const algo::SideMotion sides = algo::sides_of(wanted, setup_.half_track);
-  const std::array<double, 2> speeds{sides.left, sides.right};
-  std::array<double, 2> volts{};
-  for (std::size_t i = 0; i < volts.size(); ++i) {
-    // At rest nothing but zero: noise of the encoders must not creep.
-    if (speeds[i] == 0) continue;
-    const double v =
-        speeds[i] / setup_.metres_per_second_volt + setup_.gain * (speeds[i] - speeds_[i]);
-    volts[i] = std::clamp(v, -setup_.max_volts, setup_.max_volts);
-  }
-  card_.write_volts(volts);
+  with_card([&](double now) {
+    measure(now);
+    if (!on_ || off_.pending()) {
+      halt(now);
+      return;
+    }
+    const algo::Twist2 wanted = limited(twist, setup_.limits);
+    const double dt = std::clamp(now - told_at_, 0.0, kLongestStep);
+    told_at_ = now;
+    told_.v = towards(told_.v, wanted.v, setup_.limits.acceleration * dt);
+    told_.omega = towards(told_.omega, wanted.omega, setup_.limits.turn_acceleration * dt);
+    const algo::SideMotion sides = algo::sides_of(told_, setup_.half_track);
+    const auto volts = [this](double speed, double measured) {
+      // At rest nothing but zero: noise of the encoders must not creep.
+      if (speed == 0) return 0.0;
+      const double v = speed / setup_.speed_per_volt + setup_.gain * (speed - measured);
+      return std::clamp(v, -setup_.max_volts, setup_.max_volts);
+    };
+    card_->write({volts(sides.left, speeds_.left), volts(sides.right, speeds_.right)});
+    pulse_relay();
+  });
 }
 
 void AnalogBase::stop() noexcept {
-  const std::lock_guard lock(mutex_);
-  card_.write_volts({0, 0});
+  with_card([this](double now) { halt(now); });
 }
 
-void AnalogBase::measure() {
-  const double now = now_();
-  const std::array<std::uint32_t, 2> counts = card_.read_counts();
-  const algo::WheelCounts moved{algo::count_difference(counts[0], counts_[0]),
-                                algo::count_difference(counts[1], counts_[1])};
+/// Zero volts; the relay stays closed meanwhile, since an amplifier without power does not brake.
+void AnalogBase::halt(double now) {
+  told_ = {};
+  told_at_ = now;
+  card_->write({0, 0});
+  if (off_.due(now, state_)) switch_power(false);
+  pulse_relay();
+}
+
+void AnalogBase::switch_power(bool on) {
+  on_ = on;
+  off_.cancel();
+  card_->set_enabled(on);
+}
+
+void AnalogBase::pulse_relay() {
+  if (!on_) return;
+  relay_line_ = !relay_line_;
+  card_->set_relay_line(relay_line_);
+}
+
+// ---- what it says ----------------------------------------------------------------------------
+
+void AnalogBase::note_reading(double now) {
+  readings_[reading_count_ % readings_.size()] = {now, inputs_.counts};
+  ++reading_count_;
+}
+
+/// [m/s] since the newest reading that is a window old, or since the oldest; as before without any.
+algo::SideMotion AnalogBase::speeds_by(double now) const {
+  const std::size_t kept = std::min(reading_count_, readings_.size());
+  if (kept < 2) return speeds_;
+  std::size_t back = 2;
+  const auto reading = [&]() -> const Reading& {
+    return readings_[(reading_count_ - back) % readings_.size()];
+  };
+  while (back < kept && now - reading().time < kSpeedWindow) ++back;
+  const Reading& then = reading();
+  const auto speed = [&](std::size_t side) {
+    return metres(algo::count_difference(inputs_.counts[side], then.counts[side])) /
+           (now - then.time);
+  };
+  return {speed(0), speed(1)};
+}
+
+void AnalogBase::measure(double now) {
+  const double dt = now - state_.stamp;
+  if (dt < kLeastInterval) return;
+  const CardInputs before = std::exchange(inputs_, card_->read());
+  algo::WheelCounts moved{algo::count_difference(inputs_.counts[0], before.counts[0]),
+                          algo::count_difference(inputs_.counts[1], before.counts[1])};
+  const double furthest = kFastestWheel * dt;
+  if (std::abs(metres(moved.left)) > furthest || std::abs(metres(moved.right)) > furthest) {
+    moved = {};
+    reading_count_ = 0;
+  }
   const algo::DriveGeometry geometry{setup_.wheel_radius, setup_.half_track};
   state_.pose = algo::integrate_counts(geometry, setup_.counts_per_turn, state_.pose, moved);
-  const double dt = now - state_.stamp;
-  if (dt > 0) {
-    const double metres = 2 * std::numbers::pi * setup_.wheel_radius / setup_.counts_per_turn;
-    speeds_ = {static_cast<double>(moved.left) * metres / dt,
-               static_cast<double>(moved.right) * metres / dt};
-    state_.twist = algo::twist_of({speeds_[0], speeds_[1]}, setup_.half_track);
-  }
-  counts_ = counts;
-  state_.counts = counts;
+  note_reading(now);
+  speeds_ = speeds_by(now);
+  state_.twist = algo::twist_of(speeds_, setup_.half_track);
   state_.stamp = now;
+  state_.counts = inputs_.counts;
+  state_.stop_button = inputs_.stop_button;
+  state_.faulty = inputs_.fault;
+  state_.bumper_front = inputs_.bumper_front;
+  state_.bumper_rear = inputs_.bumper_rear;
 }
 
 BaseState AnalogBase::state() {
+  with_card([this](double now) { measure(now); });
   const std::lock_guard lock(mutex_);
-  state_.motors_on = card_.enabled();
+  state_.motors_on = on_ && inputs_.relay_closed.value_or(true);
   return state_;
 }
 
@@ -80,9 +239,20 @@ algo::DeviceReport AnalogBase::report() {
   const std::lock_guard lock(mutex_);
   algo::DeviceReport out;
   out.name = "base";
-  out.well = true;
-  out.sentence = card_.enabled() ? "Well, motors on." : "Well, motors off.";
-  out.facts = {{"kind", "analog"}};
+  out.port = port_;
+  out.well = card_ != nullptr && !inputs_.stop_button && !inputs_.fault;
+  if (!card_) {
+    out.sentence = trouble_;
+    return out;
+  }
+  out.facts = card_->facts();
+  if (inputs_.stop_button) {
+    out.sentence = "Its stop button is pressed: release it, then arm.";
+  } else if (inputs_.fault) {
+    out.sentence = "An amplifier reports a fault.";
+  } else {
+    out.sentence = on_ ? "Well, motors on." : "Well, motors off.";
+  }
   return out;
 }
 

@@ -15,6 +15,7 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/units.hpp"
 #include "drivers/lms200_scan.hpp"
+#include "drivers/robot_file_base.hpp"
 #include "drivers/robot_section.hpp"
 #include "drivers/scanner.hpp"
 
@@ -52,16 +53,6 @@ bool on_hull(const algo::Pose2& at, const algo::RobotSpec& spec) {
          std::abs(at.y) <= spec.half_width + kRounding;
 }
 
-/// "tcp:HOST:PORT", or any path.
-std::string read_port(Section& in) {
-  std::string port = in.text("port");
-  const std::size_t colon = port.rfind(':');
-  if (port.starts_with("tcp:") && (colon <= 4 || colon + 1 == port.size())) {
-    in.fail("port", "is '" + port + "', which is not of the form tcp:HOST:PORT");
-  }
-  return port;
-}
-
 /// [m], and degrees at this edge alone.
 algo::Pose2 read_mount(Section& in) {
   algo::Pose2 mount;
@@ -94,7 +85,7 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   LaserEntry laser;
   const std::string type = in.text_or("type", "lms200");
   if (type != "lms200") in.fail("type", "is '" + type + "'; it can be lms200");
-  laser.port = read_port(in);
+  laser.port = in.port();
   laser.name = in.text_or("name", "laser " + std::to_string(number));
   laser.mount_R = read_mount(in);
   if (!on_hull(laser.mount_R, robot.spec)) {
@@ -124,79 +115,6 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   return laser;
 }
 
-p2os::PioneerSetup read_pioneer(Section& in, const BaseLimits& limits) {
-  p2os::PioneerSetup setup;
-  setup.baud =
-      static_cast<unsigned>(in.one_of<5>("rate", setup.baud, {9600, 19200, 38400, 57600, 115'200}));
-  setup.watchdog = in.number_or("watchdog", setup.watchdog, {0.2, 10});
-  setup.units.metres_per_count = in.number_or("metres_per_count", 1e-3, {1e-5, 1e-2});
-  setup.units.metres_per_second = in.number_or("speed_unit", 1e-3, {1e-5, 1e-2});
-  setup.units.position_bits = static_cast<unsigned>(in.one_of<2>("position_bits", 15, {12, 15}));
-  setup.sonar = in.flag_or("sonar", true);
-  constexpr double kSlowest = kRadiansPerDegree;  // [rad/s] it is told whole degrees a second
-  if (limits.turn < kSlowest) {
-    in.fail("type",
-            format("is pioneer, which turns by whole degrees a second: [limits] turn must be at "
-                   "least %.4f, not %g",
-                   kSlowest,
-                   limits.turn));
-  }
-  return setup;
-}
-
-roboteq::RoboteqSetup read_roboteq(Section& in) {
-  roboteq::RoboteqSetup setup;
-  setup.baud =
-      static_cast<unsigned>(in.one_of<5>("rate", setup.baud, {9600, 19200, 38400, 57600, 115'200}));
-  setup.watchdog = in.number_or("watchdog", setup.watchdog, {0.05, 5});
-  setup.wheel.radius = in.number("wheel_radius", {0.01, 1});
-  setup.wheel.gear = in.number("gear", {0.01, 1000});
-  setup.wheel.encoder_lines = in.whole_or("encoder_lines", 0, {1, 5000});
-  if (!in.has("encoder_lines")) in.fail("encoder_lines", "is missing");
-  setup.wheel.full_speed_rpm = in.whole_or("full_speed_rpm", 1000, {10, 65'000});
-  setup.max_current = in.number_or("max_current", 0, {0, 500});
-  setup.reversed = {in.flag_or("reverse_left", false), in.flag_or("reverse_right", false)};
-  setup.swapped = in.flag_or("swap_channels", false);
-  setup.bumper_inputs = in.whole_list("bumper_inputs", {1, 6});
-  setup.rear_bumper_inputs = in.whole_list("rear_bumper_inputs", {1, 6});
-  return setup;
-}
-
-/// What the controller and its encoders can do against what they are asked for.
-void check_roboteq(const Section& in, const roboteq::RoboteqSetup& setup) {
-  constexpr double kCommands = 1000;       // steps up to the full speed
-  constexpr double kLeastSteps = 5;        // up to the speed limit
-  constexpr double kCoarsestCount = 0.01;  // [m]
-  constexpr double kFastestRamp = 50'000;  // [rpm/s] it can be told
-  const roboteq::Wheel& wheel = setup.wheel;
-  const BaseLimits& limits = setup.limits;
-  const double fastest = wheel.speed(wheel.full_speed_rpm);
-  const double needed = limits.speed + limits.turn * setup.half_track;
-  if (fastest < needed) {
-    in.fail("full_speed_rpm",
-            format("is %.3f m/s at the wheel, and [limits] ask for %.3f", fastest, needed));
-  }
-  if (limits.speed < kLeastSteps * fastest / kCommands) {
-    in.fail("full_speed_rpm",
-            format("makes steps of %.3f m/s at the wheel, too coarse for a speed of %.3f m/s",
-                   fastest / kCommands,
-                   limits.speed));
-  }
-  if (wheel.metres(1) > kCoarsestCount) {
-    in.fail("encoder_lines",
-            format("makes one count %.3f m of the wheel's way; odometry needs %.2f m or less",
-                   wheel.metres(1),
-                   kCoarsestCount));
-  }
-  const double ramp = wheel.rpm(limits.acceleration + limits.turn_acceleration * setup.half_track);
-  if (ramp > kFastestRamp) {
-    in.fail("gear",
-            format("makes a ramp of %.0f rpm/s of [limits]; the controller takes %.0f at most",
-                   ramp,
-                   kFastestRamp));
-  }
-}
-
 /// How far the robot goes after this program has died.
 void judge_watchdog(const Section& in, RobotFile& robot) {
   const double watchdog = robot.base.watchdog;
@@ -212,45 +130,6 @@ void judge_watchdog(const Section& in, RobotFile& robot) {
                    robot.limits.speed,
                    watchdog),
             robot);
-}
-
-void read_track(Section& in, algo::RobotSpec& spec) {
-  const double track = in.number("track", {0.05, 1.5});
-  const double width = 2 * (spec.half_length > 0 ? spec.half_width : spec.radius);
-  if (track > width) {
-    in.fail("track",
-            format("is %g m, and the hull is %g m wide: the wheels would stand outside of it",
-                   track,
-                   width));
-  }
-  spec.half_track = track / 2;
-}
-
-void read_base(Section& in, RobotFile& robot) {
-  BaseEntry& base = robot.base;
-  const std::string type = in.text("type");
-  base.port = read_port(in);
-  base.battery_low = in.number_or("battery_low", 0, {0, 60});
-  read_track(in, robot.spec);
-  if (type == "pioneer") {
-    p2os::PioneerSetup setup = read_pioneer(in, robot.limits);
-    setup.half_track = robot.spec.half_track;
-    setup.limits = robot.limits;
-    base.watchdog = setup.watchdog;
-    if (setup.sonar) base.sonar_mounts_R = pioneer_sonars();
-    base.setup = setup;
-  } else if (type == "roboteq") {
-    roboteq::RoboteqSetup setup = read_roboteq(in);
-    setup.half_track = robot.spec.half_track;
-    setup.limits = robot.limits;
-    base.watchdog = setup.watchdog;
-    check_roboteq(in, setup);
-    base.setup = setup;
-  } else {
-    in.fail("type", "is '" + type + "'; it can be pioneer or roboteq");
-  }
-  in.done();
-  judge_watchdog(in, robot);
 }
 
 void read_limits(Section in, RobotFile& robot) {
@@ -344,6 +223,7 @@ RobotFile read(const toml::table& table, const std::string& name) {
   }
   Section base = top.table("base");
   read_base(base, robot);
+  judge_watchdog(base, robot);
   top.done();
   check(top, robot);
 
@@ -363,35 +243,6 @@ RobotFile read(const toml::table& table, const std::string& name) {
 }
 
 }  // namespace
-
-std::vector<algo::Pose2> pioneer_sonars() {
-  struct Place {
-    double x_mm = 0, y_mm = 0, heading_deg = 0;
-  };
-  // The P3-DX's rings, front then rear (AriaCoda's parameter file).
-  constexpr std::array<Place, 16> kPlaces{{{69, 136, 90},
-                                           {114, 119, 50},
-                                           {148, 78, 30},
-                                           {166, 27, 10},
-                                           {166, -27, -10},
-                                           {148, -78, -30},
-                                           {114, -119, -50},
-                                           {69, -136, -90},
-                                           {-157, -136, -90},
-                                           {-203, -119, -130},
-                                           {-237, -78, -150},
-                                           {-255, -27, -170},
-                                           {-255, 27, 170},
-                                           {-237, 78, 150},
-                                           {-203, 119, 130},
-                                           {-157, 136, 90}}};
-  std::vector<algo::Pose2> out;
-  out.reserve(kPlaces.size());
-  for (const Place& p : kPlaces) {
-    out.push_back({p.x_mm / 1000, p.y_mm / 1000, p.heading_deg * kRadiansPerDegree});
-  }
-  return out;
-}
 
 RobotFile parse_robot(std::string_view text, const std::string& name) {
   try {

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "algo/robot.hpp"
+#include "drivers/analog_base.hpp"
 #include "drivers/base.hpp"
+#include "drivers/comedi_card.hpp"
 #include "drivers/lms200_machine.hpp"
 #include "drivers/p2os_machine.hpp"
 #include "drivers/roboteq_machine.hpp"
@@ -29,9 +31,14 @@ struct LaserEntry {
   lms200::LaserSetup setup{};
 };
 
+struct AnalogEntry {
+  AnalogSetup base{};
+  ComediSetup card{};
+};
+
 struct BaseEntry {
   std::string port{};
-  std::variant<p2os::PioneerSetup, roboteq::RoboteqSetup> setup{};
+  std::variant<p2os::PioneerSetup, roboteq::RoboteqSetup, AnalogEntry> setup{};
   double watchdog = 0;     // [s]
   double battery_low = 0;  // [V] the robot does not drive below; 0: not watched
   std::vector<algo::Pose2> sonar_mounts_R{};

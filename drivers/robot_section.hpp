@@ -111,6 +111,15 @@ class Section {
     }
     return out;
   }
+  /// "tcp:HOST:PORT", or any path.
+  std::string port() {
+    std::string port = text("port");
+    const std::size_t colon = port.rfind(':');
+    if (port.starts_with("tcp:") && (colon <= 4 || colon + 1 == port.size())) {
+      fail("port", "is '" + port + "', which is not of the form tcp:HOST:PORT");
+    }
+    return port;
+  }
   std::vector<int> whole_list(std::string_view key, Limits limits) {
     std::vector<int> out;
     const toml::node* node = find(key);

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "algo/diff_drive.hpp"
@@ -448,27 +447,31 @@ std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>&
 
 // ---- from a file -----------------------------------------------------------------------------
 
+std::unique_ptr<Base> open_base(const BaseEntry& entry) {
+  if (const auto* analog = std::get_if<AnalogEntry>(&entry.setup)) {
+    const auto open = [port = entry.port, card = analog->card] {
+      return open_comedi_card(port, card);
+    };
+    return std::make_unique<AnalogBase>(entry.port, analog->base, open);
+  }
+  std::unique_ptr<BaseMachine> machine;
+  if (const auto* pioneer = std::get_if<p2os::PioneerSetup>(&entry.setup)) {
+    machine = std::make_unique<p2os::PioneerMachine>(*pioneer);
+  } else {
+    machine =
+        std::make_unique<roboteq::RoboteqMachine>(std::get<roboteq::RoboteqSetup>(entry.setup));
+  }
+  return std::make_unique<SerialBase>(entry.port, std::move(machine));
+}
+
 std::shared_ptr<SerialRobot> open_robot(const RobotFile& file) {
   std::vector<std::unique_ptr<Scanner>> scanners;
   scanners.reserve(file.lasers.size());
   for (const LaserEntry& laser : file.lasers) {
     scanners.push_back(std::make_unique<lms200::Lms200Device>(laser.name, laser.port, laser.setup));
   }
-  std::unique_ptr<BaseMachine> machine = std::visit(
-      [](const auto& setup) -> std::unique_ptr<BaseMachine> {
-        using Setup = std::decay_t<decltype(setup)>;
-        if constexpr (std::is_same_v<Setup, p2os::PioneerSetup>) {
-          return std::make_unique<p2os::PioneerMachine>(setup);
-        } else {
-          return std::make_unique<roboteq::RoboteqMachine>(setup);
-        }
-      },
-      file.base.setup);
   return std::make_shared<SerialRobot>(
-      file,
-      std::move(scanners),
-      std::make_unique<SerialBase>(file.base.port, std::move(machine)),
-      std::make_unique<SteadyClock>());
+      file, std::move(scanners), open_base(file.base), std::make_unique<SteadyClock>());
 }
 
 }  // namespace drivers

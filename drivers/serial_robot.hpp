@@ -108,6 +108,8 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   bool memory_locked_ = false;
 };
 
+/// The base of a file, at work on its own; one that is not there is waited for.
+std::unique_ptr<Base> open_base(const BaseEntry& entry);
 /// Opens every device of `file`; those that are not there are waited for.
 std::shared_ptr<SerialRobot> open_robot(const RobotFile& file);
 

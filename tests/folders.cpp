@@ -11,4 +11,8 @@ std::filesystem::path shared_data() {
   return TAUTLINE_SHARED_DATA;
 }
 
+std::filesystem::path emulated_comedi() {
+  return TAUTLINE_EMULATED_COMEDI;
+}
+
 }  // namespace tests

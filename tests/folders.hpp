@@ -12,4 +12,7 @@ std::filesystem::path folder();
 /// The large recordings beside the repository: laser/, barn/, people/. May be missing.
 std::filesystem::path shared_data();
 
+/// The emulated libcomedi of this build.
+std::filesystem::path emulated_comedi();
+
 }  // namespace tests

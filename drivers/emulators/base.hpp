@@ -6,8 +6,6 @@
 #include <functional>
 #include <vector>
 
-#include "drivers/emulators/device.hpp"
-
 namespace drivers::emulators {
 
 struct WheelMotion {
@@ -45,8 +43,14 @@ struct WheelTrouble {
   bool encoder_dead = false;  // of the left one: it turns, and is not seen to
 };
 
-class Base : public Device {
+/// The wheels' side of a base; its line, if it has one, is a Device.
+class Base {
  public:
+  Base() = default;
+  virtual ~Base() = default;
+  Base(const Base&) = delete;
+  Base& operator=(const Base&) = delete;
+
   WheelTrouble trouble{};
 
   /// drive(), as the trouble has it.
@@ -84,8 +88,6 @@ class Base : public Device {
   virtual void restart(double now, double boot_time) = 0;
 
  protected:
-  using Device::Device;
-
   /// `now` moved towards `wanted` by at most `most`.
   static double towards(double now, double wanted, double most) {
     return now + std::clamp(wanted - now, -most, most);

@@ -51,7 +51,7 @@ std::uint16_t millimetres(double metres) {
 }  // namespace
 
 Emulator::Emulator(const EmulatorOptions& options)
-    : Base(options.baud, options.seed), options_(options), volts_(options.volts) {
+    : Device(options.baud, options.seed), options_(options), volts_(options.volts) {
   forget();
 }
 

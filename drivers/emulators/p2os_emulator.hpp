@@ -10,6 +10,7 @@
 
 #include "drivers/bytes.hpp"
 #include "drivers/emulators/base.hpp"
+#include "drivers/emulators/device.hpp"
 
 namespace drivers::p2os {
 
@@ -29,7 +30,7 @@ struct EmulatorOptions {
 
 /// Position commands (MOVE, HEAD, DHEAD) and packets of the gyro are left out: unanswered, as
 /// commands unknown to the base.
-class Emulator final : public emulators::Base {
+class Emulator final : public emulators::Device, public emulators::Base {
  public:
   explicit Emulator(const EmulatorOptions& options = {});
 

@@ -31,7 +31,7 @@ std::size_t index_of(int channel) {
 }  // namespace
 
 Emulator::Emulator(const EmulatorOptions& options)
-    : Base(kBaud, options.seed), options_(options), volts_(options.volts) {
+    : Device(kBaud, options.seed), options_(options), volts_(options.volts) {
   parameters_.watchdog_ms = options.watchdog_ms;
   parameters_.full_rpm = {options.full_speed_rpm, options.full_speed_rpm};
   parameters_.encoder_lines = {options.encoder_lines, options.encoder_lines};

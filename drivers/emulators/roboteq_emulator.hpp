@@ -14,6 +14,7 @@
 
 #include "drivers/bytes.hpp"
 #include "drivers/emulators/base.hpp"
+#include "drivers/emulators/device.hpp"
 
 namespace drivers::roboteq {
 
@@ -31,7 +32,7 @@ struct EmulatorOptions {
 };
 
 /// Channel 1 turns the left wheel, channel 2 the right one.
-class Emulator final : public emulators::Base {
+class Emulator final : public emulators::Device, public emulators::Base {
  public:
   explicit Emulator(const EmulatorOptions& options = {});
 

@@ -1,5 +1,6 @@
 // server/cli/command_emulate.cpp: `tautline emulate`: devices on pseudo-terminals, for users
 // without any.
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdio>
@@ -7,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -24,6 +26,20 @@ namespace {
 using emulate::BaseKind;
 using emulate::Emulation;
 using emulate::EmulationOptions;
+
+struct BaseRow {
+  BaseKind kind = BaseKind::None;
+  std::string_view name{};
+  std::string_view words{};
+};
+constexpr std::array<BaseRow, 3> kBases{
+    {{BaseKind::P2os, "p2os", "Pioneer base"},
+     {BaseKind::Roboteq, "roboteq", "Roboteq"},
+     {BaseKind::Analog, "analog", "Analog base, an acquisition card"}}};
+
+const BaseRow& row_of(BaseKind kind) {
+  return *std::ranges::find(kBases, kind, &BaseRow::kind);
+}
 
 struct Options {
   EmulationOptions emulation{};
@@ -108,8 +124,10 @@ void emulate_devices(Options& options) {
   running.start();
   for (const auto& link : emulation.scanner_links) fmt::print("LMS200 at {}\n", link.string());
   if (emulation.base != BaseKind::None) {
-    const bool p2os = emulation.base == BaseKind::P2os;
-    fmt::print("{} at {}\n", p2os ? "Pioneer base" : "Roboteq", emulation.base_link.string());
+    fmt::print("{} at {}\n", row_of(emulation.base).words, emulation.base_link.string());
+  }
+  if (emulation.base == BaseKind::Analog) {
+    fmt::print("library = \"{}\"\n", emulate::emulated_comedi().string());
   }
   std::fflush(stdout);
   attend(running, signals);
@@ -173,6 +191,16 @@ void add_base_flags(CLI::App& command, Options& options) {
                    "The base's counters stand shortly before they run over");
   command.add_option("--watchdog", options.emulation.watchdog, "The base's own [s]")
       ->check(CLI::Range(0.0, 60.0));
+  drivers::emulators::CardChannels& card = options.emulation.card;
+  command.add_option("--card-outputs", card.outputs, "Analog outputs of an acquisition card")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  command.add_option("--card-counters", card.counters, "Its counters")
+      ->check(CLI::Range(0, 2))
+      ->capture_default_str();
+  command.add_option("--card-lines", card.lines, "Its digital lines")
+      ->check(CLI::Range(0, 32))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -211,6 +239,7 @@ void add_emulate_command(CLI::App& app, int& status) {
   single("lms200", "A SICK LMS200", BaseKind::None);
   single("p2os", "A Pioneer base", BaseKind::P2os);
   single("roboteq", "A Roboteq motor controller with two motors", BaseKind::Roboteq);
+  single("analog", "An acquisition card wired to two motor amplifiers", BaseKind::Analog);
 
   auto options = std::make_shared<Options>();
   CLI::App* const robot = command->add_subcommand(
@@ -218,8 +247,8 @@ void add_emulate_command(CLI::App& app, int& status) {
   robot->add_option("--links", options->links, "Folder where the ports are to appear")
       ->type_name("DIR")
       ->required();
-  robot->add_option("--base", options->base, "p2os or roboteq")
-      ->check(CLI::IsMember({"p2os", "roboteq"}))
+  robot->add_option("--base", options->base, "p2os, roboteq or analog")
+      ->check(CLI::IsMember({"p2os", "roboteq", "analog"}))
       ->capture_default_str();
   add_common_flags(*robot, *options);
   add_scanner_flags(*robot, *options);
@@ -232,7 +261,7 @@ void add_emulate_command(CLI::App& app, int& status) {
       emulation.scanner_links.push_back(options->links /
                                         (i == 0 ? "scanner" : fmt::format("scanner{}", i + 1)));
     }
-    emulation.base = options->base == "p2os" ? BaseKind::P2os : BaseKind::Roboteq;
+    emulation.base = std::ranges::find(kBases, options->base, &BaseRow::name)->kind;
     emulation.base_link = options->links / "base";
     emulate_devices(*options);
     status = 0;

@@ -14,10 +14,9 @@
 #include "algo/dazzle.hpp"
 #include "algo/perceive.hpp"
 #include "drivers/lms200_device.hpp"
-#include "drivers/p2os_machine.hpp"
 #include "drivers/real_time.hpp"
-#include "drivers/roboteq_machine.hpp"
-#include "drivers/serial_base.hpp"
+#include "drivers/serial_port.hpp"
+#include "drivers/serial_robot.hpp"
 
 namespace server {
 namespace {
@@ -205,12 +204,15 @@ bool look_at_laser(const drivers::LaserEntry& entry,
   return notes.all_well();
 }
 
-std::unique_ptr<drivers::BaseMachine> machine_for(const drivers::BaseEntry& entry) {
+/// [bit/s] 0 where the base has no serial line.
+unsigned baud_of(const drivers::BaseEntry& entry) {
   if (const auto* pioneer = std::get_if<drivers::p2os::PioneerSetup>(&entry.setup)) {
-    return std::make_unique<drivers::p2os::PioneerMachine>(*pioneer);
+    return pioneer->baud;
   }
-  return std::make_unique<drivers::roboteq::RoboteqMachine>(
-      std::get<drivers::roboteq::RoboteqSetup>(entry.setup));
+  if (const auto* roboteq = std::get_if<drivers::roboteq::RoboteqSetup>(&entry.setup)) {
+    return roboteq->baud;
+  }
+  return 0;
 }
 
 /// What the base was told and what it says of it, each [m] ahead, and how far it turned [rad].
@@ -252,7 +254,10 @@ namespace {
 void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& notes) {
   base.enable(true);
   const double until = steady_now() + 2.0;
-  while (!base.state().motors_on && steady_now() < until) pause();
+  while (!base.state().motors_on && steady_now() < until) {
+    base.stop();  // a relay closes only while it hears something
+    pause();
+  }
   if (!base.state().motors_on) {
     notes.bad("The motors do not switch on.", "Release the stop button; look at the motor power.");
     base.enable(false);
@@ -272,8 +277,8 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
     notes.well(ways);
   } else {
     notes.bad(ways,
-              "The wrong sign: reverse_left, reverse_right. The wrong size: wheel_radius, gear, "
-              "encoder_lines. Nothing: the encoders' plugs.");
+              "The wrong sign: reverse_left, reverse_right. The wrong size: wheel_radius and the "
+              "keys of gear and encoders. Nothing: the encoders' plugs.");
   }
   constexpr double kStraight = 0.05;  // [rad]
   if (std::max(std::abs(ahead.turned), std::abs(back.turned)) > kStraight) {
@@ -289,15 +294,19 @@ bool look_at_base(const drivers::RobotFile& file,
                   const Found& found) {
   Notes notes("base", found);
   const drivers::BaseEntry& entry = file.base;
-  std::unique_ptr<drivers::BaseMachine> machine = machine_for(entry);
-  if (!look_at_port(entry.port, machine->opening_baud(), notes)) return false;
-  drivers::SerialBase base(entry.port, std::move(machine));
+  const unsigned baud = baud_of(entry);
+  if (baud != 0 && !look_at_port(entry.port, baud, notes)) return false;
+  const std::unique_ptr<drivers::Base> opened = drivers::open_base(entry);
+  drivers::Base& base = *opened;
   const double until = steady_now() + options.patience;
   while (!base.state().running && steady_now() < until) pause();
   const algo::DeviceReport report = base.report();
   const drivers::BaseState state = base.state();
   if (!state.running) {
-    notes.bad(report.sentence, "Is it switched on? Is it the right cable, at the right port?");
+    notes.bad(report.sentence,
+              baud != 0 ? "Is it switched on? Is it the right cable, at the right port?"
+                        : "`ls /dev/comedi*` shows the cards; docs/hardware.md has the keys of "
+                          "their channels.");
     return false;
   }
   std::string facts;

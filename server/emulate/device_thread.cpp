@@ -18,7 +18,7 @@ namespace server::emulate {
 DeviceThread::DeviceThread(std::string name,
                            drivers::emulators::Device& device,
                            std::filesystem::path link)
-    : name_(std::move(name)),
+    : Connection(std::move(name)),
       device_(device),
       port_(std::move(link)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
@@ -58,7 +58,7 @@ void DeviceThread::plug(double now) {
   try {
     port_.plug();
   } catch (const std::runtime_error& e) {
-    spdlog::error("{}: {} Trying again.", name_, e.what());
+    spdlog::error("{}: {} Trying again.", name(), e.what());
     plug_at_ = now + 1;
   }
 }

@@ -80,7 +80,7 @@ void EmulatedWorld::run(const std::stop_token& stop) {
 /// What the base's motors do, as the vehicle takes it.
 algo::Command EmulatedWorld::command() {
   if (!links_.base) return {};
-  const auto held = links_.base->thread->lock();
+  const auto held = links_.base->connection->lock();
   motion_ = links_.base->device->turn(machine_time());
   return {.base = algo::twist_of({motion_.left, motion_.right}, world_.spec().half_track)};
 }
@@ -106,20 +106,20 @@ void EmulatedWorld::feel(const algo::Observation& observation, const algo::Pose2
   senses_.front_bumper = observation.bumper_pressed();
   senses_.echoes.clear();
   sonars_.sense(observation.stamp, pose_W, senses_.echoes);
-  const auto held = links_.base->thread->lock();
+  const auto held = links_.base->connection->lock();
   links_.base->device->sense(senses_, machine_time());
 }
 
 void EmulatedWorld::look(double now) {
   for (std::size_t i = 0; i < mirrors_.size(); ++i) {
-    const auto& [device, thread] = links_.scanners[i];
-    const auto held = thread->lock();
+    const auto& [device, connection] = links_.scanners[i];
+    const auto held = connection->lock();
     mirrors_[i].sense(device->sweep(),
                       now,
                       trail_,
                       [&](const algo::LaserScan& scan, std::optional<std::uint8_t> part) {
                         device->offer(scan, machine_time(), part);
-                        thread->wake();
+                        connection->wake();
                       });
   }
 }

@@ -11,7 +11,7 @@
 
 #include "drivers/emulators/base.hpp"
 #include "drivers/emulators/lms200_emulator.hpp"
-#include "server/emulate/device_thread.hpp"
+#include "server/emulate/connection.hpp"
 #include "server/emulate/mirror.hpp"
 #include "server/emulate/sonar_ring.hpp"
 #include "server/emulate/truth_record.hpp"
@@ -19,13 +19,6 @@
 #include "sim/world.hpp"
 
 namespace server::emulate {
-
-/// A device and the thread that serves its line.
-template <class Device>
-struct Served {
-  Device* device = nullptr;
-  DeviceThread* thread = nullptr;
-};
 
 /// What turns the wheels of the base and the mirrors of the scanners. Physics goes in the steps
 /// that a pure simulation of the scenario takes, so that both differ by the devices alone.

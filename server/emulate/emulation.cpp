@@ -6,6 +6,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,10 +32,23 @@ struct Emulation::Scanner {
 };
 
 struct Emulation::Base {
-  Base(std::unique_ptr<emulators::Base> made, const std::filesystem::path& link)
-      : device(std::move(made)), thread("base", *device, link) {}
-  std::unique_ptr<emulators::Base> device;
-  DeviceThread thread;
+  /// With a serial line, or with a card.
+  template <class Emulator>
+  Base(std::unique_ptr<Emulator> made, const EmulationOptions& options) {
+    if constexpr (std::is_same_v<Emulator, emulators::AnalogEmulator>) {
+      card = made.get();
+      connection = std::make_unique<CardSlot>("base", *made, options.base_link, options.card);
+    } else {
+      line = made.get();
+      line->set_faults(options.faults);
+      connection = std::make_unique<DeviceThread>("base", *made, options.base_link);
+    }
+    device = std::move(made);
+  }
+  std::unique_ptr<emulators::Base> device{};
+  emulators::Device* line = nullptr;          // of a serial base
+  emulators::AnalogEmulator* card = nullptr;  // of the other kind
+  std::unique_ptr<Connection> connection{};
   std::uint64_t commands = 0;  // that concern motion; under the device's lock
 };
 
@@ -117,12 +131,12 @@ double value_of(const std::string& text, const VerbRow& row) {
 }
 
 /// What may befall any device; false when `verb` is none of it.
-bool befall(Verb verb, double value, DeviceThread& thread, emulators::Device& device) {
+bool befall(Verb verb, double value, Connection& connection, emulators::Device& device) {
   if (verb == Verb::Unplug) {
-    thread.unplug(value);
+    connection.unplug(value);
     return true;
   }
-  const auto held = thread.lock();
+  const auto held = connection.lock();
   emulators::LineFaults faults = device.faults();
   switch (verb) {
     case Verb::Drop:
@@ -144,11 +158,11 @@ bool befall(Verb verb, double value, DeviceThread& thread, emulators::Device& de
   return true;
 }
 
-void befall_scanner(Verb verb, double value, DeviceThread& thread, lms200::Emulator& device) {
+void befall_scanner(Verb verb, double value, Connection& connection, lms200::Emulator& device) {
   constexpr std::uint8_t kGood = 0x10;
   constexpr std::uint8_t kPolluted = 0x92;
-  if (befall(verb, value, thread, device)) return;
-  const auto held = thread.lock();
+  if (befall(verb, value, connection, device)) return;
+  const auto held = connection.lock();
   switch (verb) {
     case Verb::Restart:
       device.restart(machine_time(), value);
@@ -170,9 +184,7 @@ void befall_scanner(Verb verb, double value, DeviceThread& thread, lms200::Emula
   }
 }
 
-void befall_base(Verb verb, double value, DeviceThread& thread, emulators::Base& device) {
-  if (befall(verb, value, thread, device)) return;
-  const auto held = thread.lock();
+void befall_wheels(Verb verb, double value, emulators::Base& device) {
   switch (verb) {
     case Verb::Restart:
       device.restart(machine_time(), value);
@@ -203,6 +215,43 @@ void befall_base(Verb verb, double value, DeviceThread& thread, emulators::Base&
   }
 }
 
+/// As befall(), for the acquisition card of a base without a line.
+bool befall_card(const VerbRow& row,
+                 double value,
+                 Connection& connection,
+                 emulators::AnalogEmulator& device) {
+  switch (row.verb) {
+    case Verb::Unplug:
+      connection.unplug(value);
+      return true;
+    case Verb::Silence: {
+      const auto held = connection.lock();
+      device.mute(machine_time() + value);
+      return true;
+    }
+    case Verb::Drop:
+    case Verb::Flip:
+    case Verb::Damage:
+      throw std::invalid_argument(
+          fmt::format("'{}' is nothing for an acquisition card: it has no line.", row.word));
+    default:
+      return false;
+  }
+}
+
+/// `base`: an Emulation::Base.
+template <class Base>
+void befall_base(const VerbRow& row, double value, Base& base) {
+  Connection& connection = *base.connection;
+  const bool done = base.line != nullptr ? befall(row.verb, value, connection, *base.line)
+                                         : befall_card(row, value, connection, *base.card);
+  if (!done) {
+    const auto held = connection.lock();
+    befall_wheels(row.verb, value, *base.device);
+  }
+  connection.wake();
+}
+
 /// Who `row` is for, when the line does not say.
 std::string only(const VerbRow& row, std::size_t scanners, bool base) {
   const bool scanner_verb = row.who != Who::Base;
@@ -213,7 +262,9 @@ std::string only(const VerbRow& row, std::size_t scanners, bool base) {
       fmt::format("{}: of which device? Write such as 'scanner {}'.", row.word, row.word));
 }
 
-std::unique_ptr<emulators::Base> make_base(const EmulationOptions& options) {
+}  // namespace
+
+std::unique_ptr<Emulation::Base> Emulation::make_base(const EmulationOptions& options) {
   const sim::RobotModel& robot = options.scenario.robot;
   if (options.base == BaseKind::P2os) {
     drivers::p2os::EmulatorOptions made;
@@ -221,17 +272,22 @@ std::unique_ptr<emulators::Base> make_base(const EmulationOptions& options) {
     made.seed = options.seed + 100;
     if (options.watchdog > 0) made.watchdog = options.watchdog;
     if (options.near_wrap) made.first_x_mm = made.first_y_mm = 0x7FFF - 100;
-    return std::make_unique<drivers::p2os::Emulator>(made);
+    return std::make_unique<Base>(std::make_unique<drivers::p2os::Emulator>(made), options);
+  }
+  if (options.base == BaseKind::Analog) {
+    emulators::AnalogOptions made;
+    made.wheel_radius = robot.wheel_radius;
+    if (options.watchdog > 0) made.watchdog = options.watchdog;
+    if (options.near_wrap) made.first_count = emulators::CardMemory::kFullCount - 5000;
+    return std::make_unique<Base>(std::make_unique<emulators::AnalogEmulator>(made), options);
   }
   drivers::roboteq::EmulatorOptions made;
   made.wheel_radius = robot.wheel_radius;
   made.seed = options.seed + 100;
   if (options.watchdog > 0) made.watchdog_ms = static_cast<int>(1000 * options.watchdog);
   if (options.near_wrap) made.first_count = std::numeric_limits<std::int32_t>::max() - 5000;
-  return std::make_unique<drivers::roboteq::Emulator>(made);
+  return std::make_unique<Base>(std::make_unique<drivers::roboteq::Emulator>(made), options);
 }
-
-}  // namespace
 
 std::string command_help() {
   std::string text;
@@ -258,7 +314,7 @@ Emulation::Emulation(const EmulationOptions& options) : record_(options.record) 
   EmulatedWorld::Links links;
   for (const auto& scanner : scanners_)
     links.scanners.push_back({&scanner->device, &scanner->thread});
-  if (base_) links.base = Served<emulators::Base>{base_->device.get(), &base_->thread};
+  if (base_) links.base = Served<emulators::Base>{base_->device.get(), base_->connection.get()};
   world_ = std::make_unique<EmulatedWorld>(options.scenario, options.seed, links, record_);
 }
 
@@ -278,8 +334,7 @@ void Emulation::add_scanner(const EmulationOptions& options, std::size_t index) 
 }
 
 void Emulation::add_base(const EmulationOptions& options) {
-  base_ = std::make_unique<Base>(make_base(options), options.base_link);
-  base_->device->set_faults(options.faults);
+  base_ = make_base(options);
   base_->device->on_command = [this](const emulators::BaseCommand& command) {
     ++base_->commands;
     record_.wheels({.time = machine_time(), .wanted = command.wanted});
@@ -288,7 +343,7 @@ void Emulation::add_base(const EmulationOptions& options) {
 
 void Emulation::start() {
   for (const auto& scanner : scanners_) scanner->thread.start();
-  if (base_) base_->thread.start();
+  if (base_) base_->connection->start();
   if (world_) world_->start();
   if (player_) player_->start();
 }
@@ -314,8 +369,7 @@ std::string Emulation::command(std::string_view line) {
     if (!base_ || row.who == Who::Scanner) {
       throw std::invalid_argument(fmt::format("'{}' is nothing for a base here.", row.word));
     }
-    befall_base(row.verb, number, base_->thread, *base_->device);
-    base_->thread.wake();
+    befall_base(row, number, *base_);
     return "";
   }
   for (const auto& scanner : scanners_) {
@@ -357,11 +411,14 @@ std::string Emulation::truth() {
                                    {"overrun", scanner->thread.overrun()}};
   }
   if (base_) {
-    const auto held = base_->thread.lock();
-    out["base"] = {{"listened_to", base_->thread.listened_to()},
-                   {"baud", base_->device->baud()},
-                   {"commands", base_->commands},
-                   {"overrun", base_->thread.overrun()}};
+    const auto held = base_->connection->lock();
+    out["base"] = {{"listened_to", base_->connection->listened_to()},
+                   {"commands", base_->commands}};
+    if (base_->line != nullptr) {
+      const auto& thread = static_cast<const DeviceThread&>(*base_->connection);
+      out["base"]["baud"] = base_->line->baud();
+      out["base"]["overrun"] = thread.overrun();
+    }
   }
   return out.dump();
 }

@@ -10,10 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/emulators/analog_emulator.hpp"
 #include "drivers/emulators/base.hpp"
 #include "drivers/emulators/lms200_emulator.hpp"
 #include "drivers/emulators/p2os_emulator.hpp"
 #include "drivers/emulators/roboteq_emulator.hpp"
+#include "server/emulate/card_slot.hpp"
 #include "server/emulate/device_thread.hpp"
 #include "server/emulate/emulated_world.hpp"
 #include "server/emulate/log_player.hpp"
@@ -22,7 +24,7 @@
 
 namespace server::emulate {
 
-enum class BaseKind : std::uint8_t { None, P2os, Roboteq };
+enum class BaseKind : std::uint8_t { None, P2os, Roboteq, Analog };
 
 struct EmulationOptions {
   sim::Scenario scenario{};
@@ -36,6 +38,7 @@ struct EmulationOptions {
   std::vector<std::filesystem::path> scanner_links{};  // one for each scanner
   BaseKind base = BaseKind::None;
   std::filesystem::path base_link{};
+  drivers::emulators::CardChannels card{};  // of an analog base
 };
 
 /// The words command() takes, one line each, for --help.
@@ -59,6 +62,7 @@ class Emulation {
   struct Base;
 
   void add_scanner(const EmulationOptions& options, std::size_t index);
+  static std::unique_ptr<Base> make_base(const EmulationOptions& options);
   void add_base(const EmulationOptions& options);
 
   TruthRecord record_;

@@ -23,10 +23,10 @@ void LogPlayer::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     for (const algo::LaserScan& scan : observation.scans) {
       if (std::abs(scan.mount_R.heading) > std::numbers::pi / 2) continue;  // another scanner's
-      const auto held = scanner_.thread->lock();
+      const auto held = scanner_.connection->lock();
       // Partial scans are made of turns of the mirror, of which a log says nothing.
       if (scanner_.device->sweep().parts.empty()) scanner_.device->offer(scan, machine_time());
-      scanner_.thread->wake();
+      scanner_.connection->wake();
     }
     if (!pacer.wait(replay_.next_period(), stop)) return;
     if (!replay_.step({}, observation)) replay_.reset(observation);

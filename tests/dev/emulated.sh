@@ -2,14 +2,14 @@
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # root, caller and program are ./dev's
 
-# run_emulated [--base p2os] [ARGS]: emulates base and scanner and serves them; ARGS as for serve.
+# run_emulated [--base p2os|analog] [ARGS]: emulates base and scanner and serves them; ARGS as for serve.
 run_emulated() {
   local base=roboteq links emulator status=0
   if [[ "${1:-}" == --base ]]; then
     base=${2:-}
     shift 2
   fi
-  [[ $base == roboteq || $base == p2os ]] || fail "--base is roboteq or p2os, not '$base'"
+  [[ $base =~ ^(roboteq|p2os|analog)$ ]] || fail "--base is roboteq, p2os or analog, not '$base'"
   build_program
   links=$(mktemp -d)
   {
@@ -19,6 +19,11 @@ run_emulated() {
     printf '[base]\nport = "%s"\ntrack = 0.50\n' "$links/base"
     if [[ $base == p2os ]]; then
       printf 'type = "pioneer"\nwatchdog = 2.0\n'
+    elif [[ $base == analog ]]; then
+      printf 'type = "analog"\nlibrary = "%s"\nwheel_radius = 0.10\ncounts_per_turn = 2000\n' \
+        "$root/${program%/*}/libemulated_comedi.so"
+      printf 'speed_per_volt = 0.1\nrelay_closed_line = 1\nstop_line = 2\nfault_line = 3\n'
+      printf 'bumper_lines = [4]\nenable_line = 5\n'
     else
       printf 'type = "roboteq"\nwatchdog = 0.5\nwheel_radius = 0.10\ngear = 20\n'
       printf 'encoder_lines = 500\nfull_speed_rpm = 1000\nbumper_inputs = [1]\nrear_bumper_inputs = [2]\n'

@@ -12,7 +12,7 @@ import time
 
 import load
 
-WATCHDOG = {"roboteq": 0.5, "p2os": 2.0}  # [s]
+WATCHDOG = {"roboteq": 0.5, "p2os": 2.0, "analog": 0.15}  # [s]
 TICK = 0.026  # [s]
 
 ROBOT = """name = "emulated"
@@ -35,19 +35,27 @@ BASE = {
     "roboteq": 'type = "roboteq"\nwheel_radius = 0.10\ngear = 20\nencoder_lines = 500\n'
     "full_speed_rpm = 1000\nbumper_inputs = [1]\nrear_bumper_inputs = [2]\nbattery_low = 22\n",
     "p2os": 'type = "pioneer"\nbattery_low = 11\n',
+    "analog": 'type = "analog"\nlibrary = "{library}"\nwheel_radius = 0.10\ncounts_per_turn = 2000\n'
+    "speed_per_volt = 0.1\nrelay_line = 0\nrelay_closed_line = 1\nstop_line = 2\nfault_line = 3\n"
+    "bumper_lines = [4]\nenable_line = 5\n",
 }
 
 
-def robot_file(folder, base="roboteq", laser="rate = 500000", changes=()):
+def robot_file(program, folder, base="roboteq", laser="rate = 500000", changes=()):
     """The path of a robot's file for the devices in `folder`; `changes` are pairs of old and new text."""
     text = ROBOT.format(tick=TICK, folder=folder, laser=laser, watchdog=WATCHDOG[base],
-                        base=BASE[base])
+                        base=BASE[base].replace("{library}", comedi(program)))
     for old, new in changes:
         text = text.replace(old, new)
     path = os.path.join(folder, "robot.toml")
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
     return path
+
+
+def comedi(program):
+    """The library that opens emulated cards."""
+    return os.path.join(os.path.dirname(os.path.realpath(program)), "libemulated_comedi.so")
 
 
 class Devices:
@@ -57,7 +65,8 @@ class Devices:
         self.record = os.path.join(folder, "truth")
         self.process = subprocess.Popen(
             [program, "emulate", "robot", "--links", folder, "--base", base, "--scenario", "exp4",
-             "--record", self.record, *options],
+             "--record", self.record,
+             *(["--watchdog", str(WATCHDOG[base])] if base == "analog" else []), *options],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
         while not os.path.exists(os.path.join(folder, "base")):
             time.sleep(0.05)

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tests/dev/hardware_faults.py PROGRAM [roboteq|p2os]: each fault of tests/hardware/faults.json while
+"""tests/dev/hardware_faults.py PROGRAM [roboteq|p2os|analog]: each fault of tests/hardware/faults.json while
 `tautline serve --robot` drives emulated devices, in real time; prints the table of docs/hardware.md.
 
 "Zero command" and "wheels stand" come from the emulator's record, not from the server. Exit status 1
@@ -14,11 +14,11 @@ import time
 from emulated_robot import Devices, Server, TICK, WATCHDOG, robot_file
 
 PROGRAM = sys.argv[1]
-BASES = sys.argv[2:] or ["roboteq", "p2os"]
+BASES = sys.argv[2:] or ["roboteq", "p2os", "analog"]
 HERE = os.path.dirname(os.path.abspath(__file__))
 AWAKE = 0.05  # [s] for threads to wake up on a busy machine
 SCANS = 3 * 0.0267 + 0.02 + 0.015  # [s] three scan periods, a USB chip, the line
-REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065}  # [s] between two of what is wrong, and its way
+REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065, "analog": 0.026}  # [s] between two of what is wrong, and its way
 SETTLED = 1.0  # [s] after the limit, in which nothing may start again
 
 
@@ -59,7 +59,7 @@ def goes_on(server):
 
 def trial(fault, base, folder):
     devices = Devices(PROGRAM, folder, base)
-    server = Server(PROGRAM, folder, robot_file(folder, base), "--unattended")
+    server = Server(PROGRAM, folder, robot_file(PROGRAM, folder, base), "--unattended")
     try:
         if fault.get("at_rest"):
             server.arm()

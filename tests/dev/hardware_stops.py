@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tests/dev/hardware_stops.py PROGRAM [roboteq|p2os]: what becomes of the wheels when the server or
+"""tests/dev/hardware_stops.py PROGRAM [roboteq|p2os|analog]: what becomes of the wheels when the server or
 its operator goes, on emulated devices, in real time; prints rows of the table in docs/hardware.md.
 
 The server is killed (kill -9), ended (SIGTERM, Ctrl-C, SIGHUP), left without its terminal, stopped
@@ -21,7 +21,7 @@ import time
 from emulated_robot import Devices, Server, TICK, WATCHDOG, robot_file, row
 
 PROGRAM = sys.argv[1]
-BASES = sys.argv[2:] or ["roboteq", "p2os"]
+BASES = sys.argv[2:] or ["roboteq", "p2os", "analog"]
 PATIENCE = 1.5  # [s] server/serve/operator_watch.hpp
 SLACK = 0.2  # [s] a look every 0.1 s, and a busy machine
 REATTACH = 5.0  # [s]
@@ -157,7 +157,7 @@ def main():
     print("| event | base | zero wheels after | at most | then |\n|---|---|---|---|---|", flush=True)
     for base in BASES:
         with tempfile.TemporaryDirectory() as folder:
-            robot = robot_file(folder, base)
+            robot = robot_file(PROGRAM, folder, base)
             devices = Devices(PROGRAM, folder, base)
             try:
                 well = ended(folder, robot, base, devices) and well

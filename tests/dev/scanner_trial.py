@@ -49,7 +49,7 @@ def set_up(name, options, expected):
     with tempfile.TemporaryDirectory() as folder:
         devices = Devices(PROGRAM, folder, "roboteq", *options)
         found = devices.scanner()["baud"]
-        server = Server(PROGRAM, folder, robot_file(folder))
+        server = Server(PROGRAM, folder, robot_file(PROGRAM, folder))
 
         def ready(session):
             laser = front_laser(session)
@@ -84,7 +84,7 @@ def blinding(name, command, laser, period):
     most = max(0.3, 2 * period)
     with tempfile.TemporaryDirectory() as folder:
         devices = Devices(PROGRAM, folder)
-        server = Server(PROGRAM, folder, robot_file(folder, laser=laser), "--unattended")
+        server = Server(PROGRAM, folder, robot_file(PROGRAM, folder, laser=laser), "--unattended")
         server.drive()
         at = time.monotonic()
         devices.tell(command)
@@ -101,7 +101,7 @@ def blinding(name, command, laser, period):
 
 def refused(name, changes, expected):
     with tempfile.TemporaryDirectory() as folder:
-        path = robot_file(folder, changes=changes)
+        path = robot_file(PROGRAM, folder, changes=changes)
         ended = subprocess.run([PROGRAM, "serve", "--port", "0", "--db", folder + "/runs.db",
                                 "--robot", path], stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True, timeout=20, check=False)

@@ -102,7 +102,7 @@ def all_loads(folder):
     heavy = load.record_heavy_run(PROGRAM, database)
     long = load.add_long_run(database, heavy)
     devices = Devices(PROGRAM, folder)
-    robot = robot_file(folder)
+    robot = robot_file(PROGRAM, folder)
     well = True
     try:
         server = load.Server(PROGRAM, folder, "--db", database, "--robot", robot)

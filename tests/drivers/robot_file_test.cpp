@@ -70,7 +70,7 @@ TEST(RobotFile, MistakesAreNamedWithTheirLine) {
             "my.toml:12: [base] 'shoe_size' is no key known here");
   EXPECT_EQ(error_of(with("port = \"/dev/lms-front\"", "port = \"/dev/lms-front\"\nrate = 57600")),
             "my.toml:6: [[laser]] rate is 57600; it can be 9600, 19200, 38400, 500000");
-  EXPECT_THAT(error_of(with("roboteq\"\nport", "segway\"\nport")), HasSubstr("pioneer or roboteq"));
+  EXPECT_THAT(error_of(with("roboteq\"\nport", "segway\"\nport")), HasSubstr("pioneer, roboteq or analog"));
   EXPECT_THAT(error_of(with("/dev/lms-front", "/dev/roboteq")), HasSubstr("used by two devices"));
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("there is no [hull]"));
   EXPECT_THAT(error_of(with("silvermate", "Silver Mate")), HasSubstr("must be of a-z"));

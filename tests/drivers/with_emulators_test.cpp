@@ -111,7 +111,8 @@ TEST(WithEmulators, LaserIsLeftAtItsFirstRate) {
 /// Wheels that turn as the motors want.
 class EmulatedBase final : public Emulated {
  public:
-  explicit EmulatedBase(emulators::Base& base) : Emulated(base), base_(base) {}
+  template <class Emulator>
+  explicit EmulatedBase(Emulator& base) : Emulated(base), base_(base) {}
 
   emulators::BaseSenses senses{};
   emulators::WheelMotion motion{};

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <utility>
 
+#include "tests/folders.hpp"
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
@@ -19,26 +20,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string robot_file(const BenchOptions& options, const sim::Scenario& scenario) {
-  const bool p2os = options.base == emulate::BaseKind::P2os;
-  std::string text = fmt::format(
-      "name = \"emulated\"\nperiod = {}\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\nturn = 1.0\n"
-      "acceleration = 2.0\nturn_acceleration = 20.0\n"
-      "[[laser]]\nname = \"front laser\"\nport = \"{}\"\nrate = 500000\nstep_deg = 0.5\nx = {}\n"
-      "[base]\ntype = \"{}\"\nport = \"{}\"\ntrack = 0.5\nwatchdog = {}\nbattery_low = {}\n",
-      scenario.period,
-      (options.folder / "scanner").string(),
-      scenario.robot.sensors.lasers.front().mount_R.x,
-      p2os ? "pioneer" : "roboteq",
-      (options.folder / "base").string(),
-      p2os ? 2.0 : options.watchdog,
-      p2os ? 11.0 : 22.0);
-  if (!p2os) {
-    text +=
-        "wheel_radius = 0.1\ngear = 20\nencoder_lines = 500\nfull_speed_rpm = 1000\n"
-        "bumper_inputs = [1]\nrear_bumper_inputs = [2]\n";
+/// The keys of [base] that only this kind has.
+std::string base_keys(const BenchOptions& options) {
+  switch (options.base) {
+    case emulate::BaseKind::P2os:
+      return "type = \"pioneer\"\nwatchdog = 2.0\nbattery_low = 11\n";
+    case emulate::BaseKind::Analog:
+      return fmt::format(
+          "type = \"analog\"\nwatchdog = 0.2\nlibrary = \"{}\"\nwheel_radius = 0.1\n"
+          "counts_per_turn = 2000\nspeed_per_volt = 0.1\nrelay_closed_line = 1\nstop_line = 2\n"
+          "fault_line = 3\nbumper_lines = [4]\nenable_line = 5\n",
+          tests::emulated_comedi().string());
+    default:
+      return fmt::format(
+          "type = \"roboteq\"\nwatchdog = {}\nbattery_low = 22\nwheel_radius = 0.1\ngear = 20\n"
+          "encoder_lines = 500\nfull_speed_rpm = 1000\nbumper_inputs = [1]\n"
+          "rear_bumper_inputs = [2]\n",
+          options.watchdog);
   }
-  return text;
+}
+
+std::string robot_file(const BenchOptions& options, const sim::Scenario& scenario) {
+  return fmt::format(
+             "name = \"emulated\"\nperiod = {}\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\n"
+             "turn = 1.0\nacceleration = 2.0\nturn_acceleration = 20.0\n"
+             "[[laser]]\nname = \"front laser\"\nport = \"{}\"\nrate = 500000\nstep_deg = 0.5\n"
+             "x = {}\n[base]\nport = \"{}\"\ntrack = 0.5\n",
+             scenario.period,
+             (options.folder / "scanner").string(),
+             scenario.robot.sensors.lasers.front().mount_R.x,
+             (options.folder / "base").string()) +
+         base_keys(options);
 }
 
 /// `point` of W as the robot's own dead reckoning, which begins at its start, has it.

@@ -90,7 +90,7 @@ bool experiments(const fs::path& folder, const std::string& only) {
       "as sent | missed periods |\n|---|---|---|---|---|---|---|---|---|\n");
   bool held = true;
   for (const char* scenario : {"exp1", "exp2", "exp3", "exp4"}) {
-    for (const BaseKind base : {BaseKind::Roboteq, BaseKind::P2os}) {
+    for (const BaseKind base : {BaseKind::Roboteq, BaseKind::P2os, BaseKind::Analog}) {
       const std::string name = fmt::format("{}-{}", scenario, name_of(base));
       if (!only.empty() && name != only) continue;
       held = experiment(scenario, base, folder / name) && held;

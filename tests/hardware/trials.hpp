@@ -15,6 +15,7 @@ bool experiments(const std::filesystem::path& folder, const std::string& only);
 bool soak(const std::filesystem::path& folder, double seconds);
 
 inline const char* name_of(emulate::BaseKind base) {
+  if (base == emulate::BaseKind::Analog) return "analog";
   return base == emulate::BaseKind::P2os ? "p2os" : "roboteq";
 }
 

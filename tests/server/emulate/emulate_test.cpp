@@ -5,15 +5,19 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <thread>
 
+#include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "drivers/comedi_card.hpp"
 #include "drivers/lms200_protocol.hpp"
 #include "drivers/lms200_scan.hpp"
 #include "drivers/roboteq_protocol.hpp"
@@ -169,6 +173,59 @@ TEST_F(EmulationTest, TheBaseTurnsTheWheelsOfTheWorld) {
   const auto truth = nlohmann::json::parse(emulation.truth());
   EXPECT_GT(truth["pose"][0].get<double>(), 0.02);  // 2000 counts of 40000 a turn are 31 mm
   EXPECT_GT(truth["base"]["commands"].get<int>(), 0);
+}
+
+/// A card wired as the emulated one is.
+std::unique_ptr<drivers::AnalogCard> open_card(const fs::path& path) {
+  drivers::ComediSetup setup;
+  setup.library = tests::emulated_comedi().string();
+  setup.relay_closed_line = 1;
+  setup.stop_line = 2;
+  return drivers::open_comedi_card(path.string(), setup);
+}
+
+TEST_F(EmulationTest, VoltsTurnTheWheelsOfTheWorldWhileTheRelayIsHeld) {
+  add_base(BaseKind::Analog);
+  Emulation emulation(options_);
+  emulation.start();
+  const auto card = open_card(options_.base_link);
+  const auto drive = [&](bool relay_is_held, const std::function<bool()>& until) {
+    bool high = false;
+    const auto end = std::chrono::steady_clock::now() + milliseconds(kPatience);
+    while (!until() && std::chrono::steady_clock::now() < end) {
+      card->write({1, 1});
+      if (relay_is_held) card->set_relay_line(high = !high);
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    return until();
+  };
+  const auto rolled = [&] { return card->read().counts[0]; };
+  ASSERT_TRUE(drive(true, [&] { return rolled() > 100 && rolled() < 1U << 31; }));
+  ASSERT_TRUE(drive(true, [&] { return card->read().relay_closed == true; }));
+  // Volts alone, as after the death of the program that gave them.
+  ASSERT_TRUE(drive(false, [&] { return card->read().relay_closed == false; }));
+  ASSERT_TRUE(drive(true, [&] { return card->read().relay_closed == true; }));
+  emulation.command("stop on");
+  ASSERT_TRUE(drive(true, [&] { return card->read().stop_button; }));
+  EXPECT_EQ(card->read().relay_closed, false);
+  const auto truth = nlohmann::json::parse(emulation.truth());
+  EXPECT_GT(truth["pose"][0].get<double>(), 0.01);
+  EXPECT_GT(truth["base"]["commands"].get<int>(), 0);
+}
+
+TEST_F(EmulationTest, ACardGoesAndComesBack) {
+  add_base(BaseKind::Analog);
+  Emulation emulation(options_);
+  emulation.start();
+  const auto card = open_card(options_.base_link);
+  emulation.command("unplug 0.2");
+  EXPECT_THROW(card->read(), drivers::CardError);
+  const auto end = std::chrono::steady_clock::now() + milliseconds(kPatience);
+  while (!fs::exists(options_.base_link) && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  EXPECT_EQ(open_card(options_.base_link)->read().stop_button, false);
+  EXPECT_THROW(emulation.command("drop 0.1"), std::invalid_argument);
 }
 
 TEST_F(EmulationTest, UnpluggedPortsGoAndComeBack) {

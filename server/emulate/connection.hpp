@@ -1,0 +1,42 @@
+// server/emulate/connection.hpp: what connects an emulated device with the program that drives it.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace server::emulate {
+
+/// The device belongs to the thread that holds lock(): the connection's own, the world's, or one
+/// that injects faults.
+class Connection {
+ public:
+  explicit Connection(std::string name) : name_(std::move(name)) {}
+  virtual ~Connection() = default;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+
+  virtual void start() = 0;
+  /// The device has changed from outside and may have something to send.
+  virtual void wake() = 0;
+  /// Pulls the plug and puts it back after `seconds`.
+  virtual void unplug(double seconds) = 0;
+  /// Somebody has opened it.
+  virtual bool listened_to() const = 0;
+
+  const std::string& name() const { return name_; }
+  std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+
+ private:
+  std::string name_;
+  std::mutex mutex_{};
+};
+
+/// A device and its connection.
+template <class Device>
+struct Served {
+  Device* device = nullptr;
+  Connection* connection = nullptr;
+};
+
+}  // namespace server::emulate
