@@ -63,8 +63,8 @@ class AnalogEmulator final : public Base {
   bool hit_ = false;
   double volts_ = 24;  // of the battery
   std::uint16_t faults_ = 0;
-  BaseSenses senses_{};
-  bool felt_ = false;
+  double felt_at_ = -1;             // [s]
+  std::array<double, 2> rates_{};   // [1/s] of the counters
   std::array<double, 2> counts_{};  // not wrapped
 };
 

@@ -40,8 +40,7 @@ double CardMemory::volts(std::size_t output) const {
 }
 
 std::uint32_t CardMemory::count(std::size_t counter, double now) const {
-  constexpr double kLongest = 0.1;  // [s] beyond, the emulator does not live
-  const double since = std::clamp(now - turned_at, 0.0, kLongest);
+  const double since = std::clamp(now - turned_at, 0.0, kLongestStep);
   const auto whole =
       static_cast<std::int64_t>(std::floor(turned[counter] + rates[counter] * since));
   return static_cast<std::uint32_t>(whole) & kFullCount;

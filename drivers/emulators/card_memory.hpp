@@ -24,6 +24,7 @@ struct CardMemory {
   static constexpr std::uint32_t kZeroSample = 0x8000;    // 0 V within +-10 V
   static constexpr std::uint32_t kSymmetric = 1;  // the range from -10 to 10 V; 0: 0 to 10 V
   static constexpr std::uint32_t kRelayLine = 0;
+  static constexpr double kLongestStep = 0.5;  // [s] without the emulator, the encoders turn on
 
   std::uint32_t magic = kMagic;
   CardChannels channels{};

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
 
 #include <comedilib.h>
-#include <time.h>  // NOLINT(modernize-deprecated-headers): clock_gettime
 
 #include "drivers/emulators/card_memory.hpp"
 
@@ -43,9 +43,8 @@ int fail(int error) {
 }
 
 double now() {
-  timespec time{};
-  ::clock_gettime(CLOCK_MONOTONIC, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  using Seconds = std::chrono::duration<double>;
+  return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 unsigned channels_of(const comedi_t* card, unsigned subdevice) {
