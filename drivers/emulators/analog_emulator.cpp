@@ -1,7 +1,6 @@
 // drivers/emulators/analog_emulator.cpp: volts turn wheels while the relay is closed.
 #include "drivers/emulators/analog_emulator.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -60,22 +59,18 @@ WheelMotion AnalogEmulator::drive(double now) {
   return motion_;
 }
 
-/// Encoders turn by the clock: a world that is late on a busy computer would look like wheels that
-/// stand.
 void AnalogEmulator::feel(const BaseSenses& senses, double now) {
   const double per_metre =
       options_.counts_per_turn / (2 * std::numbers::pi * options_.wheel_radius);
-  const double dt = felt_at_ >= 0 ? std::min(now - felt_at_, CardMemory::kLongestStep) : 0;
-  felt_at_ = now;
-  counts_[0] += rates_[0] * dt;
-  counts_[1] += rates_[1] * dt;
-  rates_ = {senses.motion.left * per_metre, senses.motion.right * per_metre};
+  counts_[0] += (senses.left_travel - travel_.left) * per_metre;
+  counts_[1] += (senses.right_travel - travel_.right) * per_metre;
+  travel_ = {senses.left_travel, senses.right_travel};
   hit_ = senses.front_bumper;
   if (card_ != nullptr) {
-    for (std::size_t side = 0; side < counts_.size(); ++side) {
-      card_->turned[side] = counts_[side];
-      card_->rates[side] = rates_[side];
-    }
+    card_->turned[0] = counts_[0];
+    card_->turned[1] = counts_[1];
+    card_->rates[0] = senses.motion.left * per_metre;
+    card_->rates[1] = senses.motion.right * per_metre;
     card_->turned_at = now;
   }
   show_lines();

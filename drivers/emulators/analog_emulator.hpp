@@ -63,8 +63,7 @@ class AnalogEmulator final : public Base {
   bool hit_ = false;
   double volts_ = 24;  // of the battery
   std::uint16_t faults_ = 0;
-  double felt_at_ = -1;             // [s]
-  std::array<double, 2> rates_{};   // [1/s] of the counters
+  WheelMotion travel_{};            // [m] felt so far
   std::array<double, 2> counts_{};  // not wrapped
 };
 

@@ -15,7 +15,6 @@
 #include "server/emulate/mirror.hpp"
 #include "server/emulate/sonar_ring.hpp"
 #include "server/emulate/truth_record.hpp"
-#include "server/run/pacer.hpp"
 #include "sim/world.hpp"
 
 namespace server::emulate {
@@ -50,7 +49,7 @@ class EmulatedWorld {
  private:
   void run(const std::stop_token& stop);
   algo::Command command();
-  void feel(const algo::Observation& observation, const algo::Pose2& pose_W);
+  void feel(const algo::Observation& observation, const algo::Pose2& pose_W, double due);
   void look(double now);
   void note(double now, const algo::GroundTruth& truth);
 
@@ -59,7 +58,7 @@ class EmulatedWorld {
   TruthRecord& record_;
   double metres_per_count_ = 0;
   sim::World world_;
-  Deadlines deadlines_{};
+  std::uint64_t missed_ = 0;  // steps
   sim::PoseTrail trail_;
   std::vector<Mirror> mirrors_{};
   SonarRing sonars_;
