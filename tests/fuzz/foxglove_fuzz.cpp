@@ -13,7 +13,6 @@ namespace {
 class SilentClient final : public server::net::WsClient {
  public:
   std::uint32_t id() const override { return 1; }
-  const std::string& peer() const override { return peer_; }
   const std::string& subprotocol() const override { return peer_; }
   const std::map<std::string, std::string>& query() const override { return query_; }
   bool open() const override { return true; }

@@ -68,7 +68,6 @@ void add_moving(World& world, const JsonReader& in) {
 World world_from_json(const JsonReader& in) {
   World world;
   world.id = in.whole("id", 1'000'000);
-  world.difficulty = in.text_or("difficulty", "");
   const std::vector<double> start = numbers(in.array("start", 3), in.at("start"), 3);
   world.start = {start[0], start[1], algo::wrap_angle(start[2])};
   const std::vector<double> goal = numbers(in.array("goal", 2), in.at("goal"), 2);

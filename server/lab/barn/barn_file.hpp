@@ -16,7 +16,6 @@ namespace server::barn {
 
 struct World {
   std::uint64_t id = 0;
-  std::string difficulty{};  // of a DynaBARN world: "easy", "medium", "hard"
   algo::Pose2 start{};
   algo::Vec2 goal{0, 0};
   double goal_radius = 1;     // [m]

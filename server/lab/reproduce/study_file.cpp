@@ -165,7 +165,7 @@ StudyFile study_file_from_json(const json& document) {
   const JsonReader in(document, "");
   in.only({"about", "conditions", "scenarios", "limits", "sweeps"});
   StudyFile file;
-  file.about = in.text_or("about", "");
+  in.text_or("about", "");
   file.conditions = read_conditions(in.object("conditions"));
   const json& scenarios = in.array("scenarios", kMaxScenarios);
   if (scenarios.empty()) in.fail("scenarios", "has no entries");

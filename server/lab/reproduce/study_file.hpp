@@ -68,7 +68,6 @@ struct SweepPlan {
 };
 
 struct StudyFile {
-  std::string about{};
   PaperConditions conditions{};
   std::vector<sim::Scenario> scenarios{};
   std::vector<Limit> limits{};

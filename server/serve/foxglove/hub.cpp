@@ -22,14 +22,7 @@ std::string made_up_session_id() {
 
 }  // namespace
 
-Hub::Hub(HubOptions options) {
-  info_.name = std::move(options.name);
-  info_.session_id =
-      options.session_id.empty() ? made_up_session_id() : std::move(options.session_id);
-  info_.metadata = std::move(options.metadata);
-}
-
-Hub::~Hub() = default;
+Hub::Hub() : session_id_(made_up_session_id()) {}
 
 net::WsEndpoint Hub::endpoint(std::string path) {
   net::WsEndpoint endpoint;
@@ -159,8 +152,8 @@ void Hub::warn(ClientId id, std::string_view sentence) {
   if (found != clients_.end()) complain(found->second, StatusLevel::Warning, sentence);
 }
 
-void Hub::announce(StatusLevel level, std::string_view sentence, std::string_view id) {
-  for (auto& [client_id, client] : clients_) send(client, status(level, sentence, id));
+void Hub::announce(StatusLevel level, std::string_view sentence) {
+  for (auto& [id, client] : clients_) complain(client, level, sentence);
 }
 
 void Hub::send(Client& client, std::string message) {

@@ -75,20 +75,11 @@ struct ChannelSpec {
   std::function<Stamped()> newest{};
 };
 
-struct HubOptions {
-  std::string name = "Tautline";
-  /// Viewers start afresh when it changes; empty: one made up for the life of this hub.
-  std::string session_id{};
-  /// A viewer shows its click-drag goal tool only for a server that names a ROS distribution.
-  std::map<std::string, std::string> metadata{{"ROS_DISTRO", "humble"}};
-};
-
 /// Io thread only. Must live as long as the net::Server its endpoint was added to. What a client
 /// does wrong is answered by a status message and never ends its connection.
 class Hub {
  public:
-  explicit Hub(HubOptions options = {});
-  ~Hub();
+  Hub();
   Hub(const Hub&) = delete;
   Hub& operator=(const Hub&) = delete;
 
@@ -123,10 +114,9 @@ class Hub {
   void parameters_changed(std::span<const std::string> names = {});
   /// A status message to one client, for instance a refusal found out later.
   void warn(ClientId client, std::string_view sentence);
-  /// A status message to everybody; one with the same non-empty `id` replaces the former.
-  void announce(StatusLevel level, std::string_view sentence, std::string_view id = {});
+  /// A status message to everybody.
+  void announce(StatusLevel level, std::string_view sentence);
 
-  const std::vector<Channel>& channels() const { return channels_; }
   std::size_t clients() const { return clients_.size(); }
 
  private:
@@ -173,7 +163,7 @@ class Hub {
   static void send(Client& client, std::string message);
   static void complain(Client& client, StatusLevel level, std::string_view sentence);
 
-  ServerInfo info_{};
+  std::string session_id_;              // viewers start afresh when it changes
   std::vector<Channel> channels_{};     // id = index + 1
   std::vector<ChannelState> states_{};  // same order
   std::vector<Service> services_{};     // id = index + 1

@@ -60,7 +60,7 @@ void ServiceReply::failure(std::string_view sentence) const {
 void Hub::opened(const std::shared_ptr<net::WsClient>& socket) {
   Client& client = clients_[socket->id()];
   client.socket = socket;
-  send(client, server_info(info_));  // must be the first message
+  send(client, server_info(session_id_));  // must be the first message
   send(client, advertise(channels_));
   if (!services_.empty()) send(client, advertise_services(services_));
   if (time_ns_) socket->send_latest(kTimeKey, time_message(*time_ns_), nullptr);

@@ -143,13 +143,6 @@ std::uint32_t take_u32(std::string_view& bytes, const char* what) {
   return value;
 }
 
-template <typename T>
-json json_list(std::span<const T> values) {
-  json list = json::array();
-  for (const T& value : values) list.push_back(value);
-  return list;
-}
-
 json parameter_json(const Parameter& parameter) {
   json out = {{"name", parameter.name}};
   if (!parameter.value.is_null()) out["value"] = parameter.value;
@@ -225,14 +218,15 @@ ClientBinary parse_binary(std::string_view bytes) {
                       " is unknown");
 }
 
-std::string server_info(const ServerInfo& info) {
+std::string server_info(const std::string& session_id) {
   return dump_json(
       {{"op", "serverInfo"},
-       {"name", info.name},
+       {"name", "Tautline"},
        {"capabilities", {"clientPublish", "time", "parameters", "parametersSubscribe", "services"}},
        {"supportedEncodings", json::array({"json"})},
-       {"metadata", info.metadata},
-       {"sessionId", info.session_id}});
+       // A viewer shows its click-drag goal tool only for a server that names a ROS distribution.
+       {"metadata", {{"ROS_DISTRO", "humble"}}},
+       {"sessionId", session_id}});
 }
 
 std::string advertise(std::span<const Channel> channels) {
@@ -248,18 +242,8 @@ std::string advertise(std::span<const Channel> channels) {
   return dump_json({{"op", "advertise"}, {"channels", list}});
 }
 
-std::string unadvertise(std::span<const std::uint32_t> channel_ids) {
-  return dump_json({{"op", "unadvertise"}, {"channelIds", json_list(channel_ids)}});
-}
-
-std::string status(StatusLevel level, std::string_view message, std::string_view id) {
-  json out = {{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}};
-  if (!id.empty()) out["id"] = id;
-  return dump_json(out);
-}
-
-std::string remove_status(std::span<const std::string> status_ids) {
-  return dump_json({{"op", "removeStatus"}, {"statusIds", json_list(status_ids)}});
+std::string status(StatusLevel level, std::string_view message) {
+  return dump_json({{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}});
 }
 
 std::string parameter_values(std::span<const Parameter> parameters,
@@ -275,10 +259,6 @@ std::string advertise_services(std::span<const Service> services) {
   json list = json::array();
   for (const Service& service : services) list.push_back(service_json(service));
   return dump_json({{"op", "advertiseServices"}, {"services", list}});
-}
-
-std::string unadvertise_services(std::span<const std::uint32_t> service_ids) {
-  return dump_json({{"op", "unadvertiseServices"}, {"serviceIds", json_list(service_ids)}});
 }
 
 std::string service_call_failure(std::uint32_t service_id,

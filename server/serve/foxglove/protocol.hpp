@@ -115,25 +115,16 @@ ClientText parse_text(std::string_view text);
 /// Throws ProtocolError on an unknown opcode or a length that does not fit the frame.
 ClientBinary parse_binary(std::string_view bytes);
 
-struct ServerInfo {
-  std::string name{};
-  std::string session_id{};
-  std::map<std::string, std::string> metadata{};
-};
-
 enum class StatusLevel : int { Info = 0, Warning = 1, Error = 2 };
 
 // Server text operations.
-std::string server_info(const ServerInfo& info);
+std::string server_info(const std::string& session_id);
 std::string advertise(std::span<const Channel> channels);
-std::string unadvertise(std::span<const std::uint32_t> channel_ids);
-std::string status(StatusLevel level, std::string_view message, std::string_view id = {});
-std::string remove_status(std::span<const std::string> status_ids);
+std::string status(StatusLevel level, std::string_view message);
 std::string parameter_values(std::span<const Parameter> parameters,
                              const std::optional<std::string>& id = std::nullopt);
 /// Request and response schemas in the newer and the older form, for viewers of both ages.
 std::string advertise_services(std::span<const Service> services);
-std::string unadvertise_services(std::span<const std::uint32_t> service_ids);
 std::string service_call_failure(std::uint32_t service_id,
                                  std::uint32_t call_id,
                                  std::string_view message);

@@ -130,12 +130,6 @@ std::string_view Request::cookie(std::string_view name) const {
   return {};
 }
 
-std::optional<std::string> Request::query_value(const std::string& name) const {
-  const auto found = query.find(name);
-  if (found == query.end()) return std::nullopt;
-  return found->second;
-}
-
 std::string_view reason_phrase(int status) {
   static constexpr std::array<std::pair<int, std::string_view>, 29> kPhrases{
       {{101, "Switching Protocols"},
@@ -184,15 +178,9 @@ Response json_response(int status, std::string text) {
   return text_response(status, "application/json", std::move(text));
 }
 
-Response problem(int status,
-                 std::string_view title,
-                 std::string_view detail,
-                 const std::vector<FieldError>& errors) {
-  nlohmann::ordered_json body = {
+Response problem(int status, std::string_view title, std::string_view detail) {
+  const nlohmann::ordered_json body = {
       {"type", "about:blank"}, {"title", title}, {"status", status}, {"detail", detail}};
-  for (const FieldError& error : errors) {
-    body["errors"].push_back({{"pointer", error.pointer}, {"detail", error.detail}});
-  }
   // A sentence may quote what the client sent, so it may hold broken UTF-8: replace, never throw.
   return text_response(status,
                        "application/problem+json",

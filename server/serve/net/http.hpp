@@ -42,8 +42,6 @@ struct Request {
   std::vector<std::string_view> elements(std::string_view name) const;
   /// Value of the cookie `name`; empty when there is none.
   std::string_view cookie(std::string_view name) const;
-  /// Query value, or nothing.
-  std::optional<std::string> query_value(const std::string& name) const;
 };
 
 /// A body that is made while it is sent, so that neither its length nor a slow client decides how
@@ -67,12 +65,6 @@ struct Response {
   std::shared_ptr<BodyStream> stream{};  // instead of `body`
 };
 
-/// One thing wrong in a request body, as listed in a problem's "errors".
-struct FieldError {
-  std::string pointer{};  // JSON pointer, "/goal/x"
-  std::string detail{};
-};
-
 /// Thrown by handlers: becomes a problem response of that status with what() as its detail.
 class HttpError : public std::runtime_error {
  public:
@@ -88,11 +80,8 @@ std::string_view reason_phrase(int status);
 
 Response json_response(int status, std::string text);
 Response text_response(int status, std::string content_type, std::string text);
-/// RFC 9457: application/problem+json with type, title, status, detail and, if any, errors.
-Response problem(int status,
-                 std::string_view title,
-                 std::string_view detail,
-                 const std::vector<FieldError>& errors = {});
+/// RFC 9457: application/problem+json with type, title, status and detail.
+Response problem(int status, std::string_view title, std::string_view detail);
 /// A problem titled with the status' own phrase.
 Response problem(int status, std::string_view detail);
 

@@ -113,20 +113,8 @@ bool SendQueue::next(Outgoing& out) {
 
 std::string choose_subprotocol(const std::vector<std::string>& accepted,
                                const std::vector<std::string_view>& offered) {
-  for (const std::string& wanted : accepted) {
-    for (std::string_view line : offered) {
-      while (!line.empty()) {
-        const std::size_t comma = std::min(line.find(','), line.size());
-        std::string_view name = line.substr(0, comma);
-        line.remove_prefix(std::min(comma + 1, line.size()));
-        while (!name.empty() && (name.front() == ' ' || name.front() == '\t'))
-          name.remove_prefix(1);
-        while (!name.empty() && (name.back() == ' ' || name.back() == '\t')) name.remove_suffix(1);
-        if (name == wanted) return wanted;
-      }
-    }
-  }
-  return {};
+  const auto chosen = std::ranges::find_first_of(accepted, offered);
+  return chosen == accepted.end() ? std::string() : *chosen;
 }
 
 }  // namespace server::net

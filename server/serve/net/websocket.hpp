@@ -34,8 +34,6 @@ class WsClient {
   virtual ~WsClient() = default;
   /// Unique in this server, from 1, never used again.
   virtual std::uint32_t id() const = 0;
-  /// Address of the other end.
-  virtual const std::string& peer() const = 0;
   /// The query of the address it connected to, decoded.
   virtual const std::map<std::string, std::string>& query() const = 0;
   /// The negotiated subprotocol.
@@ -79,7 +77,7 @@ struct WsEndpoint {
   std::function<void(WsClient&)> on_close{};
 };
 
-/// The first of `accepted` that is among the `offered` header lines (comma lists); empty if none.
+/// The first of `accepted` that is among the `offered`; empty if none.
 std::string choose_subprotocol(const std::vector<std::string>& accepted,
                                const std::vector<std::string_view>& offered);
 

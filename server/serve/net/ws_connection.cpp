@@ -55,7 +55,6 @@ class WsConnection final : public Connection,
 
   // WsClient
   std::uint32_t id() const override { return id_; }
-  const std::string& peer() const override { return peer_; }
   const std::map<std::string, std::string>& query() const override { return query_; }
   const std::string& subprotocol() const override { return subprotocol_; }
   bool open() const override { return state_ == State::Open; }

@@ -29,7 +29,6 @@ json crossing() {
   return {
       {"worlds",
        {{{"id", 8},
-         {"difficulty", "easy"},
          {"start", {0, 0, 0}},
          {"goal", {8, 0}},
          {"optimal_path_length", 8.0},
@@ -54,7 +53,6 @@ TEST(BarnFile, ReadsPostsAndMovingCylinders) {
   const World moving = worlds_from_json(crossing()).at(0);
   ASSERT_EQ(moving.paths.size(), 1U);
   EXPECT_EQ(moving.paths[0].at(5), algo::Vec2(4, 0));
-  EXPECT_EQ(moving.difficulty, "easy");
 }
 
 TEST(BarnFile, SaysWhatIsWrongAndWhere) {

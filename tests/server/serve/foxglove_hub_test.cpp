@@ -19,7 +19,6 @@ class FakeSocket final : public net::WsClient {
  public:
   explicit FakeSocket(std::uint32_t id) : id_(id) {}
   std::uint32_t id() const override { return id_; }
-  const std::string& peer() const override { return peer_; }
   const std::string& subprotocol() const override { return peer_; }
   const std::map<std::string, std::string>& query() const override { return query_; }
   bool open() const override { return true; }
@@ -468,8 +467,8 @@ TEST_F(FoxgloveHub, TellsWhenAPublisherOrAClientIsGone) {
 TEST_F(FoxgloveHub, AnnouncesToEverybody) {
   const auto a = greeted(1);
   const auto b = greeted(2);
-  hub_.announce(StatusLevel::Info, "a new run", "run");
-  EXPECT_EQ("run", a->texts.at(0).at("id"));
+  hub_.announce(StatusLevel::Info, "a new run");
+  EXPECT_EQ("a new run", status_of(*a, 0));
   EXPECT_EQ("a new run", status_of(*b, 0));
 }
 

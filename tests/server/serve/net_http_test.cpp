@@ -16,11 +16,16 @@ TEST(NetHttp, DecodesPathAndQueryOnce) {
   Request request;
   EXPECT_FALSE(parse_target("/a%20b/%252e+c?x=1+2&y=%26&empty=&flag&x=3", request));
   EXPECT_EQ("/a b/%2e+c", request.path);
-  EXPECT_EQ("3", request.query_value("x"));
-  EXPECT_EQ("&", request.query_value("y"));
-  EXPECT_EQ("", request.query_value("empty"));
-  EXPECT_EQ("", request.query_value("flag"));
-  EXPECT_EQ(std::nullopt, request.query_value("none"));
+  const std::map<std::string, std::string> query{
+      {"x", "3"}, {"y", "&"}, {"empty", ""}, {"flag", ""}};
+  EXPECT_EQ(query, request.query);
+}
+
+TEST(NetHttp, SplitsCommaListsOverSeveralHeaders) {
+  Request request;
+  request.headers = {{"Sec-WebSocket-Protocol", " c ,\tb "}, {"sec-websocket-protocol", "a"}};
+  EXPECT_EQ((std::vector<std::string_view>{"c", "b", "a"}),
+            request.elements("Sec-WebSocket-Protocol"));
 }
 
 TEST(NetHttp, RefusesBrokenTargets) {
@@ -85,7 +90,7 @@ TEST(NetHttp, AHeaderValueCannotAddAHeader) {
 }
 
 TEST(NetHttp, AProblemFollowsRfc9457) {
-  const Response response = problem(422, "Unfit", "two things", {{"/goal/x", "is not a number"}});
+  const Response response = problem(422, "Unfit", "two things");
   EXPECT_EQ(422, response.status);
   EXPECT_EQ("application/problem+json", response.content_type);
   const auto body = nlohmann::json::parse(*response.body);
@@ -93,8 +98,6 @@ TEST(NetHttp, AProblemFollowsRfc9457) {
   EXPECT_EQ("Unfit", body.at("title"));
   EXPECT_EQ(422, body.at("status"));
   EXPECT_EQ("two things", body.at("detail"));
-  EXPECT_EQ("/goal/x", body.at("errors").at(0).at("pointer"));
-  EXPECT_EQ("is not a number", body.at("errors").at(0).at("detail"));
 }
 
 TEST(NetHttp, AProblemMayQuoteBrokenText) {
