@@ -34,7 +34,7 @@ JsonReader::JsonReader(const json& value, std::string path)
   }
 }
 
-void JsonReader::only(std::initializer_list<std::string_view> known) const {
+void JsonReader::only(std::span<const std::string_view> known) const {
   for (const auto& [key, unused] : value_.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     throw DocumentError(

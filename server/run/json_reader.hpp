@@ -4,7 +4,7 @@
 
 #include <initializer_list>
 #include <limits>
-#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -32,7 +32,8 @@ class JsonReader {
   JsonReader(const nlohmann::json& value, std::string path);
 
   /// Throws when a field is not among `known`: a misspelt field must not pass in silence.
-  void only(std::initializer_list<std::string_view> known) const;
+  void only(std::initializer_list<std::string_view> known) const { only(std::span(known)); }
+  void only(std::span<const std::string_view> known) const;
 
   bool has(std::string_view key) const;  // present and not null
   double number(std::string_view key, NumberRange range = {}) const;

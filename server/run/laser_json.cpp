@@ -6,6 +6,7 @@
 #include <string>
 
 #include "algo/units.hpp"
+#include "server/run/json_fields.hpp"
 #include "server/run/pose_json.hpp"
 
 namespace server {
@@ -13,6 +14,27 @@ namespace {
 
 using nlohmann::json;
 constexpr std::uint64_t kMaxBeams = 4096;
+
+using Laser = sim::LaserConfig;
+constexpr Field<Laser> kLaser[] = {
+    {"resolution_deg"},
+    {"field_of_view_deg"},
+    {"beams"},
+    {"ideal"},
+    {"mount"},
+    {"height", &Laser::height, {0, 5}},
+    {"rolling", &Laser::rolling},
+    {"unit"},
+    {"range_max", &Laser::range_max, {0.1, 81.91}},
+    {"bias", &Laser::bias, {0, 1}},
+    {"noise", &Laser::noise, {0, 1}},
+    {"noise_shape"},
+    {"mixed_pixels", &Laser::mixed_pixels},
+    {"reflectivity", &Laser::reflectivity},
+    {"dropout", &Laser::dropout, {0, 1}},
+    {"salt", &Laser::salt, {0, 1}},
+    {"pepper", &Laser::pepper, {0, 1}},
+};
 
 /// Whether `degrees` is an angular resolution of the LMS200.
 bool lms200_mode(double degrees) {
@@ -23,23 +45,6 @@ bool lms200_mode(double degrees) {
 }  // namespace
 
 sim::LaserConfig laser_from_json(const JsonReader& in) {
-  in.only({"resolution_deg",
-           "field_of_view_deg",
-           "beams",
-           "ideal",
-           "mount",
-           "height",
-           "rolling",
-           "unit",
-           "range_max",
-           "bias",
-           "noise",
-           "noise_shape",
-           "mixed_pixels",
-           "reflectivity",
-           "dropout",
-           "salt",
-           "pepper"});
   const double resolution = in.number_or("resolution_deg", 0.5);
   sim::LaserConfig laser;
   try {
@@ -56,45 +61,26 @@ sim::LaserConfig laser_from_json(const JsonReader& in) {
         30.0);
   }
   if (in.has("mount")) laser.mount_R = pose_from_json(in.object("mount"), 0);
-  laser.height = in.number_or("height", laser.height, {0.0, 5.0});
-  laser.rolling = in.flag_or("rolling", laser.rolling);
   const std::string unit = in.text_or("unit", "mm");
   if (unit != "mm" && unit != "cm") in.fail("unit", "must be \"mm\" or \"cm\"");
   if (unit == "cm") {
     laser.unit = sim::LaserUnit::Centimetre;
     laser.range_max = 81.91;
   }
-  laser.range_max = in.number_or("range_max", laser.range_max, {0.1, 81.91});
-  laser.bias = in.number_or("bias", laser.bias, {0.0, 1.0});
-  laser.noise = in.number_or("noise", laser.noise, {0.0, 1.0});
+  read_only_fields(in, kLaser, laser);
   const std::string shape = in.text_or("noise_shape", "gaussian");
   if (shape != "gaussian" && shape != "uniform") {
     in.fail("noise_shape", "must be \"gaussian\" or \"uniform\"");
   }
   laser.noise_shape = shape == "uniform" ? sim::NoiseShape::Uniform : sim::NoiseShape::Gaussian;
-  laser.mixed_pixels = in.flag_or("mixed_pixels", laser.mixed_pixels);
-  laser.reflectivity = in.flag_or("reflectivity", laser.reflectivity);
-  laser.dropout = in.number_or("dropout", laser.dropout, {0.0, 1.0});
-  laser.salt = in.number_or("salt", laser.salt, {0.0, 1.0});
-  laser.pepper = in.number_or("pepper", laser.pepper, {0.0, 1.0});
   return laser;
 }
 
 json to_json(const sim::LaserConfig& laser) {
-  json out = {
-      {"mount", to_json(laser.mount_R)},
-      {"height", laser.height},
-      {"rolling", laser.rolling},
-      {"unit", laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm"},
-      {"range_max", laser.range_max},
-      {"bias", laser.bias},
-      {"noise", laser.noise},
-      {"noise_shape", laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian"},
-      {"mixed_pixels", laser.mixed_pixels},
-      {"reflectivity", laser.reflectivity},
-      {"dropout", laser.dropout},
-      {"salt", laser.salt},
-      {"pepper", laser.pepper}};
+  json out = written(kLaser, laser);
+  out["mount"] = to_json(laser.mount_R);
+  out["unit"] = laser.unit == sim::LaserUnit::Millimetre ? "mm" : "cm";
+  out["noise_shape"] = laser.noise_shape == sim::NoiseShape::Uniform ? "uniform" : "gaussian";
   const double degrees = laser.angle_increment / algo::units::kRadiansPerDegree;
   if (lms200_mode(degrees)) {
     out["resolution_deg"] = std::round(degrees * 100) / 100;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "server/run/json_fields.hpp"
 #include "server/run/pose_json.hpp"
 
 namespace server {
@@ -12,52 +13,31 @@ using nlohmann::json;
 constexpr std::size_t kMaxKeys = 10'000;
 constexpr double kMaxTime = 1e6;  // [s]
 
+using Drive = sim::DriveConfig;
+constexpr NumberRange kLimit{1e-3, 100};
+constexpr Field<Drive> kDrive[] = {
+    {"max_v", &Drive::max_v, kLimit},
+    {"max_omega", &Drive::max_omega, kLimit},
+    {"max_acceleration", &Drive::max_acceleration, kLimit},
+    {"max_angular_acceleration", &Drive::max_angular_acceleration, kLimit},
+    {"ramps", &Drive::ramps},
+    {"delay_ticks", &Drive::delay_ticks, {0, 100}},
+    {"yaw_slip", &Drive::yaw_slip, {0, 0.9}},
+    {"odometry_scale", &Drive::odometry_scale, {0, 0.5}},
+    {"odometry_noise", &Drive::odometry_noise, {0, 0.5}},
+    {"odometry_slip", &Drive::odometry_slip, {0, 0.9}},
+};
+
 }  // namespace
 
 sim::DriveConfig drive_from_json(const JsonReader& in) {
-  in.only({"max_v",
-           "max_omega",
-           "max_acceleration",
-           "max_angular_acceleration",
-           "ramps",
-           "delay_ticks",
-           "yaw_slip",
-           "odometry_scale",
-           "odometry_noise",
-           "odometry_slip"});
-  const auto limit = [&](const char* key) -> std::optional<double> {
-    if (!in.has(key)) return std::nullopt;
-    return in.number(key, {1e-3, 100});
-  };
   sim::DriveConfig drive;
-  drive.max_v = limit("max_v");
-  drive.max_omega = limit("max_omega");
-  drive.max_acceleration = limit("max_acceleration");
-  drive.max_angular_acceleration = limit("max_angular_acceleration");
-  drive.ramps = in.flag_or("ramps", false);
-  drive.delay_ticks = static_cast<std::uint32_t>(in.whole_or("delay_ticks", 0, 100));
-  drive.yaw_slip = in.number_or("yaw_slip", 0, {0, 0.9});
-  drive.odometry_scale = in.number_or("odometry_scale", 0, {0, 0.5});
-  drive.odometry_noise = in.number_or("odometry_noise", 0, {0, 0.5});
-  drive.odometry_slip = in.number_or("odometry_slip", 0, {0, 0.9});
+  read_only_fields(in, kDrive, drive);
   return drive;
 }
 
 json to_json(const sim::DriveConfig& drive) {
-  json out = {{"ramps", drive.ramps},
-              {"delay_ticks", drive.delay_ticks},
-              {"yaw_slip", drive.yaw_slip},
-              {"odometry_scale", drive.odometry_scale},
-              {"odometry_noise", drive.odometry_noise},
-              {"odometry_slip", drive.odometry_slip}};
-  const auto put = [&](const char* key, const std::optional<double>& limit) {
-    if (limit) out[key] = *limit;
-  };
-  put("max_v", drive.max_v);
-  put("max_omega", drive.max_omega);
-  put("max_acceleration", drive.max_acceleration);
-  put("max_angular_acceleration", drive.max_angular_acceleration);
-  return out;
+  return written(kDrive, drive);
 }
 
 sim::ObstaclePath path_from_json(const JsonReader& in, std::uint32_t id) {

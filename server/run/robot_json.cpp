@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "server/run/json_fields.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/sensor_json.hpp"
 
@@ -19,9 +20,22 @@ constexpr NumberRange kHeight{0, 5};          // [m] over the floor
 constexpr NumberRange kMassHeight{0.001, 5};  // [m]
 constexpr NumberRange kPlace{-10, 10};        // [m] in R
 constexpr NumberRange kMass{0.01, 1e5};       // [kg]
-constexpr NumberRange kSpeed{1e-3, 20};       // [m/s]
-constexpr NumberRange kTurn{1e-3, 20};        // [rad/s]
 constexpr NumberRange kChange{1e-3, 100};     // [m/s2] and [rad/s2]
+
+constexpr Field<sim::Caster> kCaster[] = {
+    required("x", &sim::Caster::x, kPlace),
+    {"y", &sim::Caster::y, kPlace},
+    required("radius", &sim::Caster::radius, {0.001, 1}),
+    {"raised", &sim::Caster::raised, {0, 1}},
+};
+
+using Model = sim::RobotModel;
+constexpr Field<Model> kLimits[] = {
+    required("speed", &Model::max_v, {1e-3, 20}),
+    required("turn", &Model::max_omega, {1e-3, 20}),
+    {"acceleration", &Model::max_acceleration, kChange},
+    {"turn_acceleration", &Model::max_angular_acceleration, kChange},
+};
 
 void read_hull(const JsonReader& in, sim::RobotModel& robot) {
   in.only({"radius", "length", "width", "low", "high"});
@@ -36,16 +50,6 @@ void read_hull(const JsonReader& in, sim::RobotModel& robot) {
   }
   robot.hull_low = in.number_or("low", robot.hull_low, kHeight);
   robot.hull_high = in.number_or("high", robot.hull_high, kHeight);
-}
-
-sim::Caster caster_from_json(const JsonReader& in) {
-  in.only({"x", "y", "radius", "raised"});
-  sim::Caster caster;
-  caster.x = in.number("x", kPlace);
-  caster.y = in.number_or("y", 0, kPlace);
-  caster.radius = in.number("radius", {0.001, 1});
-  caster.raised = in.number_or("raised", 0, {0, 1});
-  return caster;
 }
 
 /// One ahead and one behind, where the wheels lie in one line.
@@ -73,22 +77,13 @@ void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
   if (in.has("casters")) {
     for (const json& each : in.array("casters", sim::kMostCasters)) {
       const std::string at = fmt::format("{}/{}", in.at("casters"), robot.casters.size());
-      robot.casters.push_back(caster_from_json({each, at}));
+      read_only_fields({each, at}, kCaster, robot.casters.emplace_back());
     }
   } else if (robot.wheels.size() == 1) {
     robot.casters = usual_casters(robot);
   }
   robot.friction = in.number_or("friction", robot.friction, {0.01, 5});
   robot.counts_per_turn = in.number_or("counts_per_turn", robot.counts_per_turn, {1, 1e7});
-}
-
-void read_limits(const JsonReader& in, sim::RobotModel& robot) {
-  in.only({"speed", "turn", "acceleration", "turn_acceleration"});
-  robot.max_v = in.number("speed", kSpeed);
-  robot.max_omega = in.number("turn", kTurn);
-  robot.max_acceleration = in.number_or("acceleration", robot.max_acceleration, kChange);
-  robot.max_angular_acceleration =
-      in.number_or("turn_acceleration", robot.max_angular_acceleration, kChange);
 }
 
 /// `problem` begins with the field that it is about.
@@ -119,7 +114,7 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
   robot.mass_height = in.number_or(
       "mass_height", std::clamp(middle, kMassHeight.min, kMassHeight.max), kMassHeight);
   read_wheels(in, robot);
-  read_limits(in.object("limits"), robot);
+  read_only_fields(in.object("limits"), kLimits, robot);
   read_sensors(in, robot.sensors);
   if (const auto problem = sim::defect(robot)) refuse(in, *problem);
   return robot;
@@ -134,9 +129,7 @@ json to_json(const sim::RobotModel& robot) {
     hull["width"] = robot.hull_width;
   }
   json casters = json::array();
-  for (const sim::Caster& c : robot.casters) {
-    casters.push_back({{"x", c.x}, {"y", c.y}, {"radius", c.radius}, {"raised", c.raised}});
-  }
+  for (const sim::Caster& caster : robot.casters) casters.push_back(written(kCaster, caster));
   return {{"name", robot.name},
           {"hull", std::move(hull)},
           {"mass", robot.mass},
@@ -145,11 +138,7 @@ json to_json(const sim::RobotModel& robot) {
           {"wheel_radius", robot.wheel_radius},
           {"wheels", robot.wheels},
           {"casters", std::move(casters)},
-          {"limits",
-           {{"speed", robot.max_v},
-            {"turn", robot.max_omega},
-            {"acceleration", robot.max_acceleration},
-            {"turn_acceleration", robot.max_angular_acceleration}}},
+          {"limits", written(kLimits, robot)},
           {"friction", robot.friction},
           {"counts_per_turn", robot.counts_per_turn}};
 }

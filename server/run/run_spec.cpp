@@ -13,7 +13,7 @@
 #include "server/run/fleet_robot.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/io_thread.hpp"
-#include "server/run/json_reader.hpp"
+#include "server/run/json_fields.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "sim/replay.hpp"
@@ -206,6 +206,25 @@ double time_limit(const RunSpec& spec) {
 
 namespace {
 
+using Robot = algo::RobotSpec;
+/// Without limits: what a run was accepted with is read as it is.
+constexpr Field<Robot> kRobot[] = {
+    {"name"},
+    required("radius", &Robot::radius),
+    {"half_length", &Robot::half_length},
+    {"half_width", &Robot::half_width},
+    required("half_track", &Robot::half_track),
+    required("period", &Robot::period),
+    required("max_v", &Robot::max_v),
+    required("max_omega", &Robot::max_omega),
+    required("max_acceleration", &Robot::max_acceleration),
+    required("max_angular_acceleration", &Robot::max_angular_acceleration),
+    {"command_delay", &Robot::command_delay},
+    {"has_laser", &Robot::has_laser},
+    {"drives", &Robot::drives},
+    {"channels"},
+};
+
 json to_json(const algo::ChannelInfo& channel) {
   json out = {{"name", channel.name},
               {"kind", channel.kind},
@@ -231,39 +250,17 @@ algo::ChannelInfo channel_from_json(const JsonReader& in) {
 json to_json(const algo::RobotSpec& robot) {
   json channels = json::array();
   for (const algo::ChannelInfo& channel : robot.channels) channels.push_back(to_json(channel));
-  return {{"name", robot.name},
-          {"radius", robot.radius},
-          {"half_length", robot.half_length},
-          {"half_width", robot.half_width},
-          {"half_track", robot.half_track},
-          {"period", robot.period},
-          {"max_v", robot.max_v},
-          {"max_omega", robot.max_omega},
-          {"max_acceleration", robot.max_acceleration},
-          {"max_angular_acceleration", robot.max_angular_acceleration},
-          {"command_delay", robot.command_delay},
-          {"has_laser", robot.has_laser},
-          {"drives", robot.drives},
-          {"channels", std::move(channels)}};
+  json out = written(kRobot, robot);
+  out["name"] = robot.name;
+  out["channels"] = std::move(channels);
+  return out;
 }
 
-/// Without limits: what a run was accepted with is read as it is.
 algo::RobotSpec robot_spec_from_json(const json& value) {
   const JsonReader in(value, "robot");
   algo::RobotSpec robot;
   robot.name = in.text("name", SIZE_MAX);
-  robot.radius = in.number("radius");
-  robot.half_length = in.number_or("half_length", 0);
-  robot.half_width = in.number_or("half_width", 0);
-  robot.half_track = in.number("half_track");
-  robot.period = in.number("period");
-  robot.max_v = in.number("max_v");
-  robot.max_omega = in.number("max_omega");
-  robot.max_acceleration = in.number("max_acceleration");
-  robot.max_angular_acceleration = in.number("max_angular_acceleration");
-  robot.command_delay = in.number_or("command_delay", 0);
-  robot.has_laser = in.flag_or("has_laser", true);
-  robot.drives = in.flag_or("drives", false);
+  read_fields(in, kRobot, robot);
   if (in.has("channels")) {
     const json& list = in.array("channels", algo::kMostChannels);
     for (const json& each : list) robot.channels.push_back(channel_from_json({each, "robot"}));

@@ -1,7 +1,6 @@
 // server/run/sensor_json.cpp: one reader and one writer each.
 #include "server/run/sensor_json.hpp"
 
-#include <cmath>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,7 +9,9 @@
 
 #include "algo/name.hpp"
 #include "algo/units.hpp"
+#include "server/run/json_fields.hpp"
 #include "server/run/laser_json.hpp"
+#include "server/run/pose_json.hpp"
 #include "sim/gyro_model.hpp"
 #include "sim/infrared_model.hpp"
 #include "sim/sensor.hpp"
@@ -21,10 +22,38 @@ namespace {
 
 using nlohmann::json;
 
-/// Short numbers for whole degrees; 1e-9 degrees are no difference.
-double in_degrees(double angle) {
-  return std::round(angle / algo::units::kRadiansPerDegree * 1e9) / 1e9;
-}
+constexpr double kDegree = algo::units::kRadiansPerDegree;
+
+using Sonar = sim::SonarConfig;
+constexpr Field<Sonar> kSonar[] = {
+    {"count", &Sonar::count, {0, 64}},
+    {"field_deg", &Sonar::field, {0, 360}, kDegree},
+    {"cone_deg", &Sonar::cone, {0, 360}, kDegree},
+    {"ping", &Sonar::ping},
+    {"range_min", &Sonar::range_min},
+    {"range_max", &Sonar::range_max},
+    {"noise", &Sonar::noise},
+    {"incidence_deg", &Sonar::incidence, {0, 360}, kDegree},
+    {"height", &Sonar::height},
+};
+
+using Infrared = sim::InfraredConfig;
+constexpr Field<Infrared> kInfrared[] = {
+    {"mount"},
+    {"height", &Infrared::height},
+    {"beams", &Infrared::beams, {0, 361}},
+    {"field_deg", &Infrared::field, {0, 360}, kDegree},
+    {"period", &Infrared::period},
+    {"range_min", &Infrared::range_min},
+    {"range_max", &Infrared::range_max},
+    {"noise", &Infrared::noise},
+};
+
+constexpr Field<sim::GyroConfig> kGyro[] = {
+    {"bias", &sim::GyroConfig::bias},
+    {"bias_walk", &sim::GyroConfig::bias_walk},
+    {"noise", &sim::GyroConfig::noise},
+};
 
 algo::Pose2 mount_from_json(const JsonReader& in) {
   constexpr NumberRange kOnHull{-10, 10};  // [m]
@@ -33,73 +62,24 @@ algo::Pose2 mount_from_json(const JsonReader& in) {
           algo::wrap_angle(in.number_or("heading", 0, {-100, 100}))};
 }
 
-sim::SonarConfig sonar_from_json(const JsonReader& in, const std::string& path) {
-  in.only({"count",
-           "field_deg",
-           "cone_deg",
-           "ping",
-           "range_min",
-           "range_max",
-           "noise",
-           "incidence_deg",
-           "height"});
-  sim::SonarConfig sonar;
-  const auto degrees = [&](std::string_view key, double fallback) {
-    const double initial = fallback / algo::units::kRadiansPerDegree;
-    return in.number_or(key, initial, {0, 360}) * algo::units::kRadiansPerDegree;
-  };
-  sonar.count = static_cast<std::uint32_t>(in.whole_or("count", sonar.count, 64));
-  sonar.field = degrees("field_deg", sonar.field);
-  sonar.cone = degrees("cone_deg", sonar.cone);
-  sonar.ping = in.number_or("ping", sonar.ping);
-  sonar.range_min = in.number_or("range_min", sonar.range_min);
-  sonar.range_max = in.number_or("range_max", sonar.range_max);
-  sonar.noise = in.number_or("noise", sonar.noise);
-  sonar.incidence = degrees("incidence_deg", sonar.incidence);
-  sonar.height = in.number_or("height", sonar.height);
-  if (const auto complaint = sim::defect(sonar)) throw DocumentError(path, *complaint);
-  return sonar;
+/// Throws DocumentError at `path` for what the model does not take.
+template <typename Config, std::size_t N>
+Config config_from_json(const JsonReader& in,
+                        const std::string& path,
+                        const Field<Config> (&table)[N]) {
+  Config config;
+  read_only_fields(in, table, config);
+  if constexpr (std::is_same_v<Config, Infrared>) {
+    if (in.has("mount")) config.mount_R = mount_from_json(in.object("mount"));
+  }
+  if (const auto complaint = sim::defect(config)) throw DocumentError(path, *complaint);
+  return config;
 }
 
-json to_json(const sim::SonarConfig& sonar) {
-  return {{"count", sonar.count},
-          {"field_deg", in_degrees(sonar.field)},
-          {"cone_deg", in_degrees(sonar.cone)},
-          {"ping", sonar.ping},
-          {"range_min", sonar.range_min},
-          {"range_max", sonar.range_max},
-          {"noise", sonar.noise},
-          {"incidence_deg", in_degrees(sonar.incidence)},
-          {"height", sonar.height}};
-}
-
-sim::InfraredConfig infrared_from_json(const JsonReader& in, const std::string& path) {
-  in.only({"mount", "height", "beams", "field_deg", "period", "range_min", "range_max", "noise"});
-  sim::InfraredConfig scanner;
-  if (in.has("mount")) scanner.mount_R = mount_from_json(in.object("mount"));
-  scanner.height = in.number_or("height", scanner.height);
-  scanner.beams = static_cast<std::uint32_t>(in.whole_or("beams", scanner.beams, 361));
-  const double field = scanner.field / algo::units::kRadiansPerDegree;
-  scanner.field = in.number_or("field_deg", field, {0, 360}) * algo::units::kRadiansPerDegree;
-  scanner.period = in.number_or("period", scanner.period);
-  scanner.range_min = in.number_or("range_min", scanner.range_min);
-  scanner.range_max = in.number_or("range_max", scanner.range_max);
-  scanner.noise = in.number_or("noise", scanner.noise);
-  if (const auto complaint = sim::defect(scanner)) throw DocumentError(path, *complaint);
-  return scanner;
-}
-
-json to_json(const sim::InfraredConfig& scanner) {
-  return {
-      {"mount",
-       {{"x", scanner.mount_R.x}, {"y", scanner.mount_R.y}, {"heading", scanner.mount_R.heading}}},
-      {"height", scanner.height},
-      {"beams", scanner.beams},
-      {"field_deg", in_degrees(scanner.field)},
-      {"period", scanner.period},
-      {"range_min", scanner.range_min},
-      {"range_max", scanner.range_max},
-      {"noise", scanner.noise}};
+json to_json(const Infrared& scanner) {
+  json out = written(kInfrared, scanner);
+  out["mount"] = server::to_json(scanner.mount_R);
+  return out;
 }
 
 /// `false`: none; an object: one with those errors; absent: as the robot has it.
@@ -109,15 +89,8 @@ void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
     sensors.has_gyro = in.flag_or("gyro", true);
     return;
   }
-  const JsonReader gyro = in.object("gyro");
-  gyro.only({"bias", "bias_walk", "noise"});
-  sim::GyroConfig config;
-  config.bias = gyro.number_or("bias", config.bias);
-  config.bias_walk = gyro.number_or("bias_walk", config.bias_walk);
-  config.noise = gyro.number_or("noise", config.noise);
-  if (const auto complaint = sim::defect(config)) in.fail("gyro", *complaint);
+  sensors.gyro = config_from_json(in.object("gyro"), in.at("gyro"), kGyro);
   sensors.has_gyro = true;
-  sensors.gyro = config;
 }
 
 /// Besides sensor, channel and unit every field is a setting: a number or a list of them.
@@ -183,14 +156,14 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
   if (in.has("sonar") && in.raw()["sonar"] == false) {
     sensors.sonar.reset();
   } else if (in.has("sonar")) {
-    sensors.sonar = sonar_from_json(in.object("sonar"), in.at("sonar"));
+    sensors.sonar = config_from_json(in.object("sonar"), in.at("sonar"), kSonar);
   }
   if (in.has("infrared")) {
     sensors.infrared.clear();
     const json& list = in.array("infrared", 4);
     for (std::size_t i = 0; i < list.size(); ++i) {
       const std::string path = fmt::format("{}/{}", in.at("infrared"), i);
-      sensors.infrared.push_back(infrared_from_json({list[i], path}, path));
+      sensors.infrared.push_back(config_from_json({list[i], path}, path, kInfrared));
     }
   }
   read_channels(in, sensors);
@@ -202,14 +175,11 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
 void write_sensors(const sim::Sensors& s, nlohmann::json& out) {
   out["lasers"] = json::array();
   for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
-  if (s.sonar) out["sonar"] = to_json(*s.sonar);
+  if (s.sonar) out["sonar"] = written(kSonar, *s.sonar);
   for (const sim::InfraredConfig& scanner : s.infrared) out["infrared"].push_back(to_json(scanner));
   for (const sim::SensorConfig& sensor : s.further) out["sensors"].push_back(to_json(sensor));
   if (!s.has_gyro) out["gyro"] = false;
-  if (s.has_gyro && s.gyro) {
-    out["gyro"] = {
-        {"bias", s.gyro->bias}, {"bias_walk", s.gyro->bias_walk}, {"noise", s.gyro->noise}};
-  }
+  if (s.has_gyro && s.gyro) out["gyro"] = written(kGyro, *s.gyro);
   if (s.bumpers != 1) out["bumpers"] = s.bumpers;
   if (!s.encoders) out["encoders"] = false;
 }

@@ -13,8 +13,8 @@
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/experiment/series.hpp"
+#include "server/run/json_fields.hpp"
 #include "server/run/json_limits.hpp"
-#include "server/run/json_reader.hpp"
 #include "server/run/scenario_json.hpp"
 
 namespace server::reproduce {
@@ -34,39 +34,35 @@ constexpr auto kReadings = std::to_array<std::string_view>({"original",
                                                             "via_kept",
                                                             "original_side"});
 
+using Paper = PaperConditions;
+constexpr Field<Paper> kConditions[] = {
+    required("safety_distance", &Paper::safety_distance, {0.1, 3}),
+    required("strip_step", &Paper::strip_step, {0.05, 0.6}),
+    required("arrival_radius", &Paper::arrival_radius, {0.02, 1}),
+    required("max_turn_rate", &Paper::max_turn_rate, {0.1, 1}),
+    required("heading_gain", &Paper::heading_gain, {0.5, 5}),
+    required("period", &Paper::period, kPeriod),
+    {"slow"},
+    required("range_max", &Paper::range_max, {0.1, 8.191}),
+    required("noise", &Paper::noise, {0, 1}),
+    {"filter"},
+    {"filter_half_width"},
+    required("time_limit_factor", &Paper::time_limit_factor, {1, 100}),
+};
+
 PaperConditions read_conditions(const JsonReader& in) {
-  in.only({"safety_distance",
-           "strip_step",
-           "arrival_radius",
-           "max_turn_rate",
-           "heading_gain",
-           "period",
-           "slow",
-           "range_max",
-           "noise",
-           "filter",
-           "filter_half_width",
-           "time_limit_factor"});
   PaperConditions out;
-  out.safety_distance = in.number("safety_distance", {0.1, 3});
-  out.strip_step = in.number("strip_step", {0.05, 0.6});
-  out.arrival_radius = in.number("arrival_radius", {0.02, 1});
-  out.max_turn_rate = in.number("max_turn_rate", {0.1, 1});
-  out.heading_gain = in.number("heading_gain", {0.5, 5});
-  out.period = in.number("period", kPeriod);
+  read_only_fields(in, kConditions, out);
   if (in.has("slow")) {
     const JsonReader slow = in.object("slow");
     slow.only({"v_max", "period"});
     out.slow = {slow.number("v_max", {0.01, 0.5}), slow.number("period", kPeriod)};
   }
-  out.range_max = in.number("range_max", {0.1, 8.191});
-  out.noise = in.number("noise", {0, 1});
   out.filter = in.text("filter", 64);
   if (!algo::find_filter(out.filter)) {
     in.fail("filter", fmt::format("'{}' is unknown", out.filter));
   }
   out.filter_half_width = static_cast<int>(in.whole("filter_half_width", 99));
-  out.time_limit_factor = in.number("time_limit_factor", {1, 100});
   return out;
 }
 
