@@ -2,7 +2,6 @@
 // formula.
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -12,6 +11,7 @@
 #include "server/cli/pool_options.hpp"
 #include "server/lab/barn/barn_run.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -99,13 +99,10 @@ void print_table(const barn::Result& result) {
 void write_scenarios(const std::vector<barn::World>& worlds,
                      const barn::Conditions& conditions,
                      const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   for (const barn::World& world : worlds) {
     const sim::Scenario scenario = scenario_of(world, conditions);
-    const std::filesystem::path path = folder / (scenario.name + ".json");
-    std::ofstream out(path);
-    out << to_json(scenario).dump(1) << '\n';
-    if (!out) throw std::runtime_error("cannot write " + path.string());
+    write_text(folder / (scenario.name + ".json"), to_json(scenario).dump(1) + "\n");
   }
   fmt::print(
       "{} scenarios written; `tautline serve --scenario {}/NAME.json` opens one in the page\n",

@@ -1,12 +1,12 @@
 // server/cli/command_map.cpp: `tautline map`: a map of a recorded log, its odometry spoilt and held
 // together again.
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
 #include "server/lab/mapping/map_study.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -24,9 +24,7 @@ void write_picture(const mapping::MapStudy& study, const std::string& file) {
   const auto& path_W = study.options.match ? run.matched_W : run.odometry_W;
   const std::string title =
       fmt::format("{}, {}", study.log.name, study.options.match ? "matched" : "by its odometry");
-  std::ofstream stream(file, std::ios::binary);
-  stream << draw_map(study.log, path_W, title);
-  if (!stream.flush()) throw std::runtime_error(fmt::format("{} cannot be written.", file));
+  write_text(file, draw_map(study.log, path_W, title));
 }
 
 int execute(MapCommand command) {

@@ -1,7 +1,5 @@
 // server/cli/command_soak.cpp: `tautline soak`: random worlds in search of what must never happen.
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "server/lab/soak/random_world.hpp"
 #include "server/lab/soak/soak.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -49,11 +48,9 @@ void print_table(const std::vector<soak::World>& worlds) {
 
 int execute(SoakCommand command) {
   if (!command.scenario.empty()) {
-    std::ofstream out(command.scenario);
-    out << to_json(soak::random_world(command.options.first_seed, command.options.controller))
-               .dump(1)
-        << '\n';
-    if (!out) throw std::runtime_error("cannot write " + command.scenario);
+    const sim::Scenario world =
+        soak::random_world(command.options.first_seed, command.options.controller);
+    write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
   std::vector<soak::World> worlds;

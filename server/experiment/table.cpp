@@ -5,7 +5,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "server/experiment/trial.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::experiment {
 namespace {
@@ -165,9 +165,7 @@ void write_table(const Table& table, const std::string& path) {
   if (form == nullptr) {
     throw std::invalid_argument(path + ": must end in .txt, .md, .csv, .tex or .json");
   }
-  std::ofstream out(path, std::ios::binary);
-  out << form->write(table);
-  if (!out.flush()) throw std::runtime_error(path + ": cannot be written");
+  write_text(path, form->write(table));
 }
 
 void add_run(Table& table,

@@ -1,8 +1,6 @@
 // server/lab/barn/barn_file.cpp: reads worlds, sets up the benchmark's robot.
 #include "server/lab/barn/barn_file.hpp"
 
-#include <fstream>
-
 #include <fmt/format.h>
 
 #include "algo/filter/filter.hpp"
@@ -10,6 +8,7 @@
 #include "algo/units.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/robot_library.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::barn {
 namespace {
@@ -135,10 +134,9 @@ std::vector<World> worlds_from_json(const json& document) {
 }
 
 std::vector<World> read_worlds(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw std::runtime_error("cannot read " + file);
+  const std::string text = read_text(file);
   try {
-    return worlds_from_json(json::parse(in));
+    return worlds_from_json(json::parse(text));
   } catch (const json::exception& e) {
     throw std::runtime_error(file + " is not JSON: " + e.what());
   } catch (const DocumentError& e) {

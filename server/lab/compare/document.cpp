@@ -1,14 +1,10 @@
 // server/lab/compare/document.cpp: the words round the tables, for the terminal and for Markdown.
-#include <filesystem>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
-
 #include <fmt/format.h>
 
 #include "server/lab/compare/layouts.hpp"
 #include "server/lab/compare/report.hpp"
 #include "server/lab/reproduce/marked.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::compare {
 namespace {
@@ -163,27 +159,18 @@ std::string to_markdown(const Comparison& comparison) {
   return text;
 }
 
-void write_markdown(const Comparison& comparison, const std::string& folder) {
-  const auto write = [](const std::filesystem::path& path, const std::string& text) {
-    std::ofstream out(path, std::ios::binary);
-    out << text;
-    if (!out.flush()) throw std::runtime_error(path.string() + ": cannot be written");
-  };
-  const std::filesystem::path at(folder);
-  std::error_code error;
-  std::filesystem::create_directories(at, error);
-  if (error) throw std::runtime_error(folder + ": " + error.message());
-  write(at / "comparison.md", to_markdown(comparison));
-  if (comparison.worlds.empty()) return;
-  std::ostringstream old;
-  old << std::ifstream(at / "controllers.md", std::ios::binary).rdbuf();
-  std::string text = old.str();
+void write_markdown(const Comparison& comparison, const std::filesystem::path& folder) {
+  make_folder(folder);
+  write_text(folder / "comparison.md", to_markdown(comparison));
+  const std::filesystem::path controllers = folder / "controllers.md";
+  if (comparison.worlds.empty() || !std::filesystem::exists(controllers)) return;
+  std::string text = read_text(controllers);
   const std::string section = fmt::format("{}{}\n\n{}{}",
                                           kWorlds.begin,
                                           worlds_text(comparison.options),
                                           to_markdown(worlds_table(comparison)),
                                           kWorlds.end);
-  if (reproduce::replace_marked(text, kWorlds, section)) write(at / "controllers.md", text);
+  if (reproduce::replace_marked(text, kWorlds, section)) write_text(controllers, text);
 }
 
 }  // namespace server::compare

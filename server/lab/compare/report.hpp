@@ -1,6 +1,7 @@
 // server/lab/compare/report.hpp: a comparison as text, as JSON and as docs/comparison.md.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -30,6 +31,6 @@ std::string to_markdown(const Comparison& comparison);
 /// Writes comparison.md into `folder`, and the table of the worlds into the controllers.md there,
 /// where that has a place for it. Throws std::runtime_error with the path that cannot be
 /// written.
-void write_markdown(const Comparison& comparison, const std::string& folder);
+void write_markdown(const Comparison& comparison, const std::filesystem::path& folder);
 
 }  // namespace server::compare

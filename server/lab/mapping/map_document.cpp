@@ -1,23 +1,20 @@
 // server/lab/mapping/map_document.cpp: the figures as tables: on the terminal and as Markdown.
-#include <algorithm>
-#include <fstream>
 #include <numeric>
-#include <sstream>
-#include <stdexcept>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "server/experiment/table.hpp"
 #include "server/lab/mapping/map_study.hpp"
+#include "server/lab/reproduce/marked.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::mapping {
 namespace {
 
 using experiment::Table;
 
-constexpr std::string_view kBegin = "<!-- maps: made by the program, not by hand -->\n";
-constexpr std::string_view kEnd = "<!-- end of the maps -->\n";
+constexpr reproduce::Marks kMarks{"<!-- maps: made by the program, not by hand -->\n",
+                                  "<!-- end of the maps -->\n"};
 
 std::string metres(double value) {
   return fmt::format("{:.3f}", value);
@@ -97,14 +94,6 @@ std::string time_sentence(const MapStudy& study) {
   return fmt::format("Matching a scan and adding it to the map took {:.1f} ms.\n", scan_ms(study));
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream stream(path, std::ios::binary);
-  stream << text;
-  if (!stream.flush()) {
-    throw std::runtime_error(fmt::format("{} cannot be written.", path.string()));
-  }
-}
-
 /// The pictures of one log, named in `section` as it tells of them.
 void add_log(const MapStudy& study, const std::filesystem::path& folder, std::string& section) {
   const std::string& name = study.log.name;
@@ -119,7 +108,7 @@ void add_log(const MapStudy& study, const std::filesystem::path& folder, std::st
                            const std::vector<algo::Pose2>& path_W,
                            const std::string& title) {
     const std::string file = fmt::format("{}-{}.svg", name, ending);
-    write(folder / file, draw_map(study.log, path_W, title));
+    write_text(folder / file, draw_map(study.log, path_W, title));
     section += fmt::format("![{}](pictures/mapping/{})\n\n", title, file);
   };
   picture("odometry",
@@ -143,31 +132,11 @@ std::string to_text(const MapStudy& study) {
 }
 
 void write_markdown(const std::vector<MapStudy>& studies, const std::filesystem::path& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw std::runtime_error(fmt::format("{} is a folder, not a file.", file.string()));
-  }
-  const std::filesystem::path pictures = file.parent_path() / "pictures/mapping";
-  std::filesystem::create_directories(pictures, error);
-  if (error) {
-    throw std::runtime_error(fmt::format("The folder {} cannot be made.", pictures.string()));
-  }
-  std::string section(kBegin);
+  const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/mapping");
+  std::string section(kMarks.begin);
   for (const MapStudy& study : studies) add_log(study, pictures, section);
-  section += kEnd;
-
-  std::ostringstream old;
-  old << std::ifstream(file, std::ios::binary).rdbuf();
-  std::string text = old.str();
-  const std::size_t begin = text.find(kBegin);
-  const std::size_t end = text.find(kEnd, begin == std::string::npos ? 0 : begin);
-  if (begin != std::string::npos && end != std::string::npos) {
-    text.replace(begin, end + kEnd.size() - begin, section);
-  } else {
-    if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
-    text += section;
-  }
-  write(file, text);
+  section += kMarks.end;
+  reproduce::put_marked(file, kMarks, section);
 }
 
 }  // namespace server::mapping

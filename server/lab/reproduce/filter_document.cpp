@@ -1,21 +1,18 @@
 // server/lab/reproduce/filter_document.cpp: the study as tables: on the terminal and as Markdown.
 #include <algorithm>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
-#include <system_error>
 
 #include <fmt/format.h>
 
 #include "server/experiment/table.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/marked.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
 
-constexpr std::string_view kBegin = "<!-- filter study: made by the program, not by hand -->\n";
-constexpr std::string_view kEnd = "<!-- end of the filter study -->\n";
+constexpr reproduce::Marks kMarks{"<!-- filter study: made by the program, not by hand -->\n",
+                                  "<!-- end of the filter study -->\n"};
 
 using experiment::Table;
 
@@ -214,7 +211,7 @@ std::string to_text(const FilterStudy& study) {
 }
 
 std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
-  std::string out(kBegin);
+  std::string out(kMarks.begin);
   out += "## Chapter 3: the pseudomedian filter\n\n";
   out +=
       "The effect of the filter on a scan, compared with the median, our `lulu`, the mean and the "
@@ -264,38 +261,14 @@ std::string to_markdown(const FilterStudy& study, const std::string& pictures) {
     out += fmt::format("\n**{}**\n\n{}", recording_title(each), to_markdown(recording_table(each)));
   }
   out += fmt::format("\n### Cost\n\n{}\n\n{}", kAboutCost, to_markdown(cost_table(study)));
-  out += kEnd;
+  out += kMarks.end;
   return out;
 }
 
 void write_markdown(const FilterStudy& study, const std::filesystem::path& file) {
-  const auto write = [](const std::filesystem::path& path, const std::string& text) {
-    std::ofstream stream(path, std::ios::binary);
-    stream << text;
-    if (!stream.flush()) {
-      throw std::runtime_error(fmt::format("{} cannot be written.", path.string()));
-    }
-  };
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) {
-    throw std::runtime_error(fmt::format("{} is a folder, not a file.", file.string()));
-  }
-  const std::filesystem::path pictures = file.parent_path() / "pictures/reproduction";
-  std::filesystem::create_directories(pictures, error);
-  if (error) {
-    throw std::runtime_error(fmt::format("The folder {} cannot be made.", pictures.string()));
-  }
-  for (const Picture& picture : draw(study)) write(pictures / picture.file, picture.svg);
-
-  std::ostringstream old;
-  old << std::ifstream(file, std::ios::binary).rdbuf();
-  std::string text = old.str();
-  const std::string section = to_markdown(study, "pictures/reproduction");
-  if (!reproduce::replace_marked(text, {kBegin, kEnd}, section)) {
-    if (!text.empty()) text += text.ends_with('\n') ? "\n" : "\n\n";
-    text += section;
-  }
-  write(file, text);
+  const std::filesystem::path pictures = reproduce::folder_beside(file, "pictures/reproduction");
+  for (const Picture& picture : draw(study)) write_text(pictures / picture.file, picture.svg);
+  reproduce::put_marked(file, kMarks, to_markdown(study, "pictures/reproduction"));
 }
 
 }  // namespace server

@@ -1,14 +1,12 @@
 // server/lab/reproduce/markdown.cpp: the words of docs/reproduction.md.
 #include "server/lab/reproduce/markdown.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <stdexcept>
-
 #include <fmt/format.h>
 
 #include "server/lab/reproduce/full_strip.hpp"
+#include "server/lab/reproduce/marked.hpp"
 #include "server/lab/reproduce/pictures.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::reproduce {
 namespace {
@@ -91,12 +89,6 @@ std::string pictures_text(const StudyFile& file, const std::string& folder) {
   return text;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(path.string() + ": cannot be written");
-}
-
 }  // namespace
 
 std::vector<Section> study_sections(const StudyFile& file,
@@ -163,15 +155,12 @@ void write_reproduction(const std::string& path,
                         const StudyFile& file,
                         const Study& study,
                         std::span<const Section> sections) {
-  const std::filesystem::path pictures = std::filesystem::path(path).parent_path() / kPictures;
-  std::error_code error;
-  std::filesystem::create_directories(pictures, error);
-  if (error) throw std::runtime_error(pictures.string() + ": " + error.message());
+  const std::filesystem::path pictures = folder_beside(path, kPictures);
   for (const sim::Scenario& scenario : file.scenarios) {
-    write_file(pictures / (scenario.name + ".svg"),
+    write_text(pictures / (scenario.name + ".svg"),
                draw_paths(file.conditions, scenario, study.paper));
   }
-  write_file(path, to_markdown(sections));
+  write_text(path, to_markdown(sections));
 }
 
 }  // namespace server::reproduce

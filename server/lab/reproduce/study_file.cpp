@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -16,6 +14,7 @@
 #include "server/run/json_fields.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server::reproduce {
 namespace {
@@ -195,11 +194,9 @@ StudyFile study_file_from_json(const json& document) {
 }
 
 StudyFile read_study_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  if (!in || !(text << in.rdbuf())) throw std::runtime_error(path + ": cannot be read");
+  const std::string text = read_text(path);
   try {
-    return from_text(text.str());
+    return from_text(text);
   } catch (const std::exception& e) {
     throw std::runtime_error(fmt::format("{}: {}", path, e.what()));
   }
