@@ -1,6 +1,7 @@
 // server/cli/command_barn.cpp: `tautline barn`: the BARN worlds, run and scored by the official
 // formula.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -31,17 +32,8 @@ struct BarnCommand {
 };
 
 std::string_view name(experiment::Contact contact) {
-  switch (contact) {
-    case experiment::Contact::None:
-      return "none";
-    case experiment::Contact::Avoidable:
-      return "avoidable";
-    case experiment::Contact::Unavoidable:
-      return "unavoidable";
-    case experiment::Contact::Jumped:
-      return "jumped";
-  }
-  return "none";
+  constexpr std::array<std::string_view, 4> kNames{"none", "avoidable", "unavoidable", "jumped"};
+  return kNames.at(static_cast<std::size_t>(contact));
 }
 
 json result_json(const barn::Result& result) {

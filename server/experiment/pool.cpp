@@ -57,6 +57,15 @@ Shard shard_from_text(std::string_view text) {
   return shard;
 }
 
+PoolOptions part_of(std::string name, unsigned threads, const NamedProgress& progress) {
+  PoolOptions options{.threads = threads};
+  if (!progress) return options;
+  options.progress = [name = std::move(name), progress](std::size_t done, std::size_t all) {
+    progress(name, done, all);
+  };
+  return options;
+}
+
 void for_each(std::size_t count,
               const PoolOptions& options,
               const std::function<void(std::size_t, const std::stop_token&)>& job) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
@@ -59,12 +60,19 @@ Shard shard_from_text(std::string_view text);
 /// `done` of `all` jobs are over. Called from the workers, one at a time.
 using Progress = std::function<void(std::size_t done, std::size_t all)>;
 
+/// The same of several parts, with what is being run.
+using NamedProgress =
+    std::function<void(const std::string& part, std::size_t done, std::size_t all)>;
+
 struct PoolOptions {
   unsigned threads = 0;  // 0: one a core
   Shard shard{};
   Progress progress{};
   std::stop_token stop{};  // no job is begun after it, and those under way are asked to end
 };
+
+/// For the part of that name; `progress` may be empty.
+PoolOptions part_of(std::string name, unsigned threads, const NamedProgress& progress);
 
 /// Calls `job(i, stop)` once for every i below `count` that is the shard's. When one throws, the
 /// others are asked to end by `stop`, and for_each() throws the same.

@@ -17,6 +17,27 @@ struct Table {
   std::size_t words = 1;                         // leading columns set left; the others are numbers
 };
 
+/// A column of a table whose lines are items: its title, and what it says of one.
+template <typename Item>
+struct TitledCell {
+  std::string title{};
+  std::string (*cell)(const Item& item) = nullptr;
+};
+
+/// A line for each of `items`.
+template <typename Item, typename Items>
+Table tabulated(const Items& items,
+                std::size_t words,
+                const std::vector<TitledCell<Item>>& columns) {
+  Table table{.words = words};
+  for (const auto& column : columns) table.header.push_back(column.title);
+  for (const Item& item : items) {
+    std::vector<std::string>& line = table.rows.emplace_back();
+    for (const auto& column : columns) line.push_back(column.cell(item));
+  }
+  return table;
+}
+
 /// Columns two blanks apart, each line ended.
 std::string to_text(const Table& table);
 /// A pipe table, with the blank line that must follow it.

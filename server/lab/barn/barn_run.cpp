@@ -85,20 +85,17 @@ Summary summarise(const Result& result) {
 }
 
 experiment::Table runs_table(const Result& result) {
-  experiment::Table table{
-      .header = {"world", "seed", "outcome", "time s", "score", "nearest m", "path m"},
-      .rows = {},
-      .words = 3};
-  for (const Run& run : result.runs) {
-    table.rows.push_back({fmt::format("{}", run.world),
-                          fmt::format("{}", run.seed),
-                          std::string(algo::name(run.row.outcome)),
-                          fmt::format("{:.2f}", run.row["barn_time_s"]),
-                          fmt::format("{:.4f}", run.row["barn_score"]),
-                          fmt::format("{:.3f}", run.row["min_clearance_m"]),
-                          fmt::format("{:.2f}", run.row["path_m"])});
-  }
-  return table;
+  return experiment::tabulated<Run>(
+      result.runs,
+      3,
+      {{"world", [](const Run& run) { return fmt::format("{}", run.world); }},
+       {"seed", [](const Run& run) { return fmt::format("{}", run.seed); }},
+       {"outcome", [](const Run& run) { return std::string(algo::name(run.row.outcome)); }},
+       {"time s", [](const Run& run) { return fmt::format("{:.2f}", run.row["barn_time_s"]); }},
+       {"score", [](const Run& run) { return fmt::format("{:.4f}", run.row["barn_score"]); }},
+       {"nearest m",
+        [](const Run& run) { return fmt::format("{:.3f}", run.row["min_clearance_m"]); }},
+       {"path m", [](const Run& run) { return fmt::format("{:.2f}", run.row["path_m"]); }}});
 }
 
 experiment::Table rows_table(const Result& result) {

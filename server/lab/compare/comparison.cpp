@@ -23,12 +23,6 @@ constexpr std::array<Kind, 3> kKinds{{{2, 0.6}, {3, 0.3}, {4, 0.3}}};
 constexpr std::array<const char*, 5> kStrips{
     {"strip", "original", "original_side", "modified", "modified_published"}};
 
-experiment::PoolOptions pool(const Options& options, const char* what) {
-  return {.threads = options.threads, .progress = [&options, what](auto done, auto all) {
-            if (options.progress) options.progress(what, done, all);
-          }};
-}
-
 std::vector<experiment::JudgeChoice> judges_of(const Options& options) {
   std::vector<experiment::JudgeChoice> judges = experiment::common_judges();
   for (const std::string& name : options.judges) {
@@ -51,7 +45,8 @@ std::vector<Series> run_scenes(const std::vector<sim::Scenario>& scenes,
                        options.seeds});
     }
   }
-  return run_series(plans, judges_of(options), pool(options, what));
+  return run_series(
+      plans, judges_of(options), experiment::part_of(what, options.threads, options.progress));
 }
 
 LayoutSet run_layouts(const Kind& kind, const Options& options) {
@@ -73,7 +68,9 @@ LayoutSet run_layouts(const Kind& kind, const Options& options) {
     }
   }
   const auto run = [&](const std::vector<SeriesPlan>& plans) {
-    return run_series(plans, experiment::common_judges(), pool(options, "random layouts"));
+    return run_series(plans,
+                      experiment::common_judges(),
+                      experiment::part_of("random layouts", options.threads, options.progress));
   };
   return {kind.obstacles, kind.repulsion_gain, run(paper), run(full)};
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -27,8 +26,7 @@ struct Options {
   bool bottlenecks = true;
   bool random_layouts = true;
   unsigned threads = 0;  // 0: one a core
-  /// What is being run, and how far it is.
-  std::function<void(const std::string& what, std::size_t done, std::size_t all)> progress{};
+  experiment::NamedProgress progress{};
 };
 
 /// Layouts with the same number of obstacles and the same K_r.

@@ -203,15 +203,8 @@ void judge_bottlenecks(std::span<const Series> bottlenecks,
 }  // namespace
 
 std::string_view name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Reproduced:
-      return "reproduced";
-    case Verdict::InPart:
-      return "in part";
-    case Verdict::NotReproduced:
-      break;
-  }
-  return "not reproduced";
+  constexpr std::array<std::string_view, 3> kNames{"reproduced", "in part", "not reproduced"};
+  return kNames.at(static_cast<std::size_t>(verdict));
 }
 
 Passage passage_of(std::span<const Series> bottlenecks, std::string_view contestant) {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "server/experiment/pool.hpp"
 #include "sim/drive_errors.hpp"
 #include "sim/replay.hpp"
 

@@ -4,13 +4,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "algo/mapping/mapper.hpp"
+#include "server/experiment/pool.hpp"
 #include "server/lab/mapping/path_error.hpp"
 #include "server/lab/mapping/sharpness.hpp"
 #include "sim/scenario.hpp"
@@ -33,7 +33,7 @@ struct MapOptions {
   std::uint64_t first_seed = 1;
   std::size_t seeds = 1;
   unsigned threads = 0;  // 0: one a core
-  std::function<void(std::size_t done, std::size_t all)> progress{};
+  experiment::Progress progress{};
 };
 
 /// One seed: the log's poses spoilt, and the path that was found from them.

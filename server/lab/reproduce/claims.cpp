@@ -76,15 +76,9 @@ Claim judge(std::span<const Series> rows, const Series& original, const Statemen
 }  // namespace
 
 std::string_view name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Reproduced:
-      return "reproduced";
-    case Verdict::OnlyWithExtension:
-      return "only with our extension";
-    case Verdict::NotReproduced:
-      break;
-  }
-  return "not reproduced";
+  constexpr std::array<std::string_view, 3> kNames{
+      "reproduced", "only with our extension", "not reproduced"};
+  return kNames.at(static_cast<std::size_t>(verdict));
 }
 
 std::vector<Claim> judge_claims(std::span<const Series> rows) {

@@ -23,70 +23,61 @@ std::string or_dash(const std::optional<double>& value, std::string_view format)
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
+using Figures = FilterFigures;
+using experiment::TitledCell;
+
+const TitledCell<Figures> kShift{"edge shift [beams]",
+                                 [](const Figures& f) { return or_dash(f.edge_shift, "{:.3f}"); }};
+const TitledCell<Figures> kBlur{"edge blur [beams]",
+                                [](const Figures& f) { return or_dash(f.edge_blur, "{:.2f}"); }};
+const TitledCell<Figures> kOscillation{
+    "oscillation", [](const Figures& f) { return or_dash(f.oscillation, "{:.2f}"); }};
+const TitledCell<Figures> kFilter{"filter", [](const Figures& f) { return f.filter; }};
+const TitledCell<Figures> kForeign{"not in window",
+                                   [](const Figures& f) { return percent(f.not_in_window); }};
+
 Table scene_table(const SceneResult& result) {
-  Table out{.header = {"filter",
-                       "values > 50 mm off",
-                       "of a spike left",
-                       "edge shift [beams]",
-                       "edge blur [beams]",
-                       "oscillation",
-                       "not in window",
-                       "not whole mm",
-                       "RMS off [mm]"}};
-  for (const FilterFigures& each : result.figures) {
-    out.rows.push_back({each.filter,
-                        fmt::format("{:.0f}", each.impulses),
-                        each.height_left ? percent(*each.height_left) : "-",
-                        or_dash(each.edge_shift, "{:.3f}"),
-                        or_dash(each.edge_blur, "{:.2f}"),
-                        or_dash(each.oscillation, "{:.2f}"),
-                        percent(each.not_in_window),
-                        percent(each.not_whole),
-                        or_dash(each.rms_mm, "{:.1f}")});
-  }
-  return out;
+  return experiment::tabulated<Figures>(
+      result.figures,
+      1,
+      {kFilter,
+       {"values > 50 mm off", [](const Figures& f) { return fmt::format("{:.0f}", f.impulses); }},
+       {"of a spike left",
+        [](const Figures& f) { return f.height_left ? percent(*f.height_left) : "-"; }},
+       kShift,
+       kBlur,
+       kOscillation,
+       kForeign,
+       {"not whole mm", [](const Figures& f) { return percent(f.not_whole); }},
+       {"RMS off [mm]", [](const Figures& f) { return or_dash(f.rms_mm, "{:.1f}"); }}});
 }
 
 Table recording_table(const RecordingResult& result) {
-  Table out{.header = {"filter",
-                       "outliers per scan",
-                       "edge shift [beams]",
-                       "edge blur [beams]",
-                       "oscillation",
-                       "not in window",
-                       "no whole step"}};
-  for (const FilterFigures& each : result.figures) {
-    out.rows.push_back({each.filter,
-                        fmt::format("{:.2f}", each.impulses),
-                        or_dash(each.edge_shift, "{:.3f}"),
-                        or_dash(each.edge_blur, "{:.2f}"),
-                        or_dash(each.oscillation, "{:.2f}"),
-                        percent(each.not_in_window),
-                        percent(each.not_whole)});
-  }
-  return out;
+  return experiment::tabulated<Figures>(
+      result.figures,
+      1,
+      {kFilter,
+       {"outliers per scan", [](const Figures& f) { return fmt::format("{:.2f}", f.impulses); }},
+       kShift,
+       kBlur,
+       kOscillation,
+       kForeign,
+       {"no whole step", [](const Figures& f) { return percent(f.not_whole); }}});
 }
 
 Table signal_table(const FilterStudy& study) {
-  Table out{.header = {"filter, N",
-                       "one impulse",
-                       "two adjacent",
-                       "two, one apart",
-                       "step",
-                       "ramp",
-                       "oscillation 1-1",
-                       "oscillation 2-2"}};
-  for (const SignalResult& each : study.signals) {
-    out.rows.push_back({fmt::format("{}, {}", each.filter, each.half_width),
-                        percent(each.single),
-                        percent(each.adjacent),
-                        percent(each.apart),
-                        percent(each.step),
-                        percent(each.ramp),
-                        percent(each.fastest),
-                        percent(each.slower)});
-  }
-  return out;
+  using Signal = SignalResult;
+  return experiment::tabulated<Signal>(
+      study.signals,
+      1,
+      {{"filter, N", [](const Signal& s) { return fmt::format("{}, {}", s.filter, s.half_width); }},
+       {"one impulse", [](const Signal& s) { return percent(s.single); }},
+       {"two adjacent", [](const Signal& s) { return percent(s.adjacent); }},
+       {"two, one apart", [](const Signal& s) { return percent(s.apart); }},
+       {"step", [](const Signal& s) { return percent(s.step); }},
+       {"ramp", [](const Signal& s) { return percent(s.ramp); }},
+       {"oscillation 1-1", [](const Signal& s) { return percent(s.fastest); }},
+       {"oscillation 2-2", [](const Signal& s) { return percent(s.slower); }}});
 }
 
 Table noise_table(const FilterStudy& study) {

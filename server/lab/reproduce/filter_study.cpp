@@ -2,6 +2,7 @@
 #include "server/lab/reproduce/filter_study.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace server {
@@ -74,15 +75,8 @@ FilterStudy study_filters(const FilterStudyOptions& options) {
 }
 
 std::string_view name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::Reproduced:
-      return "reproduced";
-    case Verdict::InPart:
-      return "only in part";
-    case Verdict::NotReproduced:
-      break;
-  }
-  return "not reproduced";
+  constexpr std::array<std::string_view, 3> kNames{"reproduced", "only in part", "not reproduced"};
+  return kNames.at(static_cast<std::size_t>(verdict));
 }
 
 }  // namespace server

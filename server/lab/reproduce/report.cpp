@@ -42,35 +42,24 @@ json claims_json(std::span<const Claim> claims) {
 }  // namespace
 
 Table rows_table(std::span<const Series> rows) {
-  Table table{.header = {"scenario",
-                         "reading",
-                         "outcome",
-                         "path mm",
-                         "clearance mm",
-                         "in circle s",
-                         "depth mm",
-                         "turning rad",
-                         "via points",
-                         "time s"},
-              .rows = {},
-              .words = 3};
-  for (const Series& row : rows) {
-    table.rows.push_back({row.scenario,
-                          row.controller,
-                          outcomes_text(row),
-                          cell(row, "path_m", 0, kMillimetres),
-                          cell(row, "min_clearance_m", 0, kMillimetres),
-                          cell(row, "safety_infringed_s", 1),
-                          cell(row, "safety_depth_m", 0, kMillimetres),
-                          cell(row, "turning_rad", 2),
-                          cell(row, "via_points", 1),
-                          cell(row, "time_s", 1)});
-  }
-  return table;
+  return experiment::tabulated<Series>(
+      rows,
+      3,
+      {{"scenario", [](const Series& row) { return row.scenario; }},
+       {"reading", [](const Series& row) { return row.controller; }},
+       {"outcome", experiment::outcomes_text},
+       {"path mm", [](const Series& row) { return cell(row, "path_m", 0, kMillimetres); }},
+       {"clearance mm",
+        [](const Series& row) { return cell(row, "min_clearance_m", 0, kMillimetres); }},
+       {"in circle s", [](const Series& row) { return cell(row, "safety_infringed_s", 1); }},
+       {"depth mm", [](const Series& row) { return cell(row, "safety_depth_m", 0, kMillimetres); }},
+       {"turning rad", [](const Series& row) { return cell(row, "turning_rad", 2); }},
+       {"via points", [](const Series& row) { return cell(row, "via_points", 1); }},
+       {"time s", [](const Series& row) { return cell(row, "time_s", 1); }}});
 }
 
 Table checks_table(std::span<const Check> checks) {
-  Table table{.header = {"scenario", "reading", "asked", "found", ""}, .rows = {}, .words = 5};
+  Table table{.header = {"scenario", "reading", "asked", "found", ""}, .words = 5};
   for (const Check& check : checks) {
     table.rows.push_back(
         {check.scenario, check.subject, check.asked, check.figure, check.held ? "held" : "FAILED"});
@@ -84,7 +73,7 @@ Table claims_table(const Study& study) {
                ? std::string(name(claim.verdict))
                : fmt::format("{}: {}", name(claim.verdict), fmt::join(claim.held_by, ", "));
   };
-  Table table{.header = {"case", "claim", "by table A"}, .rows = {}, .words = 4};
+  Table table{.header = {"case", "claim", "by table A"}, .words = 4};
   if (!study.full_claims.empty()) table.header.emplace_back("by table B");
   for (std::size_t i = 0; i < study.claims.size(); ++i) {
     table.rows.push_back({study.claims[i].scenario, study.claims[i].text, words(study.claims[i])});
@@ -94,7 +83,7 @@ Table claims_table(const Study& study) {
 }
 
 Table differences_table(std::span<const Difference> differences) {
-  Table table{.header = {"scenario", "reading", "A", "B", "why"}, .rows = {}, .words = 5};
+  Table table{.header = {"scenario", "reading", "A", "B", "why"}, .words = 5};
   for (const Difference& each : differences) {
     table.rows.push_back({each.scenario, each.controller, each.paper, each.full, each.explanation});
   }

@@ -26,14 +26,8 @@ std::vector<SeriesPlan> series_plans(const StudyFile& file,
 
 Study run_study(const StudyFile& file, const StudyOptions& options) {
   check_scenarios(file);
-  const auto pool = [&](const char* what) -> experiment::PoolOptions {
-    experiment::PoolOptions out{.threads = options.threads};
-    if (options.progress) {
-      out.progress = [&options, what = std::string(what)](std::size_t done, std::size_t all) {
-        options.progress(what, done, all);
-      };
-    }
-    return out;
+  const auto pool = [&](const char* part) {
+    return experiment::part_of(part, options.threads, options.progress);
   };
   const auto run = [&](const std::vector<SeriesPlan>& plans, const char* what) {
     return run_series(plans, experiment::common_judges(), pool(what));

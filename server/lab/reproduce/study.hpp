@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,8 +20,7 @@ struct StudyOptions {
   std::uint64_t first_seed = 1;
   bool full_simulator = true;
   unsigned threads = 0;  // 0: one a core
-  /// What is being run, and how far it is.
-  std::function<void(const std::string& what, std::size_t done, std::size_t all)> progress{};
+  experiment::NamedProgress progress{};
 };
 
 struct Study {
