@@ -2,6 +2,7 @@
 #include "server/serve/layers_json.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -36,31 +37,21 @@ constexpr int kSteps = 8;              // of an arc
 constexpr std::uint8_t kEven = 127;
 
 /// The page's own palette (design tokens of the light theme).
+constexpr auto kColours = std::to_array<std::pair<algo::Tone, Colour>>({
+    {algo::Tone::Accent, {0.66, 0.44, 0.0}},
+    {algo::Tone::Internal, {0.0, 0.50, 0.42}},
+    {algo::Tone::External, {0.76, 0.32, 0.05}},
+    {algo::Tone::Elastic, {0.48, 0.25, 0.71}},
+    {algo::Tone::Plan, {0.13, 0.38, 0.75}},
+    {algo::Tone::Moving, {0.80, 0.47, 0.0}},
+    {algo::Tone::Refused, {0.77, 0.15, 0.15}},
+    {algo::Tone::Good, {0.10, 0.53, 0.25}},
+    {algo::Tone::Muted, {0.42, 0.45, 0.50}},
+});
+
 Colour colour_of(const Layer& layer) {
-  const auto tone = [&]() -> Colour {
-    switch (layer.tone) {
-      case algo::Tone::Accent:
-        return {0.66, 0.44, 0.0};
-      case algo::Tone::Internal:
-        return {0.0, 0.50, 0.42};
-      case algo::Tone::External:
-        return {0.76, 0.32, 0.05};
-      case algo::Tone::Elastic:
-        return {0.48, 0.25, 0.71};
-      case algo::Tone::Plan:
-        return {0.13, 0.38, 0.75};
-      case algo::Tone::Moving:
-        return {0.80, 0.47, 0.0};
-      case algo::Tone::Refused:
-        return {0.77, 0.15, 0.15};
-      case algo::Tone::Good:
-        return {0.10, 0.53, 0.25};
-      case algo::Tone::Muted:
-        break;
-    }
-    return {0.42, 0.45, 0.50};
-  };
-  Colour colour = tone();
+  Colour colour =
+      std::ranges::find(kColours, layer.tone, &decltype(kColours)::value_type::first)->second;
   if (layer.style == algo::LayerStyle::Faint) colour.a = kFaint;
   return colour;
 }
