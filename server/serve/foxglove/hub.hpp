@@ -141,6 +141,8 @@ class Hub {
 
   void opened(const std::shared_ptr<net::WsClient>& socket);
   void closed(ClientId id);
+  template <typename Parse>
+  void take(ClientId id, std::string_view message, Parse parse);
   void text(ClientId id, std::string_view message);
   void binary(ClientId id, std::string_view message);
 

@@ -82,24 +82,24 @@ void Hub::closed(ClientId id) {
   if (client_gone_) client_gone_(id);
 }
 
-void Hub::text(ClientId id, std::string_view message) {
+/// Handles what `parse` finds in a message of client `id`.
+template <typename Parse>
+void Hub::take(ClientId id, std::string_view message, Parse parse) {
   const auto found = clients_.find(id);
   if (found == clients_.end()) return;
   try {
-    std::visit([&](const auto& op) { handle(found->second, op); }, parse_text(message));
+    std::visit([&](const auto& op) { handle(found->second, op); }, parse(message));
   } catch (const ProtocolError& error) {
     complain(found->second, StatusLevel::Error, error.what());
   }
 }
 
+void Hub::text(ClientId id, std::string_view message) {
+  take(id, message, parse_text);
+}
+
 void Hub::binary(ClientId id, std::string_view message) {
-  const auto found = clients_.find(id);
-  if (found == clients_.end()) return;
-  try {
-    std::visit([&](const auto& part) { handle(found->second, part); }, parse_binary(message));
-  } catch (const ProtocolError& error) {
-    complain(found->second, StatusLevel::Error, error.what());
-  }
+  take(id, message, parse_binary);
 }
 
 // ---- subscriptions

@@ -51,21 +51,38 @@ std::string optional_text(const json& object, const char* name, const std::strin
   return as_text(*found, where + ": '" + name + "'");
 }
 
-std::vector<std::uint32_t> id_list(const json& op, const char* name, const std::string& where) {
-  std::vector<std::uint32_t> ids;
+/// The fields of one item of a list that the operation `op` carries.
+struct Item {
+  const json& object;
+  const std::string& op;
+  const char* noun;
+
+  const json& at(const char* name) const { return field(object, name, op + ": " + noun); }
+  std::uint32_t u32(const char* name) const { return as_u32(at(name), label(name)); }
+  std::string text(const char* name) const { return as_text(at(name), label(name)); }
+  std::string label(const char* name) const { return op + ": '" + name + "'"; }
+};
+
+/// Each value of the list `name` of the operation, by `read(value, op)`.
+template <typename Read>
+auto list_of(const json& op, const char* name, const std::string& where, Read read) {
+  std::vector<decltype(read(op, where))> out;
   for (const json& value : as_list(field(op, name, where), where + ": '" + name + "'")) {
-    ids.push_back(as_u32(value, where + ": each of '" + name + "'"));
+    out.push_back(read(value, where));
   }
-  return ids;
+  return out;
+}
+
+std::vector<std::uint32_t> id_list(const json& op, const char* name, const std::string& where) {
+  return list_of(op, name, where, [name](const json& value, const std::string& of) {
+    return as_u32(value, of + ": each of '" + name + "'");
+  });
 }
 
 std::vector<std::string> name_list(const json& op, const std::string& where) {
-  std::vector<std::string> names;
-  for (const json& value :
-       as_list(field(op, "parameterNames", where), where + ": 'parameterNames'")) {
-    names.push_back(as_text(value, where + ": each of 'parameterNames'"));
-  }
-  return names;
+  return list_of(op, "parameterNames", where, [](const json& value, const std::string& of) {
+    return as_text(value, of + ": each of 'parameterNames'");
+  });
 }
 
 std::optional<std::string> request_id(const json& op, const std::string& where) {
@@ -74,46 +91,20 @@ std::optional<std::string> request_id(const json& op, const std::string& where) 
   return as_text(*found, where + ": 'id'");
 }
 
-// ---- one function per op
-
-Subscribe parse_subscribe(const json& op) {
-  Subscribe out;
-  for (const json& item :
-       as_list(field(op, "subscriptions", "subscribe"), "subscribe: 'subscriptions'")) {
-    out.subscriptions.push_back(
-        {as_u32(field(item, "id", "subscribe: a subscription"), "subscribe: 'id'"),
-         as_u32(field(item, "channelId", "subscribe: a subscription"), "subscribe: 'channelId'")});
-  }
-  return out;
+Subscription read_subscription(const json& value, const std::string& op) {
+  const Item in{value, op, "a subscription"};
+  return {in.u32("id"), in.u32("channelId")};
 }
 
-ClientAdvertise parse_advertise(const json& op) {
-  ClientAdvertise out;
-  for (const json& item : as_list(field(op, "channels", "advertise"), "advertise: 'channels'")) {
-    ClientChannel channel;
-    channel.id = as_u32(field(item, "id", "advertise: a channel"), "advertise: 'id'");
-    channel.topic = as_text(field(item, "topic", "advertise: a channel"), "advertise: 'topic'");
-    channel.encoding =
-        as_text(field(item, "encoding", "advertise: a channel"), "advertise: 'encoding'");
-    channel.schema_name = optional_text(item, "schemaName", "advertise");
-    out.channels.push_back(std::move(channel));
-  }
-  return out;
+ClientChannel read_channel(const json& value, const std::string& op) {
+  const Item in{value, op, "a channel"};
+  return {
+      in.u32("id"), in.text("topic"), in.text("encoding"), optional_text(value, "schemaName", op)};
 }
 
-SetParameters parse_set_parameters(const json& op) {
-  SetParameters out;
-  for (const json& item :
-       as_list(field(op, "parameters", "setParameters"), "setParameters: 'parameters'")) {
-    Parameter parameter;
-    parameter.name =
-        as_text(field(item, "name", "setParameters: a parameter"), "setParameters: 'name'");
-    if (item.contains("value")) parameter.value = item["value"];
-    parameter.type = optional_text(item, "type", "setParameters");
-    out.parameters.push_back(std::move(parameter));
-  }
-  out.id = request_id(op, "setParameters");
-  return out;
+Parameter read_parameter(const json& value, const std::string& op) {
+  const std::string name = Item{value, op, "a parameter"}.text("name");
+  return {name, value.value("value", json(nullptr)), optional_text(value, "type", op)};
 }
 
 /// What is valid v1 but not offered here: say so, rather than "unknown".
@@ -176,12 +167,16 @@ ClientText parse_text(std::string_view text) {
     throw ProtocolError(error.what());
   }
   const std::string name = as_text(field(op, "op", "a text message"), "'op'");
-  if (name == "subscribe") return parse_subscribe(op);
+  if (name == "subscribe") {
+    return Subscribe{list_of(op, "subscriptions", name, read_subscription)};
+  }
   if (name == "unsubscribe") return Unsubscribe{id_list(op, "subscriptionIds", name)};
-  if (name == "advertise") return parse_advertise(op);
+  if (name == "advertise") return ClientAdvertise{list_of(op, "channels", name, read_channel)};
   if (name == "unadvertise") return ClientUnadvertise{id_list(op, "channelIds", name)};
   if (name == "getParameters") return GetParameters{name_list(op, name), request_id(op, name)};
-  if (name == "setParameters") return parse_set_parameters(op);
+  if (name == "setParameters") {
+    return SetParameters{list_of(op, "parameters", name, read_parameter), request_id(op, name)};
+  }
   if (name == "subscribeParameterUpdates") return SubscribeParameterUpdates{name_list(op, name)};
   if (name == "unsubscribeParameterUpdates") {
     return UnsubscribeParameterUpdates{name_list(op, name)};
