@@ -74,13 +74,6 @@ Response too_many_guesses(std::chrono::seconds wait) {
   return response;
 }
 
-std::size_t count_headers(const Request& request, std::string_view name) {
-  return static_cast<std::size_t>(
-      std::count_if(request.headers.begin(), request.headers.end(), [&](const Header& h) {
-        return equal_no_case(h.name, name);
-      }));
-}
-
 }  // namespace
 
 bool is_loopback_name(std::string_view host) {
@@ -109,8 +102,8 @@ bool Access::host_allowed(std::string_view host, std::string_view local_address)
 }
 
 bool Access::origin_allowed(const Request& request, bool login, bool authorized) const {
-  if (count_headers(request, "Origin") > 1) return false;
-  if (count_headers(request, "Origin") == 0) {
+  if (request.count("Origin") > 1) return false;
+  if (request.count("Origin") == 0) {
     // Not a browser. A client with the token may log in too.
     return request.loopback || options_.insecure || (token_required() && (login || authorized));
   }
@@ -184,7 +177,7 @@ std::optional<Response> Access::refuse(const Request& request,
                                        bool upgrade,
                                        bool protected_path,
                                        Clock::time_point now) {
-  if (count_headers(request, "Host") != 1) {
+  if (request.count("Host") != 1) {
     return problem(400, "a request needs exactly one Host header");
   }
   const std::string host{request.header("Host")};
@@ -198,7 +191,7 @@ std::optional<Response> Access::refuse(const Request& request,
   const Presented presented = asks ? look_at(request, now) : Presented{};
   const bool authorized = presented.credential == Credential::Right;
   if (presented.wait) return too_many_guesses(*presented.wait);
-  const bool browser = count_headers(request, "Origin") > 0;
+  const bool browser = request.count("Origin") > 0;
   if ((upgrade || !reads(request)) && (browser || !token_required() || !asks || authorized) &&
       !origin_allowed(request, login, authorized)) {
     return foreign_origin(request);

@@ -61,6 +61,8 @@ Address address_of(const asio::ip::tcp::endpoint& endpoint);
 /// What a connection or a request is told for which there is no room.
 Response no_room(Connections::Room why);
 
+/// One try without waiting, for what cannot be answered in the ordinary way.
+void write_at_once(Socket& socket, const Response& response);
 /// Serves HTTP on an accepted socket; hands over to start_websocket on an upgrade.
 void start_http(Core& core, Socket socket, const Address& peer);
 

@@ -45,11 +45,6 @@ std::string http_date() {
   return {text.data(), size};
 }
 
-bool has_header(const std::vector<Header>& headers, std::string_view name) {
-  return std::any_of(
-      headers.begin(), headers.end(), [&](const Header& h) { return equal_no_case(h.name, name); });
-}
-
 /// Length of the UTF-8 sequence at the front of `text`, 0 when it is not well formed.
 /// Table 3-7 of the Unicode standard.
 std::size_t utf8_sequence(std::string_view text) {
@@ -94,6 +89,11 @@ std::string_view Request::header(std::string_view name) const {
     if (equal_no_case(h.name, name)) return h.value;
   }
   return {};
+}
+
+std::size_t Request::count(std::string_view name) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      headers, [&](const Header& header) { return equal_no_case(header.name, name); }));
 }
 
 std::vector<std::string_view> Request::elements(std::string_view name) const {
@@ -251,8 +251,11 @@ std::string response_head(const Response& response,
   if (has_body && framing == Framing::Length) {
     append_header(head, "Content-Length", std::to_string(body_size));
   }
-  if (!has_header(response.headers, "Cache-Control"))
+  if (std::ranges::none_of(response.headers, [](const Header& header) {
+        return equal_no_case(header.name, "Cache-Control");
+      })) {
     append_header(head, "Cache-Control", "no-store");
+  }
   append_header(head, "X-Content-Type-Options", "nosniff");
   append_header(head, "Referrer-Policy", "no-referrer");
   append_header(head,
@@ -270,10 +273,7 @@ std::string response_head(const Response& response,
 std::optional<Response> framing_problem(const Request& request, bool http_1_0) {
   for (const char* name :
        {"Host", "Origin", "Content-Length", "Transfer-Encoding", "Content-Type", "Authorization"}) {
-    const auto lines = std::count_if(request.headers.begin(),
-                                     request.headers.end(),
-                                     [&](const Header& h) { return equal_no_case(h.name, name); });
-    if (lines > 1) {
+    if (request.count(name) > 1) {
       return problem(400, "the request has more than one " + std::string(name) + " line");
     }
   }
@@ -282,7 +282,7 @@ std::optional<Response> framing_problem(const Request& request, bool http_1_0) {
   if (std::any_of(length.begin(), length.end(), [](char c) { return c < '0' || c > '9'; })) {
     return problem(400, "the Content-Length is not a whole number");
   }
-  if (!has_header(request.headers, "Transfer-Encoding")) return std::nullopt;
+  if (request.count("Transfer-Encoding") == 0) return std::nullopt;
   if (!length.empty()) {
     return problem(400, "a request has either Content-Length or Transfer-Encoding, not both");
   }

@@ -38,6 +38,8 @@ struct Request {
 
   /// Value of the first header of that name (case does not matter); empty when there is none.
   std::string_view header(std::string_view name) const;
+  /// How many headers have that name.
+  std::size_t count(std::string_view name) const;
   /// The elements of a comma list that may be split over several headers of that name, in order.
   std::vector<std::string_view> elements(std::string_view name) const;
   /// Value of the cookie `name`; empty when there is none.

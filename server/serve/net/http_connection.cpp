@@ -1,8 +1,6 @@
 // server/serve/net/http_connection.cpp: HTTP/1.1 on one socket. First of the two files that know
 // Beast.
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <optional>
 #include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
 
@@ -18,6 +16,7 @@
 #include <fmt/format.h>
 
 #include "server/serve/net/core.hpp"
+#include "server/serve/net/response_writer.hpp"
 #include "server/serve/net/upgrade.hpp"
 
 namespace server::net {
@@ -47,6 +46,7 @@ Response parse_problem(const error_code& error, const Limits& limits) {
 /// One request at a time: read header, check, read body, answer, again. Pipelined requests wait in
 /// the buffer, so answers keep their order and memory its bound.
 class HttpConnection final : public Connection,
+                             public ResponseWriter::Host,
                              public std::enable_shared_from_this<HttpConnection> {
  public:
   HttpConnection(Core& core, Socket socket, const Address& peer)
@@ -75,11 +75,33 @@ class HttpConnection final : public Connection,
   void dispatch();
   void send_file(bool keep_alive);
   void respond(Response response, bool keep_alive);
-  void on_written(const error_code& error);
-  void next_slice();
-  void write_slice(BodyStream::Slice slice);
-  void drain();
-  void finish();
+  const WsEndpoint* endpoint() const;
+
+  // ResponseWriter::Host
+  void writing(std::size_t bytes) override {
+    served_ = Clock::now();
+    // A slow but steady reader of a large file gets its time: 50 kB/s is enough.
+    set_phase(Phase::Writing, core_.options.timeouts.body + std::chrono::milliseconds(bytes / 50));
+  }
+  void waiting() override { phase_ = Phase::Handler; }
+  void written() override {
+    core_.connections.release(number_);
+    next_request();
+  }
+  void draining() override { set_phase(Phase::Draining, core_.options.timeouts.closing); }
+  void finish() override;
+
+  /// Calls `next` when the operation succeeds and closes when it does not.
+  auto then(void (HttpConnection::*next)()) {
+    return [self = shared_from_this(), next](const error_code& error, auto...) {
+      if (self->ended_) return;
+      if (error) {
+        self->finish();
+      } else {
+        (self.get()->*next)();
+      }
+    };
+  }
   void set_phase(Phase phase, std::chrono::milliseconds limit) {
     phase_ = phase;
     deadline_ = Clock::now() + limit;
@@ -100,15 +122,9 @@ class HttpConnection final : public Connection,
   beast::flat_buffer buffer_{};
   std::optional<http::request_parser<http::string_body>> parser_{};
   Request request_{};
-  std::string head_{};
-  Payload body_{};
-  std::shared_ptr<BodyStream> stream_{};
-  Framing framing_ = Framing::Length;
-  std::string slice_{};
+  ResponseWriter writer_{socket_};
   std::size_t body_limit_ = 0;
   BodyRoom::Place body_place_{};
-  bool keep_alive_ = false;
-  std::array<char, 4096> drained_{};
 };
 
 void HttpConnection::start() {
@@ -120,7 +136,6 @@ void HttpConnection::start() {
   number_ = core_.connections.add(
       shared_from_this(), peer_, Connections::Kind::Request, core_.access.is_proxy(peer_));
   buffer_.max_size(core_.options.limits.header_bytes + 65536);
-  set_phase(Phase::Header, core_.options.timeouts.header);
   read_header();
 }
 
@@ -129,11 +144,7 @@ void HttpConnection::check(Clock::time_point now) {
   if (phase_ == Phase::Header || phase_ == Phase::Body) {
     if (buffer_.size() > 0 || phase_ == Phase::Body) {
       // One try without waiting: the pending read cannot be answered in the ordinary way.
-      Response response = problem(408, "the request did not arrive in time");
-      const std::string text =
-          response_head(response, response.body->size(), false) + *response.body;
-      error_code ignored;
-      socket_.write_some(asio::buffer(text), ignored);
+      write_at_once(socket_, problem(408, "the request did not arrive in time"));
     }
   }
   finish();
@@ -167,23 +178,15 @@ void HttpConnection::next_request() {
     return;
   }
   if (buffer_.size() > 0) {
-    set_phase(Phase::Header, core_.options.timeouts.header);
     read_header();
     return;
   }
   set_phase(Phase::Idle, core_.options.timeouts.idle);
-  socket_.async_wait(Socket::wait_read, [self = shared_from_this()](const error_code& error) {
-    if (self->ended_) return;
-    if (error) {
-      self->finish();
-      return;
-    }
-    self->set_phase(Phase::Header, self->core_.options.timeouts.header);
-    self->read_header();
-  });
+  socket_.async_wait(Socket::wait_read, then(&HttpConnection::read_header));
 }
 
 void HttpConnection::read_header() {
+  set_phase(Phase::Header, core_.options.timeouts.header);
   parser_.emplace();
   parser_->header_limit(static_cast<std::uint32_t>(core_.options.limits.header_bytes));
   parser_->body_limit(core_.options.limits.body_bytes);
@@ -292,11 +295,15 @@ bool HttpConnection::admitted(bool upgrading) {
   return true;
 }
 
+/// The WebSocket at the request's path; null when there is none.
+const WsEndpoint* HttpConnection::endpoint() const {
+  const auto found = std::ranges::find(core_.endpoints, request_.path, &WsEndpoint::path);
+  return found == core_.endpoints.end() ? nullptr : &*found;
+}
+
 void HttpConnection::upgrade() {
-  const auto& list = core_.endpoints;
-  const auto endpoint = std::find_if(
-      list.begin(), list.end(), [&](const WsEndpoint& e) { return e.path == request_.path; });
-  if (endpoint == list.end()) {
+  const WsEndpoint* const asked = endpoint();
+  if (asked == nullptr) {
     respond(problem(404, "there is no WebSocket at " + request_.path), false);
     return;
   }
@@ -304,7 +311,7 @@ void HttpConnection::upgrade() {
     respond(problem(400, "an upgrade request has no body and waits for its answer"), false);
     return;
   }
-  const std::vector<std::string>& known = endpoint->subprotocols;
+  const std::vector<std::string>& known = asked->subprotocols;
   std::string subprotocol = choose_subprotocol(known, request_.elements("Sec-WebSocket-Protocol"));
   if (subprotocol.empty() && !known.empty()) {
     const std::string names = fmt::format("{}", fmt::join(known, " or "));
@@ -316,27 +323,19 @@ void HttpConnection::upgrade() {
   start_websocket(core_,
                   std::move(socket_),
                   parser_->get(),
-                  *endpoint,
-                  std::move(subprotocol),
-                  request_.peer,
-                  request_.query,
-                  core_.access.login_of(request_, Clock::now()));
+                  *asked,
+                  {.subprotocol = std::move(subprotocol),
+                   .peer = request_.peer,
+                   .query = request_.query,
+                   .login = core_.access.login_of(request_, Clock::now())});
   core_.remove(number_);
 }
 
 void HttpConnection::send_continue() {
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
   set_phase(Phase::Body, core_.options.timeouts.body);
-  asio::async_write(socket_,
-                    asio::buffer(kContinue.data(), kContinue.size()),
-                    [self = shared_from_this()](const error_code& error, std::size_t) {
-                      if (self->ended_) return;
-                      if (error) {
-                        self->finish();
-                      } else {
-                        self->read_body();
-                      }
-                    });
+  asio::async_write(
+      socket_, asio::buffer(kContinue.data(), kContinue.size()), then(&HttpConnection::read_body));
 }
 
 void HttpConnection::read_body() {
@@ -367,10 +366,7 @@ void HttpConnection::dispatch() {
   request_.body = std::move(parser_->get().body());
   phase_ = Phase::Handler;
   const bool keep_alive = parser_->get().keep_alive();
-  const auto endpoint = std::find_if(core_.endpoints.begin(),
-                                     core_.endpoints.end(),
-                                     [&](const WsEndpoint& e) { return e.path == request_.path; });
-  if (endpoint != core_.endpoints.end()) {
+  if (endpoint() != nullptr) {
     Response response = problem(426, request_.path + " is a WebSocket; connect with an upgrade");
     response.headers.push_back({"Upgrade", "websocket"});
     respond(std::move(response), keep_alive);
@@ -407,101 +403,15 @@ void HttpConnection::send_file(bool keep_alive) {
 
 void HttpConnection::respond(Response response, bool keep_alive) {
   body_place_ = BodyRoom::Place();
-  keep_alive_ = keep_alive && !core_.stopping;
   served_ = Clock::now();
   if (auto cookie = core_.access.renewal(request_, served_)) {
     response.headers.push_back(std::move(*cookie));
   }
-  body_ = std::move(response.body);
-  stream_ = std::move(response.stream);
-  const bool http_1_0 = parser_->got_some() && parser_->get().version() < 11;
-  framing_ = !stream_ ? Framing::Length : http_1_0 ? Framing::Close : Framing::Chunked;
-  if (framing_ == Framing::Close) keep_alive_ = false;
-  const std::size_t size = body_ ? body_->size() : 0;
-  head_ = response_head(response, size, keep_alive_, framing_);
-  const bool bare = request_.method == "HEAD" || response.status == 204 || response.status == 304;
-  if (bare) stream_ = nullptr;
-  // A slow but steady reader of a large file gets its time: 50 kB/s is enough.
-  const auto transfer = std::chrono::milliseconds(size / 50);
-  set_phase(Phase::Writing, core_.options.timeouts.body + transfer);
-  const std::array<asio::const_buffer, 2> buffers{
-      asio::buffer(head_), bare || !body_ ? asio::const_buffer() : asio::buffer(*body_)};
-  asio::async_write(
-      socket_, buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
-        self->on_written(error);
-      });
-}
-
-void HttpConnection::on_written(const error_code& error) {
-  if (ended_) return;
-  body_ = nullptr;
-  if (error) {
-    finish();
-    return;
-  }
-  if (stream_) {
-    next_slice();
-    return;
-  }
-  if (keep_alive_) {
-    core_.connections.release(number_);
-    next_request();
-    return;
-  }
-  // Closing with unread input would reset the connection and may take the answer with it: stop
-  // sending, then read away what still comes.
-  error_code ignored;
-  socket_.shutdown(Socket::shutdown_send, ignored);
-  set_phase(Phase::Draining, core_.options.timeouts.closing);
-  drain();
-}
-
-void HttpConnection::next_slice() {
-  phase_ = Phase::Handler;
-  stream_->next([weak = weak_from_this()](BodyStream::Slice slice) {
-    const auto self = weak.lock();
-    if (self && !self->ended_) self->write_slice(std::move(slice));
-  });
-}
-
-void HttpConnection::write_slice(BodyStream::Slice slice) {
-  if (!slice) {
-    // Reset, as an ordinary end would complete a body without a length.
-    error_code ignored;
-    socket_.set_option(asio::socket_base::linger(true, 0), ignored);
-    finish();
-    return;
-  }
-  served_ = Clock::now();
-  slice_ = std::move(*slice);
-  const bool last = slice_.empty();
-  if (last) stream_ = nullptr;
-  head_.clear();
-  if (framing_ == Framing::Chunked) {
-    std::array<char, 16> size{};
-    const auto end = std::to_chars(size.data(), size.data() + size.size(), slice_.size(), 16).ptr;
-    head_.append(size.data(), end).append("\r\n");
-    slice_.append("\r\n");
-  }
-  set_phase(Phase::Writing,
-            core_.options.timeouts.body + std::chrono::milliseconds(slice_.size() / 50));
-  const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_), asio::buffer(slice_)};
-  asio::async_write(
-      socket_, buffers, [self = shared_from_this()](const error_code& error, std::size_t) {
-        self->on_written(error);
-      });
-}
-
-void HttpConnection::drain() {
-  socket_.async_read_some(asio::buffer(drained_),
-                          [self = shared_from_this()](const error_code& error, std::size_t) {
-                            if (self->ended_) return;
-                            if (error) {
-                              self->finish();
-                            } else {
-                              self->drain();
-                            }
-                          });
+  writer_.write(shared_from_this(),
+                std::move(response),
+                {.keep_alive = keep_alive && !core_.stopping,
+                 .http_1_0 = parser_->got_some() && parser_->get().version() < 11,
+                 .head_only = request_.method == "HEAD"});
 }
 
 }  // namespace

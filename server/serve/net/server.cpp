@@ -74,6 +74,12 @@ Response no_room(Connections::Room why) {
   return response;
 }
 
+void write_at_once(Socket& socket, const Response& response) {
+  const std::string text = response_head(response, response.body->size(), false) + *response.body;
+  boost::system::error_code ignored;
+  socket.write_some(asio::buffer(text), ignored);
+}
+
 struct Server::Impl {
   explicit Impl(ServerOptions options)
       : core(checked(std::move(options))),
@@ -180,10 +186,7 @@ void Server::Impl::welcome(Socket socket) {
     start_http(core, std::move(socket), peer);
     return;
   }
-  const Response response = no_room(room);
-  const std::string text = response_head(response, response.body->size(), false) + *response.body;
-  socket.write_some(asio::buffer(text),
-                    ignored);  // fresh socket: fits, or the client is out of luck
+  write_at_once(socket, no_room(room));  // fresh: it fits, or the client is out of luck
 }
 
 void Server::Impl::sweep() {

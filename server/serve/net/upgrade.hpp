@@ -15,14 +15,19 @@ namespace server::net {
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
 
-/// Answers an upgrade that has passed every check and serves the WebSocket from there on.
+/// Who connects, as the request that has passed every check says.
+struct WsVisitor {
+  std::string subprotocol{};
+  std::string peer{};
+  std::map<std::string, std::string> query{};
+  std::string login{};
+};
+
+/// Answers the upgrade and serves the WebSocket from there on.
 void start_websocket(Core& core,
                      Socket socket,
                      const UpgradeRequest& request,
                      const WsEndpoint& endpoint,
-                     std::string subprotocol,
-                     std::string peer,
-                     std::map<std::string, std::string> query,
-                     std::string login);
+                     WsVisitor visitor);
 
 }  // namespace server::net

@@ -33,14 +33,7 @@ class WsConnection final : public Connection,
                            public WsClient,
                            public std::enable_shared_from_this<WsConnection> {
  public:
-  WsConnection(Core& core,
-               Socket socket,
-               const WsEndpoint& endpoint,
-               std::string subprotocol,
-               std::string peer,
-               std::map<std::string, std::string> query,
-               std::string login);
-
+  WsConnection(Core& core, Socket socket, const WsEndpoint& endpoint, WsVisitor visitor);
   void start(const UpgradeRequest& request);
 
   // Connection
@@ -50,13 +43,13 @@ class WsConnection final : public Connection,
   std::optional<Clock::time_point> idle_since(Clock::time_point /*now*/) const override {
     return std::nullopt;
   }
-  std::string_view login() const override { return login_; }
+  std::string_view login() const override { return visitor_.login; }
   void logged_out() override { close(websocket::close_code::policy_error, "logged out"); }
 
   // WsClient
   std::uint32_t id() const override { return id_; }
-  const std::map<std::string, std::string>& query() const override { return query_; }
-  const std::string& subprotocol() const override { return subprotocol_; }
+  const std::map<std::string, std::string>& query() const override { return visitor_.query; }
+  const std::string& subprotocol() const override { return visitor_.subprotocol; }
   bool open() const override { return state_ == State::Open; }
   void send_control(FrameKind kind, Payload payload) override;
   bool send_latest(std::uint32_t key,
@@ -89,10 +82,7 @@ class WsConnection final : public Connection,
   Core& core_;
   const WsEndpoint& endpoint_;
   std::optional<Stream> stream_;  // empty once ended
-  std::string subprotocol_;
-  std::string peer_;
-  std::map<std::string, std::string> query_;
-  std::string login_;
+  const WsVisitor visitor_;
   std::uint32_t id_;
   Connections::Number number_ = 0;
   State state_ = State::Handshake;
@@ -110,20 +100,11 @@ class WsConnection final : public Connection,
   WsCounters counters_{};
 };
 
-WsConnection::WsConnection(Core& core,
-                           Socket socket,
-                           const WsEndpoint& endpoint,
-                           std::string subprotocol,
-                           std::string peer,
-                           std::map<std::string, std::string> query,
-                           std::string login)
+WsConnection::WsConnection(Core& core, Socket socket, const WsEndpoint& endpoint, WsVisitor visitor)
     : core_(core),
       endpoint_(endpoint),
       stream_(std::in_place, FrameSocket(std::move(socket))),
-      subprotocol_(std::move(subprotocol)),
-      peer_(std::move(peer)),
-      query_(std::move(query)),
-      login_(std::move(login)),
+      visitor_(std::move(visitor)),
       id_(core.next_client++),
       queue_({core.options.limits.control_messages, core.options.limits.control_bytes}) {}
 
@@ -136,12 +117,12 @@ void WsConnection::limit_kernel_queue() {
                    TCP_NOTSENT_LOWAT,
                    &bytes,
                    sizeof bytes) != 0) {
-    core_.log("cannot limit the kernel's send queue of " + peer_);
+    core_.log("cannot limit the kernel's send queue of " + visitor_.peer);
   }
 }
 
 void WsConnection::start(const UpgradeRequest& request) {
-  const Address client = Address::parse(peer_).value_or(Address());
+  const Address client = Address::parse(visitor_.peer).value_or(Address());
   number_ = core_.connections.add(shared_from_this(), client, Connections::Kind::WebSocket, false);
   heard_ = counters_.heard = Clock::now();
   deadline_ = heard_ + core_.options.timeouts.header;
@@ -151,8 +132,8 @@ void WsConnection::start(const UpgradeRequest& request) {
   timeouts.idle_timeout = websocket::stream_base::none();
   timeouts.keep_alive_pings = false;
   stream_->set_option(timeouts);
-  stream_->set_option(
-      websocket::stream_base::decorator([name = subprotocol_](websocket::response_type& response) {
+  stream_->set_option(websocket::stream_base::decorator(
+      [name = visitor_.subprotocol](websocket::response_type& response) {
         response.set(beast::http::field::server, "Tautline");
         if (!name.empty()) response.set(beast::http::field::sec_websocket_protocol, name);
       }));
@@ -230,7 +211,7 @@ void WsConnection::send_control(FrameKind kind, Payload payload) {
   message.kind = kind;
   message.payload = std::move(payload);
   if (!queue_.push_control(std::move(message))) {
-    core_.log("disconnecting " + peer_ + ": it does not read its control messages");
+    core_.log("disconnecting " + visitor_.peer + ": it does not read its control messages");
     // A closing frame would queue behind what it does not read. Not ended here and now, as the
     // caller may be walking a list of clients: check() does it.
     state_ = State::Closing;
@@ -399,17 +380,8 @@ void start_websocket(Core& core,
                      Socket socket,
                      const UpgradeRequest& request,
                      const WsEndpoint& endpoint,
-                     std::string subprotocol,
-                     std::string peer,
-                     std::map<std::string, std::string> query,
-                     std::string login) {
-  std::make_shared<WsConnection>(core,
-                                 std::move(socket),
-                                 endpoint,
-                                 std::move(subprotocol),
-                                 std::move(peer),
-                                 std::move(query),
-                                 std::move(login))
+                     WsVisitor visitor) {
+  std::make_shared<WsConnection>(core, std::move(socket), endpoint, std::move(visitor))
       ->start(request);
 }
 
