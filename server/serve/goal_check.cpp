@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "algo/bounds.hpp"
 #include "algo/geometry.hpp"
 #include "algo/grid_search.hpp"
 
@@ -26,34 +27,14 @@ double least_room(const algo::RobotSpec& spec) {
   return spec.half_length > 0 ? std::min(spec.half_length, spec.half_width) : spec.radius;
 }
 
-struct Bounds {
-  Vec2 low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  Vec2 high = -low;
-  void include(const Vec2& p) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-};
-
-Bounds bounds_of(const algo::Obstacle& obstacle) {
-  Bounds out;
-  if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
-    const Vec2 edge(cylinder->radius, cylinder->radius);
-    out.include(obstacle.pose_W.position() - edge);
-    out.include(obstacle.pose_W.position() + edge);
-  }
-  for (const Vec2& corner : algo::outline_W(obstacle)) out.include(corner);
-  return out;
-}
-
 /// Cells in which a disc of `room` cannot have its middle, whatever point of the cell that is.
 class Floor {
  public:
-  Floor(const Bounds& world, double room) : room_(room) {
-    const double side = (world.high - world.low).maxCoeff() + 4 * room;
+  Floor(const Eigen::AlignedBox2d& world, double room) : room_(room) {
+    const double side = world.sizes().maxCoeff() + 4 * room;
     cell_ = std::max(kLeastCell, side / (kMostCells - 1));
-    low_ = world.low - Vec2::Constant(2 * room);
-    const Vec2 size = world.high - world.low + Vec2::Constant(4 * room);
+    low_ = world.min() - Vec2::Constant(2 * room);
+    const Vec2 size = world.sizes() + Vec2::Constant(4 * room);
     grid_.columns = static_cast<int>(size.x() / cell_) + 1;
     grid_.rows = static_cast<int>(size.y() / cell_) + 1;
     costs_.assign(static_cast<std::size_t>(grid_.columns) * static_cast<std::size_t>(grid_.rows),
@@ -68,9 +49,9 @@ class Floor {
   /// The number of cells that had to be looked at.
   double block(const algo::Obstacle& obstacle) {
     const double reach = room_ - std::numbers::sqrt2 / 2 * cell_;
-    const Bounds box = bounds_of(obstacle);
-    const algo::GridCell from = cell_of(box.low - Vec2::Constant(room_));
-    const algo::GridCell to = cell_of(box.high + Vec2::Constant(room_));
+    const Eigen::AlignedBox2d box = bounds_W(obstacle);
+    const algo::GridCell from = cell_of(box.min() - Vec2::Constant(room_));
+    const algo::GridCell to = cell_of(box.max() + Vec2::Constant(room_));
     for (int row = from.row; row <= to.row; ++row) {
       for (int column = from.column; column <= to.column; ++column) {
         const Vec2 middle = low_ + cell_ * Vec2(column + 0.5, row + 0.5);
@@ -101,14 +82,9 @@ bool shut_off(double room,
               const Vec2& from,
               const Vec2& to,
               std::span<const algo::Obstacle> obstacles) {
-  Bounds world;
-  world.include(from);
-  world.include(to);
-  for (const algo::Obstacle& obstacle : obstacles) {
-    const Bounds box = bounds_of(obstacle);
-    world.include(box.low);
-    world.include(box.high);
-  }
+  Eigen::AlignedBox2d world(from);
+  world.extend(to);
+  for (const algo::Obstacle& obstacle : obstacles) world.extend(bounds_W(obstacle));
   Floor floor(world, room);
   double looks = 0;
   for (const algo::Obstacle& obstacle : obstacles) {

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <stdexcept>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "sim/drive_errors.hpp"
@@ -24,13 +25,9 @@ double cpu_seconds() {
 }
 
 algo::Mapper mapper_for(const std::vector<algo::Pose2>& path_W, bool match) {
-  algo::Vec2 low_W = path_W.front().position();
-  algo::Vec2 high_W = low_W;
-  for (const algo::Pose2& pose_W : path_W) {
-    low_W = low_W.cwiseMin(pose_W.position());
-    high_W = high_W.cwiseMax(pose_W.position());
-  }
-  const double edge = (high_W - low_W).maxCoeff() + 2 * kMargin;
+  Eigen::AlignedBox2d bounds(path_W.front().position());
+  for (const algo::Pose2& pose_W : path_W) bounds.extend(pose_W.position());
+  const double edge = bounds.sizes().maxCoeff() + 2 * kMargin;
   if (!(edge <= kLargest)) {
     throw std::runtime_error(fmt::format(
         "The path of the log is {:.0f} m wide; a map of more than {:.0f} m is not made.",
@@ -40,7 +37,7 @@ algo::Mapper mapper_for(const std::vector<algo::Pose2>& path_W, bool match) {
   algo::MapperSettings settings;
   settings.match = match;
   const int side = static_cast<int>(std::ceil(edge / settings.cell));
-  return {settings, side, (low_W + high_W) / 2};
+  return {settings, side, bounds.center()};
 }
 
 void match_run(const Recording& log, MapRun& run) {

@@ -2,10 +2,10 @@
 #include "server/lab/reproduce/pictures.hpp"
 
 #include <array>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include "algo/bounds.hpp"
 #include "server/experiment/svg_plot.hpp"
 
 namespace server::reproduce {
@@ -35,34 +35,17 @@ std::vector<Vec2> thinned(std::span<const Vec2> track_W) {
   return kept_W;
 }
 
-/// The corners of all that is drawn.
-struct Bounds {
-  Vec2 low_W{std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  Vec2 high_W = -low_W;
-  void add(const Vec2& p_W) {
-    low_W = low_W.cwiseMin(p_W);
-    high_W = high_W.cwiseMax(p_W);
-  }
-};
-
-Bounds bounds_of(const sim::Scenario& scenario, std::span<const Series> rows) {
-  Bounds bounds;
-  bounds.add(scenario.start.position());
-  bounds.add(scenario.goal->position_W);
-  for (const algo::Obstacle& obstacle : scenario.obstacles) {
-    for (const Vec2& p_W : algo::outline_W(obstacle)) bounds.add(p_W);
-    if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
-      bounds.add(obstacle.pose_W.position() + Vec2(cylinder->radius, cylinder->radius));
-      bounds.add(obstacle.pose_W.position() - Vec2(cylinder->radius, cylinder->radius));
-    }
-  }
+/// All that is drawn, and some free plane about it.
+Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const Series> rows) {
+  Eigen::AlignedBox2d bounds(scenario.start.position());
+  bounds.extend(scenario.goal->position_W);
+  for (const algo::Obstacle& obstacle : scenario.obstacles) bounds.extend(bounds_W(obstacle));
   for (const Series& row : rows) {
     if (row.scenario != scenario.name) continue;
-    for (const Vec2& p_W : row.runs.front().track_W) bounds.add(p_W);
+    for (const Vec2& p_W : row.runs.front().track_W) bounds.extend(p_W);
   }
-  bounds.low_W -= Vec2(kEdge, kEdge);
-  bounds.high_W += Vec2(kEdge, kEdge);
-  return bounds;
+  const Vec2 edge(kEdge, kEdge);
+  return {bounds.min() - edge, bounds.max() + edge};
 }
 
 void draw_scene(const PaperConditions& paper, const sim::Scenario& scenario, SvgPlot& plot) {
@@ -87,8 +70,8 @@ void draw_scene(const PaperConditions& paper, const sim::Scenario& scenario, Svg
 std::string draw_paths(const PaperConditions& paper,
                        const sim::Scenario& scenario,
                        std::span<const Series> rows) {
-  const Bounds bounds = bounds_of(scenario, rows);
-  SvgPlot plot(bounds.low_W, bounds.high_W, kWidth, readings().size());
+  const Eigen::AlignedBox2d bounds = bounds_of(scenario, rows);
+  SvgPlot plot(bounds.min(), bounds.max(), kWidth, readings().size());
   draw_scene(paper, scenario, plot);
   for (std::size_t i = 0; i < readings().size(); ++i) {
     const Series* row = find_series(rows, scenario.name, readings()[i]);
