@@ -196,26 +196,12 @@ void Bridge::sign_of(ClientId client) {
 
 void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& reply) {
   sign_of(client);
-  const auto id = std::make_shared<std::uint32_t>(0);
-  const bool stop = is_stop(request);
-  const std::optional<std::string> trouble = session_.trouble_with(request);
-  const auto given =
-      session_.submit(std::move(request),
-                      [this, reply, id, stop, trouble](const std::optional<std::string>& refusal) {
-                        if (refusal) {
-                          reply.failure(*refusal);
-                          return;
-                        }
-                        json body = accepted_json(session_, stop);
-                        if (*id != 0) body["id"] = *id;
-                        if (trouble) body["warning"] = *trouble;
-                        reply.success(body);
-                      });
-  if (given) {
-    *id = *given;
-  } else {
-    reply.failure(kBusy);
-  }
+  const bool taken = server::submit(
+      session_,
+      std::move(request),
+      [reply](const json& body) { reply.success(body); },
+      [reply](const std::string& refusal) { reply.failure(refusal); });
+  if (!taken) reply.failure(kBusy);
 }
 
 void Bridge::add_services() {

@@ -8,6 +8,7 @@
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/pose_json.hpp"
+#include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
 
 namespace server {
@@ -80,10 +81,28 @@ json goal_check_json(Session& session, const json& goal) {
   return out;
 }
 
-json accepted_json(const Session& session, bool stop) {
-  json body = {{"ok", true}};
-  if (stop) body["stop"] = session.standing() ? "standing" : "commanded";
-  return body;
+bool submit(Session& session,
+            algo::Request request,
+            std::function<void(const json&)> accepted,
+            std::function<void(const std::string&)> refused) {
+  const auto id = std::make_shared<std::uint32_t>(0);
+  const bool stop = is_stop(request);
+  const auto answer = [&session,
+                       id,
+                       stop,
+                       trouble = session.trouble_with(request),
+                       accepted = std::move(accepted),
+                       refused = std::move(refused)](const std::optional<std::string>& refusal) {
+    if (refusal) return refused(*refusal);
+    json body = {{"ok", true}};
+    if (stop) body["stop"] = session.standing() ? "standing" : "commanded";
+    if (*id != 0) body["id"] = *id;
+    if (trouble) body["warning"] = *trouble;
+    accepted(body);
+  };
+  const auto given = session.submit(std::move(request), answer);
+  if (given) *id = *given;
+  return given.has_value();
 }
 
 json catalog_json() {

@@ -1,6 +1,9 @@
 // server/serve/session_json.hpp: what a session is doing, as /state and GET /api/v1/session say it.
 #pragma once
 
+#include <functional>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 #include "server/serve/session.hpp"
@@ -10,9 +13,14 @@ namespace server {
 /// {"ok":true,"trouble":sentence or null} for a goal {"x","y","heading"?} that nobody has set yet.
 /// Throws DocumentError.
 nlohmann::json goal_check_json(Session& session, const nlohmann::json& goal);
-/// The answer to a request that was accepted: {"ok":true}, and for a Stop whether the robot is
-/// "standing" already or the stop is "commanded" only.
-nlohmann::json accepted_json(const Session& session, bool stop);
+/// Submits a request and gives `accepted`, once the control thread has, its answer: {"ok":true},
+/// the "id" of a new obstacle, a "warning" about a goal, and for a Stop whether the robot is
+/// "standing" already or the stop is "commanded" only; or `refused` the reason. False when no more
+/// is taken just now.
+bool submit(Session& session,
+            algo::Request request,
+            std::function<void(const nlohmann::json&)> accepted,
+            std::function<void(const std::string&)> refused);
 /// The `/state` document (docs/interfaces.md).
 nlohmann::json state_json(const Session& session);
 /// The same with the newest tick: pose, clearance, mission, hold and the two sentences.

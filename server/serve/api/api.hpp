@@ -42,6 +42,13 @@ void add_session_routes(net::Router& router, ApiContext& context);
 void add_sessions_routes(net::Router& router, ApiContext& context);
 void add_run_routes(net::Router& router, ApiContext& context);
 
+/// {"scenario"?, "controller"?, ...}: which scenario by its name, and what is to be otherwise.
+struct LoadRequest {
+  std::optional<std::string> scenario{};
+  RunOverrides overrides{};
+};
+/// Throws DocumentError.
+LoadRequest load_request(const nlohmann::json& body);
 /// Saves one of the user's own, once its world has been built: what cannot be run is not kept.
 /// Throws LibraryError or what is wrong with the world.
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);

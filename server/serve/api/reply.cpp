@@ -98,17 +98,23 @@ net::Handler immediate(std::function<net::Response(const net::Request&)> handler
       };
 }
 
+std::optional<std::uint64_t> whole_number(const std::string& text, std::size_t digits) {
+  const bool good = !text.empty() && text.size() <= digits &&
+                    text.find_first_not_of("0123456789") == std::string::npos;
+  if (!good) return std::nullopt;
+  return std::stoull(text);
+}
+
 std::uint64_t number_of(const net::Request& request,
                         const std::string& key,
                         std::uint64_t fallback) {
   const auto it = request.query.find(key);
   if (it == request.query.end()) return fallback;
-  const std::string& text = it->second;
-  if (text.empty() || text.size() > 18 ||
-      text.find_first_not_of("0123456789") != std::string::npos) {
-    throw DocumentError("?" + key, fmt::format("'{}' is not a whole number", text));
+  const auto number = whole_number(it->second);
+  if (!number) {
+    throw DocumentError("?" + key, fmt::format("'{}' is not a whole number", it->second));
   }
-  return std::stoull(text);
+  return *number;
 }
 
 std::size_t limit_of(const net::Request& request, std::size_t fallback, std::size_t max) {

@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -30,6 +31,8 @@ net::Handler guarded(std::function<void(const net::Request&, const net::Responde
 /// The same for a handler that answers at once.
 net::Handler immediate(std::function<net::Response(const net::Request&)> handler);
 
+/// The number that `text` writes, of at most `digits`; nothing for any other text.
+std::optional<std::uint64_t> whole_number(const std::string& text, std::size_t digits = 18);
 /// `?limit=` within 1 to `max`; throws DocumentError.
 std::size_t limit_of(const net::Request& request, std::size_t fallback, std::size_t max);
 /// A whole number of the query, or `fallback`. Throws DocumentError.

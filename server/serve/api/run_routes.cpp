@@ -24,11 +24,9 @@ constexpr std::uint64_t kMaxRepeats = 10'000;
 
 db::RunId run_id(const net::Request& request) {
   const std::string& text = request.params.at("id");
-  if (text.empty() || text.size() > 18 ||
-      text.find_first_not_of("0123456789") != std::string::npos) {
-    throw DocumentError("id", fmt::format("'{}' is not a run's number", text));
-  }
-  return std::stoll(text);
+  const auto number = whole_number(text);
+  if (!number) throw DocumentError("id", fmt::format("'{}' is not a run's number", text));
+  return static_cast<db::RunId>(*number);
 }
 
 net::Response no_such_run(db::RunId run) {

@@ -44,34 +44,17 @@ void submit_and_reply(Session& session,
                       algo::Request request,
                       const net::Responder& respond,
                       int status = 200) {
-  const auto id = std::make_shared<std::uint32_t>(0);
-  const bool stop = is_stop(request);
-  const std::optional<std::string> trouble = session.trouble_with(request);
-  const auto given = session.submit(
+  const bool taken = submit(
+      session,
       std::move(request),
-      [&session, respond, id, status, stop, trouble](const std::optional<std::string>& refusal) {
-        if (refusal) {
-          respond(net::problem(409, "Refused", *refusal));
-          return;
-        }
-        json body = accepted_json(session, stop);
-        if (*id != 0) body["id"] = *id;
-        if (trouble) body["warning"] = *trouble;
-        respond(json_response(status, body));
-      });
-  if (!given) {
-    busy(respond);
-    return;
-  }
-  *id = *given;
+      [respond, status](const json& body) { respond(json_response(status, body)); },
+      [respond](const std::string& refusal) { respond(net::problem(409, "Refused", refusal)); });
+  if (!taken) busy(respond);
 }
 
 std::uint32_t obstacle_id(const net::Request& request) {
-  constexpr std::size_t kMostDigits = 10;
   const std::string& text = request.params.at("id");
-  const bool digits = !text.empty() && text.size() <= kMostDigits &&
-                      text.find_first_not_of("0123456789") == std::string::npos;
-  const std::uint64_t id = digits ? std::stoull(text) : kMaxStandingId + 1;
+  const std::uint64_t id = whole_number(text, 10).value_or(kMaxStandingId + 1);
   if (id > kMaxStandingId) {
     throw DocumentError("id", fmt::format("'{}' is not an obstacle's number", text));
   }
@@ -270,27 +253,33 @@ json parameters_document(const Session& session) {
 
 }  // namespace
 
+LoadRequest load_request(const json& body) {
+  const JsonReader in(body, "");
+  in.only(
+      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
+  LoadRequest out{.overrides = overrides_from_json(body)};
+  if (in.has("scenario")) out.scenario = in.text("scenario", 64);
+  return out;
+}
+
 bool load_from_json(ApiContext& context,
                     OpenSession& session,
                     const json& body,
                     SessionLoader::Done done) {
-  const JsonReader in(body, "");
-  in.only(
-      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
-  const RunOverrides overrides = overrides_from_json(body);
-  std::optional<std::string> name;
-  if (in.has("scenario")) name = in.text("scenario", 64);
+  const auto [name, overrides] = load_request(body);
   if (const auto& hardware = session.session().state().spec.hardware) {
     if (name && *name != hardware->scenario.name) {
-      in.fail("scenario",
-              "cannot be loaded: this session drives real hardware. Open another for simulation");
+      throw DocumentError(
+          "scenario",
+          "cannot be loaded: this session drives real hardware. Open another for simulation");
     }
-    const auto plan = [hardware, overrides] {
+    const auto plan = [hardware, overrides = overrides] {
       return [hardware, overrides] { return hardware_spec(hardware, overrides); };
     };
     return session.loader().load(plan, std::move(done));
   }
-  const auto plan = [&context, &session, name, overrides]() -> SessionLoader::Make {
+  const auto plan =
+      [&context, &session, name = name, overrides = overrides]() -> SessionLoader::Make {
     sim::Scenario now;
     if (!name) now = session.session().state().spec.scenario;
     return [&library = context.library, name, now, overrides] {

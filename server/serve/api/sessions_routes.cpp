@@ -1,5 +1,4 @@
 // server/serve/api/sessions_routes.cpp: opening, listing and ending sessions.
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -42,17 +41,13 @@ json list(ApiContext& context) {
 
 /// The fields of `/load`; without a scenario, what the server began with.
 SessionLoader::Make make_from(ApiContext& context, const json& body) {
-  const JsonReader in(body, "");
-  in.only(
-      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
-  RunOverrides overrides = overrides_from_json(body);
-  if (!overrides.seed) overrides.seed = context.first.seed;
-  std::optional<std::string> name;
-  if (in.has("scenario")) name = in.text("scenario", 64);
-  return [&context, name, overrides] {
-    return make_spec(name ? context.library.load(*name) : context.first.scenario,
-                     overrides,
-                     context.library.robots());
+  LoadRequest asked = load_request(body);
+  if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;
+  return [&context, asked = std::move(asked)] {
+    return make_spec(
+        asked.scenario ? context.library.load(*asked.scenario) : context.first.scenario,
+        asked.overrides,
+        context.library.robots());
   };
 }
 
