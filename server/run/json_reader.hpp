@@ -45,6 +45,12 @@ class JsonReader {
   bool flag_or(std::string_view key, bool fallback) const;
   JsonReader object(std::string_view key) const;
   const nlohmann::json& array(std::string_view key, std::size_t max_size) const;
+  /// Calls `visit(value, path)` for each entry of the list `key`.
+  template <typename Visit>
+  void each(std::string_view key, std::size_t max_size, const Visit& visit) const {
+    const nlohmann::json& list = array(key, max_size);
+    for (std::size_t i = 0; i < list.size(); ++i) visit(list[i], at(key) + '/' + std::to_string(i));
+  }
   const nlohmann::json& raw() const { return value_; }
   std::string at(std::string_view key) const;  // path of a field
   [[noreturn]] void fail(std::string_view key, const std::string& complaint) const;

@@ -46,21 +46,19 @@ sim::ObstaclePath path_from_json(const JsonReader& in, std::uint32_t id) {
   path.id = id;
   path.period = in.number("period", {0.1, kMaxTime});
   path.phase = in.number_or("phase", 0, {-kMaxTime, kMaxTime});
-  const json& keys = in.array("keys", kMaxKeys);
-  if (keys.empty()) in.fail("keys", "must hold one key [t, x, y] at least");
   double last = -1;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::string at = fmt::format("{}/{}", in.at("keys"), i);
-    if (!keys[i].is_array() || keys[i].size() != 3) {
+  in.each("keys", kMaxKeys, [&](const json& key, const std::string& at) {
+    if (!key.is_array() || key.size() != 3) {
       throw DocumentError(at, "must be a key [t, x, y] in seconds and metres");
     }
-    const double time = finite_number(keys[i][0], at + "/0", {0, kMaxTime});
+    const double time = finite_number(key[0], at + "/0", {0, kMaxTime});
     if (time <= last) throw DocumentError(at + "/0", "must be later than the key before");
     last = time;
     path.keys.push_back({time,
-                         {finite_number(keys[i][1], at + "/1", kCoordinate),
-                          finite_number(keys[i][2], at + "/2", kCoordinate)}});
-  }
+                         {finite_number(key[1], at + "/1", kCoordinate),
+                          finite_number(key[2], at + "/2", kCoordinate)}});
+  });
+  if (path.keys.empty()) in.fail("keys", "must hold one key [t, x, y] at least");
   return path;
 }
 

@@ -50,16 +50,15 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
 void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
   in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
   algo::Polygon polygon;
-  const json& points = in.array("points", kMaxPolygonPoints);
   algo::Vec2 sum{0, 0};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    polygon.points.push_back(point_from_json(points[i], fmt::format("{}/{}", in.at("points"), i)));
+  in.each("points", kMaxPolygonPoints, [&](const json& point, const std::string& at) {
+    polygon.points.push_back(point_from_json(point, at));
     sum += polygon.points.back();
-  }
+  });
   if (in.has("x") || in.has("y") || in.has("heading")) {
     obstacle.pose_W = pose_from_json(in, 0);  // the points are in the obstacle's own frame
-  } else if (!points.empty()) {
-    const algo::Vec2 middle = sum / static_cast<double>(points.size());
+  } else if (!polygon.points.empty()) {
+    const algo::Vec2 middle = sum / static_cast<double>(polygon.points.size());
     for (algo::Vec2& p : polygon.points) p -= middle;
     obstacle.pose_W = {middle.x(), middle.y(), 0};
   }

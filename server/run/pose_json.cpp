@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "algo/intent.hpp"
+
 namespace server {
 namespace {
 
@@ -33,6 +35,21 @@ algo::SetGoal goal_from_json(const JsonReader& in) {
   goal.position_W = {in.number("x", kCoordinate), in.number("y", kCoordinate)};
   if (in.has("heading")) goal.heading = angle_or(in, "heading", 0);
   return goal;
+}
+
+algo::SetGoal strict_goal(const JsonReader& in) {
+  in.only({"x", "y", "heading"});
+  return goal_from_json(in);
+}
+
+std::vector<algo::SetGoal> waypoints_from_json(const JsonReader& in) {
+  std::vector<algo::SetGoal> waypoints;
+  if (!in.has("waypoints")) return waypoints;
+  in.each("waypoints", algo::kMostGoalsAhead, [&](const json& value, const std::string& at) {
+    if (!in.has("goal")) in.fail("waypoints", "lead nowhere: there is no goal");
+    waypoints.push_back(strict_goal({value, at}));
+  });
+  return waypoints;
 }
 
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {

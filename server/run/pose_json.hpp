@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -24,6 +25,10 @@ nlohmann::json to_json(const algo::Pose2& pose);
 /// {"x","y","heading"?}: without a heading any will do.
 algo::SetGoal goal_from_json(const JsonReader& in);
 
+/// The same, and nothing else in it.
+algo::SetGoal strict_goal(const JsonReader& in);
+/// The field "waypoints" of `in`, which lead to its goal; empty without one.
+std::vector<algo::SetGoal> waypoints_from_json(const JsonReader& in);
 /// The field "start" of `in`, the origin without one. As in the paper, a start without a heading
 /// faces the `goal`.
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal);

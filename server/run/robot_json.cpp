@@ -68,17 +68,15 @@ void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
   robot.wheel_radius = in.number("wheel_radius", {0.005, 5});
   if (in.has("wheels")) {
     robot.wheels.clear();
-    for (const json& each : in.array("wheels", sim::kMostWheels)) {
-      const std::string at = fmt::format("{}/{}", in.at("wheels"), robot.wheels.size());
-      robot.wheels.push_back(finite_number(each, at, kPlace));
-    }
+    in.each("wheels", sim::kMostWheels, [&](const json& value, const std::string& at) {
+      robot.wheels.push_back(finite_number(value, at, kPlace));
+    });
   }
   robot.casters.clear();
   if (in.has("casters")) {
-    for (const json& each : in.array("casters", sim::kMostCasters)) {
-      const std::string at = fmt::format("{}/{}", in.at("casters"), robot.casters.size());
-      read_only_fields({each, at}, kCaster, robot.casters.emplace_back());
-    }
+    in.each("casters", sim::kMostCasters, [&](const json& value, const std::string& at) {
+      read_only_fields({value, at}, kCaster, robot.casters.emplace_back());
+    });
   } else if (robot.wheels.size() == 1) {
     robot.casters = usual_casters(robot);
   }

@@ -23,21 +23,9 @@ namespace {
 using nlohmann::json;
 constexpr std::size_t kMostBodies = 40'000;  // a robot's world holds every obstacle: memory
 
-algo::SetGoal strict_goal(const JsonReader& in) {
-  in.only({"x", "y", "heading"});
-  return goal_from_json(in);
-}
-
 /// Waypoints and goal in order; empty for a goal of null; nothing when neither is given.
 std::optional<std::vector<algo::SetGoal>> goals_from_json(const JsonReader& in) {
-  std::vector<algo::SetGoal> goals;
-  if (in.has("waypoints")) {
-    const json& list = in.array("waypoints", algo::kMostGoalsAhead);
-    if (!in.has("goal") && !list.empty()) in.fail("waypoints", "lead nowhere: there is no goal");
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      goals.push_back(strict_goal({list[i], fmt::format("{}/{}", in.at("waypoints"), i)}));
-    }
-  }
+  std::vector<algo::SetGoal> goals = waypoints_from_json(in);
   if (in.has("goal")) {
     goals.push_back(strict_goal(in.object("goal")));
   } else if (!in.raw().contains("goal")) {
@@ -121,16 +109,15 @@ json other_to_json(const sim::OtherRobot& robot, const sim::Scenario& scenario) 
 
 void read_robots(const JsonReader& in, const RobotLibrary& robots, sim::Scenario& scenario) {
   if (!in.has("robots")) return;
-  const json& list = in.array("robots", sim::kMostRobots - 1);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    scenario.robots.push_back(
-        other_from_json({list[i], fmt::format("{}/{}", in.at("robots"), i)}, robots, scenario));
-  }
-  if ((list.size() + 1) * scenario.obstacles.size() > kMostBodies) {
+  in.each("robots", sim::kMostRobots - 1, [&](const json& value, const std::string& at) {
+    scenario.robots.push_back(other_from_json({value, at}, robots, scenario));
+  });
+  const std::size_t all = scenario.robots.size() + 1;
+  if (all * scenario.obstacles.size() > kMostBodies) {
     in.fail("robots",
             fmt::format("{} robots among {} obstacles are too many; their product must be at "
                         "most {}",
-                        list.size() + 1,
+                        all,
                         scenario.obstacles.size(),
                         kMostBodies));
   }

@@ -90,16 +90,6 @@ algo::Parameters parameters_from_json(const json& value,
   return out;
 }
 
-void read_waypoints(const JsonReader& in, sim::Scenario& s) {
-  const json& list = in.array("waypoints", algo::kMostGoalsAhead);
-  if (!s.goal && !list.empty()) in.fail("waypoints", "lead nowhere: there is no goal");
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const JsonReader waypoint(list[i], fmt::format("waypoints/{}", i));
-    waypoint.only({"x", "y", "heading"});
-    s.waypoints.push_back(goal_from_json(waypoint));
-  }
-}
-
 sim::PhysicsKind physics_named(const std::string& name, const std::string& path) {
   if (name == "bullet") return sim::PhysicsKind::Bullet;
   if (name == "kinematic") return sim::PhysicsKind::Kinematic;
@@ -130,11 +120,8 @@ sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robot
   s.description = in.text_or("description", "");
   if (in.has("robot")) s.robot = read_robot(in, robots);
   s.period = in.number_or("period", s.period, {0.002, 1.0});
-  if (in.has("goal")) {
-    in.object("goal").only({"x", "y", "heading"});
-    s.goal = goal_from_json(in.object("goal"));
-  }
-  if (in.has("waypoints")) read_waypoints(in, s);
+  if (in.has("goal")) s.goal = strict_goal(in.object("goal"));
+  s.waypoints = waypoints_from_json(in);
   s.start = start_from_json(in, s.waypoints.empty() ? s.goal : s.waypoints.front());
   if (in.has("drive")) s.drive = drive_from_json(in.object("drive"));
   if (in.has("obstacles")) read_obstacles(in, s);

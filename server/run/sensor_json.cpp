@@ -129,17 +129,15 @@ json to_json(const sim::SensorConfig& config) {
 
 void read_channels(const JsonReader& in, sim::Sensors& sensors) {
   if (!in.has("sensors")) return;
-  const json& list = in.array("sensors", sim::kMostSensors);
   sensors.further.clear();
   std::set<std::string> channels;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const std::string path = fmt::format("{}/{}", in.at("sensors"), i);
-    sensors.further.push_back(sensor_from_json({list[i], path}, path));
+  in.each("sensors", sim::kMostSensors, [&](const json& value, const std::string& at) {
+    sensors.further.push_back(sensor_from_json({value, at}, at));
     const std::string& channel = sensors.further.back().channel;
     if (!channels.insert(channel).second) {
-      throw DocumentError(path + "/channel", fmt::format("'{}' is used twice", channel));
+      throw DocumentError(at + "/channel", fmt::format("'{}' is used twice", channel));
     }
-  }
+  });
 }
 
 }  // namespace
@@ -147,11 +145,9 @@ void read_channels(const JsonReader& in, sim::Sensors& sensors) {
 void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
   if (in.has("lasers")) {
     sensors.lasers.clear();
-    const json& list = in.array("lasers", 4);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      sensors.lasers.push_back(
-          laser_from_json({list[i], fmt::format("{}/{}", in.at("lasers"), i)}));
-    }
+    in.each("lasers", 4, [&](const json& value, const std::string& at) {
+      sensors.lasers.push_back(laser_from_json({value, at}));
+    });
   }
   if (in.has("sonar") && in.raw()["sonar"] == false) {
     sensors.sonar.reset();
@@ -160,11 +156,9 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
   }
   if (in.has("infrared")) {
     sensors.infrared.clear();
-    const json& list = in.array("infrared", 4);
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const std::string path = fmt::format("{}/{}", in.at("infrared"), i);
-      sensors.infrared.push_back(config_from_json({list[i], path}, path, kInfrared));
-    }
+    in.each("infrared", 4, [&](const json& value, const std::string& at) {
+      sensors.infrared.push_back(config_from_json({value, at}, at, kInfrared));
+    });
   }
   read_channels(in, sensors);
   read_gyro(in, sensors);

@@ -46,16 +46,14 @@ void add_cylinder(World& world, double x, double y, double radius) {
 void add_moving(World& world, const JsonReader& in) {
   sim::ObstaclePath path;
   path.period = in.number("period", {0.1, 1e5});
-  const json& keys = in.array("keys", kMaxKeys);
-  if (keys.empty()) in.fail("keys", "must hold one key [t, x, y] at least");
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const std::string at = fmt::format("{}/{}", in.at("keys"), i);
-    const std::vector<double> key = numbers(keys[i], at, 3);
+  in.each("keys", kMaxKeys, [&](const json& value, const std::string& at) {
+    const std::vector<double> key = numbers(value, at, 3);
     if (!path.keys.empty() && key[0] <= path.keys.back().time) {
       throw DocumentError(at, "must be later than the key before");
     }
     path.keys.push_back({key[0], {key[1], key[2]}});
-  }
+  });
+  if (path.keys.empty()) in.fail("keys", "must hold one key [t, x, y] at least");
   add_cylinder(world,
                path.keys.front().position_W.x(),
                path.keys.front().position_W.y(),
@@ -73,17 +71,15 @@ World world_from_json(const JsonReader& in) {
   world.goal = {goal[0], goal[1]};
   world.goal_radius = in.number_or("goal_radius", 1, {0.01, 100});
   world.optimal_length = in.number("optimal_path_length", {0.01, 1e5});
-  const json& obstacles = in.array("obstacles", kMaxObstacles);
   const double radius = in.number_or("radius", 0.075, {0.001, 10});
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const std::string at = fmt::format("{}/{}", in.at("obstacles"), i);
-    if (obstacles[i].is_object()) {
-      add_moving(world, {obstacles[i], at});
+  in.each("obstacles", kMaxObstacles, [&](const json& value, const std::string& at) {
+    if (value.is_object()) {
+      add_moving(world, {value, at});
     } else {
-      const std::vector<double> centre = numbers(obstacles[i], at, 2);
+      const std::vector<double> centre = numbers(value, at, 2);
       add_cylinder(world, centre[0], centre[1], radius);
     }
-  }
+  });
   return world;
 }
 
@@ -124,12 +120,11 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
 
 std::vector<World> worlds_from_json(const json& document) {
   const JsonReader in(document, "");
-  const json& list = in.array("worlds", kMaxWorlds);
-  if (list.empty()) in.fail("worlds", "must hold one world at least");
   std::vector<World> worlds;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    worlds.push_back(world_from_json({list[i], fmt::format("worlds/{}", i)}));
-  }
+  in.each("worlds", kMaxWorlds, [&](const json& value, const std::string& at) {
+    worlds.push_back(world_from_json({value, at}));
+  });
+  if (worlds.empty()) in.fail("worlds", "must hold one world at least");
   return worlds;
 }
 

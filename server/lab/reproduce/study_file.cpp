@@ -65,15 +65,14 @@ PaperConditions read_conditions(const JsonReader& in) {
   return out;
 }
 
-std::string known_reading(const JsonReader& in, std::string_view key, std::string name) {
-  if (std::ranges::find(kReadings, name) == kReadings.end()) {
-    in.fail(key, fmt::format("'{}' is no reading; there are {}", name, fmt::join(kReadings, ", ")));
-  }
-  return name;
+std::string known_reading(const std::string& path, std::string name) {
+  if (std::ranges::find(kReadings, name) != kReadings.end()) return name;
+  throw DocumentError(
+      path, fmt::format("'{}' is no reading; there are {}", name, fmt::join(kReadings, ", ")));
 }
 
 std::string reading_name(const JsonReader& in, std::string_view key) {
-  return known_reading(in, key, in.text(key, 64));
+  return known_reading(in.at(key), in.text(key, 64));
 }
 
 algo::Outcome read_outcome(const JsonReader& in) {
@@ -132,16 +131,13 @@ SweepPlan read_sweep(const JsonReader& in) {
   const std::string name = in.text("parameter", 64);
   plan.parameter = algo::find_parameter(name);
   if (plan.parameter == nullptr) in.fail("parameter", fmt::format("'{}' is unknown", name));
-  const json& controllers = in.array("controllers", kReadings.size());
-  for (std::size_t i = 0; i < controllers.size(); ++i) {
-    const std::string at = fmt::format("controllers/{}", i);
-    if (!controllers[i].is_string()) in.fail(at, "must be text");
-    plan.controllers.push_back(known_reading(in, at, controllers[i]));
-  }
-  const json& values = in.array("values", kMaxValues);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    plan.values.push_back(finite_number(values[i], fmt::format("{}/{}", in.at("values"), i)));
-  }
+  in.each("controllers", kReadings.size(), [&](const json& value, const std::string& at) {
+    if (!value.is_string()) throw DocumentError(at, "must be text");
+    plan.controllers.push_back(known_reading(at, value));
+  });
+  in.each("values", kMaxValues, [&](const json& value, const std::string& at) {
+    plan.values.push_back(finite_number(value, at));
+  });
   if (plan.values.size() < 2) in.fail("values", "must be two or more");
   return plan;
 }
@@ -162,13 +158,10 @@ StudyFile study_file_from_json(const json& document) {
   StudyFile file;
   in.text_or("about", "");
   file.conditions = read_conditions(in.object("conditions"));
-  const json& scenarios = in.array("scenarios", kMaxScenarios);
-  if (scenarios.empty()) in.fail("scenarios", "has no entries");
   std::set<std::string> names;
-  for (std::size_t i = 0; i < scenarios.size(); ++i) {
-    const std::string at = fmt::format("scenarios/{}", i);
+  in.each("scenarios", kMaxScenarios, [&](const json& value, const std::string& at) {
     try {
-      file.scenarios.push_back(scenario_from_json(scenarios[i]));
+      file.scenarios.push_back(scenario_from_json(value));
     } catch (const DocumentError& e) {
       throw DocumentError(at, e.what());
     }
@@ -177,18 +170,17 @@ StudyFile study_file_from_json(const json& document) {
     if (!names.insert(scenario.name).second) {
       throw DocumentError(at + "/name", fmt::format("'{}' is used twice", scenario.name));
     }
-  }
+  });
+  if (names.empty()) in.fail("scenarios", "has no entries");
   if (in.has("limits")) {
-    const json& limits = in.array("limits", kMaxLimits);
-    for (std::size_t i = 0; i < limits.size(); ++i) {
-      file.limits.push_back(read_limit({limits[i], fmt::format("limits/{}", i)}, names));
-    }
+    in.each("limits", kMaxLimits, [&](const json& value, const std::string& at) {
+      file.limits.push_back(read_limit({value, at}, names));
+    });
   }
   if (in.has("sweeps")) {
-    const json& sweeps = in.array("sweeps", kMaxValues);
-    for (std::size_t i = 0; i < sweeps.size(); ++i) {
-      file.sweeps.push_back(read_sweep({sweeps[i], fmt::format("sweeps/{}", i)}));
-    }
+    in.each("sweeps", kMaxValues, [&](const json& value, const std::string& at) {
+      file.sweeps.push_back(read_sweep({value, at}));
+    });
   }
   return file;
 }
