@@ -24,22 +24,17 @@ void put_number(std::string& out, double value) {
 }
 
 void put_columns(std::string& out, const algo::Telemetry& t) {
-  const algo::Pose2& pose = t.observation.odometry.pose;
-  out += std::to_string(t.tick);
-  for (const double value : {t.observation.stamp,
-                             pose.x,
-                             pose.y,
-                             pose.heading,
-                             t.command.base.v,
-                             t.command.base.omega,
-                             stored_clearance(t)}) {
-    out += ',';
-    put_number(out, value);
+  for (const TickColumn& column : tick_columns()) {
+    if (&column != tick_columns().data()) out += ',';
+    const auto value = column.value(t);
+    if (const auto* const number = std::get_if<double>(&value)) {
+      put_number(out, *number);
+    } else if (const auto* const word = std::get_if<std::string_view>(&value)) {
+      out += *word;
+    } else {
+      out += std::to_string(std::get<std::uint64_t>(value));
+    }
   }
-  out += ',';
-  out += t.hold.name.empty() ? "none" : t.hold.name.view();
-  out += ',';
-  out += t.behaviour.view();
 }
 
 /// ",1.5,,3" for channels of 1, 1 and 1 values of which the second has no reading.
@@ -66,7 +61,11 @@ RunCsv::RunCsv(const db::RunRow& run) : run_(run.id) {
 }
 
 std::string RunCsv::header() const {
-  std::string out = "tick,t,x,y,heading,v,omega,clearance,hold,behaviour";
+  std::string out;
+  for (const TickColumn& column : tick_columns()) {
+    if (!out.empty()) out += ',';
+    out += column.name;
+  }
   for (const algo::ChannelInfo& channel : channels_) {
     for (std::uint32_t k = 0; k < channel.values; ++k) {
       out += ',' + channel.name;

@@ -1,6 +1,7 @@
 // server/record/run_json.cpp: runs as rows and documents.
 #include "server/record/run_json.hpp"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
@@ -144,22 +145,31 @@ algo::FilterKind stored_filter(const db::RunRow& row) {
   return *filter;
 }
 
-double stored_clearance(const algo::Telemetry& t) {
-  return std::round(t.clearance * 1e6) / 1e6;  // a frame holds it as a float
+std::span<const TickColumn> tick_columns() {
+  using T = algo::Telemetry;
+  using Value = decltype(TickColumn{}.value(T{}));
+  static constexpr auto kColumns = std::to_array<TickColumn>({
+      {"tick", [](const T& t) -> Value { return t.tick; }},
+      {"t", [](const T& t) -> Value { return t.observation.stamp; }},
+      {"x", [](const T& t) -> Value { return t.observation.odometry.pose.x; }},
+      {"y", [](const T& t) -> Value { return t.observation.odometry.pose.y; }},
+      {"heading", [](const T& t) -> Value { return t.observation.odometry.pose.heading; }},
+      {"v", [](const T& t) -> Value { return t.command.base.v; }},
+      {"omega", [](const T& t) -> Value { return t.command.base.omega; }},
+      // A frame holds it as a float.
+      {"clearance", [](const T& t) -> Value { return std::round(t.clearance * 1e6) / 1e6; }},
+      {"hold", [](const T& t) -> Value { return algo::name(t.hold); }},
+      {"behaviour", [](const T& t) -> Value { return t.behaviour.view(); }},
+  });
+  return kColumns;
 }
 
 json tick_json(const algo::Telemetry& t) {
-  const algo::Pose2& pose = t.observation.odometry.pose;
-  return {{"tick", t.tick},
-          {"t", t.observation.stamp},
-          {"x", pose.x},
-          {"y", pose.y},
-          {"heading", pose.heading},
-          {"v", t.command.base.v},
-          {"omega", t.command.base.omega},
-          {"clearance", stored_clearance(t)},
-          {"hold", t.hold.name.empty() ? "none" : t.hold.name.view()},
-          {"behaviour", t.behaviour.view()}};
+  json out;
+  for (const TickColumn& column : tick_columns()) {
+    std::visit([&](const auto& value) { out[std::string(column.name)] = value; }, column.value(t));
+  }
+  return out;
 }
 
 }  // namespace server

@@ -1,7 +1,11 @@
 // server/record/run_json.hpp: runs as rows for the database and as documents for people.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 
 #include <nlohmann/json.hpp>
 
@@ -37,9 +41,15 @@ RecorderOptions recorder_options();
 
 /// A run as GET /api/v1/runs lists it; with its document when the row holds one.
 nlohmann::json to_json(const db::RunRow& row);
-/// The plain columns of a tick. Its clearance is that of the frame, to the micrometre.
+/// A plain column of a tick.
+struct TickColumn {
+  std::string_view name{};
+  std::variant<std::uint64_t, double, std::string_view> (*value)(const algo::Telemetry& t) =
+      nullptr;
+};
+/// All of them. The clearance is that of the frame, to the micrometre.
+std::span<const TickColumn> tick_columns();
 nlohmann::json tick_json(const algo::Telemetry& t);
-double stored_clearance(const algo::Telemetry& t);  // [m]
 
 /// [UTC] now as ISO 8601 with milliseconds.
 std::string wall_time();
