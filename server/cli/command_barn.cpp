@@ -163,8 +163,7 @@ void add_barn_command(CLI::App& app, int& status) {
       ->excludes(robot);
   barn->add_option("--repeats", command->options.repeats, "Seeds of each world (default 1)")
       ->check(CLI::Range(1, 10'000));
-  barn->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")
-      ->check(CLI::Range(0, 1'000'000'000));
+  add_first_seed_option(*barn, command->options.first_seed);
   barn->add_option("--phase",
                    command->options.conditions.phase,
                    "[s] Where moving obstacles are on their way when a run begins (default 0)")

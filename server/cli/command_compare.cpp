@@ -63,14 +63,12 @@ void add_compare_command(CLI::App& app, int& status) {
   add_rows_option(*compare, command->rows);
   compare->add_option("--seeds", command->options.seeds, "Runs of each row (default 3)")
       ->check(CLI::Range(1, 1000));
-  compare->add_option("--first-seed", command->options.first_seed, "The first of them (default 1)")
-      ->check(CLI::Range(0, 1'000'000'000));
+  add_first_seed_option(*compare, command->options.first_seed);
   compare->add_option("--layouts", command->options.layouts, "Random ones a kind (default 150)")
       ->check(CLI::Range(1, 10'000));
   compare->add_option("--layout-seeds", command->options.layout_seeds, "Runs of each (default 2)")
       ->check(CLI::Range(1, 1000));
-  compare->add_option("--threads", command->options.threads, "0 (default): one a core")
-      ->check(CLI::Range(0, 256));
+  add_threads_option(*compare, command->options.threads);
   compare
       ->add_option("--markdown",
                    command->markdown,

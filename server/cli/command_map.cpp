@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
 #include "server/lab/mapping/map_study.hpp"
 #include "server/run/text_file.hpp"
 
@@ -76,8 +77,7 @@ void add_map_command(CLI::App& app, int& status) {
       ->check(CLI::Range(0, 1'000'000'000));
   map->add_option("--seeds", options.seeds, "How many, from that one on (default 1)")
       ->check(CLI::Range(1, 1000));
-  map->add_option("--threads", options.threads, "0 (default): one a core")
-      ->check(CLI::Range(0, 256));
+  add_threads_option(*map, options.threads);
   map->add_option("--out", command->out, "A picture of the first seed's map, as SVG")
       ->check(file_to_write())
       ->type_name("FILE");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/markdown.hpp"
 
@@ -94,10 +95,8 @@ void add_reproduce_command(CLI::App& app, int& status) {
       ->type_name("FILE");
   command->add_option("--seeds", options->study.seeds, "Runs of each row (default 10)")
       ->check(CLI::Range(1, 1000));
-  command->add_option("--first-seed", options->study.first_seed, "The first of them (default 1)")
-      ->check(CLI::Range(0, 1'000'000'000));
-  command->add_option("--threads", options->study.threads, "0 (default): one a core")
-      ->check(CLI::Range(0, 256));
+  add_first_seed_option(*command, options->study.first_seed);
+  add_threads_option(*command, options->study.threads);
   command->add_flag("--paper-only", options->paper_only, "Leave out the full simulator");
   command->add_flag("--sweeps", options->sweeps, "Also sweep K_c, K_r, d_safe and N");
   command

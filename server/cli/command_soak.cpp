@@ -79,8 +79,7 @@ void add_soak_command(CLI::App& app, int& status) {
       "without saying why. Exit status 3 when one of them happened");
   soak->add_option("--worlds", command->options.worlds, "How many (default 1000)")
       ->check(CLI::Range(1, 1'000'000));
-  soak->add_option("--first-seed", command->options.first_seed, "The first world (default 1)")
-      ->check(CLI::Range(0, 1'000'000'000));
+  add_first_seed_option(*soak, command->options.first_seed, "The first world (default 1)");
   soak->add_option("--controller", command->options.controller, "Default: strip");
   add_pool_options(*soak, command->options.pool, "--workers");
   add_rows_option(*soak, command->rows);

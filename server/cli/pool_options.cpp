@@ -23,10 +23,18 @@ std::string complaint(const Check& check) {
 
 }  // namespace
 
+void add_threads_option(CLI::App& command, unsigned& threads, const std::string& name) {
+  command.add_option(name, threads, "0 (default): one a core")->check(CLI::Range(0, 256));
+}
+
+void add_first_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+  command.add_option("--first-seed", seed, help)->check(CLI::Range(0, 1'000'000'000));
+}
+
 void add_pool_options(CLI::App& command,
                       experiment::PoolOptions& pool,
                       const std::string& threads) {
-  command.add_option(threads, pool.threads, "0 (default): one a core")->check(CLI::Range(0, 256));
+  add_threads_option(command, pool.threads, threads);
   command
       .add_option_function<std::string>(
           "--shard",

@@ -11,6 +11,14 @@ namespace server {
 
 /// `threads` ("--workers") and --shard.
 void add_pool_options(CLI::App& command, experiment::PoolOptions& pool, const std::string& threads);
+/// --threads of a study.
+void add_threads_option(CLI::App& command,
+                        unsigned& threads,
+                        const std::string& name = "--threads");
+/// --first-seed.
+void add_first_seed_option(CLI::App& command,
+                           std::uint64_t& seed,
+                           const std::string& help = "The first of them (default 1)");
 /// --rows FILE: every run with every figure.
 void add_rows_option(CLI::App& command, std::string& file);
 /// The name of a judge.
