@@ -36,11 +36,11 @@ constexpr std::size_t kRequestBytes = 256 << 10;
 void add_api(net::Router& router, ApiContext& context);
 
 // One file each.
-void add_catalog_routes(net::Router& router, ApiContext& context);
-void add_scenario_routes(net::Router& router, ApiContext& context);
+void add_catalog_routes(Routes& routes);
+void add_scenario_routes(Routes& routes);
 void add_session_routes(net::Router& router, ApiContext& context);
-void add_sessions_routes(net::Router& router, ApiContext& context);
-void add_run_routes(net::Router& router, ApiContext& context);
+void add_sessions_routes(Routes& routes);
+void add_run_routes(Routes& routes);
 
 /// {"scenario"?, "controller"?, ...}: which scenario by its name, and what is to be otherwise.
 struct LoadRequest {

@@ -85,19 +85,6 @@ net::Handler guarded(std::function<void(const net::Request&, const net::Responde
       };
 }
 
-net::Handler immediate(std::function<net::Response(const net::Request&)> handler) {
-  return
-      [handler = std::move(handler)](const net::Request& request, const net::Responder& respond) {
-        net::Response response;
-        try {
-          response = handler(request);
-        } catch (...) {
-          response = problem_of_current_exception();
-        }
-        respond(std::move(response));
-      };
-}
-
 std::optional<std::uint64_t> whole_number(const std::string& text, std::size_t digits) {
   const bool good = !text.empty() && text.size() <= digits &&
                     text.find_first_not_of("0123456789") == std::string::npos;

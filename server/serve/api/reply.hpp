@@ -28,9 +28,6 @@ nlohmann::json body_json(const net::Request& request);
 /// problem document.
 net::Handler guarded(std::function<void(const net::Request&, const net::Responder&)> handler);
 
-/// The same for a handler that answers at once.
-net::Handler immediate(std::function<net::Response(const net::Request&)> handler);
-
 /// The number that `text` writes, of at most `digits`; nothing for any other text.
 std::optional<std::uint64_t> whole_number(const std::string& text, std::size_t digits = 18);
 /// `?limit=` within 1 to `max`; throws DocumentError.

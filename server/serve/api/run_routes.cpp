@@ -29,6 +29,11 @@ db::RunId run_id(const net::Request& request) {
   return static_cast<db::RunId>(*number);
 }
 
+net::Response too_many() {
+  return net::problem(
+      503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later.");
+}
+
 net::Response no_such_run(db::RunId run) {
   return net::problem(404, "Not found", fmt::format("There is no run {}.", run));
 }
@@ -112,7 +117,10 @@ Experiment experiment_from_json(const ApiContext& context, const json& body) {
   return experiment;
 }
 
-void start_runs(ApiContext& context, const net::Request& request, const net::Responder& respond) {
+void start_runs(ApiContext& context,
+                const net::Request& request,
+                Worker&,
+                const net::Responder& respond) {
   const auto accepted = [respond](const std::vector<db::RunId>& runs, const std::string& failure) {
     if (runs.empty()) {
       respond(net::problem(503, "The record is not available", without_folders(failure)));
@@ -123,8 +131,7 @@ void start_runs(ApiContext& context, const net::Request& request, const net::Res
     respond(std::move(response));
   };
   if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
-    respond(net::problem(
-        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+    respond(too_many());
   }
 }
 
@@ -192,8 +199,7 @@ void resume_run(ApiContext& context,
                                 : net::problem(409, "Not resumed", refusal));
       });
   if (!taken) {
-    respond(net::problem(
-        503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later."));
+    respond(too_many());
   }
 }
 
@@ -328,13 +334,13 @@ net::Response cancel_run(ApiContext& context, const net::Request& request, Worke
   return net::problem(409, "Not running", "The run is neither queued nor running.");
 }
 
-net::Response get_run(const net::Request& request, Worker& worker) {
+net::Response get_run(ApiContext&, const net::Request& request, Worker& worker) {
   const db::RunId run = run_id(request);
   const auto row = worker.runs().get(run);
   return row ? json_response(200, to_json(*row)) : no_such_run(run);
 }
 
-net::Response get_metrics(const net::Request& request, Worker& worker) {
+net::Response get_metrics(ApiContext&, const net::Request& request, Worker& worker) {
   const db::RunId run = run_id(request);
   auto row = worker.runs().get(run);
   if (!row) return no_such_run(run);
@@ -344,47 +350,23 @@ net::Response get_metrics(const net::Request& request, Worker& worker) {
 
 }  // namespace
 
-void add_run_routes(net::Router& router, ApiContext& context) {
-  using Make = net::Response (*)(ApiContext&, const net::Request&, Worker&);
-  const auto made = [&context](Make make) {
-    return made_on_worker(context, [&context, make](const net::Request& request, Worker& worker) {
-      return make(context, request, worker);
-    });
-  };
-  router.add(
-      "POST",
-      "/api/v1/runs",
-      on_worker(context,
-                [&context](const net::Request& request, Worker&, const net::Responder& respond) {
-                  start_runs(context, request, respond);
-                }));
-  router.add("GET", "/api/v1/runs", made(list_runs));
-  router.add("GET", "/api/v1/runs/{id}", made_on_worker(context, get_run));
-  router.add("DELETE",
-             "/api/v1/runs/{id}",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               delete_run(context, request, respond);
-             }));
-  router.add("POST", "/api/v1/runs/{id}/cancel", made(cancel_run));
-  router.add(
-      "POST",
-      "/api/v1/runs/{id}/resume",
-      on_worker(
-          context,
-          [&context](const net::Request& request, Worker& worker, const net::Responder& respond) {
-            resume_run(context, request, worker, respond);
-          }));
-  router.add("GET", "/api/v1/runs/{id}/metrics", made_on_worker(context, get_metrics));
-  router.add("GET", "/api/v1/runs/{id}/ticks", made(list_ticks));
-  router.add("GET", "/api/v1/runs/{id}/frames", made(list_frames));
+void add_run_routes(Routes& routes) {
+  routes.work("POST", "/runs", start_runs);
+  routes.make("GET", "/runs", list_runs);
+  routes.make("GET", "/runs/{id}", get_run);
+  routes.answer("DELETE", "/runs/{id}", delete_run);
+  routes.make("POST", "/runs/{id}/cancel", cancel_run);
+  routes.work("POST", "/runs/{id}/resume", resume_run);
+  routes.make("GET", "/runs/{id}/metrics", get_metrics);
+  routes.make("GET", "/runs/{id}/ticks", list_ticks);
+  routes.make("GET", "/runs/{id}/frames", list_frames);
   const auto filtered = std::make_shared<FilteredPages>();
-  router.add(
-      "GET",
-      "/api/v1/runs/{id}/filtered",
-      made_on_worker(context, [&context, filtered](const net::Request& request, Worker& worker) {
-        return filtered->page(context, request, worker);
-      }));
-  router.add("GET", "/api/v1/runs/{id}/csv", made(export_csv));
+  routes.make("GET",
+              "/runs/{id}/filtered",
+              [filtered](ApiContext& context, const net::Request& request, Worker& worker) {
+                return filtered->page(context, request, worker);
+              });
+  routes.make("GET", "/runs/{id}/csv", export_csv);
 }
 
 }  // namespace server

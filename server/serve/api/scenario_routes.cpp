@@ -39,46 +39,34 @@ void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
   context.library.save(scenario);
 }
 
-void add_scenario_routes(net::Router& router, ApiContext& context) {
-  router.add(
-      "GET", "/api/v1/robots", made_on_worker(context, [&context](const net::Request&, Worker&) {
-        return json_response(200, robots_json(context.library.robots()));
-      }));
-  router.add(
-      "GET", "/api/v1/scenarios", made_on_worker(context, [&context](const net::Request&, Worker&) {
-        json items = json::array();
-        for (const ScenarioEntry& entry : context.library.list()) {
-          items.push_back(to_json(entry));
-        }
-        return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
-      }));
-  router.add("GET",
-             "/api/v1/scenarios/{name}",
-             made_on_worker(context, [&context](const net::Request& request, Worker&) {
-               return json_response(
-                   200, server::to_json(context.library.load(request.params.at("name"))));
-             }));
-  router.add("PUT",
-             "/api/v1/scenarios/{name}",
-             made_on_worker(context, [&context](const net::Request& request, Worker&) {
-               json body = body_json(request);
-               const std::string name = request.params.at("name");
-               if (body.is_object() && !body.contains("name")) body["name"] = name;
-               const sim::Scenario scenario = scenario_from_json(body, context.library.robots());
-               if (scenario.name != name) {
-                 throw DocumentError("name", "differs from the name in the path");
-               }
-               keep_scenario(context, scenario);
-               return json_response(200, server::to_json(scenario));
-             }));
-  router.add("DELETE",
-             "/api/v1/scenarios/{name}",
-             made_on_worker(context, [&context](const net::Request& request, Worker&) {
-               context.library.remove(request.params.at("name"));
-               net::Response response;
-               response.status = 204;
-               return response;
-             }));
+void add_scenario_routes(Routes& routes) {
+  routes.make("GET", "/robots", [](ApiContext& context, const net::Request&, Worker&) {
+    return json_response(200, robots_json(context.library.robots()));
+  });
+  routes.make("GET", "/scenarios", [](ApiContext& context, const net::Request&, Worker&) {
+    json items = json::array();
+    for (const ScenarioEntry& entry : context.library.list()) items.push_back(to_json(entry));
+    return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
+  });
+  routes.make(
+      "GET", "/scenarios/{name}", [](ApiContext& context, const net::Request& request, Worker&) {
+        return json_response(200, server::to_json(context.library.load(request.params.at("name"))));
+      });
+  routes.make(
+      "PUT", "/scenarios/{name}", [](ApiContext& context, const net::Request& request, Worker&) {
+        json body = body_json(request);
+        const std::string name = request.params.at("name");
+        if (body.is_object() && !body.contains("name")) body["name"] = name;
+        const sim::Scenario scenario = scenario_from_json(body, context.library.robots());
+        if (scenario.name != name) throw DocumentError("name", "differs from the name in the path");
+        keep_scenario(context, scenario);
+        return json_response(200, server::to_json(scenario));
+      });
+  routes.make(
+      "DELETE", "/scenarios/{name}", [](ApiContext& context, const net::Request& request, Worker&) {
+        context.library.remove(request.params.at("name"));
+        return net::Response{.status = 204};
+      });
 }
 
 }  // namespace server

@@ -67,28 +67,22 @@ void open_session(ApiContext& context, const net::Request& request, const net::R
 
 }  // namespace
 
-void add_sessions_routes(net::Router& router, ApiContext& context) {
-  router.add("GET", "/api/v1/sessions", immediate([&context](const net::Request&) {
-               return json_response(200, list(context));
-             }));
-  router.add("POST",
-             "/api/v1/sessions",
-             guarded([&context](const net::Request& request, const net::Responder& respond) {
-               open_session(context, request, respond);
-             }),
-             kRequestBytes);
-  router.add(
-      "DELETE", "/api/v1/sessions/{session}", immediate([&context](const net::Request& request) {
+void add_sessions_routes(Routes& routes) {
+  routes.at_once("GET", "/sessions", [](ApiContext& context, const net::Request&) {
+    return json_response(200, list(context));
+  });
+  routes.answer("POST", "/sessions", open_session, kRequestBytes);
+  routes.at_once(
+      "DELETE", "/sessions/{session}", [](ApiContext& context, const net::Request& request) {
         const std::string& id = request.params.at("session");
         if (id == SessionRegistry::kMain) {
           return net::problem(
               409, "Refused", "The session main is there as long as the server is.");
         }
-        if (!context.sessions.end(id)) {
+        if (!context.sessions.end(id))
           return net::problem(404, std::string(SessionRegistry::kGone));
-        }
         return net::Response{.status = 204};
-      }));
+      });
 }
 
 }  // namespace server

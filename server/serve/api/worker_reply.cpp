@@ -21,28 +21,55 @@ net::Responder through_io(ApiContext& context, const net::Responder& respond) {
 
 }  // namespace
 
-net::Handler on_worker(
-    ApiContext& context,
-    std::function<void(const net::Request&, Worker&, const net::Responder&)> handler) {
-  return [&context, handler = std::move(handler)](const net::Request& request,
-                                                  const net::Responder& respond) {
-    context.workers.post([handler, request, answer = through_io(context, respond)](Worker& worker) {
-      try {
-        handler(request, worker, answer);
-      } catch (...) {
-        answer(problem_of_current_exception());
-      }
-    });
-  };
+void Routes::work(const char* method, const std::string& path, Answer answer) {
+  router_.add(
+      method,
+      "/api/v1" + path,
+      [&context = context_, answer = std::move(answer)](const net::Request& request,
+                                                        const net::Responder& respond) {
+        context.workers.post(
+            [&context, answer, request, through = through_io(context, respond)](Worker& worker) {
+              try {
+                answer(context, request, worker, through);
+              } catch (...) {
+                through(problem_of_current_exception());
+              }
+            });
+      });
 }
 
-net::Handler made_on_worker(ApiContext& context,
-                            std::function<net::Response(const net::Request&, Worker&)> handler) {
-  return on_worker(context,
-                   [&context, handler = std::move(handler)](
-                       const net::Request& request, Worker& worker, const net::Responder& respond) {
-                     respond(context.room.admit(handler(request, worker)));
-                   });
+void Routes::make(const char* method, const std::string& path, Make make) {
+  work(method,
+       path,
+       [make = std::move(make)](ApiContext& context,
+                                const net::Request& request,
+                                Worker& worker,
+                                const net::Responder& respond) {
+         respond(context.room.admit(make(context, request, worker)));
+       });
+}
+
+void Routes::answer(
+    const char* method,
+    const std::string& path,
+    std::function<void(ApiContext&, const net::Request&, const net::Responder&)> answer,
+    std::size_t body_bytes) {
+  router_.add(method,
+              "/api/v1" + path,
+              guarded([&context = context_, answer = std::move(answer)](
+                          const net::Request& request, const net::Responder& respond) {
+                answer(context, request, respond);
+              }),
+              body_bytes);
+}
+
+void Routes::at_once(const char* method, const std::string& path, MakeAtOnce make) {
+  answer(method,
+         path,
+         [make = std::move(make)](
+             ApiContext& context, const net::Request& request, const net::Responder& respond) {
+           respond(make(context, request));
+         });
 }
 
 void answer_from_worker(ApiContext& context,

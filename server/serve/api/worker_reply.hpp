@@ -16,20 +16,37 @@ namespace server {
 
 struct ApiContext;
 
-/// A handler that runs on a worker, where it may read, wait and build. It answers now or later,
-/// from any thread; what it throws becomes a problem document.
-net::Handler on_worker(
-    ApiContext& context,
-    std::function<void(const net::Request&, Worker&, const net::Responder&)> handler);
+/// Adds routes below /api/v1.
+class Routes {
+ public:
+  using Answer =
+      std::function<void(ApiContext&, const net::Request&, Worker&, const net::Responder&)>;
+  using Make = std::function<net::Response(ApiContext&, const net::Request&, Worker&)>;
+  using MakeAtOnce = std::function<net::Response(ApiContext&, const net::Request&)>;
+
+  Routes(net::Router& router, ApiContext& context) : router_(router), context_(context) {}
+
+  /// `answer` runs on a worker, where it may read, wait and build. It answers now or later, from
+  /// any thread; what it throws becomes a problem document.
+  void work(const char* method, const std::string& path, Answer answer);
+  /// The same for what answers before it returns.
+  void make(const char* method, const std::string& path, Make make);
+  /// On the io thread: for what answers now or later, and for what answers at once.
+  void answer(const char* method,
+              const std::string& path,
+              std::function<void(ApiContext&, const net::Request&, const net::Responder&)> answer,
+              std::size_t body_bytes = net::Router::kAnyBody);
+  void at_once(const char* method, const std::string& path, MakeAtOnce make);
+
+ private:
+  net::Router& router_;
+  ApiContext& context_;
+};
 
 /// Answers `respond` with what `make` makes on a worker.
 void answer_from_worker(ApiContext& context,
                         const net::Responder& respond,
                         std::function<net::Response(Worker&)> make);
-
-/// The same as on_worker() for a handler that answers before it returns.
-net::Handler made_on_worker(ApiContext& context,
-                            std::function<net::Response(const net::Request&, Worker&)> handler);
 
 /// What answers made on workers may hold in memory, all clients together, until they are sent. A
 /// page of runs, ticks or frames ends with the item that fills it and says where the next one
