@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "algo/controller.hpp"
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
 #include "server/lab/barn/barn_run.hpp"

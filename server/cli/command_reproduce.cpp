@@ -1,7 +1,6 @@
 // server/cli/command_reproduce.cpp: `tautline reproduce`: the sources' scenarios and their filter
 // chapter, and what holds.
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 // server/experiment/series.hpp: runs that differ in their seed only, and the figures they come to.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>

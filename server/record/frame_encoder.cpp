@@ -1,8 +1,6 @@
 // server/record/frame_encoder.cpp: one function per part of the frame, in the order of
 // telemetry.fbs.
 #include <algorithm>
-#include <cmath>
-#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <string_view>
 
 #include "telemetry_generated.h"

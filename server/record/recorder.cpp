@@ -2,7 +2,6 @@
 #include "server/record/recorder.hpp"
 
 #include <algorithm>
-#include <exception>
 
 #include "server/run/io_thread.hpp"
 

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "algo/filter/filter.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/record/record_sink.hpp"
 #include "server/run/json_limits.hpp"

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/pipeline.hpp"
 #include "server/record/frame_codec.hpp"
 #include "server/record/run_json.hpp"

@@ -1,8 +1,6 @@
 // server/run/motion_json.cpp: one reader and one writer each.
 #include "server/run/motion_json.hpp"
 
-#include <fmt/format.h>
-
 #include "server/run/json_fields.hpp"
 #include "server/run/pose_json.hpp"
 

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include <fmt/format.h>
-
 #include "server/run/json_fields.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/sensor_json.hpp"

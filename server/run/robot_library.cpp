@@ -5,7 +5,6 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "server/run/embedded_documents.hpp"
 #include "server/run/io_thread.hpp"

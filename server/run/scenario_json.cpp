@@ -1,8 +1,6 @@
 // server/run/scenario_json.cpp: one reader and one writer per document part.
 #include "server/run/scenario_json.hpp"
 
-#include <algorithm>
-#include <optional>
 #include <set>
 
 #include <fmt/format.h>
@@ -10,8 +8,6 @@
 #include "algo/filter/filter.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
-#include "algo/pipeline/sequencing.hpp"
-#include "server/run/json_reader.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/motion_json.hpp"
 #include "server/run/pose_json.hpp"

@@ -1,7 +1,6 @@
 // server/run/scenario_library.cpp: built-in worlds come from sim/worlds, embedded at build time.
 #include "server/run/scenario_library.hpp"
 
-#include <algorithm>
 #include <fstream>
 #include <mutex>
 #include <system_error>
@@ -12,8 +11,6 @@
 #include "server/run/embedded_documents.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_limits.hpp"
-#include "server/run/json_reader.hpp"
-#include "server/run/library_files.hpp"
 #include "server/run/scenario_json.hpp"
 
 namespace server {

@@ -6,7 +6,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include "server/record/record_sink.hpp"
 #include "server/record/run_json.hpp"
 #include "server/serve/api/api.hpp"
 

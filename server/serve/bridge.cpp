@@ -2,7 +2,6 @@
 #include "server/serve/bridge.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -14,7 +13,6 @@
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/request_json.hpp"
-#include "server/run/scenario_json.hpp"
 #include "server/serve/layers_json.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/scene_json.hpp"

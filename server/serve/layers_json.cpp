@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <span>
 #include <vector>
 
 #include <nlohmann/json.hpp>

@@ -3,8 +3,6 @@
 #include "server/serve/scene_json.hpp"
 
 #include <cmath>
-#include <numbers>
-#include <type_traits>
 #include <variant>
 
 #include <fmt/format.h>

@@ -2,7 +2,6 @@
 #include "server/serve/scheduler.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "drivers/real_time.hpp"
 #include "server/serve/workers.hpp"

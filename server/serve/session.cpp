@@ -2,7 +2,6 @@
 #include "server/serve/session.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <utility>

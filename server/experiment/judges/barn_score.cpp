@@ -3,8 +3,6 @@
 //
 // Perille, Truong, Xiao, Stone: Benchmarking Metric Ground Navigation, SSRR 2020.
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 
 #include "server/experiment/judge.hpp"

@@ -1,7 +1,6 @@
 // server/experiment/judges/contact.cpp: whether a contact with something that moves could have been
 // avoided.
 #include <deque>
-#include <vector>
 
 #include "server/experiment/judge.hpp"
 #include "server/experiment/oracle.hpp"

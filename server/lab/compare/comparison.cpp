@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 
-#include "server/experiment/series.hpp"
 #include "server/lab/compare/layouts.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 

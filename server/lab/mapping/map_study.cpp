@@ -1,7 +1,6 @@
 // server/lab/mapping/map_study.cpp: recordings, spoilt paths, matched paths.
 #include "server/lab/mapping/map_study.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <stdexcept>

@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <stdexcept>
-#include <vector>
 
 #include "algo/pose_step.hpp"
 

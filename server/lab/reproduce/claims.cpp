@@ -1,7 +1,6 @@
 // server/lab/reproduce/claims.cpp: one condition a sentence.
 #include "server/lab/reproduce/claims.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace server::reproduce {

@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 
 #include "algo/driving.hpp"
 #include "algo/filter/filter.hpp"
 #include "algo/strip/strip_law.hpp"
-#include "server/run/scenario_json.hpp"
 
 namespace server::reproduce {
 namespace {

@@ -5,7 +5,6 @@
 #include <array>
 #include <cctype>
 #include <limits>
-#include <vector>
 
 #include <fmt/format.h>
 

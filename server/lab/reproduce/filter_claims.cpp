@@ -1,7 +1,6 @@
 // server/lab/reproduce/filter_claims.cpp: each sentence of chapter 3, held against the figures by a
 // rule that is printed with the verdict.
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>

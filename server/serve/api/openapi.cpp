@@ -2,7 +2,6 @@
 // written once and told of each.
 #include "server/serve/api/openapi.hpp"
 
-#include <string>
 #include <utility>
 #include <vector>
 

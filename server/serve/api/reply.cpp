@@ -1,14 +1,12 @@
 // server/serve/api/reply.cpp: JSON in, JSON out.
 #include "server/serve/api/reply.hpp"
 
-#include <exception>
 #include <new>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "db/records.hpp"
 #include "db/sqlite.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/json_reader.hpp"

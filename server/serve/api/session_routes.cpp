@@ -9,7 +9,6 @@
 #include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
-#include "server/run/pose_json.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"

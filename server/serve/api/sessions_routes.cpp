@@ -6,7 +6,6 @@
 #include "server/run/json_reader.hpp"
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"
-#include "server/serve/session_json.hpp"
 
 namespace server {
 namespace {

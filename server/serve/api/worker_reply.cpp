@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <utility>
 
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"

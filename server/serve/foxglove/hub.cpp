@@ -3,7 +3,6 @@
 #include "server/serve/foxglove/hub.hpp"
 
 #include <algorithm>
-#include <array>
 #include <random>
 #include <stdexcept>
 #include <utility>

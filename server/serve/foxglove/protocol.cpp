@@ -3,7 +3,6 @@
 #include "server/serve/foxglove/protocol.hpp"
 
 #include <limits>
-#include <utility>
 
 #include "server/run/json_limits.hpp"
 

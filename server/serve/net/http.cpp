@@ -3,10 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <ctime>
 #include <tuple>
-#include <utility>
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <exception>
 #include <list>
 #include <utility>  // before Asio: Boost 1.74 needs it in C++20 mode
