@@ -16,13 +16,13 @@ double repeated(std::span<const double> in, std::ptrdiff_t i) {
 }
 
 /// Reduces the valid samples of each window; validity as the product's filters have it.
-template <typename Reduce>
+template <double (*Reduce)(const std::vector<double>&)>
 void over_windows(std::span<const double> in,
                   std::span<const std::uint8_t> valid,
                   int half_width,
+                  algo::FilterScratch& /*scratch*/,
                   std::span<double> out,
-                  std::span<std::uint8_t> out_valid,
-                  Reduce reduce) {
+                  std::span<std::uint8_t> out_valid) {
   const std::ptrdiff_t last = std::ssize(in) - 1;
   std::vector<double> window;
   for (std::ptrdiff_t c = 0; c <= last; ++c) {
@@ -33,7 +33,7 @@ void over_windows(std::span<const double> in,
     }
     const auto i = static_cast<std::size_t>(c);
     const bool enough = valid[i] != 0 && std::ssize(window) > half_width;
-    out[i] = enough ? reduce(window) : in[i];
+    out[i] = enough ? Reduce(window) : in[i];
     out_valid[i] = enough ? 1 : 0;
   }
 }
@@ -48,35 +48,21 @@ void before(std::span<const double> in,
   std::ranges::copy(valid, out_valid.begin());
 }
 
-void mean(std::span<const double> in,
-          std::span<const std::uint8_t> valid,
-          int half_width,
-          algo::FilterScratch& /*scratch*/,
-          std::span<double> out,
-          std::span<std::uint8_t> out_valid) {
-  over_windows(in, valid, half_width, out, out_valid, [](const std::vector<double>& window) {
-    return std::accumulate(window.begin(), window.end(), 0.0) / static_cast<double>(window.size());
-  });
+double mean(const std::vector<double>& window) {
+  return std::accumulate(window.begin(), window.end(), 0.0) / static_cast<double>(window.size());
 }
 
-void midrange(std::span<const double> in,
-              std::span<const std::uint8_t> valid,
-              int half_width,
-              algo::FilterScratch& /*scratch*/,
-              std::span<double> out,
-              std::span<std::uint8_t> out_valid) {
-  over_windows(in, valid, half_width, out, out_valid, [](const std::vector<double>& window) {
-    const auto [low, high] = std::ranges::minmax(window);
-    return (low + high) / 2;
-  });
+double midrange(const std::vector<double>& window) {
+  const auto [low, high] = std::ranges::minmax(window);
+  return (low + high) / 2;
 }
 
 constexpr std::array<StudyFilter, 6> kTable{{{"before", before},
                                              {"pseudomedian", algo::pseudomedian},
                                              {"median", algo::median},
                                              {"lulu", algo::lulu},
-                                             {"mean", mean},
-                                             {"midrange", midrange}}};
+                                             {"mean", over_windows<mean>},
+                                             {"midrange", over_windows<midrange>}}};
 
 /// (max of the groups' minima + min of their maxima) / 2 over groups [first(k), last(k)] of samples
 /// counted from the centre.
