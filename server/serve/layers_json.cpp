@@ -88,7 +88,7 @@ void draw_points(const Layer& layer, const Point& robot, json& entity) {
   entity["lines"].push_back(line_json(LineKind::List, ties, colour_of(layer), kThin));
 }
 
-void draw_polyline(const Layer& layer, json& entity) {
+void draw_polyline(const Layer& layer, const Point& /*robot*/, json& entity) {
   const Records records(layer, 0);
   std::vector<Point> line;
   const auto end = [&] {
@@ -108,7 +108,7 @@ void draw_polyline(const Layer& layer, json& entity) {
   end();
 }
 
-void draw_arrows(const Layer& layer, json& entity) {
+void draw_arrows(const Layer& layer, const Point& /*robot*/, json& entity) {
   const Records records(layer, layer.axes);
   for (std::size_t k = 0; k < records.size(); ++k) {
     const algo::Vec2 vector{records.after(k, 0), records.after(k, 1)};
@@ -117,7 +117,7 @@ void draw_arrows(const Layer& layer, json& entity) {
   }
 }
 
-void draw_circles(const Layer& layer, json& entity) {
+void draw_circles(const Layer& layer, const Point& /*robot*/, json& entity) {
   const Records records(layer, 1);
   for (std::size_t k = 0; k < records.size(); ++k) {
     const Point p = records.position(k);
@@ -131,7 +131,7 @@ void draw_circles(const Layer& layer, json& entity) {
   }
 }
 
-void draw_arcs(const Layer& layer, json& entity) {
+void draw_arcs(const Layer& layer, const Point& /*robot*/, json& entity) {
   for (std::size_t k = 0; k + 1 < layer.values.size(); k += 2) {
     const algo::Twist2 twist{layer.values[k], layer.values[k + 1]};
     std::vector<Point> points;
@@ -144,7 +144,7 @@ void draw_arcs(const Layer& layer, json& entity) {
 }
 
 /// Cells that are more likely occupied than free, a rectangle for each run of them in a row.
-void draw_grid(const Layer& layer, json& entity) {
+void draw_grid(const Layer& layer, const Point& /*robot*/, json& entity) {
   if (layer.values.size() != 4 || !(layer.values[3] >= 1)) return;
   const double cell = layer.values[2];
   const auto columns = static_cast<std::size_t>(layer.values[3]);
@@ -188,7 +188,7 @@ void draw_polar(const Layer& layer, const Point& centre, json& entity) {
   entity["lines"].push_back(line_json(LineKind::List, spokes, colour_of(layer), kThickness));
 }
 
-void draw_text(const Layer& layer, json& entity) {
+void draw_text(const Layer& layer, const Point& /*robot*/, json& entity) {
   const Records records(layer, 0);
   std::size_t from = 0;
   for (std::size_t k = 0; k < records.size() && from <= layer.text.size(); ++k) {
@@ -199,6 +199,16 @@ void draw_text(const Layer& layer, json& entity) {
   }
 }
 
+/// By the kind of the layer.
+constexpr std::array kDraw{draw_points,
+                           draw_polyline,
+                           draw_arrows,
+                           draw_circles,
+                           draw_arcs,
+                           draw_grid,
+                           draw_polar,
+                           draw_text};
+
 json layer_entity(const algo::Telemetry& t, const Layer& layer) {
   const bool in_world = layer.frame == algo::LayerFrame::World;
   const bool grid = layer.kind == LayerKind::Grid;
@@ -208,32 +218,7 @@ json layer_entity(const algo::Telemetry& t, const Layer& layer) {
                             grid ? kGridLifetime : kLifetime);
   const algo::Pose2& pose = t.observation.odometry.pose;
   const Point robot = in_world ? Point{pose.x, pose.y, kHeight} : Point{0, 0, kHeight};
-  switch (layer.kind) {
-    case LayerKind::Points:
-      draw_points(layer, robot, entity);
-      break;
-    case LayerKind::Polyline:
-      draw_polyline(layer, entity);
-      break;
-    case LayerKind::Arrows:
-      draw_arrows(layer, entity);
-      break;
-    case LayerKind::Circles:
-      draw_circles(layer, entity);
-      break;
-    case LayerKind::Arcs:
-      draw_arcs(layer, entity);
-      break;
-    case LayerKind::Grid:
-      draw_grid(layer, entity);
-      break;
-    case LayerKind::Polar:
-      draw_polar(layer, robot, entity);
-      break;
-    case LayerKind::Text:
-      draw_text(layer, entity);
-      break;
-  }
+  kDraw.at(static_cast<std::size_t>(layer.kind))(layer, robot, entity);
   return entity;
 }
 
