@@ -290,10 +290,6 @@ Server::~Server() {
 Router& Server::router() {
   return impl_->core.router;
 }
-const Router& Server::router() const {
-  return impl_->core.router;
-}
-
 void Server::add(WsEndpoint endpoint) {
   impl_->core.endpoints.push_back(std::move(endpoint));
 }

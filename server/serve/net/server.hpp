@@ -72,7 +72,6 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   Router& router();
-  const Router& router() const;
   void add(WsEndpoint endpoint);
 
   std::uint16_t port() const;
