@@ -5,7 +5,6 @@
 
 namespace algo::units {
 
-constexpr double kMetresPerMillimetre = 1e-3;
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 constexpr double operator""_mm(long double v) {

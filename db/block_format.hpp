@@ -17,7 +17,6 @@
 namespace db::detail {
 
 constexpr std::uint8_t kFormatVersion = 5;
-constexpr std::size_t kHeaderBytes = 20;
 
 struct Header {
   std::size_t frames = 0;

@@ -172,14 +172,6 @@ std::int64_t Connection::query_integer(std::string_view sql) const {
   return statement.step() ? statement.integer(0) : 0;
 }
 
-std::string Connection::query_text(std::string_view sql) const {
-  Statement statement = prepare(sql);
-  return statement.step() ? statement.text(0) : std::string{};
-}
-
-std::uint64_t Connection::changes() const {
-  return static_cast<std::uint64_t>(sqlite3_changes64(connection_.get()));
-}
 bool Connection::in_transaction() const {
   return sqlite3_get_autocommit(connection_.get()) == 0;
 }

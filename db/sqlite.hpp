@@ -100,8 +100,6 @@ class Connection {
   Statement prepare(std::string_view sql) const { return {connection_.get(), path_, sql}; }
   void execute(const std::string& sql) const;
   std::int64_t query_integer(std::string_view sql) const;
-  std::string query_text(std::string_view sql) const;
-  std::uint64_t changes() const;  // rows the newest statement changed
   bool in_transaction() const;
   void roll_back() const noexcept;  // nothing when none is open
 

@@ -25,7 +25,6 @@ class InfraredModel final : public Sensor {
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index);
 
-  const InfraredConfig& config() const { return config_; }
   void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
   void move(std::uint32_t id, const algo::Pose2& pose_W) override { caster_.move(id, pose_W); }
   void remove(std::uint32_t id) override { caster_.remove(id); }

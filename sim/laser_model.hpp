@@ -54,7 +54,6 @@ class LaserModel final : public Sensor {
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index);
 
-  const LaserConfig& config() const { return config_; }
   std::size_t beams() const { return pattern_.beams; }
   /// [s] How far back in time a scan reaches at most: the newest sweep may have ended almost one
   /// sweep ago.

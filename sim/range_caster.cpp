@@ -125,25 +125,6 @@ algo::Vec2 RangeCaster::normal_W(std::uint32_t index, const algo::Vec2& p_W) con
   return normal;
 }
 
-bool RangeCaster::lies_inside(std::uint32_t index, const algo::Vec2& p_W) const {
-  const std::size_t count = vertex_count_[index];
-  if (count == 0) {
-    const double dx = p_W.x() - centre_x_[index];
-    const double dy = p_W.y() - centre_y_[index];
-    return dx * dx + dy * dy <= bound_[index] * bound_[index];
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t a = first_vertex_[index] + i;
-    const std::size_t b = first_vertex_[index] + (i + 1 == count ? 0 : i + 1);
-    const double side = cross(vertex_x_[a] - p_W.x(),
-                              vertex_y_[a] - p_W.y(),
-                              vertex_x_[b] - p_W.x(),
-                              vertex_y_[b] - p_W.y());
-    if (side < 0) return false;
-  }
-  return true;
-}
-
 void RangeCaster::use_pattern(const BeamPattern& pattern) {
   if (pattern == pattern_) return;
   const double turn = 2 * std::numbers::pi;
@@ -323,40 +304,6 @@ void RangeCaster::flat_outline(std::uint32_t index) {
     }
   }
   if (!outside) fill_inside(index);
-}
-
-RangeCaster::Hit RangeCaster::cast_ray(const algo::Vec2& origin_W,
-                                       double angle,
-                                       double range_max) const {
-  const algo::Vec2 u = algo::direction(angle);
-  double inverse = 1 / range_max;
-  std::uint32_t hit = kNothing;
-  const auto take = [&](double candidate, std::size_t index) {
-    if (!(candidate > inverse)) return;
-    inverse = candidate;
-    hit = static_cast<std::uint32_t>(index);
-  };
-  for (std::uint32_t index = 0; index < obstacles_.size(); ++index) {
-    if (lies_inside(index, origin_W)) return {0, index};
-    const std::size_t count = vertex_count_[index];
-    if (count == 0) {
-      const algo::Vec2 c = algo::Vec2(centre_x_[index], centre_y_[index]) - origin_W;
-      const double m = c.dot(u);
-      const double k = c.squaredNorm() - bound_[index] * bound_[index];
-      take((m + std::sqrt(m * m - k)) / k, index);
-    }
-    for (std::size_t j = 0; j < count; ++j) {
-      const std::size_t a = first_vertex_[index] + j;
-      const std::size_t b = first_vertex_[index] + (j + 1 == count ? 0 : j + 1);
-      const algo::Vec2 q = algo::Vec2(vertex_x_[a], vertex_y_[a]) - origin_W;
-      const algo::Vec2 p = algo::Vec2(vertex_x_[b], vertex_y_[b]) - origin_W;
-      const double area = cross(p.x(), p.y(), q.x(), q.y());
-      const double left_of_p = cross(p.x(), p.y(), u.x(), u.y());
-      const double left_of_q = cross(q.x(), q.y(), u.x(), u.y());
-      if (area > 0 && left_of_p >= 0 && left_of_q < 0) take((left_of_p - left_of_q) / area, index);
-    }
-  }
-  return {hit == kNothing ? range_max : 1 / inverse, hit};
 }
 
 }  // namespace sim

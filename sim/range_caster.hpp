@@ -52,11 +52,6 @@ class RangeCaster {
   /// What a beam hit when it hit nothing.
   static constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
 
-  struct Hit {
-    double range = 0;  // [m] range_max when nothing
-    std::uint32_t obstacle = kNothing;
-  };
-
   /// `plane_height` [m]: an obstacle lower than that is never seen.
   explicit RangeCaster(double plane_height = 0) : plane_height_(plane_height) {}
 
@@ -99,9 +94,6 @@ class RangeCaster {
                  std::span<double> ranges,
                  std::span<std::uint32_t> hits = {});
 
-  /// One ray from `origin_W` along bearing `angle` [rad] in W.
-  Hit cast_ray(const algo::Vec2& origin_W, double angle, double range_max) const;
-
  private:
   /// A primitive that some ray may meet: a circle about p, or the segment from p to q seen counter-
   /// clockwise; in the reference frame.
@@ -120,7 +112,6 @@ class RangeCaster {
 
   void place(std::size_t index);
   std::size_t find(std::uint32_t id) const;
-  bool lies_inside(std::uint32_t index, const algo::Vec2& p_W) const;
   void use_pattern(const BeamPattern& pattern);
   void gather(const algo::Pose2& sensor_W, double range_max, const RaySpread& spread);
   void enter_frame(std::uint32_t index);

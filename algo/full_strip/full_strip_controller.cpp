@@ -127,7 +127,7 @@ void FullStripController::prepare(const ControlInput& in, const Parameters& para
 void FullStripController::sense(const ControlInput& in) {
   const Pose2& here = in.odometry.pose;
   points_.follow(here, in.stamp);
-  map_.follow(here.position(), in.stamp);
+  map_.follow(here.position());
   if (!placed_) stage_.hull().take_place(map_.seen(), here);
   placed_ = true;
   stage_.hull().stand_on(map_.seen(), here);

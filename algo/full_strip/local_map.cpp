@@ -40,7 +40,6 @@ void LocalMap::reset(const Vec2& centre_W) {
   for (const std::uint32_t cell : active_) hits_[cell] = 0;
   if (field_) field_->reset();
   active_.clear();
-  occupied_ = 0;
   scans_ = 0;
   looks_ = {};
   space_.reset(centre_W);
@@ -49,14 +48,8 @@ void LocalMap::reset(const Vec2& centre_W) {
                std::floor((centre_W.y() - half) / kCell) * kCell};
 }
 
-bool LocalMap::inside(const Vec2& p_W) const {
-  const Vec2 p = p_W - corner_W_;
-  const double edge = kSize * kCell;
-  return p.x() >= 0 && p.y() >= 0 && p.x() < edge && p.y() < edge;
-}
-
-bool LocalMap::follow(const Vec2& position_W, double stamp) {
-  space_.follow(position_W, stamp);
+bool LocalMap::follow(const Vec2& position_W) {
+  space_.follow(position_W);
   const double half = kSize * kCell / 2;
   const Vec2 off = position_W - corner_W_ - Vec2(half, half);
   if (std::abs(off.x()) < kMiddle && std::abs(off.y()) < kMiddle) return false;
@@ -73,7 +66,6 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
   const int rows = tile_rows * DistanceField::kTile;
   corner_W_ += Vec2(columns * kCell, rows * kCell);
   if (field_) field_->shift(tile_columns, tile_rows);
-  occupied_ = 0;
   moved_.clear();
   for (const std::uint32_t old : active_) {
     const int column = static_cast<int>(old) % kSize - columns;
@@ -89,7 +81,6 @@ void LocalMap::shift(int tile_columns, int tile_rows) {
     seen_[moved.cell] = moved.seen;
     means_[moved.cell] = moved.mean;
     hits_[moved.cell] = moved.hits;
-    if (hits_[moved.cell] >= kOccupied) ++occupied_;
   }
 }
 
@@ -127,18 +118,16 @@ void LocalMap::hit(const Vec2& point_W) {
   mean[0] += share * (static_cast<float>(off.x()) - mean[0]);
   mean[1] += share * (static_cast<float>(off.y()) - mean[1]);
   if (hits_[cell] < kOccupied) suspects_.push_back(static_cast<std::uint32_t>(cell));
-  if (before >= kOccupied || hits_[cell] < kOccupied) return;
-  ++occupied_;
-  if (field_) field_->occupy(column, row);
+  const bool becomes_occupied = before < kOccupied && hits_[cell] >= kOccupied;
+  if (becomes_occupied && field_) field_->occupy(column, row);
 }
 
 /// Takes hits from a cell. False when it has none left.
 bool LocalMap::weaken(std::size_t cell, int by) {
   const std::uint8_t before = hits_[cell];
   hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
-  if (before >= kOccupied && hits_[cell] < kOccupied) {
-    --occupied_;
-    if (field_) field_->free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
+  if (field_ && before >= kOccupied && hits_[cell] < kOccupied) {
+    field_->free(static_cast<int>(cell) % kSize, static_cast<int>(cell) / kSize);
   }
   return hits_[cell] > 0;
 }

@@ -44,9 +44,8 @@ class LocalMap {
   /// Scans without a hit after which a cell begins to fade.
   void remember_for(std::uint16_t scans) { age_after_ = scans; }
 
-  /// Moves the window when the robot has left its middle; true when it moved. `stamp` is the run
-  /// clock [s].
-  bool follow(const Vec2& position_W, double stamp);
+  /// Moves the window when the robot has left its middle; true when it moved.
+  bool follow(const Vec2& position_W);
 
   /// Enters the hits of `scan` as points of W, but for those on something that moves, and clears
   /// what it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
@@ -94,11 +93,9 @@ class LocalMap {
 
   /// Whether the straight line between two points keeps `room` [m] from all that is occupied.
   bool sees(const Vec2& from_W, const Vec2& to_W, double room) const;
-  bool inside(const Vec2& p_W) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.
   std::int16_t cell_distance(int column, int row) const { return field_->at(column, row); }
-  std::size_t occupied() const { return occupied_; }
   /// Where it has looked at all: what is neither occupied nor seen is anyone's guess.
   const SeenSpace& seen() const { return space_; }
   SeenSpace& seen() { return space_; }
@@ -156,7 +153,6 @@ class LocalMap {
   std::vector<std::uint32_t> suspects_;  // cells that the last scan hit for the first time
   std::optional<DistanceField> field_{};
   SeenSpace space_{};
-  std::size_t occupied_ = 0;
   std::uint16_t age_after_ = 20 * 30;
   std::uint32_t scans_ = 0;
   std::array<std::uint32_t, 2> looks_{};  // of scanners that look ahead, and back

@@ -158,7 +158,6 @@ void Planner::start(const LocalMap& map,
     if (goal_W[k] > high[k]) share = std::min(share, (high[k] - robot_W[k]) / way);
     if (goal_W[k] < low[k]) share = std::min(share, (low[k] - robot_W[k]) / way);
   }
-  goal_replaced_ = share < 1;
   goal_taken_ = false;
   goal_W_ = robot_W + share * (goal_W - robot_W);
   root_ = point_at(goal_W_);
@@ -166,8 +165,7 @@ void Planner::start(const LocalMap& map,
   goal_tight_ = !room && try_tight && near_robot(root_);
   if (!room && !goal_tight_) {
     root_ = free_point(map, root_);
-    goal_taken_ = !goal_replaced_;
-    goal_replaced_ = true;
+    goal_taken_ = share >= 1;
     goal_W_ = position_W(root_);
   }
   ++round_;
@@ -211,10 +209,6 @@ void Planner::expand(const LocalMap& map, std::uint32_t point) {
     if (opened_[next] == round_ && g_[next] <= g) continue;
     push(next, g, static_cast<std::uint8_t>((m + 4) % kMoves.size()));  // back the way it came
   }
-}
-
-double Planner::cost() const {
-  return state_ == State::Found ? static_cast<double>(g_[robot_]) : 0;
 }
 
 void Planner::path(Recycled<Vec2>& out) const {

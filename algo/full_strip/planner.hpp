@@ -34,14 +34,10 @@ class Planner {
   State search(const LocalMap& map, int budget);
 
   State state() const { return state_; }
-  /// Whether the way ends at another place than the goal asked for.
-  bool goal_replaced() const { return goal_replaced_; }
-  /// Whether that is so because something stands there.
+  /// Whether the way ends at another place than the goal asked for because something stands there.
   bool goal_taken() const { return goal_taken_; }
   /// Whether it was kept although it has no room.
   bool goal_tight() const { return goal_tight_; }
-  /// Cost [m] of the way found.
-  double cost() const;
   /// The way found, robot first. At most one point a lattice step.
   void path(Recycled<Vec2>& out) const;
 
@@ -68,7 +64,6 @@ class Planner {
   void expand(const LocalMap& map, std::uint32_t point);
 
   State state_ = State::Idle;
-  bool goal_replaced_ = false;
   bool goal_taken_ = false;
   bool goal_tight_ = false;
   double least_clearance_ = 0;

@@ -16,30 +16,27 @@ static_assert((1 << 22) % SeenSpace::kSize == 0);
 }  // namespace
 
 void SeenSpace::reset(const Vec2& centre_W) {
-  std::ranges::fill(seen_at_, kNever);
+  std::ranges::fill(seen_, std::uint8_t{0});
   left_ = cell_of(centre_W.x()) - kSize / 2;
   bottom_ = cell_of(centre_W.y()) - kSize / 2;
-  now_ = 0;
   looks_ = 0;
 }
 
-void SeenSpace::follow(const Vec2& position_W, double stamp) {
-  now_ = stamp;
+void SeenSpace::follow(const Vec2& position_W) {
   const int left = cell_of(position_W.x()) - kSize / 2;
   const int bottom = cell_of(position_W.y()) - kSize / 2;
   if (std::abs(left - left_) >= kSize || std::abs(bottom - bottom_) >= kSize) {
     reset(position_W);
-    now_ = stamp;
     return;
   }
   // What comes in on one side takes the cells of what leaves on the other.
   for (; left_ != left; left_ += left > left_ ? 1 : -1) {
     const int column = left > left_ ? left_ : left_ - 1;
-    for (int row = 0; row < kSize; ++row) seen_at_[index(column, row)] = kNever;
+    for (int row = 0; row < kSize; ++row) seen_[index(column, row)] = 0;
   }
   for (; bottom_ != bottom; bottom_ += bottom > bottom_ ? 1 : -1) {
     const int row = bottom > bottom_ ? bottom_ : bottom_ - 1;
-    std::fill_n(&seen_at_[index(0, row)], kSize, kNever);
+    std::fill_n(&seen_[index(0, row)], kSize, std::uint8_t{0});
   }
 }
 
@@ -50,7 +47,7 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
   // Beams so close that at kLook they pass no cell by; other ones each time.
   const double apart = kCell / (kLook * scan.angle_increment);
   const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
-  const auto stamp = static_cast<float>(now_);
+  std::uint8_t* const seen = seen_.data();  // bytes might be any member: not read anew each time
   const Vec2 from = sensor_W.position() / kCell + Vec2(kPositive, kPositive);
   for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
     if (scan.status[i] == Beam::Invalid) continue;
@@ -60,12 +57,12 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
     const int steps = static_cast<int>(length / kCell);
     for (int k = 0; k <= steps; ++k) {
       const Vec2 p = from + k * way;
-      seen_at_[index(static_cast<int>(p.x()), static_cast<int>(p.y()))] = stamp;
+      seen[index(static_cast<int>(p.x()), static_cast<int>(p.y()))] = 1;
     }
   }
 }
 
-void SeenSpace::set_disc(const Vec2& centre_W, double radius, float stamp) {
+void SeenSpace::set_disc(const Vec2& centre_W, double radius, std::uint8_t seen) {
   const int reach = static_cast<int>(radius / kCell) + 1;
   const int column = cell_of(centre_W.x());
   const int row = cell_of(centre_W.y());
@@ -73,17 +70,17 @@ void SeenSpace::set_disc(const Vec2& centre_W, double radius, float stamp) {
     for (int x = column - reach; x <= column + reach; ++x) {
       const Vec2 middle_W = Vec2(x + 0.5, y + 0.5) * kCell;
       const bool inside = (middle_W - centre_W).squaredNorm() <= radius * radius;
-      if (inside && holds(x, y)) seen_at_[index(x, y)] = stamp;
+      if (inside && holds(x, y)) seen_[index(x, y)] = seen;
     }
   }
 }
 
 void SeenSpace::mark(const Vec2& centre_W, double radius) {
-  set_disc(centre_W, radius, static_cast<float>(now_));
+  set_disc(centre_W, radius, 1);
 }
 
 void SeenSpace::forget(const Vec2& centre_W, double radius) {
-  set_disc(centre_W, radius, kNever);
+  set_disc(centre_W, radius, 0);
 }
 
 }  // namespace algo

@@ -4,7 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <limits>
+#include <cstdint>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
@@ -20,14 +20,12 @@ class SeenSpace {
   static constexpr double kCell = 0.05;  // [m]
   static constexpr int kSize = 256;      // cells along an edge, a power of two: 12.8 m
 
-  SeenSpace() : seen_at_(static_cast<std::size_t>(kSize) * kSize) { reset({0, 0}); }
+  SeenSpace() : seen_(static_cast<std::size_t>(kSize) * kSize) { reset({0, 0}); }
 
   /// Forgets everything; the window is centred on `centre_W`.
   void reset(const Vec2& centre_W);
-  /// [s] For which a look is believed. Where nothing moves, for ever.
-  void remember_for(double memory) { memory_ = memory; }
-  /// The window follows the robot and the run clock.
-  void follow(const Vec2& position_W, double stamp);
+  /// The window follows the robot.
+  void follow(const Vec2& position_W);
 
   /// Enters the beams of `scan`, taken at `sensor_W`, up to kLook.
   void look(const LaserScan& scan, const Pose2& sensor_W);
@@ -39,12 +37,10 @@ class SeenSpace {
   bool seen(const Vec2& p_W) const {
     const int column = cell_of(p_W.x());
     const int row = cell_of(p_W.y());
-    if (!holds(column, row)) return false;
-    return static_cast<double>(seen_at_[index(column, row)]) > now_ - memory_;
+    return holds(column, row) && seen_[index(column, row)] != 0;
   }
 
  private:
-  static constexpr float kNever = -std::numeric_limits<float>::infinity();
   static int cell_of(double metres) { return static_cast<int>(std::floor(metres / kCell)); }
   /// The cells of the plane share those of the window, like a chart rolled both ways.
   static std::size_t index(int column, int row) {
@@ -55,12 +51,10 @@ class SeenSpace {
   bool holds(int column, int row) const {
     return column >= left_ && column < left_ + kSize && row >= bottom_ && row < bottom_ + kSize;
   }
-  void set_disc(const Vec2& centre_W, double radius, float stamp);
+  void set_disc(const Vec2& centre_W, double radius, std::uint8_t seen);
 
-  std::vector<float> seen_at_;  // [s] run clock
-  int left_ = 0, bottom_ = 0;   // of the window, in cells of W
-  double now_ = 0;              // [s]
-  double memory_ = std::numeric_limits<double>::infinity();
+  std::vector<std::uint8_t> seen_;  // 0: never
+  int left_ = 0, bottom_ = 0;       // of the window, in cells of W
   std::size_t looks_ = 0;
 };
 

@@ -14,7 +14,7 @@ Pose2 Mapper::add(const LaserScan& scan, const Pose2& odometry_W) {
   if (odometry_W_) {
     place(scan, compose(match_.pose_W, pose_step(*odometry_W_, odometry_W)));
   } else {
-    match_ = {odometry_W, 1, 0};
+    match_ = {odometry_W, 1};
   }
   odometry_W_ = odometry_W;
   if (is_new()) {
@@ -25,7 +25,7 @@ Pose2 Mapper::add(const LaserScan& scan, const Pose2& odometry_W) {
 }
 
 void Mapper::place(const LaserScan& scan, const Pose2& guess_W) {
-  match_ = {guess_W, 0, 0};
+  match_ = {guess_W, 0};
   if (!settings_.match) return;
   matcher_.take(scan, settings_.reach);
   match_ = matcher_.match(map_, guess_W, settings_.prior);

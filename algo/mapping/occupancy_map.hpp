@@ -25,10 +25,6 @@ class OccupancyMap {
     std::uint16_t hits = 0;    // beams that ended here
     std::uint16_t passes = 0;  // beams that went through
     bool known() const { return hits > 0 || passes > 0; }
-    double occupancy() const {
-      const double hit = hits;
-      return known() ? hit / (hit + passes) : 0;
-    }
     /// Walls met at a slant are passed often, things that went away much oftener.
     bool occupied() const { return hits > 0 && 4 * hits >= passes; }
   };

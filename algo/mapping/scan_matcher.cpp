@@ -68,8 +68,6 @@ void ScanMatcher::Step::add(const Vec2& p_W, const Surface& surface, double scal
   h_ += weight * slope * slope.transpose();
   g_ += weight * residual * slope;
   ++used_;
-  weight_ += weight;
-  squares_ += weight * residual * residual;
 }
 
 Pose2 ScanMatcher::Step::taken() const {

@@ -41,9 +41,8 @@ struct MatchPrior {
 };
 
 struct ScanMatch {
-  Pose2 pose_W{};        // of R
-  double share = 0;      // of the scan's points that found a surface
-  double deviation = 0;  // [m] root mean square from their surfaces
+  Pose2 pose_W{};    // of R
+  double share = 0;  // of the scan's points that found a surface
 };
 
 /// Point-to-line ICP (Chen and Medioni 1992; Censi 2008) with a correlative search before it where
@@ -61,7 +60,6 @@ class ScanMatcher {
   /// Takes the scan to be matched: its Ok beams up to `reach` [m], thinned to kSpacing apart, so
   /// that near walls do not outvote far ones.
   void take(const LaserScan& scan, double reach);
-  std::size_t points() const { return points_R_.size(); }
 
   /// The pose near `guess_W` in which the scan lies on the map best; `guess_W` itself when the map
   /// says nothing.
@@ -93,15 +91,12 @@ class ScanMatcher {
     /// The pose a step on; the same when the equations do not say where.
     Pose2 taken() const;
     std::size_t used() const { return used_; }
-    double deviation() const { return used_ > 0 ? std::sqrt(squares_ / weight_) : 0; }
 
    private:
     Pose2 pose_W_{};
     Eigen::Matrix3d h_ = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g_ = Eigen::Vector3d::Zero();
     std::size_t used_ = 0;
-    double weight_ = 0;
-    double squares_ = 0;  // [m2]
   };
 
   template <typename Map>
@@ -123,7 +118,7 @@ class ScanMatcher {
 
 template <typename Map>
 ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const {
-  ScanMatch found{guess_W, 0, 0};
+  ScanMatch found{guess_W, 0};
   if (points_R_.size() < kFewest) return found;
   for (const double reach : kReaches) {
     for (int k = 0; k < kIterations; ++k) {
@@ -133,8 +128,7 @@ ScanMatch ScanMatcher::match(const Map& map, const Pose2& guess_W, const MatchPr
         if (const auto surface = surface_near(map, p_W, reach)) step.add(p_W, *surface, reach / 3);
       }
       found.share = static_cast<double>(step.used()) / static_cast<double>(points_R_.size());
-      found.deviation = step.deviation();
-      if (step.used() < kFewest) return {guess_W, found.share, found.deviation};
+      if (step.used() < kFewest) return {guess_W, found.share};
       const Pose2 before = std::exchange(found.pose_W, step.taken());
       const double moved = (found.pose_W.position() - before.position()).norm();
       const double turned = std::abs(wrap_angle(found.pose_W.heading - before.heading));

@@ -76,7 +76,7 @@ void StickGuard::sense(const Resource& in) {
   points_.follow(here, seen.stamp);
   watch_insistence(in);
   if (!in.manual && seen.stamp < next_look_) return;
-  map_.follow(here.position(), seen.stamp);
+  map_.follow(here.position());
   if (!placed_) hull_.take_place(map_.seen(), here);
   placed_ = true;
   hull_.stand_on(map_.seen(), here);

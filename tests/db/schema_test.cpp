@@ -99,7 +99,9 @@ TEST_F(SchemaTest, AnotherProgramsDatabaseIsRefusedUntouched) {
 TEST_F(SchemaTest, WritesDurably) {
   const RunStore store(path);
   const Connection other(path, Connection::Mode::Read);
-  EXPECT_EQ(other.query_text("PRAGMA journal_mode"), "wal");
+  auto mode = other.prepare("PRAGMA journal_mode");
+  ASSERT_TRUE(mode.step());
+  EXPECT_EQ(mode.text(0), "wal");
   EXPECT_EQ(other.query_integer("PRAGMA page_size"), 4096);
 }
 

@@ -80,8 +80,9 @@ class StoreFiles : public testing::Test {
     return std::move(found).value_or(db::RunRow{});
   }
   static std::string integrity(const std::string& file) {
-    return db::detail::Connection(file, db::detail::Connection::Mode::Write)
-        .query_text("PRAGMA integrity_check");
+    const db::detail::Connection connection(file, db::detail::Connection::Mode::Write);
+    db::detail::Statement check = connection.prepare("PRAGMA integrity_check");
+    return check.step() ? check.text(0) : "no answer";
   }
 
   std::filesystem::path folder{};

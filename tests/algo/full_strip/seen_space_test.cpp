@@ -1,4 +1,4 @@
-// tests/algo/full_strip/seen_space_test.cpp: what counts as seen, and for how long.
+// tests/algo/full_strip/seen_space_test.cpp: what counts as seen.
 #include "algo/full_strip/seen_space.hpp"
 
 #include "tests/algo/worlds.hpp"
@@ -12,10 +12,10 @@ using algo::Pose2;
 using algo::SeenSpace;
 using algo::Vec2;
 
-void look(SeenSpace& seen, const worlds::World& world, const Pose2& pose, double stamp = 0) {
+void look(SeenSpace& seen, const worlds::World& world, const Pose2& pose) {
   algo::LaserScan scan;
   worlds::scan_world(pose, world, 8, scan);
-  seen.follow(pose.position(), stamp);
+  seen.follow(pose.position());
   for (int k = 0; k < 4; ++k) seen.look(scan, pose);
 }
 
@@ -36,27 +36,16 @@ TEST(SeenSpace, RollsAlong) {
   const Pose2 start{0.31, -0.2, 0};
   look(seen, {}, start);
   EXPECT_TRUE(seen.seen({1.3, -0.2}));
-  seen.follow({5, 3}, 0);
+  seen.follow({5, 3});
   EXPECT_TRUE(seen.seen({1.3, -0.2}));
-  seen.follow({7.8, 3}, 0);
+  seen.follow({7.8, 3});
   EXPECT_FALSE(seen.seen({1.3, -0.2}));
   // What came in again has never been seen, nor what shares its cells.
-  seen.follow({1, 0}, 0);
+  seen.follow({1, 0});
   EXPECT_FALSE(seen.seen({1.3, -0.2}));
   EXPECT_FALSE(seen.seen({1.3 + SeenSpace::kSize * SeenSpace::kCell, -0.2}));
-  seen.follow({500, 0}, 0);
+  seen.follow({500, 0});
   EXPECT_FALSE(seen.seen({500, 0}));
-}
-
-TEST(SeenSpace, IsForgottenWithTimeWhereThingsMove) {
-  SeenSpace seen;
-  look(seen, {}, {0, 0, 0}, 10);
-  seen.follow({0, 0}, 1000);
-  EXPECT_TRUE(seen.seen({1, 0}));
-  seen.remember_for(2);
-  EXPECT_FALSE(seen.seen({1, 0}));
-  seen.follow({0, 0}, 11.9);
-  EXPECT_TRUE(seen.seen({1, 0}));
 }
 
 algo::RobotSpec rectangle() {

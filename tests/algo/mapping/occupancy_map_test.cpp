@@ -51,10 +51,11 @@ TEST(OccupancyMap, WhatWentAwayIsNoLongerOccupied) {
   OccupancyMap map(0.1, 41, {0, 0});
   for (int k = 0; k < 3; ++k) map.insert(beam(1.05), {0, 0.01, 0}, 8);
   EXPECT_TRUE(ahead(map, 1.05).occupied());
-  EXPECT_EQ(ahead(map, 1.05).occupancy(), 1);
+  EXPECT_EQ(ahead(map, 1.05).hits, 3);
   for (int k = 0; k < 20; ++k) map.insert(beam(1.85), {0, 0.01, 0}, 8);
   EXPECT_FALSE(ahead(map, 1.05).occupied());
-  EXPECT_NEAR(ahead(map, 1.05).occupancy(), 3.0 / 23, 1e-12);
+  EXPECT_EQ(ahead(map, 1.05).hits, 3);
+  EXPECT_EQ(ahead(map, 1.05).passes, 20);
 }
 
 TEST(OccupancyMap, TellsOccupiedCellsByTheMeanOfTheirHits) {

@@ -65,7 +65,6 @@ TEST(ScanMatcher, FindsAPoseThatIsOffByDecimetresAndDegrees) {
     EXPECT_LT(off(match.pose_W, kHere), 0.01);
     EXPECT_NEAR(match.pose_W.heading, kHere.heading, 0.003);
     EXPECT_GT(match.share, 0.8);
-    EXPECT_LT(match.deviation, 0.02);
   }
 }
 
@@ -88,7 +87,6 @@ TEST(ScanMatcher, SaysTheGuessWhereTheMapSaysNothing) {
   EXPECT_EQ(match.pose_W, kHere);
   EXPECT_EQ(match.share, 0);
   matcher.take({}, kReach);
-  EXPECT_EQ(matcher.points(), 0U);
   EXPECT_EQ(matcher.match(map, kHere, {}).pose_W, kHere);
 }
 
