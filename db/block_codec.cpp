@@ -2,7 +2,6 @@
 #include "db/block_codec.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 
 #include "db/block_format.hpp"

@@ -48,9 +48,15 @@ struct FrameTable {
   void clear();
   /// A further frame of `size` bytes, which are to be filled in.
   void append(std::size_t size, std::span<const Window> frame_windows);
-  std::span<const std::byte> frame(std::size_t i) const;
-  std::span<std::byte> frame(std::size_t i);
-  std::span<const Window> windows_of(std::size_t i) const;
+  std::span<const std::byte> frame(std::size_t i) const {
+    return std::span(bytes).subspan(entries[i].offset, entries[i].size);
+  }
+  std::span<std::byte> frame(std::size_t i) {
+    return std::span(bytes).subspan(entries[i].offset, entries[i].size);
+  }
+  std::span<const Window> windows_of(std::size_t i) const {
+    return std::span(windows).subspan(entries[i].first_window, entries[i].window_count);
+  }
 };
 
 /// The newest window at each place in a frame, by its ordinal: the next one there is predicted from
@@ -113,9 +119,6 @@ class RestOrder {
 class Cursor;
 struct Compressor;    // a zstd context and its output buffer
 struct Decompressor;  // the same for unpacking
-struct Deleter {
-  void operator()(Decompressor* decompressor) const noexcept;
-};
 
 }  // namespace detail
 
@@ -196,7 +199,7 @@ class BlockDecoder {
   std::vector<std::uint8_t> rest_{};
   std::vector<std::size_t> rest_starts_{};
   detail::RestOrder rest_order_{};
-  std::unique_ptr<detail::Decompressor, detail::Deleter> decompressor_;
+  std::shared_ptr<detail::Decompressor> decompressor_;  // whose type need not be known here
 };
 
 }  // namespace db

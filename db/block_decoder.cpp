@@ -11,7 +11,7 @@ namespace db {
 
 using namespace detail;
 
-BlockDecoder::BlockDecoder() : decompressor_(new Decompressor) {}
+BlockDecoder::BlockDecoder() : decompressor_(std::make_shared<Decompressor>()) {}
 
 void BlockDecoder::decode(std::span<const std::byte> block) {
   table_.clear();

@@ -51,16 +51,6 @@ void FrameTable::append(std::size_t size, std::span<const Window> frame_windows)
   windows.insert(windows.end(), frame_windows.begin(), frame_windows.end());
 }
 
-std::span<const std::byte> FrameTable::frame(std::size_t i) const {
-  return std::span(bytes).subspan(entries[i].offset, entries[i].size);
-}
-std::span<std::byte> FrameTable::frame(std::size_t i) {
-  return std::span(bytes).subspan(entries[i].offset, entries[i].size);
-}
-std::span<const Window> FrameTable::windows_of(std::size_t i) const {
-  return std::span(windows).subspan(entries[i].first_window, entries[i].window_count);
-}
-
 std::span<const std::byte> NewestSamples::get(const FrameTable& table,
                                               std::size_t ordinal,
                                               std::size_t bytes) const {
@@ -89,23 +79,19 @@ void RestOrder::set(std::span<const std::size_t> starts) {
   }
 }
 
-void Deleter::operator()(Decompressor* decompressor) const noexcept {
-  delete decompressor;
-}
-
-Compressor::Compressor() : context(ZSTD_createCCtx()) {
+Compressor::Compressor() {
   if (context == nullptr) throw std::bad_alloc();
-  ZSTD_CCtx_setParameter(context, ZSTD_c_compressionLevel, kZstdLevel);
+  ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, kZstdLevel);
 }
 
-Decompressor::Decompressor() : context(ZSTD_createDCtx()) {
+Decompressor::Decompressor() {
   if (context == nullptr) throw std::bad_alloc();
 }
 
 void Compressor::append(std::vector<std::byte>& out, std::span<const std::uint8_t> stream) {
   buffer.resize(ZSTD_compressBound(stream.size()));
   const std::size_t size =
-      ZSTD_compress2(context, buffer.data(), buffer.size(), stream.data(), stream.size());
+      ZSTD_compress2(context.get(), buffer.data(), buffer.size(), stream.data(), stream.size());
   const bool pays = ZSTD_isError(size) == 0 && size < stream.size();
   put(out, static_cast<std::uint32_t>(stream.size()));
   put(out, static_cast<std::uint32_t>(pays ? size : stream.size()));
@@ -245,7 +231,7 @@ void read_stream(Cursor& cursor, const Decompressor& zstd, std::vector<std::uint
     throw CodecError("a stream of the block is damaged");
   }
   out.resize(raw);
-  if (ZSTD_decompressDCtx(zstd.context, out.data(), raw, bytes.data(), bytes.size()) != raw) {
+  if (ZSTD_decompressDCtx(zstd.context.get(), out.data(), raw, bytes.data(), bytes.size()) != raw) {
     throw CodecError("a stream of the block is damaged");
   }
 }

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,24 +28,18 @@ struct Header {
 /// Owns the compressor's state, so that packing block after block allocates nothing.
 struct Compressor {
   Compressor();
-  ~Compressor() { ZSTD_freeCCtx(context); }
-  Compressor(const Compressor&) = delete;
-  Compressor& operator=(const Compressor&) = delete;
 
   /// Appends `stream` with its sizes, compressed where that makes it smaller.
   void append(std::vector<std::byte>& out, std::span<const std::uint8_t> stream);
 
-  ZSTD_CCtx* context = nullptr;
+  std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context{ZSTD_createCCtx(), ZSTD_freeCCtx};
   std::vector<std::byte> buffer{};
 };
 
 struct Decompressor {
   Decompressor();
-  ~Decompressor() { ZSTD_freeDCtx(context); }
-  Decompressor(const Decompressor&) = delete;
-  Decompressor& operator=(const Decompressor&) = delete;
 
-  ZSTD_DCtx* context = nullptr;
+  std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context{ZSTD_createDCtx(), ZSTD_freeDCtx};
 };
 
 /// What is wrong with `windows` in a frame of `frame_bytes`, or nullptr.

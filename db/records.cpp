@@ -1,6 +1,7 @@
 // db/records.cpp: the names of a run's states and gaps.
 #include "db/records.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace db {
@@ -10,6 +11,13 @@ constexpr std::array<std::string_view, 6> kStatusNames = {
     "queued", "recording", "finished", "interrupted", "cancelled", "failed"};
 constexpr std::array<std::string_view, 5> kCauseNames = {
     "pause", "behind", "failed", "full", "dropped"};
+/// The enumerator of that name.
+template <typename Enum, std::size_t N>
+std::optional<Enum> find(const std::array<std::string_view, N>& names, std::string_view name) {
+  const auto* const found = std::ranges::find(names, name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<Enum>(found - names.begin());
+}
 }  // namespace
 
 std::string_view to_string(RunStatus status) {
@@ -17,10 +25,7 @@ std::string_view to_string(RunStatus status) {
 }
 
 std::optional<RunStatus> find_status(std::string_view name) {
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    if (kStatusNames[i] == name) return static_cast<RunStatus>(i);
-  }
-  return std::nullopt;
+  return find<RunStatus>(kStatusNames, name);
 }
 
 std::string_view to_string(GapCause cause) {
@@ -28,10 +33,7 @@ std::string_view to_string(GapCause cause) {
 }
 
 std::optional<GapCause> find_cause(std::string_view name) {
-  for (std::size_t i = 0; i < kCauseNames.size(); ++i) {
-    if (kCauseNames[i] == name) return static_cast<GapCause>(i);
-  }
-  return std::nullopt;
+  return find<GapCause>(kCauseNames, name);
 }
 
 }  // namespace db

@@ -1,9 +1,6 @@
 // db/run_reader.cpp: reading runs while others record.
 #include "db/run_reader.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <map>
 
@@ -33,26 +30,22 @@ RunRow row_of(const Statement& found) {
   row.what.controller = found.text(5);
   row.what.filter = found.text(6);
   row.what.physics = found.text(7);
-  row.what.seed = static_cast<std::uint64_t>(found.integer(8));
+  row.what.seed = found.count(8);
   row.what.parameters = found.text(9);
   row.what.version = found.text(10);
   row.what.started = found.text(11);
-  row.ticks = static_cast<std::uint64_t>(found.integer(12));
+  row.ticks = found.count(12);
   row.time = found.number(13);
-  row.lost_ticks = static_cast<std::uint64_t>(found.integer(14));
-  row.bytes = static_cast<std::uint64_t>(found.integer(15));
+  row.lost_ticks = found.count(14);
+  row.bytes = found.count(15);
   row.metrics = found.text(16);
   return row;
 }
 
-// Tick numbers are kept in SQLite's signed integers; no run reaches the upper half.
+// Ticks and counts are kept in SQLite's signed integers; no run reaches the upper half.
 std::int64_t signed_tick(std::uint64_t tick) {
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   return static_cast<std::int64_t>(std::min(tick, kLargest));
-}
-
-std::int64_t signed_limit(std::size_t limit) {
-  return signed_tick(limit);
 }
 
 Connection open_for_reading(const std::string& path) {
@@ -73,21 +66,7 @@ Connection open_for_reading(const std::string& path) {
 }  // namespace
 
 struct RunReader::Tables {
-  explicit Tables(const std::string& path) : connection(open_for_reading(path)) {
-    get = connection.prepare("SELECT " + std::string(kRunColumns) +
-                             ", (SELECT text FROM document WHERE run ="
-                             " coalesce(run.document, run.id))"
-                             " FROM run WHERE id = ? AND status <> 'deleted'");
-    // A deleted run is gone at once, though its blocks may take a while to be swept away.
-    exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
-    block = connection.prepare(
-        "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
-        " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
-        " ORDER BY first_tick LIMIT 1");
-    gaps = connection.prepare(
-        "SELECT first_tick, last_tick, cause, sentence FROM gap"
-        " WHERE run = ? ORDER BY first_tick");
-  }
+  explicit Tables(const std::string& path) : connection(open_for_reading(path)) {}
 
   Statement& listing(const RunFilter& filter, bool counting) {
     const unsigned key = (filter.scenario ? 1U : 0U) | (filter.controller ? 2U : 0U) |
@@ -107,8 +86,19 @@ struct RunReader::Tables {
   }
 
   Connection connection;
-  Statement get{}, exists{}, block{};
-  Statement gaps{};
+  Statement get = connection.prepare("SELECT " + std::string(kRunColumns) +
+                                     ", (SELECT text FROM document WHERE run ="
+                                     " coalesce(run.document, run.id))"
+                                     " FROM run WHERE id = ? AND status <> 'deleted'");
+  // A deleted run is gone at once, though its blocks may take a while to be swept away.
+  Statement exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
+  Statement block = connection.prepare(
+      "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
+      " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
+      " ORDER BY first_tick LIMIT 1");
+  Statement gaps = connection.prepare(
+      "SELECT first_tick, last_tick, cause, sentence FROM gap"
+      " WHERE run = ? ORDER BY first_tick");
   std::map<unsigned, Statement> listings{};  // by which filters are set
 };
 
@@ -142,8 +132,7 @@ RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optiona
   const ResetLater reset(found);
   found << cursor.value_or(std::numeric_limits<RunId>::max());
   bind_filter(found, filter);
-  found << signed_limit(limit == SIZE_MAX ? limit
-                                          : limit + 1);  // one more tells whether there is more
+  found << signed_tick(limit == SIZE_MAX ? limit : limit + 1);  // one more: is there a next page?
   RunPage page{};
   while (found.step()) {
     if (page.runs.size() == limit) {
@@ -160,7 +149,7 @@ std::uint64_t RunReader::count(const RunFilter& filter) {
   const ResetLater reset(found);
   found << std::numeric_limits<RunId>::max();
   bind_filter(found, filter);
-  return found.step() ? static_cast<std::uint64_t>(found.integer(0)) : 0;
+  return found.step() ? found.count(0) : 0;
 }
 
 std::optional<RunRow> RunReader::get(RunId run) {
@@ -172,8 +161,8 @@ std::optional<RunRow> RunReader::get(RunId run) {
   row.what.document = from.get.text(17);
   const ResetLater reset_gaps(from.gaps.reset() << run);
   while (from.gaps.step()) {
-    row.gaps.push_back({.first_tick = static_cast<std::uint64_t>(from.gaps.integer(0)),
-                        .last_tick = static_cast<std::uint64_t>(from.gaps.integer(1)),
+    row.gaps.push_back({.first_tick = from.gaps.count(0),
+                        .last_tick = from.gaps.count(1),
                         .cause = find_cause(from.gaps.text(2)).value_or(GapCause::Failed),
                         .sentence = from.gaps.text(3)});
   }
@@ -192,7 +181,7 @@ std::optional<std::uint64_t> RunReader::seek(RunId run, std::uint64_t tick, bool
   Statement& block = tables().block.reset() << run << signed_tick(tick);
   const ResetLater reset(block);
   if (!block.step()) return std::nullopt;
-  const auto first = static_cast<std::uint64_t>(block.integer(0));
+  const auto first = block.count(0);
   if (!unpack) return std::max(first, tick);
   block_run_ = 0;
   try {

@@ -8,9 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "db/block_codec.hpp"
 #include "db/file_lock.hpp"

@@ -123,10 +123,6 @@ std::string RunStore::set_aside(std::string_view why, std::string_view stamp) {
   return aside.string();
 }
 
-std::optional<DatabaseError> RunStore::take_failure() {
-  return std::exchange(failure_, std::nullopt);
-}
-
 void RunStore::require_open() const {
   if (!connection_) throw DatabaseError("The run store " + path_ + " is not open just now.");
 }
@@ -170,8 +166,8 @@ RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId
   RunId run = wanted.value_or(0);
   while (run <= 0 || taken(run)) run = options_.numbers->take();
   sql_->insert_run.reset() << run << to_string(status) << what.scenario << what.controller
-                           << what.filter << what.physics << static_cast<std::int64_t>(what.seed)
-                           << what.parameters << what.version << what.started;
+                           << what.filter << what.physics << what.seed << what.parameters
+                           << what.version << what.started;
   sql_->insert_run.run();
   // The runs of a batch, and resets, have the document of the run before.
   const ResetLater reset(sql_->same_document.reset() << sql_->newest_document << what.document);
@@ -204,15 +200,15 @@ std::optional<std::uint64_t> RunStore::resume_run(RunId run) {
       Statement& found = sql_->resume_run.reset() << run;
       const ResetLater reset(found);
       if (!found.step()) return std::nullopt;
-      recording->ticks = static_cast<std::uint64_t>(found.integer(0));
+      recording->ticks = found.count(0);
       recording->last_time = found.number(1);
-      recording->sealed_bytes = static_cast<std::uint64_t>(found.integer(2));
+      recording->sealed_bytes = found.count(2);
     }
     std::uint64_t next = 0;
     if (recording->ticks > 0) {
       const ResetLater reset(sql_->newest_tick.reset() << run);
       if (!sql_->newest_tick.step()) return std::nullopt;
-      recording->last_tick = static_cast<std::uint64_t>(sql_->newest_tick.integer(0));
+      recording->last_tick = sql_->newest_tick.count(0);
       next = recording->last_tick + 1;
       const ResetLater reset_oldest(sql_->oldest_blocks.reset() << run);
       if (sql_->oldest_blocks.step()) recording->kept_from = sql_->oldest_blocks.number(2);
@@ -225,8 +221,7 @@ std::optional<std::uint64_t> RunStore::resume_run(RunId run) {
 void RunStore::note_gap(RunId run, const Gap& gap) {
   guarded([&] {
     begin();
-    (sql_->insert_gap.reset() << run << static_cast<std::int64_t>(gap.first_tick)
-                              << static_cast<std::int64_t>(gap.last_tick) << to_string(gap.cause)
+    (sql_->insert_gap.reset() << run << gap.first_tick << gap.last_tick << to_string(gap.cause)
                               << std::string_view(gap.sentence))
         .run();
   });
@@ -293,18 +288,16 @@ void RunStore::write_block(RunId run, Recording& recording) {
   if (recording.written_frames == recording.pending.frames()) return;
   const auto packed = recording.pending.encode();
   const std::uint64_t last = recording.first_tick + recording.pending.frames() - 1;
-  (sql_->write_block.reset() << run << static_cast<std::int64_t>(recording.first_tick)
-                             << static_cast<std::int64_t>(last) << recording.first_time << packed)
+  (sql_->write_block.reset() << run << recording.first_tick << last << recording.first_time
+                             << packed)
       .run();
   recording.written_frames = recording.pending.frames();
   recording.block_bytes = packed.size();
 }
 
 void RunStore::write_progress(RunId run, const Recording& recording) {
-  (sql_->progress.reset() << static_cast<std::int64_t>(recording.ticks) << recording.last_time
-                          << static_cast<std::int64_t>(recording.sealed_bytes +
-                                                       recording.block_bytes)
-                          << run)
+  (sql_->progress.reset() << recording.ticks << recording.last_time
+                          << recording.sealed_bytes + recording.block_bytes << run)
       .run();
 }
 
@@ -341,10 +334,10 @@ void RunStore::end_run(RunId run, const RunEnd& end) {
       write_progress(run, recording);
       open_.erase(found);
     }
-    std::int64_t lost = static_cast<std::int64_t>(end.lost_ticks);
+    std::uint64_t lost = end.lost_ticks;
     {
       const ResetLater reset(sql_->lost_ticks.reset() << run);
-      if (sql_->lost_ticks.step()) lost = std::max(lost, sql_->lost_ticks.integer(0));
+      if (sql_->lost_ticks.step()) lost = std::max(lost, sql_->lost_ticks.count(0));
     }
     (sql_->end_run.reset() << to_string(end.status) << end.outcome << end.reason << end.metrics
                            << lost << run)

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "db/block_codec.hpp"
@@ -59,7 +60,7 @@ class RunStore {
   /// name. Throws DatabaseError when they cannot be renamed.
   std::string set_aside(std::string_view why, std::string_view stamp);
   /// The error by which recordings were dropped since the last call, if any.
-  std::optional<DatabaseError> take_failure();
+  std::optional<DatabaseError> take_failure() { return std::exchange(failure_, std::nullopt); }
 
   /// The runs found unfinished and marked interrupted when the file was opened.
   const std::vector<RunId>& interrupted() const { return interrupted_; }
@@ -162,7 +163,7 @@ class RunStore {
   void write_progress(RunId run, const Recording& recording);
   void interrupt_unfinished();
   std::optional<std::uint64_t> slice_end(RunId run, std::size_t blocks);
-  void delete_before(RunId run, std::int64_t tick);
+  void delete_before(RunId run, std::uint64_t tick);
   std::optional<RunId> first_deleted();
   /// What is left of a recorded run while its oldest blocks go.
   struct Remains {

@@ -26,68 +26,73 @@ struct RunStore::Recording {
 };
 
 struct RunStore::Statements {
-  explicit Statements(const detail::Connection& c)
-      : begin(c.prepare("BEGIN IMMEDIATE")),
-        commit(c.prepare("COMMIT")),
-        insert_run(c.prepare(
-            "INSERT INTO run (id, status, scenario, controller, filter, physics, seed, parameters,"
-            " version, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)")),
-        insert_document(c.prepare("INSERT INTO document (run, text) VALUES (?, ?)")),
-        same_document(c.prepare("SELECT 1 FROM document WHERE run = ? AND text = ?")),
-        share_document(c.prepare("UPDATE run SET document = ? WHERE id = ?")),
-        start_run(c.prepare(
-            "UPDATE run SET status = 'recording', started = ? WHERE id = ? AND status = 'queued'"
-            " RETURNING id")),
-        resume_run(c.prepare("UPDATE run SET status = 'recording', reason = '' WHERE id = ?"
-                             " AND status IN ('recording', 'interrupted')"
-                             " RETURNING ticks, time, bytes")),
-        requeue_run(c.prepare(
-            "UPDATE run SET status = 'queued', outcome = 'running', reason = '', metrics = '',"
-            " ticks = 0, time = 0, lost_ticks = 0, bytes = 0"
-            " WHERE id = ? AND status IN ('interrupted', 'cancelled', 'failed') RETURNING id")),
-        write_block(c.prepare("INSERT INTO block (run, first_tick, last_tick, first_time, frames)"
-                              " VALUES (?, ?, ?, ?, ?)"
-                              " ON CONFLICT (run, first_tick) DO UPDATE"
-                              " SET last_tick = excluded.last_tick, frames = excluded.frames")),
-        insert_gap(c.prepare("INSERT OR REPLACE INTO gap VALUES (?, ?, ?, ?, ?)")),
-        lost_ticks(c.prepare("SELECT coalesce(sum(last_tick - first_tick + 1), 0) FROM gap"
-                             " WHERE run = ? AND cause NOT IN ('pause', 'dropped')")),
-        progress(c.prepare("UPDATE run SET ticks = ?, time = ?, bytes = ? WHERE id = ?")),
-        set_result(c.prepare("UPDATE run SET outcome = ?, reason = ?, metrics = ? WHERE id = ?"
-                             " AND status <> 'deleted' RETURNING id")),
-        end_run(c.prepare(
-            "UPDATE run SET status = ?, outcome = ?, reason = ?, metrics = ?, lost_ticks = ?"
-            " WHERE id = ?")),
-        status(c.prepare("SELECT status FROM run WHERE id = ?")),
-        mark_deleted(c.prepare("UPDATE run SET status = 'deleted' WHERE id = ?")),
-        oldest_ended(c.prepare(
-            "SELECT id, status, scenario, started, ticks, bytes FROM run"
-            " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1")),
-        deleted(c.prepare("SELECT id FROM run WHERE status = 'deleted' AND id > ?"
-                          " ORDER BY id LIMIT 1")),
-        slice_end(c.prepare("SELECT first_tick FROM block WHERE run = ?"
-                            " ORDER BY first_tick LIMIT 1 OFFSET ?")),
-        delete_blocks(c.prepare("DELETE FROM block WHERE run = ? AND first_tick < ?")),
-        delete_gaps(c.prepare("DELETE FROM gap WHERE run = ? AND first_tick < ?")),
-        delete_run(c.prepare("DELETE FROM run WHERE id = ? RETURNING coalesce(document, id)")),
-        delete_document(c.prepare("DELETE FROM document WHERE run = ?1"
-                                  " AND NOT EXISTS (SELECT 1 FROM run WHERE id = ?1)"
-                                  " AND NOT EXISTS (SELECT 1 FROM run WHERE document = ?1)")),
-        oldest_blocks(c.prepare("SELECT first_tick, last_tick, first_time, length(frames)"
-                                " FROM block WHERE run = ? ORDER BY first_tick LIMIT 2")),
-        newest_tick(c.prepare("SELECT last_tick FROM block WHERE run = ?"
-                              " ORDER BY first_tick DESC LIMIT 1")),
-        page_count(c.prepare("PRAGMA page_count")),
-        free_pages(c.prepare("PRAGMA freelist_count")),
-        page_bytes(static_cast<std::uint64_t>(c.query_integer("PRAGMA page_size"))) {}
+  explicit Statements(const detail::Connection& connection) : c(connection) {}
 
-  detail::Statement begin, commit, insert_run, insert_document, same_document, share_document;
-  detail::Statement start_run, resume_run, requeue_run;
-  detail::Statement write_block, insert_gap, lost_ticks, progress, set_result, end_run;
-  detail::Statement status, mark_deleted, oldest_ended, deleted, slice_end;
-  detail::Statement delete_blocks, delete_gaps, delete_run, delete_document, oldest_blocks;
-  detail::Statement newest_tick, page_count, free_pages;
-  std::uint64_t page_bytes = 0;
+  const detail::Connection& c;
+  detail::Statement begin = c.prepare("BEGIN IMMEDIATE");
+  detail::Statement commit = c.prepare("COMMIT");
+  detail::Statement insert_run = c.prepare(
+      "INSERT INTO run (id, status, scenario, controller, filter, physics, seed, parameters,"
+      " version, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  detail::Statement insert_document = c.prepare("INSERT INTO document (run, text) VALUES (?, ?)");
+  detail::Statement same_document = c.prepare("SELECT 1 FROM document WHERE run = ? AND text = ?");
+  detail::Statement share_document = c.prepare("UPDATE run SET document = ? WHERE id = ?");
+  detail::Statement start_run = c.prepare(
+      "UPDATE run SET status = 'recording', started = ? WHERE id = ? AND status = 'queued'"
+      " RETURNING id");
+  detail::Statement resume_run = c.prepare(
+      "UPDATE run SET status = 'recording', reason = '' WHERE id = ?"
+      " AND status IN ('recording', 'interrupted')"
+      " RETURNING ticks, time, bytes");
+  detail::Statement requeue_run = c.prepare(
+      "UPDATE run SET status = 'queued', outcome = 'running', reason = '', metrics = '',"
+      " ticks = 0, time = 0, lost_ticks = 0, bytes = 0"
+      " WHERE id = ? AND status IN ('interrupted', 'cancelled', 'failed') RETURNING id");
+  detail::Statement write_block = c.prepare(
+      "INSERT INTO block (run, first_tick, last_tick, first_time, frames)"
+      " VALUES (?, ?, ?, ?, ?)"
+      " ON CONFLICT (run, first_tick) DO UPDATE"
+      " SET last_tick = excluded.last_tick, frames = excluded.frames");
+  detail::Statement insert_gap = c.prepare("INSERT OR REPLACE INTO gap VALUES (?, ?, ?, ?, ?)");
+  detail::Statement lost_ticks = c.prepare(
+      "SELECT coalesce(sum(last_tick - first_tick + 1), 0) FROM gap"
+      " WHERE run = ? AND cause NOT IN ('pause', 'dropped')");
+  detail::Statement progress =
+      c.prepare("UPDATE run SET ticks = ?, time = ?, bytes = ? WHERE id = ?");
+  detail::Statement set_result = c.prepare(
+      "UPDATE run SET outcome = ?, reason = ?, metrics = ? WHERE id = ?"
+      " AND status <> 'deleted' RETURNING id");
+  detail::Statement end_run = c.prepare(
+      "UPDATE run SET status = ?, outcome = ?, reason = ?, metrics = ?, lost_ticks = ?"
+      " WHERE id = ?");
+  detail::Statement status = c.prepare("SELECT status FROM run WHERE id = ?");
+  detail::Statement mark_deleted = c.prepare("UPDATE run SET status = 'deleted' WHERE id = ?");
+  detail::Statement oldest_ended = c.prepare(
+      "SELECT id, status, scenario, started, ticks, bytes FROM run"
+      " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1");
+  detail::Statement deleted = c.prepare(
+      "SELECT id FROM run WHERE status = 'deleted' AND id > ?"
+      " ORDER BY id LIMIT 1");
+  detail::Statement slice_end = c.prepare(
+      "SELECT first_tick FROM block WHERE run = ?"
+      " ORDER BY first_tick LIMIT 1 OFFSET ?");
+  detail::Statement delete_blocks = c.prepare("DELETE FROM block WHERE run = ? AND first_tick < ?");
+  detail::Statement delete_gaps = c.prepare("DELETE FROM gap WHERE run = ? AND first_tick < ?");
+  detail::Statement delete_run =
+      c.prepare("DELETE FROM run WHERE id = ? RETURNING coalesce(document, id)");
+  detail::Statement delete_document = c.prepare(
+      "DELETE FROM document WHERE run = ?1"
+      " AND NOT EXISTS (SELECT 1 FROM run WHERE id = ?1)"
+      " AND NOT EXISTS (SELECT 1 FROM run WHERE document = ?1)");
+  detail::Statement oldest_blocks = c.prepare(
+      "SELECT first_tick, last_tick, first_time, length(frames)"
+      " FROM block WHERE run = ? ORDER BY first_tick LIMIT 2");
+  detail::Statement newest_tick = c.prepare(
+      "SELECT last_tick FROM block WHERE run = ?"
+      " ORDER BY first_tick DESC LIMIT 1");
+  detail::Statement page_count = c.prepare("PRAGMA page_count");
+  detail::Statement free_pages = c.prepare("PRAGMA freelist_count");
+  std::uint64_t page_bytes = static_cast<std::uint64_t>(c.query_integer("PRAGMA page_size"));
   RunId newest_document = 0;  // the run it is stored with
 };
 

@@ -13,7 +13,7 @@ using detail::ResetLater;
 using detail::Statement;
 
 namespace {
-constexpr std::int64_t kEveryTick = std::numeric_limits<std::int64_t>::max();
+constexpr std::uint64_t kEveryTick = std::numeric_limits<std::int64_t>::max();
 }
 
 RunStore::Deletion RunStore::delete_run(RunId run) {
@@ -33,13 +33,13 @@ RunStore::Deletion RunStore::delete_run(RunId run) {
 
 /// The first tick after the first `blocks` of a run; nothing when it has no more.
 std::optional<std::uint64_t> RunStore::slice_end(RunId run, std::size_t blocks) {
-  Statement& found = sql_->slice_end.reset() << run << static_cast<std::int64_t>(blocks);
+  Statement& found = sql_->slice_end.reset() << run << std::uint64_t{blocks};
   const ResetLater reset(found);
   if (!found.step()) return std::nullopt;
-  return static_cast<std::uint64_t>(found.integer(0));
+  return found.count(0);
 }
 
-void RunStore::delete_before(RunId run, std::int64_t tick) {
+void RunStore::delete_before(RunId run, std::uint64_t tick) {
   (sql_->delete_blocks.reset() << run << tick).run();
   (sql_->delete_gaps.reset() << run << tick).run();
 }
@@ -57,7 +57,7 @@ bool RunStore::sweep(std::size_t blocks) {
   try {
     return alone([&] {
       const auto end = slice_end(*run, blocks);
-      delete_before(*run, end ? static_cast<std::int64_t>(*end) : kEveryTick);
+      delete_before(*run, end.value_or(kEveryTick));
       if (!end) {
         const ResetLater reset(sql_->delete_run.reset() << *run);
         const std::int64_t document = sql_->delete_run.step() ? sql_->delete_run.integer(0) : *run;
@@ -85,7 +85,7 @@ bool RunStore::requeue_run(RunId run) {
 bool RunStore::clear_run(RunId run, std::size_t blocks) {
   return alone([&] {
     const auto end = slice_end(run, blocks);
-    delete_before(run, end ? static_cast<std::int64_t>(*end) : kEveryTick);
+    delete_before(run, end.value_or(kEveryTick));
     return end.has_value();
   });
 }
@@ -102,8 +102,8 @@ std::optional<RunRow> RunStore::retire_oldest(std::uint64_t limit) {
       oldest.status = find_status(found.text(1)).value_or(RunStatus::Finished);
       oldest.what.scenario = found.text(2);
       oldest.what.started = found.text(3);
-      oldest.ticks = static_cast<std::uint64_t>(found.integer(4));
-      oldest.bytes = static_cast<std::uint64_t>(found.integer(5));
+      oldest.ticks = found.count(4);
+      oldest.bytes = found.count(5);
     }
     (sql_->mark_deleted.reset() << oldest.id).run();
     return oldest;
@@ -115,15 +115,15 @@ bool RunStore::drop_block(RunId run, Remains& left, double before, std::string_v
   Statement& oldest = sql_->oldest_blocks.reset() << run;
   const ResetLater reset(oldest);
   if (!oldest.step()) return false;
-  const std::int64_t first = oldest.integer(0);
-  const std::int64_t last = oldest.integer(1);
-  const auto bytes = static_cast<std::uint64_t>(oldest.integer(3));
-  if (static_cast<std::uint64_t>(last) >= left.newest_block) return false;
+  const std::uint64_t first = oldest.count(0);
+  const std::uint64_t last = oldest.count(1);
+  const std::uint64_t bytes = oldest.count(3);
+  if (last >= left.newest_block) return false;
   // The first tick that stays: it says how old the block before it is, to a tick.
   if (!oldest.step() || oldest.number(2) > before) return false;
-  const std::int64_t kept = oldest.integer(0);
+  const std::uint64_t kept = oldest.count(0);
   left.kept_from = oldest.number(2);
-  left.ticks -= std::min(left.ticks, static_cast<std::uint64_t>(last - first + 1));
+  left.ticks -= std::min(left.ticks, last - first + 1);
   left.bytes -= std::min(left.bytes, bytes);
   oldest.reset();
   delete_before(run, kept);
@@ -151,8 +151,8 @@ std::size_t RunStore::drop_oldest(RunId run,
     std::size_t count = 0;
     while (count < blocks && drop_block(run, left, before, sentence)) ++count;
     if (count == 0) return count;
-    (sql_->progress.reset() << static_cast<std::int64_t>(left.ticks) << recording.last_time
-                            << static_cast<std::int64_t>(left.bytes + recording.block_bytes) << run)
+    (sql_->progress.reset() << left.ticks << recording.last_time
+                            << left.bytes + recording.block_bytes << run)
         .run();
     return count;
   });
@@ -170,7 +170,7 @@ RunStore::Span RunStore::span(RunId run) const {
 
 std::uint64_t RunStore::pages(Statement& statement) {
   const ResetLater reset(statement.reset());
-  return statement.step() ? static_cast<std::uint64_t>(statement.integer(0)) : 0;
+  return statement.step() ? statement.count(0) : 0;
 }
 
 std::uint64_t RunStore::used_bytes() {

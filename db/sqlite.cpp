@@ -1,7 +1,6 @@
 // db/sqlite.cpp: SQLite with owners and sentences.
 #include "db/sqlite.hpp"
 
-#include <cmath>
 #include <limits>
 
 #include <sqlite3.h>

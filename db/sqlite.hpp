@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -53,6 +52,7 @@ class Statement {
   Statement& reset();
   /// Binds the next parameter, from the first after a reset().
   Statement& operator<<(std::int64_t value);
+  Statement& operator<<(std::uint64_t value) { return *this << static_cast<std::int64_t>(value); }
   Statement& operator<<(double value);  // NaN, which SQLite does not keep, becomes NULL
   Statement& operator<<(std::string_view value);
   Statement& operator<<(std::span<const std::byte> value);
@@ -61,6 +61,7 @@ class Statement {
   void run();   // step() to the end and reset
 
   std::int64_t integer(int column) const;
+  std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
   double number(int column) const;  // NULL is NaN
   std::string text(int column) const;
   std::span<const std::byte> blob(int column) const;  // until the next step or reset
