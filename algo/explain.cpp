@@ -13,50 +13,6 @@
 namespace algo {
 namespace {
 
-/// Words without numbers.
-struct Sentences {
-  std::string_view what{};
-  std::string_view why{};
-};
-
-void tell(Explanation& words, const Sentences& sentences) {
-  words.what = sentences.what;
-  words.why = sentences.why;
-}
-
-Sentences sentences_of(Halt halt) {
-  switch (halt) {
-    case Halt::Disarmed:
-      return {"The motors are off",
-              "Nobody has armed this robot. It moves only once somebody does."};
-    case Halt::BaseLost:
-      return {"Waiting for the base", "The motor controller is silent. The wheels are held still."};
-    case Halt::ScannerLost:
-      return {"Waiting for the laser", "The scanner is silent. The wheels are held still."};
-    case Halt::BadLine:
-      return {"Holding still",
-              "More of what the scanner sends comes damaged than whole: look at its cable."};
-    case Halt::ScannerFault:
-      return {"Holding still", "The scanner reports a fault of its own, or is blinded."};
-    case Halt::StopButton:
-      return {"Stop button pressed",
-              "The stop button on the robot is pressed. Release it, then arm again."};
-    case Halt::BaseFault:
-      return {"Holding still", "The motor controller reports a fault."};
-    case Halt::OverCurrent:
-      return {"Holding still", "A motor took more current than it may: is a wheel blocked?"};
-    case Halt::BatteryLow:
-      return {"Battery low", "The battery is below its limit. Charge it."};
-    case Halt::MotorsOff:
-      return {"Waiting for the motors", "The robot is armed, but its motors are not on yet."};
-    case Halt::LateTick:
-      return {"Holding still", "The control loop came too late; the wheels were stopped."};
-    case Halt::None:
-      break;
-  }
-  return {"Holding still", "The robot holds its wheels still."};
-}
-
 const Nearest* nearest_of(const Telemetry& t) {
   const auto& left = t.scene.left;
   const auto& right = t.scene.right;
@@ -82,11 +38,13 @@ void explain_stale(const Telemetry& t, Explanation& words) {
 
 void explain_hold(const Telemetry& t, Explanation& words) {
   if (t.hold == holds::kHalted) {
-    tell(words, sentences_of(t.observation.halt));
+    words.what = info(t.observation.halt).what;
+    words.why = info(t.observation.halt).why;
   } else if (t.hold == holds::kStaleScan) {
     explain_stale(t, words);
   } else {
-    tell(words, {t.hold.what, t.hold.why});
+    words.what = t.hold.what;
+    words.why = t.hold.why;
   }
 }
 
@@ -98,9 +56,7 @@ void explain_arrived(const Telemetry& t, const Vec2& goal, Explanation& words) {
 }  // namespace
 
 Explanation explain(Halt halt) {
-  Explanation words;
-  tell(words, sentences_of(halt));
-  return words;
+  return {std::string(info(halt).what), std::string(info(halt).why)};
 }
 
 void say(std::string& text, const char* pattern, ...) {

@@ -2,6 +2,7 @@
 #include "algo/metrics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "algo/driving.hpp"
@@ -12,28 +13,15 @@ namespace {
 constexpr double kResample = 0.050;    // [m] between kept positions
 constexpr double kViaSpacing = 0.500;  // [m] of the pass point, per axis
 
+// In the order of their enumerators.
+constexpr std::array<std::string_view, 8> kOutcomes{
+    "running", "reached", "stuck", "out_of_time", "collided", "stopped", "end_of_log", "failed"};
+static_assert(kOutcomes.size() == static_cast<std::size_t>(Outcome::Failed) + 1);
+
 }  // namespace
 
 std::string_view name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::Running:
-      return "running";
-    case Outcome::Reached:
-      return "reached";
-    case Outcome::Stuck:
-      return "stuck";
-    case Outcome::OutOfTime:
-      return "out_of_time";
-    case Outcome::Collided:
-      return "collided";
-    case Outcome::Stopped:
-      return "stopped";
-    case Outcome::EndOfLog:
-      return "end_of_log";
-    case Outcome::Failed:
-      return "failed";
-  }
-  return "failed";
+  return kOutcomes[static_cast<std::size_t>(outcome)];
 }
 
 void MetricsRecorder::reset(const RobotSpec& spec) {

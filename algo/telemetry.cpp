@@ -1,56 +1,53 @@
-// algo/telemetry.cpp: names of the states, as REST and CSV spell them.
+// algo/telemetry.cpp: names and words of the states.
 #include "algo/telemetry.hpp"
 
+#include <array>
+
 namespace algo {
+namespace {
+
+// In the order of their enumerators.
+constexpr std::array<HaltInfo, 12> kHalts{
+    {{"none", "Holding still", "The robot holds its wheels still."},
+     {"disarmed",
+      "The motors are off",
+      "Nobody has armed this robot. It moves only once somebody does."},
+     {"base_lost",
+      "Waiting for the base",
+      "The motor controller is silent. The wheels are held still."},
+     {"scanner_lost", "Waiting for the laser", "The scanner is silent. The wheels are held still."},
+     {"bad_line",
+      "Holding still",
+      "More of what the scanner sends comes damaged than whole: look at its cable."},
+     {"scanner_fault", "Holding still", "The scanner reports a fault of its own, or is blinded."},
+     {"stop_button",
+      "Stop button pressed",
+      "The stop button on the robot is pressed. Release it, then arm again."},
+     {"base_fault", "Holding still", "The motor controller reports a fault."},
+     {"over_current",
+      "Holding still",
+      "A motor took more current than it may: is a wheel blocked?"},
+     {"battery_low", "Battery low", "The battery is below its limit. Charge it."},
+     {"motors_off", "Waiting for the motors", "The robot is armed, but its motors are not on yet."},
+     {"late_tick", "Holding still", "The control loop came too late; the wheels were stopped."}}};
+static_assert(kHalts.size() == static_cast<std::size_t>(Halt::LateTick) + 1);
+constexpr std::array<std::string_view, 5> kMissions{"idle", "driving", "arrived", "stuck", "held"};
+static_assert(kMissions.size() == static_cast<std::size_t>(Mission::Held) + 1);
+
+}  // namespace
 
 std::string_view name(const Hold& hold) {
   return hold ? hold.name.view() : "none";
 }
 
-std::string_view name(Halt halt) {
-  switch (halt) {
-    case Halt::None:
-      return "none";
-    case Halt::Disarmed:
-      return "disarmed";
-    case Halt::BaseLost:
-      return "base_lost";
-    case Halt::ScannerLost:
-      return "scanner_lost";
-    case Halt::BadLine:
-      return "bad_line";
-    case Halt::ScannerFault:
-      return "scanner_fault";
-    case Halt::StopButton:
-      return "stop_button";
-    case Halt::BaseFault:
-      return "base_fault";
-    case Halt::OverCurrent:
-      return "over_current";
-    case Halt::BatteryLow:
-      return "battery_low";
-    case Halt::MotorsOff:
-      return "motors_off";
-    case Halt::LateTick:
-      return "late_tick";
-  }
-  return "none";
+const HaltInfo& info(Halt halt) {
+  const auto k = static_cast<std::size_t>(halt);
+  return kHalts[k < kHalts.size() ? k : 0];  // a record may say anything
 }
 
 std::string_view name(Mission mission) {
-  switch (mission) {
-    case Mission::Idle:
-      return "idle";
-    case Mission::Driving:
-      return "driving";
-    case Mission::Arrived:
-      return "arrived";
-    case Mission::Stuck:
-      return "stuck";
-    case Mission::Held:
-      return "held";
-  }
-  return "idle";
+  const auto k = static_cast<std::size_t>(mission);
+  return kMissions[k < kMissions.size() ? k : 0];
 }
 
 std::optional<double> ControlOutput::measure(std::string_view name) const {

@@ -30,7 +30,6 @@ struct Echo {
   double stamp = 0;    // [s] run clock
   bool hit = false;    // something was in range
   Vec2 point_W{0, 0};  // on the axis; meaningful only with a hit
-  bool operator==(const Echo&) const = default;
 };
 
 /// What perception makes of the newest scan. `scan` is filtered and may be older than this tick.
@@ -49,7 +48,6 @@ struct Measure {
   std::string_view name{};  // "strip.internal"; in static storage, as the unit
   std::string_view unit{};  // "m"
   double value = 0;
-  bool operator==(const Measure&) const = default;
 };
 
 /// What a controller decided, and what it shows of why.
@@ -102,8 +100,17 @@ inline constexpr Name kManual = "manual";
 
 }  // namespace behaviours
 
-/// "motors_off", "driving": as REST and CSV spell them.
-std::string_view name(Halt halt);
+/// What there is to say of a halt.
+struct HaltInfo {
+  std::string_view name{};  // "motors_off": as REST and CSV spell it
+  std::string_view what{};  // for people, as of a Hold
+  std::string_view why{};
+};
+const HaltInfo& info(Halt halt);
+inline std::string_view name(Halt halt) {
+  return info(halt).name;
+}
+/// "driving": as REST and CSV spell it.
 std::string_view name(Mission mission);
 /// "none" where nothing holds the robot.
 std::string_view name(const Hold& hold);

@@ -70,11 +70,15 @@ bool same(const algo::Layer& a, const algo::Layer& b) {
          a.text == b.text;
 }
 
+bool same(const algo::Measure& a, const algo::Measure& b) {
+  return a.name == b.name && a.unit == b.unit && a.value == b.value;
+}
+
 bool same(const ControlOutput& a, const ControlOutput& b) {
+  const auto alike = [](const auto& x, const auto& y) { return same(x, y); };
   return a.twist == b.twist && a.pass_W == b.pass_W && a.waits == b.waits && a.state == b.state &&
-         std::ranges::equal(a.measures, b.measures) &&
-         std::ranges::equal(
-             a.layers, b.layers, [](const auto& x, const auto& y) { return same(x, y); });
+         std::ranges::equal(a.measures, b.measures, alike) &&
+         std::ranges::equal(a.layers, b.layers, alike);
 }
 
 const algo::Layer* layer_of(const ControlOutput& out, std::string_view name) {
