@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <numbers>
 
 namespace algo {
@@ -61,15 +62,11 @@ void GridSearch::begin() {
 
 void GridSearch::push(float total, std::size_t cell) {
   open_.push_back({total, pushed_++, static_cast<std::uint32_t>(cell)});
-  std::push_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.total != b.total ? a.total > b.total : a.order > b.order;
-  });
+  std::push_heap(open_.begin(), open_.end(), std::greater{});
 }
 
 std::size_t GridSearch::pop() {
-  std::pop_heap(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return a.total != b.total ? a.total > b.total : a.order > b.order;
-  });
+  std::pop_heap(open_.begin(), open_.end(), std::greater{});
   const std::size_t cell = open_.back().cell;
   open_.pop_back();
   return cell;

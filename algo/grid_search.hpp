@@ -51,6 +51,10 @@ class GridSearch {
     float total = 0;  // cost so far plus the least that can follow
     std::uint32_t order = 0;
     std::uint32_t cell = 0;
+    /// Of equals the one that came later is dearer.
+    bool operator>(const Open& other) const {
+      return total != other.total ? total > other.total : order > other.order;
+    }
   };
   void begin();
   void push(float total, std::size_t cell);

@@ -36,10 +36,6 @@ CertaintyGrid::CertaintyGrid() {
   arc_.reserve(kLongestArc);
 }
 
-double CertaintyGrid::certainty(Cell c) const {
-  return cells_[c].value();
-}
-
 /// visit(cell, s, a) for every covered cell whose centre lies in the sector: column by column of
 /// the axis that the sector runs along, between its two edges.
 template <typename Visit>
@@ -92,10 +88,10 @@ void CertaintyGrid::add(const RangeSector& sector) {
   }
 }
 
-void CertaintyGrid::sense(const ControlInput& in, NewPicture& is_new) {
+void CertaintyGrid::sense(const ControlInput& in) {
   const Pose2& pose = in.odometry.pose;
   centre_on(pose.position());
-  if (!is_new(*in.scene)) return;
+  if (!is_new_(*in.scene)) return;
   // A sector narrower than a cell at its end could end between the cells' centres.
   const auto at_least_a_cell = [](double width, double range) {
     return range > 0 ? std::max(width, 2 * std::atan(kCell / (2 * range))) : width;

@@ -2,7 +2,6 @@
 // path over it (Moravec and Elfes 1985; equations.md F.2).
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "algo/baselines/baseline.hpp"
@@ -35,18 +34,20 @@ class CertaintyGrid {
   static constexpr int kSide = 81;      // [D] cells remembered: 4 m round the robot
 
   CertaintyGrid();
-  void clear() { cells_.clear(); }
+  void clear() {
+    cells_.clear();
+    is_new_.reset();
+  }
   void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
   void add(const RangeSector& sector);
   /// Every beam of a new picture: scan or sonar ring.
-  void sense(const ControlInput& in, NewPicture& is_new);
+  void sense(const ControlInput& in);
 
   Cell first() const { return cells_.first(); }
   Cell cell_of(const Vec2& p_W) const { return cells_.cell_of(p_W); }
   Vec2 centre(Cell c) const { return cells_.centre(c); }
-  bool covers(Cell c) const { return cells_.covers(c); }
   /// O where O >= E, else -E: 1 surely occupied, -1 surely empty, 0 unknown.
-  double certainty(Cell c) const;
+  double certainty(Cell c) const { return cells_[c].value(); }
   void show(Layer& layer) const;
 
  private:
@@ -64,6 +65,7 @@ class CertaintyGrid {
 
   RollingGrid<Belief> cells_{kCell, kSide};
   std::vector<ArcCell> arc_{};
+  NewPicture is_new_{};
 };
 
 /// Plans with A* on the grid five times a second [D] and follows the path: occupied cells are kept
@@ -81,14 +83,13 @@ class CertaintyGridPlanner final : public Baseline {
   void tell(const Telemetry& t, Explanation& words) const override;
   void plan(const ControlInput& in, double margin);
   void fill_costs(double hard);
-  bool too_near(const Vec2& robot_W) const;
+  CostGrid view() const;
   void open_way_out(const Vec2& robot_W);
   GridCell place(Cell c) const;
   Vec2 next_point(const Vec2& p_W, double ahead) const;
   void show_plan(ControlOutput& out) const;
 
   CertaintyGrid grid_{};
-  NewPicture is_new_{};
   std::vector<float> costs_{};
   GridSearch search_{};
   std::vector<Vec2> path_W_{};

@@ -51,7 +51,6 @@ ParameterList CertaintyGridPlanner::parameters() {
 
 void CertaintyGridPlanner::forget() {
   grid_.clear();
-  is_new_.reset();
   costs_.resize(kCells);
   search_.resize(kCells);
   path_W_.reserve(kCells);
@@ -64,10 +63,8 @@ GridCell CertaintyGridPlanner::place(Cell c) const {
   return {c.i - grid_.first().i, c.j - grid_.first().j};
 }
 
-/// Whether the robot stands where no path may lead.
-bool CertaintyGridPlanner::too_near(const Vec2& robot_W) const {
-  const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
-  return view.blocked(place(grid_.cell_of(robot_W)));
+CostGrid CertaintyGridPlanner::view() const {
+  return {CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
 }
 
 /// 1 in the open, more near occupied cells, blocked within `hard` [m] of one.
@@ -76,7 +73,7 @@ void CertaintyGridPlanner::fill_costs(double hard) {
   constexpr double kCell = CertaintyGrid::kCell;
   const int reach = static_cast<int>(std::ceil((hard + kComfort) / kCell));
   std::fill(costs_.begin(), costs_.end(), 1.0F);
-  const CostGrid view{kSide, kSide, costs_};
+  const CostGrid view = this->view();
   const Cell first = grid_.first();
   const auto spread = [&](GridCell occupied) {
     for (int row = occupied.row - reach; row <= occupied.row + reach; ++row) {
@@ -101,7 +98,7 @@ void CertaintyGridPlanner::fill_costs(double hard) {
 /// Cells under the robot that are too near to something, but not occupied, may be crossed.
 void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
   constexpr int kSide = CertaintyGrid::kSide;
-  const CostGrid view{kSide, kSide, costs_};
+  const CostGrid view = this->view();
   const Cell first = grid_.first();
   for (int row = 0; row < kSide; ++row) {
     for (int column = 0; column < kSide; ++column) {
@@ -116,15 +113,14 @@ void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
 void CertaintyGridPlanner::plan(const ControlInput& in, double margin) {
   const Vec2 p = in.odometry.pose.position();
   fill_costs(in.spec->radius + margin);
-  const bool trapped = too_near(p);
+  const bool trapped = view().blocked(place(grid_.cell_of(p)));  // where no path may lead
   if (trapped) open_way_out(p);
   Vec2 aim = goal_W(in);
   constexpr int kHalf = CertaintyGrid::kSide / 2;
   const double farthest = (kHalf - 1) * CertaintyGrid::kCell;
   const double over = (aim - p).cwiseAbs().maxCoeff() / farthest;
   if (over > 1) aim = p + (aim - p) / over;  // on the border of the grid
-  const CostGrid view{CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
-  reaches_ = search_.find(view, place(grid_.cell_of(p)), place(grid_.cell_of(aim)));
+  reaches_ = search_.find(view(), place(grid_.cell_of(p)), place(grid_.cell_of(aim)));
   path_W_.clear();
   path_W_.push_back(p);
   // Out of too narrow a place only to the goal: the place nearest to it could be a wall.
@@ -151,7 +147,7 @@ Vec2 CertaintyGridPlanner::next_point(const Vec2& p_W, double ahead) const {
 void CertaintyGridPlanner::steer(const ControlInput& in,
                                  const Parameters& parameters,
                                  ControlOutput& out) {
-  grid_.sense(in, is_new_);
+  grid_.sense(in);
   Layer& grid = add_layer(out.layers, kGrid);
   if (in.grids) grid_.show(grid);
   if (!planned_at_ || in.stamp - *planned_at_ >= kReplanPeriod) {

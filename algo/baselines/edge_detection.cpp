@@ -55,10 +55,6 @@ void EdgeDetection::forget() {
   via_W_.reset();
 }
 
-void EdgeDetection::retarget() {
-  forget();
-}
-
 /// The beam that hits what stands in the lane to the goal, if anything does.
 std::optional<std::size_t> EdgeDetection::blocking_beam(const ControlInput& in,
                                                         const Parameters& parameters) {

@@ -41,7 +41,7 @@ class EdgeDetection final : public Baseline {
 
  private:
   void forget() override;
-  void retarget() override;
+  void retarget() override { forget(); }
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void tell(const Telemetry& t, Explanation& words) const override;
   std::optional<std::size_t> blocking_beam(const ControlInput& in, const Parameters& parameters);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "algo/baselines/returns.hpp"
@@ -20,7 +19,10 @@ class HistogramGrid {
   static constexpr int kSide = 81;              // [D] cells remembered: 4 m round the robot
   static constexpr std::uint8_t kCertain = 15;  // C at most
 
-  void clear() { cells_.clear(); }
+  void clear() {
+    cells_.clear();
+    is_new_.reset();
+  }
   void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
 
   /// One reading that returned from `point_W`.
@@ -32,9 +34,9 @@ class HistogramGrid {
   }
 
   /// Follows the robot and counts every return of a picture that is new.
-  void sense(const ControlInput& in, NewPicture& is_new) {
+  void sense(const ControlInput& in) {
     centre_on(in.odometry.pose.position());
-    if (!is_new(*in.scene)) return;
+    if (!is_new_(*in.scene)) return;
     for_each_return(in, [this](const Vec2& point_W) { add(point_W); });
   }
 
@@ -67,6 +69,7 @@ class HistogramGrid {
                                     .kind = LayerKind::Grid,
                                     .tone = Tone::External};
   RollingGrid<std::uint8_t> cells_{kCell, kSide};
+  NewPicture is_new_{};
 };
 
 }  // namespace algo

@@ -120,8 +120,4 @@ void PotentialField::steer(const ControlInput& in,
   steer_along(in, std::atan2(force.y(), force.x()), share * parameters[kMaxSpeed], parameters, out);
 }
 
-void PotentialField::tell(const Telemetry& t, Explanation& words) const {
-  tell_pushed(t, words);
-}
-
 }  // namespace algo

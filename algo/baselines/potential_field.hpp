@@ -2,7 +2,6 @@
 // robot follows the sum (Khatib 1986).
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "algo/baselines/baseline.hpp"
@@ -35,7 +34,7 @@ class PotentialField final : public Baseline {
  private:
   void forget() override;
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
-  void tell(const Telemetry& t, Explanation& words) const override;
+  void tell(const Telemetry& t, Explanation& words) const override { tell_pushed(t, words); }
 
   std::vector<Vec2> obstacles_W_{};
 };

@@ -59,14 +59,9 @@ double vff_speed(const Vec2& repulsion_W, double heading, double v_max) {
   return v_max * std::max(0.0, 1 - std::abs(along));
 }
 
-void Vff::forget() {
-  grid_.clear();
-  is_new_.reset();
-}
-
 void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
   out.state = 1;
-  grid_.sense(in, is_new_);
+  grid_.sense(in);
   grid_.show(in, out);
   const Pose2& pose = in.odometry.pose;
   const VffForces forces = vff_forces(
@@ -76,10 +71,6 @@ void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const double v_max = parameters[kMaxSpeed];
   const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
   steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);
-}
-
-void Vff::tell(const Telemetry& t, Explanation& words) const {
-  tell_pushed(t, words);
 }
 
 }  // namespace algo

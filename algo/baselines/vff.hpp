@@ -28,12 +28,11 @@ class Vff final : public Baseline {
   static ParameterList parameters();
 
  private:
-  void forget() override;
+  void forget() override { grid_.clear(); }
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
-  void tell(const Telemetry& t, Explanation& words) const override;
+  void tell(const Telemetry& t, Explanation& words) const override { tell_pushed(t, words); }
 
   HistogramGrid grid_{};
-  NewPicture is_new_{};
 };
 
 }  // namespace algo

@@ -125,13 +125,8 @@ double vfh_speed(double density_ahead, double h_m, double v_max) {
   return v_max * (1 - std::min(density_ahead, h_m) / h_m);
 }
 
-void Vfh::forget() {
-  grid_.clear();
-  is_new_.reset();
-}
-
 void Vfh::steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) {
-  grid_.sense(in, is_new_);
+  grid_.sense(in);
   grid_.show(in, out);
   const Pose2& pose = in.odometry.pose;
   const PolarDensity density = smooth(polar_density(grid_, pose.position()));

@@ -43,12 +43,11 @@ class Vfh final : public Baseline {
   static ParameterList parameters();
 
  private:
-  void forget() override;
+  void forget() override { grid_.clear(); }
   void steer(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void tell(const Telemetry& t, Explanation& words) const override;
 
   HistogramGrid grid_{};
-  NewPicture is_new_{};
 };
 
 }  // namespace algo
