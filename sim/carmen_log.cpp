@@ -67,6 +67,9 @@ CarmenError error(std::string reason) {
   return CarmenError{std::move(reason)};
 }
 
+constexpr const char* kBadTrailer =
+    "the time stamps at the end of the line are incomplete or followed by more";
+
 /// `timestamp host logger_timestamp` and nothing more; the first is the sensor's.
 std::optional<double> trailer(Fields& fields) {
   const auto stamp = fields.number();
@@ -89,6 +92,19 @@ std::optional<CarmenError> read_readings(Fields& fields, std::size_t n, CarmenSc
   return std::nullopt;
 }
 
+/// The end of a scan's line: `N` numbers, first both poses, and the trailer.
+template <std::size_t N>
+CarmenLine finish_scan(Fields& fields, CarmenScan& scan) {
+  std::array<double, N> poses{};
+  if (!fields.numbers(poses)) return error("the poses after the readings are incomplete");
+  scan.laser_W = {poses[0], poses[1], algo::wrap_angle(poses[2])};
+  scan.robot_W = {poses[3], poses[4], algo::wrap_angle(poses[5])};
+  const auto stamp = trailer(fields);
+  if (!stamp) return error(kBadTrailer);
+  scan.stamp = *stamp;
+  return std::move(scan);
+}
+
 /// Readings of an even count end one step before +90 degrees, those of an odd count at it.
 void spread_over_half_turn(CarmenScan& scan) {
   const std::size_t n = scan.readings.size();
@@ -104,15 +120,7 @@ CarmenLine parse_flaser(Fields& fields, CarmenLaser laser) {
   if (!n || *n < 2) return error("the number of readings is missing or out of bounds");
   if (auto problem = read_readings(fields, *n, scan)) return *problem;
   spread_over_half_turn(scan);
-  std::array<double, 6> pose{};
-  if (!fields.numbers(pose)) return error("the poses after the readings are incomplete");
-  scan.laser_W = {pose[0], pose[1], algo::wrap_angle(pose[2])};
-  scan.robot_W = {pose[3], pose[4], algo::wrap_angle(pose[5])};
-  const auto stamp = trailer(fields);
-  if (!stamp)
-    return error("the time stamps at the end of the line are incomplete or followed by more");
-  scan.stamp = *stamp;
-  return scan;
+  return finish_scan<6>(fields, scan);
 }
 
 /// `type start_angle fov step max accuracy remission_mode n r1..rn nrem [rem] laser_x laser_y
@@ -138,29 +146,15 @@ CarmenLine parse_robotlaser(Fields& fields, CarmenLaser laser) {
   for (std::size_t i = 0; i < *remissions; ++i) {
     if (!fields.number()) return error("the remissions are incomplete");
   }
-  std::array<double, 11> tail{};
-  if (!fields.numbers(tail)) return error("the poses after the readings are incomplete");
-  scan.laser_W = {tail[0], tail[1], algo::wrap_angle(tail[2])};
-  scan.robot_W = {tail[3], tail[4], algo::wrap_angle(tail[5])};
-  const auto stamp = trailer(fields);
-  if (!stamp)
-    return error("the time stamps at the end of the line are incomplete or followed by more");
-  scan.stamp = *stamp;
-  return scan;
+  return finish_scan<11>(fields, scan);
 }
 
 /// `x y theta tv rv accel timestamp host logger_timestamp`
 CarmenLine parse_odom(Fields& fields) {
   std::array<double, 6> values{};
   if (!fields.numbers(values)) return error("a number of the odometry is missing or not finite");
-  const auto stamp = trailer(fields);
-  if (!stamp)
-    return error("the time stamps at the end of the line are incomplete or followed by more");
-  CarmenOdometry odometry;
-  odometry.pose_W = {values[0], values[1], algo::wrap_angle(values[2])};
-  odometry.twist = {values[3], values[4]};
-  odometry.stamp = *stamp;
-  return odometry;
+  if (!trailer(fields)) return error(kBadTrailer);
+  return CarmenOdometry{};
 }
 
 struct UnitRow {

@@ -1,7 +1,6 @@
 // sim/carmen_log.hpp: lines of CARMEN logs to values, without any I/O.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,12 +26,8 @@ struct CarmenScan {
   double stamp = 0;  // [s] of the recording's clock; 0 when the log has none
 };
 
-/// ODOM: pose and speeds from the wheels.
-struct CarmenOdometry {
-  algo::Pose2 pose_W{};
-  algo::Twist2 twist{};
-  double stamp = 0;
-};
+/// ODOM: pose and speeds from the wheels, which a scan brings too.
+struct CarmenOdometry {};
 
 /// A comment, an empty line, or a message of no interest here.
 struct CarmenOther {};
