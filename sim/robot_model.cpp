@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 
 #include "algo/types.hpp"
 
@@ -59,43 +58,18 @@ double Sensors::height() const {
   return highest;
 }
 
-void RobotModel::set_box(double length, double width) {
+void Machine::set_box(double length, double width) {
   round = false;
   hull_length = length;
   hull_width = width;
   radius = std::hypot(length / 2, width / 2);
 }
 
-void RobotModel::set_disc(double radius_m) {
+void Machine::set_disc(double radius_m) {
   round = true;
   radius = radius_m;
   hull_length = 2 * radius_m;
   hull_width = 2 * radius_m;
-}
-
-bool same_machine(const RobotModel& a, const RobotModel& b) {
-  const auto numbers = [](const RobotModel& r) {
-    return std::tie(r.name,
-                    r.round,
-                    r.radius,
-                    r.hull_length,
-                    r.hull_width,
-                    r.hull_low,
-                    r.hull_high,
-                    r.mass,
-                    r.mass_height,
-                    r.half_track,
-                    r.wheel_radius,
-                    r.wheels,
-                    r.casters,
-                    r.max_v,
-                    r.max_omega,
-                    r.max_acceleration,
-                    r.max_angular_acceleration,
-                    r.friction,
-                    r.counts_per_turn);
-  };
-  return numbers(a) == numbers(b);
 }
 
 std::optional<std::string> defect(const RobotModel& robot) {
@@ -113,6 +87,21 @@ std::optional<std::string> defect(const RobotModel& robot) {
            "of the hull";
   }
   return std::nullopt;
+}
+
+algo::RobotSpec spec_of(const RobotModel& robot, double period) {
+  const Hull hull = hull_of(robot);
+  return {.name = robot.name,
+          .radius = hull.radius,
+          .half_length = hull.half_length,
+          .half_width = hull.half_width,
+          .half_track = robot.half_track,
+          .period = period,
+          .max_v = robot.max_v,
+          .max_omega = robot.max_omega,
+          .max_acceleration = robot.max_acceleration,
+          .max_angular_acceleration = robot.max_angular_acceleration,
+          .has_laser = robot.sensors.has_laser()};
 }
 
 Hull hull_of(const RobotModel& robot) {

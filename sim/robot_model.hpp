@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "algo/robot.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/sensor_configs.hpp"
 
@@ -18,9 +19,9 @@ struct Caster {
   bool operator==(const Caster&) const = default;
 };
 
-/// A robot with two driven sides (physics.md 3). R lies on the floor under the middle of the hull,
+/// A base with two driven sides (physics.md 3). R lies on the floor under the middle of the hull,
 /// which is also that of the mass. The numbers here are the Silvermate's.
-struct RobotModel {
+struct Machine {
   std::string name = "silvermate";  // [a-z0-9_-]+, at most 64
   bool round = true;                // the hull is a cylinder of `radius`, otherwise a box
   double radius = 0.35;             // [m] of the circle about R that encloses the hull in the plane
@@ -38,22 +39,27 @@ struct RobotModel {
   double max_angular_acceleration = 4;  // [rad/s2]
   double friction = 0.8;                // of the drive wheels on the floor
   double counts_per_turn = 40000;       // of a wheel's encoder
-  Sensors sensors{};
 
   /// A box; `radius` is that of the circle about its corners.
   void set_box(double length, double width);
   void set_disc(double radius_m);
+  bool operator==(const Machine&) const = default;
+};
+
+struct RobotModel : Machine {
+  Sensors sensors{};
+  bool operator==(const RobotModel&) const = delete;  // sensors do not compare: compare machines
 };
 
 constexpr std::size_t kMostWheels = 8;  // of a side
 constexpr std::size_t kMostCasters = 8;
 
-/// Whether all but the sensors is the same.
-bool same_machine(const RobotModel& a, const RobotModel& b);
-
 /// What is wrong with the numbers together, as "casters: without them the robot would tip over";
 /// begins with the field. Each number is within its own limits already.
 std::optional<std::string> defect(const RobotModel& robot);
+
+/// What the port says of it, in ticks of `period` [s]; one that does not drive.
+algo::RobotSpec spec_of(const RobotModel& robot, double period);
 
 /// The outline in the plane.
 Hull hull_of(const RobotModel& robot);

@@ -150,7 +150,7 @@ void choose_robot(sim::Scenario& scenario, const json& choice, const RobotLibrar
 json robot_reference(const sim::RobotModel& robot) {
   // A name stands for the usual sensors too, of which a document says only what differs.
   const auto found = builtin().find(robot.name);
-  if (found != builtin().end() && sim::same_machine(found->second.robot, robot) &&
+  if (found != builtin().end() && static_cast<const sim::Machine&>(robot) == found->second.robot &&
       same_sensors(found->second.robot.sensors, {})) {
     return robot.name;
   }

@@ -74,14 +74,14 @@ TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
     EXPECT_TRUE(entry.builtin && entry.usable);
     const sim::RobotModel robot = builtin_robot(entry.name);
     const sim::RobotModel again = read(robot_document(robot));
-    EXPECT_TRUE(sim::same_machine(robot, again));
+    EXPECT_TRUE(static_cast<const sim::Machine&>(robot) == again);
     EXPECT_EQ(robot_document(robot), robot_document(again));
     EXPECT_EQ(robot_reference(robot), entry.name);
   }
 }
 
 TEST(RobotJson, TheRobotOfAScenarioThatNamesNoneIsTheSilvermate) {
-  EXPECT_TRUE(sim::same_machine(sim::RobotModel(), builtin_robot("silvermate")));
+  EXPECT_TRUE(sim::Machine() == builtin_robot("silvermate"));
   EXPECT_EQ(robot_document(sim::RobotModel()), robot_document(builtin_robot("silvermate")));
 }
 
