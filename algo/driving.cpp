@@ -7,10 +7,6 @@
 namespace algo {
 namespace {
 
-bool finite(const Pose2& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
-}
-
 bool finite(const std::optional<Nearest>& nearest) {
   return !nearest || (nearest->point_W.allFinite() && std::isfinite(nearest->distance));
 }
@@ -36,8 +32,7 @@ bool all_finite(const ControlInput& in, const Parameters& parameters) {
   if (in.goal && in.goal->heading && !std::isfinite(*in.goal->heading)) return false;
   const Odometry& odometry = in.odometry;
   return std::isfinite(in.stamp) && std::isfinite(in.dt) && std::isfinite(in.spec->radius) &&
-         std::isfinite(odometry.stamp) && finite(odometry.pose) &&
-         std::isfinite(odometry.twist.v) && std::isfinite(odometry.twist.omega) &&
+         std::isfinite(odometry.stamp) && finite(odometry.pose) && finite(odometry.twist) &&
          finite(in.scene->left) && finite(in.scene->right) && finite(in.scene->scan);
 }
 

@@ -6,16 +6,6 @@
 namespace algo {
 namespace {
 
-bool finite(const Odometry& odometry) {
-  return std::isfinite(odometry.pose.x) && std::isfinite(odometry.pose.y) &&
-         std::isfinite(odometry.pose.heading) && std::isfinite(odometry.twist.v) &&
-         std::isfinite(odometry.twist.omega);
-}
-
-bool finite(const Twist2& twist) {
-  return std::isfinite(twist.v) && std::isfinite(twist.omega);
-}
-
 /// Whether every bumper that is pressed lies behind the motion.
 bool leaves_bumpers(const Observation& observation, double v) {
   for (const BumperReading& bumper : observation.bumpers) {
@@ -30,7 +20,9 @@ bool leaves_bumpers(const Observation& observation, double v) {
 Hold gate(const GateInput& in, const Observation& observation, const Command& command) {
   if (in.stopped) return holds::kStopped;
   if (observation.halt != Halt::None) return holds::kHalted;
-  if (!std::isfinite(observation.stamp) || !finite(observation.odometry) || !finite(command.base)) {
+  const Odometry& odometry = observation.odometry;
+  if (!std::isfinite(observation.stamp) || !finite(odometry.pose) || !finite(odometry.twist) ||
+      !finite(command.base)) {
     return holds::kNotFinite;
   }
   const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);

@@ -35,9 +35,7 @@ void LocalLocalization::learn_bias(const Pose2& wheels_R, double rate, double dt
 }
 
 const Pose2& LocalLocalization::update(const Pose2& wheels_R, double rate, double dt) {
-  const bool finite = std::isfinite(wheels_R.x) && std::isfinite(wheels_R.y) &&
-                      std::isfinite(wheels_R.heading) && std::isfinite(rate);
-  if (!finite || !(dt > 0)) return pose_W_;
+  if (!finite(wheels_R) || !std::isfinite(rate) || !(dt > 0)) return pose_W_;
   learn_bias(wheels_R, rate, dt);
   const double turn = (rate - bias_) * dt;
   const double way = std::copysign(wheels_R.position().norm(), wheels_R.x);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include <Eigen/Geometry>
+#include "algo/hull.hpp"
 
 namespace algo {
 namespace {
@@ -17,10 +17,6 @@ constexpr std::size_t kMaxPolygonPoints = 256;  // keeps every check cheap, what
 constexpr double kMinReflectivity = 0.02;
 constexpr double kMaxReflectivity = 1.0;
 constexpr double kFlat = 1e-9;  // [rad] below it two edges count as one straight line
-
-double cross(const Vec2& a, const Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 std::vector<Vec2> rectangle(double length, double width) {
   const double x = length / 2;
@@ -37,44 +33,24 @@ struct OutlineInOwnFrame {
   }
 };
 
-Vec2 to_child(const Pose2& pose, const Vec2& p) {
-  const Vec2 offset = p - pose.position();
-  const double c = std::cos(pose.heading);
-  const double s = std::sin(pose.heading);
-  return {c * offset.x() + s * offset.y(), -s * offset.x() + c * offset.y()};
-}
-
-double segment_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 edge = b - a;
-  const double length2 = edge.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * edge).norm();
-}
-
 struct DistanceInOwnFrame {
   Vec2 p;
   double operator()(const Cylinder& cylinder) const { return p.norm() - cylinder.radius; }
-  double operator()(const Box& box) const { return to_rectangle(box.length, box.width); }
-  double operator()(const Wall& wall) const { return to_rectangle(wall.length, wall.thickness); }
+  double operator()(const Box& box) const { return to_rectangle(p, box.length / 2, box.width / 2); }
+  double operator()(const Wall& wall) const {
+    return to_rectangle(p, wall.length / 2, wall.thickness / 2);
+  }
   double operator()(const Polygon& polygon) const {
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = std::numeric_limits<double>::infinity();  // squared
     bool inside = true;
     const std::size_t n = polygon.points.size();
     for (std::size_t i = 0; i < n; ++i) {
       const Vec2& a = polygon.points[i];
       const Vec2& b = polygon.points[(i + 1) % n];
-      nearest = std::min(nearest, segment_distance(p, a, b));
+      nearest = std::min(nearest, squared_distance(p, a, b));
       inside = inside && cross(b - a, p - a) > 0;
     }
-    return inside ? -nearest : nearest;
-  }
-
- private:
-  double to_rectangle(double length, double width) const {
-    const double dx = std::abs(p.x()) - length / 2;
-    const double dy = std::abs(p.y()) - width / 2;
-    if (dx <= 0 && dy <= 0) return std::max(dx, dy);
-    return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
+    return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
   }
 };
 
@@ -183,6 +159,14 @@ struct ShapeDefect {
 
 }  // namespace
 
+double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 edge = b - a;
+  const Vec2 to_p = p - a;
+  const double square = edge.squaredNorm();
+  const double along = square > 0 ? std::clamp(edge.dot(to_p) / square, 0.0, 1.0) : 0;
+  return (to_p - along * edge).squaredNorm();
+}
+
 std::vector<Vec2> outline_W(const Obstacle& obstacle) {
   std::vector<Vec2> points = std::visit(OutlineInOwnFrame{}, obstacle.shape);
   for (Vec2& point : points) point = to_parent(obstacle.pose_W, point);
@@ -194,10 +178,7 @@ double signed_distance(const Obstacle& obstacle, const Vec2& p_W) {
 }
 
 std::optional<std::string> defect(const Obstacle& obstacle) {
-  const Pose2& pose = obstacle.pose_W;
-  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.heading)) {
-    return "x, y and heading must be finite numbers";
-  }
+  if (!finite(obstacle.pose_W)) return "x, y and heading must be finite numbers";
   if (auto wrong = size_defect("height", obstacle.height)) return wrong;
   const double reflectivity = obstacle.reflectivity;
   if (!(reflectivity >= kMinReflectivity && reflectivity <= kMaxReflectivity)) {

@@ -47,6 +47,9 @@ struct Obstacle {
 /// Vertices in W, counter-clockwise; empty for a cylinder. B = 4 for a box or wall.
 std::vector<Vec2> outline_W(const Obstacle& obstacle);
 
+/// [m2] The square of the distance from `p` to the segment from `a` to `b`.
+double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b);
+
 /// [m] From `p_W` to the nearest surface point, negative inside.
 double signed_distance(const Obstacle& obstacle, const Vec2& p_W);
 

@@ -1,11 +1,9 @@
 // algo/sensor_merge.cpp: kept readings and the beams they stand in for.
 #include "algo/sensor_merge.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "algo/geometry.hpp"
-#include "algo/pose_step.hpp"
 
 namespace algo {
 
@@ -53,7 +51,7 @@ bool SensorMerge::holds(const Kept& kept, double now) {
 /// Whether `scan` has a beam where `kept` returned from.
 bool SensorMerge::within(const Kept& kept, const Pose2& pose_W, const LaserScan& scan) {
   const Pose2 sensor_W = compose(pose_W, scan.mount_R);
-  const Vec2 p = pose_step(sensor_W, {kept.point_W.x(), kept.point_W.y(), 0}).position();
+  const Vec2 p = to_child(sensor_W, kept.point_W);
   const double bearing = std::atan2(p.y(), p.x());
   const BeamSpan beams = beams_between(scan, bearing - kHalfBeam, bearing + kHalfBeam);
   return beams.begin < beams.end;
@@ -75,7 +73,7 @@ void SensorMerge::enter(const Pose2& pose_W, double now, LaserScan& scan) {
   for (Kept& kept : kept_) {
     kept.missed = false;
     if (!holds(kept, now)) continue;
-    const Vec2 p = pose_step(sensor_W, {kept.point_W.x(), kept.point_W.y(), 0}).position();
+    const Vec2 p = to_child(sensor_W, kept.point_W);
     kept.range = p.norm();
     kept.bearing = std::atan2(p.y(), p.x());
     kept.missed = kept.range < scan.range_max && !explained(kept, scan);

@@ -34,6 +34,15 @@ struct Pose2 {
   bool operator==(const Pose2&) const = default;
 };
 
+inline bool finite(const Pose2& pose) {
+  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
+}
+
+/// Above 0 where `b` points to the left of `a`.
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
 /// Unit vector of bearing `angle` [rad].
 inline Vec2 direction(double angle) {
   return {std::cos(angle), std::sin(angle)};
@@ -46,10 +55,30 @@ inline Vec2 to_parent(const Pose2& pose, const Vec2& p) {
   return {pose.x + c * p.x() - s * p.y(), pose.y + s * p.x() + c * p.y()};
 }
 
+/// Point `p` of the parent of `pose` expressed in the child frame.
+inline Vec2 to_child(const Pose2& pose, const Vec2& p) {
+  const Vec2 ahead = direction(pose.heading);
+  const Vec2 way = p - pose.position();
+  return {ahead.dot(way), cross(ahead, way)};
+}
+
 /// `inner` (a pose in the child frame of `outer`) expressed in the parent of `outer`.
 inline Pose2 compose(const Pose2& outer, const Pose2& inner) {
   const Vec2 p = to_parent(outer, inner.position());
   return {p.x(), p.y(), wrap_angle(outer.heading + inner.heading)};
+}
+
+/// The pose `to_W` in the frame of `from_W`: compose(from_W, pose_step(from_W, to_W)) is `to_W`.
+inline Pose2 pose_step(const Pose2& from_W, const Pose2& to_W) {
+  const Vec2 p = to_child(from_W, to_W.position());
+  return {p.x(), p.y(), wrap_angle(to_W.heading - from_W.heading)};
+}
+
+/// The pose a share `t` of the way from `a` to `b`, by the shorter turn.
+inline Pose2 interpolated(const Pose2& a, const Pose2& b, double t) {
+  return {a.x + t * (b.x - a.x),
+          a.y + t * (b.y - a.y),
+          wrap_angle(a.heading + t * wrap_angle(b.heading - a.heading))};
 }
 
 struct Twist2 {
@@ -57,6 +86,10 @@ struct Twist2 {
   double omega = 0;  // [rad/s]
   bool operator==(const Twist2&) const = default;
 };
+
+inline bool finite(const Twist2& twist) {
+  return std::isfinite(twist.v) && std::isfinite(twist.omega);
+}
 
 constexpr std::size_t kMostJoints = 8;
 

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "algo/pose_step.hpp"
-
 namespace sim {
 namespace {
 

@@ -10,26 +10,13 @@
 namespace sim {
 namespace {
 
-double cross(const algo::Vec2& a, const algo::Vec2& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-/// Squared distance [m2] from `p` to the segment from `a` to `b`.
-double squared_distance(const algo::Vec2& p, const algo::Vec2& a, const algo::Vec2& b) {
-  const algo::Vec2 edge = b - a;
-  const algo::Vec2 to_p = p - a;
-  const double length_squared = edge.squaredNorm();
-  const double along =
-      length_squared > 0 ? std::clamp(edge.dot(to_p) / length_squared, 0.0, 1.0) : 0;
-  return (to_p - along * edge).squaredNorm();
-}
-
 /// Whether a side of the counter-clockwise convex `outline` has all of `points` outside it.
 bool side_separates(std::span<const algo::Vec2> outline, std::span<const algo::Vec2> points) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const algo::Vec2& a = outline[i];
     const algo::Vec2 edge = outline[(i + 1) % outline.size()] - a;
-    if (std::ranges::all_of(points, [&](const algo::Vec2& p) { return cross(edge, p - a) < 0; })) {
+    if (std::ranges::all_of(points,
+                            [&](const algo::Vec2& p) { return algo::cross(edge, p - a) < 0; })) {
       return true;
     }
   }
@@ -43,19 +30,11 @@ double between(std::span<const algo::Vec2> one, std::span<const algo::Vec2> othe
   for (std::size_t i = 0; i < one.size(); ++i) {
     for (std::size_t k = 0; k < other.size(); ++k) {
       nearest = std::min({nearest,
-                          squared_distance(one[i], other[k], other[(k + 1) % other.size()]),
-                          squared_distance(other[k], one[i], one[(i + 1) % one.size()])});
+                          algo::squared_distance(one[i], other[k], other[(k + 1) % other.size()]),
+                          algo::squared_distance(other[k], one[i], one[(i + 1) % one.size()])});
     }
   }
   return std::sqrt(nearest);
-}
-
-/// [m] From `p` to the rectangle about the origin, negative inside.
-double to_rectangle(const algo::Vec2& p, const Hull& hull) {
-  const double dx = std::abs(p.x()) - hull.half_length;
-  const double dy = std::abs(p.y()) - hull.half_width;
-  if (dx <= 0 && dy <= 0) return std::max(dx, dy);
-  return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
 }
 
 }  // namespace
@@ -110,8 +89,8 @@ double ObstacleSet::distance(std::size_t index, const algo::Vec2& p_W) const {
   for (const algo::Vec2& b : item.outline_W) {
     const algo::Vec2 edge = b - *a;
     const algo::Vec2 to_p = p_W - *a;
-    inside = inside && cross(edge, to_p) >= 0;
-    nearest = std::min(nearest, squared_distance(p_W, *a, b));
+    inside = inside && algo::cross(edge, to_p) >= 0;
+    nearest = std::min(nearest, algo::squared_distance(p_W, *a, b));
     a = &b;
   }
   return inside ? -std::sqrt(nearest) : std::sqrt(nearest);
@@ -136,9 +115,8 @@ double ObstacleSet::distance(const algo::Vec2& p_W) const {
 
 double ObstacleSet::clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const {
   if (item.outline_W.empty()) {
-    const algo::Vec2 d = item.centre_W - pose_W.position();
-    const algo::Vec2 ahead = algo::direction(pose_W.heading);
-    return to_rectangle({ahead.dot(d), cross(ahead, d)}, hull) - item.bound;
+    const algo::Vec2 centre_R = algo::to_child(pose_W, item.centre_W);
+    return algo::to_rectangle(centre_R, hull.half_length, hull.half_width) - item.bound;
   }
   const double l = hull.half_length;
   const double w = hull.half_width;
@@ -152,12 +130,12 @@ double ObstacleSet::clearance(const Item& item, const Hull& hull, const algo::Po
 double ObstacleSet::clearance(std::size_t index,
                               const Hull& hull,
                               const algo::Pose2& pose_W) const {
-  if (hull.half_length <= 0) return distance(index, pose_W.position()) - hull.radius;
+  if (hull.is_disc()) return distance(index, pose_W.position()) - hull.radius;
   return clearance(items_[index], hull, pose_W);
 }
 
 double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const {
-  if (hull.half_length <= 0) return distance(pose_W.position()) - hull.radius;
+  if (hull.is_disc()) return distance(pose_W.position()) - hull.radius;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
     // Nothing of it can be nearer than its circle is to the circle about the rectangle.

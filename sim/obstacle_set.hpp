@@ -6,16 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "algo/hull.hpp"
 #include "algo/obstacle.hpp"
 #include "algo/types.hpp"
 
 namespace sim {
 
-/// The outline of a vehicle in the plane: a rectangle about R, or a disc when it has no length.
-struct Hull {
-  double radius = 0;                       // [m] of the disc, or of the circle about the rectangle
-  double half_length = 0, half_width = 0;  // [m]
-};
+using algo::Hull;
 
 /// Obstacles in the order they were added, each with its outline and a circle about it, so that a
 /// distance costs little with a thousand of them and allocates nothing.

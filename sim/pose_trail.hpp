@@ -46,11 +46,7 @@ class PoseTrail {
     if (steps < 1e-9) return back(0);  // the newest itself, not almost
     const auto age = static_cast<std::size_t>(steps);
     const double part = steps - static_cast<double>(age);
-    const algo::Pose2& young = back(age);
-    const algo::Pose2& old = back(age + 1);
-    return {young.x + part * (old.x - young.x),
-            young.y + part * (old.y - young.y),
-            algo::wrap_angle(young.heading + part * algo::wrap_angle(old.heading - young.heading))};
+    return algo::interpolated(back(age), back(age + 1), part);
   }
 
  private:

@@ -27,13 +27,8 @@ std::ifstream open(const std::filesystem::path& file) {
 /// The scanner on its robot, from both poses of a line. In files with a corrected path the two may
 /// be poses of different maps; then the scanner is taken to sit in the middle.
 algo::Pose2 mount_of(const CarmenScan& scan) {
-  const double c = std::cos(scan.robot_W.heading);
-  const double s = std::sin(scan.robot_W.heading);
-  const algo::Vec2 d = scan.laser_W.position() - scan.robot_W.position();
-  algo::Pose2 mount{c * d.x() + s * d.y(),
-                    c * d.y() - s * d.x(),
-                    algo::wrap_angle(scan.laser_W.heading - scan.robot_W.heading)};
-  if (d.norm() > kFarthestMount) mount = {};
+  algo::Pose2 mount = algo::pose_step(scan.robot_W, scan.laser_W);
+  if ((scan.laser_W.position() - scan.robot_W.position()).norm() > kFarthestMount) mount = {};
   const bool looks_back = std::abs(mount.heading) > std::numbers::pi / 2;
   if (looks_back != (scan.laser == CarmenLaser::Rear)) {
     mount.heading = algo::wrap_angle(mount.heading + std::numbers::pi);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "algo/diff_drive.hpp"
-#include "algo/pose_step.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
 
@@ -18,10 +17,6 @@ constexpr double kLongestPeriod = 1.0;    // [s]
 constexpr double kShortestPeriod = 1e-3;  // [s]
 constexpr double kGyroRest = 2.0;         // [s] at rest before a run, for the gyro's bias
 constexpr std::uint32_t kMostBumpers = 8;
-
-bool finite(const algo::Pose2& pose) {
-  return std::isfinite(pose.x) && std::isfinite(pose.y) && std::isfinite(pose.heading);
-}
 
 /// `robot` with the limits that `drive` gives instead of its own.
 RobotModel limited(RobotModel robot, const DriveConfig& drive) {

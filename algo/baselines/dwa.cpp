@@ -69,20 +69,16 @@ double full_turn(double angle) {
   return wrapped < 0 ? wrapped + 2 * std::numbers::pi : wrapped;
 }
 
-bool is_disc(const Hull& hull) {
-  return !(hull.half_length > 0);
-}
-
 bool inside(const Hull& hull, const Vec2& p) {
-  if (is_disc(hull)) return p.norm() < hull.radius;
+  if (hull.is_disc()) return p.norm() < hull.radius;
   return std::abs(p.x()) < hull.half_length && std::abs(p.y()) < hull.half_width;
 }
 
 /// Straight ahead.
 double straight_room(const Hull& hull, const Vec2& p) {
-  const double half = is_disc(hull) ? hull.radius : hull.half_width;
+  const double half = hull.is_disc() ? hull.radius : hull.half_width;
   if (!(std::abs(p.y()) < half) || p.x() < 0) return kInf;
-  const double front = is_disc(hull) ? std::sqrt(half * half - p.y() * p.y()) : hull.half_length;
+  const double front = hull.is_disc() ? std::sqrt(half * half - p.y() * p.y()) : hull.half_length;
   return std::max(0.0, p.x() - front);
 }
 
@@ -143,7 +139,7 @@ ArcRoom arc_room(const Hull& hull, const Twist2& twist, const Vec2& point_R) {
   const Vec2 c{0, twist.v / twist.omega};
   const Vec2 q = point_R - c;
   const double angle =
-      is_disc(hull) ? disc_turn(hull.radius, c, q, sign) : box_turn(hull, c, q, sign);
+      hull.is_disc() ? disc_turn(hull.radius, c, q, sign) : box_turn(hull, c, q, sign);
   // In place a disc meets nothing, and a way of no length has no end.
   const double distance = twist.v > 0 ? angle * c.norm() : kInf;
   return {distance, angle};

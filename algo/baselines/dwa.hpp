@@ -2,22 +2,14 @@
 // stop, the one that best combines heading, clearance and speed (Fox, Burgard, Thrun 1997).
 #pragma once
 
-#include <array>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "algo/baselines/baseline.hpp"
+#include "algo/hull.hpp"
 
 namespace algo {
-
-/// What must not touch anything: a disc, or a rectangle when half_length is above 0.
-struct Hull {
-  double radius = 0;       // [m]
-  double half_length = 0;  // [m] along R's x
-  double half_width = 0;   // [m] along R's y
-};
 
 /// How far the robot comes along the arc of a constant twist before its hull touches a point.
 struct ArcRoom {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <limits>
 
 #include "algo/controller.hpp"
 #include "algo/geometry.hpp"
@@ -18,10 +17,8 @@ inline bool lacks_laser(const Scene& scene) {
 /// Whether every number of the sonar ring is finite; ranges of Ok readings only.
 inline bool finite_sonar(const Observation& observation) {
   for (const RangeReading& reading : observation.sonar) {
-    const Pose2& mount = reading.mount_R;
-    const bool placed = std::isfinite(mount.x) && std::isfinite(mount.y) &&
-                        std::isfinite(mount.heading) && std::isfinite(reading.stamp) &&
-                        std::isfinite(reading.range_max);
+    const bool placed =
+        finite(reading.mount_R) && std::isfinite(reading.stamp) && std::isfinite(reading.range_max);
     if (!placed || (reading.status == Beam::Ok && !std::isfinite(reading.range))) return false;
   }
   return true;

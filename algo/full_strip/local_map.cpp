@@ -146,8 +146,7 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
     const Vec2 d = centre_W(cell) - sensor_W.position();
     const double far = d.squaredNorm();
     if (far > kClearRange * kClearRange) continue;
-    const double bearing =
-        std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d)) - scan.angle_min;
+    const double bearing = std::atan2(cross(ahead, d), ahead.dot(d)) - scan.angle_min;
     const double beam = bearing * per_radian + 0.5;
     if (!(beam >= 1 && beam < last)) continue;
     const auto b = static_cast<std::size_t>(beam);

@@ -187,8 +187,7 @@ std::optional<Twist2> ManeuverDrive::next(const Pose2& pose_W, const MotionLimit
       ++aim;
     }
     const Vec2 to = pieces_[aim].end_W.position() - pose_W.position();
-    const Vec2 x = direction(pose_W.heading);
-    const Vec2 p{x.dot(to), x.x() * to.y() - x.y() * to.x()};
+    const Vec2 p = to_child(pose_W, pieces_[aim].end_W.position());
     const double curvature = 2 * p.y() / std::max(1e-4, p.squaredNorm());
     double v = std::min(kSpeed, limits.max_v);
     v = std::min(v, std::max(0.1, std::sqrt(2 * 0.3 * limits.acceleration * to.norm())));

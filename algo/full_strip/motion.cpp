@@ -111,7 +111,7 @@ double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
 double HullCheck::outside(const Vec2& d, const Vec2& ahead) const {
   if (half_length_ <= 0) return d.norm() - radius_;
   const double dx = std::abs(ahead.dot(d)) - half_length_;
-  const double dy = std::abs(ahead.x() * d.y() - ahead.y() * d.x()) - half_width_;
+  const double dy = std::abs(cross(ahead, d)) - half_width_;
   if (dx <= 0 && dy <= 0) return std::max(dx, dy);
   const double x = std::max(dx, 0.0);
   const double y = std::max(dy, 0.0);

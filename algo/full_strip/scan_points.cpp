@@ -39,9 +39,7 @@ Pose2 ScanPoints::pose_at(double stamp) const {
     if (stamp < a.stamp && i > 1) continue;
     const double span = b.stamp - a.stamp;
     const double t = span > 0 ? std::clamp((stamp - a.stamp) / span, 0.0, 1.0) : 1;
-    return {a.pose_W.x + t * (b.pose_W.x - a.pose_W.x),
-            a.pose_W.y + t * (b.pose_W.y - a.pose_W.y),
-            wrap_angle(a.pose_W.heading + t * wrap_angle(b.pose_W.heading - a.pose_W.heading))};
+    return interpolated(a.pose_W, b.pose_W, t);
   }
   return trail_.back().pose_W;
 }

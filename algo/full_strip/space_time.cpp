@@ -95,7 +95,7 @@ SpaceTimeSearch::Nearness SpaceTimeSearch::nearness(const SpaceTimeInput& in,
     const Vec2 d = track.position_W + track.velocity_W * (in.lead + time) - at.pose_W.position();
     const double most = reach + track.radius + in.spec->radius + margin;
     if (d.squaredNorm() > most * most) continue;
-    const Vec2 p{ahead.dot(d), ahead.x() * d.y() - ahead.y() * d.x()};
+    const Vec2 p{ahead.dot(d), cross(ahead, d)};
     const double room = to_hull(*in.spec, p) - track.radius - margin;
     out.room = std::min(out.room, room);
     const double lacking = std::max(0.0, 1 - room / reach);

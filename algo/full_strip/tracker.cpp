@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <tuple>
 
@@ -82,6 +81,12 @@ double middle_time(const LaserScan& scan, std::size_t first, std::size_t last) {
   double sum = 0;
   for (std::size_t i = from; i < from + turns; ++i) sum += scan.beam_time(i);
   return sum / static_cast<double>(turns);
+}
+
+/// The beam of a scanner at `sensor_W` that looks at the point, from the scan's first.
+double beam_at(const Pose2& sensor_W, const Vec2& point_W, double angle_min, double increment) {
+  const Vec2 p = to_child(sensor_W, point_W);
+  return (std::atan2(p.y(), p.x()) - angle_min) / increment;
 }
 
 /// The deepest dent of the outline first..last, seen from `eye_W`.
@@ -314,13 +319,10 @@ void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stam
 
 /// Whether an earlier scan looked well beyond the point.
 bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
-  const Vec2 d = point_W - memory.sensor_W.position();
-  const Vec2 ahead = direction(memory.sensor_W.heading);
-  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
-  const double beam = (bearing - angle_min_) / angle_increment_;
+  const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
   const auto b = static_cast<std::size_t>(std::lround(beam));
-  const double far = d.norm();
+  const double far = (point_W - memory.sensor_W.position()).norm();
   for (std::size_t i = b - 1; i <= b + 1; ++i) {
     if (static_cast<double>(memory.ranges[i]) < far + kBeyond) return false;
   }
@@ -329,14 +331,11 @@ bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
 
 /// Whether an earlier scan hit something at the point.
 bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
-  const Vec2 d = point_W - memory.sensor_W.position();
-  const Vec2 ahead = direction(memory.sensor_W.heading);
-  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
-  const double beam = (bearing - angle_min_) / angle_increment_;
+  const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
   const auto range =
       static_cast<double>(memory.ranges[static_cast<std::size_t>(std::lround(beam))]);
-  return std::abs(range - d.norm()) < kSame;
+  return std::abs(range - (point_W - memory.sensor_W.position()).norm()) < kSame;
 }
 
 /// Whether something stands where an earlier scan saw nothing, or nothing where something stood. In
@@ -382,11 +381,8 @@ void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points
 
 /// Whether the beams at the track's place go well beyond it.
 bool Tracker::looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const {
-  const Vec2 d = f.position_W - sensor_W.position();
-  const Vec2 ahead = direction(sensor_W.heading);
-  const double far = d.norm();
-  const double bearing = std::atan2(ahead.x() * d.y() - ahead.y() * d.x(), ahead.dot(d));
-  const double beam = (bearing - scan.angle_min) / scan.angle_increment;
+  const double far = (f.position_W - sensor_W.position()).norm();
+  const double beam = beam_at(sensor_W, f.position_W, scan.angle_min, scan.angle_increment);
   if (!(beam >= 2 && beam < static_cast<double>(scan.size()) - 3)) return false;
   if (far + f.radius > scan.range_max) return false;
   const auto b = static_cast<std::size_t>(beam);

@@ -51,7 +51,7 @@ void VelocityStage::profile(const StageInput& in) {
     if (i > 0 && i + 1 < nodes.size()) {
       const Vec2 a = p - nodes[i - 1].position_W;
       const Vec2 b = nodes[i + 1].position_W - p;
-      const double turn = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
+      const double turn = std::abs(std::atan2(cross(a, b), a.dot(b)));
       const double curvature = turn / std::max(0.5 * (a.norm() + b.norm()), 0.02);
       v = std::min({v,
                     std::sqrt(kLateral / std::max(curvature, 1e-3)),
@@ -83,9 +83,7 @@ Twist2 VelocityStage::pursue(const StageInput& in,
                              double s,
                              double share) const {
   const double ahead = lookahead(state.twist.v);
-  Vec2 to = in.strip->at(s + ahead) - state.pose_W.position();
-  const Vec2 x = direction(state.pose_W.heading);
-  const Vec2 aim{x.dot(to), x.x() * to.y() - x.y() * to.x()};
+  const Vec2 aim = to_child(state.pose_W, in.strip->at(s + ahead));
   const double length = aim.norm();
   if (length < 1e-6) return {};
   const double error = std::atan2(aim.y(), aim.x());

@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "algo/pose_step.hpp"
-
 namespace algo {
 
 Mapper::Mapper(const MapperSettings& settings, int side, const Vec2& centre_W)

@@ -10,6 +10,7 @@
 #include "algo/dazzle.hpp"
 #include "algo/gate.hpp"
 #include "algo/geometry.hpp"
+#include "algo/hull.hpp"
 #include "algo/perceive.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/reactive.hpp"
@@ -23,11 +24,7 @@ double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] != Beam::Ok) continue;
     const Vec2 p = to_parent(scan.mount_R, scan.ranges[i] * direction(scan.angle(i)));
-    const double dx = std::abs(p.x()) - spec.half_length;
-    const double dy = std::abs(p.y()) - spec.half_width;
-    const bool inside = dx <= 0 && dy <= 0;
-    least = std::min(least,
-                     inside ? std::max(dx, dy) : std::hypot(std::max(dx, 0.0), std::max(dy, 0.0)));
+    least = std::min(least, to_rectangle(p, spec.half_length, spec.half_width));
   }
   return least;
 }

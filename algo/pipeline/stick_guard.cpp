@@ -23,10 +23,7 @@ constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
 constexpr std::size_t kMostBeside = 1024;
 
 bool finite(const Observation& seen) {
-  const Pose2& pose = seen.odometry.pose;
-  const Twist2& twist = seen.odometry.twist;
-  return std::isfinite(seen.stamp) && std::isfinite(pose.x) && std::isfinite(pose.y) &&
-         std::isfinite(pose.heading) && std::isfinite(twist.v) && std::isfinite(twist.omega);
+  return std::isfinite(seen.stamp) && finite(seen.odometry.pose) && finite(seen.odometry.twist);
 }
 
 /// Shares of the stick's two parts, the ones that a driver would miss least first: slower along the

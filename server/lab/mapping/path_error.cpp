@@ -4,8 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "algo/pose_step.hpp"
-
 namespace server::mapping {
 namespace {
 

@@ -5,8 +5,6 @@
 #include "tests/algo/mapping/rooms.hpp"
 #include <gtest/gtest.h>
 
-#include "algo/pose_step.hpp"
-
 namespace {
 
 using algo::Mapper;

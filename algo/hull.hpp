@@ -1,0 +1,27 @@
+// algo/hull.hpp: the outline of a robot in the plane.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "algo/types.hpp"
+
+namespace algo {
+
+/// A rectangle about R, or a disc when it has no length.
+struct Hull {
+  double radius = 0;       // [m] of the disc, or of the circle about the rectangle
+  double half_length = 0;  // [m] along R's x
+  double half_width = 0;   // [m] along R's y
+  bool is_disc() const { return !(half_length > 0); }
+};
+
+/// [m] From `p` to the outline of a rectangle about the origin, negative inside.
+inline double to_rectangle(const Vec2& p, double half_length, double half_width) {
+  const double dx = std::abs(p.x()) - half_length;
+  const double dy = std::abs(p.y()) - half_width;
+  if (dx <= 0 && dy <= 0) return std::max(dx, dy);
+  return std::hypot(std::max(dx, 0.0), std::max(dy, 0.0));
+}
+
+}  // namespace algo
