@@ -34,10 +34,6 @@ template <typename Value>
   }
 }
 
-[[gnu::always_inline]] inline double cross(double ax, double ay, double bx, double by) {
-  return ax * by - ay * bx;
-}
-
 }  // namespace
 
 TAUTLINE_WIDE void splat_line(const double* ux,

@@ -7,6 +7,10 @@
 
 namespace sim {
 
+[[gnu::always_inline]] inline double cross(double ax, double ay, double bx, double by) {
+  return ax * by - ay * bx;
+}
+
 /// The depth buffer of a cast: for each ray the largest 1 / range met so far and, where wanted,
 /// what was met. The latter as a number of the same width, so that one loop carries both.
 struct DepthBuffer {

@@ -1,7 +1,6 @@
 // sim/fleet.cpp: a world a robot, and the two phases of a period.
 #include "sim/fleet.hpp"
 
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -28,13 +27,6 @@ algo::Obstacle body_of(const Scenario& scenario, std::size_t k) {
   }
   body.id = id_of(k);
   return body;
-}
-
-/// [m] Of a circle about its middle.
-double radius_of(const algo::Obstacle& body) {
-  if (const auto* cylinder = std::get_if<algo::Cylinder>(&body.shape)) return cylinder->radius;
-  const auto& box = std::get<algo::Box>(body.shape);
-  return std::hypot(box.length, box.width) / 2;
 }
 
 /// The scenario as robot `k` of it has it.
@@ -84,7 +76,9 @@ Fleet::Fleet(const Scenario& scenario, std::uint64_t seed, ForEach for_each)
     worlds_.push_back(world_of(scenario, seed, k));
     bodies_.push_back(body_of(scenario, k));
   }
-  for (const algo::Obstacle& body : bodies_) peers_.push_back({{}, radius_of(body), &body});
+  for (std::size_t k = 0; k < size(); ++k) {
+    peers_.push_back({{}, worlds_[k]->hull().radius, &bodies_[k]});
+  }
   check_starts();
   meet();
 }

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <span>
-#include <stdexcept>
+
+#include "sim/sensor.hpp"
 
 namespace sim {
 namespace {
@@ -14,18 +15,14 @@ constexpr std::uint64_t kPurpose = 0x4759524f;  // of its errors: no other senso
 }  // namespace
 
 std::optional<std::string> defect(const GyroConfig& config) {
-  const auto within = [](double value) { return value >= 0 && value <= 1; };  // false for NaN
-  if (!within(config.bias)) return "bias must be 0 to 1 rad/s";
-  if (!within(config.bias_walk)) return "bias_walk must be 0 to 1 rad/s";
-  if (!within(config.noise)) return "noise must be 0 to 1 rad/s";
+  if (!within(config.bias, 0, 1)) return "bias must be 0 to 1 rad/s";
+  if (!within(config.bias_walk, 0, 1)) return "bias_walk must be 0 to 1 rad/s";
+  if (!within(config.noise, 0, 1)) return "noise must be 0 to 1 rad/s";
   return std::nullopt;
 }
 
 GyroModel::GyroModel(const GyroConfig& config, std::uint64_t seed)
-    : config_(config), random_(seed, kPurpose) {
-  if (const auto problem = defect(config)) {
-    throw std::invalid_argument("Gyro: " + *problem + ".");
-  }
+    : config_(checked(config, "Gyro")), random_(seed, kPurpose) {
   double draw = 0;
   random_.fill_normal(std::span(&draw, 1));
   bias_ = config_.bias * draw;

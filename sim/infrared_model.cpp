@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace sim {
 namespace {
@@ -11,13 +10,6 @@ namespace {
 constexpr std::uint64_t kPurpose = 0x4952;  // of its noise: no other sensor's
 constexpr double kOnTime = 1e-9;            // [s] below any period, above rounding
 constexpr std::uint32_t kMostBeams = 361;
-
-const InfraredConfig& checked(const InfraredConfig& config) {
-  if (const auto problem = defect(config)) {
-    throw std::invalid_argument("Infrared scanner: " + *problem + ".");
-  }
-  return config;
-}
 
 BeamPattern fan_of(const InfraredConfig& config) {
   if (config.beams == 1) return {0, config.field, 1};
@@ -27,13 +19,7 @@ BeamPattern fan_of(const InfraredConfig& config) {
 }  // namespace
 
 std::optional<std::string> defect(const InfraredConfig& config) {
-  const auto within = [](double value, double low, double high) {
-    return value >= low && value <= high;  // false for NaN
-  };
-  const algo::Pose2& mount = config.mount_R;
-  if (!std::isfinite(mount.x) || !std::isfinite(mount.y) || !std::isfinite(mount.heading)) {
-    return "mount must be finite numbers";
-  }
+  if (!finite(config.mount_R)) return "mount must be finite numbers";
   if (config.beams < 1 || config.beams > kMostBeams) return "beams must be 1 to 361";
   if (!within(config.field, 0.001, 6.2832)) return "field must be above 0 to 360 degrees";
   if (!within(config.period, 1e-3, 1)) return "period must be 0.001 to 1 s";
@@ -45,18 +31,17 @@ std::optional<std::string> defect(const InfraredConfig& config) {
 }
 
 InfraredModel::InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index)
-    : config_(checked(config)),
+    : CastingSensor(config.height),
+      config_(checked(config, "Infrared scanner")),
       fan_(fan_of(config)),
-      caster_(config.height),
       noise_(seed, (kPurpose << 8U) + index),
       ranges_(config.beams),
       hits_(config.beams),
       errors_(config.beams) {
   phase_ = noise_.uniform(0, config_.period);
   for (std::size_t i = 0; i < fan_.beams; ++i) {
-    const double bearing = fan_.angle_min + static_cast<double>(i) * fan_.angle_increment;
     const algo::Pose2& mount = config_.mount_R;
-    mounts_R_.push_back({mount.x, mount.y, algo::wrap_angle(mount.heading + bearing)});
+    mounts_R_.push_back({mount.x, mount.y, algo::wrap_angle(mount.heading + fan_.angle(i))});
   }
 }
 
@@ -75,10 +60,7 @@ void InfraredModel::sense(double now,
     algo::RangeReading& reading = readings.append();
     reading = {mounts_R_[i], stamp, config_.range_max, config_.range_max, algo::Beam::Free};
     if (hits_[i] == RangeCaster::kNothing) continue;
-    const double range = std::max(config_.range_min, ranges_[i] + config_.noise * errors_[i]);
-    if (range >= config_.range_max) continue;
-    reading.range = range;
-    reading.status = algo::Beam::Ok;
+    measure(reading, std::max(config_.range_min, ranges_[i] + config_.noise * errors_[i]));
   }
 }
 

@@ -6,11 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "algo/observation.hpp"
-#include "algo/obstacle.hpp"
-#include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
-#include "sim/range_caster.hpp"
 #include "sim/sensor.hpp"
 
 namespace sim {
@@ -20,14 +16,11 @@ std::optional<std::string> defect(const InfraredConfig& config);
 
 /// Scan n is taken at (n + phase) x period [s, run clock], all beams at once; the phase is drawn
 /// once a run, so that two scanners do not fire together.
-class InfraredModel final : public Sensor {
+class InfraredModel final : public CastingSensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index);
 
-  void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
-  void move(std::uint32_t id, const algo::Pose2& pose_W) override { caster_.move(id, pose_W); }
-  void remove(std::uint32_t id) override { caster_.remove(id); }
   void sense(const Surroundings& around, algo::Observation& observation) override {
     sense(around.stamp, around.trail, observation.infrared);
   }
@@ -40,7 +33,6 @@ class InfraredModel final : public Sensor {
  private:
   InfraredConfig config_{};
   BeamPattern fan_{};
-  RangeCaster caster_;
   Random noise_;
   double phase_ = 0;                     // [s]
   std::int64_t scans_ = 0;               // reported, or passed over

@@ -13,16 +13,11 @@ using namespace algo::units;
 
 LaserConfig LaserConfig::with_resolution(double degrees) {
   LaserConfig config;
-  if (degrees == 1.0) {
-    config.turns = 1;
-  } else if (degrees == 0.5) {
-    config.turns = 2;
-  } else if (degrees == 0.25) {
-    config.turns = 4;
-  } else {
+  if (degrees != 1 && degrees != 0.5 && degrees != 0.25) {
     throw std::invalid_argument("The scanner's resolution must be 1, 0.5 or 0.25 degree, not " +
                                 std::to_string(degrees) + ".");
   }
+  config.turns = static_cast<std::uint32_t>(1 / degrees);
   config.field_of_view = config.turns == 4 ? 100_deg : 180_deg;
   config.angle_increment = degrees * kRadiansPerDegree;
   return config;
@@ -69,10 +64,7 @@ std::optional<std::string> defect(const LaserConfig& config) {
   if (!probability(config.dropout)) return "dropout must be 0 to 1";
   if (!probability(config.salt)) return "salt must be 0 to 1";
   if (!probability(config.pepper)) return "pepper must be 0 to 1";
-  const algo::Pose2& mount = config.mount_R;
-  if (!std::isfinite(mount.x) || !std::isfinite(mount.y) || !std::isfinite(mount.heading)) {
-    return "mount must be finite numbers";
-  }
+  if (!finite(config.mount_R)) return "mount must be finite numbers";
   return std::nullopt;
 }
 

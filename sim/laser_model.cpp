@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 namespace sim {
 namespace {
@@ -18,13 +17,6 @@ Random stream(std::uint64_t seed, std::uint32_t index, Purpose purpose) {
   return Random(seed, (std::uint64_t{index} << 8) + static_cast<std::uint64_t>(purpose));
 }
 
-const LaserConfig& checked(const LaserConfig& config, std::uint32_t index) {
-  if (const auto problem = defect(config)) {
-    throw std::invalid_argument("Laser " + std::to_string(index + 1) + ": " + *problem + ".");
-  }
-  return config;
-}
-
 /// The scanner at `mount_R` when the robot is at `robot_W`; right over its centre no sine is
 /// needed.
 algo::Pose2 scanner_W(const algo::Pose2& robot_W, const algo::Pose2& mount_R) {
@@ -35,8 +27,8 @@ algo::Pose2 scanner_W(const algo::Pose2& robot_W, const algo::Pose2& mount_R) {
 }  // namespace
 
 LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index)
-    : config_(checked(config, index)),
-      caster_(config.height),
+    : CastingSensor(config.height),
+      config_(checked(config, "Laser " + std::to_string(index + 1))),
       noise_(stream(seed, index, Purpose::Noise)),
       dropout_(stream(seed, index, Purpose::Dropout), config.dropout),
       salt_(stream(seed, index, Purpose::Salt), config.salt),
@@ -54,17 +46,10 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
 
   const std::size_t beams = pattern_.beams;
   fired_.reserve(beams);
-  ux_.resize(beams);
-  uy_.resize(beams);
-  for (std::size_t i = 0; i < beams; ++i) {
-    const double angle = pattern_.angle_min + static_cast<double>(i) * pattern_.angle_increment;
-    ux_[i] = std::cos(angle);
-    uy_[i] = std::sin(angle);
-  }
+  pattern_.aim(ux_, uy_);
   for (std::size_t turn = 0; turn < config_.turns; ++turn) {
     for (std::size_t i = turn; i < beams; i += config_.turns) {
-      const double angle = pattern_.angle_min + static_cast<double>(i) * pattern_.angle_increment;
-      const double turned = static_cast<double>(turn) + (angle + pi / 2) / (2 * pi);
+      const double turned = static_cast<double>(turn) + (pattern_.angle(i) + pi / 2) / (2 * pi);
       fired_.push_back(turned * config_.mirror_period);
     }
   }
@@ -89,16 +74,12 @@ double LaserModel::memory() const {
 }
 
 void LaserModel::add(const algo::Obstacle& obstacle) {
-  caster_.add(obstacle);
+  CastingSensor::add(obstacle);
   note_surfaces();
 }
 
-void LaserModel::move(std::uint32_t id, const algo::Pose2& pose_W) {
-  caster_.move(id, pose_W);
-}
-
 void LaserModel::remove(std::uint32_t id) {
-  caster_.remove(id);
+  CastingSensor::remove(id);
   note_surfaces();
 }
 

@@ -7,11 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algo/laser_scan.hpp"
-#include "algo/obstacle.hpp"
-#include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
-#include "sim/range_caster.hpp"
 #include "sim/sensor.hpp"
 
 namespace sim {
@@ -49,18 +45,16 @@ std::optional<std::string> defect(const LaserConfig& config);
 ///
 /// Order of effects: ray, surface (reflectivity), spot (mixed pixels), bias and noise, rounding;
 /// then pepper, salt and dropout, each from a generator of its own.
-class LaserModel final : public Sensor {
+class LaserModel final : public CastingSensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
   LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint32_t index);
 
-  std::size_t beams() const { return pattern_.beams; }
   /// [s] How far back in time a scan reaches at most: the newest sweep may have ended almost one
   /// sweep ago.
   double memory() const override;
 
   void add(const algo::Obstacle& obstacle) override;
-  void move(std::uint32_t id, const algo::Pose2& pose_W) override;
   void remove(std::uint32_t id) override;
   void sense(const Surroundings& around, algo::Observation& observation) override;
 
@@ -88,7 +82,6 @@ class LaserModel final : public Sensor {
 
   LaserConfig config_{};
   BeamPattern pattern_{};
-  RangeCaster caster_;
   bool plain_ = true;  // no surface in the world is too dark within range, none is specular
 
   Random noise_;

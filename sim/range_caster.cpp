@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double cross(double ax, double ay, double bx, double by) {
-  return ax * by - ay * bx;
-}
-
 /// The least whole number not below `value`, 0 for a negative one; a call of ceil() costs more.
 std::uint32_t round_up(double value) {
   const auto whole = static_cast<std::uint32_t>(value < 0 ? 0 : value);
@@ -25,6 +21,15 @@ std::uint32_t round_up(double value) {
 }
 
 }  // namespace
+
+void BeamPattern::aim(std::vector<double>& ux, std::vector<double>& uy) const {
+  ux.resize(beams);
+  uy.resize(beams);
+  for (std::size_t i = 0; i < beams; ++i) {
+    ux[i] = std::cos(angle(i));
+    uy[i] = std::sin(angle(i));
+  }
+}
 
 void RangeCaster::add(const algo::Obstacle& obstacle) {
   if (obstacle.height < plane_height_) return;
@@ -56,21 +61,8 @@ void RangeCaster::remove(std::uint32_t id) {
   if (index == obstacles_.size()) return;
   std::vector<algo::Obstacle> kept = std::move(obstacles_);
   kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(index));
-  clear();
+  *this = RangeCaster(plane_height_);
   for (const algo::Obstacle& obstacle : kept) add(obstacle);
-}
-
-void RangeCaster::clear() {
-  obstacles_.clear();
-  ids_.clear();
-  centre_x_.clear();
-  centre_y_.clear();
-  bound_.clear();
-  first_vertex_.clear();
-  vertex_count_.clear();
-  vertex_x_.clear();
-  vertex_y_.clear();
-  primitives_.clear();
 }
 
 std::size_t RangeCaster::find(std::uint32_t id) const {
@@ -133,13 +125,7 @@ void RangeCaster::use_pattern(const BeamPattern& pattern) {
     throw std::invalid_argument("A beam pattern needs beams, an increment above 0 and one turn.");
   }
   pattern_ = pattern;
-  ux_.resize(pattern.beams);
-  uy_.resize(pattern.beams);
-  for (std::size_t i = 0; i < pattern.beams; ++i) {
-    const double angle = pattern.angle_min + static_cast<double>(i) * pattern.angle_increment;
-    ux_[i] = std::cos(angle);
-    uy_[i] = std::sin(angle);
-  }
+  pattern.aim(ux_, uy_);
   per_radian_ = 1 / pattern.angle_increment;
   full_turn_ = turn * per_radian_;
   slack_ = kQuickBearingError * per_radian_;

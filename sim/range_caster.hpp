@@ -19,6 +19,9 @@ struct BeamPattern {
   double angle_increment = 0;  // [rad] above 0
   std::size_t beams = 0;
   bool operator==(const BeamPattern&) const = default;
+  double angle(std::size_t i) const { return angle_min + static_cast<double>(i) * angle_increment; }
+  /// The beams' unit vectors.
+  void aim(std::vector<double>& ux, std::vector<double>& uy) const;
 };
 
 /// Rays in a common reference frame, each with an origin and a unit direction of its own.
@@ -59,7 +62,6 @@ class RangeCaster {
   /// Moves or removes obstacle `id`; nothing to do when it lies below the plane.
   void move(std::uint32_t id, const algo::Pose2& pose_W);
   void remove(std::uint32_t id);
-  void clear();
 
   /// Number of obstacles seen, and the one behind an index reported in `hits`. Indices hold until
   /// the next add() or remove().

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/vehicle.hpp"
+#include "sim/robot_model.hpp"
 
 namespace sim {
 namespace {
@@ -118,7 +118,6 @@ void Replay::time_scans() {
 
 /// The recording robot is unknown: it is taken for a Silvermate.
 void Replay::describe() {
-  const RobotModel stand_in;
   std::vector<double> periods;
   for (std::size_t i = 1; i < scans_.size(); ++i) {
     periods.push_back(scans_[i].stamp - scans_[i - 1].stamp);
@@ -129,15 +128,8 @@ void Replay::describe() {
     std::nth_element(periods.begin(), middle, periods.end());
     period = *middle;
   }
-  spec_ = {.name = "log",
-           .radius = stand_in.radius,
-           .half_track = stand_in.half_track,
-           .period = period,
-           .max_v = stand_in.max_v,
-           .max_omega = stand_in.max_omega,
-           .max_acceleration = stand_in.max_acceleration,
-           .max_angular_acceleration = stand_in.max_angular_acceleration,
-           .drives = false};
+  spec_ = spec_of(RobotModel(), period);
+  spec_.name = "log";
 }
 
 void Replay::reset(algo::Observation& observation) {

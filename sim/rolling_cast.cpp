@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double cross(double ax, double ay, double bx, double by) {
-  return ax * by - ay * bx;
-}
-
 /// [rad] How far the bearing of a point `distance` away turns when the eye moves by `shift`; above
 /// asin(shift / distance), for which the quotient must stay under 1/4.
 double parallax(double shift, double distance) {

@@ -3,10 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "algo/obstacle.hpp"

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "algo/obstacle.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/pose_trail.hpp"
+#include "sim/range_caster.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/sensor_configs.hpp"
 #include "sim/vehicle.hpp"
@@ -51,6 +53,40 @@ class Sensor {
  protected:
   Sensor() = default;
 };
+
+/// A sensor that casts rays at the obstacles, and keeps its own slice of the world for it.
+class CastingSensor : public Sensor {
+ public:
+  void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
+  void move(std::uint32_t id, const algo::Pose2& pose_W) override { caster_.move(id, pose_W); }
+  void remove(std::uint32_t id) override { caster_.remove(id); }
+
+ protected:
+  /// `height` [m] over the floor.
+  explicit CastingSensor(double height) : caster_(height) {}
+
+  RangeCaster caster_;
+};
+
+inline bool within(double value, double low, double high) {
+  return value >= low && value <= high;  // false for NaN
+}
+
+/// `config`; throws std::invalid_argument with its defect, as a sentence about `sensor`.
+template <typename Config>
+const Config& checked(const Config& config, const std::string& sensor) {
+  if (const auto problem = defect(config)) {
+    throw std::invalid_argument(sensor + ": " + *problem + ".");
+  }
+  return config;
+}
+
+/// A reading of a sonar or infrared beam that met something at `range` [m], if that is in range.
+inline void measure(algo::RangeReading& reading, double range) {
+  if (range >= reading.range_max) return;
+  reading.range = range;
+  reading.status = algo::Beam::Ok;
+}
 
 /// All sensors of `robot`, in the order of their readings; throws std::invalid_argument with a
 /// sentence.

@@ -1,7 +1,6 @@
 // sim/sensor_configs.hpp: the sensors of a simulated robot as plain values.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <optional>

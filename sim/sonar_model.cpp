@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <stdexcept>
 
 namespace sim {
 namespace {
@@ -14,11 +13,6 @@ constexpr std::uint64_t kPurpose = 0x534f4e4152;  // of its noise: no scanner's
 constexpr std::size_t kRays = 31;                 // of a cone
 constexpr double kRounding = 1e-9;                // [rad] of degrees to radians and back
 constexpr double kOnTime = 1e-9;                  // [s] below any period, above rounding
-
-const SonarConfig& checked(const SonarConfig& config) {
-  if (const auto problem = defect(config)) throw std::invalid_argument("Sonar: " + *problem + ".");
-  return config;
-}
 
 /// Axis of sensor `k` [rad]: evenly over the field, a whole turn without its end, from straight
 /// ahead leftwards; a part of a turn from its right to its left border.
@@ -32,9 +26,6 @@ double axis(const SonarConfig& config, std::uint32_t k) {
 }  // namespace
 
 std::optional<std::string> defect(const SonarConfig& config) {
-  const auto within = [](double value, double low, double high) {
-    return value >= low && value <= high;  // false for NaN
-  };
   if (config.count < 1 || config.count > 64) return "count must be 1 to 64";
   if (!within(config.field, 0, 2 * std::numbers::pi + kRounding))
     return "field must be 0 to 360 degrees";
@@ -50,9 +41,9 @@ std::optional<std::string> defect(const SonarConfig& config) {
 }
 
 SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t seed)
-    : config_(checked(config)),
+    : CastingSensor(config.height),
+      config_(checked(config, "Sonar")),
       cone_{-config.cone / 2, config.cone / (kRays - 1), kRays},
-      caster_(config.height),
       noise_(seed, kPurpose),
       ranges_(kRays),
       hits_(kRays) {
@@ -70,9 +61,8 @@ std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
   std::optional<double> nearest;
   for (std::size_t i = 0; i < kRays; ++i) {
     if (hits_[i] == RangeCaster::kNothing || (nearest && ranges_[i] >= *nearest)) continue;
-    const double bearing =
-        sensor_W.heading + cone_.angle_min + static_cast<double>(i) * cone_.angle_increment;
-    const algo::Vec2 ray = algo::direction(bearing);
+    const double right = sensor_W.heading + cone_.angle_min;
+    const algo::Vec2 ray = algo::direction(right + static_cast<double>(i) * cone_.angle_increment);
     const algo::Vec2 normal = caster_.normal_W(hits_[i], sensor_W.position() + ranges_[i] * ray);
     if (-ray.dot(normal) >= least_cosine) nearest = ranges_[i];
   }
@@ -91,11 +81,7 @@ void SonarModel::sense(double now,
     noise_.fill_normal(std::span(&error, 1));
     algo::RangeReading& reading = readings.append();
     reading = {mount, fired, config_.range_max, config_.range_max, algo::Beam::Free};
-    if (!echo) continue;
-    const double range = std::max(config_.range_min, *echo + config_.noise * error);
-    if (range >= config_.range_max) continue;
-    reading.range = range;
-    reading.status = algo::Beam::Ok;
+    if (echo) measure(reading, std::max(config_.range_min, *echo + config_.noise * error));
   }
 }
 

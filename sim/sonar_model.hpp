@@ -7,11 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "algo/observation.hpp"
-#include "algo/obstacle.hpp"
-#include "sim/pose_trail.hpp"
 #include "sim/random.hpp"
-#include "sim/range_caster.hpp"
 #include "sim/sensor.hpp"
 
 namespace sim {
@@ -22,14 +18,11 @@ std::optional<std::string> defect(const SonarConfig& config);
 /// Sensor k pings at (k + count n) x ping [s, run clock], n = 0, 1, ...: no two at once, so that no
 /// one hears another's echo. An echo comes from the nearest surface of the cone that is not met too
 /// obliquely; without one the reading is Free (sensors.md 3).
-class SonarModel final : public Sensor {
+class SonarModel final : public CastingSensor {
  public:
   /// Mounted on a hull of `radius` [m]. Throws std::invalid_argument with the defect.
   SonarModel(const SonarConfig& config, double radius, std::uint64_t seed);
 
-  void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
-  void move(std::uint32_t id, const algo::Pose2& pose_W) override { caster_.move(id, pose_W); }
-  void remove(std::uint32_t id) override { caster_.remove(id); }
   void sense(const Surroundings& around, algo::Observation& observation) override {
     sense(around.stamp, around.trail, observation.sonar);
   }
@@ -44,7 +37,6 @@ class SonarModel final : public Sensor {
 
   SonarConfig config_{};
   BeamPattern cone_{};
-  RangeCaster caster_;
   Random noise_;
   std::vector<algo::Pose2> mounts_R_{};
   std::uint64_t pings_ = 0;  // reported

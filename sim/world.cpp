@@ -43,19 +43,9 @@ World::World(const Scenario& scenario, std::uint64_t seed)
       hull_(hull_of(robot_)),
       errors_(scenario.drive, seed) {
   check();
-  spec_ = {.name = robot_.name,
-           .radius = robot_.radius,
-           .half_length = hull_.half_length,
-           .half_width = hull_.half_width,
-           .half_track = robot_.half_track,
-           .period = scenario_.period,
-           .max_v = robot_.max_v,
-           .max_omega = robot_.max_omega,
-           .max_acceleration = robot_.max_acceleration,
-           .max_angular_acceleration = robot_.max_angular_acceleration,
-           .command_delay = scenario_.period * scenario_.drive.delay_ticks,
-           .drives = true};
-  spec_.has_laser = robot_.sensors.has_laser();
+  spec_ = spec_of(robot_, scenario_.period);
+  spec_.command_delay = scenario_.period * scenario_.drive.delay_ticks;
+  spec_.drives = true;
   for (const SensorConfig& config : robot_.sensors.further) {
     spec_.channels.push_back(channel_of(config));
   }
@@ -72,12 +62,8 @@ void World::check() const {
   if (!finite(scenario_.start)) {
     throw std::invalid_argument("The scenario's start must be finite numbers.");
   }
-  if (const auto problem = defect(robot_)) {
-    throw std::invalid_argument("The scenario's robot: " + *problem + ".");
-  }
-  if (const auto problem = defect(scenario_.drive)) {
-    throw std::invalid_argument("The scenario's drive: " + *problem + ".");
-  }
+  checked(robot_, "The scenario's robot");
+  checked(scenario_.drive, "The scenario's drive");
   if (robot_.sensors.bumpers > kMostBumpers) {
     throw std::invalid_argument("The scenario's bumpers must be 0 to 8.");
   }
@@ -85,10 +71,7 @@ void World::check() const {
     throw std::invalid_argument("The scenario may have 16 further sensors at most.");
   }
   for (const SensorConfig& config : robot_.sensors.further) {
-    if (const auto problem = defect(config)) {
-      throw std::invalid_argument("The scenario's sensor " + config.channel + ": " + *problem +
-                                  ".");
-    }
+    checked(config, "The scenario's sensor " + config.channel);
   }
   const bool has_gyro =
       robot_.sensors.has_gyro && (robot_.sensors.gyro || scenario_.physics == PhysicsKind::Bullet);
@@ -151,10 +134,6 @@ void World::start_localization(const algo::Pose2& pose_W) {
     }
   }
   localization_.reset(pose_W);
-}
-
-void World::restart() {
-  if (used_) start();
 }
 
 void World::reset(algo::Observation& observation) {

@@ -48,7 +48,9 @@ class World final : public algo::Robot, public algo::Editing {
   // reset() and step() in parts, for a robot among others.
 
   /// The scenario anew; nothing is sensed.
-  void restart();
+  void restart() {
+    if (used_) start();
+  }
   /// What the next advance() drives under.
   void write(const algo::Command& command) { command_ = command; }
   /// One period of driving; nothing is sensed.
@@ -77,9 +79,7 @@ class World final : public algo::Robot, public algo::Editing {
   void check() const;
   void start();
   void start_localization(const algo::Pose2& pose_W);
-  std::optional<std::string> objection(const algo::AddObstacle& add) const;
   std::optional<std::string> objection(const algo::MoveObstacle& move) const;
-  std::optional<std::string> objection(const algo::RemoveObstacle& remove) const;
   std::optional<std::string> refusal(const algo::Obstacle& obstacle) const;
   void insert(const algo::Obstacle& obstacle);
   void remove(std::uint32_t id);

@@ -37,11 +37,14 @@ std::optional<std::string> World::edit(const algo::Request& request) {
 }
 
 std::optional<std::string> World::objection(const algo::Request& request) const {
-  if (const auto* add = std::get_if<algo::AddObstacle>(&request)) return objection(*add);
-  if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) return objection(*move);
-  if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
-    return objection(*remove_request);
+  if (const auto* add = std::get_if<algo::AddObstacle>(&request)) {
+    const std::uint32_t id = add->obstacle.id;
+    if (obstacles_.find(id)) return "There is an obstacle " + std::to_string(id) + " already.";
+    return refusal(add->obstacle);
   }
+  if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) return objection(*move);
+  const auto* gone = std::get_if<algo::RemoveObstacle>(&request);
+  if (gone != nullptr && !obstacles_.find(gone->id)) return there_is_none(gone->id);
   return std::nullopt;
 }
 
@@ -59,13 +62,6 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
   return std::nullopt;
 }
 
-std::optional<std::string> World::objection(const algo::AddObstacle& add) const {
-  if (obstacles_.find(add.obstacle.id)) {
-    return "There is an obstacle " + std::to_string(add.obstacle.id) + " already.";
-  }
-  return refusal(add.obstacle);
-}
-
 std::optional<std::string> World::objection(const algo::MoveObstacle& move) const {
   const auto index = obstacles_.find(move.id);
   if (!index) return there_is_none(move.id);
@@ -75,11 +71,6 @@ std::optional<std::string> World::objection(const algo::MoveObstacle& move) cons
   for (const ObstaclePath& path : scenario_.paths) {
     if (path.id == move.id) return name_of(obstacle) + " moves by itself.";
   }
-  return std::nullopt;
-}
-
-std::optional<std::string> World::objection(const algo::RemoveObstacle& remove) const {
-  if (!obstacles_.find(remove.id)) return there_is_none(remove.id);
   return std::nullopt;
 }
 

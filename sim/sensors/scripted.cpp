@@ -1,7 +1,6 @@
 // sim/sensors/scripted.cpp: a value that a scenario lays down over time, such as a battery's.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sim/sensor.hpp"
 
