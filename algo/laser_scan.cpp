@@ -27,6 +27,20 @@ TAUTLINE_WIDE void pack_ranges(const double* ranges,
 
 }  // namespace
 
+const std::vector<Vec2>& BeamDirections::of(const LaserScan& scan, double heading) {
+  const bool same = directions_.size() == scan.size() && angle_min_ == scan.angle_min &&
+                    angle_increment_ == scan.angle_increment && heading_ == heading;
+  if (same) return directions_;
+  angle_min_ = scan.angle_min;
+  angle_increment_ = scan.angle_increment;
+  heading_ = heading;
+  directions_.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    directions_[i] = direction(heading + scan.angle(i));
+  }
+  return directions_;
+}
+
 /// x - x is 0 for a finite number and otherwise none; Eigen adds that up in vectors.
 bool all_finite(std::span<const double> numbers) {
   const Eigen::Map<const Eigen::ArrayXd> x(numbers.data(),

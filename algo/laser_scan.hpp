@@ -2,7 +2,6 @@
 // never be mistaken for a distance.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -71,6 +70,17 @@ struct LaserScan {
     status[i] = s;
     codes[i] = code;
   }
+};
+
+/// Unit vectors of a scan's beams, kept while the scanner stays the same.
+class BeamDirections {
+ public:
+  /// In a frame in which the scanner's heading is `heading` [rad]; B vectors.
+  const std::vector<Vec2>& of(const LaserScan& scan, double heading = 0);
+
+ private:
+  std::vector<Vec2> directions_{};
+  double angle_min_ = 0, angle_increment_ = 0, heading_ = 0;  // [rad] that they are of
 };
 
 /// No infinity and no NaN among them; quick, for all ranges of a scan.

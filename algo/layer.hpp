@@ -2,7 +2,6 @@
 // kind, without knowing whose it is.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -63,12 +62,14 @@ struct Layer : LayerInfo {
 constexpr std::uint8_t kUnknownCell = 255;
 
 /// A further layer, empty. A controller adds its layers in the same order each tick, also those
-/// that have nothing to show, so that each finds its own buffers again.
-inline Layer& add_layer(Recycled<Layer>& layers, const LayerInfo& info) {
+/// that have nothing to show, so that each finds its own buffers again. With room for `values`: a
+/// tick with more than its predecessors then allocates nothing.
+inline Layer& add_layer(Recycled<Layer>& layers, const LayerInfo& info, std::size_t values = 0) {
   Layer& layer = layers.append();
   static_cast<LayerInfo&>(layer) = info;
   layer.level = 0;
   layer.values.clear();
+  layer.values.reserve(values);
   layer.cells.clear();
   layer.text.clear();
   return layer;

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 namespace algo {
@@ -14,6 +13,10 @@ class Recycled {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   void clear() { size_ = 0; }
+  /// Makes `count` elements that append() will hand out.
+  void reserve(std::size_t count) {
+    if (items_.size() < count) items_.resize(count);
+  }
 
   /// A further element. It still holds what it held before the last clear(): overwrite every field.
   T& append() {

@@ -238,7 +238,7 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
 
   // Room for all of them in each: references to a layer do not outlive the next add_layer().
   for (const LayerInfo* info : {&layers::kRefused, &layers::kAllowed, &layers::kChosen}) {
-    add_layer(out.layers, *info).values.reserve(std::size_t{2} * kMotions);
+    add_layer(out.layers, *info, std::size_t{2} * kMotions);
   }
   Layer& refused = *(out.layers.end() - 3);
   Layer& allowed = *(out.layers.end() - 2);

@@ -60,6 +60,10 @@ class DistanceField {
 
   /// [mm] Of a cell inside the window.
   std::int16_t at(int column, int row) const { return field_[index(column, row)]; }
+  /// Of a cell of the window, row by row.
+  static std::size_t index(int column, int row) {
+    return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
+  }
   /// The distances [mm] of (column, row) and the cells right of it; the next row is kSize further.
   const std::int16_t* from(int column, int row) const { return &field_[index(column, row)]; }
 
@@ -71,9 +75,6 @@ class DistanceField {
   /// For each row of a tile, the cells up or down to the nearest occupied one in each column.
   using Gaps = std::array<std::array<std::uint8_t, kSpan>, kTile>;
 
-  static std::size_t index(int column, int row) {
-    return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
-  }
   void measure_gaps(std::span<const std::uint8_t> hits,
                     std::uint8_t occupied,
                     int left,

@@ -79,21 +79,12 @@ ParameterList FullStripController::parameters() {
   return kParameters;
 }
 
-FullStripController::FullStripController(bool among_moving) : among_moving_(among_moving) {}
-
 void FullStripController::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
   tracker_.reset();
-  planner_.reset();
-  strip_.clear();
-  search_.reset();
-  maneuver_.reset();
+  forget_way();
   way_since_ = 0;
   goal_W_.reset();
-  level_ = 0;
-  no_way_ = false;
-  goal_taken_ = false;
-  tight_since_.reset();
   broken_at_ = -1;
   next_plan_ = 0;
   state_ = kNone;
@@ -103,6 +94,18 @@ void FullStripController::reset(const Pose2& start_W) {
   under_way_.clear();
   points_.reset();
   path_W_.clear();
+}
+
+/// All that is known of a way to the goal.
+void FullStripController::forget_way() {
+  strip_.clear();
+  planner_.reset();
+  search_.reset();
+  maneuver_.reset();
+  level_ = 0;
+  no_way_ = false;
+  goal_taken_ = false;
+  tight_since_.reset();
 }
 
 double FullStripController::least_clearance() const {
@@ -234,15 +237,14 @@ void FullStripController::take_plan(const ControlInput& in) {
 
 /// [m] From the end of `strip` to the goal.
 double FullStripController::left(const NodeStrip& strip) const {
-  return (strip.nodes()[strip.nodes().size() - 1].position_W - *goal_W_).norm();
+  return (strip.end_W() - *goal_W_).norm();
 }
 
 /// Whether something stands on the goal and the robot comes no nearer, or must not try.
 bool FullStripController::ends_here(const ControlInput& in, const Parameters& parameters) const {
   if (!goal_taken_ || strip_.empty() || left(strip_) < parameters[kGoalReach]) return false;
   if (parameters[kNearestGoal] == 0) return true;
-  const Vec2& end_W = strip_.nodes()[strip_.nodes().size() - 1].position_W;
-  return (end_W - in.odometry.pose.position()).norm() < kAtEnd;
+  return (strip_.end_W() - in.odometry.pose.position()).norm() < kAtEnd;
 }
 
 /// The reactive layer: the strip follows the robot and what the map says.
@@ -471,17 +473,10 @@ void FullStripController::update(const ControlInput& in,
   }
   if (!goal_W_ || *goal_W_ != in.goal->position_W) {
     goal_W_ = in.goal->position_W;
-    strip_.clear();
-    planner_.reset();
+    forget_way();
     next_plan_ = in.stamp;
     progress_W_ = in.odometry.pose.position();
     progress_at_ = in.stamp;
-    no_way_ = false;
-    goal_taken_ = false;
-    tight_since_.reset();
-    level_ = 0;
-    search_.reset();
-    maneuver_.reset();
     way_W_ = progress_W_;
     way_since_ = in.stamp;
   }

@@ -39,7 +39,7 @@ class FullStripController final : public Controller {
   static ParameterList parameters();
 
   /// `among_moving`: things that move are tracked and the beam search gives way to them.
-  explicit FullStripController(bool among_moving = false);
+  explicit FullStripController(bool among_moving = false) : among_moving_(among_moving) {}
 
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
@@ -60,6 +60,7 @@ class FullStripController final : public Controller {
   static constexpr std::uint8_t kGoalTaken = 10;   // something stands on it; it drives no farther
 
  private:
+  void forget_way();
   void prepare(const ControlInput& in, const Parameters& parameters);
   void sense(const ControlInput& in);
   void forget_traces(const ControlInput& in);

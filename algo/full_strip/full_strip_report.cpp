@@ -27,22 +27,14 @@ constexpr LayerInfo kVelocities{.name = "moving.velocity",
                                 .tone = Tone::Moving,
                                 .unit = "m/s"};
 
-/// A further layer with room for `values`: a tick with more values than its predecessors then
-/// allocates nothing.
-Layer& add_layer(ControlOutput& out, const LayerInfo& info, std::size_t values) {
-  Layer& layer = add_layer(out.layers, info);
-  layer.values.reserve(values);
-  return layer;
-}
-
 }  // namespace
 
 void FullStripController::report(const ControlInput& in, ControlOutput& out) const {
   out.state = state_;
   out.waits = state_ == kNoWay || state_ == kGoalTaken || state_ == kBlocked || state_ == kCornered;
-  Layer& map = add_layer(out, kMap, 0);
+  Layer& map = add_layer(out.layers, kMap);
   if (in.grids) map_.draw(in.odometry.pose.position(), kDrawn, map);
-  Layer& plan = add_layer(out, layers::kPlan, 0);
+  Layer& plan = add_layer(out.layers, layers::kPlan);
   for (const Vec2& point : path_W_) put(plan, point);
   show_weighed(out);
   show_strip(out);
@@ -51,7 +43,7 @@ void FullStripController::report(const ControlInput& in, ControlOutput& out) con
 
 void FullStripController::show_weighed(ControlOutput& out) const {
   const auto show = [&](const LayerInfo& info, const auto& belongs) {
-    Layer& layer = add_layer(out, info, 2 * Weighing::kMost);
+    Layer& layer = add_layer(out.layers, info, 2 * Weighing::kMost);
     for (const Candidate& c : weighed_.candidates) {
       if (belongs(c)) put(layer, c.horizon * c.twist.v, c.horizon * c.twist.omega);
     }
@@ -62,9 +54,9 @@ void FullStripController::show_weighed(ControlOutput& out) const {
 }
 
 void FullStripController::show_strip(ControlOutput& out) const {
-  Layer& line = add_layer(out, layers::kStrip, 0);
+  Layer& line = add_layer(out.layers, layers::kStrip);
   for (const Node& node : strip_.nodes()) put(line, node.position_W);
-  Layer& ahead = add_layer(out, layers::kStripAhead, 4);
+  Layer& ahead = add_layer(out.layers, layers::kStripAhead, 4);
   if (strip_.empty()) return;
   // It ends short of a goal beyond the map, or on which something stands.
   if (goal_W_ && strip_.end_W() != *goal_W_) put(ahead, strip_.end_W(), *goal_W_);
@@ -73,14 +65,14 @@ void FullStripController::show_strip(ControlOutput& out) const {
 
 void FullStripController::show_moving(ControlOutput& out) const {
   const auto show = [&](const LayerInfo& info, bool hidden) {
-    Layer& circles = add_layer(out, info, 3 * kFewMoving);
+    Layer& circles = add_layer(out.layers, info, 3 * kFewMoving);
     for (const Track& track : tracker_.moving()) {
       if ((track.unseen > kOutOfSight) == hidden) put(circles, track.position_W, track.radius);
     }
   };
   show(kMoving, false);
   show(kHidden, true);
-  Layer& velocities = add_layer(out, kVelocities, 4 * kFewMoving);
+  Layer& velocities = add_layer(out.layers, kVelocities, 4 * kFewMoving);
   for (const Track& track : tracker_.moving()) put(velocities, track.position_W, track.velocity_W);
   if (!among_moving_) return;
   out.measures.push_back({"moving.count", "", static_cast<double>(tracker_.moving().size())});

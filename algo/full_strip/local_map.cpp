@@ -158,9 +158,7 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
     }
     const double reach = nearest - kBeyond;
     if (!measured || reach <= 0 || reach * reach < far) continue;
-    if (weaken(cell, kLook)) continue;
-    active_[i] = active_.back();
-    active_.pop_back();
+    if (!weaken(cell, kLook)) drop_active(i);
   }
 }
 
@@ -174,8 +172,12 @@ void LocalMap::doubt_suspects() {
 void LocalMap::clear(std::size_t cell) {
   weaken(cell, kMost);
   const auto listed = std::ranges::find(active_, static_cast<std::uint32_t>(cell));
-  if (listed == active_.end()) return;
-  *listed = active_.back();
+  if (listed != active_.end()) drop_active(static_cast<std::size_t>(listed - active_.begin()));
+}
+
+/// Takes the `i`th out of the list: the last comes in its place.
+void LocalMap::drop_active(std::size_t i) {
+  active_[i] = active_.back();
   active_.pop_back();
 }
 
@@ -196,8 +198,7 @@ void LocalMap::age() {
     // From now on it is not occupied: so it must not be taken for seen and free either.
     hits_[cell] = 0;
     space_.forget(mean_W(cell), kFaded);
-    active_[i] = active_.back();
-    active_.pop_back();
+    drop_active(i);
   }
 }
 

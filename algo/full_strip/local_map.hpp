@@ -58,16 +58,9 @@ class LocalMap {
   /// which `free(point_W)` holds: where the robot itself stands, or what has begun to move.
   template <typename Free>
   void erase_near(const Vec2& p_W, double reach, Free&& free) {
-    const int x0 = std::max(0, column_of(p_W.x() - reach));
-    const int x1 = std::min(kSize - 1, column_of(p_W.x() + reach));
-    const int y0 = std::max(0, row_of(p_W.y() - reach));
-    const int y1 = std::min(kSize - 1, row_of(p_W.y() + reach));
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const std::size_t cell = index(x, y);
-        if (hits_[cell] > 0 && free(mean_W(cell))) clear(cell);
-      }
-    }
+    each_cell(p_W, reach, [&](std::size_t cell) {
+      if (hits_[cell] > 0 && free(mean_W(cell))) clear(cell);
+    });
   }
 
   /// [m] From `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
@@ -79,16 +72,9 @@ class LocalMap {
   /// `p_W`, with the mean of the hits in it: where the surface is, closer than its cell tells.
   template <typename See>
   void each_near(const Vec2& p_W, double reach, See&& see) const {
-    const int x0 = std::max(0, column_of(p_W.x() - reach));
-    const int x1 = std::min(kSize - 1, column_of(p_W.x() + reach));
-    const int y0 = std::max(0, row_of(p_W.y() - reach));
-    const int y1 = std::min(kSize - 1, row_of(p_W.y() + reach));
-    for (int y = y0; y <= y1; ++y) {
-      for (int x = x0; x <= x1; ++x) {
-        const std::size_t cell = index(x, y);
-        if (hits_[cell] >= kOccupied) see(mean_W(cell));
-      }
-    }
+    each_cell(p_W, reach, [&](std::size_t cell) {
+      if (hits_[cell] >= kOccupied) see(mean_W(cell));
+    });
   }
 
   /// Whether the straight line between two points keeps `room` [m] from all that is occupied.
@@ -113,11 +99,19 @@ class LocalMap {
     std::uint8_t hits = 0;
     Offset mean{};
   };
-  int column_of(double x_W) const {
-    return static_cast<int>(std::floor((x_W - corner_W_.x()) / kCell));
-  }
-  int row_of(double y_W) const {
-    return static_cast<int>(std::floor((y_W - corner_W_.y()) / kCell));
+  /// Calls `visit(cell)` for each cell of the square of half edge `reach` [m] about `p_W`.
+  template <typename Visit>
+  void each_cell(const Vec2& p_W, double reach, Visit&& visit) const {
+    const auto place = [](double metres) { return static_cast<int>(std::floor(metres / kCell)); };
+    const Vec2 low = p_W - Vec2(reach, reach);
+    const Vec2 high = p_W + Vec2(reach, reach);
+    const int x0 = std::max(0, place(low.x() - corner_W_.x()));
+    const int x1 = std::min(kSize - 1, place(high.x() - corner_W_.x()));
+    const int y0 = std::max(0, place(low.y() - corner_W_.y()));
+    const int y1 = std::min(kSize - 1, place(high.y() - corner_W_.y()));
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) visit(index(x, y));
+    }
   }
   Vec2 centre_W(std::size_t cell) const {
     const auto column = static_cast<double>(cell % kSize);
@@ -128,15 +122,14 @@ class LocalMap {
     const Offset& o = means_[cell];
     return centre_W(cell) + Vec2(static_cast<double>(o[0]), static_cast<double>(o[1]));
   }
-  static std::size_t index(int column, int row) {
-    return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
-  }
+  static std::size_t index(int column, int row) { return DistanceField::index(column, row); }
   void hit(const Vec2& point_W);
   void look_through(const LaserScan& scan, const Pose2& sensor_W);
   void doubt_suspects();
   void age();
   bool weaken(std::size_t cell, int by);
   void clear(std::size_t cell);
+  void drop_active(std::size_t i);
   void shift(int tile_columns, int tile_rows);
 
   Vec2 corner_W_{0, 0};

@@ -49,8 +49,7 @@ int sign(double value) {
 
 ManeuverSearch::ManeuverSearch() : nodes_(static_cast<std::size_t>(kCells) * kCells * kHeadings) {
   heap_.reserve(4 * nodes_.size() / 10);
-  for (std::size_t i = 0; i < kLongest; ++i) pieces_.append();
-  pieces_.clear();
+  pieces_.reserve(kLongest);
 }
 
 std::optional<std::uint32_t> ManeuverSearch::node_at(const Pose2& pose_W) const {
@@ -152,8 +151,7 @@ void ManeuverSearch::trace(std::uint32_t node) {
 }
 
 ManeuverDrive::ManeuverDrive() {
-  for (std::size_t i = 0; i < kLongest; ++i) pieces_.append();
-  pieces_.clear();
+  pieces_.reserve(kLongest);
 }
 
 void ManeuverDrive::start(const Recycled<Piece>& pieces) {

@@ -2,7 +2,6 @@
 #include "algo/full_strip/node_strip.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "algo/full_strip/planner.hpp"
 #include "algo/strip/strip.hpp"
@@ -30,12 +29,8 @@ double march(const LocalMap& map, const Vec2& p_W, const Vec2& along, double mos
 }  // namespace
 
 NodeStrip::NodeStrip() {
-  for (std::size_t i = 0; i < kMost; ++i) {
-    nodes_.push_back({{0, 0}, {0, 0}, {0, 0}});
-    line_.push_back({0, 0});
-  }
-  nodes_.clear();
-  line_.clear();
+  nodes_.reserve(kMost);
+  line_.reserve(kMost);
 }
 
 void NodeStrip::lay(const Recycled<Vec2>& path) {

@@ -14,7 +14,6 @@ struct Node {
   Vec2 position_W{0, 0};
   Vec2 internal_W{0, 0};
   Vec2 external_W{0, 0};
-  bool operator==(const Node&) const = default;
 };
 
 struct StripSettings {

@@ -44,29 +44,16 @@ Pose2 ScanPoints::pose_at(double stamp) const {
   return trail_.back().pose_W;
 }
 
-/// The beams' directions, kept while the scanner stays the same.
-void ScanPoints::aim_beams(const LaserScan& scan) {
-  if (beams_.size() == scan.size() && beams_min_ == scan.angle_min &&
-      beams_step_ == scan.angle_increment) {
-    return;
-  }
-  beams_.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) beams_[i] = direction(scan.angle(i));
-  beams_min_ = scan.angle_min;
-  beams_step_ = scan.angle_increment;
-}
-
 Pose2 ScanPoints::map(const LaserScan& scan) {
   points_W_.resize(scan.size());
-  aim_beams(scan);
+  const std::vector<Vec2>& beams = beams_.of(scan);
   const bool rolling = scan.turn_period > 0;
   const Pose2 sensor_W = compose(pose_at(scan.stamp - scan.sweep_time() / 2), scan.mount_R);
   Frame at = frame_of(sensor_W);
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] != Beam::Ok) continue;
     if (rolling) at = frame_of(compose(pose_at(scan.beam_time(i)), scan.mount_R));
-    points_W_[i] =
-        at.origin + scan.ranges[i] * (at.ahead * beams_[i].x() + at.left * beams_[i].y());
+    points_W_[i] = at.origin + scan.ranges[i] * (at.ahead * beams[i].x() + at.left * beams[i].y());
   }
   return sensor_W;
 }

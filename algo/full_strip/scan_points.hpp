@@ -28,11 +28,9 @@ class ScanPoints {
     Pose2 pose_W{};
   };
   Pose2 pose_at(double stamp) const;
-  void aim_beams(const LaserScan& scan);
 
-  std::vector<Place> trail_{};             // newest last
-  std::vector<Vec2> beams_{};              // directions in the scanner's frame
-  double beams_min_ = 0, beams_step_ = 0;  // [rad] of the scanner they are of
+  std::vector<Place> trail_{};  // newest last
+  BeamDirections beams_{};      // in the scanner's frame
   std::vector<Vec2> points_W_{};
 };
 

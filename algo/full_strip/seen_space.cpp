@@ -75,12 +75,4 @@ void SeenSpace::set_disc(const Vec2& centre_W, double radius, std::uint8_t seen)
   }
 }
 
-void SeenSpace::mark(const Vec2& centre_W, double radius) {
-  set_disc(centre_W, radius, 1);
-}
-
-void SeenSpace::forget(const Vec2& centre_W, double radius) {
-  set_disc(centre_W, radius, 0);
-}
-
 }  // namespace algo

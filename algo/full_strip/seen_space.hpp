@@ -30,9 +30,9 @@ class SeenSpace {
   /// Enters the beams of `scan`, taken at `sensor_W`, up to kLook.
   void look(const LaserScan& scan, const Pose2& sensor_W);
   /// Takes the disc about `centre_W` for seen: the robot stands there, or has room to turn there.
-  void mark(const Vec2& centre_W, double radius);
+  void mark(const Vec2& centre_W, double radius) { set_disc(centre_W, radius, 1); }
   /// The disc about `centre_W` counts as never seen.
-  void forget(const Vec2& centre_W, double radius);
+  void forget(const Vec2& centre_W, double radius) { set_disc(centre_W, radius, 0); }
 
   bool seen(const Vec2& p_W) const {
     const int column = cell_of(p_W.x());

@@ -19,7 +19,6 @@ struct Track {
   double radius = 0;      // [m]
   double age = 0;         // [s] since it was first seen
   double unseen = 0;      // [s] since it was last seen
-  bool operator==(const Track&) const = default;
 };
 
 /// A round body as thick as a person or more is taken for one that may move from its first scan on,

@@ -15,7 +15,6 @@ struct Candidate {
   double horizon = 0;    // [s]
   bool allowed = false;  // passed the test of its stage
   bool chosen = false;
-  bool operator==(const Candidate&) const = default;
 };
 
 /// Candidates in a fixed array: no tick allocates, however many it weighs.
@@ -23,10 +22,7 @@ class Weighing {
  public:
   static constexpr std::size_t kMost = 32;
 
-  Weighing() {
-    while (candidates.size() < kMost) candidates.append();
-    candidates.clear();
-  }
+  Weighing() { candidates.reserve(kMost); }
   void clear() {
     candidates.clear();
     pass_W.reset();

@@ -143,8 +143,7 @@ void ElasticStripController::show(const Strip& strip,
   put(add_layer(out.layers, layers::kStripAhead), pass_W, goal_W);
   put(add_layer(out.layers, kNodes), pass_W);
   const auto arrows = [&](const LayerInfo& info, std::initializer_list<const Vec2*> forces) {
-    Layer& layer = add_layer(out.layers, info);
-    layer.values.reserve(4 * forces.size());  // also where there is no force yet
+    Layer& layer = add_layer(out.layers, info, 4 * forces.size());
     for (const Vec2* force : forces) {
       if (force->squaredNorm() > kVisible * kVisible) put(layer, strip.end_W, *force);
     }

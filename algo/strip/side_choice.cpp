@@ -49,26 +49,12 @@ double side_share(const Vec2& force_W, const Vec2& to_goal_W) {
   return std::clamp((c - kCosNone) / (kCosFull - kCosNone), 0.0, 1.0);
 }
 
-void SideChoice::prepare_directions(const LaserScan& scan) {
-  const bool same = directions_R_.size() == scan.size() && angle_min_ == scan.angle_min &&
-                    angle_increment_ == scan.angle_increment &&
-                    mount_heading_ == scan.mount_R.heading;
-  if (same) return;
-  angle_min_ = scan.angle_min;
-  angle_increment_ = scan.angle_increment;
-  mount_heading_ = scan.mount_R.heading;
-  directions_R_.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    directions_R_[i] = direction(mount_heading_ + scan.angle(i));
-  }
-}
-
 /// The nearest beam with a return q inside the lane: 0 < q.u < min(D, reach + radius) and
 /// |q.n| < radius + 0.1 m.
 std::optional<std::size_t> SideChoice::blocking_beam(const SideInput& in) {
   const LaserScan& scan = *in.scan;
   if (!(scan.angle_increment > 0)) return std::nullopt;  // the beams have no order
-  prepare_directions(scan);
+  const std::vector<Vec2>& directions_R = directions_R_.of(scan, scan.mount_R.heading);
   const Vec2 to_goal_W = in.goal_W - in.pose_W.position();
   const double lane_length = std::min(to_goal_W.norm(), in.reach + in.robot_radius);
   const double lane_half_width = in.robot_radius + kLaneMargin;
@@ -81,7 +67,7 @@ std::optional<std::size_t> SideChoice::blocking_beam(const SideInput& in) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (!(scan.ranges[i] < nearest) || scan.status[i] != Beam::Ok) continue;
-    const Vec2 q = l + scan.ranges[i] * directions_R_[i];
+    const Vec2 q = l + scan.ranges[i] * directions_R[i];
     const double along = q.dot(u);
     if (along > 0 && along < lane_length && std::abs(q.dot(n)) < lane_half_width) {
       nearest = scan.ranges[i];

@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "algo/laser_scan.hpp"
 #include "algo/types.hpp"
@@ -21,7 +20,6 @@ struct SideState {
   Side side = Side::None;
   double since = 0;                      // [s] run clock of the choice
   std::optional<double> last_blocked{};  // [s] run clock
-  bool operator==(const SideState&) const = default;
 };
 
 struct SideInput {
@@ -51,14 +49,9 @@ class SideChoice {
 
  private:
   std::optional<std::size_t> blocking_beam(const SideInput& in);
-  void prepare_directions(const LaserScan& scan);
 
   SideState state_{};
-  // Unit vectors of the beams in R, kept while the scanner stays the same.
-  std::vector<Vec2> directions_R_{};
-  double angle_min_ = 0;
-  double angle_increment_ = 0;
-  double mount_heading_ = 0;
+  BeamDirections directions_R_{};
 };
 
 /// The side with less of the obstacle beyond the goal's bearing: grows a cluster from `beam` to

@@ -1,8 +1,6 @@
 // algo/strip/via_buffer.cpp: Buffer, SortPosition and IsSort, equations.md D.
 #include "algo/strip/via_buffer.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 
