@@ -3,7 +3,6 @@
 #include "algo/pipeline/controllers.hpp"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <string>
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 
 #include "algo/dazzle.hpp"
 #include "algo/gate.hpp"
@@ -188,15 +187,10 @@ void Pipeline::sense_sonar(Telemetry& t) {
 
 void Pipeline::show_nearest(Telemetry& t) const {
   t.layers.clear();
-  Layer& nearest = add_layer(t.layers, kNearest);
-  nearest.values.reserve(4);
+  Layer& nearest = add_layer(t.layers, kNearest, 4);
   for (const auto& side : {scene_.left, scene_.right}) {
     if (side) put(nearest, side->point_W);
   }
-}
-
-bool Pipeline::manual() const {
-  return joystick_ticks_ > 0;
 }
 
 void Pipeline::control(Telemetry& t) {
@@ -206,7 +200,9 @@ void Pipeline::control(Telemetry& t) {
   for (const SetGoal& goal : intent_.goals_ahead) t.goals_ahead.push_back(goal);
 
   Resource resource;
+  resource.stamp = t.observation.stamp;
   resource.dt = spec_.period;
+  resource.odometry = t.observation.odometry;
   resource.observation = &t.observation;
   resource.scene = &scene_;
   resource.merge = &sensing_.merge();
@@ -216,7 +212,7 @@ void Pipeline::control(Telemetry& t) {
   resource.goal = t.goal;
   resource.mission = t.mission;
   resource.joystick = intent_.stick;
-  resource.manual = manual();
+  resource.manual = joystick_ticks_ > 0;
   resource.grids = grids_wanted_ && grids_.due(t.observation.stamp);
   const Decision decision = coordinator_.decide(resource, t.output);
   if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);

@@ -62,7 +62,6 @@ class Pipeline {
   void hold(Telemetry& t);
   void remember(const Twist2& command);
   void show_nearest(Telemetry& t) const;
-  bool manual() const;
 
   RobotSpec spec_{};
   bool by_hand_ = true;

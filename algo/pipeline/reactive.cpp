@@ -2,8 +2,6 @@
 #include "algo/pipeline/reactive.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace algo {
 namespace {
@@ -17,29 +15,11 @@ TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
 
 }  // namespace
 
-AvoidBehaviour::AvoidBehaviour(std::unique_ptr<Controller> controller)
-    : controller_(std::move(controller)) {}
-
-void AvoidBehaviour::reset(const Pose2& start_W) {
-  controller_->reset(start_W);
-}
-
 Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
-  ControlInput input;
-  input.stamp = in.observation->stamp;
-  input.dt = in.dt;
-  input.odometry = in.observation->odometry;
-  input.scene = in.scene;
-  input.observation = in.observation;
-  if (in.mission != Mission::Arrived) input.goal = in.goal;
-  input.spec = in.spec;
-  input.grids = in.grids;
+  ControlInput input = in;
+  if (in.mission == Mission::Arrived) input.goal.reset();
   controller_->update(input, *in.parameters, output);
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
-}
-
-void ManualBehaviour::reset(const Pose2& start_W) {
-  guard_.reset(start_W);
 }
 
 Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
@@ -47,10 +27,6 @@ Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/)
   if (!in.manual) return {};
   const Twist2 wanted{in.joystick.forward * in.spec->max_v, in.joystick.turn * in.spec->max_omega};
   return {.active = true, .twist = guard_.limit(in, wanted), .limits = {}};
-}
-
-void BehaviourCoordinator::add(std::unique_ptr<Behaviour> behaviour) {
-  slots_.push_back({.behaviour = std::move(behaviour)});
 }
 
 void BehaviourCoordinator::reset(const Pose2& start_W) {

@@ -5,12 +5,11 @@
 // velocity = the controllers' driving law, actuator = actuate().
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "algo/controller.hpp"
@@ -21,18 +20,12 @@
 namespace algo {
 
 /// What every behaviour may look at in one tick. Nothing here knows the true pose.
-struct Resource {
-  double dt = 0;  // [s]
-  const Observation* observation = nullptr;
-  const Scene* scene = nullptr;
+struct Resource : ControlInput {
   const SensorMerge* merge = nullptr;   // what sonar and infrared returned of late
   std::span<const Twist2> under_way{};  // commands given that do not act yet, oldest first
   const Parameters* parameters = nullptr;
-  const RobotSpec* spec = nullptr;
-  std::optional<SetGoal> goal{};
   Mission mission = Mission::Idle;
   Joystick joystick{};
-  bool grids = false;   // somebody wants to see them in this tick
   bool manual = false;  // a driver's stick is live
 };
 
@@ -66,10 +59,11 @@ class Behaviour {
 /// Drives to the goal with a controller of the catalogue.
 class AvoidBehaviour final : public Behaviour {
  public:
-  explicit AvoidBehaviour(std::unique_ptr<Controller> controller);
+  explicit AvoidBehaviour(std::unique_ptr<Controller> controller)
+      : controller_(std::move(controller)) {}
   const Controller& controller() const { return *controller_; }
   Name name() const override { return behaviours::kAvoid; }
-  void reset(const Pose2& start_W) override;
+  void reset(const Pose2& start_W) override { controller_->reset(start_W); }
   Proposal propose(const Resource& resource, ControlOutput& output) override;
 
  private:
@@ -91,7 +85,7 @@ inline constexpr ParameterInfo kJoystickTimeout{
 class ManualBehaviour final : public Behaviour {
  public:
   Name name() const override { return behaviours::kManual; }
-  void reset(const Pose2& start_W) override;
+  void reset(const Pose2& start_W) override { guard_.reset(start_W); }
   Proposal propose(const Resource& resource, ControlOutput& output) override;
 
  private:
@@ -108,7 +102,9 @@ struct Decision {
 /// order is the priority) and applies the limits of all, also of those that are not active.
 class BehaviourCoordinator {
  public:
-  void add(std::unique_ptr<Behaviour> behaviour);
+  void add(std::unique_ptr<Behaviour> behaviour) {
+    slots_.push_back({.behaviour = std::move(behaviour)});
+  }
   void reset(const Pose2& start_W);
   Decision decide(const Resource& resource, ControlOutput& output);
 
