@@ -1,6 +1,7 @@
 // algo/health.hpp: how a robot of real devices is, as people see it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +29,12 @@ class LatenessHistogram {
       1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 5e-2};  // [s] upper ends; one more beyond the last
   static constexpr std::size_t kBuckets = kLimits.size() + 1;
 
-  void add(double late);  // [s]
+  void add(double late) {  // [s]
+    const auto* const limit = std::ranges::upper_bound(kLimits, late);
+    ++counts_[static_cast<std::size_t>(limit - kLimits.begin())];
+    worst_ = std::max(worst_, late);
+    ++ticks_;
+  }
   const std::array<std::uint64_t, kBuckets>& counts() const { return counts_; }
   double worst() const { return worst_; }  // [s]
   std::uint64_t ticks() const { return ticks_; }

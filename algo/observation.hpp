@@ -1,7 +1,6 @@
 // algo/observation.hpp: everything a robot sensed by one instant. A sensor it lacks stays empty.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>

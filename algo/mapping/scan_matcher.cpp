@@ -1,8 +1,6 @@
 // algo/mapping/scan_matcher.cpp: lines through points, and a step of the pose.
 #include "algo/mapping/scan_matcher.hpp"
 
-#include <algorithm>
-
 #include <Eigen/Cholesky>
 
 namespace algo {
