@@ -68,4 +68,21 @@ Pose2 integrate_counts(const DriveGeometry& geometry,
   return integrate_arc(pose, twist_of(rolled, geometry.half_track), 1.0);
 }
 
+std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits) {
+  if (bits < 2 || bits > 32) {
+    throw std::invalid_argument("a counter has 2 to 32 bits, not " + std::to_string(bits));
+  }
+  const std::int64_t span = std::int64_t{1} << bits;
+  const std::int64_t raw = (std::int64_t{now} - std::int64_t{before}) & (span - 1);
+  return raw >= span / 2 ? raw - span : raw;
+}
+
+WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed) {
+  require_positive("max_speed", max_speed);
+  const double fastest = std::max(std::abs(speeds.left), std::abs(speeds.right));
+  if (!(fastest > max_speed)) return speeds;
+  const double factor = max_speed / fastest;
+  return {speeds.left * factor, speeds.right * factor};
+}
+
 }  // namespace algo

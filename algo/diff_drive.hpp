@@ -61,9 +61,12 @@ Pose2 integrate_counts(const DriveGeometry& geometry,
                        const Pose2& pose,
                        const WheelCounts& counts);
 
-/// now - before of a counter that wraps around, as the smaller signed difference.
-inline std::int64_t count_difference(std::uint32_t now, std::uint32_t before) {
-  return static_cast<std::int32_t>(now - before);
-}
+/// now - before of a counter of `bits` bits that wraps around, as the smaller signed difference.
+/// Throws std::invalid_argument when bits is not 2..32.
+std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits = 32);
+
+/// Both wheels scaled by one factor so that neither exceeds `max_speed` [rad/s]: the curvature of
+/// the path is kept. Throws std::invalid_argument when max_speed is not above 0.
+WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed);
 
 }  // namespace algo

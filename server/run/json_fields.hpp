@@ -36,7 +36,7 @@ constexpr Field<T> required(const char* key, double T::*member, NumberRange rang
 
 /// Reads the fields that the document has; the others stay. Throws DocumentError.
 template <typename T, std::size_t N>
-void read_fields(const JsonReader& in, const Field<T> (&table)[N], T& out) {
+void read_fields(const JsonReader& in, const Field<T> (&table)[N], std::type_identity_t<T>& out) {
   for (const Field<T>& field : table) {
     const auto read = [&](auto member) {
       using M = decltype(member);
@@ -59,7 +59,9 @@ void read_fields(const JsonReader& in, const Field<T> (&table)[N], T& out) {
 
 /// The same of a document that may have no other fields.
 template <typename T, std::size_t N>
-void read_only_fields(const JsonReader& in, const Field<T> (&table)[N], T& out) {
+void read_only_fields(const JsonReader& in,
+                      const Field<T> (&table)[N],
+                      std::type_identity_t<T>& out) {
   std::vector<std::string_view> known;
   for (const Field<T>& field : table) known.emplace_back(field.key);
   in.only(known);
@@ -68,7 +70,7 @@ void read_only_fields(const JsonReader& in, const Field<T> (&table)[N], T& out) 
 
 /// Writes every field that has a member and a value; those in another unit to a billionth of it.
 template <typename T, std::size_t N>
-nlohmann::json written(const Field<T> (&table)[N], const T& value) {
+nlohmann::json written(const Field<T> (&table)[N], const std::type_identity_t<T>& value) {
   nlohmann::json out = nlohmann::json::object();
   for (const Field<T>& field : table) {
     const auto write = [&](auto member) {

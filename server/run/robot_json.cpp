@@ -27,7 +27,7 @@ constexpr Field<sim::Caster> kCaster[] = {
     {"raised", &sim::Caster::raised, {0, 1}},
 };
 
-using Model = sim::RobotModel;
+using Model = sim::Machine;
 constexpr Field<Model> kLimits[] = {
     required("speed", &Model::max_v, {1e-3, 20}),
     required("turn", &Model::max_omega, {1e-3, 20}),

@@ -58,7 +58,11 @@ TEST(DiffDrive, CountersWrapAround) {
   EXPECT_EQ(algo::count_difference(5, 0xFFFFFFFEU), 7);
   EXPECT_EQ(algo::count_difference(0xFFFFFFFEU, 5), -7);
   EXPECT_EQ(algo::count_difference(100, 40), 60);
+  EXPECT_EQ(algo::count_difference(2, 65530, 16), 8);
+  EXPECT_EQ(algo::count_difference(65530, 2, 16), -8);
   EXPECT_EQ(algo::count_difference(0x80000000U, 0), -2147483648LL);
+  EXPECT_THROW(algo::count_difference(1, 0, 33), std::invalid_argument);
+  EXPECT_THROW(algo::count_difference(1, 0, 0), std::invalid_argument);
 }
 
 TEST(DiffDrive, CountsOfAWholeTurnOnTheSpot) {
@@ -69,6 +73,17 @@ TEST(DiffDrive, CountsOfAWholeTurnOnTheSpot) {
   EXPECT_NEAR(out.heading, 0.5, 1e-9);
 }
 
+TEST(DiffDrive, SaturationKeepsTheCurvature) {
+  const WheelSpeeds wanted{4, 10};
+  const WheelSpeeds got = algo::saturate(wanted, 5);
+  EXPECT_EQ(got, (WheelSpeeds{2, 5}));
+  const Twist2 before = algo::forward_kinematics(kGeometry, wanted);
+  const Twist2 after = algo::forward_kinematics(kGeometry, got);
+  EXPECT_NEAR(before.omega / before.v, after.omega / after.v, 1e-12);
+  EXPECT_EQ(algo::saturate({-3, 2}, 5), (WheelSpeeds{-3, 2}));
+  EXPECT_EQ(algo::saturate({-10, 2}, 5), (WheelSpeeds{-5, 1}));
+}
+
 TEST(DiffDrive, UnsoundNumbersAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -0.1, nan}) {
@@ -77,6 +92,7 @@ TEST(DiffDrive, UnsoundNumbersAreRefused) {
     EXPECT_THROW(algo::inverse_kinematics({bad, 0.25}, {}), std::invalid_argument);
     EXPECT_THROW(algo::integrate_counts({0.1, bad}, 1000, {}, {}), std::invalid_argument);
     EXPECT_THROW(algo::integrate_counts(kGeometry, bad, {}, {}), std::invalid_argument);
+    EXPECT_THROW(algo::saturate({}, bad), std::invalid_argument);
   }
   EXPECT_THROW(algo::integrate_arc({}, {}, -0.1), std::invalid_argument);
   EXPECT_THROW(algo::integrate_arc({}, {}, nan), std::invalid_argument);
