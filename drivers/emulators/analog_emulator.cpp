@@ -1,4 +1,4 @@
-// drivers/emulators/analog_emulator.cpp: volts turn wheels while the relay is closed.
+// drivers/emulators/analog_emulator.cpp: voltages turn the wheels while the relay is closed.
 #include "drivers/emulators/analog_emulator.hpp"
 
 #include <cmath>
@@ -7,10 +7,10 @@
 namespace drivers::emulators {
 namespace {
 
-constexpr double kDeadBand = 1e-3;   // [V] an amplifier takes for none
+constexpr double kDeadBand = 1e-3;   // [V] an amplifier reads smaller voltages as 0
 constexpr double kRamp = 1.5;        // [m/s2] of a wheel with power
 constexpr double kCoasting = 0.8;    // [m/s2] of one without
-constexpr double kLowestVolts = 20;  // [V] of the battery, below which the amplifiers give up
+constexpr double kLowestVolts = 20;  // [V] of the battery; below, the amplifiers stop
 
 enum Line : std::uint32_t { RelayClosed = 1, StopReleased = 2, Well = 3, Bumper = 4, Enable = 5 };
 

@@ -1,4 +1,4 @@
-// drivers/emulators/base.hpp: what emulated bases have in common: wheels that a world turns.
+// drivers/emulators/base.hpp: the common part of emulated bases: wheels that a world turns.
 #pragma once
 
 #include <algorithm>
@@ -19,9 +19,9 @@ struct SonarEcho {
   double range = 0;  // [m]
 };
 
-/// What the world tells a base.
+/// The world's feedback to a base.
 struct BaseSenses {
-  double left_travel = 0;   // [m] each wheel has rolled since the beginning
+  double left_travel = 0;   // [m] rolled by each wheel since the start
   double right_travel = 0;  // [m]
   WheelMotion motion{};     // as measured
   bool front_bumper = false;
@@ -29,21 +29,21 @@ struct BaseSenses {
   std::vector<SonarEcho> echoes{};  // new ones
 };
 
-/// A command of the host that concerns motion, for the record.
+/// A motion command of the host, for the record.
 struct BaseCommand {
   double time = 0;       // [s]
   WheelMotion wanted{};  // of the wheels, before any ramp
 };
 
-/// What may befall the wheels themselves.
+/// Injected faults of the wheels.
 struct WheelTrouble {
-  double runaway = 0;    // [m/s] both turn so fast while they have power, whatever they are told
-  double gain = 1;       // they turn so many times as fast as they are told
-  bool blocked = false;  // the left one does not turn
-  bool encoder_dead = false;  // of the left one: it turns, and is not seen to
+  double runaway = 0;    // [m/s] both wheels turn at this speed while powered, whatever the command
+  double gain = 1;       // factor from the commanded to the actual speed
+  bool blocked = false;  // the left wheel does not turn
+  bool encoder_dead = false;  // the left encoder counts nothing
 };
 
-/// The wheels' side of a base; its line, if it has one, is a Device.
+/// The wheels of a base; its line, if any, is a Device.
 class Base {
  public:
   Base() = default;
@@ -53,7 +53,7 @@ class Base {
 
   WheelTrouble trouble{};
 
-  /// drive(), as the trouble has it.
+  /// drive(), changed by the injected faults.
   WheelMotion turn(double now) {
     WheelMotion motion = drive(now);
     if (trouble.runaway != 0 && powered()) motion = {trouble.runaway, trouble.runaway};
@@ -61,7 +61,7 @@ class Base {
     motion.right *= trouble.gain;
     return motion;
   }
-  /// feel(), likewise: an encoder that is dead stands where it stood.
+  /// feel(), likewise: a dead encoder keeps its count.
   void sense(const BaseSenses& senses, double now) {
     BaseSenses felt = senses;
     unseen_ += trouble.encoder_dead ? senses.left_travel - sensed_travel_ : 0;
@@ -72,19 +72,19 @@ class Base {
   }
 
   virtual void feel(const BaseSenses& senses, double now) = 0;
-  /// What its motors make the wheels do at `now`.
+  /// The wheel motion that the motors produce at `now`.
   virtual WheelMotion drive(double now) = 0;
-  /// Called for each command that concerns motion, and with 0 when the base stops by itself.
+  /// Called for each motion command, and with 0 when the base stops by itself.
   std::function<void(const BaseCommand&)> on_command{};
 
   virtual void press_stop_button(bool pressed) = 0;
   virtual void press_bumper(bool pressed) = 0;
   virtual void set_battery(double volts) = 0;
-  /// Bits as the device reports them.
+  /// Fault bits as the device reports them.
   virtual void set_faults_reported(std::uint16_t bits) = 0;
-  /// Its motors have power.
+  /// Whether the motors have power.
   virtual bool powered() const = 0;
-  /// Its controller starts anew: everything the host has set is forgotten.
+  /// Restarts the controller: all settings of the host are lost.
   virtual void restart(double now, double boot_time) = 0;
 
  protected:
@@ -98,7 +98,7 @@ class Base {
 
  private:
   double sensed_travel_ = 0;  // [m] of the left wheel
-  double unseen_ = 0;         // [m] of it while its encoder was dead
+  double unseen_ = 0;         // [m] its travel while its encoder was dead
 };
 
 }  // namespace drivers::emulators

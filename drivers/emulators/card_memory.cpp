@@ -1,4 +1,4 @@
-// drivers/emulators/card_memory.cpp: mapping the registers, and what they stand for.
+// drivers/emulators/card_memory.cpp: maps the registers and interprets them.
 #include "drivers/emulators/card_memory.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
                            std::system_category().message(errno) + ".");
 }
 
-/// 0 without a file.
+/// The inode of `path`; 0 without a file.
 std::uint64_t inode_of(const fs::path& path) {
   struct stat status {};
   return ::stat(path.c_str(), &status) == 0 ? status.st_ino : 0;
@@ -63,10 +63,10 @@ void CardMemory::reset() {
 CardFile::CardFile(fs::path path, const CardChannels& channels)
     : path_(std::move(path)), made_(true) {
   if (fs::exists(path_)) {
-    const CardFile former(path_);  // a file that is no card is somebody's: it throws
+    const CardFile former(path_);  // throws for a file that is no card, which must not be replaced
     former.memory().gone = 1;
   }
-  // Under another name first: whoever opens it finds it whole.
+  // Made under another name first, so that a program that opens the card finds it complete.
   const fs::path making = path_.string() + ".new";
   const int file = ::open(making.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (file < 0 || ::ftruncate(file, sizeof(CardMemory)) != 0) fail(path_, "cannot be made");
@@ -104,7 +104,7 @@ CardFile::~CardFile() {
   if (made_) {
     memory_->gone = 1;
     std::error_code ignored;
-    if (inode_of(path_) == inode_) fs::remove(path_, ignored);  // another program's has its place
+    if (inode_of(path_) == inode_) fs::remove(path_, ignored);  // not another program's file
   }
   ::munmap(memory_, sizeof(CardMemory));
 }

@@ -1,5 +1,5 @@
-// drivers/emulators/device.hpp: what all emulated devices have: a line, a clock that is an
-// argument, and days on which they say nothing.
+// drivers/emulators/device.hpp: the common part of emulated devices: a line, time as an argument,
+// and injected silence.
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,33 @@
 
 namespace drivers::emulators {
 
-/// A device seen from its line. Time [s] counts from any moment and never goes back. No I/O and no
-/// thread; not for two threads at once.
+/// A device as the host sees it over the line. Time [s] has any origin and never goes back. No I/O
+/// and no thread; not thread-safe.
 ///
-/// Derived classes are written from the devices' manuals, not from the drivers, and refuse what the
-/// device would refuse.
+/// Derived classes follow the devices' manuals, not the drivers, and refuse what the device would
+/// refuse.
 class Device {
  public:
   virtual ~Device() = default;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
-  /// The host begins to send `bytes` at `now`.
+  /// The host starts to send `bytes` at `now`.
   void receive(ByteView bytes, double now) {
     line_.hear(bytes, now);
     run(now, false);
   }
-  /// Nothing has come since, up to `now`: does what is due.
+  /// Advances to `now`, without further bytes from the host.
   void advance(double now) { run(now, true); }
-  /// Appends to `out` the bytes that have left by `now`, all at the rate it returns [bit/s]; call
-  /// it until nothing comes.
+  /// Appends to `out` the bytes sent by `now` at one rate and returns that rate [bit/s]; call it
+  /// until `out` gets nothing.
   unsigned send(double now, std::vector<std::uint8_t>& out) {
     const std::size_t before = out.size();
     const unsigned rate = line_.leave(now, out);
     if (now < mute_until_) out.resize(before);
     return rate;
   }
-  /// [s] When advance() has something to do, at the latest.
+  /// [s] The latest time for the next advance().
   double next() const {
     return std::min({line_.next_arrival(), line_.next_departure(), next_duty()});
   }
@@ -46,7 +46,7 @@ class Device {
   unsigned baud() const { return line_.baud(); }
   void set_faults(const LineFaults& faults) { line_.faults = faults; }
   const LineFaults& faults() const { return line_.faults; }
-  /// Its transmitter is dead until then.
+  /// The transmitter is dead until then.
   void mute(double until) { mute_until_ = until; }
   bool mute_at(double now) const { return now < mute_until_; }
 
@@ -54,9 +54,9 @@ class Device {
   Device(unsigned baud, std::uint64_t seed) : line_(baud, seed) {}
 
   virtual void on_byte(std::uint8_t byte, double at) = 0;
-  /// The line has been quiet for `silence` [s].
+  /// Called when the line has been quiet for `silence` [s].
   virtual void on_quiet(double silence) = 0;
-  /// Does what is due by `now`.
+  /// Does the work due by `now`.
   virtual void work(double now) = 0;
   /// [s] When work() is next due; kNever when it is not.
   virtual double next_duty() const = 0;

@@ -1,7 +1,7 @@
-// drivers/emulators/emulated_comedi.cpp: libcomedi for an emulated card: the functions that a
-// driver calls, on the registers in the file that it opens instead of a device.
+// drivers/emulators/emulated_comedi.cpp: libcomedi for an emulated card: the functions that the
+// driver calls, acting on a file of registers instead of a device.
 //
-// A library of its own, so that the driver loads it just as it loads the real one.
+// A separate library, so that the driver loads it just as it loads the real one.
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -18,7 +18,7 @@
 using drivers::emulators::CardFile;
 using drivers::emulators::CardMemory;
 
-// The C interface has names of its own. NOLINTBEGIN(readability-identifier-naming)
+// The C interface fixes the names. NOLINTBEGIN(readability-identifier-naming)
 
 /// An opened card.
 struct comedi_t_struct {
@@ -31,7 +31,7 @@ namespace {
 
 enum Subdevice : unsigned { Outputs, Counters, Lines, kSubdevices };
 
-int g_error = 0;  // NOLINT: of the last call, as comedi_errno() has it
+int g_error = 0;  // NOLINT: the error of the last call, for comedi_errno()
 
 std::array<comedi_range, 2> g_ranges{{// NOLINT: handed out as pointers to non-const
                                       {.min = 0, .max = 10, .unit = UNIT_volt},
@@ -53,7 +53,7 @@ unsigned channels_of(const comedi_t* card, unsigned subdevice) {
   return subdevice < kSubdevices ? all.at(subdevice) : 0;
 }
 
-/// 0, or -1 with an error when a call for this channel cannot succeed.
+/// 0, or -1 and an error number when a call for this channel must fail.
 int check(const comedi_t* card, unsigned subdevice, unsigned wanted, unsigned channel) {
   if (card->memory().gone != 0) return fail(ENODEV);
   if (card->memory().busy != 0) return fail(ETIMEDOUT);
@@ -190,7 +190,7 @@ int comedi_dio_write(comedi_t* card, unsigned subdevice, unsigned channel, unsig
   return 1;
 }
 
-/// The emulated counters count quadrature as they are.
+/// The emulated counters count quadrature without configuration.
 int comedi_reset(comedi_t* /*card*/, unsigned /*subdevice*/) {
   return 0;
 }

@@ -1,4 +1,4 @@
-// drivers/emulators/line.cpp: bytes and their times, faults, and what a wrong rate makes of them.
+// drivers/emulators/line.cpp: byte times, faults, and reception at a wrong rate.
 #include "drivers/emulators/line.hpp"
 
 #include <cmath>
@@ -6,10 +6,10 @@
 namespace drivers::emulators {
 namespace {
 
-constexpr std::size_t kBits = 10;  // of a byte on the line
+constexpr std::size_t kBits = 10;  // per byte on the line
 
-/// The line's level while `bytes` are sent, `bit` counted from the first start bit: low for a start
-/// bit, high for a stop bit and ever after.
+/// The line's level while `bytes` are sent; `bit` counts from the first start bit. Low for a start
+/// bit, high for a stop bit and after the last byte.
 bool level(ByteView bytes, std::size_t bit) {
   const std::size_t byte = bit / kBits;
   if (byte >= bytes.size()) return true;
@@ -27,7 +27,7 @@ bool Line::happens(double probability) {
   return draw < probability;
 }
 
-/// Leaves in spoiled_ what becomes of `bytes`; false when nothing happens to them.
+/// Puts a damaged copy of `bytes` into spoiled_; false when they stay intact.
 bool Line::spoil(ByteView bytes) {
   spoiled_.clear();
   std::size_t victim = bytes.size();

@@ -1,5 +1,5 @@
-// drivers/emulators/line.hpp: a serial line as the device at its end knows it: every byte takes its
-// time, and some do not arrive as they were sent.
+// drivers/emulators/line.hpp: a serial line seen from the device: each byte takes its transfer
+// time, and faults may damage it.
 #pragma once
 
 #include <algorithm>
@@ -16,22 +16,22 @@ namespace drivers::emulators {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// What happens to bytes on their way, both ways, each a probability.
+/// Probabilities of line faults, in both directions.
 struct LineFaults {
   double drop = 0;    // of a byte: lost
-  double flip = 0;    // of a byte: one bit turned over
+  double flip = 0;    // of a byte: one bit flipped
   double damage = 0;  // of a telegram: one byte of it lost or flipped
 };
 
-/// How a telegram goes out.
+/// The transmission of a telegram.
 struct Sending {
-  double begin = 0;  // [s] its first bit
-  double end = 0;    // [s] its last
+  double begin = 0;  // [s] first bit
+  double end = 0;    // [s] last bit
   bool intact = true;
 };
 
-/// Start bit, eight, stop bit: ten bit times a byte. No clock: the time is an argument, in seconds
-/// since any moment, and never goes back. The same seed brings the same faults.
+/// Ten bit times per byte: start bit, eight data bits, stop bit. Time is an argument in seconds,
+/// with any origin, and never goes back. The same seed gives the same faults.
 class Line {
  public:
   explicit Line(unsigned baud, std::uint64_t seed = 0) : baud_(baud), random_(seed) {}
@@ -40,12 +40,12 @@ class Line {
 
   /// [bit/s]
   unsigned baud() const { return baud_; }
-  /// What is under way stays at its old rate.
+  /// Sets the rate; bytes being sent keep their old rate.
   void set_baud(unsigned baud) { baud_ = baud; }
 
-  /// The host began to send `bytes` at `now`, one after another.
+  /// The host starts to send `bytes` at `now`, one after another.
   void hear(ByteView bytes, double now);
-  /// Calls `on_byte(byte, time)` for each that has arrived by `now`.
+  /// Calls `on_byte(byte, time)` for each byte that has arrived by `now`.
   template <class OnByte>
   void deliver(double now, OnByte&& on_byte) {
     while (!incoming_.empty() && incoming_.front().time <= now) {
@@ -55,20 +55,20 @@ class Line {
       on_byte(byte.value, byte.time);
     }
   }
-  /// [s] since the last byte from the host, by `now`; 0 when more are under way.
+  /// [s] from the last byte of the host to `now`; 0 while more are under way.
   double quiet(double now) const { return incoming_.empty() ? now - last_heard_ : 0; }
 
   /// Sends `telegram` when the line is free, not before `earliest`.
   Sending say(ByteView telegram, double earliest);
-  /// Breaks off: what has not left by `now` never will. True when there was something.
+  /// Aborts: bytes not sent by `now` are lost. True when there were any.
   bool cut(double now);
-  /// [s] When the last byte will have left; in the past when nothing is being sent.
+  /// [s] When the last byte will be sent; in the past when nothing is being sent.
   double free_at() const { return free_at_; }
-  /// Appends to `out` what has left by `now` at one rate, which it returns; call it again until
-  /// nothing comes.
+  /// Appends to `out` the bytes sent by `now` at one rate and returns that rate; call it until
+  /// `out` gets nothing.
   unsigned leave(double now, std::vector<std::uint8_t>& out);
 
-  /// [s] When the next byte arrives or leaves; kNever without one.
+  /// [s] When the next byte arrives or is sent; kNever without one.
   double next_arrival() const { return incoming_.empty() ? kNever : incoming_.front().time; }
   double next_departure() const { return outgoing_.empty() ? kNever : outgoing_.front().time; }
 
@@ -93,8 +93,8 @@ class Line {
   double free_at_ = 0;
 };
 
-/// What a receiver at `to` makes of `bytes` sent at `from` [bit/s]: the line's level, sampled in
-/// the middle of where it expects each bit. A byte without its stop bit reads as 0.
+/// The bytes that a receiver at `to` reads when `bytes` are sent at `from` [bit/s]. It samples the
+/// line's level in the middle of each expected bit. A byte without its stop bit reads as 0.
 std::vector<std::uint8_t> misread(ByteView bytes, unsigned from, unsigned to);
 
 }  // namespace drivers::emulators

@@ -1,4 +1,4 @@
-// drivers/emulators/lms200_emulator.cpp: what an LMS200 makes of the telegrams it gets.
+// drivers/emulators/lms200_emulator.cpp: how an LMS200 answers telegrams.
 #include "drivers/emulators/lms200_emulator.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@ namespace drivers::lms200 {
 namespace {
 
 constexpr double kLongestGap = 0.006;        // [s] between two bytes of a request
-constexpr std::size_t kLongestRequest = 96;  // LENGTH; writing the second configuration has 85
+constexpr std::size_t kLongestRequest = 96;  // LENGTH; the second part of a configuration has 85
 constexpr std::uint8_t kAccepted = 1;
 constexpr std::uint8_t kRejected = 0;
 
-/// Requests, as the manual numbers them.
+/// Request codes of the manual.
 enum class Request : std::uint8_t {
   Reset = 0x10,
   Mode = 0x20,
@@ -35,7 +35,7 @@ enum class Request : std::uint8_t {
 constexpr std::uint8_t kTestPassword = 0x30;  // as a mode
 constexpr std::uint8_t kAnswerBit = 0x80;
 
-// What a mode request comes to.
+// Results of a mode request.
 constexpr std::uint8_t kDone = 0;
 constexpr std::uint8_t kWrongPassword = 1;
 constexpr std::uint8_t kFault = 2;
@@ -58,7 +58,7 @@ Configuration factory_configuration() {
   return Configuration(block);
 }
 
-/// The rate as the status names it.
+/// The rate word of the status.
 std::uint16_t rate_word(unsigned baud) {
   switch (baud) {
     case 500000:
@@ -158,7 +158,7 @@ void Emulator::later(double due, std::function<void(double)> run) {
 void Emulator::take(ByteView frame, double at) {
   const bool mine = frame[1] == kEverybody || frame[1] == options_.address;
   if (!mine) return;
-  // Whatever it is sending, a request breaks it off.
+  // A request aborts any transmission.
   if (line().cut(at) && leaving_) close_scan(SentScan::Fate::Cut);
   once_ = {};
   const ByteView checked = frame.first(frame.size() - 2);
@@ -170,7 +170,7 @@ void Emulator::take(ByteView frame, double at) {
     line().say(std::array{kNak}, answered);
     return;
   }
-  if (!jobs_.empty()) return;  // busy with the one before: silence
+  if (!jobs_.empty()) return;  // busy with the previous request: no answer
   line().say(std::array{kAck}, answered);
   carry_out(frame.subspan(4, frame.size() - kFrameBytes), answered);
 }
@@ -326,7 +326,7 @@ void Emulator::change_mode(ByteView data, double at) {
       return parameters.empty() ? stream({.code = code_of(Answer::Values), .parts = true})
                                 : refuse(at);
     default:
-      return refuse(at);  // minima, fields, reflectivity: nothing here asks for them
+      return refuse(at);  // minima, fields, reflectivity: not emulated
   }
 }
 
@@ -338,7 +338,7 @@ void Emulator::take_values(ByteView payload, double at) {
   std::size_t expected = 1;
   switch (static_cast<Request>(payload[0])) {
     case Request::Values:
-      if (data.size() == 1 && data[0] != kAll) return refuse(at);  // every second and the like
+      if (data.size() == 1 && data[0] != kAll) return refuse(at);  // "every second": not emulated
       break;
     case Request::Mean:
       if (data.size() == 1) once.means = data[0];
@@ -377,7 +377,7 @@ void Emulator::change_variant(ByteView data, double at) {
   later(at + options_.times.variant, [this, wanted, done](double due) {
     if (done) {
       variant_ = wanted;
-      // A stream does not outlive its variant.
+      // A new variant ends a running stream.
       enter(mode_ == Mode::Installation ? mode_ : Mode::OnRequest, {});
     }
     FixedBytes<5> content;
@@ -441,9 +441,9 @@ void Emulator::write_second(ByteView data, double at) {
 
 std::vector<std::uint8_t> Emulator::status() const {
   constexpr std::size_t kBytes = 152;
-  constexpr std::size_t kMotor = 148;  // [us] for 1/90 of a turn, as it should be
+  constexpr std::size_t kMotor = 148;  // [us] for 1/90 of a turn, nominal
   std::vector<std::uint8_t> data(kBytes);
-  // The manual counts from the code of the answer, which is byte 0.
+  // The manual counts bytes from the code of the answer, byte 0.
   const auto put = [&data](std::size_t at, std::size_t value) {
     data[at - 1] = static_cast<std::uint8_t>(value & 0xFFU);
   };

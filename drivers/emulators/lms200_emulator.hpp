@@ -1,7 +1,7 @@
-// drivers/emulators/lms200_emulator.hpp: a SICK LMS200 as its line shows it.
+// drivers/emulators/lms200_emulator.hpp: a SICK LMS200 on its serial line.
 //
-// Written from SICK, Telegrams for Configuring and Operating the LMS2xx (2006). What the world
-// looks like comes from outside, one sweep of the mirror after another; see Emulator::offer().
+// Written from SICK, Telegrams for Configuring and Operating the LMS2xx (2006). The caller supplies
+// each sweep of the mirror; see Emulator::offer().
 #pragma once
 
 #include <array>
@@ -17,56 +17,56 @@
 
 namespace drivers::lms200 {
 
-/// What the device needs for its work [s]; the manual gives limits.
+/// Durations of the device's work [s]; the limits are from the manual.
 struct EmulatedTimes {
   double acknowledge = 0.003;         // at most 0.06
   double answer = 0.010;              // after the acknowledgement; ordinary answers at most 0.06
   double mode = 0.060;                // at most 3
-  double variant = 0.200;             // the mirror is set anew
+  double variant = 0.200;             // the mirror is reconfigured
   double write_configuration = 0.48;  // measured; at most 15
-  double deaf = 0;                    // hears and says nothing after a mode switch and power-on
+  double deaf = 0;  // ignores all bytes and sends none after a mode switch and power-on
 };
 
 struct EmulatorOptions {
   std::uint8_t address = 0;
   std::string type = "LMS200;301063;V02.30 ";
   std::string password{kFactoryPassword};
-  bool rs422 = true;       // RS-232 carries no 500000
-  bool powered = true;     // false: power comes with the first moment, and the device starts up
+  bool rs422 = true;       // RS-232 cannot carry 500000
+  bool powered = true;     // false: power comes at the first call, and the device starts up
   double boot_time = 1.0;  // [s] until the greeting; a real one takes 10 to 60
   unsigned start_rate = 9600;
   StartUpRate start_up = StartUpRate::Baud9600;
   Variant variant{.angle_degrees = 180, .step_centidegrees = 100};  // as stored
-  /// Partial scans of 180 degrees come in quarters of a degree, whatever the variant's step.
+  /// Partial scans of 180 degrees come in quarters of a degree for any step of the variant.
   bool interlaced = false;
-  unsigned refusals = 0;  // the first so many sound telegrams are taken for damaged
-  double field_a = 0;     // [m] what is nearer lies in field A, which raises a flag; 0: no field
+  unsigned refusals = 0;  // NAK to this many intact telegrams first
+  double field_a = 0;     // [m] nearer values get the flag of field A; 0: no field
   EmulatedTimes times{};
   std::uint64_t seed = 1;
 };
 
-/// What the mirror is to sweep: whole scans of a variant, or one turn after another, whose parts
-/// begin at `parts` quarters of a degree in turn.
+/// The sweeps that the device needs: whole scans of a variant, or single turns that begin at
+/// `parts` quarters of a degree in turn.
 struct Sweep {
   Variant variant{};
   std::vector<std::uint8_t> parts{};  // empty: whole scans
   bool operator==(const Sweep&) const = default;
 };
 
-/// What became of values that were to be sent without being asked for one by one, or once asked.
+/// The fate of one scan or range of values that the device had to send.
 struct SentScan {
   enum class Fate : std::uint8_t {
     Sent,
     Damaged,  // by the line's faults
     Cut,      // by a request of the host
-    Lost,     // the line was still busy with an earlier one
+    Lost,     // the line was still busy with an earlier scan
     Muted,
   };
   std::uint64_t number = 0;  // of the sweep or turn, from 1
   Fate fate = Fate::Sent;
-  double end = 0;  // [s] when its last byte left
+  double end = 0;  // [s] when its last byte was sent
   std::optional<std::uint8_t> part{};
-  /// What a sound receiver makes of it: packed beams (algo/laser_scan.hpp), first value first.
+  /// The packed beams that a correct receiver reads (algo/laser_scan.hpp), first value first.
   std::vector<std::uint16_t> beams{};
 };
 
@@ -76,27 +76,27 @@ class Emulator final : public emulators::Device {
 
   // ---- the world ----
   const Sweep& sweep() const { return sweep_; }
-  /// The mirror ended a sweep at `now`: a whole scan, or part `part` of sweep().parts. Beams are
-  /// found by their bearing; a bearing that `scan` does not have gives no echo.
+  /// Supplies a sweep that ended at `now`: a whole scan, or part `part` of sweep().parts. Beams are
+  /// matched by bearing; a bearing missing in `scan` gives no echo.
   void offer(const algo::LaserScan& scan, double now, std::optional<std::uint8_t> part = {});
-  /// Called for all values that were to be sent, when they are or will not be.
+  /// Called with the fate of each scan once it is decided.
   std::function<void(const SentScan&)> on_scan{};
 
-  // ---- what may befall it ----
-  /// Power goes and comes back: starts up as stored, and greets after `boot_time` [s].
+  // ---- injected faults ----
+  /// Power cycle: starts with the stored settings and greets after `boot_time` [s].
   void restart(double now, double boot_time);
-  /// The next `telegrams` that are sound are taken for damaged.
+  /// Answers NAK to the next `telegrams` intact telegrams.
   void refuse_next(unsigned telegrams) { refusals_ = telegrams; }
-  /// Light from elsewhere blinds it, all of it or the beams within `cone` [rad] about its middle.
+  /// External light blinds all beams, or those within `cone` [rad] about the middle.
   void dazzle(bool on, double cone = emulators::kNever);
-  /// Bits 0-7 of the last byte of all answers but bits 3-4.
+  /// Sets the status byte of all answers, except bits 3-4.
   void set_health(std::uint8_t byte) { health_ = static_cast<std::uint8_t>(byte | 0x10U); }
 
-  // ---- for tests to look at ----
+  // ---- for tests ----
   Mode mode() const { return mode_; }
   bool started(double now) const { return now >= boot_end_; }
   const Configuration& configuration() const { return configuration_; }
-  /// How often its memory has been written, which wears it out.
+  /// Number of writes of its memory, which wear it out.
   unsigned memory_writes() const { return memory_writes_; }
   std::uint64_t bad_telegrams() const { return bad_telegrams_; }
 
@@ -106,9 +106,9 @@ class Emulator final : public emulators::Device {
     double due = 0;
     std::function<void(double)> run{};
   };
-  /// How values are taken: continuously or once.
+  /// How values are measured: continuously or once.
   struct Taking {
-    std::uint8_t code = 0;  // of the telegram; 0: none are
+    std::uint8_t code = 0;  // of the telegram; 0: nothing is sent
     unsigned means = 1;
     std::optional<ValueRange> range{};
     bool parts = false;
@@ -147,11 +147,11 @@ class Emulator final : public emulators::Device {
   void close_scan(SentScan::Fate fate);
 
   EmulatorOptions options_;
-  FixedBytes<128> request_{};               // as far as it has come
-  double boot_end_ = 0;                     // [s] up to here it starts up
+  FixedBytes<128> request_{};               // the bytes so far
+  double boot_end_ = 0;                     // [s] end of the start-up
   double deaf_until_ = -emulators::kNever;  // [s]
   bool greeted_ = true;
-  bool begun_ = false;  // its clock is known
+  bool begun_ = false;  // the first time has been given
   std::vector<Job> jobs_{};
 
   Mode mode_ = Mode::OnRequest;
@@ -178,7 +178,7 @@ class Emulator final : public emulators::Device {
   std::vector<double> sums_{};  // of distances, for means
   std::vector<unsigned> summands_{};
   unsigned summed_ = 0;                // scans in the sums
-  std::optional<SentScan> leaving_{};  // on the line
+  std::optional<SentScan> leaving_{};  // being sent
 };
 
 }  // namespace drivers::lms200

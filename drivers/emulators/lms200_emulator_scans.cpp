@@ -1,4 +1,4 @@
-// drivers/emulators/lms200_emulator_scans.cpp: what an LMS200 measures, and how it says it.
+// drivers/emulators/lms200_emulator_scans.cpp: measured values of an LMS200 and their telegrams.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,7 +27,7 @@ void Emulator::note_sweep() {
 }
 
 std::uint16_t Emulator::word_of(const algo::LaserScan& scan, std::size_t beam) const {
-  constexpr std::uint16_t kEnergy = 100;  // a value in the middle, in no unit
+  constexpr std::uint16_t kEnergy = 100;  // a mid-range value, without a unit
   const auto layout = layout_of(configuration_.measuring_mode());
   if (!layout) return scan.status[beam] == algo::Beam::Ok ? kEnergy : 0;
   const auto code = [&layout](algo::BeamCode digit) {
@@ -68,7 +68,7 @@ void Emulator::convert(const algo::LaserScan& scan, std::optional<std::uint8_t> 
   }
 }
 
-/// Adds words_ to the sums, flags and codes left out.
+/// Adds words_ to the sums, without flags and codes.
 void Emulator::average() {
   if (summed_ == 0 || sums_.size() != words_.size()) {
     sums_.assign(words_.size(), 0);
@@ -120,7 +120,7 @@ void Emulator::send_values(const Taking& taking, double now, std::optional<std::
   for (const std::uint16_t word : words) {
     scan.beams.push_back(layout ? beam_of(word, *layout, configuration_.in_millimetres()) : word);
   }
-  // The line carries one telegram at a time, and there is no room for a second.
+  // The line carries one telegram at a time, and the device buffers no second one.
   if (line().free_at() > now || !jobs_.empty() || now < deaf_until_) {
     scan.fate = SentScan::Fate::Lost;
     scan.end = now;

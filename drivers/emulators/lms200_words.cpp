@@ -20,7 +20,7 @@ std::optional<WordLayout> layout_of(std::uint8_t measuring_mode) {
     case 0x04:
       return WordLayout{.top = 0x3FFF, .field_a = 0x4000};
     case 0x05:
-    case 0x0F:  // its codes are not in the manual: those of the other modes of 32 m
+    case 0x0F:  // the manual does not give its codes: those of the other 32 m modes
       return WordLayout{.top = 0x7FFF};
     case 0x06:
       return WordLayout{.top = 0x7FFF, .field_a = 0x8000};

@@ -1,4 +1,4 @@
-// drivers/emulators/p2os_emulator.cpp: what a Pioneer base makes of its packets, and what it says.
+// drivers/emulators/p2os_emulator.cpp: how a Pioneer base handles packets and reports its state.
 #include "drivers/emulators/p2os_emulator.hpp"
 
 #include <array>
@@ -22,16 +22,16 @@ constexpr std::uint8_t kEncoders = 0x90;
 constexpr std::uint8_t kConfiguration = 0x20;
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180;
-constexpr double kTopSpeed = 2.2;                          // [m/s] whatever the host asks for
+constexpr double kTopSpeed = 2.2;                          // [m/s] for any command
 constexpr double kTopTurn = 500 * kRadiansPerDegree;       // [rad/s]
 constexpr double kHardStop = 2.0;                          // [m/s2] with the brakes
 constexpr double kHardTurnStop = 600 * kRadiansPerDegree;  // [rad/s2]
-constexpr double kStallTime = 0.5;                         // [s] of vain effort
-constexpr double kStallRest = 1.0;                         // [s] the motors rest then
+constexpr double kStallTime = 0.5;                         // [s] blocked until it reports a stall
+constexpr double kStallRest = 1.0;                         // [s] the motors rest after a stall
 constexpr double kAtRest = 1e-4;                           // [m/s]
 
-/// Sum over a body: words high byte first, a last odd byte into the low byte. Apart from
-/// drivers/p2os_protocol.hpp, so that an error there shows.
+/// Sum over a body: words high byte first, a last odd byte into the low byte. Written independently
+/// of drivers/p2os_protocol.hpp, so that an error there shows.
 std::uint16_t sum_of(ByteView body) {
   unsigned sum = 0;
   for (std::size_t i = 0; i + 1 < body.size(); i += 2)
@@ -55,7 +55,7 @@ Emulator::Emulator(const EmulatorOptions& options)
   forget();
 }
 
-/// All that a host may have set.
+/// Resets everything that a host can set.
 void Emulator::forget() {
   step_ = Step::Sync0;
   next_state_ = emulators::kNever;
@@ -96,7 +96,7 @@ void Emulator::on_byte(std::uint8_t byte, double at) {
   if (sum == sum_of(body)) {
     take(body, at);
   } else {
-    ++bad_packets_;  // nobody is told
+    ++bad_packets_;  // dropped without an answer
   }
 }
 
@@ -166,7 +166,7 @@ void Emulator::synchronise(std::uint8_t code, double at) {
   }
 }
 
-// ---- orders ------------------------------------------------------------------------------------
+// ---- commands ----------------------------------------------------------------------------------
 
 void Emulator::obey(const Order& order, double at) {
   const int argument = order.argument.value_or(0);
@@ -256,7 +256,7 @@ void Emulator::move(const Order& order, double at) {
       return;
   }
   braking_ = false;
-  if (!motors_on_) wanted_ = {};  // ignored, not kept for later
+  if (!motors_on_) wanted_ = {};  // a command with the motors off is lost
   report(at, wheels(wanted_));
 }
 
@@ -304,7 +304,7 @@ WheelMotion Emulator::drive(double now) {
   if ((bumped && wanted.v > 0) || (bumped_behind && wanted.v < 0) || rests) wanted = {};
   wanted.v = std::clamp(wanted.v, -speed_limit_, speed_limit_);
   wanted.omega = std::clamp(wanted.omega, -turn_limit_, turn_limit_);
-  if (!motors_on_ || braking_) {  // the brakes do it
+  if (!motors_on_ || braking_) {  // full deceleration
     now_.v = towards(now_.v, 0, kHardStop * dt);
     now_.omega = towards(now_.omega, 0, kHardTurnStop * dt);
     return wheels(now_);
@@ -343,7 +343,7 @@ void Emulator::feel(const emulators::BaseSenses& senses, double /*now*/) {
   for (const emulators::SonarEcho& echo : senses.echoes) echoes_.push_back(echo);
 }
 
-// ---- what it says ------------------------------------------------------------------------------
+// ---- reports -----------------------------------------------------------------------------------
 
 void Emulator::say_state(double at) {
   constexpr std::uint16_t kPosition = 0x7FFF;  // 15 bits of it
@@ -393,7 +393,7 @@ void Emulator::say_state(double at) {
   say(body.view(), at);
 }
 
-/// What its memory holds, as far as its watchdog; the gains that follow are left out.
+/// The contents of its memory up to the watchdog; the gains after it are left out.
 void Emulator::say_configuration(double at) {
   FixedBytes<200> body;
   const auto text = [&body](std::string_view what) {
@@ -414,7 +414,7 @@ void Emulator::say_configuration(double at) {
   body.append_word(1);    // sonar ahead
   body.push_back(0);      // none behind
   body.append_word(110);  // [0.1 V] low battery
-  body.append_word(500);  // counts a turn
+  body.append_word(500);  // counts per turn
   body.append_word(word(std::lround(options_.watchdog * 1000)));
   say(body.view(), at);
 }

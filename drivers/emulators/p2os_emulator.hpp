@@ -1,4 +1,4 @@
-// drivers/emulators/p2os_emulator.hpp: a Pioneer base (P2OS, AROS, ARCOS) as its line shows it.
+// drivers/emulators/p2os_emulator.hpp: a Pioneer base (P2OS, AROS, ARCOS) on its serial line.
 //
 // Written from the manuals of the Pioneer 2 and 3 as public clients use them.
 #pragma once
@@ -19,17 +19,17 @@ struct EmulatorOptions {
   std::string type = "p3dx-sh";
   std::string subtype = "emulated";
   unsigned baud = 9600;
-  double watchdog = 2.0;      // [s] kept in the robot's memory
+  double watchdog = 2.0;      // [s] stored in the robot's memory
   double half_track = 0.165;  // [m]
   double volts = 12.6;
-  int first_x_mm = 0;  // where its counters stand at first
+  int first_x_mm = 0;  // initial value of its counter
   int first_y_mm = 0;
-  bool tail = true;  // state packets end as those of newer firmware
+  bool tail = true;  // state packets have the tail of newer firmware
   std::uint64_t seed = 1;
 };
 
-/// Position commands (MOVE, HEAD, DHEAD) and packets of the gyro are left out: unanswered, as
-/// commands unknown to the base.
+/// Position commands (MOVE, HEAD, DHEAD) and gyro packets are not emulated: like unknown commands
+/// they get no answer.
 class Emulator final : public emulators::Device, public emulators::Base {
  public:
   explicit Emulator(const EmulatorOptions& options = {});
@@ -43,7 +43,7 @@ class Emulator final : public emulators::Device, public emulators::Base {
   bool powered() const override { return motors_on_; }
   void restart(double now, double boot_time) override;
 
-  // ---- for tests to look at ----
+  // ---- for tests ----
   bool open() const { return step_ == Step::Open; }
   bool motors_on() const { return motors_on_; }
   std::uint64_t bad_packets() const { return bad_packets_; }
@@ -54,7 +54,7 @@ class Emulator final : public emulators::Device, public emulators::Base {
     double v = 0;      // [m/s]
     double omega = 0;  // [rad/s]
   };
-  /// A command of the host as it is meant.
+  /// The motion that the host commands.
   struct Order {
     std::uint8_t code = 0;
     std::optional<int> argument{};
@@ -78,12 +78,12 @@ class Emulator final : public emulators::Device, public emulators::Base {
   emulators::WheelMotion wheels(const Motion& motion) const;
 
   EmulatorOptions options_;
-  FixedBytes<256> packet_{};  // as far as it has come
+  FixedBytes<256> packet_{};  // the bytes so far
   std::uint64_t bad_packets_ = 0;
   double boot_end_ = -emulators::kNever;
   Step step_ = Step::Sync0;
   double next_state_ = emulators::kNever;
-  double heard_ = 0;  // [s] the last sound packet
+  double heard_ = 0;  // [s] the last intact packet
 
   bool motors_on_ = false;
   bool sonar_on_ = true;
@@ -96,13 +96,13 @@ class Emulator final : public emulators::Device, public emulators::Base {
 
   Motion wanted_{};
   Motion now_{};
-  bool braking_ = false;  // in an emergency, until the next command that moves
+  bool braking_ = false;  // emergency stop, until the next motion command
   double driven_until_ = -emulators::kNever;
   double acceleration_ = 0, deceleration_ = 0;            // [m/s2]
   double turn_acceleration_ = 0, turn_deceleration_ = 0;  // [rad/s2]
   double speed_limit_ = 0;                                // [m/s]
   double turn_limit_ = 0;                                 // [rad/s]
-  double blocked_for_ = 0;                                // [s] told to move and does not
+  double blocked_for_ = 0;                                // [s] commanded to move without moving
   double stalled_until_ = -emulators::kNever;
 
   emulators::BaseSenses senses_{};

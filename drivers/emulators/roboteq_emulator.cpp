@@ -1,4 +1,4 @@
-// drivers/emulators/roboteq_emulator.cpp: what a Roboteq controller makes of the lines it gets.
+// drivers/emulators/roboteq_emulator.cpp: how a Roboteq controller handles its input lines.
 #include "drivers/emulators/roboteq_emulator.hpp"
 
 #include <charconv>
@@ -63,7 +63,7 @@ void Emulator::say(std::string_view text, double at) {
   line().say(bytes.view(), at + kThinking);
 }
 
-/// "!G 1 500" as '!', "G" and its numbers; false when it is nothing of the kind.
+/// Splits "!G 1 500" into '!', "G" and its numbers; false for any other text.
 bool Emulator::parse(std::string_view text, Order& order) const {
   if (text.empty()) return false;
   order.kind = text[0];
@@ -111,7 +111,7 @@ void Emulator::take(std::string_view line, double at) {
       if (sound && read(order, at)) return;
       break;
     case '#':
-      // The one command whose argument may be a letter.
+      // Only this command may have a letter as argument.
       repeat(order, at);
       return;
     default:
@@ -139,7 +139,7 @@ bool Emulator::command(const Order& order, double at) {
   return drive_command(order, at) || channel_command(order, at);
 }
 
-/// Those that move motors, and so feed the watchdog.
+/// Motion commands, which feed the watchdog.
 bool Emulator::drive_command(const Order& order, double at) {
   const auto fraction = [&](std::size_t channel, int value) {
     return std::clamp(value, -kFullCommand, kFullCommand) * parameters_.full_rpm[channel] /
@@ -184,11 +184,11 @@ bool Emulator::channel_command(const Order& order, double at) {
   } else {
     return false;
   }
-  commanded_ = at;  // any command beginning with ! keeps it quiet
+  commanded_ = at;  // any command that begins with ! feeds the watchdog
   return true;
 }
 
-/// Both channels' values of a parameter.
+/// The values of a parameter for both channels.
 Emulator::Pair* Emulator::pair_of(std::string_view name) {
   const std::array<std::pair<std::string_view, Pair*>, 11> table{{
       {"MMOD", &parameters_.mode},
@@ -245,7 +245,7 @@ bool Emulator::maintain(const Order& order, double at) {
   return false;
 }
 
-/// "# C" forgets the queries heard so far, "# 20" repeats them in turn each 20 ms, "#" ends that.
+/// "# C" clears the list of queries, "# 20" repeats them in turn every 20 ms, "#" stops that.
 void Emulator::repeat(const Order& order, double at) {
   if (order.name == "C") {
     history_.clear();
@@ -302,7 +302,7 @@ unsigned Emulator::status_bits() const {
   return bits;
 }
 
-/// All values, or the one that the query names.
+/// All values, or only the one that the query names.
 void Emulator::say_values(std::string_view name,
                           const std::vector<long>& values,
                           const Order& order,
@@ -427,7 +427,7 @@ void Emulator::halt(double at) {
   report(at, {});
 }
 
-/// A motor that does not follow its command is switched off until it is told to stand.
+/// Switches off a motor that does not follow its command, until it is commanded to stop.
 void Emulator::watch_loop(std::size_t channel, double dt) {
   constexpr std::array<double, 4> kPatience{emulators::kNever, 0.25, 0.5, 1.0};  // [s] by ^CLERD
   const double told = wheel_speed(channel, rpm_[channel]);

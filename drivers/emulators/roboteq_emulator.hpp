@@ -1,8 +1,8 @@
-// drivers/emulators/roboteq_emulator.hpp: a two-channel Roboteq motor controller as its line shows
-// it, with a motor, a gear and an encoder on each channel.
+// drivers/emulators/roboteq_emulator.hpp: a two-channel Roboteq motor controller on its serial
+// line, with a motor, a gear and an encoder on each channel.
 //
-// Written from public drivers; the maker's manual was not at hand. Where those leave a choice, the
-// stricter one is taken.
+// Written from public drivers; the maker's manual was not at hand. Where the drivers leave a
+// choice, the emulator is strict.
 #pragma once
 
 #include <array>
@@ -20,13 +20,13 @@ namespace drivers::roboteq {
 
 struct EmulatorOptions {
   std::string firmware = "Roboteq v2.0 SDC2XXX 01/01/2020";
-  int watchdog_ms = 1000;     // of a controller as it comes
+  int watchdog_ms = 1000;     // factory setting
   double wheel_radius = 0.1;  // [m]
-  double gear = 20;           // turns of the motor for one of the wheel
-  int encoder_lines = 500;    // a turn of the motor; four counts each
-  int full_speed_rpm = 1000;  // of the motors as ^MXRPM comes
+  double gear = 20;           // turns of the motor per turn of the wheel
+  int encoder_lines = 500;    // per turn of the motor; four counts each
+  int full_speed_rpm = 1000;  // of the motors; factory setting of ^MXRPM
   double volts = 24.0;
-  std::int32_t first_count = 0;  // where the counters stand at first
+  std::int32_t first_count = 0;  // initial value of the counters
   bool one_channel = false;
   std::uint64_t seed = 1;
 };
@@ -46,7 +46,7 @@ class Emulator final : public emulators::Device, public emulators::Base {
   bool powered() const override { return fault_bits() == 0; }
   void restart(double now, double boot_time) override;
 
-  // ---- for tests to look at ----
+  // ---- for tests ----
   bool echoes() const { return echo_; }
   unsigned memory_writes() const { return memory_writes_; }
 
@@ -54,7 +54,7 @@ class Emulator final : public emulators::Device, public emulators::Base {
   static constexpr std::size_t kChannels = 2;
   using Pair = std::array<int, kChannels>;
 
-  /// Parameters a host may read and write; RAM until stored.
+  /// Parameters that a host can read and write; in RAM until stored.
   struct Parameters {
     int watchdog_ms = 1000;
     Pair mode{1, 1};  // closed loop
@@ -65,9 +65,9 @@ class Emulator final : public emulators::Device, public emulators::Base {
     Pair deceleration{20000, 20000};
     Pair amperes{150, 150};  // [0.1 A] limit
     Pair p{10, 10}, i{10, 10}, d{0, 0};
-    Pair loop_error{2, 2};  // 0 off, 1: 0.25 s, 2: 0.5 s, 3: 1 s of it
+    Pair loop_error{2, 2};  // 0: off; fault after 1: 0.25 s, 2: 0.5 s, 3: 1 s
   };
-  /// A line taken apart.
+  /// A parsed line.
   struct Order {
     char kind = 0;
     std::string_view name{};
@@ -114,9 +114,9 @@ class Emulator final : public emulators::Device, public emulators::Base {
   unsigned memory_writes_ = 0;
 
   std::array<double, kChannels> wanted_rpm_{};
-  std::array<double, kChannels> rpm_{};       // as the ramp has it
-  std::array<double, kChannels> lost_for_{};  // [s] its loop is open: told to turn, and does not
-  std::array<bool, kChannels> stalled_{};     // and was switched off for it, until told to stand
+  std::array<double, kChannels> rpm_{};       // output of the ramp
+  std::array<double, kChannels> lost_for_{};  // [s] commanded to turn without turning
+  std::array<bool, kChannels> stalled_{};     // switched off for that, until commanded to stop
   double driven_until_ = -emulators::kNever;
   double commanded_ = -emulators::kNever;  // [s] the last motor command
   bool emergency_ = false;
