@@ -13,14 +13,14 @@
 
 namespace server::emulate {
 
-/// The library that opens such a card in place of libcomedi; it lies beside this program.
-/// Throws std::runtime_error with a sentence when it does not.
+/// The library that opens such a card in place of libcomedi, next to this program. Throws
+/// std::runtime_error with a sentence when it is missing.
 std::filesystem::path emulated_comedi();
 
-/// The card's file is there as long as this lives and the card is plugged in.
+/// The card's file exists as long as this object, while the card is plugged in.
 class CardSlot final : public Connection {
  public:
-  /// `device` outlives it. Throws std::runtime_error with a sentence.
+  /// `device` must outlive this object. Throws std::runtime_error with a sentence.
   CardSlot(std::string name,
            drivers::emulators::AnalogEmulator& device,
            std::filesystem::path path,

@@ -1,4 +1,5 @@
-// server/emulate/clock.hpp: the clock of emulated devices: the machine's, the same in all programs.
+// server/emulate/clock.hpp: the clock of emulated devices: the computer's, the same for all
+// programs.
 #pragma once
 
 #include <chrono>
@@ -12,7 +13,7 @@ inline double machine_time() {
   return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// `time` [s] of machine_time().
+/// Converts `time` [s] of machine_time().
 inline void sleep_until(double time) {
   using Clock = std::chrono::steady_clock;
   const std::chrono::duration<double> since_epoch(time);

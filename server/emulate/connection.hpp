@@ -1,4 +1,5 @@
-// server/emulate/connection.hpp: what connects an emulated device with the program that drives it.
+// server/emulate/connection.hpp: the connection of an emulated device to the program that drives
+// it.
 #pragma once
 
 #include <mutex>
@@ -7,8 +8,8 @@
 
 namespace server::emulate {
 
-/// The device belongs to the thread that holds lock(): the connection's own, the world's, or one
-/// that injects faults.
+/// Only the thread that holds lock() may use the device: the connection's own thread, the world's,
+/// or one that injects faults.
 class Connection {
  public:
   explicit Connection(std::string name) : name_(std::move(name)) {}
@@ -17,11 +18,11 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
 
   virtual void start() = 0;
-  /// The device has changed from outside and may have something to send.
+  /// Call after changing the device: it may have something to send.
   virtual void wake() = 0;
-  /// Pulls the plug and puts it back after `seconds`.
+  /// Unplugs the device for `seconds`.
   virtual void unplug(double seconds) = 0;
-  /// Somebody has opened it.
+  /// Whether a program has it open.
   virtual bool listened_to() const = 0;
 
   const std::string& name() const { return name_; }

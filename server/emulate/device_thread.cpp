@@ -63,11 +63,11 @@ void DeviceThread::plug(double now) {
   }
 }
 
-/// What is due at `now`; returns when something will be.
+/// Does the work due at `now`; returns the time of the next work.
 double DeviceThread::exchange(double now) {
   if (port_.descriptor() < 0 && now >= plug_at_) plug(now);
   listened_to_ = port_.listened_to();
-  polled_ = listened_to_ ? port_.descriptor() : -1;  // one that nobody has open wakes without end
+  polled_ = listened_to_ ? port_.descriptor() : -1;  // an unopened port would wake without end
   std::array<std::uint8_t, 4096> heard{};
   const std::size_t size = port_.read(heard);
   const drivers::ByteView came(heard.data(), size);
@@ -98,7 +98,7 @@ void DeviceThread::carry_out(unsigned rate, const std::vector<std::uint8_t>& byt
   }
 }
 
-/// Until something comes or is due. Not at each single byte: a port hands them over in portions.
+/// Waits for bytes or work. Not for each single byte: a port delivers bytes in portions.
 void DeviceThread::rest(double seconds) {
   constexpr double kShortest = 0.002;
   constexpr double kLongest = 0.005;

@@ -1,4 +1,4 @@
-// server/emulate/device_thread.hpp: an emulated device at work on a pseudo-terminal.
+// server/emulate/device_thread.hpp: an emulated device on a pseudo-terminal.
 #pragma once
 
 #include <atomic>
@@ -14,11 +14,11 @@
 
 namespace server::emulate {
 
-/// Moves bytes between a device and its port at the device's pace. A host that is set to another
-/// rate hears garbage and is heard as garbage.
+/// Moves bytes between a device and its port at the device's rate. At a wrong rate, host and device
+/// each receive garbage.
 class DeviceThread final : public Connection {
  public:
-  /// `device` outlives it.
+  /// `device` must outlive this object.
   DeviceThread(std::string name, drivers::emulators::Device& device, std::filesystem::path link);
   ~DeviceThread() override;
 
@@ -26,7 +26,7 @@ class DeviceThread final : public Connection {
   void wake() override;
   void unplug(double seconds) override;
   bool listened_to() const override { return listened_to_; }
-  /// Bytes that a host which does not read has lost.
+  /// Bytes lost because the host does not read.
   std::uint64_t overrun() const { return overrun_; }
 
  private:
@@ -40,7 +40,7 @@ class DeviceThread final : public Connection {
   PtyPort port_;
   int wake_ = -1;
   double plug_at_ = 0;  // [s] while unplugged
-  int polled_ = -1;     // the thread's own
+  int polled_ = -1;     // used only by the thread
   std::vector<std::uint8_t> bytes_{};
   std::atomic<bool> listened_to_{false};
   std::atomic<std::uint64_t> overrun_{0};

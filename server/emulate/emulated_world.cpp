@@ -1,4 +1,4 @@
-// server/emulate/emulated_world.cpp: one physics step after another, devices served in between.
+// server/emulate/emulated_world.cpp: steps the physics and serves the devices between steps.
 #include "server/emulate/emulated_world.hpp"
 
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace server::emulate {
 namespace {
 
-/// The scenario as the world beneath the devices: the same physics steps, no sensors but encoders
-/// and contacts, delays as long as they were.
+/// The scenario for the world under the devices: the same physics steps and delays, and no sensors
+/// except encoders and contacts.
 sim::Scenario bare(sim::Scenario scenario) {
   const sim::Substeps substeps(scenario.period);
   scenario.period = substeps.length;
@@ -23,7 +23,7 @@ sim::Scenario bare(sim::Scenario scenario) {
   return scenario;
 }
 
-constexpr double kMadeGood = 0.5;  // [s] of steps that a busy computer delayed
+constexpr double kMadeGood = 0.5;  // [s] of delayed steps to make up for on a busy computer
 
 double metres_per_count(const sim::RobotModel& robot) {
   return 2 * std::numbers::pi * robot.wheel_radius / robot.counts_per_turn;
@@ -44,7 +44,7 @@ EmulatedWorld::EmulatedWorld(const sim::Scenario& scenario,
       sonars_(scenario) {
   if (!scenario.robots.empty()) {
     throw std::invalid_argument(
-        "Only a robot that is alone has its devices emulated; this scenario has several robots.");
+        "Devices can be emulated for one robot only; this scenario has several robots.");
   }
   for (std::uint32_t i = 0; i < links_.scanners.size(); ++i) {
     mirrors_.emplace_back(scenario_, seed, i);
@@ -84,7 +84,7 @@ void EmulatedWorld::run(const std::stop_token& stop) {
   }
 }
 
-/// What the base's motors do, as the vehicle takes it.
+/// The motion of the base's motors as a twist for the vehicle.
 algo::Command EmulatedWorld::command() {
   if (!links_.base) return {};
   const auto held = links_.base->connection->lock();
@@ -92,7 +92,7 @@ algo::Command EmulatedWorld::command() {
   return {.base = algo::twist_of({motion_.left, motion_.right}, world_.spec().half_track)};
 }
 
-/// `due` [s] of the machine's clock: when the step ends, however late it was taken.
+/// `due` [s] of machine_time(): the nominal end of the step, even if it ran late.
 void EmulatedWorld::feel(const algo::Observation& observation,
                          const algo::Pose2& pose_W,
                          double due) {
@@ -106,7 +106,7 @@ void EmulatedWorld::feel(const algo::Observation& observation,
   encoders_ = now;
   senses_.left_travel += left;
   senses_.right_travel += right;
-  // A step is a few counts: speeds are smoothed over some of them.
+  // A step is only a few counts, so speeds are smoothed over several steps.
   constexpr double kWeight = 0.2;
   const double period = world_.spec().period;
   senses_.motion.left += kWeight * (left / period - senses_.motion.left);

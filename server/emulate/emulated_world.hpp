@@ -1,4 +1,4 @@
-// server/emulate/emulated_world.hpp: a simulated world in real time, its robot's devices emulated.
+// server/emulate/emulated_world.hpp: a simulated world in real time with emulated devices.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,20 @@
 
 namespace server::emulate {
 
-/// What turns the wheels of the base and the mirrors of the scanners. Physics goes in the steps
-/// that a pure simulation of the scenario takes, so that both differ by the devices alone.
+/// Turns the wheels of the base and the mirrors of the scanners. The physics steps are those of a
+/// pure simulation of the scenario, so that both differ only by the devices.
 class EmulatedWorld {
  public:
   struct Links {
-    std::vector<Served<drivers::lms200::Emulator>> scanners{};  // as many as the scenario's lasers
-    std::optional<Served<drivers::emulators::Base>> base{};     // without one the robot stands
+    std::vector<Served<drivers::lms200::Emulator>> scanners{};  // one per laser of the scenario
+    std::optional<Served<drivers::emulators::Base>> base{};     // without a base the robot stands
   };
   struct Truth {
     double time = 0;  // [s] of the run clock
     algo::Pose2 pose_W{};
     double clearance = 0;  // [m]
     bool collided = false;
-    std::uint64_t missed = 0;  // physics steps that came too late
+    std::uint64_t missed = 0;  // skipped physics steps
   };
 
   /// Throws std::exception with a sentence when the scenario cannot be run.

@@ -1,4 +1,4 @@
-// server/emulate/emulation.cpp: putting devices, lines and world together; the faults.
+// server/emulate/emulation.cpp: assembles devices, lines and world, and injects faults.
 #include "server/emulate/emulation.hpp"
 
 #include <array>
@@ -28,11 +28,11 @@ struct Emulation::Scanner {
       : device(options), thread(std::move(name), device, link) {}
   lms200::Emulator device;
   DeviceThread thread;
-  std::array<std::uint64_t, 5> fates{};  // of its scans, by SentScan::Fate; under the device's lock
+  std::array<std::uint64_t, 5> fates{};  // scans by SentScan::Fate; under the device's lock
 };
 
 struct Emulation::Base {
-  /// With a serial line, or with a card.
+  /// A base with a serial line or with a card.
   template <class Emulator>
   Base(std::unique_ptr<Emulator> made, const EmulationOptions& options) {
     if constexpr (std::is_same_v<Emulator, emulators::AnalogEmulator>) {
@@ -49,12 +49,12 @@ struct Emulation::Base {
   emulators::Device* line = nullptr;          // of a serial base
   emulators::AnalogEmulator* card = nullptr;  // of the other kind
   std::unique_ptr<Connection> connection{};
-  std::uint64_t commands = 0;  // that concern motion; under the device's lock
+  std::uint64_t commands = 0;  // motion commands; under the device's lock
 };
 
 namespace {
 
-/// Everything a line of faults can say.
+/// The verbs of a fault line.
 enum class Verb : std::uint8_t {
   Truth,
   Drop,
@@ -89,14 +89,14 @@ struct VerbRow {
 constexpr std::array<VerbRow, 20> kVerbs{{
     {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
     {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
-    {Verb::Flip, "flip", Who::Any, "P: turn over a bit of each byte with this probability"},
-    {Verb::Damage, "damage", Who::Any, "P: lose or flip one byte of each telegram, likewise"},
-    {Verb::Silence, "silence", Who::Any, "SECONDS: say nothing"},
-    {Verb::Restart, "restart", Who::Any, "SECONDS: start anew, which takes so long"},
-    {Verb::Unplug, "unplug", Who::Any, "SECONDS: take the port away, then bring it back"},
-    {Verb::Nak, "nak", Who::Scanner, "N: take the next N telegrams for damaged"},
+    {Verb::Flip, "flip", Who::Any, "P: flip a bit of each byte with this probability"},
+    {Verb::Damage, "damage", Who::Any, "P: damage one byte of each telegram with this probability"},
+    {Verb::Silence, "silence", Who::Any, "SECONDS: send nothing"},
+    {Verb::Restart, "restart", Who::Any, "SECONDS: restart, which takes this long"},
+    {Verb::Unplug, "unplug", Who::Any, "SECONDS: remove the port for this long"},
+    {Verb::Nak, "nak", Who::Scanner, "N: answer NAK to the next N telegrams"},
     {Verb::Dazzle, "dazzle", Who::Scanner, "on|off: blind all beams"},
-    {Verb::Cone, "cone", Who::Scanner, "DEGREES: blind so many about the middle; 0: none"},
+    {Verb::Cone, "cone", Who::Scanner, "DEGREES: blind this angle about the middle; 0: none"},
     {Verb::Dirty, "dirty", Who::Scanner, "on|off: report a dirty window"},
     {Verb::Health, "health", Who::Scanner, "BYTE: the last byte of all answers"},
     {Verb::Stop, "stop", Who::Base, "on|off: press or release the stop button"},
@@ -106,10 +106,10 @@ constexpr std::array<VerbRow, 20> kVerbs{{
     {Verb::Runaway,
      "runaway",
      Who::Base,
-     "SPEED: with power both wheels turn so fast [m/s]; 0: none"},
-    {Verb::Gain, "gain", Who::Base, "N: the wheels turn N times as fast as told"},
+     "SPEED: while powered, both wheels turn at this speed [m/s]; 0: none"},
+    {Verb::Gain, "gain", Who::Base, "N: the wheels turn N times as fast as commanded"},
     {Verb::Block, "block", Who::Base, "on|off: the left wheel cannot turn"},
-    {Verb::Encoder, "encoder", Who::Base, "on|off: the left wheel's encoder"},
+    {Verb::Encoder, "encoder", Who::Base, "on|off: connect or disconnect the left wheel's encoder"},
 }};
 
 const VerbRow& verb_of(const std::string& word) {
@@ -130,7 +130,7 @@ double value_of(const std::string& text, const VerbRow& row) {
   return value;
 }
 
-/// What may befall any device; false when `verb` is none of it.
+/// Injects a fault that any device can have; false for any other `verb`.
 bool befall(Verb verb, double value, Connection& connection, emulators::Device& device) {
   if (verb == Verb::Unplug) {
     connection.unplug(value);
@@ -215,7 +215,7 @@ void befall_wheels(Verb verb, double value, emulators::Base& device) {
   }
 }
 
-/// As befall(), for the acquisition card of a base without a line.
+/// As befall(), for the acquisition card of a base without a serial line.
 bool befall_card(const VerbRow& row,
                  double value,
                  Connection& connection,
@@ -233,7 +233,7 @@ bool befall_card(const VerbRow& row,
     case Verb::Flip:
     case Verb::Damage:
       throw std::invalid_argument(
-          fmt::format("'{}' is nothing for an acquisition card: it has no line.", row.word));
+          fmt::format("'{}' needs a serial line; an acquisition card has none.", row.word));
     default:
       return false;
   }
@@ -252,14 +252,14 @@ void befall_base(const VerbRow& row, double value, Base& base) {
   connection.wake();
 }
 
-/// Who `row` is for, when the line does not say.
+/// The device for `row` when the line names none.
 std::string only(const VerbRow& row, std::size_t scanners, bool base) {
   const bool scanner_verb = row.who != Who::Base;
   const bool base_verb = row.who != Who::Scanner;
   if (scanner_verb && scanners == 1 && !(base_verb && base)) return "scanner";
   if (base_verb && base && !(scanner_verb && scanners > 0)) return "base";
   throw std::invalid_argument(
-      fmt::format("{}: of which device? Write such as 'scanner {}'.", row.word, row.word));
+      fmt::format("{}: of which device? Write for example 'scanner {}'.", row.word, row.word));
 }
 
 }  // namespace
@@ -305,7 +305,7 @@ Emulation::Emulation(const EmulationOptions& options) : record_(options.record) 
   if (options.base != BaseKind::None) add_base(options);
   if (!options.log.empty()) {
     if (scanners_.size() != 1 || base_) {
-      throw std::invalid_argument("A log can be shown to one scanner alone.");
+      throw std::invalid_argument("A log can be played to one scanner only.");
     }
     player_ = std::make_unique<LogPlayer>(
         options.log, Served<lms200::Emulator>{&scanners_[0]->device, &scanners_[0]->thread});
@@ -367,7 +367,7 @@ std::string Emulation::command(std::string_view line) {
   record_.event(machine_time(), line);
   if (device == "base") {
     if (!base_ || row.who == Who::Scanner) {
-      throw std::invalid_argument(fmt::format("'{}' is nothing for a base here.", row.word));
+      throw std::invalid_argument(fmt::format("'{}' does not apply to this base.", row.word));
     }
     befall_base(row, number, *base_);
     return "";
@@ -375,7 +375,7 @@ std::string Emulation::command(std::string_view line) {
   for (const auto& scanner : scanners_) {
     if (scanner->thread.name() != device) continue;
     if (row.who == Who::Base) {
-      throw std::invalid_argument(fmt::format("'{}' is nothing for a scanner.", row.word));
+      throw std::invalid_argument(fmt::format("'{}' does not apply to a scanner.", row.word));
     }
     befall_scanner(row.verb, number, scanner->thread, scanner->device);
     scanner->thread.wake();

@@ -1,5 +1,4 @@
-// server/emulate/emulation.hpp: emulated devices on their links, in one world, with faults on
-// request.
+// server/emulate/emulation.hpp: emulated devices in one world, their links and injected faults.
 #pragma once
 
 #include <filesystem>
@@ -28,11 +27,11 @@ enum class BaseKind : std::uint8_t { None, P2os, Roboteq, Analog };
 
 struct EmulationOptions {
   sim::Scenario scenario{};
-  std::filesystem::path log{};  // for one scanner in place of the scenario
+  std::filesystem::path log{};  // replaces the scenario for one scanner
   std::uint64_t seed = 1;
   drivers::lms200::EmulatorOptions scanner{};
-  bool near_wrap = false;  // the base's counters stand shortly before they run over
-  double watchdog = 0;     // [s] of the base; 0: as it comes
+  bool near_wrap = false;                   // the base's counters start shortly before they wrap
+  double watchdog = 0;                      // [s] of the base; 0: factory setting
   drivers::emulators::LineFaults faults{};  // of all lines
   std::filesystem::path record{};
   std::vector<std::filesystem::path> scanner_links{};  // one for each scanner
@@ -41,7 +40,7 @@ struct EmulationOptions {
   drivers::emulators::CardChannels card{};  // of an analog base
 };
 
-/// The words command() takes, one line each, for --help.
+/// The commands of command(), one line each, for --help.
 std::string command_help();
 
 class Emulation {
@@ -51,10 +50,10 @@ class Emulation {
   ~Emulation();
 
   void start();
-  /// Carries out one line such as "scanner silence 2" and returns the answer, or nothing when there
-  /// is nothing to say. Throws std::invalid_argument with a sentence when it is none.
+  /// Executes a line such as "scanner silence 2" and returns the answer, which may be empty. Throws
+  /// std::invalid_argument with a sentence for an invalid line.
   std::string command(std::string_view line);
-  /// One line of JSON: the robot's pose and what has gone over the lines.
+  /// One line of JSON: the robot's pose, and counts of scans and commands.
   std::string truth();
 
  private:

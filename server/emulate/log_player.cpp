@@ -22,9 +22,9 @@ void LogPlayer::run(const std::stop_token& stop) {
   replay_.reset(observation);
   while (!stop.stop_requested()) {
     for (const algo::LaserScan& scan : observation.scans) {
-      if (std::abs(scan.mount_R.heading) > std::numbers::pi / 2) continue;  // another scanner's
+      if (std::abs(scan.mount_R.heading) > std::numbers::pi / 2) continue;  // from another scanner
       const auto held = scanner_.connection->lock();
-      // Partial scans are made of turns of the mirror, of which a log says nothing.
+      // Partial scans need single turns of the mirror, which a log does not record.
       if (scanner_.device->sweep().parts.empty()) scanner_.device->offer(scan, machine_time());
       scanner_.connection->wake();
     }

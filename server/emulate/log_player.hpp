@@ -1,5 +1,4 @@
-// server/emulate/log_player.hpp: a recorded log in place of a world in front of an emulated
-// scanner.
+// server/emulate/log_player.hpp: feeds a recorded log to an emulated scanner instead of a world.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +10,7 @@
 
 namespace server::emulate {
 
-/// Shows the scans of a CARMEN log to a scanner, at their own pace, over and over.
+/// Plays the scans of a CARMEN log to a scanner at their recorded rate, in a loop.
 class LogPlayer {
  public:
   /// Throws std::runtime_error with a sentence when the file is no log.

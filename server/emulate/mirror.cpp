@@ -10,7 +10,7 @@ namespace server::emulate {
 namespace {
 
 constexpr double kDegree = algo::units::kRadiansPerDegree;
-/// [m] The device itself says what is too far for its measuring mode; beams on the wire end here.
+/// [m] The largest distance of a packed beam. The device applies the limit of its measuring mode.
 constexpr double kFarthest = 65.5;
 
 }  // namespace
@@ -23,7 +23,7 @@ double Mirror::memory() {
   return 2 * kSweep;
 }
 
-/// [rad] From the middle of a scan to the middle of its part: parts but the first lack one beam.
+/// [rad] From the middle of a scan to the middle of a part: all parts but the first lack one beam.
 double Mirror::offset(std::uint8_t part) {
   return part == 0 ? 0 : (part * 0.25 - 0.5) * kDegree;
 }

@@ -1,4 +1,4 @@
-// server/emulate/mirror.hpp: what the mirror of an emulated LMS200 sees of a simulated world.
+// server/emulate/mirror.hpp: the scans of an emulated LMS200 in a simulated world.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@
 
 namespace server::emulate {
 
-/// The sim's model of the scanner in the variant its device is in now: the same seed gives the
-/// noise that a pure simulation has.
+/// The sim's laser model in the present variant of the device. The same seed gives the noise of a
+/// pure simulation.
 class Mirror {
  public:
-  /// Scanner `index` of `scenario`, whose obstacles it sees.
+  /// For scanner `index` of `scenario`.
   Mirror(const sim::Scenario& scenario, std::uint64_t seed, std::uint32_t index);
 
-  /// Calls `on_scan(scan, part)` for what ended since the last call. `now` [s, run clock].
+  /// Calls `on_scan(scan, part)` for each sweep that ended since the last call. `now` [s, run
+  /// clock].
   template <class OnScan>
   void sense(const drivers::lms200::Sweep& sweep,
              double now,
@@ -36,7 +37,7 @@ class Mirror {
       }
     }
   }
-  /// [s] How far back its sweeps reach.
+  /// [s] The age of the oldest pose that a sweep needs.
   static double memory();
 
  private:
@@ -50,7 +51,7 @@ class Mirror {
   std::uint64_t seed_ = 0;
   std::uint32_t index_ = 0;
   drivers::lms200::Sweep sweep_{};
-  std::vector<sim::LaserModel> models_{};  // one, or one for each part
+  std::vector<sim::LaserModel> models_{};  // one, or one per part
   algo::LaserScan scan_{};
 };
 

@@ -1,4 +1,4 @@
-// server/emulate/pty_port.cpp: making, linking and looking after a pseudo-terminal.
+// server/emulate/pty_port.cpp: makes, links and polls a pseudo-terminal.
 #include "server/emulate/pty_port.hpp"
 
 #include <array>
@@ -23,14 +23,14 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("{}: {}.", what, std::system_category().message(errno)));
 }
 
-/// As a port is before anybody has set it: no echo, nothing translated.
+/// The initial settings of a port: no echo, no translation.
 void make_raw(int fd) {
   constexpr unsigned kFirstRate = 9600;
   termios2 settings{};
   settings.c_cflag = CS8 | CREAD | CLOCAL | BOTHER;
   settings.c_ispeed = kFirstRate;
   settings.c_ospeed = kFirstRate;
-  if (::ioctl(fd, TCSETS2, &settings) != 0) fail("The pseudo-terminal cannot be set");
+  if (::ioctl(fd, TCSETS2, &settings) != 0) fail("The pseudo-terminal cannot be configured");
 }
 
 }  // namespace
@@ -47,18 +47,17 @@ void PtyPort::plug() {
   if (fd_ >= 0) return;
   const fs::file_status there = fs::symlink_status(link_);
   if (fs::exists(there) && !fs::is_symlink(there)) {
-    throw std::runtime_error(link_.string() +
-                             " is there already and no link: choose another --link.");
+    throw std::runtime_error(link_.string() + " exists and is no link: choose another --link.");
   }
   fd_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (fd_ < 0) fail("There is no pseudo-terminal to be had");
+  if (fd_ < 0) fail("No pseudo-terminal is available");
   std::array<char, 128> name{};
   if (::grantpt(fd_) != 0 || ::unlockpt(fd_) != 0 ||
       ::ptsname_r(fd_, name.data(), name.size()) != 0) {
     fail("The pseudo-terminal has no other end");
   }
   slave_ = name.data();
-  // Opened and closed once, so that "nobody has it open" can be told from then on.
+  // Opened and closed once: from then on poll() reports that no program has it open.
   const int host = ::open(name.data(), O_RDWR | O_NOCTTY | O_CLOEXEC);
   if (host < 0) fail(slave_.string() + " cannot be opened");
   make_raw(host);
@@ -79,7 +78,7 @@ void PtyPort::unplug() {
   fd_ = -1;
 }
 
-/// Only if it is ours still.
+/// Removes the link only if it is still ours.
 void PtyPort::remove_link() const {
   std::error_code error;
   if (fs::read_symlink(link_, error) == slave_ && !error) fs::remove(link_, error);

@@ -1,5 +1,5 @@
-// server/emulate/pty_port.hpp: the device's end of a pseudo-terminal, which a program opens like a
-// serial port.
+// server/emulate/pty_port.hpp: the device's end of a pseudo-terminal; programs open the other end
+// like a serial port.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,12 @@
 
 namespace server::emulate {
 
-/// A symbolic link leads to the host's end as long as this lives and is plugged in. Not for two
-/// threads at once.
+/// A symbolic link leads to the host's end as long as this object exists and is plugged in. Not
+/// thread-safe.
 class PtyPort {
  public:
-  /// Throws std::runtime_error with a sentence when there is no terminal or something other than a
-  /// link is at `link`.
+  /// Throws std::runtime_error with a sentence when no terminal is available, or `link` exists and
+  /// is no symbolic link.
   explicit PtyPort(std::filesystem::path link);
   ~PtyPort();
   PtyPort(const PtyPort&) = delete;
@@ -27,13 +27,13 @@ class PtyPort {
   /// -1 while unplugged.
   int descriptor() const { return fd_; }
 
-  /// Somebody has the host's end open. What is written while nobody has is lost, as on a cable.
+  /// Whether a program has the host's end open. Bytes written otherwise are lost, as on a cable.
   bool listened_to() const;
-  /// [bit/s] the host's end is set to.
+  /// [bit/s] The rate that the host has set.
   unsigned host_baud() const;
-  /// What has come; 0 when nothing has.
+  /// Reads the bytes received; returns their number, 0 without any.
   std::size_t read(std::span<std::uint8_t> into) const;
-  /// The bytes taken: fewer when the host does not read.
+  /// Returns the number of bytes written: fewer when the host does not read.
   std::size_t write(drivers::ByteView bytes) const;
 
  private:

@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kPing = 0.04;     // [s]
 constexpr double kHeight = 0.2;    // [m]
-constexpr double kNothing = 5.0;   // [m] reported when nothing is heard
+constexpr double kNothing = 5.0;   // [m] reported without an echo
 constexpr double kNearest = 0.15;  // [m]
-constexpr std::size_t kRays = 31;  // of a cone
+constexpr std::size_t kRays = 31;  // per cone
 constexpr double kCone = 30 * algo::units::kRadiansPerDegree;
 constexpr std::uint8_t kPerArray = 8;
 

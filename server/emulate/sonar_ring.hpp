@@ -26,7 +26,7 @@ class SonarRing {
 
   std::vector<algo::Pose2> mounts_R_;
   sim::RangeCaster caster_;
-  std::vector<double> ranges_{};  // of the rays of a cone
+  std::vector<double> ranges_{};  // one per ray of a cone
   std::uint64_t pings_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// server/emulate/truth_record.cpp: lines of the record.
+// server/emulate/truth_record.cpp: writes the lines of the record.
 #include "server/emulate/truth_record.hpp"
 
 #include <stdexcept>

@@ -1,5 +1,4 @@
-// server/emulate/truth_record.hpp: what emulated devices did, one line each, to hold a driver
-// against.
+// server/emulate/truth_record.hpp: a log of what emulated devices did, to check a driver by.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +17,18 @@
 
 namespace server::emulate {
 
-/// Times are those of machine_time(), with six decimals; ranges are beams on the wire
-/// (algo/laser_scan.hpp), millimetres but for the codes.
+/// Times are from machine_time(), with six decimals. Beams are packed (algo/laser_scan.hpp):
+/// millimetres or codes.
 ///
 ///   scan DEVICE NUMBER TIME FATE PART BEAM...   FATE sent, damaged, cut, lost, muted or unheard
-///   wheels TIME LEFT RIGHT                      [mm/s] told by the host, or 0 by the base itself
-///   pose TIME X Y HEADING LEFT RIGHT            [mm, mrad, mm/s] the truth, ten times a second
-///   event TIME TEXT                             a fault injected
+///   wheels TIME LEFT RIGHT                      [mm/s] commanded by the host; 0: watchdog stop
+///   pose TIME X Y HEADING LEFT RIGHT            [mm, mrad, mm/s] true pose and speeds, at 10 Hz
+///   event TIME TEXT                             an injected fault
 ///
-/// For any thread.
+/// Thread-safe.
 class TruthRecord {
  public:
-  /// Keeps nothing without a path. Throws std::runtime_error with a sentence.
+  /// Records nothing without a path. Throws std::runtime_error with a sentence.
   explicit TruthRecord(const std::filesystem::path& path = {});
 
   void scan(std::string_view device, const drivers::lms200::SentScan& scan, bool heard);

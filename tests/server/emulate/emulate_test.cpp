@@ -270,7 +270,7 @@ TEST_F(EmulationTest, CommandsThatMeanNothingAreSentences) {
   EXPECT_THAT(said("explode"), HasSubstr("no command 'explode'"));
   EXPECT_THAT(said("silence"), HasSubstr("of which device"));
   EXPECT_THAT(said("scanner silence long"), HasSubstr("SECONDS"));
-  EXPECT_THAT(said("base dazzle on"), HasSubstr("nothing for a base"));
+  EXPECT_THAT(said("base dazzle on"), HasSubstr("does not apply to this base"));
   EXPECT_THAT(said("scanner2 silence 1"), HasSubstr("no device"));
   EXPECT_EQ(said("stop on"), "");
   EXPECT_EQ(said("dazzle on"), "");
