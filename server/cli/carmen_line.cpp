@@ -1,4 +1,4 @@
-// server/cli/carmen_line.cpp: metres and poses, separated by blanks.
+// server/cli/carmen_line.cpp: writes metres and poses separated by blanks.
 #include "server/cli/carmen_line.hpp"
 
 #include <cmath>

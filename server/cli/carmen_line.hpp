@@ -9,9 +9,9 @@
 
 namespace server {
 
-/// FLASER, which says nothing of angles, for half a turn; ROBOTLASER1 for other fields of view.
-/// Poses are zero: there is no robot. What is no distance is written as the scanner's range.
-/// `wall` [s] is the time of day, `since` [s] that since the log began.
+/// FLASER, which has no angles, for 180 degrees; ROBOTLASER1 for other fields of view. Poses are
+/// zero: there is no robot. A beam without a distance is written as the scanner's range. `wall` [s]
+/// is the time of day, `since` [s] the time since the start of the log.
 std::string carmen_line(const algo::LaserScan& scan,
                         std::string_view host,
                         double wall,

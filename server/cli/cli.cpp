@@ -1,4 +1,4 @@
-// server/cli/cli.cpp: what the subcommands share.
+// server/cli/cli.cpp: code shared by the subcommands.
 #include "server/cli/cli.hpp"
 
 #include <cstdio>
@@ -15,12 +15,12 @@
 namespace server {
 
 void RunFlags::add_to(CLI::App& command) {
-  command.add_option("--controller", overrides.controller, "Instead of the scenario's own");
+  command.add_option("--controller", overrides.controller, "Controller in place of the scenario's");
   command.add_option("--filter", overrides.filter, "pseudomedian, median, lulu or none");
   command.add_option("--physics,--vehicle", physics, "bullet or kinematic");
   add_robot_option(command, robot);
   command.add_option("--seed", overrides.seed, "Seed of the sensor noise (default 1)");
-  command.add_option("--set", settings, "A parameter, such as k_r=0.3; may be given again")
+  command.add_option("--set", settings, "A parameter, such as k_r=0.3; repeatable")
       ->type_name("NAME=VALUE");
 }
 

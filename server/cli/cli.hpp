@@ -1,5 +1,5 @@
-// server/cli/cli.hpp: the subcommands of the program. Each adds itself to the application and, when
-// chosen, leaves its exit status in `status`.
+// server/cli/cli.hpp: the subcommands of the program. Each adds itself to the application and, if
+// run, sets `status` to its exit status.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ constexpr int kCollided = 3;
 constexpr int kNotHeld = 3;     // of `reproduce` and `compare`: a limit did not hold
 constexpr int kDifferent = 2;   // of `verify`
 constexpr int kIncomplete = 4;  // of `export` and `verify`: not the whole run
-constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device is not as it should be
+constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device has a fault
 
 void add_serve_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);
@@ -38,7 +38,7 @@ void add_doctor_command(CLI::App& app, int& status);
 void add_lms200_command(CLI::App& app, int& status);
 void add_map_command(CLI::App& app, int& status);
 
-/// Built in, and the user's own.
+/// The built-in scenarios and the user's own.
 RobotLibrary own_robots();
 /// --robot-model, for RobotLibrary::load_file_or_name().
 CLI::Option* add_robot_option(CLI::App& command, std::string& robot);
@@ -50,18 +50,17 @@ struct RunFlags {
   std::string physics{};
   std::string robot{};  // --robot-model
   void add_to(CLI::App& command);
-  /// Throws DocumentError on a malformed --set, LibraryError where there is no such robot.
+  /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot.
   RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;
 };
 
-/// `name` as a path when there is such a file or it looks like one, else a name of the library.
+/// Loads `name`: a path if such a file exists or it looks like a path, else a name of the library.
 sim::Scenario find_scenario(const std::string& name);
 
-/// Refuses the path of a folder at once, not after the minutes of work whose result was to go
-/// there.
+/// Refuses a folder as output path at once, not after minutes of work.
 CLI::Validator file_to_write();
 
-/// Progress on standard error, only when somebody looks at it.
+/// Progress on standard error, only if that is a terminal.
 class ProgressLine {
  public:
   ProgressLine();

@@ -1,5 +1,5 @@
-// server/cli/command_barn.cpp: `tautline barn`: the BARN worlds, run and scored by the official
-// formula.
+// server/cli/command_barn.cpp: `tautline barn`: runs the BARN worlds and scores them by the
+// official formula.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -145,34 +145,35 @@ void add_barn_command(CLI::App& app, int& status) {
   barn->add_option("file", command->file, "The worlds, as JSON")->required()->type_name("FILE");
   barn->add_option("--controller",
                    command->options.conditions.controller,
-                   "Default: strip; strip_moving where something moves");
+                   "Default: strip; strip_moving in worlds with moving obstacles");
   barn->add_flag(
       "--stress",
       command->options.conditions.stress,
-      "Short scanner, slow base, delay, slip, drifting odometry; another robot keeps its own "
+      "Short scanner range, slow base, delay, slip, odometry drift; another robot keeps its own "
       "scanners and limits");
   barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
       ->check(CLI::IsMember({"bullet", "kinematic"}));
   CLI::Option* const robot = add_robot_option(*barn, command->robot);
-  barn->add_option("--scanner",
-                   command->scanner,
-                   "flat (default): the benchmark's, which sees all at one instant; lms200: the "
-                   "default LMS200, which sweeps")
+  barn->add_option(
+          "--scanner",
+          command->scanner,
+          "flat (default): the benchmark's, which measures all beams at one instant; lms200: the "
+          "default LMS200, which sweeps")
       ->check(CLI::IsMember({"flat", "lms200"}))
       ->excludes(robot);
-  barn->add_option("--repeats", command->options.repeats, "Seeds of each world (default 1)")
+  barn->add_option("--repeats", command->options.repeats, "Seeds per world (default 1)")
       ->check(CLI::Range(1, 10'000));
   add_first_seed_option(*barn, command->options.first_seed);
   barn->add_option("--phase",
                    command->options.conditions.phase,
-                   "[s] Where moving obstacles are on their way when a run begins (default 0)")
+                   "[s] Time of the obstacles' motion at the start of a run (default 0)")
       ->check(CLI::Range(0.0, 1e6));
   add_pool_options(*barn, command->options.pool, "--workers");
   add_rows_option(*barn, command->rows);
-  barn->add_option("--world", command->only, "Only these numbers");
+  barn->add_option("--world", command->only, "Only the worlds of these numbers");
   barn->add_option("--scenarios",
                    command->scenarios,
-                   "Run nothing: write each world there as a scenario the page can open")
+                   "Run nothing: write each world to this folder as a scenario for the page")
       ->type_name("DIR");
   barn->add_flag("--json", command->as_json, "Print JSON");
   barn->callback([command, &status] { status = execute(*command); });

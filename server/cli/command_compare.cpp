@@ -1,4 +1,4 @@
-// server/cli/command_compare.cpp: `tautline compare`: every controller beside the others.
+// server/cli/command_compare.cpp: `tautline compare`: compares every controller.
 #include <algorithm>
 #include <memory>
 
@@ -54,25 +54,27 @@ void add_compare_command(CLI::App& app, int& status) {
       ->check(CLI::IsMember({"worlds", "bottlenecks", "layouts"}));
   compare->add_option("--controller",
                       command->options.only,
-                      "Only these, on the worlds and before the bottlenecks; may be given again");
+                      "Only this controller, on the worlds and the bottlenecks; repeatable");
   compare
       ->add_option("--judge",
                    command->options.judges,
-                   "Also this judge: its columns stand in the details; may be given again")
+                   "Also this judge, with its columns in the details; repeatable")
       ->check(judge_name());
   add_rows_option(*compare, command->rows);
-  compare->add_option("--seeds", command->options.seeds, "Runs of each row (default 3)")
+  compare->add_option("--seeds", command->options.seeds, "Runs per row (default 3)")
       ->check(CLI::Range(1, 1000));
   add_first_seed_option(*compare, command->options.first_seed);
   compare->add_option("--layouts", command->options.layouts, "Random ones a kind (default 150)")
       ->check(CLI::Range(1, 10'000));
-  compare->add_option("--layout-seeds", command->options.layout_seeds, "Runs of each (default 2)")
+  compare
+      ->add_option(
+          "--layout-seeds", command->options.layout_seeds, "Runs per random layout (default 2)")
       ->check(CLI::Range(1, 1000));
   add_threads_option(*compare, command->options.threads);
   compare
       ->add_option("--markdown",
                    command->markdown,
-                   "Also write comparison.md there, and the table of the worlds into its "
+                   "Also write comparison.md to this folder, and the table of the worlds into its "
                    "controllers.md")
       ->type_name("DIR");
   compare->add_flag("--json", command->as_json, "Print JSON");
@@ -82,7 +84,7 @@ void add_compare_command(CLI::App& app, int& status) {
   }
   compare->footer(footer +
                   "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer "
-                  "than 99 % reached, or a collision.");
+                  "than 99 % of goals reached, or a collision.");
   compare->callback([command, &status] { status = execute(*command); });
 }
 

@@ -28,23 +28,22 @@ void print(const Finding& finding) {
 
 void add_doctor_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("doctor", "Look at each device of a robot and say what to do");
+  CLI::App* command = app.add_subcommand("doctor", "Check each device of a robot and print advice");
   command->add_option("--robot", options->robot, "The robot's TOML file")
       ->type_name("FILE")
       ->required();
   command->add_flag("--move",
                     options->doctor.move,
-                    "Turn the wheels, slowly, for two seconds: with the wheels off the floor");
-  command->add_option("--patience", options->doctor.patience, "For each device to be found")
+                    "Turn the wheels slowly for two seconds; lift them off the floor first");
+  command->add_option("--patience", options->doctor.patience, "Longest search for each device")
       ->type_name("SECONDS")
       ->check(CLI::Range(1.0, 300.0))
       ->capture_default_str();
-  command->footer("Exit status: 0 all is well, 2 something is not, 1 the file is not good.");
+  command->footer("Exit status: 0 no fault, 2 a device has a fault, 1 the file is invalid.");
   command->callback([options, &status] {
     const drivers::RobotFile file = drivers::read_robot_file(options->robot);
     const bool well = examine(file, options->doctor, print);
-    fmt::print("{}\n", well ? "All is well." : "Something is not well; see BAD above.");
+    fmt::print("{}\n", well ? "All is well." : "There are faults; see BAD above.");
     status = well ? 0 : kNotWell;
   });
 }

@@ -1,5 +1,5 @@
-// server/cli/command_emulate.cpp: `tautline emulate`: devices on pseudo-terminals, for users
-// without any.
+// server/cli/command_emulate.cpp: `tautline emulate`: emulated devices on pseudo-terminals, for
+// users without hardware.
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -52,7 +52,8 @@ struct Options {
   unsigned address = 0;
 };
 
-/// SIGINT, SIGTERM and SIGHUP as something to read; blocked in all threads, so to be made first.
+/// SIGINT, SIGTERM and SIGHUP as a file to read. It blocks them in all later threads, so make it
+/// first.
 class Signals {
  public:
   Signals() {
@@ -63,7 +64,7 @@ class Signals {
     ::sigaddset(&set, SIGHUP);
     ::pthread_sigmask(SIG_BLOCK, &set, nullptr);
     fd_ = ::signalfd(-1, &set, SFD_CLOEXEC);
-    heed_signals();  // of those that are not blocked
+    heed_signals();  // handles the signals that are not blocked
   }
   ~Signals() { ::close(fd_); }
   Signals(const Signals&) = delete;
@@ -84,8 +85,8 @@ void obey(Emulation& emulation, const std::string& line) {
   std::fflush(stdout);
 }
 
-/// Carries out the lines of standard input until a signal; the end of the input ends nothing, as
-/// somebody may have started this in the background.
+/// Executes the lines of standard input until a signal. The end of the input does not end the
+/// program, which may run in the background.
 void attend(Emulation& emulation, const Signals& signals) {
   std::string pending;
   std::array<pollfd, 2> sources{{{.fd = signals.descriptor(), .events = POLLIN, .revents = 0},
@@ -141,64 +142,64 @@ void add_common_flags(CLI::App& command, Options& options) {
   command
       .add_option("--record",
                   options.emulation.record,
-                  "Write every scan sent, every wheel command and the true poses there")
+                  "Write every scan sent, every wheel command and the true poses to this file")
       ->type_name("FILE");
   drivers::emulators::LineFaults& faults = options.emulation.faults;
   command.add_option("--drop", faults.drop, "Probability that a byte is lost")
       ->check(CLI::Range(0.0, 1.0));
-  command.add_option("--flip", faults.flip, "Probability that a byte has a bit turned over")
+  command.add_option("--flip", faults.flip, "Probability that a byte has a bit flipped")
       ->check(CLI::Range(0.0, 1.0));
   command.add_option("--damage", faults.damage, "Probability that a telegram is damaged")
       ->check(CLI::Range(0.0, 1.0));
-  command.footer("Faults while it runs, one a line on standard input, such as 'silence 2':\n" +
+  command.footer("Faults while it runs, one per line on standard input, such as 'silence 2':\n" +
                  emulate::command_help() + "  quit     end");
 }
 
 void add_scanner_flags(CLI::App& command, Options& options) {
   command.add_option("--address", options.address, "The scanner's own address")
       ->check(CLI::Range(0, 127));
-  command
-      .add_option("--boot", options.boot, "Power comes now: the scanner starts up for so long [s]")
+  command.add_option("--boot", options.boot, "Power comes now: the start-up time [s]")
       ->check(CLI::Range(0.0, 120.0));
   command
       .add_option("--rate", options.emulation.scanner.start_rate, "Stored start-up rate [bit/s]")
       ->check(CLI::IsMember({9600, 19200, 38400, 500000}))
       ->capture_default_str();
   drivers::lms200::EmulatorOptions& scanner = options.emulation.scanner;
-  command.add_option("--mode-time", scanner.times.mode, "A mode switch takes so long [s]")
+  command.add_option("--mode-time", scanner.times.mode, "Duration of a mode switch [s]")
       ->check(CLI::Range(0.0, 60.0));
   command
       .add_option("--deaf",
                   scanner.times.deaf,
-                  "It hears and says nothing for so long [s] after a mode switch and power-on")
+                  "The scanner ignores all bytes and sends none for this time [s] after a mode "
+                  "switch and power-on")
       ->check(CLI::Range(0.0, 60.0));
-  command.add_option("--refuse", scanner.refusals, "It answers NAK to so many telegrams");
-  command.add_option("--password", scanner.password, "Of its configuration");
+  command.add_option("--refuse", scanner.refusals, "Number of telegrams it answers with NAK");
+  command.add_option("--password", scanner.password, "Password of its configuration");
   command.add_flag("--rs232", options.rs232, "The plug's jumper is set to RS-232: no 500000");
   command.add_flag("--interlaced",
                    options.emulation.scanner.interlaced,
-                   "Partial scans of 180 degrees come in quarters of a degree");
+                   "Partial scans of 180 degrees in steps of 0.25 degrees");
   command
       .add_option("--field-a",
                   options.emulation.scanner.field_a,
-                  "Values nearer than this [m] have the flag of field A set")
+                  "Values nearer than this [m] get the flag of field A")
       ->check(CLI::Range(0.0, 100.0));
 }
 
 void add_base_flags(CLI::App& command, Options& options) {
   command.add_flag("--near-wrap",
                    options.emulation.near_wrap,
-                   "The base's counters stand shortly before they run over");
-  command.add_option("--watchdog", options.emulation.watchdog, "The base's own [s]")
+                   "The base's counters start shortly before they wrap");
+  command.add_option("--watchdog", options.emulation.watchdog, "The base's own watchdog [s]")
       ->check(CLI::Range(0.0, 60.0));
   drivers::emulators::CardChannels& card = options.emulation.card;
   command.add_option("--card-outputs", card.outputs, "Analog outputs of an acquisition card")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
-  command.add_option("--card-counters", card.counters, "Its counters")
+  command.add_option("--card-counters", card.counters, "Counters of an acquisition card")
       ->check(CLI::Range(0, 2))
       ->capture_default_str();
-  command.add_option("--card-lines", card.lines, "Its digital lines")
+  command.add_option("--card-lines", card.lines, "Digital lines of an acquisition card")
       ->check(CLI::Range(0, 32))
       ->capture_default_str();
 }
@@ -207,19 +208,17 @@ void add_base_flags(CLI::App& command, Options& options) {
 
 void add_emulate_command(CLI::App& app, int& status) {
   CLI::App* const command = app.add_subcommand(
-      "emulate", "Emulate devices on pseudo-terminals, in a simulated world or before a log");
+      "emulate", "Emulate devices on pseudo-terminals, in a simulated world or from a log");
   command->require_subcommand(1);
 
   const auto single = [&](const char* name, const char* help, BaseKind kind) {
     auto options = std::make_shared<Options>();
     CLI::App* const device = command->add_subcommand(name, help);
-    device->add_option("--link", options->link, "Where the port is to appear")
-        ->type_name("PATH")
-        ->required();
+    device->add_option("--link", options->link, "Path of the port")->type_name("PATH")->required();
     add_common_flags(*device, *options);
     if (kind == BaseKind::None) {
       add_scanner_flags(*device, *options);
-      device->add_option("--log", options->emulation.log, "A CARMEN log in place of a world")
+      device->add_option("--log", options->emulation.log, "A CARMEN log instead of a world")
           ->type_name("FILE")
           ->check(CLI::ExistingFile);
     } else {
@@ -244,9 +243,7 @@ void add_emulate_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   CLI::App* const robot = command->add_subcommand(
       "robot", "A base and the scenario's scanners in one world: DIR/base, DIR/scanner, ...");
-  robot->add_option("--links", options->links, "Folder where the ports are to appear")
-      ->type_name("DIR")
-      ->required();
+  robot->add_option("--links", options->links, "Folder of the ports")->type_name("DIR")->required();
   robot->add_option("--base", options->base, "p2os, roboteq or analog")
       ->check(CLI::IsMember({"p2os", "roboteq", "analog"}))
       ->capture_default_str();

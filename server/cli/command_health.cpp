@@ -1,5 +1,5 @@
-// server/cli/command_health.cpp: `tautline health`: is a server up? For health checks in images
-// that have no other client.
+// server/cli/command_health.cpp: `tautline health`: checks whether a server answers, for images
+// that have no HTTP client.
 #include <array>
 #include <memory>
 #include <string>
@@ -14,7 +14,7 @@
 namespace server {
 namespace {
 
-constexpr int kSeconds = 3;  // for each wait
+constexpr int kSeconds = 3;  // [s] per wait
 
 struct Addresses {
   explicit Addresses(const std::string& host, const std::string& port) {
@@ -44,7 +44,7 @@ struct Socket {
   int fd;
 };
 
-/// The first line of the answer to GET /api/v1/healthz; empty when there is none.
+/// The first line of the answer to GET /api/v1/healthz; empty without an answer.
 std::string status_line(const std::string& host, const std::string& port) {
   const Addresses addresses(host, port);
   const std::string request = fmt::format(
@@ -88,8 +88,8 @@ void add_health_command(CLI::App& app, int& status) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("health", "Ask a running server whether it is well");
-  command->add_option("--host", options->host, "Where it listens")->capture_default_str();
-  command->add_option("--port", options->port, "Its port")->capture_default_str();
+  command->add_option("--host", options->host, "Host of the server")->capture_default_str();
+  command->add_option("--port", options->port, "Port of the server")->capture_default_str();
   command->callback([options, &status] { status = health(options->host, options->port); });
 }
 

@@ -1,4 +1,4 @@
-// server/cli/command_lms200.cpp: `tautline lms200`: one scanner, without a robot.
+// server/cli/command_lms200.cpp: `tautline lms200`: one scanner without a robot.
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -38,7 +38,7 @@ struct Options {
   std::size_t scans = 0;
   std::string output{};
 
-  /// What was not asked for stays as it is in the device. Throws what no device can do.
+  /// Options not given keep the device's settings. Throws for settings that no device has.
   LaserSetup setup() const {
     LaserSetup out;
     out.password = password;
@@ -56,7 +56,7 @@ void nap() {
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-/// Waits until the scanner runs. Throws its trouble when it does not.
+/// Waits until the scanner runs. Throws the reason when it does not.
 void wait_for(Lms200Device& laser, double patience) {
   const bool runs = laser.comes_to_run(patience, [] { return end_requested(); });
   if (!runs && !end_requested()) throw std::runtime_error(laser.details().trouble);
@@ -81,7 +81,7 @@ bool next_scan(Lms200Device& laser, algo::LaserScan& scan) {
   return false;
 }
 
-/// Degrees and millimetres; a word where there is no distance.
+/// Prints degrees and millimetres; a word for a beam without a distance.
 void print_scan(Lms200Device& laser) {
   algo::LaserScan scan;
   if (!next_scan(laser, scan)) return;
@@ -99,7 +99,7 @@ void print_scan(Lms200Device& laser) {
   }
 }
 
-/// [s] Time of day when `scan` ended.
+/// [s] Time of day at the end of `scan`.
 double wall_now(const algo::LaserScan& scan) {
   const auto day = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration<double>(day).count() - (drivers::steady_now() - scan.stamp);
@@ -127,7 +127,7 @@ void write_log(Lms200Device& laser, const Options& options) {
 
 void add_common(CLI::App& command, Options& options) {
   command.add_option("device", options.port, "A serial port, or tcp:HOST:PORT")->required();
-  command.add_option("--rate", options.rate, "Line rate to be set")
+  command.add_option("--rate", options.rate, "Line rate to set")
       ->check(CLI::IsMember({9600U, 19200U, 38400U, 500'000U}));
   command.add_option("--step", options.step, "Degrees between two beams: 1, 0.5 or 0.25")
       ->check(CLI::IsMember({1.0, 0.5, 0.25}));
@@ -135,14 +135,16 @@ void add_common(CLI::App& command, Options& options) {
       ->check(CLI::IsMember({100U, 180U}));
   command.add_option("--range", options.range, "Metres: 8, 16, 32 or 80 (in centimetres)")
       ->check(CLI::IsMember({8U, 16U, 32U, 80U}));
-  command.add_option("--password", options.password, "Of its configuration, where it was changed")
+  command
+      .add_option(
+          "--password", options.password, "Password of its configuration, if it was changed")
       ->check(
           [](const std::string& text) -> std::string {
             return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
           },
           "8 CHARACTERS")
       ->capture_default_str();
-  command.add_option("--patience", options.patience, "Seconds for it to be found")
+  command.add_option("--patience", options.patience, "Seconds to search for the scanner")
       ->check(CLI::Range(1.0, 300.0))
       ->capture_default_str();
 }
@@ -174,32 +176,34 @@ void add_action(CLI::App& parent,
 
 void add_lms200_command(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("lms200", "One SICK LMS2xx: what it is, its scans, a log");
+  CLI::App* command =
+      app.add_subcommand("lms200", "One SICK LMS2xx: its state, a scan or a log of scans");
   command->require_subcommand(1);
   command->footer(
-      "Without --rate, --step, --angle or --range the scanner keeps its own settings. It is left "
-      "silent, at the rate at which it was found.");
+      "Without --rate, --step, --angle or --range the scanner keeps its own settings. At the end "
+      "it "
+      "is silent, at the rate at which it was found.");
   add_action(*command,
              "info",
-             "What it is and how it is",
+             "Print its type, settings and health",
              options,
              status,
              [](Lms200Device& laser, const Options&) { print_info(laser); });
   add_action(*command,
              "scan",
-             "One scan: degrees, millimetres",
+             "Print one scan: degrees, millimetres",
              options,
              status,
              [](Lms200Device& laser, const Options&) { print_scan(laser); });
   add_action(*command,
              "log",
-             "Scans as CARMEN FLASER lines, until Ctrl-C",
+             "Write scans as CARMEN FLASER lines, until Ctrl-C",
              options,
              status,
              [](Lms200Device& laser, const Options& o) { write_log(laser, o); });
   CLI::App* log = command->get_subcommand("log");
-  log->add_option("--scans", options->scans, "End after so many; 0: go on")->capture_default_str();
-  log->add_option("--out", options->output, "File to write instead of the screen")
+  log->add_option("--scans", options->scans, "Number of scans; 0: no end")->capture_default_str();
+  log->add_option("--out", options->output, "File to write instead of standard output")
       ->type_name("FILE");
 }
 

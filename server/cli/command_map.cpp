@@ -1,5 +1,5 @@
-// server/cli/command_map.cpp: `tautline map`: a map of a recorded log, its odometry spoilt and held
-// together again.
+// server/cli/command_map.cpp: `tautline map`: maps a recorded log, with errors added to its
+// odometry and corrected by scan matching.
 #include <memory>
 
 #include <fmt/format.h>
@@ -60,22 +60,22 @@ void add_map_command(CLI::App& app, int& status) {
   auto command = std::make_shared<MapCommand>();
   mapping::MapOptions& options = command->options;
   CLI::App* map = app.add_subcommand(
-      "map", "Map recorded CARMEN logs and say how far the path is off the log's own");
+      "map", "Map recorded CARMEN logs and print the error of the path against the log's own");
   map->add_option("logs", command->logs, "The logs")->required()->type_name("LOG");
-  map->add_flag("--match", options.match, "Place each scan by what the map holds already");
+  map->add_flag("--match", options.match, "Correct each scan's pose by matching it to the map");
   map->add_option("--odometry-scale",
                   options.errors.odometry_scale,
-                  "Spoil the log's poses: error of distances and of angles, each of random sign "
+                  "Add errors to the log's poses: of distances and of angles, each of random sign "
                   "(0.02 is 2 %)");
   map->add_option("--yaw-slip",
                   options.errors.odometry_slip,
-                  "Share of each turn of the wheels that was lost on the floor (0.05 is 5 %)");
+                  "Share of each turn that the wheels lose by slip (0.05 is 5 %)");
   map->add_option("--odometry-noise",
                   options.errors.odometry_noise,
                   "Random error per metre and per radian, relative (0.01 is 1 %)");
-  map->add_option("--seed", options.first_seed, "Of the errors (default 1)")
+  map->add_option("--seed", options.first_seed, "Seed of the errors (default 1)")
       ->check(CLI::Range(0, 1'000'000'000));
-  map->add_option("--seeds", options.seeds, "How many, from that one on (default 1)")
+  map->add_option("--seeds", options.seeds, "Number of seeds from --seed on (default 1)")
       ->check(CLI::Range(1, 1000));
   add_threads_option(*map, options.threads);
   map->add_option("--out", command->out, "A picture of the first seed's map, as SVG")
@@ -83,7 +83,7 @@ void add_map_command(CLI::App& app, int& status) {
       ->type_name("FILE");
   map->add_option("--markdown",
                   command->markdown,
-                  "Also write tables there, and pictures into pictures/mapping/ beside it")
+                  "Also write tables to this file, and pictures into pictures/mapping/ beside it")
       ->check(file_to_write())
       ->type_name("FILE");
   map->add_flag("--json", command->as_json, "Print JSON");

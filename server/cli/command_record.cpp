@@ -1,5 +1,4 @@
-// server/cli/command_record.cpp: `tautline export` and `tautline verify`: looking back at stored
-// runs.
+// server/cli/command_record.cpp: `tautline export` and `tautline verify`: for stored runs.
 #include <algorithm>
 #include <cstdio>
 #include <memory>

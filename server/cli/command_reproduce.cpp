@@ -1,5 +1,5 @@
-// server/cli/command_reproduce.cpp: `tautline reproduce`: the sources' scenarios and their filter
-// chapter, and what holds.
+// server/cli/command_reproduce.cpp: `tautline reproduce`: checks the claims of the sources by their
+// scenarios and their filter chapter.
 #include <algorithm>
 #include <memory>
 
@@ -24,7 +24,7 @@ struct Options {
   std::string logs{};
 };
 
-/// Chapter 3 alone. Its verdicts are findings, not limits to hold.
+/// Only chapter 3. Its verdicts are findings, not limits.
 int execute_filter_study(const Options& options) {
   FilterStudyOptions wanted;
   if (!options.logs.empty()) wanted.logs = options.logs;
@@ -38,7 +38,7 @@ int execute_filter_study(const Options& options) {
   return kReached;
 }
 
-/// More would take an hour and change no verdict.
+/// More seeds would take an hour and change no verdict.
 constexpr std::size_t kSweepSeeds = 3;
 
 int execute(Options options) {
@@ -92,7 +92,7 @@ void add_reproduce_command(CLI::App& app, int& status) {
       "reproduce", "Run the papers' scenarios with every reading and say which claims hold");
   command->add_option("--scenarios", options->scenarios, "Another file of scenarios and limits")
       ->type_name("FILE");
-  command->add_option("--seeds", options->study.seeds, "Runs of each row (default 10)")
+  command->add_option("--seeds", options->study.seeds, "Runs per row (default 10)")
       ->check(CLI::Range(1, 1000));
   add_first_seed_option(*command, options->study.first_seed);
   add_threads_option(*command, options->study.threads);
@@ -101,11 +101,11 @@ void add_reproduce_command(CLI::App& app, int& status) {
   command
       ->add_option("--markdown",
                    options->markdown,
-                   "Also write the report there, and pictures/reproduction/ beside it")
+                   "Also write the report to this file, and pictures/reproduction/ beside it")
       ->check(file_to_write())
       ->type_name("FILE");
   CLI::Option* filter = command->add_flag(
-      "--filter", options->filter, "The filter chapter instead: scenes, recordings, verdicts");
+      "--filter", options->filter, "Run the filter chapter instead: scenes, recordings, verdicts");
   command->add_option("--logs", options->logs, "Folder of CARMEN logs of a real scanner")
       ->type_name("DIR")
       ->needs(filter);
@@ -114,7 +114,7 @@ void add_reproduce_command(CLI::App& app, int& status) {
     filter->excludes(command->get_option(tables));
   }
   command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer("Exit status: 0 every limit of the file held, 1 bad input, 3 some did not.");
+  command->footer("Exit status: 0 every limit of the file held, 1 bad input, 3 a limit failed.");
   command->callback([options, &status] {
     status = options->filter ? execute_filter_study(*options) : execute(*options);
   });

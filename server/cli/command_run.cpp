@@ -1,5 +1,4 @@
-// server/cli/command_run.cpp: `tautline run` and `tautline replay`: headless, with figures at the
-// end.
+// server/cli/command_run.cpp: `tautline run` and `tautline replay`: run headless and print figures.
 #include <cstdio>
 #include <memory>
 #include <stop_token>
@@ -18,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Turns Ctrl-C and its kin into a stop request, so that the record is closed in order.
+/// Turns Ctrl-C and other end signals into a stop request, so that the record is closed in order.
 class InterruptWatch {
  public:
   explicit InterruptWatch(std::stop_source& source)
@@ -104,7 +103,7 @@ int execute(const Options& options) {
   std::int64_t run_id = 0;
   std::string problem;  // of the record
   if (recorder) {
-    // A store that is locked gets as long as it takes, or until somebody has had enough.
+    // Waits for a locked store without a limit; the user may interrupt.
     while (!recorder->flush() && !end_requested()) {
     }
     run_id = headless.record->run();
@@ -139,7 +138,8 @@ void add_run_command(CLI::App& app, int& status) {
   command->add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
       ->required();
   options->flags.add_to(*command);
-  command->add_option("--out", options->out, "Also keep the run in this database")->type_name("DB");
+  command->add_option("--out", options->out, "Also store the run in this database")
+      ->type_name("DB");
   command->add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
       ->check(CLI::Range(0.0, 1000.0));
   command->add_flag("--json", options->as_json, "Print JSON");
@@ -157,9 +157,11 @@ void add_replay_command(CLI::App& app, int& status) {
       ->check(CLI::ExistingFile);
   command->add_option(
       "--filter", options->flags.overrides.filter, "pseudomedian (default), median, lulu or none");
-  command->add_option("--set", options->flags.settings, "A parameter, such as filter_half_width=2")
+  command
+      ->add_option(
+          "--set", options->flags.settings, "A parameter, such as filter_half_width=2; repeatable")
       ->type_name("NAME=VALUE");
-  command->add_option("--out", options->out, "Keep the run in this database")->type_name("DB");
+  command->add_option("--out", options->out, "Store the run in this database")->type_name("DB");
   command
       ->add_option("--pace",
                    options->pace,

@@ -30,7 +30,7 @@ struct Options {
   std::uint32_t idle_seconds = 900;  // --session-idle
 };
 
-/// The spec to begin with: of the devices of a robot's file, or of a scenario.
+/// The initial spec, from the devices of a robot's file or from a scenario.
 RunSpec first_spec(const Options& options) {
   const RobotLibrary robots(options.app.robots);
   const RunOverrides overrides = options.flags.resolved(robots);
@@ -52,7 +52,7 @@ RunSpec first_spec(const Options& options) {
   return hardware_spec(describe(robot), overrides);
 }
 
-/// Loud, since the docker image and many a shell history say --insecure without another thought.
+/// A loud warning, since docker commands and shell histories often contain --insecure.
 void warn_of_open_door(const net::ServerOptions& net, bool hardware) {
   if (!net.access.insecure || !net.access.token.empty() || net::is_loopback_name(net.address)) {
     return;
@@ -84,15 +84,15 @@ void serve(Options& options) {
   const bool hardware = app.first.hardware != nullptr;
   app.ended = end_requested;
   warn_of_open_door(app.net, hardware);
-  heed_signals();  // first: also what is opened now may fail to be written
-  // Moved: the devices are to be left in order when the program ends, not later.
+  heed_signals();  // first: writing the database, opened next, may raise a signal
+  // Moved, so that the devices are left in order when `program` ends, not later.
   App program(std::move(app));
   fmt::print("Tautline is at {}\n", program.url());
   fmt::print("Runs are kept in {}\n", database);
   if (hardware) {
     fmt::print("REAL HARDWARE: {}. It moves only once it is armed{}.\n",
                options.robot,
-               armed ? ", which it is as soon as its devices are well" : "");
+               armed ? ", which happens as soon as its devices have no fault" : "");
   }
   std::fflush(stdout);
   program.run();
@@ -114,47 +114,50 @@ void add_serve_command(CLI::App& app, int& status) {
   command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
   command->add_option("--token",
                       net.access.token,
-                      "Ask for this token (or set TAUTLINE_TOKEN); needed beyond this machine");
+                      "Require this token (or set TAUTLINE_TOKEN); needed beyond this machine");
   command->add_flag(
       "--insecure", net.access.insecure, "Listen beyond this machine without a token");
   command
-      ->add_option("--trusted-proxy",
-                   net.access.trusted_proxies,
-                   "A proxy in front that says whom it speaks for (X-Forwarded-For, "
-                   "X-Forwarded-Proto), such as 127.0.0.1 or 172.17.0.0/16; may be given again")
+      ->add_option(
+          "--trusted-proxy",
+          net.access.trusted_proxies,
+          "A trusted proxy whose X-Forwarded-For and X-Forwarded-Proto count, such as 127.0.0.1 or "
+          "172.17.0.0/16; repeatable")
       ->type_name("ADDRESS");
   command
       ->add_option("--per-address",
                    net.limits.connections_per_address,
-                   "Connections one address may have; more for many people behind one router")
+                   "Connections per address; raise it for many people behind one router")
       ->check(CLI::Range(8, 100000))
       ->capture_default_str();
   command->add_option("--allow-host",
                       net.access.allow_hosts,
-                      "A further name this server goes by, such as one of a port mapping");
-  command->add_option("--allow-origin",
-                      net.access.allow_origins,
-                      "A page hosted elsewhere that may connect, such as https://viewer.example");
+                      "A further host name of this server, such as one of a port mapping");
+  command->add_option(
+      "--allow-origin",
+      net.access.allow_origins,
+      "Origin of a page hosted elsewhere that may connect, such as https://viewer.example");
   command->add_option("--db", options->app.database, "Database of the runs")
       ->type_name("FILE")
       ->capture_default_str();
   command
-      ->add_option("--keep",
-                   options->keep_gigabytes,
-                   "Room for the record: beyond it a live run gives up its oldest ticks, and "
-                   "nothing more is recorded; 0: what the disk has")
+      ->add_option(
+          "--keep",
+          options->keep_gigabytes,
+          "Room for the record. When it is full, a live run drops its oldest ticks, and other runs "
+          "are not recorded; 0: as much as the disk has")
       ->type_name("GB")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
   command
       ->add_option("--evict",
                    options->evict,
-                   "Finished runs to delete when there is no room: never, or the oldest")
+                   "Finished runs to delete when the room is full: never or the oldest")
       ->check(CLI::IsMember({"never", "oldest"}))
       ->capture_default_str();
   command->add_flag("--require-record",
                     options->app.require_record,
-                    "A live run stops as soon as it is not recorded; else the robot drives on");
+                    "Stop a live run that cannot be recorded; without this the robot drives on");
   command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
       ->type_name("DIR")
       ->capture_default_str();
@@ -168,45 +171,43 @@ void add_serve_command(CLI::App& app, int& status) {
   command
       ->add_option("--scenario",
                    options->scenario,
-                   "What to load first: a name, a .json file, or a .log to replay")
+                   "First world to load: a name, a .json file, or a .log to replay")
       ->capture_default_str();
   command
-      ->add_option("--robot",
-                   options->robot,
-                   "Real hardware, as a TOML file describes it (docs/hardware.md)")
+      ->add_option(
+          "--robot", options->robot, "TOML file that describes real hardware (docs/hardware.md)")
       ->type_name("FILE");
-  command->add_flag("--armed",
-                    options->app.armed,
-                    "Switch the motors of real hardware on as soon as its devices are well");
+  command->add_flag(
+      "--armed", options->app.armed, "Arm real hardware as soon as its devices have no fault");
   command->add_flag("--unattended",
                     options->app.unattended,
-                    "Real hardware drives on though nobody watches it who could stop it");
+                    "Let real hardware drive on when no page or script is there to stop it");
   AppOptions& app_options = options->app;
-  command->add_flag("--per-visitor",
-                    app_options.sessions.per_visitor,
-                    "Each visitor who opens the page without a session gets one");
+  command->add_flag(
+      "--per-visitor",
+      app_options.sessions.per_visitor,
+      "Give each visitor who opens the page without a session a session of their own");
   command
-      ->add_option("--sessions",
-                   app_options.sessions.sessions,
-                   "How many sessions there may be at once, beside main")
+      ->add_option(
+          "--sessions", app_options.sessions.sessions, "Most sessions at once, beside main")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
   command
       ->add_option("--session-runs",
                    app_options.sessions.runs,
-                   "How often one session, other than main, may load or reset; 0: no limit")
+                   "Most loads and resets of a session other than main; 0: no limit")
       ->capture_default_str();
   command
       ->add_option("--session-idle",
                    options->idle_seconds,
-                   "A session that nobody watches or asks anything ends after so long; not main")
+                   "A session other than main ends after this time without a viewer or a request")
       ->type_name("SECONDS")
       ->check(CLI::Range(1, 31'536'000))
       ->capture_default_str();
   command
       ->add_option("--control-threads",
                    app_options.threads,
-                   "Threads that drive simulated robots; 0: one a processor")
+                   "Threads that drive simulated robots; 0: one per processor")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   options->flags.add_to(*command);

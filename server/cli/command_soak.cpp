@@ -1,4 +1,4 @@
-// server/cli/command_soak.cpp: `tautline soak`: random worlds in search of what must never happen.
+// server/cli/command_soak.cpp: `tautline soak`: searches random worlds for forbidden outcomes.
 #include <algorithm>
 #include <memory>
 
@@ -21,7 +21,7 @@ struct SoakCommand {
   soak::Options options{};
 };
 
-/// Faults, or with `all` everything but the goals reached.
+/// Prints faults, or with `all` every run that did not reach its goal.
 void print_worlds(const std::vector<soak::World>& worlds, bool all) {
   for (const soak::World& world : worlds) {
     const experiment::Row& row = world.row;
@@ -75,9 +75,9 @@ void add_soak_command(CLI::App& app, int& status) {
   auto command = std::make_shared<SoakCommand>();
   CLI::App* soak = app.add_subcommand(
       "soak",
-      "Random worlds, random goals: no collision, nothing that is not a number, no standing still "
-      "without saying why. Exit status 3 when one of them happened");
-  soak->add_option("--worlds", command->options.worlds, "How many (default 1000)")
+      "Drive to random goals in random worlds. Exit status 3 after a collision, a NaN, or a stop "
+      "without a reason given");
+  soak->add_option("--worlds", command->options.worlds, "Number of worlds (default 1000)")
       ->check(CLI::Range(1, 1'000'000));
   add_first_seed_option(*soak, command->options.first_seed, "The first world (default 1)");
   soak->add_option("--controller", command->options.controller, "Default: strip");
@@ -86,7 +86,7 @@ void add_soak_command(CLI::App& app, int& status) {
   soak->add_flag("--list", command->list, "List every world whose goal was not reached");
   soak->add_option("--scenario",
                    command->scenario,
-                   "Run nothing: write the first world there as a scenario the page can open")
+                   "Run nothing: write the first world to this file as a scenario for the page")
       ->type_name("FILE");
   soak->callback([command, &status] { status = execute(*command); });
 }

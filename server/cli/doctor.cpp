@@ -1,4 +1,4 @@
-// server/cli/doctor.cpp: port, permission, rate, type, status, scans, wheels: one after the other.
+// server/cli/doctor.cpp: checks port, permission, rate, type, status, scans and wheels in turn.
 #include "server/cli/doctor.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 using drivers::steady_now;
 using Found = std::function<void(const Finding&)>;
 
-constexpr double kLook = 0.02;  // [s] between two looks at a device
+constexpr double kLook = 0.02;  // [s] between two polls of a device
 
 void pause() {
   std::this_thread::sleep_for(std::chrono::duration<double>(kLook));
@@ -55,8 +55,7 @@ class Notes {
   bool all_well_ = true;
 };
 
-/// Whether the port opens; says why not. A look at its own that is over before the device is
-/// sought.
+/// Checks whether the port opens, and closes it before the search for the device.
 bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
   try {
     const drivers::SerialPort port(path, baud);
@@ -78,14 +77,14 @@ bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
   }
 }
 
-/// What the scans of some seconds had in them.
+/// Statistics of the scans of some seconds.
 struct Tally {
   std::size_t scans = 0;
   std::size_t beams = 0;
-  std::size_t readings = 0;  // beams that met something
+  std::size_t readings = 0;  // beams with a distance
   std::size_t spikes = 0;
-  std::size_t blinded = 0;  // scans of which most beams tell nothing,
-  std::size_t dazzled = 0;  // and scans with a cone of beams that do not
+  std::size_t blinded = 0;  // scans with most beams dazzled
+  std::size_t dazzled = 0;  // scans with a cone of dazzled beams
 };
 
 void add(const algo::LaserScan& scan, Tally& tally) {
@@ -103,17 +102,17 @@ void add(const algo::LaserScan& scan, Tally& tally) {
   tally.dazzled += cone.end > cone.begin ? 1U : 0U;
 }
 
-/// Whether they could be driven by.
+/// Checks whether a robot could drive by these scans.
 bool look_at_dazzle(const Tally& tally, Notes& notes) {
   constexpr const char* kAdvice =
       "Keep the sun, lamps and other scanners out of its sight; look at its window.";
   if (tally.blinded > 0) {
     notes.bad(
         fmt::format(
-            "It is blinded: {} of {} scans tell next to nothing.", tally.blinded, tally.scans),
+            "It is blinded: {} of {} scans have almost no distances.", tally.blinded, tally.scans),
         kAdvice);
   } else if (tally.dazzled > 0) {
-    notes.bad(fmt::format("It is dazzled: {} of {} scans have a cone that tells nothing.",
+    notes.bad(fmt::format("It is dazzled: {} of {} scans have a cone without distances.",
                           tally.dazzled,
                           tally.scans),
               kAdvice);
@@ -134,7 +133,7 @@ void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& 
   const double rate = static_cast<double>(after.scans - before.scans) / (steady_now() - begun);
   const double wanted = 1 / after.nominal_period;
   if (rate < 0.95 * wanted) {
-    notes.bad(fmt::format("{:.1f} scans a second come, {:.1f} should.", rate, wanted),
+    notes.bad(fmt::format("{:.1f} scans a second arrive instead of {:.1f}.", rate, wanted),
               "Look at the cable and its shield, and what else this computer does.");
   } else {
     notes.well(fmt::format("{:.1f} scans a second.", rate));
@@ -144,24 +143,24 @@ void look_at_scans(drivers::lms200::Lms200Device& laser, double seconds, Notes& 
   if (damaged > 0) {
     notes.note(
         fmt::format(
-            "{} of {} telegrams came damaged.", damaged, damaged + after.scans - before.scans),
+            "{} of {} telegrams were damaged.", damaged, damaged + after.scans - before.scans),
         "A longer or unshielded cable does that; so does a computer that is busy.");
   }
   if (tally.beams == 0 || !look_at_dazzle(tally, notes)) return;
   const double percent =
       100.0 * static_cast<double>(tally.readings) / static_cast<double>(tally.beams);
   if (percent < 5) {
-    notes.note(fmt::format("Only {:.0f} % of the beams meet something within range.", percent),
+    notes.note(fmt::format("Only {:.0f} % of the beams have a distance within range.", percent),
                "Is the window covered, or the room larger than the range?");
   } else {
-    notes.well(fmt::format("{:.0f} % of the beams meet something within range.", percent));
+    notes.well(fmt::format("{:.0f} % of the beams have a distance within range.", percent));
   }
   const double per_scan = static_cast<double>(tally.spikes) / static_cast<double>(tally.scans);
   if (per_scan > 2) {
-    notes.note(fmt::format("{:.1f} beams a scan stand alone against their neighbours.", per_scan),
+    notes.note(fmt::format("{:.1f} beams per scan differ from both neighbours.", per_scan),
                "Clean the window; look for dust, sun and mirrors.");
   } else {
-    notes.well(fmt::format("{:.1f} lone beams a scan.", per_scan));
+    notes.well(fmt::format("{:.1f} beams per scan differ from both neighbours.", per_scan));
   }
 }
 
@@ -174,11 +173,10 @@ bool look_at_laser(const drivers::LaserEntry& entry,
   const bool runs = laser.comes_to_run(options.patience);
   const drivers::lms200::LaserReport report = laser.details();
   if (!runs) {
-    notes.bad(
-        report.trouble,
-        fmt::format("One that was just switched on takes up to 60 s: --patience 70 waits for it "
-                    "(now {:.0f} s).",
-                    options.patience));
+    notes.bad(report.trouble,
+              fmt::format("After power-on a scanner takes up to 60 s: --patience 70 waits for it "
+                          "(now {:.0f} s).",
+                          options.patience));
     return false;
   }
   notes.well(fmt::format("{} found at {} bit/s, address {}, software {}.",
@@ -191,7 +189,7 @@ bool look_at_laser(const drivers::LaserEntry& entry,
                          report.variant.step_centidegrees / 100.0,
                          report.in_millimetres ? "millimetres" : "centimetres",
                          report.measuring_mode));
-  if (report.written > 0) notes.note("Its configuration was written: it was another.");
+  if (report.written > 0) notes.note("Its configuration differed and was written.");
   for (const std::string& remark : report.remarks) notes.note(remark);
   if (const std::string health = health_text(report.health); !health.empty()) {
     if (report.health.usable()) {
@@ -215,7 +213,7 @@ unsigned baud_of(const drivers::BaseEntry& entry) {
   return 0;
 }
 
-/// What the base was told and what it says of it, each [m] ahead, and how far it turned [rad].
+/// Distances commanded and reported [m], forward positive, and the turn reported [rad].
 struct Drive {
   double told = 0;
   double came = 0;
@@ -231,7 +229,7 @@ Drive drive_for_a_second(drivers::Base& base, double speed) {
     base.drive({speed, 0});
     pause();
   }
-  base.drive({});  // along the ramp it started with
+  base.drive({});  // brakes along the driving ramp
   const double told = speed * (steady_now() - begun);
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   const algo::Pose2 after = base.state().pose;
@@ -243,9 +241,9 @@ Drive drive_for_a_second(drivers::Base& base, double speed) {
 
 }  // namespace
 
-/// What a ramp takes at the start it gives back at the end.
+/// The distance lost on the ramp at the start is regained on the ramp at the end.
 bool drove_as_told(double told, double came) {
-  constexpr double kTolerance = 0.2;  // of the way; a gear or a wheel is off by more
+  constexpr double kTolerance = 0.2;  // of the distance; a wrong gear or wheel differs by more
   return std::abs(came - told) <= kTolerance * std::abs(told);
 }
 
@@ -255,7 +253,7 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
   base.enable(true);
   const double until = steady_now() + 2.0;
   while (!base.state().motors_on && steady_now() < until) {
-    base.stop();  // a relay closes only while it hears something
+    base.stop();  // an analog base's relay closes only while ticks come
     pause();
   }
   if (!base.state().motors_on) {
@@ -268,7 +266,7 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
   const Drive back = drive_for_a_second(base, -speed);
   base.enable(false);
   const std::string ways =
-      fmt::format("Told to go {:.0f} mm ahead and {:.0f} back, it says {:.0f} and {:.0f} mm.",
+      fmt::format("Commanded {:.0f} mm ahead and {:.0f} back, it reports {:.0f} and {:.0f} mm.",
                   1000 * ahead.told,
                   -1000 * back.told,
                   1000 * ahead.came,
@@ -277,15 +275,16 @@ void look_at_wheels(drivers::Base& base, const drivers::RobotFile& file, Notes& 
     notes.well(ways);
   } else {
     notes.bad(ways,
-              "The wrong sign: reverse_left, reverse_right. The wrong size: wheel_radius and the "
-              "keys of gear and encoders. Nothing: the encoders' plugs.");
+              "If the sign is wrong: reverse_left, reverse_right. If the size is wrong: "
+              "wheel_radius, gear "
+              "and encoder keys. If it reports no motion: the encoders' plugs.");
   }
   constexpr double kStraight = 0.05;  // [rad]
   if (std::max(std::abs(ahead.turned), std::abs(back.turned)) > kStraight) {
-    notes.bad(
-        fmt::format(
-            "Told to go straight, it turned by {:.2f} and {:.2f} rad.", ahead.turned, back.turned),
-        "One wheel does not turn, or is counted otherwise than the other.");
+    notes.bad(fmt::format("Commanded to go straight, it turned by {:.2f} and {:.2f} rad.",
+                          ahead.turned,
+                          back.turned),
+              "One wheel does not turn, or the two wheels' counts differ in scale.");
   }
 }
 
@@ -317,7 +316,7 @@ bool look_at_base(const drivers::RobotFile& file,
   for (const std::string& remark : report.remarks) notes.note(remark);
   if (!report.well) notes.bad(report.sentence, "Clear its cause, then look again.");
   if (state.bumper_front || state.bumper_rear) {
-    notes.bad("A bumper is pressed.", "Free it; or its switch or plug is broken.");
+    notes.bad("A bumper is pressed.", "Free it, or check its switch and plug.");
   }
   if (entry.battery_low > 0 && state.volts && *state.volts < entry.battery_low) {
     notes.bad(
@@ -343,8 +342,9 @@ void look_at_system(const Found& found) {
   }
   if (!check.memory) notes.note("The memory cannot be locked.", drivers::memory_advice());
   if (!check.preemptible_kernel) {
-    notes.note("This kernel is not PREEMPT_RT: a tick may come some milliseconds late.",
-               "`apt install linux-image-rt-amd64` has one; the page shows how late ticks are.");
+    notes.note(
+        "This kernel is not PREEMPT_RT: a tick may be some milliseconds late.",
+        "`apt install linux-image-rt-amd64` installs one; the page shows how late ticks are.");
   }
 }
 

@@ -1,5 +1,4 @@
-// server/cli/doctor.hpp: looks at each device of a robot as a technician would, and says what to
-// do.
+// server/cli/doctor.hpp: checks each device of a robot and gives advice.
 #pragma once
 
 #include <functional>
@@ -12,31 +11,30 @@ namespace server {
 
 enum class Verdict : std::uint8_t { Well, Note, Bad };
 
-/// One thing looked at.
+/// The result of one check.
 struct Finding {
   Verdict verdict = Verdict::Well;
   std::string device{};  // "front laser", "base", "system", "file"
   std::string sentence{};
-  std::string advice{};  // what to do; empty when there is nothing to do
+  std::string advice{};  // empty if nothing is to be done
 };
 
 struct DoctorOptions {
   bool move = false;     // may turn the wheels, briefly and slowly
-  double patience = 20;  // [s] for each device to be found and set up
-  double measuring = 3;  // [s] of scans looked at
+  double patience = 20;  // [s] to find and set up each device
+  double measuring = 3;  // [s] of scans to check
 };
 
-/// Looks at everything in turn; `found` is called as each finding is made. True when nothing is
-/// bad.
+/// Runs all checks in turn and calls `found` for each finding. True when no finding is bad.
 bool examine(const drivers::RobotFile& file,
              const DoctorOptions& options,
              const std::function<void(const Finding&)>& found);
 
-/// Beams that stand alone against both neighbours, which agree: dust, rain, a damaged mirror.
+/// Number of beams that differ from both neighbours, which agree: dust, rain, a damaged mirror.
 std::size_t count_spikes(const std::vector<double>& ranges);
 
-/// Whether wheels that were told to go `told` [m] and say that they went `came` are as the file has
-/// them.
+/// Whether a reported distance `came` [m] matches the commanded one `told` [m] for the wheels in
+/// the file.
 bool drove_as_told(double told, double came);
 
 }  // namespace server

@@ -1,5 +1,5 @@
-// server/cli/main_serve.cpp: the program without the studies and the emulators, which take a third
-// of the time to compile.
+// server/cli/main_serve.cpp: the program without studies and emulators, which take a third of the
+// compile time.
 #include "server/cli/program.hpp"
 
 int main(int argc, char** argv) {

@@ -1,4 +1,4 @@
-// server/cli/pool_options.cpp: threads, shard, rows and judges.
+// server/cli/pool_options.cpp: options for threads, shard, rows and judges.
 #include "server/cli/pool_options.hpp"
 
 #include <exception>
@@ -10,7 +10,7 @@
 namespace server {
 namespace {
 
-/// What `check` throws, as the complaint of an option.
+/// The message that `check` throws, as an option's error; empty when it throws nothing.
 template <typename Check>
 std::string complaint(const Check& check) {
   try {
@@ -24,7 +24,7 @@ std::string complaint(const Check& check) {
 }  // namespace
 
 void add_threads_option(CLI::App& command, unsigned& threads, const std::string& name) {
-  command.add_option(name, threads, "0 (default): one a core")->check(CLI::Range(0, 256));
+  command.add_option(name, threads, "0 (default): one per core")->check(CLI::Range(0, 256));
 }
 
 void add_first_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
@@ -39,8 +39,9 @@ void add_pool_options(CLI::App& command,
       .add_option_function<std::string>(
           "--shard",
           [&pool](const std::string& text) { pool.shard = experiment::shard_from_text(text); },
-          "Only each Nth run, from number I (0 is the first) on: the shards of all I give, "
-          "interleaved, the whole")
+          "Only every Nth run from number I on (0 is the first). The shards of all I together are "
+          "all "
+          "runs")
       ->check([](const std::string& text) {
         return complaint([&] { experiment::shard_from_text(text); });
       })
@@ -48,7 +49,7 @@ void add_pool_options(CLI::App& command,
 }
 
 void add_rows_option(CLI::App& command, std::string& file) {
-  command.add_option("--rows", file, "Also write every run with every figure there")
+  command.add_option("--rows", file, "Also write every run with every figure to this file")
       ->check(file_to_write())
       ->check([](const std::string& path) -> std::string {
         return experiment::is_table_file(path)

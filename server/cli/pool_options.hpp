@@ -18,7 +18,7 @@ void add_threads_option(CLI::App& command,
 /// --first-seed.
 void add_first_seed_option(CLI::App& command,
                            std::uint64_t& seed,
-                           const std::string& help = "The first of them (default 1)");
+                           const std::string& help = "The first seed (default 1)");
 /// --rows FILE: every run with every figure.
 void add_rows_option(CLI::App& command, std::string& file);
 /// The name of a judge.

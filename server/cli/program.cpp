@@ -1,4 +1,4 @@
-// server/cli/program.cpp: arguments in, exit status out; every complaint is a sentence.
+// server/cli/program.cpp: runs a command by its arguments; every error is a sentence.
 #include "server/cli/program.hpp"
 
 #include <cstdio>

@@ -1,4 +1,4 @@
-// server/cli/program.hpp: the program around its commands.
+// server/cli/program.hpp: the main program of the commands.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace server {
 
 using AddCommand = void (*)(CLI::App& app, int& status);
 
-/// Those that every build has: serving, single runs, stored runs, devices.
+/// Adds the commands of every build: serving, single runs, stored runs, devices.
 std::vector<AddCommand> serving_commands();
 
-/// Runs the command that the arguments name and returns the program's exit status. `footer` ends
-/// the help.
+/// Runs the command that the arguments name and returns the exit status of the program. `footer` is
+/// the last part of the help.
 int run_program(int argc,
                 char** argv,
                 const std::vector<AddCommand>& commands,

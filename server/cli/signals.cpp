@@ -1,4 +1,4 @@
-// server/cli/signals.cpp: the one place that knows which signals there are.
+// server/cli/signals.cpp: the only place that handles signals.
 #include "server/cli/signals.hpp"
 
 #include <csignal>
@@ -6,7 +6,7 @@
 namespace server {
 
 namespace {
-volatile std::sig_atomic_t g_end = 0;  // NOLINT: the one thing a signal handler may touch
+volatile std::sig_atomic_t g_end = 0;  // NOLINT: the only type a signal handler may write
 }
 
 void heed_signals() {
