@@ -1,4 +1,4 @@
-// drivers/analog_base.cpp: speeds as volts, counts as a pose, a relay that a living tick holds.
+// drivers/analog_base.cpp: speeds to volts, counts to a pose, and the relay that each tick renews.
 #include "drivers/analog_base.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace {
 constexpr std::chrono::seconds kLookAgain{1};
 constexpr double kSpeedWindow = 0.05;     // [s] over which counts become a speed
 constexpr double kLeastInterval = 0.002;  // [s] between two readings of the card
-constexpr double kLongestStep = 0.1;      // [s] of a ramp, after a pause
-constexpr double kFastestWheel = 10;      // [m/s] beyond: the counter was set anew
+constexpr double kLongestStep = 0.1;      // [s] one ramp step after a pause
+constexpr double kFastestWheel = 10;      // [m/s] a faster change means the counter was reset
 
 double towards(double from, double to, double most) {
   return from + std::clamp(to - from, -most, most);
@@ -29,7 +29,7 @@ AnalogBase::AnalogBase(std::string port, const AnalogSetup& setup, Opener open, 
       now_(now),
       thread_([this](const std::stop_token& stop) { look_for_card(stop); }) {}
 
-/// The relay opens by its own watchdog, until which the amplifiers brake.
+/// The amplifiers brake at 0 V until the relay's own watchdog opens it.
 AnalogBase::~AnalogBase() {
   with_card([this](double now) { halt(now); });
 }
@@ -44,7 +44,7 @@ double AnalogBase::metres(std::int64_t counts) const {
          setup_.counts_per_turn;
 }
 
-// ---- the card, there or not ------------------------------------------------------------------
+// ---- opening and losing the card -------------------------------------------------------------
 
 template <class Act>
 void AnalogBase::with_card(Act&& act) noexcept {
@@ -89,7 +89,7 @@ void AnalogBase::look_for_card(const std::stop_token& stop) {
   }
 }
 
-/// Begins with a card that was just opened: zero volts, its counts are the new zero.
+/// Starts with a newly opened card at zero volts; its present counts become the origin.
 void AnalogBase::take(std::unique_ptr<AnalogCard> card) {
   try {
     card->write({0, 0});
@@ -110,7 +110,7 @@ void AnalogBase::take(std::unique_ptr<AnalogCard> card) {
   ++state_.set_ups;
 }
 
-// ---- what it is told -------------------------------------------------------------------------
+// ---- commands --------------------------------------------------------------------------------
 
 void AnalogBase::enable(bool on) {
   with_card([&](double now) {
@@ -145,7 +145,7 @@ void AnalogBase::drive(const algo::Twist2& twist) {
     told_.omega = towards(told_.omega, wanted.omega, setup_.limits.turn_acceleration * dt);
     const algo::SideMotion sides = algo::sides_of(told_, setup_.half_track);
     const auto volts = [this](double speed, double measured) {
-      // At rest nothing but zero: noise of the encoders must not creep.
+      // Exactly 0 V at rest: encoder noise must not make the wheels creep.
       if (speed == 0) return 0.0;
       const double v = speed / setup_.speed_per_volt + setup_.gain * (speed - measured);
       return std::clamp(v, -setup_.max_volts, setup_.max_volts);
@@ -159,7 +159,7 @@ void AnalogBase::stop() noexcept {
   with_card([this](double now) { halt(now); });
 }
 
-/// Zero volts; the relay stays closed meanwhile, since an amplifier without power does not brake.
+/// Zero volts. The relay stays closed: an amplifier without power does not brake.
 void AnalogBase::halt(double now) {
   told_ = {};
   told_at_ = now;
@@ -180,14 +180,15 @@ void AnalogBase::pulse_relay() {
   card_->set_relay_line(relay_line_);
 }
 
-// ---- what it says ----------------------------------------------------------------------------
+// ---- reports ---------------------------------------------------------------------------------
 
 void AnalogBase::note_reading(double now) {
   readings_[reading_count_ % readings_.size()] = {now, inputs_.counts};
   ++reading_count_;
 }
 
-/// [m/s] since the newest reading that is a window old, or since the oldest; as before without any.
+/// [m/s] since the newest reading at least kSpeedWindow old, else since the oldest one.
+/// Returns the last speeds when there are fewer than two readings.
 algo::SideMotion AnalogBase::speeds_by(double now) const {
   const std::size_t kept = std::min(reading_count_, readings_.size());
   if (kept < 2) return speeds_;

@@ -26,14 +26,14 @@ struct AnalogSetup {
   double speed_per_volt = 0.1;    // [m/s V] of the wheel's rim
   double max_volts = 10;          // [V] to an amplifier
   double gain = 0;                // [V s/m] of the proportional part on the speed's error
-  double watchdog = 0.2;          // [s] after the last change of its line the relay opens
+  double watchdog = 0.2;          // [s] from the last change of the relay's line until it opens
   BaseLimits limits{};
 };
 
-/// Feed-forward with a proportional part, ramps within the limits, dead reckoning. Each drive() and
-/// stop() changes the relay's line once: the relay opens by itself when the control tick is silent.
+/// Feed-forward plus a proportional term, ramps within the limits, dead reckoning. Each drive() and
+/// stop() toggles the relay's line once: without control ticks the relay opens by itself.
 ///
-/// A card that is not there, or has gone, is looked for by a thread of its own.
+/// A thread of its own keeps trying to open a missing card.
 class AnalogBase final : public Base {
  public:
   /// Opens the card. Throws CardError.
@@ -58,7 +58,8 @@ class AnalogBase final : public Base {
     std::array<std::uint32_t, 2> counts{};
   };
 
-  /// `act(now)` with the card, under the lock; nothing without one. A card that fails has gone.
+  /// Calls `act(now)` with the card, under the lock; does nothing without a card. A card that
+  /// throws counts as lost.
   template <class Act>
   void with_card(Act&& act) noexcept;
   void look_for_card(const std::stop_token& stop);
@@ -78,20 +79,20 @@ class AnalogBase final : public Base {
 
   std::mutex mutex_{};  // stop() and report() come from other threads
   std::condition_variable_any changed_{};
-  std::unique_ptr<AnalogCard> card_{};  // none while it is looked for
-  std::unique_ptr<AnalogCard> gone_{};  // to be closed by the thread, which may wait
+  std::unique_ptr<AnalogCard> card_{};  // nullptr while it is missing
+  std::unique_ptr<AnalogCard> gone_{};  // lost: closed by the thread, which may block
   std::string trouble_ = "The card is being opened.";
-  bool on_ = false;  // the relay is to be closed
+  bool on_ = false;  // the relay should be closed
   bool relay_line_ = false;
   SwitchingOff off_{};
-  algo::Twist2 told_{};  // as the ramps have it
+  algo::Twist2 told_{};  // the present output of the ramps
   double told_at_ = 0;   // [s]
   CardInputs inputs_{};
-  std::array<Reading, 32> readings_{};  // a ring, the oldest overwritten
+  std::array<Reading, 32> readings_{};  // ring buffer
   std::size_t reading_count_ = 0;       // since the card was opened
   algo::SideMotion speeds_{};           // [m/s] measured
   BaseState state_{};
-  std::jthread thread_{};  // last: ends first
+  std::jthread thread_{};  // declared last: ends first
 };
 
 }  // namespace drivers

@@ -1,4 +1,4 @@
-// drivers/analog_card.hpp: a data acquisition card between the program and two motor amplifiers.
+// drivers/analog_card.hpp: a data acquisition card that drives two motor amplifiers.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace drivers {
 
-/// what() is a sentence: the card has gone, or lacks something that the robot's file asks for.
+/// The card is lost, or lacks a channel that the robot's file asks for; what() is a sentence.
 struct CardError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -19,10 +19,10 @@ struct CardError : std::runtime_error {
 /// Left and right.
 using Volts = std::array<double, 2>;  // [V]
 
-/// One reading of the card. A line that is not wired reads as if all were well.
+/// One reading of the card. A line that is not wired reads as if there were no fault.
 struct CardInputs {
   std::array<std::uint32_t, 2> counts{};  // of the encoders, left and right, modulo 2^32
-  std::optional<bool> relay_closed{};     // where a line is wired to tell
+  std::optional<bool> relay_closed{};     // empty: no line is wired to it
   bool stop_button = false;
   bool fault = false;  // of an amplifier
   bool bumper_front = false;
@@ -38,10 +38,12 @@ class AnalogCard {
   AnalogCard(const AnalogCard&) = delete;
   AnalogCard& operator=(const AnalogCard&) = delete;
 
-  /// To the amplifiers. The card keeps them when the program dies, and so the relay must not.
+  /// Sets the voltages of the amplifiers. The card keeps them after the program dies, so the relay
+  /// must open by itself.
   virtual void write(const Volts& volts) = 0;
   virtual CardInputs read() = 0;
-  /// The line of the relay that powers the amplifiers. The relay holds only while the line changes.
+  /// Sets the line of the relay that powers the amplifiers. The relay stays closed only while the
+  /// line keeps changing.
   virtual void set_relay_line(bool high) = 0;
   /// The amplifiers' own enable input, where it is wired: faster than the relay.
   virtual void set_enabled(bool enabled) = 0;

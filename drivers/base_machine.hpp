@@ -1,4 +1,4 @@
-// drivers/base_machine.hpp: what the machines of serial bases have in common.
+// drivers/base_machine.hpp: the common interface of the protocol machines of serial bases.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace drivers {
 
-/// [s] after which an order to move is not sent any more.
+/// [s] A motion order older than this is not sent.
 constexpr double kMotionExpires = 0.25;
 
-/// Motors that are to go off once the wheels stand.
+/// Delays switching the motors off until the wheels stand.
 class SwitchingOff {
  public:
-  /// `longest` [s] from now the motors go off whatever the wheels do.
+  /// The motors go off `longest` [s] from `now` at the latest, even if the wheels still turn.
   void begin(double now, double longest) {
     if (pending()) return;
     begun_ = now;
@@ -25,9 +25,9 @@ class SwitchingOff {
   }
   void cancel() { until_ = kNever; }
   bool pending() const { return until_ < kNever; }
-  /// [s] when it is due at the latest.
+  /// [s] The latest time to switch off.
   double until() const { return until_; }
-  /// Whether the wheels stand, as a report of after the beginning says, or the time is over.
+  /// True once a report made after the start says that the wheels stand, or the time is over.
   bool due(double now, const BaseState& state) const {
     constexpr double kStill = 0.01;  // [m/s], [rad/s]
     const bool still = state.running && state.stamp > begun_ && std::abs(state.twist.v) < kStill &&
@@ -43,7 +43,7 @@ class SwitchingOff {
 
 class BaseMachine : public Machine {
  public:
-  /// As Base has them. Motion is commanded by these calls alone, never by the passing of time.
+  /// As in Base. Only these calls command motion; time alone never does.
   virtual void enable(double now, bool on) = 0;
   virtual void cut(double now) = 0;
   virtual void drive(double now, const algo::Twist2& twist) = 0;
@@ -51,7 +51,7 @@ class BaseMachine : public Machine {
   virtual const BaseState& state() const = 0;
   virtual double watchdog() const = 0;
   virtual WheelDynamics dynamics() const = 0;
-  /// Name and port are the caller's.
+  /// The caller fills name and port.
   virtual algo::DeviceReport report(double now) const = 0;
 };
 

@@ -11,10 +11,10 @@
 
 namespace drivers {
 
-/// Bytes of a device's line, valid as long as what they were taken from.
+/// Bytes of a device's line; valid as long as the buffer they point into.
 using ByteView = std::span<const std::uint8_t>;
 
-/// Up to N bytes in place. What does not fit is left out, so N is chosen to fit the longest.
+/// Up to N bytes in place. Further bytes are dropped, so choose N for the longest message.
 template <std::size_t N>
 class FixedBytes {
  public:
@@ -59,7 +59,7 @@ inline std::string_view text_of(ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// `value` to the nearest integer within +-`limit`; what is no number becomes 0, which stops.
+/// `value` rounded to an integer, clamped to +-`limit`; NaN becomes 0, which stops.
 inline int rounded(double value, int limit) {
   if (std::isnan(value)) return 0;
   return static_cast<int>(std::lround(std::clamp<double>(value, -limit, limit)));

@@ -1,5 +1,5 @@
-// drivers/clock.cpp: CLOCK_BOOTTIME: unlike std::chrono::steady_clock it goes on while the machine
-// is suspended, so that what was sensed before is old afterwards.
+// drivers/clock.cpp: CLOCK_BOOTTIME: unlike std::chrono::steady_clock it counts while the computer
+// is suspended, so that scans from before the suspension are old afterwards.
 #include "drivers/clock.hpp"
 
 #include <cerrno>
@@ -16,8 +16,8 @@ double steady_now() {
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-/// Absolute, so that what happens between asking and sleeping makes nothing late. Kernels that
-/// cannot sleep by this clock sleep by the other.
+/// Sleeps until an absolute time, so that a delay before the sleep does not add up. Kernels that
+/// cannot sleep by this clock repeat relative sleeps.
 void SteadyClock::sleep_until(double time) {
   const double whole = std::floor(time);
   timespec until{};

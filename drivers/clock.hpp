@@ -1,9 +1,9 @@
-// drivers/clock.hpp: the time of a control loop, so that tests have their own.
+// drivers/clock.hpp: the clock of a control loop; tests substitute their own.
 #pragma once
 
 namespace drivers {
 
-/// [s] of a clock that never goes back and goes on while the machine is suspended.
+/// [s] of a clock that never goes back and counts while the computer is suspended.
 double steady_now();
 
 class Clock {
@@ -18,7 +18,7 @@ class Clock {
   virtual void sleep_until(double time) = 0;
 };
 
-/// The system's, as the devices' threads have it.
+/// The system's clock, which the device threads use too.
 class SteadyClock final : public Clock {
  public:
   double now() override { return steady_now(); }

@@ -1,4 +1,4 @@
-// drivers/comedi_card.cpp: finding the channels that a robot is wired to, and using them.
+// drivers/comedi_card.cpp: finds the channels that a robot is wired to, and uses them.
 #include "drivers/comedi_card.hpp"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ class ComediCard final : public AnalogCard {
       const lsampl_t sample = library_.from_phys(wanted, out.range, out.maxdata);
       const int written = library_.write(
           device_.get(), out.at.subdevice, out.at.channel, out.range_index, AREF_GROUND, sample);
-      if (written != 1) fail("does not take a voltage");
+      if (written != 1) fail("does not accept a voltage");
     }
   }
 
@@ -123,7 +123,7 @@ class ComediCard final : public AnalogCard {
     throw CardError("The analog card at " + port_ + " (" + library_.board_name(device_.get()) +
                     ") " + what + ". It has: " + subdevices() + ".");
   }
-  /// What it has, for people who wire it.
+  /// The card's subdevices as text, for the people who wire it.
   std::string subdevices() const {
     std::string out;
     const int count = library_.subdevices(device_.get());
@@ -149,7 +149,7 @@ class ComediCard final : public AnalogCard {
     }
     return out;
   }
-  /// `asked`, or the first of `types`. `noun`: what it has channels of.
+  /// `asked`, or the first subdevice of `types`. `noun` names its channels.
   unsigned subdevice(const std::optional<unsigned>& asked,
                      std::initializer_list<int> types,
                      const std::string& noun) const {
@@ -180,7 +180,7 @@ class ComediCard final : public AnalogCard {
       choose_range(out);
     }
   }
-  /// The narrowest that includes max_volts of both signs.
+  /// The narrowest output range that includes +-max_volts.
   void choose_range(Output& out) const {
     const int count = library_.ranges(device_.get(), out.at.subdevice, out.at.channel);
     std::string known;
@@ -205,7 +205,7 @@ class ComediCard final : public AnalogCard {
     }
   }
 
-  /// Cards have their counters on one subdevice each, or all on one.
+  /// Cards have one counter per subdevice, or all counters on one.
   void find_counters() {
     const std::vector<unsigned> found = subdevices_of({COMEDI_SUBD_COUNTER});
     if (found.empty()) refuse("has no counters; the encoders need two");
@@ -220,13 +220,13 @@ class ComediCard final : public AnalogCard {
                     channels[side]};
       check(counter.at, "counters", "counter");
       counter.maxdata = library_.maxdata(device_.get(), counter.at.subdevice, counter.at.channel);
-      if (counter.maxdata == 0) refuse("tells no size of its counters");
+      if (counter.maxdata == 0) refuse("does not report the size of its counters");
       if (setup_.counter_mode) begin_counting(counter.at);
     }
     const Channel& left = counters_[0].at;
     const Channel& right = counters_[1].at;
     if (left.subdevice == right.subdevice && left.channel == right.channel) {
-      refuse("is asked to count both wheels with one counter");
+      refuse("cannot count both wheels with one counter");
     }
     for (Counter& counter : counters_) counter.newest = raw_count(counter);
   }
@@ -235,17 +235,17 @@ class ComediCard final : public AnalogCard {
         library_.set_counter_mode(device_.get(), at.subdevice, at.channel, *setup_.counter_mode) <
             0 ||
         library_.arm(device_.get(), at.subdevice, NI_GPCT_ARM_IMMEDIATE) < 0) {
-      fail(format("does not take the counter_mode %u", *setup_.counter_mode));
+      fail(format("does not accept counter_mode %u", *setup_.counter_mode));
     }
   }
   lsampl_t raw_count(const Counter& counter) const {
     lsampl_t value = 0;
     if (library_.read(device_.get(), counter.at.subdevice, counter.at.channel, 0, 0, &value) != 1) {
-      fail("does not tell its counts");
+      fail("does not read its counters");
     }
     return value;
   }
-  /// The smaller of both differences modulo the counter's size, added up.
+  /// Adds up the shorter of both differences modulo the counter's size.
   std::uint32_t count(Counter& counter, bool reversed) const {
     const lsampl_t value = raw_count(counter);
     const std::int64_t size = static_cast<std::int64_t>(counter.maxdata) + 1;
@@ -298,7 +298,7 @@ class ComediCard final : public AnalogCard {
   bool high(unsigned line) const {
     unsigned level = 0;
     if (library_.read_line(device_.get(), inputs_, line, &level) != 1)
-      fail("does not tell its lines");
+      fail("does not read its lines");
     return level != 0;
   }
 

@@ -1,5 +1,5 @@
 // drivers/comedi_card.hpp: an acquisition card that Linux drives by COMEDI. libcomedi is loaded
-// when such a card is opened, and by nobody else.
+// only when such a card is opened.
 #pragma once
 
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace drivers {
 
-/// How a robot is wired to its card. Left before right. Lines that tell of trouble are high while
-/// all is well, so that a broken wire counts as trouble.
+/// How a robot is wired to its card, left before right. The stop and fault lines are high while all
+/// is well, so that a broken wire counts as a fault.
 struct ComediSetup {
   std::string library = "libcomedi.so.0";
-  double max_volts = 10;                       // [V] the outputs' range includes both signs
-  std::optional<unsigned> output_subdevice{};  // else the first with analog outputs
+  double max_volts = 10;                       // [V] the output range must include both signs
+  std::optional<unsigned> output_subdevice{};  // empty: the first with analog outputs
   std::array<unsigned, 2> outputs{0, 1};       // channels
   std::array<bool, 2> reversed_outputs{};
-  std::vector<unsigned> counter_subdevices{};         // one for both, or one each; else the first
+  std::vector<unsigned> counter_subdevices{};         // one for both, or one each; empty: the first
   std::optional<std::array<unsigned, 2>> counters{};  // channels
   std::array<bool, 2> reversed_counters{};
-  std::optional<unsigned> counter_mode{};     // as the card's driver counts quadrature
-  std::optional<unsigned> line_subdevice{};   // of the relay; else the first with outputs
-  std::optional<unsigned> input_subdevice{};  // else the relay's, or the first with inputs
+  std::optional<unsigned> counter_mode{};     // the card driver's number for quadrature counting
+  std::optional<unsigned> line_subdevice{};   // of the relay; empty: the first with outputs
+  std::optional<unsigned> input_subdevice{};  // empty: the relay's, or the first with inputs
   unsigned relay_line = 0;
   std::optional<unsigned> enable_line{};  // high while the motors may turn; the relay's subdevice
   std::optional<unsigned> relay_closed_line{};  // high: the relay is closed

@@ -1,5 +1,5 @@
-// drivers/comedi_library.hpp: the functions of libcomedi that we call, from whatever library of
-// that interface the robot's file names.
+// drivers/comedi_library.hpp: the functions of libcomedi that we call, from the library that the
+// robot's file names.
 #pragma once
 
 #include <string>
@@ -32,7 +32,7 @@ struct ComediLibrary {
   decltype(&::comedi_arm) arm = nullptr;
 };
 
-/// Stays loaded: what was loaded may have begun threads. Throws CardError.
+/// The library stays loaded, since it may have started threads. Throws CardError.
 ComediLibrary load_comedi(const std::string& name);
 
 }  // namespace drivers

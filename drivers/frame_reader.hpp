@@ -1,4 +1,4 @@
-// drivers/frame_reader.hpp: finds the frames in a stream of bytes that may be damaged.
+// drivers/frame_reader.hpp: finds the frames in a byte stream that may be damaged.
 #pragma once
 
 #include <algorithm>
@@ -11,16 +11,16 @@
 
 namespace drivers {
 
-/// What came over a line since its reader was made.
+/// Counts since the reader was made.
 struct LineCounters {
   std::uint64_t frames = 0;         // intact
   std::uint64_t bad_checks = 0;     // complete, with a wrong check value
   std::uint64_t skipped_bytes = 0;  // outside intact frames
-  std::uint64_t given_up = 0;       // begun and never completed
+  std::uint64_t given_up = 0;       // begun but never completed
   bool operator==(const LineCounters&) const = default;
 };
 
-/// What the first bytes of a buffer may be.
+/// Whether the first bytes of a buffer may begin a frame.
 struct FrameStart {
   enum class Kind : std::uint8_t { Nothing, TooShortToTell, Frame };
   Kind kind = Kind::Nothing;
@@ -32,16 +32,16 @@ struct FrameStart {
 ///   FrameStart start(ByteView)    of bytes, at least one, that may begin a frame
 ///   bool intact(ByteView)         whether a complete frame has the right check value
 ///
-/// A start mark may occur within data, and a frame may be cut off by the next one. So after a
-/// failure the reader goes on at the byte after the mark, within the same bytes: only the damaged
-/// frame is lost. Nothing is allocated. Not for two threads at once.
+/// A start mark may occur within data, and the next frame may cut one off. So after a failure the
+/// reader rescans from the byte after the mark: only the damaged frame is lost. Allocates nothing.
+/// Not thread-safe.
 template <class Framing>
 class FrameReader {
  public:
   explicit FrameReader(Framing framing = {}) : framing_(framing) {}
 
   /// Calls `on_frame(ByteView)` for each intact frame, and `on_stray(std::uint8_t)` for each byte
-  /// that lies outside of all frames, whole or broken, in the order in which they came.
+  /// outside of all frames, intact or broken, in order of arrival.
   template <class OnFrame, class OnStray>
   void feed(ByteView bytes, OnFrame&& on_frame, OnStray&& on_stray) {
     while (!bytes.empty()) {
@@ -54,8 +54,8 @@ class FrameReader {
     }
   }
 
-  /// The line has been silent for so long that a frame begun will not be completed: looks for
-  /// others within its bytes.
+  /// Call after a silence so long that the frame begun will not be completed: rescans its bytes for
+  /// other frames.
   template <class OnFrame, class OnStray>
   void expire(OnFrame&& on_frame, OnStray&& on_stray) {
     while (begin_ < end_) {
@@ -67,10 +67,10 @@ class FrameReader {
     compact();
   }
 
-  /// Forgets what has come so far, as after a change of the rate.
+  /// Drops all buffered bytes, as after a change of the rate.
   void clear() { begin_ = end_ = debris_end_ = 0; }
 
-  /// Bytes of a frame begun; 0 when nothing is awaited.
+  /// Bytes of the frame begun; 0 without one.
   std::size_t pending() const { return end_ - begin_; }
   const LineCounters& counters() const { return counters_; }
 
@@ -107,7 +107,7 @@ class FrameReader {
     if (stray) on_stray(byte);
   }
 
-  /// Moves what waits, always less than one frame, to the front.
+  /// Moves the unread bytes, always less than one frame, to the front.
   void compact() {
     std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_),
               buffer_.begin() + static_cast<std::ptrdiff_t>(end_),
@@ -119,8 +119,8 @@ class FrameReader {
 
   Framing framing_;
   std::array<std::uint8_t, 2 * Framing::kLongest> buffer_{};
-  std::size_t begin_ = 0;       // of what waits in the buffer
-  std::size_t end_ = 0;         // of what is in the buffer
+  std::size_t begin_ = 0;       // of the unread bytes
+  std::size_t end_ = 0;         // of all bytes in the buffer
   std::size_t debris_end_ = 0;  // up to here bytes may belong to a broken frame
   LineCounters counters_{};
 };

@@ -1,4 +1,4 @@
-// drivers/line_thread.cpp: bytes in, orders out.
+// drivers/line_thread.cpp: opens the port, passes bytes to the machine, sends its orders.
 #include "drivers/line_thread.hpp"
 
 #include <algorithm>
@@ -17,15 +17,14 @@
 namespace drivers {
 namespace {
 
-constexpr double kFirstRetry = 0.5;   // [s] until the port is tried again
+constexpr double kFirstRetry = 0.5;   // [s] until the first retry of the port
 constexpr double kLastRetry = 4.0;    // [s]
 constexpr double kLongestWait = 0.1;  // [s] so that a stop is seen soon
-// Bytes that may have waited for longer are thrown away: who reads them late would take an old
-// report for a new one.
+// Bytes that may have waited longer are discarded: an old report would pass for a new one.
 constexpr double kLongestUnread = 0.25;  // [s]
 constexpr SerialPort::Milliseconds kWriteTimeout{200};
-// An LMS200 wants 55 us between two bytes, which lower rates give by themselves.
-constexpr unsigned kNeedsGaps = 100'000;  // [bit/s] from here on; a byte takes longer below
+// An LMS200 needs 55 us between two bytes. At lower rates one byte already takes that long.
+constexpr unsigned kNeedsGaps = 100'000;  // [bit/s] from this rate on
 constexpr long kGap_ns = 60'000;
 
 void sleep_for(double seconds) {
@@ -49,11 +48,11 @@ LineThread::~LineThread() {
 
 void LineThread::wake() const {
   const std::uint64_t one = 1;
-  // It fails only when it is full of wake-ups already.
+  // It fails only when enough wake-ups are pending already.
   [[maybe_unused]] const ssize_t written = ::write(wake_, &one, sizeof one);
 }
 
-/// Waits until there is something to read, to order, or the time is over; true to read.
+/// Waits for bytes, an order or the timeout; true when there are bytes to read.
 bool LineThread::wait(const SerialPort* port, double seconds) const {
   std::array<pollfd, 2> waiting{pollfd{.fd = wake_, .events = POLLIN, .revents = 0},
                                 pollfd{.fd = -1, .events = POLLIN, .revents = 0}};
@@ -71,7 +70,7 @@ bool LineThread::wait(const SerialPort* port, double seconds) const {
 
 void LineThread::run(const std::stop_token& stop) {
   name_this_thread("line");
-  // Above the control loop's: what it brings is what the loop decides by.
+  // Above the control loop's priority: the loop decides by the data that this thread brings.
   request_real_time(kReaderPriority);
   double retry = kFirstRetry;
   while (!leaving(stop)) {
@@ -83,7 +82,7 @@ void LineThread::run(const std::stop_token& stop) {
       machine_.closed(steady_now(), error.what());
     }
     if (stop.stop_requested()) return;
-    // A line that held for a while is tried again soon, one that never comes ever more seldom.
+    // A line that worked for a while is retried soon; one that never opens, less and less often.
     retry = steady_now() - began > kLastRetry ? kFirstRetry : std::min(2 * retry, kLastRetry);
     for (const double until = steady_now() + retry; steady_now() < until;) {
       if (stop.stop_requested()) return;
@@ -92,7 +91,7 @@ void LineThread::run(const std::stop_token& stop) {
   }
 }
 
-/// True once there is nothing left to be done.
+/// True once nothing is left to do.
 bool LineThread::leaving(const std::stop_token& stop) {
   if (!stop.stop_requested()) return false;
   const std::lock_guard lock(mutex_);
@@ -144,7 +143,7 @@ void LineThread::serve(const std::stop_token& stop) {
   }
 }
 
-/// Returns the seconds that the orders ask for by themselves.
+/// Returns the seconds of pause that the orders ask for.
 double LineThread::carry_out_orders(SerialPort& port) {
   constexpr double kBitsOfAByte = 10;
   double asked = 0;

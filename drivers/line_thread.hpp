@@ -12,29 +12,29 @@
 
 namespace drivers {
 
-/// Opens the port, again and again until it is there, and carries bytes and orders between it and a
-/// machine. The machine is touched under the lock alone: with() gives others a look, and what they
-/// order is sent at once. The line itself is never waited for under the lock, so that a control
-/// tick is not held up by a port.
+/// Opens the port, retrying until it succeeds, and carries bytes and orders between it and a
+/// machine. The machine is accessed only under the lock: with() gives access to other threads and
+/// sends their orders at once. The thread never waits for the line under the lock, so a port cannot
+/// delay a control tick.
 class LineThread {
  public:
-  /// `machine` outlives the thread.
+  /// `machine` must outlive this object.
   LineThread(std::string path, Machine& machine);
-  /// Lets the machine leave its device in order, for `kLeaving` at most.
+  /// Gives the machine up to `kLeaving` to leave its device in order.
   ~LineThread();
   LineThread(const LineThread&) = delete;
   LineThread& operator=(const LineThread&) = delete;
 
   static constexpr double kLeaving =
-      12.0;  // [s] an LMS200: 3 for a switch, 2 or 3 deaf, 3 for its rate
+      12.0;  // [s] an LMS200 takes 3 for a mode switch, 2 or 3 while deaf, 3 for its rate
 
-  /// Calls `action`, which may give orders, with the machine locked. From any thread.
+  /// Calls `action`, which may give orders, on the locked machine. From any thread.
   template <class Action>
   void with(Action&& action) {
     look(std::forward<Action>(action));
     wake();
   }
-  /// The same for those who order nothing.
+  /// As with(), for an action that gives no orders.
   template <class Action>
   void look(Action&& action) {
     const std::lock_guard lock(mutex_);
@@ -57,7 +57,7 @@ class LineThread {
   int wake_ = -1;           // an eventfd: orders have been given
   double leave_until_ = 0;  // [s]
   bool left_ = false;       // the machine has been told to leave
-  std::jthread thread_;     // last: starts when all above is there
+  std::jthread thread_;     // declared last: starts when all members above exist
 };
 
 }  // namespace drivers

@@ -1,4 +1,4 @@
-// drivers/lms200_device.cpp: a scanner's machine and its thread, and its report in words.
+// drivers/lms200_device.cpp: a scanner's machine, its thread, and its report as text.
 #include "drivers/lms200_device.hpp"
 
 #include <chrono>
@@ -45,7 +45,7 @@ LaserReport Lms200Device::details() {
 }
 
 bool Lms200Device::comes_to_run(double patience, const std::function<bool()>& interrupted) {
-  constexpr double kLongestSetUp = 60;  // [s] six mode switches, and a memory that is written
+  constexpr double kLongestSetUp = 60;  // [s] six mode switches and one write of the memory
   const double begun = steady_now();
   for (;;) {
     Stage stage = Stage::NoLine;
@@ -80,11 +80,11 @@ algo::DeviceReport describe(const LaserReport& report, double now) {
                    kSight;
   }
   if (running && report.blinded) {
-    out.sentence = std::string("It is blinded, most of its beams tell nothing: ") + kSight;
+    out.sentence = std::string("It is blinded, most of its beams measure nothing: ") + kSight;
   }
   if (running && storm) {
     out.sentence = format(
-        "%.0f %% of its telegrams come damaged: look at the cable, its "
+        "%.0f %% of its telegrams are damaged: look at the cable, its "
         "shield, and what else the port's computer does.",
         100 * report.damaged);
   }
@@ -105,7 +105,7 @@ algo::DeviceReport describe(const LaserReport& report, double now) {
     }
   }
   out.facts.emplace_back("scans", std::to_string(report.scans));
-  out.facts.emplace_back("scans nobody took", std::to_string(report.replaced));
+  out.facts.emplace_back("scans never read", std::to_string(report.replaced));
   out.facts.emplace_back("damaged telegrams",
                          std::to_string(report.line.bad_checks + report.line.given_up));
   return out;

@@ -18,19 +18,19 @@ class Lms200Device final : public Scanner {
   bool take(algo::LaserScan& scan) override;
   ScannerState state() override;
   algo::DeviceReport report() override;
-  /// The same with all its numbers.
+  /// The full report of the machine.
   LaserReport details();
-  /// Waits until it runs: `patience` [s] until it is found, and as long as its set-up goes on after
-  /// that. False when it does not run then, or when `interrupted` says so.
+  /// Waits until the scanner runs: `patience` [s] for finding it, then as long as its set-up takes.
+  /// False when it does not run then, or once `interrupted` returns true.
   bool comes_to_run(double patience, const std::function<bool()>& interrupted = {});
 
  private:
   std::string name_;
   LaserMachine machine_;
-  LineThread line_;  // last: ends first
+  LineThread line_;  // declared last: ends first
 };
 
-/// For people.
+/// The report for users.
 algo::DeviceReport describe(const LaserReport& report, double now);
 
 }  // namespace drivers::lms200

@@ -15,19 +15,19 @@ namespace {
 
 constexpr std::array<unsigned, 4> kRates{9600, 19200, 38400, 500'000};
 
-constexpr double kByteSilence = 0.03;  // [s] no frame goes on after it: 14 ms and a USB chip's 16
+constexpr double kByteSilence = 0.03;  // [s] ends a frame: 14 ms and a USB chip's 16
 constexpr double kListen = 3.0;        // [s] for a greeting before all rates are tried again
 constexpr double kBootTime = 60.0;     // [s] at most from power to greeting
-constexpr double kSilent = 1.0;        // [s] without a telegram: the device is looked for again
-constexpr double kFirstScan = 3.5;     // [s] the first one may need so long
+constexpr double kSilent = 1.0;        // [s] without a telegram: search for the device again
+constexpr double kFirstScan = 3.5;     // [s] at most until the first scan
 constexpr double kDamageWeight = 1.0 / 16;
 constexpr std::uint64_t kMostAtOnce = 4;
-constexpr double kStorm = 0.5;  // share of telegrams that come damaged,
-constexpr double kCalm = 0.1;   // and what it has to fall to again: a bad cable comes and goes
+constexpr double kStorm = 0.5;  // share of damaged telegrams that starts a storm
+constexpr double kCalm = 0.1;   // share that ends it: a bad cable is intermittent
 
-/// Whether a port that was told `wanted` and says `is` can talk at that rate.
+/// Whether a port set to `wanted` that runs at `is` [bit/s] can talk to a device at `wanted`.
 bool close_enough(unsigned wanted, unsigned is) {
-  constexpr double kTolerance = 0.03;  // of what 8N1 takes
+  constexpr double kTolerance = 0.03;  // relative; 8N1 tolerates no more
   return std::abs(static_cast<double>(is) - wanted) <= kTolerance * wanted;
 }
 
@@ -63,7 +63,7 @@ void LaserMachine::closed(double /*now*/, const std::string& why) {
 void LaserMachine::rate_set(double now, unsigned baud) {
   reader_.clear();
   if (step_ != Step::Probe || fixed_rate_ || close_enough(port_baud_, baud)) return;
-  // No use in asking at a rate that this port cannot make.
+  // Do not probe at a rate that this port cannot make.
   if (port_baud_ == wanted_) {
     fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
   }
@@ -72,7 +72,7 @@ void LaserMachine::rate_set(double now, unsigned baud) {
   probe(now);
 }
 
-/// Goes for a lower rate from now on, and says what that costs.
+/// Uses the fallback rate from now on, and reports the cost.
 void LaserMachine::fall_back(const std::string& why) {
   if (wanted_ <= kFallbackRate) return;
   wanted_ = kFallbackRate;
@@ -133,9 +133,9 @@ double LaserMachine::wake_time() const {
   return reader_.pending() > 0 ? std::min(deadline_, last_byte_ + 1.1 * kByteSilence) : deadline_;
 }
 
-// ---- finding it ------------------------------------------------------------------------------
+// ---- finding the device ----------------------------------------------------------------------
 
-/// Tries the rate wanted first, at which an earlier program may have left the device streaming.
+/// Probes the wanted rate first: an earlier program may have left the device streaming at it.
 void LaserMachine::search(double now) {
   rates_[0] = wanted_;
   std::size_t n = 1;
@@ -159,7 +159,7 @@ void LaserMachine::probe(double now) {
   begin(Step::Probe, now);
 }
 
-/// A device that starts says so, always at the same rate.
+/// Waits for the greeting of a starting device, always sent at kStartRate.
 void LaserMachine::listen(double now) {
   step_ = Step::Listen;
   deadline_ = now + kListen;
@@ -177,7 +177,7 @@ void LaserMachine::listen(double now) {
   reader_.clear();
 }
 
-// ---- what it says ----------------------------------------------------------------------------
+// ---- received bytes --------------------------------------------------------------------------
 
 void LaserMachine::take_telegram(double now, ByteView frame) {
   const Telegram telegram = telegram_of(frame);
@@ -185,7 +185,7 @@ void LaserMachine::take_telegram(double now, ByteView frame) {
   address_ = static_cast<std::uint8_t>(telegram.address - kAnswerAddress);
   const LineCounters& line = reader_.counters();
   const std::uint64_t bad = line.bad_checks + line.given_up;
-  // Noise between two telegrams may look like many.
+  // Noise between two telegrams may look like several telegrams.
   for (auto n = std::min(bad - bad_before_, kMostAtOnce); n > 0; --n) {
     damaged_ += (1 - damaged_) * kDamageWeight;
   }
@@ -198,7 +198,7 @@ void LaserMachine::take_telegram(double now, ByteView frame) {
       if (step_ == Step::Streaming) take_values(now, telegram, frame.size());
       return;
     case Answer::PowerOn:
-      // It has restarted, or starts just now: at its first rate, and as nobody has set it up.
+      // The device has restarted: it is at its start rate and must be set up again.
       if (step_ == Step::Stopping || step_ == Step::Restoring || step_ == Step::Left) return;
       if (step_ == Step::Streaming) {
         trouble_ = "The scanner has restarted; it is being set up again.";
@@ -211,7 +211,7 @@ void LaserMachine::take_telegram(double now, ByteView frame) {
   }
 }
 
-/// Whether `telegram` is what the present step has asked for.
+/// Whether `telegram` answers the request of the present step.
 bool LaserMachine::answers(const Telegram& telegram) const {
   const auto code = static_cast<Answer>(telegram.code());
   if (step_ == Step::NoLine || step_ == Step::Left || step_ == Step::Listen ||
@@ -243,7 +243,7 @@ void LaserMachine::answered(double now, const Telegram& telegram) {
       return;
     case Step::Type:
       if (const auto text = type_text(telegram)) type_ = *text;
-      // Another rate than it was told is its own again: it has restarted.
+      // A rate other than the ordered one is the device's own: it has restarted.
       if (found_baud_ == 0 || port_baud_ != told_baud_) found_baud_ = port_baud_;
       baud_ = port_baud_;
       begin(Step::Status, now);
@@ -310,7 +310,7 @@ void LaserMachine::unanswered(double now) {
       probe(now);
       return;
     case Step::Status:
-      identified(now);  // it helps, and is not needed
+      identified(now);  // optional: scans arrive without it too
       return;
     case Step::RateConfirmed:
       fall_back(format("The scanner does not answer at %u bit/s.", wanted_));
@@ -337,7 +337,7 @@ void LaserMachine::unanswered(double now) {
 
 // ---- scans -----------------------------------------------------------------------------------
 
-/// [s] between two scans, by the manual.
+/// [s] between two scans, from the manual.
 double LaserMachine::nominal_period() const {
   return lms200::scan_period(interlaced() ? setup_.variant : decoder_.variant(),
                              baud_ > 0 ? baud_ : kStartRate);
@@ -382,14 +382,14 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
     return;
   }
   ++scans_;
-  // Its last byte came only now: the sweep was over when the first one went out.
+  // The last byte arrived now; the sweep ended when the first byte was sent.
   filling_.stamp = now - transfer_time(bytes, baud_);
   if (setup_.upside_down) {
     std::reverse(filling_.ranges.begin(), filling_.ranges.end());
     std::reverse(filling_.status.begin(), filling_.status.end());
     std::reverse(filling_.codes.begin(), filling_.codes.end());
   }
-  filling_.mount_R = {};  // the recycled scan still has the mount of its last reader
+  filling_.mount_R = {};  // the recycled scan still has its last reader's mount
   blinded_ = algo::blinded(filling_);
   dazzled_.reset();
   if (const algo::BeamSpan cone = algo::widest_cone(filling_); cone.end > cone.begin) {
@@ -401,8 +401,8 @@ void LaserMachine::deliver(double now, std::size_t bytes, Health health) {
   fresh_ = true;
 }
 
-/// Its motor sets the pace: scans that come in a bunch waited on their way, and a gap is of scans
-/// that are missing. Unless every gap is so long: then the line or another setting makes it slower.
+/// The motor sets the scan rate: scans in a bunch were delayed on the way, and a gap means missing
+/// scans. Only when every gap is long is the rate itself lower, from the line or a setting.
 void LaserMachine::measure_period(double now) {
   constexpr double kWeight = 1.0 / 16;
   constexpr double kShortest = 0.9;  // of the nominal period
@@ -477,9 +477,9 @@ LaserReport LaserMachine::report() const {
   return out;
 }
 
-// ---- the way out -----------------------------------------------------------------------------
+// ---- leaving ---------------------------------------------------------------------------------
 
-/// A device whose rate is not known cannot be told anything.
+/// A device at an unknown rate cannot be commanded.
 void LaserMachine::leave(double now) {
   orders_.clear();
   if (baud_ == 0) {

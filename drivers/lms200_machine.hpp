@@ -1,13 +1,13 @@
-// drivers/lms200_machine.hpp: how an LMS2xx is found, set up, listened to and left again.
+// drivers/lms200_machine.hpp: finds an LMS2xx, sets it up, receives its scans and leaves it.
 //
-// Bytes and times in, telegrams and scans out; drivers/lms200_device.hpp is the thread around it.
+// Bytes and times in, telegrams and scans out; drivers/lms200_device.hpp adds the thread.
 //
 //   NoLine > Probe (each rate) > Type > Status > Rate > Variant > Installation > configuration
-//          > Start > Streaming           nothing answers: Listen for a greeting, then Probe again
+//          > Start > Streaming           no answer: Listen for a greeting, then Probe again
 //
-// A mode switch may take 3 s, and the device may be deaf and dumb for seconds after one or after
-// power-on: what it acknowledged is waited for, what it did not is asked again for as long.
-// Whatever falls silent or restarts on the way is looked for again from the beginning.
+// A mode switch may take 3 s, and for seconds after one or after power-on the device may neither
+// hear nor answer. So the machine waits for an acknowledged request and repeats any other.
+// When the device falls silent or restarts, the search starts again from the beginning.
 #pragma once
 
 #include <array>
@@ -24,36 +24,36 @@
 
 namespace drivers::lms200 {
 
-constexpr unsigned kFallbackRate = 38400;  // [bit/s] that every port and plug can do
+constexpr unsigned kFallbackRate = 38400;  // [bit/s] every port and plug can do it
 
-/// What the device is to do.
+/// The wanted settings of the device.
 struct LaserSetup {
-  unsigned baud = 500'000;   // [bit/s] wanted; the device is looked for at all of them
+  unsigned baud = 500'000;   // [bit/s] wanted; the search covers all rates
   Variant variant{180, 50};  // 180 degrees at 0.25 come as interlaced partial scans
   unsigned range = 8;        // [m] 8, 16 or 32 in millimetres, 80 in centimetres
   bool upside_down = false;
-  bool as_it_is = false;  // only looked at: rate, variant and configuration stay
+  bool as_it_is = false;  // keep the device's rate, variant and configuration
   std::string password{kFactoryPassword};
 };
 
-/// Eight characters that a keyboard has: what the device takes as one.
+/// Whether `password` is one the device accepts: eight printable ASCII characters.
 bool good_password(std::string_view password);
-/// Why no device can do what `setup` says; empty when one can.
+/// Why no device can satisfy `setup`; empty when one can.
 std::string refusal(const LaserSetup& setup);
 
 enum class Stage : std::uint8_t { NoLine, Searching, SettingUp, Running };
 
-/// Bearings between which the newest scan was dazzled [rad, the scanner's own, left positive].
+/// The dazzled bearings of the newest scan [rad, scanner frame, left positive].
 struct Dazzled {
   double from = 0;
   double to = 0;
 };
 
-/// All that people may want to know about it.
+/// The state of the scanner for users.
 struct LaserReport {
   Stage stage = Stage::NoLine;
-  std::string trouble{};               // why there are no scans, a sentence; empty while Running
-  std::vector<std::string> remarks{};  // what is not as it was asked for
+  std::string trouble{};               // why there are no scans; empty while Running
+  std::vector<std::string> remarks{};  // settings that differ from the wanted ones
   std::string type{};                  // "LMS200;301063;V02.30"
   std::string software{};
   unsigned baud = 0;  // [bit/s] found or agreed upon
@@ -65,18 +65,18 @@ struct LaserReport {
   Health health{};
   LineCounters line{};
   std::uint64_t scans = 0;
-  std::uint64_t unusable = 0;  // came whole, and the device said not to rely on them
-  std::uint64_t replaced = 0;  // scans by a newer one, before anybody took them
-  std::uint64_t set_ups = 0;   // times it was found and set up
-  std::uint64_t written = 0;   // times its configuration was written
-  double damaged = 0;          // share of late, 0..1, of telegrams that came damaged
-  bool storm = false;          // too many of them, until far fewer are
+  std::uint64_t unusable = 0;  // intact scans that the device marked unreliable
+  std::uint64_t replaced = 0;  // scans replaced by a newer one before they were read
+  std::uint64_t set_ups = 0;   // times the device was found and set up
+  std::uint64_t written = 0;   // times the configuration was written
+  double damaged = 0;          // recent share of damaged telegrams, 0..1
+  bool storm = false;          // too many damaged, until far fewer are
   bool blinded = false;        // most beams of the newest scan measured nothing
   std::optional<Dazzled> dazzled{};
-  double scan_period = 0;     // [s] measured, or what its rate allows
-  double nominal_period = 0;  // [s] what its rate allows
-  double last_scan = 0;       // [s] steady clock, when it arrived; 0: none yet
-  double last_heard = 0;      // [s] of the last whole telegram
+  double scan_period = 0;     // [s] measured, or the least at its rate
+  double nominal_period = 0;  // [s] the least at its rate
+  double last_scan = 0;       // [s] steady clock, arrival of the newest scan; 0: none yet
+  double last_heard = 0;      // [s] arrival of the last intact telegram
 };
 
 class LaserMachine final : public Machine {
@@ -94,17 +94,16 @@ class LaserMachine final : public Machine {
   void leave(double now) override;
   bool left() const override { return step_ == Step::Left; }
 
-  /// Exchanges `scan` for the newest one when there is one that nobody has taken. Its stamp is of
-  /// the steady clock: the end of its last mirror turn, before it went over the line. Its mount is
-  /// the caller's to set.
+  /// Swaps `scan` with the newest scan; false when it was taken already. The stamp is the end of
+  /// its last mirror turn on the steady clock, before transmission. The caller sets its mount.
   bool take(algo::LaserScan& scan);
   Stage stage() const;
   LaserReport report() const;
-  /// [s] As in the report.
+  /// [s] As in Report.
   double scan_period() const { return period_; }
   double last_scan() const { return last_scan_; }
   double damaged() const { return damaged_; }
-  /// More telegrams came damaged than whole, and the line has not been good again since.
+  /// More than half of the telegrams were damaged, and the line has not recovered since.
   bool storm() const { return storm_; }
   Health health() const { return health_; }
   /// Most beams of the newest scan, within 45 degrees of its middle, measured nothing.
@@ -168,21 +167,21 @@ class LaserMachine final : public Machine {
   Variant set_variant() const { return interlaced() ? Variant{180, 50} : setup_.variant; }
 
   LaserSetup setup_;
-  unsigned wanted_;  // [bit/s] setup_'s, or lower once that has turned out not to work
+  unsigned wanted_;  // [bit/s] setup_'s, or lower once that rate has failed
   LineOrders orders_{};
   TelegramReader reader_{};
 
   Step step_ = Step::NoLine;
   int tries_left_ = 0;
-  double deadline_ = 0;              // [s] of the present request
-  double step_since_ = 0;            // [s]
-  double requested_at_ = 0;          // [s]
-  bool acknowledged_ = false;        // the request, and nothing else has come since
-  int naks_ = 0;                     // in this step,
-  int strays_ = 0;                   // and what was neither that nor an acknowledgement
-  unsigned nak_baud_ = 0;            // [bit/s] at which a device took all for damaged; 0: none did
-  unsigned port_baud_ = 0;           // [bit/s] as last ordered
-  bool fixed_rate_ = false;          // the line's rate is none of ours: a network box
+  double deadline_ = 0;        // [s] of the present request
+  double step_since_ = 0;      // [s]
+  double requested_at_ = 0;    // [s]
+  bool acknowledged_ = false;  // the request was, and nothing else has come since
+  int naks_ = 0;               // in this step
+  int strays_ = 0;             // bytes in this step that were neither NAK nor ACK
+  unsigned nak_baud_ = 0;      // [bit/s] a device answered every request with NAK; 0: none did
+  unsigned port_baud_ = 0;     // [bit/s] as last ordered
+  bool fixed_rate_ = false;    // a network box sets the line's rate
   std::array<unsigned, 4> rates_{};  // in the order they are tried
   std::size_t rate_index_ = 0;
   double searching_since_ = 0;  // [s]
@@ -193,9 +192,9 @@ class LaserMachine final : public Machine {
   std::string type_{};
   std::string software_{};
   std::uint8_t address_ = 0;
-  unsigned baud_ = 0;        // [bit/s] that the device is known to have; 0 when it is not
-  unsigned told_baud_ = 0;   // [bit/s] that it was told to have; 0: nothing
-  unsigned found_baud_ = 0;  // [bit/s] that it had by itself, and is left with
+  unsigned baud_ = 0;        // [bit/s] the device's rate; 0: unknown
+  unsigned told_baud_ = 0;   // [bit/s] the rate ordered; 0: none
+  unsigned found_baud_ = 0;  // [bit/s] the rate it was found at and is left at
   std::optional<Variant> variant_{};
   Configuration configuration_{};
   Configuration written_block_{};
@@ -210,7 +209,7 @@ class LaserMachine final : public Machine {
   algo::LaserScan ready_{};
   bool fresh_ = false;
   double period_ = 0.1;      // [s]
-  double last_arrival_ = 0;  // [s] of the scan before
+  double last_arrival_ = 0;  // [s] of the previous scan
   unsigned long_gaps_ = 0;   // in a row
   double last_scan_ = 0;     // [s]
   double last_heard_ = 0;    // [s]

@@ -1,4 +1,4 @@
-// drivers/lms200_protocol.cpp: requests to an LMS2xx and answers that hold no measured values.
+// drivers/lms200_protocol.cpp: requests to an LMS2xx, and its answers without measured values.
 #include "drivers/lms200_protocol.hpp"
 
 namespace drivers::lms200 {
@@ -25,7 +25,7 @@ enum class Request : std::uint8_t {
 constexpr std::size_t kPasswordBytes = 8;
 constexpr std::size_t kSecondBytes = 84;
 
-/// What a frame is put around.
+/// The payload of a frame.
 using Payload = FixedBytes<kSecondBytes + 2>;
 
 Command framed(const Payload& payload, std::uint8_t address) {
@@ -60,7 +60,7 @@ bool is(const Telegram& telegram, Answer answer) {
   return telegram.code() == static_cast<std::uint8_t>(answer) && telegram.payload.size() >= 2;
 }
 
-/// Of the rate word in the status.
+/// [bit/s] from the rate word of the status.
 unsigned baud_of_word(std::uint16_t word) {
   switch (word) {
     case 0x8001:
@@ -284,7 +284,7 @@ std::optional<StartUpRateAnswer> start_up_rate_answer(const Telegram& telegram) 
 }
 
 std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram) {
-  constexpr std::size_t kShortest = 7;  // up to the unit, which no driver can do without
+  constexpr std::size_t kShortest = 7;  // up to the unit, which a driver needs
   const bool written = is(telegram, Answer::ConfigurationWritten);
   if (!written && !is(telegram, Answer::Configuration)) return std::nullopt;
   const ByteView data = telegram.data();
@@ -299,7 +299,7 @@ std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram
 std::optional<DeviceStatus> device_status(const Telegram& telegram) {
   constexpr std::size_t kLength = 0x9A;
   if (!is(telegram, Answer::Status) || telegram.payload.size() != kLength) return std::nullopt;
-  const ByteView p = telegram.payload;  // the manual counts from the code, which is 0
+  const ByteView p = telegram.payload;  // the manual counts bytes from the code, byte 0
   DeviceStatus status{.software = text_of(p.subspan(1, 7)),
                       .mode = p[8],
                       .faulty = p[9] != 0,

@@ -1,4 +1,4 @@
-// drivers/lms200_protocol.hpp: what an LMS2xx can be told, and its answers but for measured values
+// drivers/lms200_protocol.hpp: requests to an LMS2xx, and its answers except for measured values
 // (drivers/lms200_scan.hpp).
 //
 // Sources: SICK, Telegrams for Configuring and Operating the LMS2xx (2006), checked against public
@@ -21,44 +21,44 @@ namespace drivers::lms200 {
 /// The longest, writing the second part of the configuration, has 91 bytes.
 using Command = FixedBytes<96>;
 
-/// A field of view and its step, as the device has it: whole degrees and hundredths of a degree.
+/// A field of view and its step in the device's units: degrees and hundredths of a degree.
 struct Variant {
   std::uint16_t angle_degrees = 180;      // 100 or 180
   std::uint16_t step_centidegrees = 100;  // 100, 50 or 25
 
-  /// Of a whole scan, both ends included.
+  /// Beams of a whole scan, both ends included.
   std::size_t beams() const { return angle_degrees * 100U / step_centidegrees + 1U; }
-  /// Mirror turns a whole scan needs: each turn measures once a degree.
+  /// Mirror turns per whole scan: each turn measures once per degree.
   std::uint32_t turns() const { return 100U / step_centidegrees; }
   bool operator==(const Variant&) const = default;
 };
 
-/// 180 degrees in steps of 0.25 exist as interlaced partial scans alone; the device takes them for
-/// no variant, so variant_command() has no telegram for them.
+/// 180 degrees in steps of 0.25 exist only as interlaced partial scans. The device has no such
+/// variant, so variant_command() has no telegram for it.
 bool exists(const Variant& variant);
 
 enum class Rate : std::uint8_t { Baud38400 = 0x40, Baud19200, Baud9600, Baud500000 = 0x48 };
 /// [bit/s]
 unsigned baud_of(Rate rate);
-constexpr unsigned kStartRate = 9600;  // [bit/s] at which a device that starts says so
+constexpr unsigned kStartRate = 9600;  // [bit/s] of the greeting of a starting device
 
 enum class Mode : std::uint8_t {
-  Installation = 0x00,  // takes the password
+  Installation = 0x00,  // needs the password
   Diagnosis = 0x10,
   MinimumPerSegment = 0x20,
   MinimumOnObject = 0x21,
   MinimumVertical = 0x22,
   MinimumVerticalOnObject = 0x23,
   Continuous = 0x24,
-  OnRequest = 0x25,        // as the device starts
-  ContinuousMeans = 0x26,  // takes a number of scans
+  OnRequest = 0x25,        // after power-on
+  ContinuousMeans = 0x26,  // needs a number of scans
   ContinuousRange = 0x27,  // takes first and last value
   ContinuousMeanRange = 0x28,
   ContinuousFields = 0x29,  // takes first and last value
-  PartialScans = 0x2A,      // at once after each mirror turn
+  PartialScans = 0x2A,      // one after each mirror turn
 };
 
-/// What one request for measured values asks for.
+/// The kinds of measured values that a request can ask for.
 enum class Wanted : std::uint8_t {
   All = 0x01,
   VerticalDistance = 0x02,
@@ -70,7 +70,7 @@ enum class Wanted : std::uint8_t {
 
 enum class StartUpRate : std::uint8_t { Baud9600 = 0, KeepPresent = 1, KeepType = 2 };
 
-/// Values counted from 1, as the device does, both included.
+/// First and last value, counted from 1 as in the device, both included.
 struct ValueRange {
   std::uint16_t first = 1;
   std::uint16_t last = 361;
@@ -79,8 +79,8 @@ struct ValueRange {
 
 constexpr std::string_view kFactoryPassword = "SICK_LMS";
 
-/// The part of the configuration a driver reads and changes. Old devices have a shorter block, so
-/// its size is what the device sent.
+/// The part of the configuration that a driver reads and changes. Old devices have a shorter block,
+/// so it keeps the size that the device sent.
 class Configuration {
  public:
   static constexpr std::size_t kBytes = 34;
@@ -110,7 +110,7 @@ class Configuration {
   std::size_t size_ = 0;
 };
 
-// ---- requests, framed; `address` 0 is everybody's --------------------------------------------
+// ---- requests, framed; `address` 0 is broadcast ----------------------------------------------
 
 Command reset_command(std::uint8_t address = kEverybody);
 Command status_command(std::uint8_t address = kEverybody);
@@ -119,7 +119,7 @@ Command type_command(std::uint8_t address = kEverybody);
 Command rate_command(Rate rate, std::uint8_t address = kEverybody);
 /// Modes without parameters.
 Command mode_command(Mode mode, std::uint8_t address = kEverybody);
-/// `password` has 8 characters, else no command results.
+/// `password` must have 8 characters; otherwise the result is empty.
 Command installation_command(std::string_view password = kFactoryPassword,
                              std::uint8_t address = kEverybody);
 Command continuous_means_command(std::uint8_t scans, std::uint8_t address = kEverybody);
@@ -134,21 +134,21 @@ Command range_command(ValueRange range, std::uint8_t address = kEverybody);
 Command mean_range_command(std::uint8_t scans, ValueRange range, std::uint8_t address = kEverybody);
 /// Empty for a variant that does not exist.
 Command variant_command(const Variant& variant, std::uint8_t address = kEverybody);
-/// A rate kept at 500000 leaves the device silent on RS-232: never sent without being asked for.
+/// A stored rate of 500000 leaves the device silent on RS-232: send it only on the user's request.
 Command start_up_rate_command(StartUpRate rate, std::uint8_t address = kEverybody);
 Command read_configuration_command(std::uint8_t address = kEverybody);
-/// Wears out the device's memory: only for a block that differs from the one read, in installation
-/// mode.
+/// Wears out the device's memory: send it only for a block that differs from the one read. Needs
+/// installation mode.
 Command write_configuration_command(const Configuration& configuration,
                                     std::uint8_t address = kEverybody);
 Command read_second_configuration_command(std::uint8_t address = kEverybody);
-/// `block` has 84 bytes, else no command results.
+/// `block` must have 84 bytes; otherwise the result is empty.
 Command write_second_configuration_command(ByteView block, std::uint8_t address = kEverybody);
 
 // ---- answers ---------------------------------------------------------------------------------
 
 enum class Answer : std::uint8_t {
-  PowerOn = 0x90,  // restarted: at 9600 again, on request, variant as stored
+  PowerOn = 0x90,  // after a restart: 9600 bit/s, on request, stored variant
   ResetConfirmed = 0x91,
   Refused = 0x92,
   Mode = 0xA0,
@@ -178,7 +178,7 @@ class Health {
   bool restart_input() const { return (byte_ & 0x20U) != 0; }
   bool implausible() const { return (byte_ & 0x40U) != 0; }
   bool polluted() const { return (byte_ & 0x80U) != 0; }
-  /// A robot may drive on values that come with it.
+  /// Whether a robot may drive by values sent with this status.
   bool usable() const { return level() < 3 && !implausible(); }
   std::uint8_t byte() const { return byte_; }
   bool operator==(const Health&) const = default;
@@ -187,11 +187,10 @@ class Health {
   std::uint8_t byte_;
 };
 
-/// What is wrong, as a sentence; empty when all is well.
+/// The fault as a sentence; empty without one.
 std::string health_text(Health health);
 
-/// Why a request for a mode, a rate or anything at all was not done; empty when it was, or when
-/// `telegram` is no such answer.
+/// Why a request was refused; empty when it was done, or when `telegram` is no such answer.
 std::string refusal_text(const Telegram& telegram);
 
 /// Answer to type_command(), or the greeting after power-on: "LMS200;301063;V02.30 ".
@@ -211,8 +210,7 @@ struct StartUpRateAnswer {
 };
 std::optional<StartUpRateAnswer> start_up_rate_answer(const Telegram& telegram);
 
-/// After reading `done` is true. After writing `now` is the block in force, to be compared with
-/// what was sent.
+/// Reading sets `done`. After writing, `now` is the block in force: compare it with the one sent.
 struct ConfigurationAnswer {
   bool done = false;
   Configuration now{};
@@ -220,15 +218,15 @@ struct ConfigurationAnswer {
 std::optional<ConfigurationAnswer> configuration_answer(const Telegram& telegram);
 
 struct DeviceStatus {
-  std::string_view software{};  // 7 characters, valid as long as the telegram
+  std::string_view software{};  // 7 characters; valid as long as the telegram
   std::uint8_t mode = 0;
   bool faulty = false;
   std::uint8_t variant_type = 0;
-  std::array<std::uint16_t, 8> pollution{};  // of the window's parts
+  std::array<std::uint16_t, 8> pollution{};  // of each part of the window
   std::uint16_t motor_microseconds = 0;      // for 1/90 of a turn; 148 nominal
   std::uint8_t measuring_mode = 0;
   Variant variant{};
-  unsigned baud = 0;  // [bit/s]; 0 when the word is none of those known
+  unsigned baud = 0;  // [bit/s]; 0: unknown word
   std::uint8_t start_up_rate = 0;
   std::uint8_t address = 0;
   bool in_millimetres = false;
@@ -244,7 +242,7 @@ struct DeviceError {
   bool operator==(const DeviceError&) const = default;
 };
 
-/// How many entries an answer to error_command() has; nothing when `telegram` is none.
+/// Number of entries in an answer to error_command(); nullopt for any other telegram.
 std::optional<std::size_t> error_count(const Telegram& telegram);
 /// Entry `i` < error_count().
 DeviceError error_at(const Telegram& telegram, std::size_t i);

@@ -1,4 +1,4 @@
-// drivers/lms200_scan.cpp: words of an LMS2xx as beams.
+// drivers/lms200_scan.cpp: converts the value words of an LMS2xx to beams.
 #include "drivers/lms200_scan.hpp"
 
 #include <cmath>
@@ -22,7 +22,7 @@ struct CountWord {
   unsigned unit() const { return word >> 14U; }
 };
 
-/// What precedes the count word in each kind of answer.
+/// The fields before the count word in each kind of answer.
 struct Prefix {
   bool averaged = false;
   bool range = false;
@@ -44,7 +44,7 @@ std::optional<Prefix> prefix_of(std::uint8_t code) {
   }
 }
 
-/// The last digit of a code says what it means; on others nothing is known.
+/// The last digit of a code gives its meaning; the meaning of other digits is unknown.
 void decode_code(unsigned code, std::size_t i, algo::LaserScan& scan) {
   using algo::BeamCode;
   const auto digit = static_cast<BeamCode>(code & 0xFU);
@@ -132,8 +132,8 @@ std::optional<WordFormat> word_format(std::uint8_t measuring_mode) {
     case 0x06:
       return WordFormat{.mask = 0x7FFF, .top = 0x7FFF};
     case 0x0F:
-      // All bits are the distance, yet the range is 32 m as in the modes above. The manual does
-      // not give the codes of this mode; no distance can be at or above those of the others.
+      // All bits hold the distance, yet the range is 32 m as in the modes above. The manual does
+      // not give this mode's codes. No distance can reach the codes of the other modes.
       return WordFormat{.mask = 0xFFFF, .top = 0x7FFF};
     default:
       return std::nullopt;
@@ -144,8 +144,8 @@ void ScanDecoder::prepare(bool in_millimetres,
                           std::size_t first,
                           std::size_t beams,
                           algo::LaserScan& scan) const {
-  // Right to left: the device's 0 degrees are its right, and its smaller field of view lies in the
-  // middle of the larger one.
+  // Right to left: 0 degrees of the device is its right side. Its smaller field of view is centred
+  // in the larger one.
   const double step_degrees = variant_.step_centidegrees / 100.0;
   const double first_degrees =
       static_cast<double>(first) * step_degrees - variant_.angle_degrees / 2.0;
@@ -161,12 +161,12 @@ void ScanDecoder::decode_word(std::uint16_t word,
                               bool in_millimetres,
                               std::size_t i,
                               algo::LaserScan& scan) const {
-  constexpr unsigned kCodes = 8;  // below the top
+  constexpr unsigned kCodes = 8;  // values below the top that are codes
   const unsigned value = word & format_.mask;
   if (value + kCodes >= format_.top) {
     decode_code(value, i, scan);
   } else {
-    // Divided, as algo/laser_scan.hpp does: the same number from a packed beam as from the device.
+    // Divides as algo/laser_scan.hpp does, so that a packed beam gives the same bits as the device.
     scan.set_ok(i, static_cast<double>(value) / (in_millimetres ? 1000.0 : 100.0));
   }
 }
@@ -174,7 +174,7 @@ void ScanDecoder::decode_word(std::uint16_t word,
 bool ScanDecoder::decode(const MeasuredValues& values, algo::LaserScan& scan) const {
   const std::size_t first = values.first - 1U;
   const std::size_t beams = variant_.beams();
-  // Beam 0 of a LaserScan is of the first turn, so a range has to begin there.
+  // Beam 0 of a LaserScan is of the first mirror turn, so a range must begin at such a beam.
   const bool range_fits =
       values.size() > 0 && first + values.size() <= beams && first % variant_.turns() == 0;
   const bool fits = values.range ? range_fits : values.size() == beams;
@@ -202,7 +202,7 @@ bool PartialScans::add(const MeasuredValues& values, algo::LaserScan& scan) {
   if (!values.partial || values.size() != beams || !follows(values)) {
     if (turn_ != 0) ++dropped_;
     turn_ = 0;
-    // What does not follow may yet begin the next sweep.
+    // A part out of order may begin the next sweep.
     if (!values.partial || values.size() != beams || values.part != 0) return false;
   }
   if (turn_ == 0) {

@@ -1,8 +1,8 @@
 // drivers/lms200_scan.hpp: measured values of an LMS2xx, whole or in partial scans, as LaserScans.
 //
-// A value word is a distance in its low bits, and flags that change with what the scanner sees in
-// its upper ones; which is which depends on the measuring mode read back from the device. The
-// highest nine distances are codes and never distances.
+// The low bits of a value word are a distance and its high bits are flags about the target. The
+// measuring mode read back from the device says which bits are which. The highest nine distance
+// values are codes, never distances.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +18,13 @@ namespace drivers::lms200 {
 
 constexpr double kTurnPeriod = 13.32e-3;  // [s] of the mirror
 
-/// Bytes of the telegram that brings a whole scan of `variant`.
+/// Bytes of the telegram of a whole scan of `variant`.
 std::size_t scan_bytes(const Variant& variant);
-/// Whether a line of `baud` [bit/s] carries whole scans of `variant`. 180 degrees in steps of 0.25
-/// come as four partial scans, one each mirror turn, which a slow line cannot keep up with.
+/// Whether a line of `baud` [bit/s] can carry whole scans of `variant`. 180 degrees in steps of
+/// 0.25 come as one partial scan per mirror turn, four in all: too fast for a slow line.
 bool carries(const Variant& variant, unsigned baud);
-/// [s] between two scans that are streamed at `baud`. A slow line loses those in between, and one
-/// more while the device gets ready: the manual's figures.
+/// [s] between two streamed scans at `baud`. A slow line loses the scans in between, and one more
+/// while the device gets ready. Source: the manual.
 double scan_period(const Variant& variant, unsigned baud);
 
 /// Counters of the device, modulo 256, sent when the configuration asks for them.
@@ -34,14 +34,14 @@ struct Indices {
   bool operator==(const Indices&) const = default;
 };
 
-/// Values as they are in a telegram, as long as that is valid.
+/// Values of a telegram; valid as long as the telegram.
 struct MeasuredValues {
   bool in_millimetres = false;  // else centimetres
   bool partial = false;
   std::uint8_t part = 0;      // partial scans start at part * 0.25 degrees
-  bool range = false;         // some values of a scan, from `first` on
+  bool range = false;         // only part of a scan, from `first` on
   std::uint16_t first = 1;    // number of the first value, counted from 1
-  std::uint8_t averaged = 1;  // scans the values are means of
+  std::uint8_t averaged = 1;  // scans in each mean value
   ByteView words{};           // two bytes a value
   std::optional<Indices> indices{};
   Health health{};
@@ -50,38 +50,38 @@ struct MeasuredValues {
   std::uint16_t word(std::size_t i) const { return word_at(words, 2 * i); }
 };
 
-/// The values of an answer of any kind that has them; nothing when `telegram` has none or when its
-/// length is not what its count of values says.
+/// The values of an answer of any kind; nullopt when `telegram` has none, or when its length does
+/// not match its count of values.
 std::optional<MeasuredValues> measured_values(const Telegram& telegram);
 
-/// How the words of a measuring mode are read.
+/// The bit layout of a measuring mode's words.
 struct WordFormat {
   std::uint16_t mask = 0x1FFF;  // bits of the distance
-  std::uint16_t top = 0x1FFF;   // the code for no echo; from top - 8 on there is no distance
+  std::uint16_t top = 0x1FFF;   // the code for no echo; values from top - 8 on are codes
 
   bool operator==(const WordFormat&) const = default;
 };
 
-/// Nothing for modes whose words are no distances (3F: energy) or that are not known.
+/// nullopt for unknown modes and for modes without distances (3F: energy).
 std::optional<WordFormat> word_format(std::uint8_t measuring_mode);
 
-/// Turns measured values into scans. `variant` and `format` are those the device said it has.
+/// Converts measured values to scans. `variant` and `format` are as the device reports them.
 class ScanDecoder {
  public:
   ScanDecoder(const Variant& variant, const WordFormat& format)
       : variant_(variant), format_(format) {}
 
-  /// Values of a whole scan or of a range, not of a partial scan. Fills all of `scan` but its mount
-  /// and its stamp, which the caller knows; false and no change when the values are not such as
-  /// this variant has. Allocates only when `scan` has never had so many beams.
+  /// Converts a whole scan or a range of one, not a partial scan. Fills all of `scan` except mount
+  /// and stamp, which the caller sets. False, without a change, when the values do not fit the
+  /// variant. Allocates only when `scan` has never had so many beams.
   bool decode(const MeasuredValues& values, algo::LaserScan& scan) const;
 
-  /// Sets what `scan` has apart from its beams. `first` counts from 0.
+  /// Sets the fields of `scan` other than its beams. `first` counts from 0.
   void prepare(bool in_millimetres,
                std::size_t first,
                std::size_t beams,
                algo::LaserScan& scan) const;
-  /// Word `word` as beam `i` of a scan that prepare() has seen.
+  /// Stores `word` as beam `i` of `scan`, after prepare().
   void decode_word(std::uint16_t word,
                    bool in_millimetres,
                    std::size_t i,
@@ -93,17 +93,16 @@ class ScanDecoder {
   WordFormat format_{};
 };
 
-/// Puts the partial scans of one sweep together: of a step of 0.5 degrees the parts 0 and 2, of
-/// 0.25 the parts 0, 1, 2 and 3, in this order. A sweep that lacks one is dropped whole: beams of
-/// different sweeps would say that the robot stood still in between.
+/// Joins the partial scans of one sweep: parts 0 and 2 for a step of 0.5 degrees, parts 0, 1, 2 and
+/// 3 for 0.25, in this order. A sweep that lacks a part is dropped whole: joining beams of
+/// different sweeps would assume that the robot stood still in between.
 class PartialScans {
  public:
-  /// `variant` may have 180 degrees and a step of 0.25, which exists in no other way.
+  /// `variant` may also be 180 degrees with a step of 0.25, which exists only interlaced.
   PartialScans(const Variant& variant, const WordFormat& format) : decoder_(variant, format) {}
 
-  /// Takes in the next partial scan. True when `scan` has become whole by it; until then `scan`
-  /// holds what has come, so that the same one has to be given again. The stamp is the caller's,
-  /// of the last part.
+  /// Adds the next partial scan. True once `scan` is whole; until then `scan` holds the parts so
+  /// far, so pass the same object each time. The caller sets the stamp, that of the last part.
   bool add(const MeasuredValues& values, algo::LaserScan& scan);
 
   std::uint64_t dropped_sweeps() const { return dropped_; }
@@ -112,7 +111,7 @@ class PartialScans {
   bool follows(const MeasuredValues& values) const;
 
   ScanDecoder decoder_;
-  std::uint32_t turn_ = 0;  // next within the sweep; 0 when none has begun
+  std::uint32_t turn_ = 0;  // next part of the sweep; 0: no sweep begun
   bool in_millimetres_ = false;
   std::optional<Indices> last_{};
   std::uint64_t dropped_ = 0;

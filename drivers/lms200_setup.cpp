@@ -1,4 +1,4 @@
-// drivers/lms200_setup.cpp: what an LMS2xx is asked, and how it is brought to the settings wanted.
+// drivers/lms200_setup.cpp: the requests to an LMS2xx that bring it to the wanted settings.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -9,14 +9,14 @@
 namespace drivers::lms200 {
 namespace {
 
-constexpr double kAnswer = 0.06;              // [s] an ordinary one, without its transfer
-constexpr double kProbeWait = 0.2;            // [s] may have to let a cut scan run out first
-constexpr double kModeSwitch = 3.5;           // [s] at most 3, and its answer's way
+constexpr double kAnswer = 0.06;              // [s] an ordinary answer, without its transfer
+constexpr double kProbeWait = 0.2;            // [s] a scan that was cut may have to run out first
+constexpr double kModeSwitch = 3.5;           // [s] at most 3, plus the answer's transfer
 constexpr double kDeaf = 3.0;                 // [s] after a switch or power-on, at most
 constexpr double kConfigurationWrite = 15.0;  // [s] at most
 constexpr double kRateSettle = 0.3;           // [s] after a change of the rate
 constexpr int kTries = 3;
-constexpr std::uint64_t kMostWrites = 2;  // of the configuration in one life of this program
+constexpr std::uint64_t kMostWrites = 2;  // of the configuration while this program runs
 
 double answer_time(std::size_t bytes, unsigned baud) {
   return kAnswer + transfer_time(bytes, baud > 0 ? baud : kStartRate);
@@ -121,7 +121,7 @@ double LaserMachine::limit_for(Step step) const {
 int LaserMachine::tries_for(Step step) const {
   switch (step) {
     case Step::WriteConfiguration:
-      return 1;  // asked again it would wear the memory again
+      return 1;  // a repetition would wear the memory again
     case Step::Stopping:
     case Step::Restoring:
       return 2;
@@ -130,14 +130,14 @@ int LaserMachine::tries_for(Step step) const {
   }
 }
 
-/// A byte outside of telegrams. At a wrong rate any may come, one after the other.
+/// Handles a byte outside of telegrams. At a wrong rate any byte may come.
 void LaserMachine::take_stray(std::uint8_t byte) {
   if (byte == kNak) ++naks_;
   if (byte != kNak && byte != kAck) ++strays_;
   acknowledged_ = byte == kAck;
 }
 
-/// A mode switch that was acknowledged takes its time; whether anybody is there shows sooner.
+/// An acknowledged mode switch may take long; without an acknowledgement the wait is shorter.
 bool LaserMachine::waits_on(double now) {
   const bool switches = step_ == Step::Probe || step_ == Step::Stopping || step_ == Step::Restoring;
   if (!switches || !acknowledged_ || now >= requested_at_ + kModeSwitch) return false;
@@ -145,7 +145,7 @@ bool LaserMachine::waits_on(double now) {
   return true;
 }
 
-/// A device that is known to be there may be deaf for a while, and then hears what it is asked.
+/// A device that answered before may be deaf for a while, so the request is repeated until then.
 bool LaserMachine::asks_again(double now) const {
   switch (step_) {
     case Step::Probe:
@@ -166,12 +166,12 @@ bool LaserMachine::takes_all_for_damaged() const {
 
 std::string LaserMachine::damaged_words() const {
   return format(
-      "A device answers at %u bit/s, but takes all it is told for damaged (NAK). Look at "
-      "the cable, its shield and its ground; another device would answer otherwise.",
+      "A device answers at %u bit/s, but only with NAK (damaged). Look at the cable, its shield "
+      "and its ground; another kind of device would not send NAK.",
       nak_baud_ > 0 ? nak_baud_ : port_baud_);
 }
 
-// ---- setting it up ---------------------------------------------------------------------------
+// ---- set-up ----------------------------------------------------------------------------------
 
 void LaserMachine::identified(double now) {
   if (!setup_.as_it_is && !fixed_rate_ && baud_ != wanted_) {
@@ -184,7 +184,7 @@ void LaserMachine::identified(double now) {
   }
 }
 
-/// Once the rate is settled, which decides on what the line carries.
+/// Called once the rate is settled, since the rate decides which variant the line can carry.
 void LaserMachine::choose_variant(double now) {
   if (!carries(setup_.variant, baud_)) {
     setup_.variant = {180, 50};
@@ -194,7 +194,7 @@ void LaserMachine::choose_variant(double now) {
   begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
 }
 
-/// The answer comes at the old rate; then the device switches.
+/// The device answers at the old rate, then switches.
 void LaserMachine::rate_answered(double now, const Telegram& telegram) {
   if (const std::string why = refusal_text(telegram); !why.empty()) {
     if (wanted_ > kFallbackRate) {
@@ -221,9 +221,9 @@ void LaserMachine::variant_answered(double now, const Telegram& telegram) {
   begin(Step::Installation, now);
 }
 
-/// Nothing but what has to be different is.
+/// The configuration read, with only the necessary changes.
 Configuration LaserMachine::wanted_configuration(const Configuration& now) const {
-  // Each range has three modes that differ in what the upper bits say; all are masked alike.
+  // Each range has three modes that differ only in their flag bits, which are masked anyway.
   const auto mode = [&]() -> std::uint8_t {
     const std::uint16_t top = setup_.range == 16 ? 0x3FFF : setup_.range == 32 ? 0x7FFF : 0x1FFF;
     const auto format = word_format(now.measuring_mode());

@@ -1,8 +1,8 @@
-// drivers/lms200_telegram.hpp: the frame around everything an LMS2xx says or is told.
+// drivers/lms200_telegram.hpp: the frame of requests to an LMS2xx and of its answers.
 //
 //   02  ADDRESS  LENGTH(2)  CODE  DATA...  [STATUS]  CRC(2)        words low byte first
 //
-// LENGTH counts from CODE to STATUS, which answers alone have. Source: SICK, Telegrams for
+// LENGTH counts from CODE to STATUS; only answers have a STATUS. Source: SICK, Telegrams for
 // Configuring and Operating the LMS2xx (2006), section 4.
 #pragma once
 
@@ -22,7 +22,7 @@ constexpr std::uint8_t kAnswerAddress = 0x80;  // + the device's own address
 constexpr std::size_t kFrameBytes = 6;         // around LENGTH bytes
 constexpr std::size_t kLongestLength = 1024;   // the longest answer known has 808
 
-/// Check value over a frame from its start mark to its last byte before the CRC. None of the usual
+/// Check value over a frame from its start mark to its last byte before the CRC. Not a usual
 /// CRC-16: each step takes in two bytes of the data.
 std::uint16_t crc(ByteView bytes);
 
@@ -32,18 +32,18 @@ struct Telegram {
   ByteView payload{};        // LENGTH bytes, never empty
 
   std::uint8_t code() const { return payload[0]; }
-  /// Of an answer: what is between code and status.
+  /// The bytes of an answer between code and status.
   ByteView data() const { return payload.subspan(1, payload.size() - 2); }
   std::uint8_t status() const { return payload.back(); }
 };
 
-/// The parts of a frame found intact.
+/// The parts of an intact frame.
 Telegram telegram_of(ByteView frame);
 
 enum class Sender : std::uint8_t { Device, Host };
 
-/// What FrameReader needs to know. Answers from any address >= 0x80 count, as a device that was
-/// given address 1 answers from 0x81 even when everybody was asked.
+/// The framing for FrameReader. Answers from any address >= 0x80 count: a device with address 1
+/// answers from 0x81 even to a broadcast.
 struct Framing {
   static constexpr std::size_t kLongest = kLongestLength + kFrameBytes;
   Sender sender = Sender::Device;
@@ -52,11 +52,11 @@ struct Framing {
   bool intact(ByteView frame) const;
 };
 
-/// Telegrams of the device; stray bytes are where to look for kAck and kNak. A hint only: after a
-/// scan that was cut they may lie within its debris, so the answer that follows decides.
+/// Finds the device's telegrams. kAck and kNak come as stray bytes, and only as a hint: bytes of a
+/// cut scan may look the same, so the answer that follows decides.
 using TelegramReader = FrameReader<Framing>;
 
-/// Appends a frame around `payload`, of at most kLongestLength bytes, to `out`: a FixedBytes.
+/// Appends a frame around `payload`, at most kLongestLength bytes, to `out`, a FixedBytes.
 template <class Bytes>
 void append_frame(Bytes& out, std::uint8_t address, ByteView payload) {
   const std::size_t begin = out.size();
@@ -67,8 +67,8 @@ void append_frame(Bytes& out, std::uint8_t address, ByteView payload) {
   out.append_word(crc(out.view().subspan(begin)));
 }
 
-/// [s] What `bytes` take on a line of `baud`: start bit, eight, stop bit. A scan was complete that
-/// much before its last byte arrived.
+/// [s] Transfer time of `bytes` at `baud` with 10 bits per byte. A scan was complete that much
+/// before its last byte arrived.
 constexpr double transfer_time(std::size_t bytes, unsigned baud) {
   return static_cast<double>(bytes) * 10.0 / static_cast<double>(baud);
 }

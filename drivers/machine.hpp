@@ -1,5 +1,5 @@
-// drivers/machine.hpp: what every device's driver is: a state machine of bytes and times, without a
-// port, a thread or a clock of its own.
+// drivers/machine.hpp: the interface of every serial driver: a state machine over bytes and times,
+// without a port, a thread or a clock of its own.
 #pragma once
 
 #include <array>
@@ -13,17 +13,17 @@
 
 namespace drivers {
 
-/// What a machine wants done with its line.
+/// An action on the line that a machine asks for.
 struct LineOrder {
-  FixedBytes<256> bytes{};         // to be sent; none when only the rate changes
-  std::optional<unsigned> baud{};  // [bit/s] to be set instead, once all before has been sent
+  FixedBytes<256> bytes{};         // to send; empty when only the rate changes
+  std::optional<unsigned> baud{};  // [bit/s] to set instead, once all earlier orders are sent
   double pause = 0;                // [s] of silence the device needs afterwards
-  bool gaps = false;               // the device wants a moment between two bytes
-  /// [s] when it is too late to send it: a motion that was ordered long ago is none.
+  bool gaps = false;               // the device needs a pause between two bytes
+  /// [s] From here on the order is dropped: a motion command must not be executed late.
   double expires = std::numeric_limits<double>::infinity();
 };
 
-/// Times are seconds of a steady clock. Not for two threads at once; LineThread holds a lock.
+/// Times are seconds of a steady clock. Not thread-safe; LineThread holds a lock.
 class Machine {
  public:
   Machine() = default;
@@ -31,32 +31,32 @@ class Machine {
   Machine(const Machine&) = delete;
   Machine& operator=(const Machine&) = delete;
 
-  /// [bit/s] at which the line is to be opened next.
+  /// [bit/s] The rate to open the line at.
   virtual unsigned opening_baud() const = 0;
-  /// The line is there; `baud` is what the port says it does, 0 when it does not know.
+  /// Called when the line is open; `baud` is the port's actual rate, 0 if unknown.
   virtual void opened(double now, unsigned baud) = 0;
-  /// The line is lost or could not be opened; `why` is a sentence.
+  /// Called when the line is lost or could not be opened; `why` is a sentence.
   virtual void closed(double now, const std::string& why) = 0;
-  /// A change of the rate that was ordered is done; as in opened().
+  /// Called when an ordered rate is set; `baud` as in opened().
   virtual void rate_set(double now, unsigned baud) = 0;
   virtual void receive(double now, ByteView bytes) = 0;
-  /// Bytes were thrown away, because nobody knows how old they were: what had begun is void.
+  /// Called when bytes of unknown age were discarded: a frame begun is void.
   virtual void lost_bytes() {}
-  /// Does what is due by `now`; call it after everything else and whenever wake_time() comes.
+  /// Does the work due by `now`; call it after every other call and at wake_time().
   virtual void advance(double now) = 0;
-  /// [s] at the latest for the next advance().
+  /// [s] The latest time for the next advance().
   virtual double wake_time() const = 0;
-  /// The next thing to do with the line, in order; nothing when there is none.
+  /// The next order for the line, oldest first; nullopt without one.
   virtual std::optional<LineOrder> next_order() = 0;
 
-  /// Begins the way out: the device is left as the next program expects it.
+  /// Begins to leave the device in the state that the next program expects.
   virtual void leave(double now) = 0;
-  /// The way out is done, or has taken too long.
+  /// True once leaving is done or has taken too long.
   virtual bool left() const = 0;
 };
 
-/// Orders on their way to the line. Those that do not fit are left out: a
-/// machine that gives so many has lost its line.
+/// A queue of orders for the line. Orders that do not fit are dropped: a machine with so many
+/// pending has lost its line.
 class LineOrders {
  public:
   void send(ByteView bytes, double pause = 0) {
@@ -65,7 +65,7 @@ class LineOrders {
     order.pause = pause;
     push(order);
   }
-  /// Bytes that move something, not to be sent from `expires` [s] on.
+  /// Appends a motion command, not to be sent from `expires` [s] on.
   void send_before(double expires, ByteView bytes, double pause = 0) {
     LineOrder order;
     order.bytes.append(bytes);
@@ -73,7 +73,7 @@ class LineOrders {
     order.expires = expires;
     push(order);
   }
-  /// With a moment between two bytes where the line is so fast that it gives none itself.
+  /// Appends bytes with a pause between each two, where the line is fast enough to need one.
   void send_slowly(ByteView bytes) {
     LineOrder order;
     order.bytes.append(bytes);

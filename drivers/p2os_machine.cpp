@@ -17,11 +17,11 @@ using algo::units::kRadiansPerDegree;
 
 constexpr std::array<unsigned, 5> kRates{9600, 38400, 19200, 115200, 57600};
 constexpr int kTries = 3;
-constexpr double kEchoWait = 0.4;        // [s] for the echo of a greeting
-constexpr double kCloseWait = 0.4;       // [s] after an old session was closed
-constexpr double kSearchPause = 1.0;     // [s] before all rates are tried again
-constexpr double kSilent = 1.0;          // [s] without a state packet: it is looked for again
-constexpr double kCommandPause = 0.005;  // [s] between two packets
+constexpr double kEchoWait = 0.4;                 // [s] for the echo of a greeting
+constexpr double kCloseWait = 0.4;                // [s] after an old session was closed
+constexpr double kSearchPause = 1.0;              // [s] before all rates are tried again
+constexpr double kSilent = 1.0;                   // [s] without a state packet: search again
+constexpr double kCommandPause = 0.005;           // [s] between two packets
 constexpr double kRepeat = 0.9 * kCommandPeriod;  // [s] a tick early rather than one too late
 constexpr double kFastest = 0.04;                 // [s] between two commands that differ
 constexpr int kMost = 0x7FFF;
@@ -65,7 +65,7 @@ void PioneerMachine::closed(double /*now*/, const std::string& why) {
 }
 
 void PioneerMachine::rate_set(double /*now*/, unsigned /*baud*/) {
-  reader_.clear();  // what came before was read at the wrong rate
+  reader_.clear();  // earlier bytes were read at the wrong rate
 }
 
 void PioneerMachine::receive(double now, ByteView bytes) {
@@ -75,12 +75,12 @@ void PioneerMachine::receive(double now, ByteView bytes) {
 
 void PioneerMachine::advance(double now) {
   if (off_.due(now, state_)) cut(now);
-  if (off_.pending()) halt(now);  // though nobody ticks any more
+  if (off_.pending()) halt(now);  // even without further ticks
   if (step_ == Step::Leaving && !off_.pending()) close();
   if (now < deadline_) return;
   switch (step_) {
     case Step::Leaving:
-      close();  // nobody is there any more
+      close();  // the device no longer answers
       return;
     case Step::NoLine:
     case Step::Left:
@@ -120,7 +120,7 @@ void PioneerMachine::advance(double now) {
   }
 }
 
-// ---- finding it ------------------------------------------------------------------------------
+// ---- finding the base ------------------------------------------------------------------------
 
 void PioneerMachine::search(double now) {
   rate_index_ = 0;
@@ -163,7 +163,7 @@ void PioneerMachine::take_packet(double now, ByteView body) {
       open(now);
       return;
     case Handshake::Progress::SessionOpen:
-      // Somebody before us did not close it.
+      // An earlier program did not close its session.
       send(command(Code::Close));
       step_ = Step::ClosingOld;
       deadline_ = now + kCloseWait;
@@ -171,7 +171,7 @@ void PioneerMachine::take_packet(double now, ByteView body) {
   }
 }
 
-/// The motors stay off until somebody asks for them.
+/// The motors stay off until enable(true).
 void PioneerMachine::open(double now) {
   send(command(Code::Open));
   send(command(Code::Enable, 0));
@@ -179,7 +179,7 @@ void PioneerMachine::open(double now) {
   send(command(Code::Acceleration, -millimetres(setup_.limits.acceleration)));
   send(command(Code::TurnAcceleration, degrees(setup_.limits.turn_acceleration)));
   send(command(Code::TurnAcceleration, -degrees(setup_.limits.turn_acceleration)));
-  send(command(Code::BumpStall, 3));  // the base stops itself as well
+  send(command(Code::BumpStall, 3));  // the base stops by itself too
   send(command(Code::Sonar, setup_.sonar ? 1 : 0));
   step_ = Step::Running;
   deadline_ = now + kSilent;
@@ -194,19 +194,19 @@ void PioneerMachine::open(double now) {
   off_.cancel();
 }
 
-/// A packet that asks quiets the watchdog: so only while the motors are off.
+/// Any packet feeds the base's watchdog, so this one is sent only while the motors are off.
 void PioneerMachine::ask_watchdog(double now) {
   send(command(Code::Configuration));
   ++watchdog_asked_;
   watchdog_asked_at_ = now;
 }
 
-// ---- what it says ----------------------------------------------------------------------------
+// ---- reports ---------------------------------------------------------------------------------
 
-/// [s] from the first byte of a packet to its last, when the base has long moved on.
+/// [s] from the first byte of a packet to its last: the base has moved meanwhile.
 double PioneerMachine::transfer_time(std::size_t body) const {
   constexpr std::size_t kAround = 5;  // head, count and sum
-  constexpr double kBits = 10;        // of a byte on the line
+  constexpr double kBits = 10;        // per byte on the line
   return fixed_rate_ ? 0 : kBits * static_cast<double>(body + kAround) / port_baud_;
 }
 
@@ -250,7 +250,7 @@ void PioneerMachine::take_state(double now, ByteView body) {
   }
 }
 
-// ---- what it is told -------------------------------------------------------------------------
+// ---- commands --------------------------------------------------------------------------------
 
 void PioneerMachine::send(const Packet& packet) {
   orders_.send(packet.view(), kCommandPause);
@@ -258,7 +258,7 @@ void PioneerMachine::send(const Packet& packet) {
 
 void PioneerMachine::send_twist(double now, const algo::Twist2& twist) {
   const VelocityPackets packets = velocity(twist, {setup_.limits.speed, setup_.limits.turn});
-  // Zero holds whenever it is sent.
+  // A zero command never expires.
   const bool moves = twist != algo::Twist2{};
   const double expires = moves ? now + kMotionExpires : std::numeric_limits<double>::infinity();
   orders_.send_before(expires, packets.velocity.view(), kCommandPause);
@@ -289,13 +289,13 @@ void PioneerMachine::cut(double now) {
   send(command(Code::Enable, 0));
 }
 
-/// A slow line cannot take two packets each tick: what changes goes out 25 times a second, what
-/// does not 10 times, a stop at once.
+/// A slow line cannot carry two packets per tick: a changed command is sent at up to 25 Hz, an
+/// unchanged one at 10 Hz, a stop at once.
 void PioneerMachine::drive(double now, const algo::Twist2& twist) {
   if (step_ != Step::Running || off_.pending()) return;
   const algo::Twist2 wanted = limited(twist, setup_.limits);
   if (braking_ && wanted == algo::Twist2{}) {
-    halt(now);  // no gentler than it has begun
+    halt(now);  // keep the emergency ramp
     return;
   }
   braking_ = false;
@@ -305,8 +305,8 @@ void PioneerMachine::drive(double now, const algo::Twist2& twist) {
   if (stopping || due) send_twist(now, wanted);
 }
 
-/// No packet is acknowledged, so the emergency stop is repeated while the wheels may still turn.
-/// A zero speed would do it along the driving ramp.
+/// The base acknowledges no packet, so the emergency stop is repeated while the wheels may turn.
+/// A zero speed would brake along the driving ramp.
 void PioneerMachine::halt(double now) {
   if (!reporting() || (braking_ && now - sent_at_ < kRepeat)) return;
   if (!braking_) braking_since_ = now;
@@ -326,7 +326,7 @@ void PioneerMachine::leave(double now) {
     step_ = Step::Left;
     return;
   }
-  braking_ = false;  // what was ordered may not have been sent
+  braking_ = false;  // the stop may not have been sent
   enable(now, false);
   step_ = Step::Leaving;
   if (!off_.pending()) close();

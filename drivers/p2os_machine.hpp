@@ -1,4 +1,4 @@
-// drivers/p2os_machine.hpp: how a Pioneer base is found, opened, driven and closed again.
+// drivers/p2os_machine.hpp: finds a Pioneer base, opens its session, drives and closes it.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct PioneerSetup {
   Units units{};
   BaseLimits limits{};
   double half_track = 0.165;  // [m]
-  double watchdog = 2.0;      // [s] what the base's own memory says; it cannot be set from here
+  double watchdog = 2.0;      // [s] as set in the base's own memory; it cannot be set from here
   bool sonar = true;
 };
 
@@ -82,17 +82,17 @@ class PioneerMachine final : public BaseMachine {
   Identity identity_{};
   State packet_{};
   Odometer odometer_{};
-  algo::Pose2 found_at_{};  // its dead reckoning when it was found,
-  algo::Pose2 lost_at_{};   // and ours then: where it was lost, as far as anybody knows
+  algo::Pose2 found_at_{};  // the base's odometry when it was found
+  algo::Pose2 lost_at_{};   // our pose then: the last one before the base was lost
   BaseState state_{};
   int watchdog_asked_ = 0;        // times
   double watchdog_asked_at_ = 0;  // [s]
   algo::Twist2 sent_{};           // the command in force
   double sent_at_ = 0;            // [s]
-  bool braking_ = false;          // until it is told to move again
+  bool braking_ = false;          // until the next motion command
   double braking_since_ = 0;      // [s]
   SwitchingOff off_{};
-  std::uint64_t jumps_ = 0;  // of the odometry, left out
+  std::uint64_t jumps_ = 0;  // jumps of the odometry, left out
 };
 
 }  // namespace drivers::p2os

@@ -38,7 +38,7 @@ Packet packed(ByteView body) {
   return packet;
 }
 
-/// The next text of `bytes` up to its zero, which both are taken off.
+/// Removes the next zero-terminated text from `bytes` and returns it.
 std::string take_text(ByteView& bytes) {
   const auto end = std::ranges::find(bytes, std::uint8_t{0});
   std::string text(bytes.begin(), end);
@@ -47,7 +47,7 @@ std::string take_text(ByteView& bytes) {
   return text;
 }
 
-/// What follows the sonar readings, as far as it is there.
+/// Reads the fields after the sonar readings, as far as the packet has them.
 void decode_tail(ByteView rest, State& state) {
   constexpr std::size_t kWithBattery = 7;
   constexpr std::size_t kWhole = 12;
@@ -55,7 +55,7 @@ void decode_tail(ByteView rest, State& state) {
     state.analog = rest[2];
     state.digital_in = rest[3];
   }
-  // The byte of old holds up to 25.5 V, too little for bases of 24 V being charged.
+  // The older byte field holds up to 25.5 V, too little for a 24 V base being charged.
   if (rest.size() >= kWithBattery && word_at(rest, 5) != 0) state.volts = word_at(rest, 5) * 0.1;
   if (rest.size() >= kWhole) {
     state.tail = StateTail{.charge_state = rest[7],

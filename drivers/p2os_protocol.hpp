@@ -3,8 +3,8 @@
 //   FA FB  COUNT  BODY...  SUM_HI SUM_LO      COUNT = bytes of BODY + 2; words low byte first
 //
 // Sources: the manuals of the Pioneer 2 and 3, checked against two public clients. No I/O and no
-// clock. The base stops by itself when it has heard nothing for its watchdog's time, so a
-// program without a fresh command sends nothing.
+// clock. The base stops by itself after its watchdog time without a packet, so a program without
+// a fresh command must send nothing.
 #pragma once
 
 #include <array>
@@ -23,13 +23,13 @@ namespace drivers::p2os {
 
 constexpr std::size_t kLongestBody = 200;
 constexpr double kStatePeriod = 0.1;            // [s] between state packets
-constexpr double kCommandPeriod = 0.1;          // [s] a command is repeated, even unchanged
+constexpr double kCommandPeriod = 0.1;          // [s] at which an unchanged command is repeated
 constexpr double kLinkLost = 3 * kStatePeriod;  // [s] without a state packet: stop
 
 /// Check value over a body.
 std::uint16_t checksum(ByteView body);
 
-/// What FrameReader needs to know. There is no acknowledgement and there are no stray bytes.
+/// The framing for FrameReader. There are no acknowledgements and no stray bytes.
 struct Framing {
   static constexpr std::size_t kLongest = kLongestBody + 5;
 
@@ -38,13 +38,13 @@ struct Framing {
 };
 using PacketReader = FrameReader<Framing>;
 
-/// The body of a packet found intact; never empty.
+/// The body of an intact packet; never empty.
 ByteView body_of(ByteView packet);
 
 // ---- commands --------------------------------------------------------------------------------
 
 enum class Code : std::uint8_t {
-  Pulse = 0,  // does nothing but feed the watchdog
+  Pulse = 0,  // only feeds the watchdog
   Open = 1,
   Close = 2,
   Enable = 4,        // 0 or 1: the motors
@@ -75,24 +75,24 @@ enum class Code : std::uint8_t {
 using Packet = FixedBytes<Framing::kLongest>;
 
 Packet command(Code code);
-/// `argument` is limited to what 16 bits and a sign hold.
+/// `argument` is clamped to 16 bits and a sign.
 Packet command(Code code, int argument);
-/// `text` is cut to what a packet holds.
+/// `text` is cut to fit a packet.
 Packet command(Code code, ByteView text);
 
-/// How a type of base counts.
+/// The units of a type of base.
 struct Units {
   double metres_per_count = 1e-3;                          // of position (DistConvFactor)
   double radians_per_count = 2 * std::numbers::pi / 4096;  // of heading (AngleConvFactor)
-  double metres_per_second = 1e-3;                         // a unit of wheel speed (VelConvFactor)
-  double wheel_step = 0.02;                                // [m/s] unit of WheelVelocities
-  unsigned position_bits = 15;                             // 12 on old bases
+  double metres_per_second = 1e-3;  // per unit of wheel speed (VelConvFactor)
+  double wheel_step = 0.02;         // [m/s] unit of WheelVelocities
+  unsigned position_bits = 15;      // 12 on old bases
 };
 
-/// Wheel speeds [m/s], each clamped to +-`limit` first. Their unit is coarse, 20 mm/s.
+/// Wheel speeds [m/s], each clamped to +-`limit` first. The unit sent is coarse: 20 mm/s.
 Packet wheel_velocities(double left, double right, double limit, const Units& units = {});
 
-/// The same motion finer, to 1 mm/s and 1 deg/s, in two packets.
+/// The same motion at a finer resolution, 1 mm/s and 1 deg/s, in two packets.
 struct VelocityPackets {
   Packet velocity{};
   Packet turn_rate{};
@@ -102,7 +102,7 @@ VelocityPackets velocity(const algo::Twist2& twist, const algo::Twist2& limit);
 
 // ---- connecting ------------------------------------------------------------------------------
 
-/// What the base says it is, by which its parameters are picked.
+/// The names that the base reports; they select its parameters.
 struct Identity {
   std::string name{};
   std::string type{};
@@ -110,18 +110,18 @@ struct Identity {
   bool operator==(const Identity&) const = default;
 };
 
-/// SYNC0, SYNC1, SYNC2, each after the echo of the one before; the last echo names the base. Then
-/// the caller sends Code::Open, and Code::Enable before any motion.
+/// Sends SYNC0, SYNC1, SYNC2, each after the echo of the previous one; the last echo names the
+/// base. Then the caller sends Code::Open, and Code::Enable before any motion.
 class Handshake {
  public:
   enum class Progress : std::uint8_t {
-    Ignored,      // none of ours
+    Ignored,      // not part of the handshake
     Advanced,     // send request() now
     Done,         // identity() is known
     SessionOpen,  // of an earlier client: send Code::Close, wait 0.4 s, begin again
   };
 
-  /// To be sent now, and again after 0.2 to 1 s of silence, three times in all.
+  /// The packet to send now, and again after 0.2 to 1 s of silence, three times in all.
   Packet request() const;
   Progress receive(ByteView body);
   const Identity& identity() const { return identity_; }
@@ -131,22 +131,22 @@ class Handshake {
   Identity identity_{};
 };
 
-// ---- what the base reports -------------------------------------------------------------------
+// ---- reports of the base ---------------------------------------------------------------------
 
 struct SonarReading {
   std::uint8_t index = 0;
-  double range = 0;  // [m]; 5 m when nothing was heard
+  double range = 0;  // [m]; 5 m without an echo
   bool operator==(const SonarReading&) const = default;
 };
 
-/// Of newer firmware, at the end of a state packet.
+/// Fields that newer firmware adds at the end of a state packet.
 struct StateTail {
   std::uint8_t charge_state = 0;
   double turn_rate = 0;  // [rad/s]
   std::uint16_t faults = 0;
 };
 
-/// A state packet (SIP). Counts are as sent: Odometer makes a pose of them.
+/// A state packet (SIP). Counts are as sent; Odometer converts them to a pose.
 struct State {
   static constexpr std::size_t kSonars = 64;  // more than fit into a packet
 
@@ -162,22 +162,22 @@ struct State {
   std::uint8_t front_bumpers = 0;  // bit i: segment i is pressed
   std::uint8_t rear_bumpers = 0;
   std::uint16_t flags = 0;
-  std::array<SonarReading, kSonars> sonars{};  // those that are new, `sonar_count` of them
+  std::array<SonarReading, kSonars> sonars{};  // the first `sonar_count` are new readings
   std::size_t sonar_count = 0;
   std::optional<std::uint8_t> analog{};
   std::optional<std::uint8_t> digital_in{};
   std::optional<StateTail> tail{};
 
   bool motors_on() const { return (flags & 1U) != 0; }
-  /// Pressed: the motors are off, and enabling them does nothing until it is released.
+  /// While pressed, the motors are off and Code::Enable does nothing.
   bool stop_button() const { return (flags & 0x60U) != 0; }
   bool stalled() const { return left_stalled || right_stalled; }
   bool bumper_pressed() const { return front_bumpers != 0 || rear_bumpers != 0; }
 };
 
-/// Whether a body is that of a state packet.
+/// Whether `body` is that of a state packet.
 bool is_state(ByteView body);
-/// Fills `state`; false, with `state` as it was, when `body` is none or ends too early.
+/// Fills `state`. False, without a change, when `body` is no state packet or ends too early.
 bool decode_state(ByteView body, State& state, const Units& units = {});
 
 struct EncoderCounts {
@@ -187,20 +187,20 @@ struct EncoderCounts {
 };
 std::optional<EncoderCounts> encoder_counts(ByteView body);
 
-/// [s] after which the base stops by itself, from the packet that Code::Configuration brings; 0:
-/// never. Nothing when `body` is none or ends too early.
+/// [s] The base's watchdog, from the answer to Code::Configuration; 0: off. nullopt when `body` is
+/// no such answer or ends too early.
 std::optional<double> configured_watchdog(ByteView body);
 
 /// Mean of a gyro packet's readings above rest, ccw positive, in the sensor's own unit; its scale
 /// depends on the base.
 std::optional<double> gyro_counts(ByteView body);
 
-/// Adds up the wrapped differences of the position counts.
+/// Adds up the differences of the wrapping position counts.
 class Odometer {
  public:
   explicit Odometer(const Units& units = {}) : units_(units) {}
 
-  /// False when the position jumped further than any base drives in a period; the jump is left
+  /// False when the position jumped further than any base can drive in a period; the jump is left
   /// out. The first state is the origin; headings are the base's own.
   bool update(const State& state);
   const algo::Pose2& pose() const { return pose_; }

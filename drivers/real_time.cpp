@@ -1,4 +1,4 @@
-// drivers/real_time.cpp: asks the system, and takes no for an answer.
+// drivers/real_time.cpp: requests real-time settings from the system; a refusal is no error.
 #include "drivers/real_time.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void ask_for_punctual_timers() {
 }
 
 bool lock_memory() {
-  // As it is used: else the unused part of every thread's stack would be taken from the others.
+  // Lock pages on first use: otherwise each thread's unused stack would take memory too.
   return ::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
@@ -35,7 +35,7 @@ void name_this_thread(const char* name) {
 
 RealTimeCheck check_real_time() {
   RealTimeCheck check;
-  // Tried on this thread and taken back: limits alone do not say what capabilities allow.
+  // Tried on this thread and then undone: the limits alone do not tell what capabilities allow.
   int policy = 0;
   sched_param before{};
   ::pthread_getschedparam(::pthread_self(), &policy, &before);

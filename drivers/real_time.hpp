@@ -1,5 +1,5 @@
-// drivers/real_time.hpp: what the system allows a control loop: its priority, its memory kept in
-// place.
+// drivers/real_time.hpp: real-time priority and locked memory for a control loop, where the system
+// permits them.
 #pragma once
 
 #include <string>
@@ -11,21 +11,22 @@ constexpr int kReaderPriority = 45;
 
 /// SCHED_FIFO at `priority` for the calling thread. False when the system does not permit it.
 bool request_real_time(int priority);
-/// Timers of the calling thread without the slack of 50 us that the kernel takes to save power;
-/// with a real-time priority it has none anyway.
+/// Removes the timer slack of 50 us by which the kernel saves power, for the calling thread. A
+/// thread with real-time priority has none anyway.
 void ask_for_punctual_timers();
-/// Keeps all memory of the program in place. False when the system does not permit it.
+/// Locks all memory of the program. False when the system does not permit it.
 bool lock_memory();
-/// At most 15 characters, for those who look with top or gdb.
+/// Names the calling thread, for top and gdb. At most 15 characters.
 void name_this_thread(const char* name);
 
-/// What of the above can be had here, as sentences; one for each that cannot, with what to do.
+/// Which of these settings the system permits.
 struct RealTimeCheck {
   bool priority = false;
   bool memory = false;
   bool preemptible_kernel = false;  // PREEMPT_RT
 };
 RealTimeCheck check_real_time();
+/// What is not permitted and the remedy, as a sentence.
 std::string priority_advice();
 std::string memory_advice();
 

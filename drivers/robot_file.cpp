@@ -1,4 +1,4 @@
-// drivers/robot_file.cpp: TOML to a RobotFile; whatever is wrong is named with its line.
+// drivers/robot_file.cpp: TOML to a RobotFile; every error names its line.
 #include "drivers/robot_file.hpp"
 
 #include <algorithm>
@@ -24,13 +24,13 @@ namespace {
 
 using algo::units::kRadiansPerDegree;
 
-constexpr double kLongestWay = 2.0;     // [m] to a standstill, whatever the cause: then refused
-constexpr double kNotedBraking = 0.5;   // [m] from here on people are told
-constexpr double kNotedCoast = 0.2;     // [m] likewise, of a base that nobody tells anything
+constexpr double kLongestWay = 2.0;     // [m] to a standstill; a longer way is refused
+constexpr double kNotedBraking = 0.5;   // [m] a longer way is a warning
+constexpr double kNotedCoast = 0.2;     // [m] likewise, after the program has died
 constexpr double kNotedWatchdog = 1.0;  // [s]
 
-/// Warns of `way` [m] where `noted`, and refuses the file where it is too long. `sentence` ends
-/// with what to do about it.
+/// Warns of `way` [m] if `noted`; refuses the file if `way` is too long. `sentence` ends with the
+/// remedy.
 void judge_way(const Section& in,
                std::string_view key,
                double way,
@@ -45,7 +45,7 @@ void judge_way(const Section& in,
   }
 }
 
-/// Whether `at` [m] lies on the hull or within it.
+/// Whether `at` [m] lies on or within the hull.
 bool on_hull(const algo::Pose2& at, const algo::RobotSpec& spec) {
   constexpr double kRounding = 1e-9;  // [m]
   if (spec.half_length == 0) return std::hypot(at.x, at.y) <= spec.radius + kRounding;
@@ -53,7 +53,7 @@ bool on_hull(const algo::Pose2& at, const algo::RobotSpec& spec) {
          std::abs(at.y) <= spec.half_width + kRounding;
 }
 
-/// [m], and degrees at this edge alone.
+/// A pose; metres, and degrees only here.
 algo::Pose2 read_mount(Section& in) {
   algo::Pose2 mount;
   mount.x = in.number_or("x", 0, {-5, 5});
@@ -62,7 +62,7 @@ algo::Pose2 read_mount(Section& in) {
   return mount;
 }
 
-/// How far the robot goes before it notices that a slow scanner sees nothing any more.
+/// Checks how far the robot drives before it notices that a slow scanner has gone silent.
 void judge_period(const Section& in, const lms200::LaserSetup& setup, RobotFile& robot) {
   const double period = lms200::scan_period(setup.variant, setup.baud);
   const double time = blind_time(period);
@@ -90,8 +90,8 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   laser.mount_R = read_mount(in);
   if (!on_hull(laser.mount_R, robot.spec)) {
     in.fail(in.has("x") ? "x" : "y",
-            format("puts the scanner at (%g, %g) m, outside of the hull: what is between could "
-                   "not be seen",
+            format("puts the scanner at (%g, %g) m, outside of the hull: obstacles in between "
+                   "would be invisible",
                    laser.mount_R.x,
                    laser.mount_R.y));
   }
@@ -115,7 +115,7 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   return laser;
 }
 
-/// How far the robot goes after this program has died.
+/// Checks how far the robot drives after this program has died.
 void judge_watchdog(const Section& in, RobotFile& robot) {
   const double watchdog = robot.base.watchdog;
   const double coast = robot.limits.speed * watchdog;
@@ -164,7 +164,7 @@ void read_hull(Section in, algo::RobotSpec& spec) {
   in.done();
 }
 
-/// Whether `table` has a row of this name.
+/// Whether `table` has a row named `name`.
 template <class Table>
 void check_known(const Section& in,
                  std::string_view key,
@@ -178,7 +178,7 @@ void check_known(const Section& in,
   in.fail(key, "is '" + name + "'; it can be " + known);
 }
 
-/// What needs the whole file.
+/// Checks that need the whole file.
 void check(const Section& top, const RobotFile& robot) {
   if (robot.spec.period > robot.base.watchdog / 3) {
     top.fail(

@@ -1,4 +1,4 @@
-// drivers/robot_file.hpp: a robot of real devices, as ten lines of TOML describe it
+// drivers/robot_file.hpp: a robot of real devices, described by some ten lines of TOML
 // (docs/hardware.md has every key).
 #pragma once
 
@@ -40,7 +40,7 @@ struct BaseEntry {
   std::string port{};
   std::variant<p2os::PioneerSetup, roboteq::RoboteqSetup, AnalogEntry> setup{};
   double watchdog = 0;     // [s]
-  double battery_low = 0;  // [V] the robot does not drive below; 0: not watched
+  double battery_low = 0;  // [V] below it the robot does not drive; 0: not watched
   std::vector<algo::Pose2> sonar_mounts_R{};
 };
 
@@ -52,7 +52,7 @@ struct RobotFile {
   std::string filter = "pseudomedian";
   std::vector<LaserEntry> lasers{};
   BaseEntry base{};
-  std::vector<std::string> warnings{};  // allowed, and to be known
+  std::vector<std::string> warnings{};  // for the user; no errors
 };
 
 /// Where the sixteen sonars of a Pioneer 3-DX sit, front array then rear, by their numbers.
@@ -60,7 +60,7 @@ std::vector<algo::Pose2> pioneer_sonars();
 
 /// Throws RobotFileError.
 RobotFile read_robot_file(const std::filesystem::path& path);
-/// The same from a text; `name` stands for the file in messages.
+/// As above, from a text; `name` replaces the path in messages.
 RobotFile parse_robot(std::string_view text, const std::string& name);
 
 }  // namespace drivers

@@ -16,7 +16,7 @@ namespace {
 
 using algo::units::kRadiansPerDegree;
 
-/// Of wheels that can do less than [limits] ask for.
+/// Refuses wheels that are slower than [limits] ask for.
 void check_speed(const Section& in,
                  std::string_view key,
                  double fastest,
@@ -27,7 +27,7 @@ void check_speed(const Section& in,
   in.fail(key, format("is %.3f m/s at the wheel, and [limits] ask for %.3f", fastest, needed));
 }
 
-/// Of encoders too coarse for odometry. `way` [m] of the wheel for one count.
+/// Refuses encoders too coarse for odometry. `way` [m] of the wheel per count.
 void check_count(const Section& in, std::string_view key, double way) {
   constexpr double kCoarsestCount = 0.01;  // [m]
   if (way <= kCoarsestCount) return;
@@ -46,7 +46,7 @@ p2os::PioneerSetup read_pioneer(Section& in, const BaseLimits& limits) {
   setup.units.metres_per_second = in.number_or("speed_unit", 1e-3, {1e-5, 1e-2});
   setup.units.position_bits = static_cast<unsigned>(in.one_of<2>("position_bits", 15, {12, 15}));
   setup.sonar = in.flag_or("sonar", true);
-  constexpr double kSlowest = kRadiansPerDegree;  // [rad/s] it is told whole degrees a second
+  constexpr double kSlowest = kRadiansPerDegree;  // [rad/s] commands are whole degrees per second
   if (limits.turn < kSlowest) {
     in.fail("type",
             format("is pioneer, which turns by whole degrees a second: [limits] turn must be at "
@@ -75,11 +75,11 @@ roboteq::RoboteqSetup read_roboteq(Section& in) {
   return setup;
 }
 
-/// What the controller and its encoders can do against what they are asked for.
+/// Refuses limits that the controller and its encoders cannot meet.
 void check_roboteq(const Section& in, const roboteq::RoboteqSetup& setup) {
   constexpr double kCommands = 1000;       // steps up to the full speed
   constexpr double kLeastSteps = 5;        // up to the speed limit
-  constexpr double kFastestRamp = 50'000;  // [rpm/s] it can be told
+  constexpr double kFastestRamp = 50'000;  // [rpm/s] the largest that a command holds
   const roboteq::Wheel& wheel = setup.wheel;
   const BaseLimits& limits = setup.limits;
   const double fastest = wheel.speed(wheel.full_speed_rpm);
@@ -130,7 +130,7 @@ std::vector<unsigned> read_numbers(Section& in, std::string_view key) {
   return {numbers.begin(), numbers.end()};
 }
 
-/// Of the left and the right wheel.
+/// A pair of numbers, left and right wheel.
 std::optional<std::array<unsigned, 2>> read_channels(Section& in, std::string_view key) {
   if (!in.has(key)) return std::nullopt;
   const std::vector<unsigned> numbers = read_numbers(in, key);
@@ -138,7 +138,7 @@ std::optional<std::array<unsigned, 2>> read_channels(Section& in, std::string_vi
   return std::array{numbers[0], numbers[1]};
 }
 
-/// A line that two keys claim would be read while it is set, or tell two things at once.
+/// Refuses a digital line that two keys name: it would be both read and set, or mean two things.
 void check_lines(const Section& in, const ComediSetup& setup) {
   std::set<unsigned> used;
   const auto claim = [&](const char* key, unsigned line) {
@@ -253,7 +253,7 @@ void read_base(Section& in, RobotFile& robot) {
     base.setup = setup;
   } else if (type == "analog") {
     if (base.battery_low > 0)
-      in.fail("battery_low", "cannot be watched: an analog base tells no voltage");
+      in.fail("battery_low", "cannot be watched: an analog base reports no voltage");
     AnalogEntry entry{read_analog(in), read_card(in)};
     entry.base.half_track = robot.spec.half_track;
     entry.base.limits = robot.limits;

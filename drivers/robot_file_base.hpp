@@ -6,7 +6,7 @@
 
 namespace drivers {
 
-/// Fills `robot.base` and the track, by hull and limits that are there already.
+/// Fills `robot.base` and the track. Needs the hull and limits of `robot`.
 /// Throws RobotFileError.
 void read_base(Section& in, RobotFile& robot);
 

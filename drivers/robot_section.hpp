@@ -1,4 +1,4 @@
-// drivers/robot_section.hpp: one table of a robot's file; whatever is wrong is named with its line.
+// drivers/robot_section.hpp: one table of a robot's file; every error names its line.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@
 
 namespace drivers {
 
-/// Of a number, both included.
+/// The range of a number, both ends included.
 struct Limits {
   double min = 0;
   double max = 0;
 };
 
-/// One table of the file. Every key has to be asked for; done() refuses those that were not.
+/// One table of the file. done() refuses every key that was not read.
 class Section {
  public:
   Section(const toml::table& table, std::string name, const std::string& file)
@@ -38,7 +38,7 @@ class Section {
     const std::string where = name_.empty() ? std::string(key) : name_ + " " + std::string(key);
     fail_at(line_of(key), where + " " + sentence);
   }
-  /// Of `key`, or of the table where it has no such key.
+  /// The line of `key`, or of the table without such a key.
   std::size_t line_of(std::string_view key) const {
     const toml::node* node = table_.get(key);
     const toml::source_region& at = node != nullptr ? node->source() : table_.source();
@@ -82,7 +82,7 @@ class Section {
   std::string text_or(std::string_view key, std::string fallback) {
     return has(key) ? text(key) : std::move(fallback);
   }
-  /// One of the numbers in `allowed`.
+  /// A number that must be one of `allowed`.
   template <std::size_t N>
   double one_of(std::string_view key, double fallback, const std::array<double, N>& allowed) {
     const double value = number_or(key, fallback, {-1e9, 1e9});

@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kAnswer = 0.3;  // [s]
 constexpr int kTries = 4;
-constexpr double kPause = 2.0;        // [s] before all begins again
-constexpr double kInputsAge = 0.5;    // [s] bumpers that were not read count as hit
-constexpr double kReleaseTime = 0.5;  // [s] the stop may still be reported after its release
+constexpr double kPause = 2.0;        // [s] before the search starts again
+constexpr double kInputsAge = 0.5;    // [s] older bumper readings count as hit
+constexpr double kReleaseTime = 0.5;  // [s] the controller may still report a released stop
 constexpr double kRepeat = 0.1;       // [s] between two orders to brake
 constexpr double kCurrentTime = 0.2;  // [s] a motor may take more when it starts
 constexpr std::uint16_t kStopFault = 16;
 constexpr int kQuickLoopError = 1;  // of ^CLERD: after 0.25 s of an error of 100
-// What contradicts all before has to come so often in a row: lines carry no check value.
+// An answer that contradicts the earlier ones must be repeated: lines carry no check value.
 constexpr int kBelieved = 5;
 constexpr int kAgreeing = 2;  // answers that say a wheel is blocked
 
@@ -38,15 +38,15 @@ RoboteqMachine::RoboteqMachine(RoboteqSetup setup) : setup_(std::move(setup)) {
              {"CLERD", kQuickLoopError, true, true}};
 }
 
-/// [0.1 rpm/s] of a motor when its wheel takes part in the largest acceleration ahead and in the
-/// largest of the turn at once: no ramp of the controller's own is slower than the file allows.
+/// [0.1 rpm/s] of a motor at the largest forward and the largest turning acceleration at once: the
+/// controller's own ramp must not be slower than the file allows.
 int RoboteqMachine::wheel_ramp() const {
   const BaseLimits& limits = setup_.limits;
   const double wheel = limits.acceleration + limits.turn_acceleration * setup_.half_track;
   return std::max(1, static_cast<int>(std::lround(10 * setup_.wheel.rpm(wheel))));
 }
 
-/// [0.1 rpm/s] likewise, when it brakes in an emergency.
+/// [0.1 rpm/s] likewise, in an emergency stop.
 int RoboteqMachine::emergency_ramp() const {
   const int ramp = static_cast<int>(std::lround(10 * setup_.wheel.rpm(kEmergencyDeceleration)));
   return std::max(ramp, wheel_ramp());
@@ -71,7 +71,7 @@ void RoboteqMachine::greet(double now) {
   off_.cancel();
   state_.running = false;
   state_.motors_on = false;
-  send(command(""));  // ends a line that an earlier program began
+  send(command(""));  // ends a line that an earlier program left unfinished
   send(end_repetition());
   begin(Step::Greeting, now);
 }
@@ -128,12 +128,12 @@ void RoboteqMachine::request(double now) {
 
 void RoboteqMachine::advance(double now) {
   if (off_.due(now, state_)) cut(now);
-  if (off_.pending() && now - braked_at_ > kRepeat) halt(now);  // though nobody ticks any more
+  if (off_.pending() && now - braked_at_ > kRepeat) halt(now);  // even without further ticks
   if (step_ == Step::Leaving && !off_.pending()) close();
   if (now < deadline_) return;
   switch (step_) {
     case Step::Leaving:
-      close();  // nobody is there any more
+      close();  // the device no longer answers
       return;
     case Step::NoLine:
     case Step::Left:
@@ -154,7 +154,7 @@ void RoboteqMachine::advance(double now) {
   if (tries_left_ > 0) {
     request(now);
   } else if (step_ == Step::Reading && !written_) {
-    written_ = true;  // a controller that does not tell its parameter may still take it
+    written_ = true;  // a controller that does not report its parameter may still accept it
     begin(Step::Writing, now);
   } else if ((step_ == Step::Reading || step_ == Step::Writing) && wanted_[parameter_].optional) {
     skip_parameter(now);
@@ -175,7 +175,7 @@ void RoboteqMachine::refuse(const std::string& why, double now) {
   deadline_ = now + kPause;
 }
 
-// ---- what it says ----------------------------------------------------------------------------
+// ---- reports ---------------------------------------------------------------------------------
 
 template <class T>
 std::array<T, 2> RoboteqMachine::by_side(const std::array<T, 2>& channels) const {
@@ -199,7 +199,7 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
     return;
   }
   if (!update(values_, reply)) {
-    // A line that has lost a colon looks like one of a controller with one channel.
+    // A line that lost a colon looks like that of a controller with one channel.
     singles_ += values_.one_channel ? 1 : 0;
     values_.one_channel = false;
     if (singles_ == kBelieved) {
@@ -216,8 +216,8 @@ void RoboteqMachine::take_values(double now, const Reply& reply) {
   judge(now);
 }
 
-/// Whether a wheel would have gone further than it can. Lines carry no check value: a digit that
-/// the line spoilt looks like a place far away. Counters that stay there were set anew.
+/// Whether the counts imply a faster wheel than possible. Lines carry no check value, so a damaged
+/// digit looks like a position far away. If it persists, the counters were reset.
 bool RoboteqMachine::jumped(double now, const std::array<std::int32_t, 2>& counts) {
   constexpr double kSlack = 0.01;  // [m] answers come in bursts
   const double fastest = setup_.limits.speed + setup_.limits.turn * setup_.half_track;
@@ -244,7 +244,7 @@ void RoboteqMachine::take_counts(double now) {
     };
     const auto [left, right] = by_side(std::array<std::int64_t, 2>{difference(0), difference(1)});
     const algo::SideMotion rolled{setup_.wheel.metres(left), setup_.wheel.metres(right)};
-    // The way of both wheels as if it had been driven in one second: the arc is the same.
+    // Both wheels' travel as if driven in one second: the arc is the same.
     state_.pose = algo::integrate_arc(state_.pose, algo::twist_of(rolled, setup_.half_track), 1.0);
   }
   counts_ = counts;
@@ -253,7 +253,7 @@ void RoboteqMachine::take_counts(double now) {
   state_.stamp = now;
 }
 
-/// The whole state, from the newest of each answer.
+/// Assembles the state from the newest answer to each query.
 void RoboteqMachine::judge(double now) {
   if (!state_.running && values_.counts && values_.faults && values_.rpm) {
     state_.running = true;
@@ -268,7 +268,7 @@ void RoboteqMachine::judge(double now) {
   const std::uint16_t faults = values_.faults.value_or(0);
   const bool stopped = (faults & kStopFault) != 0;
   state_.motors_on = enabled_ && !stopped;
-  // With the motors off the stop is ours, and nothing can be told about the button.
+  // With the motors off, our own stop is active and hides the state of the button.
   state_.stop_button = enabled_ && stopped && now - enabled_at_ > kReleaseTime;
   state_.faulty = must_stop(faults & static_cast<std::uint16_t>(~kStopFault));
   state_.volts = values_.battery_volts;
@@ -285,7 +285,7 @@ void RoboteqMachine::judge(double now) {
   }
 }
 
-// ---- what it is told -------------------------------------------------------------------------
+// ---- commands --------------------------------------------------------------------------------
 
 void RoboteqMachine::enable(double now, bool on) {
   if (step_ != Step::Running) return;
@@ -318,7 +318,7 @@ void RoboteqMachine::drive(double now, const algo::Twist2& twist) {
   if (step_ != Step::Running || !enabled_ || off_.pending()) return;
   const algo::Twist2 wanted = limited(twist, setup_.limits);
   if (braking_ && wanted == algo::Twist2{}) {
-    halt(now);  // no gentler than it has begun
+    halt(now);  // keep the emergency ramp
     return;
   }
   if (braking_) set_deceleration(wheel_ramp());
@@ -335,8 +335,8 @@ void RoboteqMachine::drive(double now, const algo::Twist2& twist) {
   orders_.send_before(expires, roboteq::drive(channels[0], channels[1]).view());
 }
 
-/// In the closed loop, with its steepest ramp: without power, as after !EX, the wheels would roll
-/// out. Lines may be lost, so the ramp is told again while the wheels may still turn.
+/// Brakes in closed loop with the steepest ramp: without power, as after !EX, the wheels would
+/// coast. Lines may be lost, so the ramp is sent again while the wheels may turn.
 void RoboteqMachine::halt(double now) {
   if (!reporting()) return;
   if (!braking_) braking_since_ = now;

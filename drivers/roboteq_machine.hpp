@@ -1,4 +1,4 @@
-// drivers/roboteq_machine.hpp: how a Roboteq controller is found, checked, driven and left.
+// drivers/roboteq_machine.hpp: finds a Roboteq controller, checks its parameters and drives it.
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,9 @@ struct RoboteqSetup {
   BaseLimits limits{};
   double watchdog = 0.5;           // [s]
   double max_current = 0;          // [A] of a motor; 0: not watched
-  std::array<bool, 2> reversed{};  // a motor that turns the other way: left, right
+  std::array<bool, 2> reversed{};  // the motor turns the other way: left, right
   bool swapped = false;            // channel 1 is the right motor
-  // Digital inputs, counted from 1, that are 1 when hit.
+  // Digital inputs, counted from 1, that read 1 when hit.
   std::vector<int> bumper_inputs{};  // at the front
   std::vector<int> rear_bumper_inputs{};
 };
@@ -50,7 +50,7 @@ class RoboteqMachine final : public BaseMachine {
   WheelDynamics dynamics() const override {
     const double ramp =
         setup_.limits.acceleration + setup_.limits.turn_acceleration * setup_.half_track;
-    const double step = setup_.wheel.full_speed_rpm / 1000;  // of a command; reports have whole rpm
+    const double step = setup_.wheel.full_speed_rpm / 1000;  // [rpm] of a command; reports: 1
     return {.ramp_of_wheels = true,
             .ramps = {ramp, ramp},
             .resolution = setup_.wheel.speed(std::max(1.0, step)),
@@ -59,20 +59,20 @@ class RoboteqMachine final : public BaseMachine {
   algo::DeviceReport report(double now) const override;
 
  private:
-  static constexpr double kSilent = 1.0;  // [s] without an answer: it is looked for again
+  static constexpr double kSilent = 1.0;  // [s] without an answer: search again
 
   enum class Step : std::uint8_t {
     NoLine,
     Greeting,  // echo off
     Identity,
     Reading,  // a parameter
-    Writing,  // a parameter that was not as it should be
+    Writing,  // a parameter with a wrong value
     Running,
-    Waiting,  // before all begins again
+    Waiting,  // before the search starts again
     Leaving,
     Left,
   };
-  /// A parameter that has to have a value, of the controller or of each channel.
+  /// A parameter that must have a given value, for the controller or for each channel.
   struct Wanted {
     std::string_view name{};
     int value = 0;
@@ -99,7 +99,7 @@ class RoboteqMachine final : public BaseMachine {
   void take_counts(double now);
   void judge(double now);
   void send(const Line& line) { orders_.send(line.view()); }
-  /// Of a pair in the controller's order: the left and the right motor's, ahead positive.
+  /// Converts a pair in the controller's order to left and right motor, forward positive.
   template <class T>
   std::array<T, 2> by_side(const std::array<T, 2>& channels) const;
 
@@ -114,23 +114,23 @@ class RoboteqMachine final : public BaseMachine {
   std::string trouble_{"The port has not been opened yet."};
   std::string firmware_{};
   std::vector<std::string> remarks_{};
-  std::size_t parameter_ = 0;  // of wanted_
-  bool written_ = false;       // this parameter, already
-  int confirmations_ = 0;      // still to come for what was written
+  std::size_t parameter_ = 0;  // index in wanted_
+  bool written_ = false;       // this parameter was written already
+  int confirmations_ = 0;      // outstanding for the parameter written
 
   State values_{};
-  std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest
-  int jumps_ = 0;                                        // of the counts, one after the other
-  int singles_ = 0;                                      // answers of one channel, likewise
-  std::array<int, 2> stalls_{};  // ?FM and ?FS that say so, one after the other
+  std::optional<std::array<std::int32_t, 2>> counts_{};  // before the newest answer
+  int jumps_ = 0;                                        // of the counts, in a row
+  int singles_ = 0;                                      // answers with one channel, in a row
+  std::array<int, 2> stalls_{};  // answers to ?FM and ?FS that say so, in a row
   bool enabled_ = false;
   double enabled_at_ = 0;     // [s]
-  bool braking_ = false;      // until it is told to move again
+  bool braking_ = false;      // until the next motion command
   double braking_since_ = 0;  // [s]
   double braked_at_ = 0;      // [s] the newest order to brake
   SwitchingOff off_{};
-  double current_since_ = 0;  // [s] that it has been too high; 0: it is not
-  double inputs_at_ = 0;      // [s] when the bumpers were read
+  double current_since_ = 0;  // [s] since when it is too high; 0: it is not
+  double inputs_at_ = 0;      // [s] time of the newest bumper reading
   bool bumper_front_ = false;
   bool bumper_rear_ = false;
   std::uint64_t refused_ = 0;

@@ -45,7 +45,7 @@ bool is_name(std::string_view text) {
          std::ranges::all_of(text, [](char c) { return c >= 'A' && c <= 'Z'; });
 }
 
-/// Whole numbers with colons between them into `reply`; false when `text` is anything else.
+/// Parses integers separated by colons into `reply`; false for any other `text`.
 bool parse_values(std::string_view text, Reply& reply) {
   const char* at = text.data();
   const char* const end = at + text.size();
@@ -108,7 +108,7 @@ Line drive_rpm(int left, int right) {
 }
 
 Line restart() {
-  return command("%RESET", 321654987);  // the number guards against doing so by mistake
+  return command("%RESET", 321654987);  // this number guards against accidental resets
 }
 
 Line query(std::string_view name) {
@@ -136,7 +136,7 @@ Line read_parameter(std::string_view name) {
 }
 
 Line repeat_queries(std::span<const std::string_view> names, int milliseconds) {
-  constexpr std::size_t kRoom = 96 - 20;  // for the beginning, the number and the end
+  constexpr std::size_t kRoom = 96 - 20;  // less the start, the number and the end of the line
   Line line;
   line.append("# C");
   for (const std::string_view name : names) {
@@ -235,7 +235,7 @@ std::string status_text(std::uint16_t status) {
 }
 
 bool must_stop(std::uint16_t faults) {
-  return faults != 0;  // even a default configuration: its wheels and watchdog are not ours
+  return faults != 0;  // a default configuration too: its watchdog and wheel data are wrong
 }
 
 double Wheel::rpm(double speed) const {

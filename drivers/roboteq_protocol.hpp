@@ -1,8 +1,8 @@
-// drivers/roboteq_protocol.hpp: the text that Roboteq motor controllers take and send.
+// drivers/roboteq_protocol.hpp: the text protocol of Roboteq motor controllers.
 //
-// Lines end with CR. The controller repeats what it is sent until told not to, answers commands
-// with + or -, and queries with NAME=value:value. Queries may be repeated by the controller itself,
-// so answers are told apart by their names and not by their order.
+// Lines end with CR. The controller echoes its input until the echo is switched off, answers
+// commands with + or -, and queries with NAME=value:value. It can repeat queries by itself, so
+// answers are matched by name, not by order.
 // Source: public drivers; the maker's manual was not at hand. No I/O and no clock. The controller
 // stops by itself when no motor command comes for its watchdog's time, which queries do not feed.
 #pragma once
@@ -27,7 +27,7 @@ constexpr int kFactoryWatchdog_ms = 1000;
 
 // ---- commands: answered by + or - ------------------------------------------------------------
 
-/// A channel's or no channel's command: "!C 1 0" of ("!C", 1, 0). Ends with CR.
+/// A command with or without a channel: ("!C", 1, 0) gives "!C 1 0". Ends with CR.
 Line command(std::string_view name);
 Line command(std::string_view name, int value);
 Line command(std::string_view name, int channel, int value);
@@ -40,7 +40,7 @@ Line drive_rpm(int left, int right);
 inline Line stop_channel(int channel) {
   return command("!MS", channel);
 }
-/// Motors off until release_stop(); the command of before is forgotten.
+/// Motors off until release_stop(); the earlier command is discarded.
 inline Line emergency_stop() {
   return command("!EX");
 }
@@ -57,7 +57,7 @@ inline Line acceleration(int channel, int value) {
 inline Line deceleration(int channel, int value) {
   return command("!DC", channel, value);
 }
-/// The first thing to say: lines before its answer may be echoes.
+/// Send it first: lines before its answer may be echoes.
 inline Line echo_off() {
   return command("^ECHOF", 1);
 }
@@ -73,7 +73,7 @@ inline Line set_loop_mode(int channel, LoopMode mode) {
 inline Line set_full_speed(int channel, int rpm) {
   return command("^MXRPM", channel, rpm);
 }
-/// Lines of the encoder a turn: a quarter of its counts.
+/// Encoder lines per turn: a quarter of its counts.
 inline Line set_encoder_lines(int channel, int lines) {
   return command("^EPPR", channel, lines);
 }
@@ -89,21 +89,21 @@ Line restart();
 Line query(std::string_view name);
 Line query(std::string_view name, int channel);
 Line read_parameter(std::string_view name);
-/// Makes the controller ask itself `names` in turn, one each `milliseconds`. Nothing results when
+/// Makes the controller repeat the queries `names` in turn, one every `milliseconds`. Empty when
 /// they do not fit a line.
 Line repeat_queries(std::span<const std::string_view> names, int milliseconds);
 Line end_repetition();
 
 // ---- replies ---------------------------------------------------------------------------------
 
-/// What a line says. Names and texts are valid as long as the line.
+/// A parsed line. Names and texts are valid as long as the line.
 struct Reply {
   enum class Kind : std::uint8_t {
     Nothing,   // an echo, a cut line, noise
     Accepted,  // the oldest command that is still unanswered
     Refused,   // likewise
     Values,    // NAME=1:-2:3
-    Text,      // NAME=anything else, as the firmware's name
+    Text,      // NAME=anything else, such as the firmware's name
   };
   static constexpr std::size_t kValues = 8;
 
@@ -117,7 +117,7 @@ struct Reply {
 /// `line` without its end.
 Reply parse_reply(std::string_view line);
 
-/// Cuts a stream into lines. Nothing is allocated; a line too long to be one is left out whole.
+/// Cuts a stream into lines. Allocates nothing; skips a line that is too long to be valid.
 class LineReader {
  public:
   /// Calls `on_line(std::string_view)` for each line that is not empty, without its end; valid
@@ -136,7 +136,7 @@ class LineReader {
     }
   }
 
-  /// Forgets the line begun.
+  /// Drops the unfinished line.
   void clear() {
     line_.clear();
     too_long_ = false;
@@ -156,9 +156,9 @@ class LineReader {
   std::uint64_t overlong_ = 0;
 };
 
-// ---- what the controller reports -------------------------------------------------------------
+// ---- reports of the controller ---------------------------------------------------------------
 
-/// The newest of each answer; the caller notes when it came.
+/// The newest answer to each query; the caller keeps the times.
 struct State {
   std::optional<std::array<std::int32_t, 2>> counts{};  // of the encoders
   std::optional<std::array<double, 2>> rpm{};
@@ -167,34 +167,34 @@ struct State {
   std::optional<std::uint16_t> faults{};
   std::optional<std::uint16_t> status{};
   std::optional<std::array<std::uint16_t, 2>> motor_flags{};
-  bool one_channel = false;  // speed or counter of one motor only: no base can be driven with it
+  bool one_channel = false;  // it reports only one motor: it cannot drive a base
 };
 
-/// Takes in `reply`; false when it holds nothing of State.
+/// Updates the state by `reply`; false when `reply` holds no field of State.
 bool update(State& state, const Reply& reply);
 
 /// Each fault in words, separated by commas; empty when there is none.
 std::string fault_text(std::uint16_t faults);
 std::string status_text(std::uint16_t status);
-/// Of the answer to ?FM or ?FS: a motor does not turn although it should, or has lost its loop.
+/// From an answer to ?FM or ?FS: a motor is stalled or has a loop error.
 bool says_stalled(const Reply& reply);
-/// Faults that stop the power stage or make its motion doubtful: the run has to end.
+/// Faults that stop the power stage or make the motion unreliable: the run must end.
 bool must_stop(std::uint16_t faults);
 
-/// From metres of the wheel to turns of the motor.
+/// Converts between metres of the wheel and turns of the motor.
 struct Wheel {
   double radius = 0.1;        // [m]
-  double gear = 1;            // turns of the motor for one of the wheel
-  double encoder_lines = 1;   // a turn of the motor; four counts each
+  double gear = 1;            // turns of the motor per turn of the wheel
+  double encoder_lines = 1;   // per turn of the motor; four counts each
   double full_speed_rpm = 1;  // of the motor, at a command of 1000
 
   /// [rpm] of the motor at `speed` [m/s] of the wheel.
   double rpm(double speed) const;
   /// [m/s], the inverse.
   double speed(double motor_rpm) const;
-  /// [m] the wheel rolls for a difference of counts.
+  /// [m] The travel of the wheel for a difference of counts.
   double metres(std::int64_t counts) const;
-  /// -1000..1000 for drive(), with `speed` [m/s] clamped to +-`limit` first.
+  /// The argument of drive(), -1000..1000; `speed` [m/s] is clamped to +-`limit` first.
   int command_for(double speed, double limit) const;
 };
 

@@ -1,4 +1,4 @@
-// drivers/roboteq_setup.cpp: what a Roboteq controller is asked and told before it is driven.
+// drivers/roboteq_setup.cpp: the set-up of a Roboteq controller before it is driven.
 #include <algorithm>
 
 #include "drivers/roboteq_machine.hpp"
@@ -36,11 +36,11 @@ void RoboteqMachine::take_line(double now, std::string_view line) {
       if (reply.kind == Kind::Refused && wanted_[parameter_].optional) {
         skip_parameter(now);
       } else if (reply.kind == Kind::Refused) {
-        refuse("The motor controller does not take its parameter ^" +
+        refuse("The motor controller does not accept its parameter ^" +
                    std::string(wanted_[parameter_].name) + ".",
                now);
       } else if (reply.kind == Kind::Accepted && --confirmations_ <= 0) {
-        begin(Step::Reading, now);  // believed once it is read back
+        begin(Step::Reading, now);  // verify by reading it back
       }
       return;
     case Step::Running:
@@ -83,7 +83,7 @@ void RoboteqMachine::parameter_read(double now, const Reply& reply) {
 
 void RoboteqMachine::skip_parameter(double now) {
   remarks_.push_back("It does not take ^" + std::string(wanted_[parameter_].name) +
-                     ": that a wheel is blocked shows in its encoder alone.");
+                     ": only the encoder shows a blocked wheel.");
   written_ = false;
   next_parameter(now);
 }
@@ -102,10 +102,10 @@ void RoboteqMachine::next_parameter(double now) {
   }
 }
 
-/// The power stage stays off until somebody asks for it.
+/// The power stage stays off until enable(true).
 void RoboteqMachine::run(double now) {
-  // Where it is and how fast it goes, each time: what else there is to know changes less often.
-  // Sixteen are as many as a controller remembers.
+  // Counts and speeds come in every round, since other values change more slowly. A controller
+  // keeps at most sixteen queries.
   constexpr std::array<std::string_view, 16> kQueries{
       "C", "S", "FF", "FM", "C", "S", "A", "V", "C", "S", "FF", "FM", "C", "S", "FS", "DI"};
   const bool bumpers = !setup_.bumper_inputs.empty() || !setup_.rear_bumper_inputs.empty();
@@ -117,7 +117,7 @@ void RoboteqMachine::run(double now) {
   step_ = Step::Running;
   deadline_ = now + kSilent;
   inputs_at_ = now;
-  const algo::Pose2 pose = state_.pose;  // where it was lost, as far as anybody knows
+  const algo::Pose2 pose = state_.pose;  // the last pose before it was lost
   state_ = {.set_ups = state_.set_ups, .pose = pose};
   trouble_ = "The motor controller is being set up.";
 }

@@ -1,4 +1,4 @@
-// drivers/scanner.hpp: a laser scanner that measures by itself, as a robot sees it.
+// drivers/scanner.hpp: the interface between a robot and a free-running laser scanner.
 #pragma once
 
 #include <algorithm>
@@ -10,17 +10,17 @@ namespace drivers {
 
 struct ScannerState {
   bool running = false;   // found and set up
-  double last_scan = 0;   // [s] steady clock, when the newest usable scan arrived; 0: none yet
+  double last_scan = 0;   // [s] steady clock, arrival of the newest usable scan; 0: none yet
   double period = 0;      // [s] between two scans
-  bool bad_line = false;  // more telegrams come damaged than whole
-  bool faulty = false;    // it says itself that its values must not be relied on
+  bool bad_line = false;  // more than half of the telegrams are damaged
+  bool faulty = false;    // the scanner reports its values unreliable
   bool blinded = false;   // most beams of the newest scan measured nothing
 };
 
-/// [s] For how long a robot may drive on after the last scan of a scanner with `period` [s].
+/// [s] How long a robot may drive on after the last scan, for a scanner with `period` [s].
 constexpr double blind_time(double period) {
   constexpr double kAtMost = 0.3;  // [s]
-  constexpr double kPeriods = 2;   // of a slow scanner, which needs one for each of its scans
+  constexpr double kPeriods = 2;   // for a slow scanner, whose next scan takes one period
   return std::max(kAtMost, kPeriods * period);
 }
 
@@ -31,8 +31,8 @@ class Scanner {
   Scanner(const Scanner&) = delete;
   Scanner& operator=(const Scanner&) = delete;
 
-  /// Exchanges `scan` for the newest one that has not been taken; false when there is none. Its
-  /// stamp is of the steady clock; `scan` keeps its mount. Never waits for the device.
+  /// Swaps `scan` with the newest scan; false when it was taken already. The stamp is of the steady
+  /// clock; `scan` keeps its mount. Never waits for the device.
   virtual bool take(algo::LaserScan& scan) = 0;
   virtual ScannerState state() = 0;
   virtual algo::DeviceReport report() = 0;

@@ -1,4 +1,4 @@
-// drivers/serial_base.cpp: hands everything to the machine, under the line's lock.
+// drivers/serial_base.cpp: passes every call to the machine, under the line's lock.
 #include "drivers/serial_base.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ algo::Twist2 limited(const algo::Twist2& twist, const BaseLimits& limits) {
 }
 
 double braking_time(const BaseLimits& limits) {
-  constexpr double kUntilFelt = 0.5;  // [s] from the order to wheels that obey, and a report of it
+  constexpr double kUntilFelt = 0.5;  // [s] until a report shows that the wheels obey
   return limits.speed / kEmergencyDeceleration + kUntilFelt;
 }
 

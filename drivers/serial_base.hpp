@@ -1,4 +1,4 @@
-// drivers/serial_base.hpp: a base behind a serial line: its machine, and the thread that serves it.
+// drivers/serial_base.hpp: a base on a serial line: its machine and its thread.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class SerialBase final : public Base {
 
  private:
   std::unique_ptr<BaseMachine> machine_;
-  LineThread line_;  // last: ends first
+  LineThread line_;  // declared last: ends first
 };
 
 }  // namespace drivers

@@ -1,4 +1,4 @@
-// drivers/serial_port.cpp: Linux serial ports at any rate, and TCP in their place.
+// drivers/serial_port.cpp: Linux serial ports at any rate, or TCP in their place.
 #include "drivers/serial_port.hpp"
 
 #include <array>
@@ -32,7 +32,7 @@ std::string system_text(int error) {
   return std::system_category().message(error);
 }
 
-/// The name of the group `path` belongs to; empty when that cannot be found out.
+/// The group of `path`; empty when it cannot be found out.
 std::string group_of(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) return "";
@@ -43,14 +43,14 @@ std::string group_of(const std::string& path) {
   return found ? found->gr_name : "";
 }
 
-/// True when `events` came before `timeout`; a signal counts as time-out.
+/// True when `events` came before `timeout`; a signal counts as a timeout.
 bool wait_for(int fd, short events, Milliseconds timeout) {
   pollfd waiting{.fd = fd, .events = events, .revents = 0};
   return ::poll(&waiting, 1, static_cast<int>(timeout.count())) > 0;
 }
 
-/// Some USB chips hand bytes over every 16 ms unless asked not to. A convenience: pseudo-terminals
-/// and other chips refuse, and nothing depends on it.
+/// By default some USB chips deliver bytes only every 16 ms. A failure is ignored: pseudo-terminals
+/// and other chips refuse the request, and nothing depends on it.
 void ask_for_low_latency(int fd) {
   serial_struct settings{};
   if (::ioctl(fd, TIOCGSERIAL, &settings) != 0) return;
@@ -120,11 +120,11 @@ void SerialPort::fail(const std::string& sentence) const {
 }
 
 void SerialPort::open_device(unsigned baud) {
-  // Without waiting for a carrier, which three-wire cables do not have.
+  // Do not wait for a carrier signal: three-wire cables have none.
   fd_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
   if (fd_ < 0) fail(open_error_text(path_, errno));
   if (::isatty(fd_) == 0) fail(open_error_text(path_, ENOTTY));
-  // The lock keeps out each program that asks for it, root too; exclusive mode all others but root.
+  // The lock keeps out programs that lock too, even root's; exclusive mode keeps out all but root.
   if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) fail(open_error_text(path_, errno));
   ::ioctl(fd_, TIOCEXCL);
   set_baud(baud);
@@ -155,7 +155,7 @@ void SerialPort::open_tcp(const std::string& host, const std::string& port) {
       }
     }
     if (error == 0) {
-      // Requests and wheel commands are short, and must not wait for one another.
+      // Requests and wheel commands are short and must not wait to be merged.
       constexpr int kOn = 1;
       ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &kOn, sizeof kOn);
       return;
@@ -203,7 +203,7 @@ void SerialPort::discard_input() {
     ::ioctl(fd_, TCFLSH, TCIFLUSH);
     return;
   }
-  // No more than a box can have kept; one that never stops sending must not hold us here.
+  // A bound above any box's buffer: a device that never stops sending must not block this loop.
   std::array<std::uint8_t, 4096> dropped{};
   for (int i = 0; i < 16 && wait_for(fd_, POLLIN, Milliseconds(0)); ++i) {
     if (::recv(fd_, dropped.data(), dropped.size(), MSG_DONTWAIT) <= 0) return;

@@ -1,4 +1,4 @@
-// drivers/serial_robot.cpp: each tick: judge, command, wait, sense.
+// drivers/serial_robot.cpp: the steps of each tick: check, command, wait, sense.
 #include "drivers/serial_robot.hpp"
 
 #include <algorithm>
@@ -16,21 +16,20 @@ namespace {
 
 using algo::Halt;
 
-constexpr double kBatteryTime = 3.0;  // [s] a voltage may sag when the motors start
-constexpr double kMotorsTime = 2.0;   // [s] from arming until they must be on
+constexpr double kBatteryTime = 3.0;  // [s] the voltage may sag while the motors start
+constexpr double kMotorsTime = 2.0;   // [s] from arming until the motors must be on
 constexpr double kLateHold = 0.3;     // [s] the robot stands after a late tick
-constexpr double kSonarMax = 5.0;     // [m] a Pioneer's, and its word for nothing
-constexpr double kBumperFree =
-    0.5;  // [s] after which a bumper that was known to be pressed is free
-constexpr double kLongestCoast = 2.0;  // [m] the robot may go on after the program has died
+constexpr double kSonarMax = 5.0;     // [m] a Pioneer's; also its value for no echo
+constexpr double kBumperFree = 0.5;   // [s] after which a bumper known to be pressed counts as free
+constexpr double kLongestCoast = 2.0;  // [m] the robot may drive after the program has died
 
-/// Somebody has to look at these before the robot may go on.
+/// A person must check these before the robot may drive on.
 bool needs_a_person(Halt halt) {
   return halt == Halt::StopButton || halt == Halt::BaseFault || halt == Halt::OverCurrent ||
          halt == Halt::BatteryLow;
 }
 
-/// `pose`, given in the frame that `origin` is given in, as seen from `origin`.
+/// `pose` in the frame of `origin`; both are given in the same frame.
 algo::Pose2 seen_from(const algo::Pose2& origin, const algo::Pose2& pose) {
   const algo::Vec2 d = pose.position() - origin.position();
   const double c = std::cos(origin.heading);
@@ -40,7 +39,7 @@ algo::Pose2 seen_from(const algo::Pose2& origin, const algo::Pose2& pose) {
           algo::wrap_angle(pose.heading - origin.heading)};
 }
 
-/// How long `condition` has held: sets `since` when it begins, clears it when it ends.
+/// [s] How long `condition` has held. Sets `since` when it begins, clears it when it ends.
 bool lasts(bool condition, double now, double time, double& since) {
   if (!condition) since = 0;
   if (condition && since == 0) since = now;
@@ -90,7 +89,7 @@ void SerialRobot::reset(algo::Observation& observation) {
   observe(observation);
 }
 
-// ---- what stops the wheels -------------------------------------------------------------------
+// ---- reasons to stop the wheels --------------------------------------------------------------
 
 Halt SerialRobot::base_halt(const BaseState& base, double now) {
   if (!base.running || now - base.stamp > kBaseTimeout) return Halt::BaseLost;
@@ -103,16 +102,16 @@ Halt SerialRobot::base_halt(const BaseState& base, double now) {
   return Halt::None;
 }
 
-/// [s] between two scans of a scanner with `scan_period`: so long that the tick which finds it
-/// exceeded still stops the wheels in time. A scanner that is late by its jitter is never lost.
+/// [s] The longest gap between two scans of a scanner with `scan_period`, chosen so that the tick
+/// that detects a longer one still stops the wheels in time. Jitter alone never exceeds it.
 double SerialRobot::longest_gap(double scan_period) const {
-  constexpr double kSending = 0.02;  // [s] the zero's own way to a Pioneer at 9600 bit/s
+  constexpr double kSending = 0.02;  // [s] transfer of the stop to a Pioneer at 9600 bit/s
   const double in_time = blind_time(scan_period) - file_.spec.period - kSending;
   const double usual = kScanPeriods * scan_period + kArrivalJitter;
   return std::max(std::min(usual, in_time), scan_period + kArrivalJitter);
 }
 
-/// Only with the motors on: a robot without power may be pushed.
+/// Checked only with the motors on: a robot without power may be pushed.
 bool SerialRobot::wheels_obey(const BaseState& base) {
   if (!base.motors_on) {
     wheels_.restart();
@@ -121,7 +120,7 @@ bool SerialRobot::wheels_obey(const BaseState& base) {
   return !wheels_.report(base.stamp, base.twist);
 }
 
-/// Whether an armed robot has touched something that its operator did not know of.
+/// Whether a bumper is hit that was free when the operator armed the robot.
 bool SerialRobot::bumper_hit(const BaseState& base, double now) {
   const std::array<bool, 2> pressed{base.bumper_front, base.bumper_rear};
   const std::lock_guard lock(mutex_);
@@ -145,7 +144,7 @@ Halt SerialRobot::scanner_halt(double now) {
   return Halt::None;
 }
 
-/// The worst first; a robot that is well and not armed is disarmed.
+/// The gravest reason to halt; Disarmed for a robot without faults that is not armed.
 Halt SerialRobot::judge(const BaseState& base, double now) {
   Halt halt = base_halt(base, now);
   if (halt == Halt::None) halt = scanner_halt(now);
@@ -163,7 +162,7 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
     disarm("The base was lost and found again. Arm it again when all is well.");
     armed = false;
   }
-  // These are over when somebody comes to look, so the sentence stays.
+  // The cause may be over when a person comes to look, so the sentence stays.
   if (bumper_hit(base, now)) {
     disarm("The robot touched something: a bumper was hit. Look at it, then arm it again.");
     armed = false;
@@ -174,7 +173,7 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
           "A wheel does not turn as told: it runs away, is blocked, or its encoder is dead. Look "
           "at it, then arm again.");
     }
-    base_->cut();  // what does not obey does not brake either
+    base_->cut();  // a base that does not obey would not brake either
     armed = false;
   }
   if (halt == Halt::None && !armed) halt = Halt::Disarmed;
@@ -189,7 +188,7 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
   return halt;
 }
 
-/// Notes `halt`, and disarms where the robot must not go on by itself.
+/// Records `halt`; disarms if the robot must not drive on by itself.
 void SerialRobot::latch(Halt halt, double now) {
   bool too_long = false;
   bool armed = false;
@@ -201,14 +200,14 @@ void SerialRobot::latch(Halt halt, double now) {
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
   const char* advice = halt == Halt::StopButton ? "" : " Arm it again when all is well.";
-  // It stands there until somebody arms, and by then the trouble may be over.
+  // The sentence stays until a person arms, and by then the fault may be over.
   disarm("Motors off. What happened: " + algo::explain(halt).why + advice);
 }
 
-/// `command`, or as much of it as may be carried out.
+/// `command`, restricted to what is allowed now.
 algo::Twist2 SerialRobot::permitted(const algo::Command& command, const BaseState& base) const {
   algo::Twist2 twist = limited(command.base, file_.limits);
-  // Away from what was hit, straight, and no faster than a person walks slowly.
+  // Straight away from the obstacle, slowly.
   constexpr double kBackingOff = 0.1;  // [m/s]
   if (base.bumper_front) twist = {std::clamp(twist.v, -kBackingOff, 0.0), 0};
   if (base.bumper_rear)
@@ -230,16 +229,16 @@ bool SerialRobot::step(const algo::Command& command, algo::Observation& observat
     base_->stop();
   }
   wheels_.command(now, twist, !moves);
-  // It may have been kept from running since it looked at the clock.
+  // The thread may have been delayed since it read the clock.
   if (came_late(clock_->now())) base_->stop();
   wait_for_deadline(now);
   observe(observation);
   return true;
 }
 
-/// Rejects commands that come long after their tick's deadline: the loop woke late, the controller
-/// took long, or a line was slow. A program that was stopped or suspended must not drive on by
-/// itself.
+/// Rejects commands that come long after their tick's deadline, because the loop woke late, the
+/// controller was slow or a line was slow. A program that was stopped or suspended must not drive
+/// on by itself.
 bool SerialRobot::came_late(double now) {
   const double late = now - deadline_;
   if (late <= kOverrun * file_.spec.period) return false;
@@ -257,8 +256,8 @@ bool SerialRobot::came_late(double now) {
   return true;
 }
 
-/// Absolute deadlines: lateness of less than a period does not delay the next. Whole periods that
-/// went by are counted and left out.
+/// Absolute deadlines: a delay below one period does not shift the next deadline. Whole missed
+/// periods are counted and skipped.
 void SerialRobot::wait_for_deadline(double now) {
   const double period = file_.spec.period;
   deadline_ += period;
@@ -296,8 +295,8 @@ void SerialRobot::observe_base(const BaseState& base,
                                double now,
                                algo::Observation& observation) const {
   const double stamp = base.stamp - epoch_;
-  // Where the robot is now, not where it was when the base last said so: a tenth of a second in a
-  // turn is as far as the nearest obstacle's bearing moves while a controller makes up its mind.
+  // Extrapolates the pose from the base's last report to now: in a turn, a tenth of a second moves
+  // the nearest obstacle's bearing enough to change a controller's choice.
   const double age = base.running ? std::clamp(now - base.stamp, 0.0, kBaseTimeout) : 0.0;
   const algo::Pose2 pose = algo::integrate_arc(base.pose, base.twist, age);
   observation.odometry = {stamp + age, seen_from(origin_, pose), base.twist};
@@ -326,7 +325,7 @@ void SerialRobot::stop() noexcept {
 
 // ---- arming ----------------------------------------------------------------------------------
 
-/// Why the base's own watchdog, as the base itself says, is no protection.
+/// Why the watchdog that the base reports is no protection; empty when it is.
 std::optional<std::string> SerialRobot::watchdog_refusal(const BaseState& base) const {
   if (!base.watchdog) return std::nullopt;
   const double time = *base.watchdog;
@@ -352,7 +351,7 @@ std::optional<std::string> SerialRobot::watchdog_refusal(const BaseState& base) 
   return std::nullopt;
 }
 
-/// The base's own watchdog where it is another than the file says, in words.
+/// A sentence if the watchdog that the base reports differs from the file's; else empty.
 std::string SerialRobot::watchdog_warning(const BaseState& base) const {
   constexpr double kRounding = 0.05;  // [s]
   if (!base.watchdog || std::abs(*base.watchdog - file_.base.watchdog) < kRounding) return "";
@@ -428,7 +427,7 @@ algo::HealthReport SerialRobot::health() const {
   return out;
 }
 
-/// The device's own words where one is to blame.
+/// The sentence of the device at fault, if there is one.
 std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>& devices) const {
   if (halt == Halt::None) return "";
   const bool waits_for_a_person = halt == Halt::Disarmed || (halt == Halt::LateTick && !armed_);
@@ -445,7 +444,7 @@ std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>&
   return algo::explain(halt).why;
 }
 
-// ---- from a file -----------------------------------------------------------------------------
+// ---- robots from a file ----------------------------------------------------------------------
 
 std::unique_ptr<Base> open_base(const BaseEntry& entry) {
   if (const auto* analog = std::get_if<AnalogEntry>(&entry.setup)) {

@@ -1,4 +1,4 @@
-// drivers/serial_robot.hpp: scanners and a base as one algo::Robot, and what stops its wheels.
+// drivers/serial_robot.hpp: scanners and a base as one algo::Robot, with its safety stops.
 #pragma once
 
 #include <array>
@@ -18,22 +18,22 @@
 
 namespace drivers {
 
-/// Real devices behind the robot port. Wheels turn only while the robot is armed and nothing is
-/// wrong; whatever is wrong sends zero to the base at once, in the tick in which it is seen. What
-/// passes by itself within kRearm lets the robot go on; what lasts longer, and what somebody has to
-/// look at, disarms it: a robot that stood still for long must not drive off by itself.
+/// Real devices behind algo::Robot. The wheels turn only while the robot is armed and has no fault.
+/// A fault stops the base in the tick that detects it. A fault that ends within kRearm lets the
+/// robot drive on. A longer one, or one that a person must check, disarms it: a robot that has
+/// stood still for long must not drive off by itself.
 ///
 /// reset() and step() belong to the control thread, the rest to any.
 class SerialRobot final : public algo::Robot, public algo::Arming {
  public:
-  static constexpr double kBaseTimeout = 0.3;     // [s] the age of the base's newest report
-  static constexpr double kScanPeriods = 3;       // without a scan, where that is not too long
-  static constexpr double kArrivalJitter = 0.02;  // [s] a USB chip may keep bytes for 16 ms
+  static constexpr double kBaseTimeout = 0.3;     // [s] largest age of the base's newest report
+  static constexpr double kScanPeriods = 3;       // without a scan, unless that is too long
+  static constexpr double kArrivalJitter = 0.02;  // [s] a USB chip may hold bytes for 16 ms
   static constexpr double kOverrun = 3;           // periods from a tick's deadline to its command
-  static constexpr double kSlept = 0.5;           // [s] likewise: the program stood still
-  static constexpr double kRearm = 0.5;           // [s] more than a lost scan or two of a fast line
+  static constexpr double kSlept = 0.5;           // [s] likewise; longer: the program stood still
+  static constexpr double kRearm = 0.5;  // [s] longer than one or two lost scans of a fast line
 
-  /// Scanners in the order of the file. They are already at work on their own.
+  /// Scanners in the order of the file, already running.
   SerialRobot(RobotFile file,
               std::vector<std::unique_ptr<Scanner>> scanners,
               std::unique_ptr<Base> base,
@@ -53,12 +53,12 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   void disarm(const std::string& why) override;
   std::uint32_t epoch() const override;
   algo::HealthReport health() const override;
-  /// For the report: whether lock_memory() succeeded.
+  /// Tells the report whether lock_memory() succeeded.
   void note_memory_locked(bool locked);
   const RobotFile& file() const { return file_; }
 
  private:
-  /// A bumper, and whether the operator knew it to be pressed.
+  /// A bumper, and whether it was pressed when the operator armed the robot.
   struct BumperWatch {
     bool known = false;
     double free_since = 0;  // [s]; 0: it is pressed
@@ -86,8 +86,8 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   std::unique_ptr<Base> base_;
   std::unique_ptr<Clock> clock_;
 
-  double epoch_ = 0;              // [s] steady clock, of the run's time 0
-  algo::Pose2 origin_{};          // of W in the base's own dead reckoning
+  double epoch_ = 0;              // [s] steady clock at the run's time 0
+  algo::Pose2 origin_{};          // W in the base's own odometry frame
   double deadline_ = 0;           // [s]
   double late_until_ = 0;         // [s]
   double battery_low_since_ = 0;  // [s]; 0: it is not
@@ -96,9 +96,9 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
 
   mutable std::mutex mutex_{};  // guards what follows
   bool armed_ = false;
-  std::uint32_t armings_ = 0;             // times it was
+  std::uint32_t armings_ = 0;             // number of armings
   double armed_at_ = 0;                   // [s]
-  std::uint32_t armed_set_up_ = 0;        // of the base, when it was armed
+  std::uint32_t armed_set_up_ = 0;        // the base's set_ups at arming
   std::array<BumperWatch, 2> bumpers_{};  // front, rear
   std::string disarmed_because_{};
   algo::Halt halt_ = algo::Halt::Disarmed;
@@ -108,9 +108,9 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   bool memory_locked_ = false;
 };
 
-/// The base of a file, at work on its own; one that is not there is waited for.
+/// The base of a file, running; it keeps waiting for a missing device.
 std::unique_ptr<Base> open_base(const BaseEntry& entry);
-/// Opens every device of `file`; those that are not there are waited for.
+/// Opens every device of `file`; each keeps waiting while it is missing.
 std::shared_ptr<SerialRobot> open_robot(const RobotFile& file);
 
 }  // namespace drivers

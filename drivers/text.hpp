@@ -1,4 +1,4 @@
-// drivers/text.hpp: sentences with figures in them.
+// drivers/text.hpp: printf-style formatting to std::string.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace drivers {
 
-/// What printf() would print, cut after 239 characters.
+/// The output of printf(), cut after 239 characters.
 template <typename... Args>
 std::string format(const char* pattern, Args... args) {
   std::array<char, 240> text{};

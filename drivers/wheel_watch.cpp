@@ -1,4 +1,4 @@
-// drivers/wheel_watch.cpp: the interval of each wheel's speed, and what lies outside of it.
+// drivers/wheel_watch.cpp: predicts an interval of each wheel's speed and checks reports by it.
 #include "drivers/wheel_watch.hpp"
 
 #include <algorithm>
@@ -10,21 +10,21 @@ namespace drivers {
 namespace {
 
 constexpr double kUntilSeen = 0.3;  // [s] from a command to the report that shows its effect
-constexpr double kShare = 0.5;      // of its ramp that a base reaches at least
-constexpr double kAtMost = 2;       // and times its ramp, for reports that come early or late
-// A file may ask for more than any base can: none is expected to be faster than that.
+constexpr double kShare = 0.5;      // share of its ramp that a base reaches at least
+constexpr double kAtMost = 2;       // times its ramp at most, for early or late reports
+// A file may name ramps that no base reaches, so no base is expected to exceed these.
 constexpr double kGentleRamp = 0.25;     // [m/s2]
 constexpr double kGentleTurn = 1.0;      // [rad/s2]
-constexpr double kGentleBraking = 0.35;  // [m/s2] of a wheel in an emergency
+constexpr double kGentleBraking = 0.35;  // [m/s2] of a wheel in an emergency stop
 
-constexpr double kSlack = 0.02;         // [m/s] rounding, and a wheel that is pushed a little
-constexpr double kShareOfSpeed = 0.2;   // slip, and a track that is not quite the file's
-constexpr double kCreep = 0.02;         // [m/s] a wheel that must go no faster may well stand
-constexpr double kStill = 0.25;         // of the least speed: below, a wheel counts as standing
-constexpr double kSeenToStand = 0.005;  // [m] a wheel must have gone while its encoder stood
-constexpr double kClearly = 0.03;       // [m/s] from here on one checked report is enough
-constexpr double kSurely = 1.5;         // times what is tolerated: likewise
-constexpr unsigned kReports = 2;        // that agree, otherwise
+constexpr double kSlack = 0.02;         // [m/s] for rounding and slight pushes
+constexpr double kShareOfSpeed = 0.2;   // for slip and an inexact track
+constexpr double kCreep = 0.02;         // [m/s] a wheel that needs no more than this may stand
+constexpr double kStill = 0.25;         // share of the least speed below which a wheel stands
+constexpr double kSeenToStand = 0.005;  // [m] the least travel while the encoder stood
+constexpr double kClearly = 0.03;       // [m/s] of excess: then one checked report is enough
+constexpr double kSurely = 1.5;         // times the tolerance: likewise
+constexpr unsigned kReports = 2;        // agreeing reports otherwise
 
 }  // namespace
 
@@ -48,15 +48,14 @@ void WheelWatch::command(double now, const algo::Twist2& twist, bool braking) {
   ++told_count_;
 }
 
-/// Moves the intervals on to `until`: no faster than the fastest ramp to wherever a command may
-/// have taken the base by then, and back from where no command wants it any more, no faster than
-/// the slowest.
+/// Advances the intervals to `until`. They widen towards each command in force by the fastest ramp,
+/// and shrink from speeds that no command asks for any more by the slowest ramp.
 void WheelWatch::follow(double until) {
   const double dt = until - stamp_;
   std::array<Interval, 2> wanted{};
   bool braking = true;
   bool any = false;
-  // The newest first. Each was in force until the one after it came.
+  // Newest first. Each command was in force until the next one.
   const std::size_t kept = std::min(told_count_, told_.size());
   double replaced = until;
   for (std::size_t back = 1; back <= kept && (back == 1 || replaced >= stamp_ - kUntilSeen);
@@ -77,7 +76,7 @@ void WheelWatch::follow(double until) {
     double ramp = std::min(kShare * dynamics_.ramps[i], turn ? kGentleTurn : kGentleRamp);
     if (braking) ramp = std::max(ramp, turn ? kGentleBraking / half_track_ : kGentleBraking);
     Interval& axis = axes_[i];
-    // Speeding up alone: what slows it down may be the floor, or its own watchdog.
+    // Only for speeding up: the floor or the base's own watchdog may slow a wheel.
     if (dynamics_.ramps[i] > 0) {
       const double gain = kAtMost * dynamics_.ramps[i] * dt;
       wanted[i].high = std::min(wanted[i].high, std::max(axis.high, 0.0) + gain);
@@ -100,7 +99,7 @@ std::array<WheelWatch::Interval, 2> WheelWatch::wheels() const {
 bool WheelWatch::report(double stamp, const algo::Twist2& twist) {
   if (begun_ && stamp <= stamp_) return false;
   if (!begun_) {
-    // However fast it rolls when it is armed: from here on that has to fade.
+    // The robot may roll when it is armed; that speed must decay from here on.
     const Axes axes = axes_of(twist);
     for (std::size_t i = 0; i < 2; ++i) {
       axes_[i] = {std::min(axes[i], 0.0), std::max(axes[i], 0.0)};
@@ -123,7 +122,7 @@ bool WheelWatch::report(double stamp, const algo::Twist2& twist) {
   const double turn = twist.omega * half_track_;
   const std::array<double, 2> speeds{twist.v - turn, twist.v + turn};
   double excess = 0;  // [m/s]
-  double stands = 0;  // [m/s] that a wheel which stands has to turn at least
+  double stands = 0;  // [m/s] the least speed due of a wheel that stands
   for (std::size_t i = 0; i < 2; ++i) {
     const auto [low, high] = allowed[i];
     excess = std::max({excess, speeds[i] - high, low - speeds[i]});

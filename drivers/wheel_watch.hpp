@@ -1,4 +1,4 @@
-// drivers/wheel_watch.hpp: whether the wheels turn as they were told.
+// drivers/wheel_watch.hpp: checks whether the wheels follow their commands.
 #pragma once
 
 #include <array>
@@ -10,33 +10,33 @@ namespace drivers {
 
 /// How a base follows its commands and reports its wheels.
 struct WheelDynamics {
-  /// Each wheel has a ramp of its own; otherwise speed and turn have one each.
+  /// True: one ramp per wheel. False: one for the speed and one for the turn.
   bool ramp_of_wheels = false;
-  /// [m/s2] of the left and the right wheel; or [m/s2] of the speed, [rad/s2] of the turn. 0: not
-  /// known, it may be any.
+  /// [m/s2] of the left and the right wheel; or [m/s2] of the speed, [rad/s2] of the turn. 0:
+  /// unknown, any ramp is possible.
   std::array<double, 2> ramps{};
-  /// [m/s] of a wheel: the least difference that is told or reported.
+  /// [m/s] of a wheel: the resolution of commands or reports.
   double resolution = 0;
-  /// Reports carry a check value: a single one may be believed.
+  /// Reports carry a check value, so a single one may be trusted.
   bool checked = false;
 };
 
-/// Keeps the interval in which each wheel's speed must lie, from the commands of the last moments
-/// and the base's ramps. Tolerances leave room for a tenth of slip, a base that reaches half its
-/// ramp, and 0.3 s from a command to the report that shows it. Times are seconds of any one clock.
+/// Keeps the interval in which each wheel's speed must lie, from recent commands and the base's
+/// ramps. It tolerates 10 % slip, a base that reaches half its ramp, and 0.3 s from a command to
+/// the report that shows it. Times are seconds of any one clock.
 ///
-/// Not for two threads at once. Allocates nothing.
+/// Not thread-safe. Allocates nothing.
 class WheelWatch {
  public:
   WheelWatch(const WheelDynamics& dynamics, double half_track);
 
-  /// Forgets everything: the next report is believed, whatever it says.
+  /// Resets: the next report is accepted without a check.
   void restart();
-  /// The base was told `twist`, or (`braking`) to stand by its emergency ramp.
+  /// Records a command: `twist`, or with `braking` an emergency stop.
   void command(double now, const algo::Twist2& twist, bool braking = false);
-  /// The base reports `twist` [m/s], [rad/s] as of `stamp`; one of the same stamp is the same
-  /// report. True when the wheels have turned otherwise than told, or an encoder stands still
-  /// though its wheel must turn.
+  /// Checks a report of `twist` [m/s], [rad/s] at `stamp`; the same stamp means the same report.
+  /// True when the wheels have not followed their commands, or an encoder stands still though its
+  /// wheel must turn.
   bool report(double stamp, const algo::Twist2& twist);
 
  private:
@@ -51,10 +51,10 @@ class WheelWatch {
     Axes wanted{};
     bool braking = false;
   };
-  /// What the reports have said without a break.
+  /// Consecutive reports that agree.
   struct Doubt {
     unsigned reports = 0;
-    double way = 0;  // [m] a wheel that seems to stand must have gone at least
+    double way = 0;  // [m] least travel of a wheel that seems to stand
   };
 
   Axes axes_of(const algo::Twist2& twist) const;
@@ -63,7 +63,7 @@ class WheelWatch {
 
   WheelDynamics dynamics_;
   double half_track_;
-  std::array<Told, 64> told_{};  // a ring, the oldest overwritten
+  std::array<Told, 64> told_{};  // ring buffer
   std::size_t told_count_ = 0;   // since the restart
   bool begun_ = false;
   double stamp_ = 0;  // [s] of the newest report

@@ -108,7 +108,7 @@ TEST(RobotFileAnalog, WhatCannotBeIsNamedWithItsLine) {
   EXPECT_THAT(refusal("stop_line = 0\n"),
               HasSubstr("my.toml:13: [base] stop_line asks for digital line 0, which is in use"));
   EXPECT_THAT(refusal("bumper_lines = [3, 3]\n"), HasSubstr("in use already"));
-  EXPECT_THAT(refusal("battery_low = 20\n"), HasSubstr("an analog base tells no voltage"));
+  EXPECT_THAT(refusal("battery_low = 20\n"), HasSubstr("an analog base reports no voltage"));
   EXPECT_THAT(refusal("watchdog = 0.1\n"), HasSubstr("three times within"));
   EXPECT_THAT(refusal("gear = 20\n"), HasSubstr("'gear' is no key known here"));
   EXPECT_THAT(refusal("relay_line = 1.5\n"), HasSubstr("whole number"));

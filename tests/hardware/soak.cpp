@@ -88,7 +88,7 @@ bool soak(const std::filesystem::path& folder, double seconds) {
       }
     }
     received = fact(report, "scans");
-    replaced = fact(report, "scans nobody took");
+    replaced = fact(report, "scans never read");
     const std::string counts = bench.emulation().truth();
     fmt::print("{}\n", counts);
     sent = nlohmann::json::parse(counts).at("scanner").at("sent");
