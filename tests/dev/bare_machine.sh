@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# tests/dev/bare_machine.sh: the first hour of a newcomer, in a bare Debian 12 made for the purpose.
+# tests/dev/bare_machine.sh: a new user's first commands in a fresh, minimal Debian 12.
 #
 #   tests/dev/bare_machine.sh [run] [test] [check]      (default: run test)
 #
-# Run by hand, as root, on a Debian with mmdebstrap, git and curl. What the host needs to reach its
-# package sources (certificates, proxies, apt and npm settings) is lent to the bare system; nothing
-# else is. BARE=FOLDER keeps the system there; otherwise a temporary folder is used and removed.
+# Run by hand, as root, on a Debian with mmdebstrap, git and curl. The bare system gets only the
+# host's access to package sources (certificates, proxies, apt and npm settings). BARE=FOLDER keeps
+# the system there; otherwise a temporary folder is used and removed.
 set -euo pipefail
 
 if [[ -z "${BARE_MACHINE_INSIDE:-}" ]]; then
   ((EUID == 0)) || { echo "bare_machine.sh needs root, for mmdebstrap and chroot." >&2; exit 1; }
-  # A mount namespace of its own: whatever happens, no mount stays behind.
+  # A separate mount namespace, so that no mount stays behind.
   exec env BARE_MACHINE_INSIDE=1 unshare --mount --propagation private -- bash "$0" "$@"
 fi
 
@@ -29,7 +29,7 @@ trap finish EXIT
 say() { printf '== %s\n' "$*"; }
 fail() { printf 'bare_machine: %s\n' "$*" >&2; exit 1; }
 
-# ---- the bare system, with the host's way to the package sources ----------------------------------
+# ---- the bare system, with the host's access to package sources -----------------------------------
 
 make_bare() {
   local sources=() file
@@ -54,13 +54,13 @@ make_bare() {
   git clone --quiet --no-hardlinks "$repository" "$bare/root/tautline"
 }
 
-# The environment of a fresh login, with no more of ours than the way to the package sources.
+# The environment of a fresh login, plus only our access to package sources.
 lent=()
 while IFS= read -r name; do
   lent+=("$name=${!name}")
 done < <(compgen -e | grep -E '^(https?_proxy|no_proxy|HTTPS?_PROXY|NO_PROXY|NODE_EXTRA_CA_CERTS|SSL_CERT_FILE)$' || true)
 
-# inside [--userspec=USER] COMMAND...: takes this process's place, so that its pid is the command's.
+# inside [--userspec=USER] COMMAND...: replaces this process, so that the command has its pid.
 inside() {
   local options=()
   while [[ $1 == --* ]]; do options+=("$1") && shift; done
@@ -68,9 +68,9 @@ inside() {
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin "${lent[@]}" "$@"
 }
 
-# ---- what a newcomer does -------------------------------------------------------------------------
+# ---- a new user's commands ------------------------------------------------------------------------
 
-# Without root and sudo: one line to run, and nothing broken.
+# Without root and sudo, ./dev prints one line to run, and breaks nothing.
 try_without_root() {
   local words status=0
   cp -a "$bare/root/tautline" "$bare/tmp/tautline"

@@ -1,4 +1,4 @@
-# tests/dev/check.sh: lint, sanitizers and fuzzing, the part of ./dev that looks deeper; ./dev sources it.
+# tests/dev/check.sh: lint, sanitizers and fuzzing; sourced by ./dev.
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # root, work and the package lists are those of ./dev
 
@@ -12,7 +12,7 @@ cpp_files() {
   find "${folders[@]}" \( -name '*.cpp' -o -name '*.hpp' \) -print0
 }
 
-# format_check: every file that is not in our format, and in how many places.
+# format_check: prints every file that is not in our format, with the number of places.
 format_check() {
   local words
   words=$(cpp_files | xargs -0 clang-format-14 --dry-run -Werror 2>&1) && return
@@ -22,8 +22,8 @@ format_check() {
 }
 
 # tidy_keys: "KEY<tab>FILE" for each of our sources in the release build; tests are only formatted,
-# since clang-tidy takes longer over GoogleTest's macros than over all the rest. KEY is a hash over the file,
-# all of ours that it includes (as the compiler saw it) and what clang-tidy is told.
+# since clang-tidy needs more time for GoogleTest's macros than for all the rest. KEY is a hash over the
+# file, our headers that it includes (as the compiler saw them) and the options of clang-tidy.
 tidy_keys() {
   local pairs rules source
   rules=$(sha256sum .clang-tidy CMakeLists.txt tests/dev/check.sh; clang-tidy-16 --version)
@@ -44,8 +44,8 @@ tidy_keys() {
   done < <(cut -f 1 <<<"$pairs" | sort -u)
 }
 
-# tidy_file KEY FILE: quiet and remembered when clean. The analyzer is kept for the mathematics and
-# the storage: over JSON and Beast it doubles the time and has found nothing.
+# tidy_file KEY FILE: quiet, and cached when clean. The analyzer runs only for the mathematics and the
+# storage: for JSON and Beast it doubles the time and has found nothing.
 tidy_file() {
   local checks=() log=$work/tidy/$1.log
   if [[ $2 == server/* ]]; then
@@ -62,7 +62,7 @@ tidy_file() {
 tidy_all() {
   local keys key source todo=()
   mkdir -p "$work/tidy"
-  # As the compiler is called, but for what is of g++ alone: precompiled headers, its memory.
+  # The compiler's options, except those for g++ only: precompiled headers, its memory.
   sed -E 's/ (-fpch-preprocess|-Winvalid-pch -include [^ ]+cmake_pch\.hxx|--param ggc-[^ ]+)//g' \
     build/release/compile_commands.json >"$work/tidy/compile_commands.json"
   keys=$(tidy_keys)
@@ -77,7 +77,7 @@ tidy_all() {
   printf '%s\0' "${todo[@]}" | xargs -0 -n 2 -P "$(job_count)" bash -c 'tidy_file "$1" "$2"' tidy
 }
 
-# types_of_page: checked again only when the page changed.
+# types_of_page: type-checks the page when it has changed.
 types_of_page() {
   local key
   key=$(hash_page)
@@ -104,7 +104,7 @@ verb_fmt() {
 
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
-# ThreadSanitizer sees what has threads; the rest would only cost time.
+# ThreadSanitizer runs only the tests with threads; the others would only take time.
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
@@ -122,7 +122,7 @@ verb_sanitize() {
 }
 
 # CMake target `fuzz` builds tests/fuzz/fuzz_NAME for each NAME, in the asan build; tests/fuzz/seeds/NAME
-# are its kept inputs. They run first, then a short search from them. What it finds on its way stays in
+# are its kept inputs. They run first, then a short search from them. New inputs stay in
 # build/asan/found.
 verb_fuzz() {
   local target name seconds=${1:-5} status=0
@@ -149,7 +149,7 @@ verb_check() {
   for stage in "${stages[@]}"; do
     printf '== %s\n' "$stage"
     start=$SECONDS
-    # A process each, so that `set -e` stays in force inside.
+    # One process each, so that `set -e` stays in force inside.
     # shellcheck disable=SC2086
     bash "$root/dev" $stage || broken+=("$stage")
     times+=("$stage $((SECONDS - start)) s")

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# tests/dev/dev_test.sh: ./dev must not call a run green that was not, nor install what is there.
+# tests/dev/dev_test.sh: ./dev must not report a failed run as passed, nor install present packages.
 set -euo pipefail
-shopt -s inherit_errexit # as strict within $( ) as ./dev is at its top
+shopt -s inherit_errexit # as strict within $( ) as at the top of ./dev
 
 # shellcheck source=dev
 source "$(dirname -- "${BASH_SOURCE[0]}")/../../dev"
 scratch=$(mktemp -d)
 trap 'rm -rf -- "$scratch"' EXIT
 cd -- "$scratch"
-work=$scratch # of ./dev: where it keeps its logs
+work=$scratch # the log folder of ./dev
 mkdir -p "$scratch/bin"
 
 wrong=0
@@ -20,19 +20,19 @@ expect() {
   fi
 }
 
-# sum_of COMMAND...: the closing line and status after suites that COMMAND counts, in a shell of its own.
+# sum_of COMMAND...: the final line and status after the suites of COMMAND, in a subshell.
 sum_of() {
   ("$@" >/dev/null 2>&1; closing_line && echo status 0 || echo status 1) | paste -sd ' '
 }
 
-# ---- suites of node --test, whose figures are read from their words ----
+# ---- suites of node --test: figures read from their output ----
 tap() { printf 'TAP version 13\nok 1 - a # pass 7\n# tests 4\n# pass %d\n# fail %d\n# cancelled 0\n# skipped 1\n# todo 0\n' "$1" "$2"; }
 spec() { printf '✔ reads # pass 9 (1 ms)\nℹ tests 3\nℹ pass 3\nℹ fail 0\nℹ cancelled 0\nℹ skipped 0\nℹ todo 0\n'; }
 failing_tap() { tap 2 1; return 1; }
 broken() { printf 'SyntaxError: Unexpected token\n'; return 1; }
 dies_late() { tap 3 0; return 1; }
 
-# `timeout` runs programs, and these are functions.
+# `timeout` runs only programs, and these are functions.
 timeout() { shift 3; "$@"; }
 
 expect "TAP figures" "3 passed, 0 failed, 1 skipped status 0" "$(sum_of run_node t tap 3 0)"
@@ -46,7 +46,7 @@ two_suites() { run_node a spec; run_node b failing_tap; }
 expect "suites are summed" "5 passed, 1 failed, 1 skipped status 1" "$(sum_of two_suites)"
 expect "nothing at all" "0 passed, 0 failed status 1" "$(sum_of true)"
 
-# ---- ctest, whose figures are read from its report ----
+# ---- ctest: figures read from its report ----
 # fake_ctest TESTS FAILURES DISABLED SKIPPED STATUS
 fake_ctest() {
   ctest() {
@@ -64,7 +64,7 @@ expect "ctest, no test" "0 passed, 1 failed status 1" "$(sum_of fake_ctest 0 0 0
 no_report() { ctest() { return 1; }; root='' run_ctest release; }
 expect "ctest, no report" "0 passed, 1 failed status 1" "$(sum_of no_report)"
 
-# ---- long work: quiet when it goes well, loud when not ----
+# ---- long work: quiet on success, output on failure ----
 expect "quiet success" "" "$(quietly a.log "A" echo hidden 2>&1)"
 loud() { echo "the reason"; return 3; }
 words=$(quietly b.log "Building" loud 2>&1) && status=0 || status=$?
@@ -72,7 +72,7 @@ expect "the status comes through" 3 "$status"
 expect "the reason is shown" "the reason" "$(head -n 1 <<<"$words")"
 expect "the work is named" yes "$([[ $words == *"Building: failed"* ]] && echo yes)"
 
-# ---- packages: by dpkg, or by the program where it may come from elsewhere ----
+# ---- packages: found by dpkg, or by their program if it may have other sources ----
 dpkg-query() { printf 'installed g++\nconfig-files cmake\n'; return 1; }
 printf '#!/bin/sh\n' >"$scratch/bin/node"
 chmod +x "$scratch/bin/node"

@@ -1,4 +1,4 @@
-# tests/dev/emulated.sh: part of ./dev: a robot without hardware, its devices on pseudo-terminals.
+# tests/dev/emulated.sh: part of ./dev: a robot of emulated devices on pseudo-terminals.
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # root, caller and program are ./dev's
 

@@ -76,7 +76,7 @@ class Devices:
         self.process.stdin.flush()
 
     def scanner(self):
-        """The emulator's own account of its scanner."""
+        """The emulator's state of its scanner."""
         self.tell("truth")
         while True:
             line = self.process.stdout.readline().decode()
@@ -98,7 +98,7 @@ class Devices:
                     yield [float(word) for word in words[1:]]
 
     def zero_after(self, event, until):
-        """[s] from `event` to the first zero command that no motion follows until `until`."""
+        """[s] from `event` to the first zero command without a later motion until `until`."""
         zero = None
         for when, left, right in self.lines("wheels", event, until):
             still = abs(left) < 0.05 and abs(right) < 0.05
@@ -106,7 +106,7 @@ class Devices:
         return zero
 
     def rest_after(self, event, until):
-        """[s] from `event` until the wheels stand, and do so until `until`."""
+        """[s] from `event` until the wheels stand and stay so until `until`."""
         rest = None
         for when, _, _, _, left, right in self.lines("pose", event, until):
             still = abs(left) < 0.5 and abs(right) < 0.5  # [mm/s]
@@ -131,12 +131,12 @@ class Server(load.Server):
             os.close(inner)
 
     def answer(self, method, path, body=None):
-        """The JSON of the answer; {"refused": TEXT} when it is no success."""
+        """The JSON of the answer; {"refused": TEXT} for an error status."""
         status, _, text = self.ask(method, path, body)
         return json.loads(text) if status < 300 else {"refused": text.decode()}
 
     def look_for(self, condition, seconds):
-        """The session once it is so; None when it is not within `seconds`."""
+        """The session once the condition holds; None when it does not within `seconds`."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             session = self.answer("GET", "/session")
@@ -153,7 +153,7 @@ class Server(load.Server):
         return session
 
     def scanner_back(self):
-        """[s] from the start of the program until the scanner is well."""
+        """[s] from the start of the program until the scanner has no fault."""
         def well(session):
             laser = front_laser(session)
             return laser is not None and laser["well"]
@@ -167,7 +167,7 @@ class Server(load.Server):
         self.wait_for("motors on", lambda s: (s.get("hardware") or {}).get("halt") == "none")
 
     def drive(self):
-        """Until the robot has gone 0.1 m of 5; it is looked after meanwhile."""
+        """Waits until the robot has driven 0.1 m of 5, with signs of life meanwhile."""
         self.arm()
         self.answer("PUT", "/session/goal", {"x": 5.0, "y": 0.0})
         begin = self.wait_for("a pose", lambda s: "pose" in s)["pose"]["x"]
@@ -188,7 +188,7 @@ def front_laser(session):
 
 
 def row(event, base, zero, most, more=""):
-    """Prints a row of docs/hardware.md; whether the wheels were told to stand in time."""
+    """Prints a row of docs/hardware.md; true if the wheels were commanded to stop in time."""
     shown = "never" if zero is None else f"{1000 * zero:.0f} ms"
     print(f"| {event} | {base} | {shown} | {1000 * most:.0f} ms | {more} |", flush=True)
     return zero is not None and zero <= most

@@ -18,8 +18,8 @@ BASES = sys.argv[2:] or ["roboteq", "p2os", "analog"]
 HERE = os.path.dirname(os.path.abspath(__file__))
 AWAKE = 0.05  # [s] for threads to wake up on a busy machine
 SCANS = 3 * 0.0267 + 0.02 + 0.015  # [s] three scan periods, a USB chip, the line
-REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065, "analog": 0.026}  # [s] between two of what is wrong, and its way
-SETTLED = 1.0  # [s] after the limit, in which nothing may start again
+REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065, "analog": 0.026}  # [s] between two reports, plus the transfer
+SETTLED = 1.0  # [s] after the limit, without new motion
 
 
 def limit(expected, base):
@@ -38,7 +38,7 @@ def limit(expected, base):
 
 
 def words(session, folder):
-    """What the robot says: of the hardware, or else of the pipeline."""
+    """The robot's sentence: of the hardware, else of the pipeline."""
     said = (session.get("hardware") or {}).get("trouble") or ""
     if not said and session.get("hold") not in (None, "none", "halted"):
         said = session.get("why") or f"Held: {session['hold']}."
@@ -50,7 +50,7 @@ def moves(session):
 
 
 def goes_on(server):
-    """How the robot goes on once the fault is over."""
+    """What the robot does after the fault."""
     if server.look_for(moves, 5):
         return "by itself"
     server.arm()
@@ -82,7 +82,7 @@ def trial(fault, base, folder):
     finally:
         server.end()
         devices.end()
-    if fault.get("at_rest"):  # zero was commanded all the while: what counts is that they stand
+    if fault.get("at_rest"):  # zero was commanded throughout: the wheels must stand
         zero = rest
     held = zero is None if most is None else zero is not None and zero <= most + 0.1 * bool(
         fault.get("at_rest"))

@@ -23,15 +23,15 @@ from emulated_robot import Devices, Server, TICK, WATCHDOG, robot_file, row
 PROGRAM = sys.argv[1]
 BASES = sys.argv[2:] or ["roboteq", "p2os", "analog"]
 PATIENCE = 1.5  # [s] server/serve/operator_watch.hpp
-SLACK = 0.2  # [s] a look every 0.1 s, and a busy machine
+SLACK = 0.2  # [s] polling at 10 Hz on a busy machine
 REATTACH = 5.0  # [s]
 ASLEEP = 3.0  # [s]
 
-signal.signal(signal.SIGHUP, signal.SIG_DFL)  # `nohup` has it ignored, by children too
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # `nohup` ignores it, in children too
 
 
 class Page:
-    """A WebSocket client that gives signs of life until it is told not to; it answers every ping."""
+    """A WebSocket client that sends signs of life until switched off, and answers every ping."""
 
     def __init__(self, port):
         self.socket = socket.create_connection(("127.0.0.1", port))
@@ -49,7 +49,7 @@ class Page:
         threading.Thread(target=self.watch, daemon=True).start()
 
     def watch(self):
-        """Calls /watch, the service that the server has named by then."""
+        """Calls the service /watch, which the server has advertised by then."""
         try:
             while True:
                 if self.answering and self.service:
@@ -83,7 +83,7 @@ class Page:
 
 
 def ended(folder, robot, base, devices):
-    """Rows of a server that goes."""
+    """Rows of a server that ends."""
     well = True
     for event, sign, most in (("kill -9", signal.SIGKILL, WATCHDOG[base] + SLACK),
                               ("SIGTERM", signal.SIGTERM, 0.3), ("Ctrl-C", signal.SIGINT, 0.3),
@@ -109,7 +109,7 @@ def ended(folder, robot, base, devices):
 
 
 def asleep(folder, robot, base, devices):
-    """The row of a server that stands still for a while: its base stops by itself meanwhile."""
+    """The row of a server that is stopped for a while: its base stops by itself meanwhile."""
     most = WATCHDOG[base] + SLACK
     server = Server(PROGRAM, folder, robot, "--unattended")
     server.drive()
@@ -126,7 +126,7 @@ def asleep(folder, robot, base, devices):
 
 
 def abandoned(folder, robot, base, devices):
-    """Rows of an operator that goes."""
+    """Rows of an operator that leaves."""
     most = PATIENCE + SLACK + TICK
     well = True
     for event in ("a script renews no more", "page closed", "network lost"):
@@ -134,7 +134,7 @@ def abandoned(folder, robot, base, devices):
         page = None if event.startswith("a script") else Page(server.port)
         server.drive()
         if page:
-            time.sleep(PATIENCE + 2)  # only the page is there now
+            time.sleep(PATIENCE + 2)  # only the page is left
             asked = server.answer("GET", "/session")
             if not asked["hardware"]["armed"]:
                 sys.exit(f"{event}: a page is open, and the robot was disarmed")

@@ -1,12 +1,12 @@
-# tests/dev/image.sh: builds the image, runs it as docker/compose.yaml says, and treats it badly; ./dev
-# sources it.
+# tests/dev/image.sh: builds the image, runs it by docker/compose.yaml, kills it and checks its runs;
+# sourced by ./dev.
 # shellcheck shell=bash
 # shellcheck disable=SC2154 # root, work, say, fail and the package lists are those of ./dev
 
 image_packages=(docker.io docker-compose containerd mmdebstrap)
 
-# The engine that is running, or one of our own for as long as this takes. It needs root and the right
-# to mount; says why and returns 1 where an engine cannot be had.
+# Uses the running engine, or starts a temporary one, which needs root and the right to mount. Without
+# an engine it prints why and returns 1.
 start_engine() {
   docker=/usr/bin/docker
   [[ -x $docker ]] || docker=$(command -v docker || true)
@@ -39,8 +39,8 @@ stop_engine() {
   rm -rf --one-file-system -- "$engine"
 }
 
-# The published base image, or where no registry answers one like it from Debian's archive, with what
-# this host needs to reach its package sources.
+# The published base image, or without a registry a similar one from Debian's archive, with this host's
+# access to package sources.
 base_image() {
   "$docker" image inspect debian:bookworm-slim >/dev/null 2>&1 && return
   timeout 60 "$docker" pull -q debian:bookworm-slim >/dev/null 2>&1 && return
@@ -78,7 +78,7 @@ wait_for() {
 healthy() { [[ $(state_of '{{.State.Health.Status}}') == healthy ]]; }
 restarted() { (($(state_of '{{.RestartCount}}') > $1)) && healthy; }
 
-# Driven through the page, killed, and back with its runs.
+# Drives through the API, kills the container, and checks that its runs are back.
 try_image() {
   local bytes before after pid
   bytes=$("$docker" image inspect -f '{{.Size}}' tautline)

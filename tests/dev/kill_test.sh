@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tests/dev/kill_test.sh: kills the real server at random moments of a 1x run and looks at what is
-# left: at most 1.1 s lost, the file sound, the run marked interrupted at the next start. With `post`
-# the server is just then storing a batch of 10,000 runs.
+# tests/dev/kill_test.sh: kills the real server at random moments of a 1x run and checks that at most
+# 1.1 s are lost, the file is intact, and the run is marked interrupted at the next start. With `post`
+# the server is storing a batch of 10,000 runs at that moment.
 #
 # tests/dev/kill_test.sh PROGRAM [KILLS] [post]
 set -euo pipefail
@@ -13,7 +13,7 @@ trap 'rm -rf "$folder"' EXIT
 worst=0
 
 for ((i = 1; i <= kills; ++i)); do
-  : >"$folder/log" # nobody is to read the last server's address
+  : >"$folder/log" # so that the last server's address is not read
   "$program" serve --port 0 --db "$folder/runs.db" --scenario case1 >"$folder/log" 2>&1 &
   server=$!
   until url=$(grep -o 'http://[^ ]*' "$folder/log" | head -n 1) && [ -n "$url" ]; do sleep 0.02; done
@@ -23,7 +23,7 @@ for ((i = 1; i <= kills; ++i)); do
       -d '{"scenario":"case1","vehicle":"kinematic","repeats":10000}' &
     sleep "$(awk -v r="$RANDOM" 'BEGIN{print 1.0 * r / 32768}')"
   fi
-  # The newest tick a viewer was shown just before the end.
+  # The newest tick sent to a viewer just before the end.
   curl -s "${url%/}/api/v1/session" >"$folder/seen"
   kill -9 "$server"
   wait "$server" 2>/dev/null || true

@@ -1,4 +1,4 @@
-"""tests/dev/load.py: a served program under test, and the requests that are heavy for it."""
+"""tests/dev/load.py: a served program under test, and heavy requests."""
 import http.client
 import json
 import multiprocessing
@@ -147,7 +147,7 @@ def hold_connections(port, count):
 
 
 def lock_store(database):
-    """Somebody else's transaction, held 3 s at a time."""
+    """Another program's transaction, held 3 s at a time."""
     while True:
         store = sqlite3.connect(database, timeout=5, isolation_level=None)
         try:
@@ -177,7 +177,7 @@ class Load:
 
 
 def quietly(target, *args):
-    """A request that fails is tried again: what is measured is what it does to others."""
+    """Repeats a failed request: the measurement is of its effect on others."""
     while True:
         try:
             target(*args)

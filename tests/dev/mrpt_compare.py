@@ -9,7 +9,7 @@ WIRE_FREE, WIRE_CODES = 65535, 65519
 
 
 def truth(path):
-    """Beams of each scan that went out whole; None where the device had no distance."""
+    """Beams of each scan sent intact; None where the device had no distance."""
     scans = []
     for line in open(path):
         words = line.split()
@@ -30,7 +30,7 @@ def stored(folder):
 
 
 def same(ranges, beams):
-    """The widest difference [mm], or None when they are not of one scan."""
+    """The largest difference [mm], or None when they are not of the same scan."""
     if len(ranges) != len(beams):
         return None
     widest = 0.0

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/dev/mrpt_peer.sh [FOLDER]: an independent client, MRPT's rawlog-grabber with its SICK driver,
-# reads scans from `tautline emulate lms200`, and every range is held against what was sent.
+# reads scans from `tautline emulate lms200`, and every range is compared with the one sent.
 #
 # Needs the built program, python3, and Debian's package sources: mrpt-apps is fetched into FOLDER
 # (default: a temporary one that is deleted) and unpacked there; nothing is installed.
@@ -24,7 +24,7 @@ finish() {
   rm -rf "$work" ${temporary:+"$temporary"}
 }
 trap finish EXIT
-# rawlog-grabber ends when its keyboard does: one on which nobody types.
+# rawlog-grabber ends at the end of its standard input, so give it one that stays open and empty.
 mkfifo "$work/keys"
 sleep infinity >"$work/keys" &
 keyboard=$!
@@ -96,8 +96,8 @@ done
 grab f100 "$seconds" -- 'COM_baudRate = 38400' 'mm_mode = 1' 'FOV = 100' 'resolution = 50'
 compare f100 || status=1
 
-# What that client cannot do, and our driver must: a device with an address, and one that starts up
-# for nine seconds.
+# Cases that MRPT cannot handle, but our driver must: a device with an address, and one that starts
+# up for nine seconds.
 for case in '--address 1' '--boot 9'; do
   # shellcheck disable=SC2086
   grab refused 8 $case -- 'COM_baudRate = 38400' 'mm_mode = 1' 'FOV = 180' 'resolution = 50'

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-# tests/dev/paper_to_si.py: a file of layouts and limits as it came with the papers' notes, in
-# millimetres and partly in words, becomes the document of `tautline reproduce`: SI, every number in a
-# field of its own (docs/interfaces.md).
+# tests/dev/paper_to_si.py: converts a file of layouts and limits from the papers' notes, in
+# millimetres and partly as text, to the document of `tautline reproduce`: SI, with each number in its
+# own field (docs/interfaces.md).
 #
 #   python3 tests/dev/paper_to_si.py tests/golden/paper.json > server/lab/reproduce/study.json
 #   python3 tests/dev/paper_to_si.py OLD --check NEW        exit status 1 when NEW is not that
@@ -11,7 +11,7 @@ import sys
 
 READINGS = ("original modified_published modified_linear modified_c1 modified via_kept original_side"
             ).split()
-# Metrics of the old form: name of the figure here, and its unit in ours.
+# Metrics of the old form: our name of the figure, and the old unit in ours.
 FIGURES = {
     "time_s": ("time_s", 1),
     "path_mm": ("path_m", 1e-3),
@@ -47,7 +47,7 @@ class Refusal(Exception):
 
 
 def tidy(value):
-    """A decimal as people write it: no rounding of binary fractions shows, no idle .0."""
+    """The shortest decimal, without binary rounding digits or a trailing .0."""
     value = round(value, 9)
     return int(value) if value == int(value) else value
 
@@ -112,7 +112,7 @@ def convex_parts(outline):
     """The outline itself when it is convex, else triangles that fill it (ear clipping), all
     counter-clockwise. None when it crosses itself or has no area."""
     outline = list(outline)
-    if len(outline) > 3 and outline[0] == outline[-1]:  # "closed": the first vertex said again
+    if len(outline) > 3 and outline[0] == outline[-1]:  # "closed": the first vertex is repeated
         outline.pop()
     count = len(outline)
     sides = [(outline[i], outline[(i + 1) % count]) for i in range(count)]

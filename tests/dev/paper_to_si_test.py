@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-# tests/dev/paper_to_si_test.py: the committed study is what the papers' file converts to, and what
-# cannot be converted is said.
+# tests/dev/paper_to_si_test.py: the committed study equals the converted papers' file, and
+# conversion errors are reported.
 import json
 import pathlib
 import unittest

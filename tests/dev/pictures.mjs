@@ -2,7 +2,7 @@
 //   node tests/dev/pictures.mjs [NAME ...]
 // NAME is a controller (docs/pictures/controllers/NAME.png) or a key of kFeatures (docs/pictures/NAME.png).
 // `barn` needs a BARN world as a scenario file in TAUTLINE_BARN_WORLD (`tautline barn --scenarios DIR`).
-// Look at each picture before you commit it.
+// Look at each picture before committing it.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";

@@ -42,7 +42,7 @@ def read(names):
 
 
 def below(room, edges):
-    """All that a room stands on."""
+    """All rooms that a room depends on."""
     found, todo = set(), [room]
     while todo:
         for other in edges[todo.pop()] - found:

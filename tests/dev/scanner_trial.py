@@ -15,7 +15,7 @@ from emulated_robot import Devices, Server, front_laser, robot_file, row
 
 PROGRAM = sys.argv[1]
 
-# What befalls the scanner, how it is emulated, what the server then says of it; empty: scans.
+# The fault of the scanner, its emulation, and the server's sentence; empty: scans.
 SET_UPS = [
     ("mode switches of 3 s", ["--mode-time", "3"], ""),
     ("2 s of silence after switches and power-on", ["--deaf", "2", "--boot", "2"], ""),
@@ -33,7 +33,7 @@ LINES = [("rate = 500000\nstep_deg = 0.5", 0.0266), ("rate = 38400\nstep_deg = 1
 BLINDINGS = [("scanner silent", "scanner silence 2"), ("all beams dazzled", "dazzle on"),
              ("20 degrees ahead dazzled", "cone 20")]
 
-# A mistake in a robot's file, as changes of its text, and what `serve` says of it.
+# A mistake in a robot's file, as changes of its text, and the sentence of `serve`.
 FILES = [
     ("the scanner outside the hull", [("rate = 500000", "x = 0.5")], "outside of the hull"),
     ("180 degrees at 0.25 on a slow line", [("rate = 500000", "rate = 38400\nstep_deg = 0.25")],

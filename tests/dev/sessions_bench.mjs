@@ -1,7 +1,7 @@
 // tests/dev/sessions_bench.mjs [WORLDS=200] [SECONDS=30]: many sessions in one process, each with a
-// world in real time, a record and a viewer; then Stop beside ten that go as fast as they can and a
-// batch of experiments. Prints how late ticks were, the memory of a session, and how long Stop took.
-// Run with TAUTLINE_BIN=build/release/server/tautline and the machine to itself.
+// world in real time, a record and a viewer; then Stop beside ten sessions at full speed and a batch of
+// experiments. Prints the lateness of ticks, the memory of a session, and the time of a Stop.
+// Run with TAUTLINE_BIN=build/release/server/tautline on an otherwise idle machine.
 import { readFileSync } from "node:fs";
 import { json, require, scratch, serve } from "../web/program.mjs";
 

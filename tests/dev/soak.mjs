@@ -1,6 +1,6 @@
 // tests/dev/soak.mjs: hours of driving with a page and a client that never reads; by hand:
 //   node tests/dev/soak.mjs [HOURS=2] [SPEED=8]
-// Prints what grows. Fails when ticks are lost, the page falls silent, or memory keeps growing.
+// Prints memory and ticks. Fails when ticks are lost, the page falls silent, or memory keeps growing.
 import assert from "node:assert/strict";
 import { randomBytes } from "node:crypto";
 import { readFileSync } from "node:fs";
@@ -72,7 +72,7 @@ try {
         `page at ${await page.get("time").textContent().catch(() => "?")}`);
     }
   }
-  // The first fifth warms up: pools, the database's cache, the path that is drawn.
+  // The first fifth is warm-up: pools, the database's cache, the drawn path.
   const settled = samples.filter((s) => s.t > hours * 12);
   const half = settled.length >> 1;
   const early = median(settled.slice(0, half).map((s) => s.rss));

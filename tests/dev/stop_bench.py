@@ -24,8 +24,8 @@ DISK_MB = 8
 
 
 def drive(server):
-    """Pushes the stick aside until the wheels turn, on the spot, so that no wall ends the way; false
-    when the robot is not to be moved."""
+    """Turns the robot on the spot by the stick until the wheels turn, so that no wall stops it; false
+    when the robot does not move."""
     def push(turn):
         server.ask("POST", "/session/watch", {})
         server.ask("POST", "/session/requests", {"type": "joystick", "forward": 0, "turn": turn})
@@ -39,7 +39,7 @@ def drive(server):
             server.ask("POST", "/session/control", {"action": "arm"})
         if session["stop"]:
             server.ask("POST", "/session/control", {"action": "release"})
-        push(0)  # a stick counts once it has been let go of since the last stop
+        push(0)  # after a stop, the stick counts only once it has been released
         for _ in range(8):
             push(1)
     return False
@@ -72,7 +72,7 @@ def stops(server, address):
 
 
 def wheels(server, devices, address):
-    """[s] from the request to a zero command that stays, the longest of some drives."""
+    """[s] from the request to a lasting zero command, the longest of some drives."""
     worst = 0.0
     for _ in range(DRIVES):
         if not drive(server):
@@ -126,7 +126,7 @@ def all_loads(folder):
 
 
 def loads_and_resets(folder):
-    """In simulation: on hardware a reset disarms, and no drive is left to stop."""
+    """In simulation: on hardware a reset disarms, so there is no motion to stop."""
     server = load.Server(PROGRAM, folder, "--db", os.path.join(folder, "other.db"))
     with load.Load(load.load_and_reset, server.port, count=2):
         time.sleep(1)
