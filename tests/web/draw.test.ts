@@ -1,4 +1,4 @@
-// tests/web/draw.test.ts: each kind of layer draws the values it is given, where they are meant.
+// tests/web/draw.test.ts: each kind of layer draws its values at the right place.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { draw_layer, stacked } from "../../web/src/draw/layers";
@@ -124,11 +124,11 @@ test("points: a disc each, in W or from the robot; dashed ones are tied to it", 
   assert.ok(tied.of("stroke")[0].dash.length > 0);
 });
 
-test("points in space lie where they stand on the ground", () => {
+test("points in space are drawn at their ground position", () => {
   assert.deepEqual(xy(drawn(layer("points", [1, 0, 7, -1, 0.5, 8], { axes: 3 })), "arc"), [[500, 300], [300, 250]]);
 });
 
-test("a polyline goes through its positions; what is not a number begins a new line", () => {
+test("a polyline goes through its positions; NaN starts a new line", () => {
   const dashed = drawn(layer("polyline", [0, 0, 1, 0, NaN, NaN, 0, 1, 1, 1, 2, 1, 3, 1], { style: "dashed", tone: "plan" }));
   assert.deepEqual(xy(dashed, "moveTo"), [[400, 300], [400, 200]]);
   assert.deepEqual(xy(dashed, "lineTo"), [[500, 300], [500, 200], [600, 200], [700, 200]]);
@@ -149,13 +149,13 @@ test("arrows: from a place by a vector; forces enlarged, velocities never", () =
   near(tip(drawn(layer("arrows", [0, 0, 0, 0.5], { robot: true }))), [450, 100]);
 });
 
-test("circles have the radius they say; faint ones are faint", () => {
+test("circles have their given radius; faint ones are faint", () => {
   const g = drawn(layer("circles", [1, 0, 0.25, -1, 0, 0.5], { style: "faint" }));
   assert.deepEqual(g.of("arc").map((c) => c.args.slice(0, 3)), [[500, 300, 25], [300, 300, 50]]);
   assert.ok(g.of("stroke").every((c) => c.alpha < 1));
 });
 
-test("arcs begin at the robot, curve by the angle they turn, and are as long as they say", () => {
+test("arcs begin at the robot and have their given angle and length", () => {
   const [[start, ...rest]] = arcs(layer("arcs", [Math.PI / 2, Math.PI / 2]), { x: 0, y: 0, heading: 0 });
   assert.deepEqual([start.x, start.y], [0, 0]);
   near([rest.at(-1)!.x, rest.at(-1)!.y], [1, 1]); // a quarter of a circle of radius 1
@@ -165,7 +165,7 @@ test("arcs begin at the robot, curve by the angle they turn, and are as long as 
   assert.ok(drawn(layer("arcs", [0.5, 0], { tone: "muted" })).of("stroke")[0].width < straight.of("stroke")[0].width);
 });
 
-test("a grid shades what is occupied, row by row from its corner, the surer the stronger", () => {
+test("a grid shades occupied cells row by row from its corner, darker for higher values", () => {
   const values = [-1, 0.5, 0.5, 2]; // corner, cell, columns
   const g = drawn(layer("grid", values, { cells: Uint8Array.from([0, 254, 127, 255, 160, 254]) }));
   const rects = g.of("rect").map((c) => c.args);
@@ -198,7 +198,7 @@ test("text stands at its positions, a line each", () => {
   assert.deepEqual(g.of("text").map((c) => [c.text, ...c.args]), [["one", 400, 300], ["two", 500, 300]]);
 });
 
-test("what is on the ground lies below the robot, what is nearer to the eye above", () => {
+test("ground layers lie below the robot, nearer ones above it", () => {
   const of = (kind: LayerKind, style: LayerView["style"] = "solid") => layer(kind, [], { style });
   const { below, above } = stacked([of("arrows"), of("polyline"), of("grid"), of("points", "dashed"), of("arrows", "dashed"), of("circles")]);
   assert.deepEqual(below.map((l) => l.kind), ["grid", "circles", "points"]);

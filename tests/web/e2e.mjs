@@ -100,7 +100,7 @@ test("by keyboard alone: goal, obstacle, undo, gain, stop and release", { timeou
     await p.page.waitForSelector('[data-testid="shortcuts"]', { state: "detached" });
   }));
 
-test("what the server refuses is said, and the value goes back", { timeout: 60_000 }, () =>
+test("a refusal of the server is shown, and the value is restored", { timeout: 60_000 }, () =>
   with_page({ scenario: "case1" }, async (p, { base }) => {
     await p.page.keyboard.press("p");
     const { pose } = await until("a pose", 10, () => json(base, "/session"), (s) => s.pose && s.pace.paused);
@@ -137,7 +137,7 @@ test("two pages at once: the last writer wins and both see it", { timeout: 60_00
     await q.close();
   }));
 
-test("the page comes back by itself after the server was away", { timeout: 90_000 }, async () => {
+test("the page reconnects by itself after the server was down", { timeout: 90_000 }, async () => {
   const place = scratch();
   let server = await serve({ database: place.database });
   const p = await open(browser, server.base);
@@ -145,7 +145,7 @@ test("the page comes back by itself after the server was away", { timeout: 90_00
   await server.stop("SIGKILL");
   const words = await until("it is said", 15, () => p.page.locator('[data-testid="banner"]').textContent().catch(() => ""));
   assert.match(words, /Connection lost\. Trying/);
-  // What is drawn is grey and says its age, which grows; a Stop says that it did not get through.
+  // The drawing is grey and shows its growing age; a Stop shows that it did not arrive.
   const age = async () => Number((await p.get("stale").textContent()).match(/([\d.]+) s/)[1]);
   const first = await age();
   await until("the age grows", 10, age, (seconds) => seconds > first + 1);
@@ -154,12 +154,12 @@ test("the page comes back by itself after the server was away", { timeout: 90_00
   await p.shot("drive-disconnected");
   server = await serve({ database: place.database, port: server.port });
   await p.page.waitForSelector('[data-testid="link"].open', { timeout: 20_000 });
-  // The Stop that failed is sent until it arrives.
+  // The failed Stop is sent until it arrives.
   await until("the Stop arrived", 15, () => json(server.base, "/session"), (s) => s.stop);
   await p.get("stop-alarm").waitFor({ state: "detached" });
   assert.equal(await p.page.locator('[data-testid="stale"]').count(), 0);
   await until("frames again", 15, () => p.get("link").textContent(), (w) => /[1-9]\d* frames/.test(w));
-  // The run that was cut is marked so.
+  // The interrupted run is marked.
   const runs = await json(server.base, "/runs");
   assert.ok(runs.items.some((r) => r.status === "interrupted"), JSON.stringify(runs.items.map((r) => r.status)));
   p.forgive(/WebSocket connection|ERR_CONNECTION|Failed to load resource|Failed to fetch/);
@@ -171,7 +171,7 @@ test("the page comes back by itself after the server was away", { timeout: 90_00
 test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1", size: phone, touch: true }, async (p, { base }) => {
     const at = await p.pixels(1.0, 4.0);
-    // At rest a tap sets no goal; the goal tool is one press away.
+    // At rest a tap sets no goal; the goal tool takes one press.
     const { goal } = await json(base, "/session");
     await p.page.touchscreen.tap(at.x, at.y);
     await p.page.waitForTimeout(400);
@@ -231,7 +231,7 @@ function hold_and_count() {
   };
 }
 
-test("a scene that was left is drawn no more; its view rests again at the way back", { timeout: 90_000 }, () =>
+test("a scene that was left is no longer drawn; its view settles again on return", { timeout: 90_000 }, () =>
   with_page({ scenario: "demo" }, async (p, { base }) => {
     await p.page.addInitScript(hold_and_count);
     await p.page.reload();
@@ -271,7 +271,7 @@ test("a scene that was left is drawn no more; its view rests again at the way ba
     assert.equal(left, 0);
   }));
 
-test("a robot of one's own is chosen in the page, and stays when the controller changes", { timeout: 90_000 }, async () => {
+test("a user's robot is chosen in the page, and stays when the controller changes", { timeout: 90_000 }, async () => {
   const place = scratch();
   const robots = join(place.folder, "robots");
   mkdirSync(robots);
@@ -308,7 +308,7 @@ test("a robot of one's own is chosen in the page, and stays when the controller 
   }
 });
 
-test("3D draws the same world; without WebGL it says so", { timeout: 90_000 }, () =>
+test("3D draws the same world; without WebGL it shows a message", { timeout: 90_000 }, () =>
   with_page({ scenario: "case1" }, async (p, { base }) => {
     await p.get("three").click();
     await p.page.waitForSelector('[data-testid="scene-3d"] canvas');
@@ -332,7 +332,7 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
     const control = (body) => json(base, "/session/control", { method: "POST", body: JSON.stringify(body) });
     await json(base, "/runs", { method: "POST", body: JSON.stringify({ scenario: "case1", seed: 1 }) })
       .then(({ runs }) => until("a finished run", 60, () => json(base, `/runs/${runs[0]}`), (r) => r.status === "finished"));
-    // Part of the way is driven, then the world rests: what is looked at stays still.
+    // Part of the way is driven, then the world is paused so that the view stays still.
     await control({ action: "speed", speed: 8 });
     await until("some way", 30, () => json(base, "/session"), (s) => s.stamp > 14);
     await control({ action: "pause" });
@@ -340,7 +340,7 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
     for (const theme of ["dark", "light"]) {
       for (const [name, size] of [["desktop", desktop], ["phone", phone], ["tablet", { width: 1024, height: 768 }]]) {
         const p = await open(browser, base, { theme, size });
-        // A page that comes while the world rests shows where it rests, not where it began.
+        // A page opened while the world is paused shows its present state, not its start.
         await until("the newest instant", 10, () => p.get("time").textContent(), (t) => t > "00:13");
         await p.page.waitForTimeout(500);
         for (const view of ["drive", "runs", "system"]) {

@@ -51,7 +51,7 @@ test("with Shift a goal is added, also where one is already", () => {
   assert.deepEqual(done, ["then 1 1"]);
 });
 
-test("a cylinder: a click makes one of usual size, a drag one as large as drawn", () => {
+test("a cylinder: a click makes one of default size, a drag one as large as drawn", () => {
   const { done, drag } = hands("cylinder");
   drag([300, 300], [301, 300]);
   drag([300, 300], [350, 300]);
@@ -64,7 +64,7 @@ test("a box is drawn from its middle", () => {
   assert.deepEqual(done, ["add box -1 0 0.8x0.4"]);
 });
 
-test("an obstacle is dragged with any tool but measure, held where it was gripped", () => {
+test("an obstacle is dragged with any tool except measure, by the point that was gripped", () => {
   const { done, drag } = hands("goal");
   drag([610, 200], [710, 200]); // gripped 0.1 m right of its middle at (2, 1)
   assert.deepEqual(done, ["select obstacle", "moving 4 3 1", "moved 4 3 1"]);
@@ -94,7 +94,7 @@ test("an obstacle that cannot be moved is only selected", () => {
   assert.deepEqual(done, ["select obstacle"]);
 });
 
-test("at rest a drag moves the view, a press shows what is there, and nothing is asked for", () => {
+test("at rest a drag moves the view, a press shows the object, and no request is sent", () => {
   const { done, view, drag, scene } = hands("pan");
   scene.goal = { x: 1, y: 1, heading: null };
   drag([100, 100], [102, 101]); // a tap on nothing
@@ -108,7 +108,7 @@ test("at rest a drag moves the view, a press shows what is there, and nothing is
   assert.equal(view.fitted, false);
 });
 
-test("the right button pans and asks for nothing", () => {
+test("the right button pans and sends no request", () => {
   const { done, view, drag } = hands("goal");
   drag([400, 300], [500, 250], 2); // the world goes right and up, so the middle goes left and down
   assert.deepEqual(done, []);
@@ -136,7 +136,7 @@ test("zooming keeps the point under the cursor", () => {
   assert.ok(Math.abs(before.x - after.x) < 1e-9 && Math.abs(before.y - after.y) < 1e-9);
 });
 
-test("a fitted world lies inside what the cards leave free", () => {
+test("a fitted world lies inside the area left by the cards", () => {
   const view = new View();
   Object.assign(view, { width: 1000, height: 700 });
   const insets = { left: 80, top: 70, right: 24, bottom: 130 };
@@ -170,7 +170,7 @@ function world() {
   return { standing, history, set_refuse: (v: boolean) => (refuse = v) };
 }
 
-test("undo and redo reach an obstacle that came back under another number", async () => {
+test("undo and redo reach an obstacle that was restored with another id", async () => {
   const { standing, history } = world();
   const { id } = await history.perform(add_edit(new_cylinder(1, 0, 0.3)));
   assert.equal(id, 11);
@@ -191,7 +191,7 @@ test("undo and redo reach an obstacle that came back under another number", asyn
   assert.equal(history.can_redo, null);
 });
 
-test("undo and redo pressed faster than the server answers come in turn", async () => {
+test("undo and redo pressed faster than the server answers run in order", async () => {
   const { standing, history } = world();
   const presses = [history.perform(add_edit(new_cylinder(1, 0, 0.3))), history.undo(), history.redo(), history.undo(),
     history.redo()];
@@ -200,7 +200,7 @@ test("undo and redo pressed faster than the server answers come in turn", async 
   assert.equal(history.can_redo, null);
 });
 
-test("an edit that is refused is not kept; a refused undo stays to be tried again", async () => {
+test("a refused edit is not kept; a refused undo can be tried again", async () => {
   const { history, set_refuse } = world();
   set_refuse(true);
   await assert.rejects(history.perform(add_edit(new_box(0, 0, 1, 1))), /Not now/);
@@ -212,12 +212,12 @@ test("an edit that is refused is not kept; a refused undo stays to be tried agai
   assert.equal(history.can_undo, "Add obstacle");
 });
 
-test("a goal edit goes back to no goal, or to the one before with its heading", () => {
+test("a goal edit is undone to no goal, or to the earlier goal with its heading", () => {
   assert.deepEqual(set_goal_edit(null, { x: 1, y: 2, heading: null }).backward, { type: "clear_goal" });
   assert.deepEqual(set_goal_edit({ x: 0, y: 0, heading: 1 }, null).backward, { type: "set_goal", x: 0, y: 0, heading: 1 });
 });
 
-test("obstacles survive the way to JSON and back", () => {
+test("obstacles survive conversion to JSON and back", () => {
   for (const json of [
     { type: "cylinder", x: 1, y: 2, radius: 0.3, height: 0.5 },
     { type: "box", x: 1, y: 1, heading: 0.5, length: 0.6, width: 0.4 },

@@ -1,4 +1,4 @@
-// tests/web/endings.mjs: what may come from outside ends no program silently, and no run is lost by it.
+// tests/web/endings.mjs: signals, full files and closed pipes end no program silently and lose no run.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { openSync } from "node:fs";
@@ -49,7 +49,7 @@ test("a file that may not grow ends no run, and the page is told", async (t) => 
   await server.stop();
 });
 
-test("nobody reads what the program says, and viewers go in the middle of a message", async (t) => {
+test("the program's output is not read, and viewers leave in the middle of a message", async (t) => {
   const { database, remove } = scratch();
   t.after(remove);
   const server = await serve({ database });
@@ -67,7 +67,7 @@ test("nobody reads what the program says, and viewers go in the middle of a mess
   assert.equal(await server.stop(), 0);
 });
 
-test("a run that is deleted while it is exported leaves an incomplete table, in words", async (t) => {
+test("a run deleted during its export leaves an incomplete table and a sentence", async (t) => {
   const { database, remove } = scratch();
   t.after(remove);
   assert.equal((await tautline(["run", "case1", "--vehicle", "kinematic", "--out", database])).status, 0);
@@ -75,7 +75,7 @@ test("a run that is deleted while it is exported leaves an incomplete table, in 
   t.after(server.kill);
   const whole = await tautline(["export", "1", "--db", database]);
   assert.deepEqual(whole, { status: 0, said: "" });
-  // Its pipe is full until the run has gone.
+  // Its pipe stays full until the run is deleted.
   const cut = await tautline(["export", "1", "--db", database], "pipe", async () => {
     await new Promise((resolve) => setTimeout(resolve, 500));
     assert.equal((await fetch(`${server.base}/api/v1/runs/1`, { method: "DELETE" })).status, 204);
@@ -85,7 +85,7 @@ test("a run that is deleted while it is exported leaves an incomplete table, in 
   await server.stop();
 });
 
-test("words that cannot be written are an error", async () => {
+test("output that cannot be written is an error", async () => {
   const full = openSync("/dev/full", "w");
   for (const args of [["--version"], ["run", "case1", "--vehicle", "kinematic"]]) {
     const { status, said } = await tautline(args, full);

@@ -64,7 +64,7 @@ async function with_server(act) {
 const kTopics = ["/telemetry", "/tautline/filtered", "/state", "/scan", "/tf", "/odom", "/layers", "/obstacles", "/goal",
   "/trajectory", "/log"];
 
-test("every channel speaks as its schema says", { timeout: 90_000 }, () => with_server(async ({ base }) => {
+test("every channel's messages match its schema", { timeout: 90_000 }, () => with_server(async ({ base }) => {
   const { client, seen, service } = await connect(base);
   assert.deepEqual([...seen.channels.keys()].sort(), [...kTopics].sort());
   for (const capability of ["clientPublish", "time", "parameters", "parametersSubscribe", "services"]) {
@@ -89,7 +89,7 @@ test("every channel speaks as its schema says", { timeout: 90_000 }, () => with_
     const value = JSON.parse(text);
     if (!check(value)) faults.push(`${channel.topic}: ${ajv.errorsText(check.errors)}\n${text.slice(0, 300)}`);
   });
-  // Something for /log to say: a stop holds the robot; a refused request is an event too.
+  // Events for /log: a stop holds the robot; a refused request is an event too.
   await service("/request", { type: "stop", engaged: true });
   await service("/request", { type: "stop", engaged: false });
   await service("/request", { type: "set_goal", x: 2, y: 3, heading: 0.5 });
@@ -146,7 +146,7 @@ test("a goal, a gain and a reset from outside", { timeout: 60_000 }, () => with_
   assert.equal(aimed.goal.y, 2.25);
   assert.ok(Math.abs(aimed.goal.heading - Math.PI / 2) < 1e-6);
 
-  // A gain: taken, told to who asked; out of limits: refused with a sentence, the old value sent back.
+  // A gain: accepted and returned to the client; out of limits: refused with a sentence and the old value.
   client.subscribeParameterUpdates(["k_r"]);
   const last = () => seen.parameters.flatMap((p) => p.parameters).filter((p) => p.name === "k_r").at(-1)?.value;
   client.setParameters([{ name: "k_r", value: 0.45, type: "float64" }], "one");
@@ -167,7 +167,7 @@ test("a goal, a gain and a reset from outside", { timeout: 60_000 }, () => with_
   client.close();
 }));
 
-test("both subprotocol names are spoken, another is refused", { timeout: 30_000 }, () => with_server(async ({ base }) => {
+test("both subprotocol names are accepted, another is refused", { timeout: 30_000 }, () => with_server(async ({ base }) => {
   const ask = (protocols) => new Promise((resolve) => {
     const socket = new WebSocket(`${base.replace("http", "ws")}/ws`, protocols);
     socket.on("open", () => {

@@ -1,4 +1,4 @@
-// tests/web/foxglove.test.ts: the protocol's bytes, and the live link over a socket that is not one.
+// tests/web/foxglove.test.ts: the protocol's bytes, and the live link over a fake socket.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { kBackoff, LinkStatus, LiveLink, SocketLike } from "../../web/src/link/live";
@@ -16,7 +16,7 @@ test("message data: the protocol's own vector", () => {
   assert.equal(m.payload.length, 0);
 });
 
-test("frames cut at every byte are refused or read, never thrown over", () => {
+test("frames cut at every byte are refused or read, without an exception", () => {
   const whole = new Uint8Array(hex("03010000000200000004000000" + "6a736f6e" + "7b7d"));
   for (let n = 0; n < whole.length; ++n) {
     const m = parse_binary(whole.slice(0, n).buffer);
@@ -31,7 +31,7 @@ test("a declared length beyond the frame is refused", () => {
   assert.equal(parse_binary(hex("030100000002000000ffffffff6a736f6e")), null);
 });
 
-test("text that is no message is nothing", () => {
+test("text that is no message is ignored", () => {
   for (const text of ["", "{", "[]", "3", "null", '{"a":1}']) assert.equal(parse_text(text), null);
   assert.equal(parse_text('{"op":"status","level":1,"message":"x"}')?.op, "status");
 });
@@ -101,7 +101,7 @@ function linked() {
   return { link, sockets, seen, ready };
 }
 
-test("the link subscribes to what the page reads, and no more", () => {
+test("the link subscribes only to the channels that the page reads", () => {
   const { link, sockets, ready } = linked();
   ready(sockets[0]);
   const subscribed = sockets[0].ops().filter((o) => o.op === "subscribe");
@@ -109,7 +109,7 @@ test("the link subscribes to what the page reads, and no more", () => {
   link.close();
 });
 
-test("filtered scans are asked for while they are wanted, over a new connection as well", () => {
+test("filtered scans are requested while they are wanted, over a new connection too", () => {
   const timers = hand_wound();
   const { link, sockets, seen, ready } = linked();
   const asked = (socket: FakeSocket) => socket.ops().filter((o) => o.op === "subscribe")
@@ -135,7 +135,7 @@ test("filtered scans are asked for while they are wanted, over a new connection 
   timers.restore();
 });
 
-test("a frame comes through, at an odd address in the message as well", () => {
+test("a frame is read, even at an odd address in the message", () => {
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0]);
   const id = (sockets[0].ops().find((o) => o.op === "subscribe")!.subscriptions as { id: number }[])[0].id;
@@ -176,7 +176,7 @@ test("a refused parameter resolves with the value the server kept", async () => 
   link.close();
 });
 
-test("a lost connection is said, waits longer each time, and fails what was under way", async () => {
+test("a lost connection is reported, retries ever later, and fails pending calls", async () => {
   const timers = hand_wound();
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0]);
@@ -196,7 +196,7 @@ test("a lost connection is said, waits longer each time, and fails what was unde
   timers.restore();
 });
 
-test("another server process means that what was known no longer holds", () => {
+test("another server process invalidates the known state", () => {
   const timers = hand_wound();
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0], "a");
@@ -213,7 +213,7 @@ test("another server process means that what was known no longer holds", () => {
   timers.restore();
 });
 
-test("a session that is gone is said, and not asked for again and again", () => {
+test("an ended session is reported, and not requested again and again", () => {
   const timers = hand_wound();
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0]);
@@ -230,7 +230,7 @@ test("a session that is gone is said, and not asked for again and again", () => 
   timers.restore();
 });
 
-test("calls without a connection say so at once", async () => {
+test("calls without a connection fail at once", async () => {
   const { link } = linked();
   await assert.rejects(link.call("/reset"), /no connection/);
   await assert.rejects(link.set_parameter("k_r", 1), /no connection/);

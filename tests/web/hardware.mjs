@@ -1,5 +1,5 @@
-// tests/web/hardware.mjs: the page on a robot whose scanner and base are emulated: arming, trouble in
-// words, Stop, and all of it within reach on a phone.
+// tests/web/hardware.mjs: the page on a robot with emulated scanner and base: arming, fault sentences,
+// Stop, and all controls usable on a phone.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { devices } from "./devices.mjs";

@@ -1,14 +1,14 @@
-// tests/web/layers.mjs: what is drawn of a live run and of its record is the same, layer by layer; the
-// panel's switches work and are remembered. Run as e2e.mjs.
+// tests/web/layers.mjs: a live run and its record are drawn alike, layer by layer; the panel's
+// switches work and are remembered. Run like e2e.mjs.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { setTimeout as pause } from "node:timers/promises";
 import { desktop, launch, open, phone } from "./page.mjs";
 import { json, scratch, serve, until } from "./program.mjs";
 
-const kAtOnce = 1;    // ticks: of more the page gets the last
-const kScale = 70;    // [px/m] at which both are looked at
-const kHalf = 140;    // [px] of the piece about the robot that is compared
+const kAtOnce = 1;    // ticks per step: of more the page gets only the last
+const kScale = 70;    // [px/m] of both views
+const kHalf = 140;    // [px] half size of the compared square about the robot
 const kAlike = 0.001; // share of its pixels that may differ
 
 let browser;
@@ -34,7 +34,7 @@ async function drive(p, base, ticks) {
 
 /** Moves the view by its own wheel, until `pose` is in the middle at kScale; exact to a fiftieth of a pixel. */
 async function look_at(p, pose) {
-  await p.pixels(pose.x, pose.y); // the view rests
+  await p.pixels(pose.x, pose.y); // the view has settled
   await p.get("scene").evaluate(async (canvas, { pose, scale }) => {
     const box = canvas.getBoundingClientRect();
     const [w, h] = [canvas.clientWidth, canvas.clientHeight];
@@ -119,7 +119,7 @@ const kCases = [
   ["sensors", "strip", 300, ["filtered", "ranging", "strip"]],
 ];
 
-test("what is drawn live is drawn of the record, layer by layer", { timeout: 600_000 }, async () => {
+test("the record is drawn like the live run, layer by layer", { timeout: 600_000 }, async () => {
   const place = scratch();
   const server = await serve({ database: place.database, scenario: "demo" });
   const { base } = server;

@@ -1,4 +1,4 @@
-// tests/web/main_job.mjs: what the page is for, done once: load case1, choose `modified`, drag a goal,
+// tests/web/main_job.mjs: the main use of the page: load case1, choose `modified`, drag a goal,
 // drop an obstacle in the way, watch it reach, scrub that run.
 import assert from "node:assert/strict";
 import { json, near, until } from "./program.mjs";

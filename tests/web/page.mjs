@@ -1,5 +1,5 @@
-// tests/web/page.mjs: a browser page for the end-to-end tests: collects what went wrong, points at
-// places of the world, keeps screenshots.
+// tests/web/page.mjs: a browser page for the end-to-end tests: collects faults, clicks at world
+// positions, keeps screenshots.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -34,7 +34,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
   const page = await context.newPage();
   const faults = [];
   page.on("console", (m) => {
-    // The software renderer's own remark about reading pixels says nothing about the page.
+    // The software renderer's own warning about reading pixels is no fault of the page.
     if (["error", "warning"].includes(m.type()) && !/ReadPixels/.test(m.text())) faults.push(`${m.type()}: ${m.text()}`);
   });
   page.on("pageerror", (e) => faults.push(`exception: ${e.message}`));
@@ -45,7 +45,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
   });
   await page.goto(`${base}/${hash}`);
   await page.waitForSelector('[data-testid="link"].open', { timeout: patience });
-  // It listens to keys once it has drawn, and a key before that is lost.
+  // The page handles keys only once it has drawn; an earlier key is lost.
   await page.evaluate(() => new Promise((done) =>
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))));
   const get = (id) => page.getByTestId(id);
@@ -67,7 +67,7 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
     /** Pixels of a place of the world [m], once the view rests. */
     async pixels(x, y) {
       const scene = get("scene");
-      // The view fits itself again when a card below it grows: the same for a while is at rest.
+      // The view refits when a card below it grows, so wait until it stays the same for a while.
       const rests = (e) => {
         if (e.dataset.view !== e.test_view) [e.test_view, e.test_since] = [e.dataset.view, performance.now()];
         return e.dataset.view && performance.now() - e.test_since > 250 ? e.dataset.view : null;

@@ -19,8 +19,8 @@ export function scratch() {
 }
 
 /**
- * `tautline serve` on a free port (or `port`), once it has said its address; `scenario` null: none.
- * `limit`: what the shell is told first, such as "ulimit -f 400".
+ * `tautline serve` on a free port (or `port`), once it has printed its address; `scenario` null: none.
+ * `limit`: a shell command to run first, such as "ulimit -f 400".
  */
 export async function serve({ database, scenario = "case1", port = 0, more = [], limit = ":" }) {
   const args = ["serve", "--port", String(port), "--db", database, ...more];
@@ -76,7 +76,7 @@ export async function json(base, path, options = {}) {
   return text === "" ? null : JSON.parse(text);
 }
 
-/** Asks until `good` says yes to the answer; throws `what` with the last answer after `seconds`. */
+/** Asks until `good` accepts the answer; throws `what` with the last answer after `seconds`. */
 export async function until(what, seconds, ask, good = Boolean) {
   const end = Date.now() + seconds * 1000;
   let last;

@@ -1,4 +1,4 @@
-// tests/web/proxy.mjs: the recipe of docs/install.md as it stands there: nginx with TLS in front of the
+// tests/web/proxy.mjs: the literal recipe of docs/install.md: nginx with TLS in front of the
 // real program; page, login, cookie, WebSocket, and forty visitors at once.
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
@@ -144,7 +144,7 @@ test("page, login, cookie and WebSocket through TLS", { timeout: 60_000 }, async
   assert.equal((await ask({ port, path: "/api/v1/session", headers: { Cookie: cookie } })).status, 401);
 });
 
-test("forty visitors at once, and one who guesses", { timeout: 120_000 }, async () => {
+test("forty visitors at once, and one who guesses tokens", { timeout: 120_000 }, async () => {
   const guesser = "127.0.9.9";
   const answers = [];
   for (let i = 0; i < 15; ++i) answers.push(await log_in(port, { token: `guess-number-${i}-of-many`, from: guesser }));

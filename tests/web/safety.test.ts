@@ -1,4 +1,4 @@
-// tests/web/safety.test.ts: signs of life, a Stop that fails, and how old what is drawn is.
+// tests/web/safety.test.ts: signs of life, a Stop that fails, and the age of the drawing.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { SessionState } from "../../web/src/contract";
@@ -24,22 +24,22 @@ function tab() {
   return { seen, look: () => look(), draw: () => frames.splice(0).forEach((act) => act()) };
 }
 
-test("a sign of life follows a frame that was drawn, and no other way", () => {
+test("only a drawn frame gives a sign of life", () => {
   const { seen, look, draw } = tab();
   look();
   assert.equal(seen.signs, 0);
-  draw(); // this frame is begun: nobody has seen it yet
+  draw(); // this frame is begun, not yet visible
   assert.equal(seen.signs, 0);
   draw();
   assert.equal(seen.signs, 1);
-  for (let i = 0; i < 10; ++i) look(); // a tab that draws nothing any more
+  for (let i = 0; i < 10; ++i) look(); // a tab that no longer draws
   assert.equal(seen.signs, 1);
   draw();
   draw();
   assert.equal(seen.signs, 2, "one sign, however often it was due meanwhile");
 });
 
-test("a hidden page, and one whose Stop does not work, give no sign", () => {
+test("a hidden page and a page with a failed Stop give no sign", () => {
   for (const off of ["visible", "stop"] as const) {
     const { seen, look, draw } = tab();
     seen[off] = false;
@@ -68,7 +68,7 @@ function stop() {
 }
 const settled = () => Promise.resolve().then(() => Promise.resolve()).then(() => Promise.resolve());
 
-test("a Stop that is answered in time goes one way and says nothing more", async () => {
+test("a Stop answered in time is sent one way only, without a message", async () => {
   const timers = hand_wound();
   const { calls, phases, stopper } = stop();
   stopper.press();
@@ -80,7 +80,7 @@ test("a Stop that is answered in time goes one way and says nothing more", async
   assert.deepEqual(phases(), ["sent", "none"]);
 });
 
-test("a Stop without an answer has failed after half a second, and is sent by every way until one answers", async () => {
+test("a Stop without an answer fails after half a second, and is sent every way until one answers", async () => {
   const timers = hand_wound();
   const { calls, phases, states, stopper, at } = stop();
   stopper.press();
@@ -91,7 +91,7 @@ test("a Stop without an answer has failed after half a second, and is sent by ev
   timers.tick(kAnswerTime);
   assert.deepEqual(calls.map((c) => c.way), [0, 0, 1, 0, 1]);
   at(3000);
-  stopper.press(); // in vain: it has failed since the first
+  stopper.press(); // no effect: the first has failed already
   assert.equal(states.at(-1)!.since, 1000);
   calls.at(-1)!.resolve();
   await settled();
@@ -102,7 +102,7 @@ test("a Stop without an answer has failed after half a second, and is sent by ev
   assert.equal(calls.length, sent);
 });
 
-test("without a connection the other way is tried at once, and failure is said at once", async () => {
+test("without a connection the other way is tried and failure is reported at once", async () => {
   const timers = hand_wound();
   const { calls, phases, stopper } = stop();
   stopper.press();
@@ -122,7 +122,7 @@ test("without a connection the other way is tried at once, and failure is said a
 const session = (change: object = {}): SessionState => ({ source: "hardware", stop: true, goal: null,
   run: { id: 1, status: "recording", outcome: "running" }, pace: { paused: false, speed: 1 }, ...change }) as SessionState;
 
-test("what is old says its age", () => {
+test("old data show their age", () => {
   const scene = new_scene();
   assert.equal(news_age(scene, session(), false, 5000), null, "nothing was heard yet");
   scene.heard_at = 1000;
@@ -143,7 +143,7 @@ test("the scan's age is counted from its own stamp", () => {
   assert.ok(Math.abs(scan_age(scene)! - 2.5) < 1e-6);
 });
 
-test("a Stop that is commanded is not yet a robot that stands", () => {
+test("a commanded Stop does not mean that the robot stands", () => {
   const scene = new_scene();
   scene.heard_at = 0;
   const frame = decode_frame(frame_bytes({ tick: 0 }), new Legends());
@@ -155,7 +155,7 @@ test("a Stop that is commanded is not yet a robot that stands", () => {
   assert.match(stopped_words(scene, session(), false, 4000), /not known: it was last heard 4\.0 s ago/);
 });
 
-test("who watches, in words", () => {
+test("the watchers as text", () => {
   const words = (watchers: number, watched_by_script: boolean) => watchers_words(session({ watchers, watched_by_script }));
   assert.equal(words(1, false), "watched by 1 page");
   assert.equal(words(2, false), "watched by 2 pages");

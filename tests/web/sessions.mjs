@@ -25,7 +25,7 @@ async function with_server(more, act) {
 const id_of = (p) => new URL(p.page.url()).searchParams.get("session");
 const post = (base, path, body) => json(base, path, { method: "POST", body: JSON.stringify(body) });
 
-test("two visitors have a world each, and one that is gone is said", { timeout: 120_000 }, () =>
+test("two visitors have a world each, and an ended session is reported", { timeout: 120_000 }, () =>
   with_server(["--per-visitor"], async (base) => {
     const p = await open(browser, base);
     const q = await open(browser, base);
@@ -33,7 +33,7 @@ test("two visitors have a world each, and one that is gone is said", { timeout: 
     assert.notEqual(id_of(p), id_of(q));
     const session = (page) => () => json(base, `/sessions/${id_of(page)}`);
 
-    // What one does the other does not see, neither in its world nor on its page.
+    // Changes by one visitor appear neither in the other's world nor on the other's page.
     await p.get("stop").click();
     await until("stopped", 10, session(p), (s) => s.stop);
     await post(base, `/sessions/${id_of(p)}/obstacles`, { type: "cylinder", x: 1, y: 4.5, radius: 0.1 });
@@ -61,12 +61,12 @@ test("two visitors have a world each, and one that is gone is said", { timeout: 
     assert.equal(await p.get("session-gone").count(), 0);
     assert.equal((await session(p)()).stop, false);
     assert.equal((await session(q)()).stop, false);
-    p.forgive(/404/); // what the page asked for while its session went
+    p.forgive(/404/); // requests of the page while its session ended
     await p.close();
     await q.close();
   }));
 
-test("a server without room says so, and a page shows the session in its address", { timeout: 120_000 }, () =>
+test("a full server shows a message, and a page shows the session of its address", { timeout: 120_000 }, () =>
   with_server(["--per-visitor", "--sessions", "1"], async (base) => {
     const { id } = await post(base, "/sessions", { scenario: "case2" });
     const p = await open(browser, base, { hash: `?session=${id}` });

@@ -39,7 +39,7 @@ test("a frame is read back whole", () => {
   assert.throws(() => decode_frame(new Uint8Array(3), new Legends()), /too short/);
 });
 
-test("a layer is read back, from wherever the bytes lie", () => {
+test("a layer is read back at any alignment", () => {
   const bytes = frame_bytes({ tick: 1, layers: [
     { name: "histogram", label: "Polar histogram", kind: LayerKind.Polar, values: [0, 1.5, 400], level: 300, unit: "1/m",
       frame: LayerFrame.Robot, tone: Tone.External, style: LayerStyle.Faint },
@@ -62,7 +62,7 @@ test("a layer is read back, from wherever the bytes lie", () => {
   }
 });
 
-test("values in 16 bits and wide ones are read alike", () => {
+test("16-bit and wide values give the same result", () => {
   const lines = (x: number): LayerSpec[] => [
     { name: "plan", kind: LayerKind.Polyline, values: [] },
     { name: "strip", kind: LayerKind.Polyline, values: [x, -0.5, NaN, NaN, -31.5, 0.25] },
@@ -76,7 +76,7 @@ test("values in 16 bits and wide ones are read alike", () => {
   }
 });
 
-test("layers and measures are told by a legend that came before, or comes in the same page of frames", () => {
+test("layers and measures are named by an earlier legend, or one in the same page of frames", () => {
   const layers: LayerSpec[] = [
     { name: "strip", kind: LayerKind.Polyline, values: [0, 0, 1, 1] },
     { name: "forces", kind: LayerKind.Arrows, values: [] },
@@ -137,7 +137,7 @@ const grid = (byte: number): LayerSpec => ({ name: "grid", kind: LayerKind.Grid,
 const line: LayerSpec = { name: "strip", label: "Strip", kind: LayerKind.Polyline, values: [0, 0, 1, 1] };
 const goal: [number, number, null] = [1, 0, null];
 
-test("a grid holds until another comes, the goal is gone, or another run begins", () => {
+test("a grid stays until another comes, the goal ends, or another run begins", () => {
   const scene = new_scene();
   const byte = () => scene.layers.get("grid")?.cells[0];
   fold_frame(scene, frame({ tick: 5, goal, layers: [grid(254), line] }));
@@ -153,7 +153,7 @@ test("a grid holds until another comes, the goal is gone, or another run begins"
   assert.equal(byte(), undefined);
 });
 
-test("words hold until others come, or another run begins", () => {
+test("words stay until others come, or another run begins", () => {
   const scene = new_scene();
   fold_frame(scene, frame({ tick: 5, words: ["Driving", "2 m to go."] }));
   fold_frame(scene, frame({ tick: 6, words: ["", ""] }));
@@ -164,7 +164,7 @@ test("words hold until others come, or another run begins", () => {
   assert.equal(scene.words, null);
 });
 
-test("the panel lists what came, also what is not there now, until another controller drives", () => {
+test("the panel lists every layer so far, absent ones too, until another controller drives", () => {
   const scene = new_scene();
   const session = (controller: string) => ({ run: null, controller, source: "simulation" }) as unknown as SessionState;
   const names = () => layer_groups(scene, "M").map((g) => [g.title, ...g.keys.map((k) => k.name)]);
@@ -177,7 +177,7 @@ test("the panel lists what came, also what is not there now, until another contr
   assert.deepEqual(names(), [["Senses", "scan", "filtered"], ["Robot", "path", "safety"]]);
 });
 
-test("obstacles that move by themselves are where the frame says, the others where they were", () => {
+test("moving obstacles are at the frame's poses, the others at their own", () => {
   const scene = new_scene();
   const cylinder = (id: number, x: number) => ({ id, type: "cylinder", x, y: 0, radius: 0.3 });
   const session = { run: null, source: "simulation", obstacles: [cylinder(1, 1), cylinder(2, 2)] } as unknown as SessionState;
@@ -196,7 +196,7 @@ test("a filtered scan is placed where the robot was when its tick came, whicheve
   filtered.see(tick(1, 5));
   filtered.take(scan(1));
   assert.equal(filtered.shown?.origin.x, 5);
-  filtered.take(scan(2)); // before its frame: the one before stays
+  filtered.take(scan(2)); // before its frame: the earlier scan stays
   assert.equal(filtered.shown?.sweep.stamp, 1);
   filtered.see(tick(2, 6));
   assert.deepEqual([filtered.shown?.sweep.stamp, filtered.shown?.origin.x], [2, 6]);
@@ -206,7 +206,7 @@ test("a filtered scan is placed where the robot was when its tick came, whicheve
   assert.equal(decode_sweep(new Uint8Array(0)), null);
 });
 
-test("beams end where the geometry says, from the scanner's own place", () => {
+test("beams end at their computed points, from the scanner's mount", () => {
   const scene = new_scene();
   // Robot at (1, 2) facing +y; the scanner 0.5 m ahead of its centre, so at (1, 2.5) facing +y.
   // Three beams at -90, 0, +90 degrees of it: along +x, +y and -x. 2 m, free, a device code.
@@ -249,7 +249,7 @@ test("events: changes of mission and hold, and a drag is one mark", () => {
   assert.deepEqual(scene.events.list.map((e) => e.label), ["Obstacle moved", "Bumper pressed", "Arrived"]);
 });
 
-test("that a run begins without a scan is no event; that it loses its scan later is", () => {
+test("a run that begins without a scan is no event; losing the scan later is", () => {
   const scene = new_scene();
   for (const tick of [0, 1]) fold_frame(scene, frame({ tick, hold: "stale_scan" }));
   fold_frame(scene, frame({ tick: 2 }));
@@ -274,7 +274,7 @@ test("row_at finds the last row not after a time", () => {
   assert.deepEqual([-1, 0, 1.5, 2, 3.9, 99].map((t) => columns.row_at(t)), [0, 0, 1, 2, 2, 3]);
 });
 
-test("rows of the record come before those already here", () => {
+test("rows of the record come before those already present", () => {
   const columns = new Columns();
   columns.push(frame({ tick: 10, stamp: 10, pose: [5, 0, 0] }));
   const row = (tick: number) => ({ tick, t: tick, x: tick / 2, y: 0, heading: 0, v: 0, omega: 0, clearance: 1 });
@@ -283,7 +283,7 @@ test("rows of the record come before those already here", () => {
   assert.ok(Number.isNaN(columns.at("strip.left", 0)), "what the record's columns do not hold stays open");
 });
 
-test("a measure is a column from when it first comes; where it does not, there is no number", () => {
+test("a measure is a column from its first value on; missing values are NaN", () => {
   const columns = new Columns();
   columns.push(frame({ tick: 0 }));
   columns.push(frame({ tick: 1, measures: [["strip.left", "m", 0.5]] }));
@@ -305,7 +305,7 @@ test("a fitted view shows goal, obstacles, start and robot", () => {
   assert.ok(b.min_x <= -0.35 && b.min_y <= -0.35 && b.max_x >= 5.2 && b.max_y >= 4.2);
 });
 
-test("frames of an answer are split by their lengths; a cut answer is said", () => {
+test("frames of an answer are split by their lengths; a truncated answer is an error", () => {
   const parts = [frame_bytes({ tick: 0 }), frame_bytes({ tick: 1, ranges: [1, 2, 3] })];
   const whole = framed(parts);
   assert.deepEqual(decode_frames(split_frames(whole)).map((f) => f.tick), [0, 1]);
@@ -353,7 +353,7 @@ test("a stored run is fetched page by page and can be sought anywhere", async ()
   assert.equal(run.scene.sweeps.length, 1, "an odd tick shows the sweep of the even one before");
 });
 
-test("obstacles and parameters are as they were at the shown instant, forward and back", async () => {
+test("obstacles and parameters match the shown instant, forward and back", async () => {
   const { run } = stored(400);
   await run.load(() => undefined);
   const at = (row: number) => {
@@ -370,10 +370,10 @@ test("obstacles and parameters are as they were at the shown instant, forward an
   assert.equal(run.scene.safety_distance, 3);
 });
 
-test("of a run that is still being recorded, what was there when it was opened", async () => {
+test("a run still being recorded is shown up to its end when opened", async () => {
   let there = 500;
   const run = new StoredRun({ ...item, status: "recording", ticks: there }, async (from, limit) => {
-    there += 1000; // it grows faster than it is fetched
+    there += 1000; // grows faster than it is fetched
     const frames = Array.from({ length: Math.min(limit, there - from) }, (_, i) => frame_bytes({ tick: from + i }));
     return { bytes: framed(frames), next: from + limit };
   }, none);
@@ -382,7 +382,7 @@ test("of a run that is still being recorded, what was there when it was opened",
   assert.ok(run.rows >= 500 && run.rows <= 500 + kPageFrames, `${run.rows} rows`);
 });
 
-test("a run that cannot be fetched says why and keeps what came", async () => {
+test("a failed fetch of a run gives a reason and keeps the fetched part", async () => {
   let pages = 0;
   const run = new StoredRun(item, async () => {
     if (++pages > 1) throw new Error("The server cannot be reached.");
@@ -432,7 +432,7 @@ const shown = (scene: SceneState) => ({
   readings: [...scene.readings.values()].map((r) => `${r.kind} ${r.range} ${r.stamp}`).sort(),
 });
 
-test("a stored run shows at any tick what was shown live, sought in any order", async () => {
+test("a stored run shows the live view at any tick, sought in any order", async () => {
   const bytes = Array.from({ length: 120 }, (_, tick) => frame_bytes(varied(tick)));
   const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), none);
   await run.load(() => undefined);

@@ -1,4 +1,4 @@
-// tests/web/timers.ts: timers that go by when a test says so.
+// tests/web/timers.ts: timers that a test advances.
 
 /** Replaces the timers; put back by `restore`. */
 export function hand_wound() {

@@ -1,5 +1,5 @@
-// tests/web/watch.mjs: an armed robot on its way stops when its page cannot be looked at, or its Stop
-// not be pressed; on emulated devices, in real time.
+// tests/web/watch.mjs: an armed, driving robot stops when its page is not visible or its Stop cannot be
+// pressed; on emulated devices, in real time.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { devices } from "./devices.mjs";
@@ -54,14 +54,14 @@ const ends = {
     const cdp = await p.context.newCDPSession(p.page);
     await cdp.send("Debugger.enable");
     await cdp.send("Debugger.pause");
-    p.page.evaluate("1 + 1").catch(() => undefined); // what it pauses at
+    p.page.evaluate("1 + 1").catch(() => undefined); // the page pauses here
   },
   "a tab whose scripts are off": async (p) => {
     const cdp = await p.context.newCDPSession(p.page);
     await cdp.send("Emulation.setScriptExecutionDisabled", { value: true });
   },
   "a hidden tab": async (p) => {
-    // Headless Chromium calls every tab visible; what the page asks is answered as for a hidden one.
+    // Headless Chromium reports every tab as visible; make the page see a hidden one.
     await p.page.evaluate(() => Object.defineProperty(document, "visibilityState", { get: () => "hidden" }));
   },
   "a closed tab": (p) => p.page.close(),
@@ -122,7 +122,7 @@ test("a stray tap, a pan, Arm with a goal waiting and Release move nothing", { t
     await p.get("release").click();
     await until("released", 10, session, (s) => !s.stop);
     await rests("a release after a goal");
-    // A goal where something is seen is told before anybody drives there.
+    // A goal on a seen obstacle is reported before the robot drives.
     await p.get("tool-goal").click();
     await p.page.keyboard.press("f");
     const seen = await put(server.base, "/session/goal/check", { x: -20, y: 0 }, "POST");

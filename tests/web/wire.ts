@@ -1,4 +1,4 @@
-// tests/web/wire.ts: builds frames by the generated wire code, for tests that need one.
+// tests/web/wire.ts: builds frames for tests by the generated wire code.
 import * as flatbuffers from "flatbuffers";
 import * as wire from "../../web/src/wire/telemetry_generated";
 
