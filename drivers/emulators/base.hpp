@@ -37,9 +37,9 @@ struct BaseCommand {
 
 /// Injected faults of the wheels.
 struct WheelTrouble {
-  double runaway = 0;    // [m/s] both wheels turn at this speed while powered, whatever the command
-  double gain = 1;       // factor from the commanded to the actual speed
-  bool blocked = false;  // the left wheel does not turn
+  double runaway = 0;         // [m/s] both wheels turn at this speed while powered
+  double gain = 1;            // factor from the commanded to the actual speed
+  bool blocked = false;       // the left wheel does not turn
   bool encoder_dead = false;  // the left encoder counts nothing
 };
 

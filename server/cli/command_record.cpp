@@ -104,7 +104,7 @@ void add_export_command(CLI::App& app, int& status) {
   command->add_option("--output,-o", options->output, "File to write (default: standard output)");
   command->footer(
       "Exit status: 0 the whole run, 1 bad input or error, 4 incomplete: a gap, a cut, or a run "
-      "deleted meanwhile; what there is has been written.");
+      "deleted meanwhile; the rest has been written.");
   command->callback([options, &status] { status = export_run(*options); });
 }
 

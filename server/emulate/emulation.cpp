@@ -131,7 +131,7 @@ double value_of(const std::string& text, const VerbRow& row) {
 }
 
 /// Injects a fault that any device can have; false for any other `verb`.
-bool befall(Verb verb, double value, Connection& connection, emulators::Device& device) {
+bool inject(Verb verb, double value, Connection& connection, emulators::Device& device) {
   if (verb == Verb::Unplug) {
     connection.unplug(value);
     return true;
@@ -158,10 +158,10 @@ bool befall(Verb verb, double value, Connection& connection, emulators::Device& 
   return true;
 }
 
-void befall_scanner(Verb verb, double value, Connection& connection, lms200::Emulator& device) {
+void inject_scanner(Verb verb, double value, Connection& connection, lms200::Emulator& device) {
   constexpr std::uint8_t kGood = 0x10;
   constexpr std::uint8_t kPolluted = 0x92;
-  if (befall(verb, value, connection, device)) return;
+  if (inject(verb, value, connection, device)) return;
   const auto held = connection.lock();
   switch (verb) {
     case Verb::Restart:
@@ -184,7 +184,7 @@ void befall_scanner(Verb verb, double value, Connection& connection, lms200::Emu
   }
 }
 
-void befall_wheels(Verb verb, double value, emulators::Base& device) {
+void inject_wheels(Verb verb, double value, emulators::Base& device) {
   switch (verb) {
     case Verb::Restart:
       device.restart(machine_time(), value);
@@ -215,8 +215,8 @@ void befall_wheels(Verb verb, double value, emulators::Base& device) {
   }
 }
 
-/// As befall(), for the acquisition card of a base without a serial line.
-bool befall_card(const VerbRow& row,
+/// As inject(), for the acquisition card of a base without a serial line.
+bool inject_card(const VerbRow& row,
                  double value,
                  Connection& connection,
                  emulators::AnalogEmulator& device) {
@@ -241,13 +241,13 @@ bool befall_card(const VerbRow& row,
 
 /// `base`: an Emulation::Base.
 template <class Base>
-void befall_base(const VerbRow& row, double value, Base& base) {
+void inject_base(const VerbRow& row, double value, Base& base) {
   Connection& connection = *base.connection;
-  const bool done = base.line != nullptr ? befall(row.verb, value, connection, *base.line)
-                                         : befall_card(row, value, connection, *base.card);
+  const bool done = base.line != nullptr ? inject(row.verb, value, connection, *base.line)
+                                         : inject_card(row, value, connection, *base.card);
   if (!done) {
     const auto held = connection.lock();
-    befall_wheels(row.verb, value, *base.device);
+    inject_wheels(row.verb, value, *base.device);
   }
   connection.wake();
 }
@@ -369,7 +369,7 @@ std::string Emulation::command(std::string_view line) {
     if (!base_ || row.who == Who::Scanner) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to this base.", row.word));
     }
-    befall_base(row, number, *base_);
+    inject_base(row, number, *base_);
     return "";
   }
   for (const auto& scanner : scanners_) {
@@ -377,7 +377,7 @@ std::string Emulation::command(std::string_view line) {
     if (row.who == Who::Base) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to a scanner.", row.word));
     }
-    befall_scanner(row.verb, number, scanner->thread, scanner->device);
+    inject_scanner(row.verb, number, scanner->thread, scanner->device);
     scanner->thread.wake();
     return "";
   }
