@@ -1,6 +1,6 @@
-// tests/docs_test.cpp: every file that a Markdown page of this repository links to exists, and
-// every section that the code cites; the coverage page claims nothing built without a file and a
-// test, and the page on hardware has what became of every fault that the trials inject.
+// tests/docs_test.cpp: every file that a Markdown page links to exists, and every section that the
+// code cites. Each part built on the coverage page has a file and a test. The page on hardware has
+// the result of every fault that the trials inject.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -31,7 +31,7 @@ std::string text_of(const fs::path& file) {
   return text.str();
 }
 
-/// The page without code blocks and without what stands between backticks: no links are there.
+/// The page without code blocks and code spans, which hold no links.
 std::string prose_of(const std::string& markdown) {
   std::string prose;
   std::istringstream lines(markdown);
@@ -50,7 +50,7 @@ std::string prose_of(const std::string& markdown) {
   return prose;
 }
 
-/// Targets of [text](target) and ![text](target) that are files of ours, without their anchors.
+/// Targets of [text](target) and ![text](target) that are local files, without their anchors.
 std::vector<std::string> links_of(const std::string& markdown) {
   static const std::regex link(R"(\]\(([^)\s#]+)(#[^)]*)?\))");
   const std::string prose = prose_of(markdown);
@@ -62,7 +62,7 @@ std::vector<std::string> links_of(const std::string& markdown) {
   return found;
 }
 
-/// "FILE: TARGET" for each link to a file that is not there.
+/// "FILE: TARGET" for each link to a missing file.
 std::vector<std::string> broken_links(const fs::path& page) {
   std::set<std::string> broken;
   for (const std::string& target : links_of(text_of(page))) {
@@ -84,7 +84,7 @@ std::vector<fs::path> pages() {
   return found;
 }
 
-/// Cells of a row of a table, without the blanks around them; none when the line is no row.
+/// Cells of a table row, trimmed; empty for any other line.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   if (!line.starts_with("| ")) return cells;

@@ -1,4 +1,4 @@
-// tests/folders.cpp: CMake tells the paths to this file alone.
+// tests/folders.cpp: the only file that gets the paths from CMake.
 #include "tests/folders.hpp"
 
 namespace tests {

@@ -1,12 +1,12 @@
-// tests/folders.hpp: where tests find their data. Functions of one small library: a path on every
-// command line would keep ccache from sharing objects between two clones.
+// tests/folders.hpp: the folders of test data. In a small library, since a path on every command
+// line would keep ccache from sharing objects between two clones.
 #pragma once
 
 #include <filesystem>
 
 namespace tests {
 
-/// This folder, of the clone that was built.
+/// tests/ of the clone that was built.
 std::filesystem::path folder();
 
 /// The large recordings beside the repository: laser/, barn/, people/. May be missing.

@@ -1,7 +1,7 @@
-// tests/include_rule_test.cpp: holds every #include against the rule of the rooms
-// (docs/adr/0011-rooms.md), and every room against the others in size.
+// tests/include_rule_test.cpp: checks every #include by the rule of the rooms
+// (docs/adr/0011-rooms.md), and the size of every room.
 //
-// CMake links the same rule; this test also sees headers, and says which line breaks it.
+// CMake enforces the same rule for linking; this test also covers headers and names the line.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -26,7 +26,7 @@ struct Include {
   bool quoted = false;
 };
 
-/// The includes of a C++ text, in order; those within comments are none.
+/// The includes of a C++ text, in order, without those in comments.
 std::vector<Include> includes_of(std::string_view text) {
   static const std::regex directive(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
   std::vector<Include> found;
@@ -40,7 +40,7 @@ std::vector<Include> includes_of(std::string_view text) {
         found.push_back({.line = number, .header = match[2], .quoted = match[1] == "\""});
       }
     }
-    // Block comments that begin after code on a line are rare and end on it; only openings count.
+    // A block comment after code is rare and ends on its line; only openings at the start count.
     const std::size_t opening = line.rfind("/*");
     const std::size_t closing = line.rfind("*/");
     if (opening != std::string::npos && line.rfind("//", opening) == std::string::npos) {
@@ -52,7 +52,7 @@ std::vector<Include> includes_of(std::string_view text) {
   return found;
 }
 
-/// What one room may include: of ours itself and `rooms`.
+/// The includes that one room may have: its own headers and those of `rooms`.
 struct Rule {
   std::vector<std::string> rooms{};
   std::string others{};              // regex over whole header names that are not ours
@@ -64,7 +64,7 @@ const std::vector<std::string>& our_folders() {
   return folders;
 }
 
-// algo is plain data: no clock, file, thread, socket or random number behind its mathematics.
+// algo is plain data and mathematics: no clock, file, thread, socket or random number.
 constexpr const char* kNoPlainData =
     "thread|mutex|shared_mutex|condition_variable|atomic|future|chrono|fstream|filesystem|iostream|"
     "random|ctime";
@@ -138,7 +138,7 @@ const std::map<std::string, Rule>& rules() {
   return table;
 }
 
-/// The room that holds `path`, a file or a header; empty when none does.
+/// The room of `path`, a file or a header; empty without one.
 std::string room_of(const std::string& path) {
   std::string found;
   for (const auto& [room, rule] : rules()) {
@@ -147,7 +147,7 @@ std::string room_of(const std::string& path) {
   return found;
 }
 
-/// Why `room` may not have `include`; empty when it may.
+/// Why `room` may not use `include`; empty if it may.
 std::string objection(const std::string& room, const Include& include) {
   static const std::regex standard("[a-z][a-z0-9_]*");
   const Rule& rule = rules().at(room);
@@ -170,7 +170,7 @@ std::string objection(const std::string& room, const Include& include) {
     return room + " does not know this library";
   }
   if (include.quoted && include.header.find('/') == std::string::npos) {
-    // A generated header is quoted; one of ours without its folder is a slip.
+    // A generated header is quoted; one of ours without its folder is a mistake.
     return include.header.ends_with("_generated.h") ? ""
                                                     : "is not written from the repository root";
   }
@@ -321,7 +321,7 @@ TEST(IncludeRule, NoRoomHoldsMoreThanAFifth) {
 }
 
 TEST(IncludeRule, HasNoCircle) {
-  // A room stands only on rooms that stand on fewer.
+  // A room may depend only on rooms with fewer dependencies.
   std::map<std::string, std::size_t> height;
   const std::function<std::size_t(const std::string&, std::size_t)> climb =
       [&](const std::string& room, std::size_t depth) -> std::size_t {

@@ -1,4 +1,4 @@
-// tests/temporary_folder.hpp: a folder that is gone after the test.
+// tests/temporary_folder.hpp: a folder that is removed after the test.
 #pragma once
 
 #include <filesystem>

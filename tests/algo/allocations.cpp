@@ -1,4 +1,4 @@
-// tests/algo/allocations.cpp: replaces operator new of a whole program by one that counts.
+// tests/algo/allocations.cpp: replaces operator new of a whole program by a counting one.
 #include "tests/algo/allocations.hpp"
 
 #include <cstdlib>
@@ -18,8 +18,7 @@ std::size_t count() {
 
 }  // namespace allocations
 
-// Not inlined: the compiler would see malloc and free through them and take the pairs for a
-// mistake.
+// Not inlined: otherwise the compiler sees malloc and free and reports mismatched pairs.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocated;
   if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;

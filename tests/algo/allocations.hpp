@@ -1,4 +1,4 @@
-// tests/algo/allocations.hpp: how often this program has allocated, to show that a tick does not.
+// tests/algo/allocations.hpp: counts allocations, to show that a tick makes none.
 // Needs allocations.cpp in the program.
 #pragma once
 

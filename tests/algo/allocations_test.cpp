@@ -1,4 +1,4 @@
-// tests/algo/allocations_test.cpp: the counter counts.
+// tests/algo/allocations_test.cpp: the allocation counter works.
 #include "tests/algo/allocations.hpp"
 
 #include <memory>
@@ -12,7 +12,7 @@ struct alignas(64) Wide {
   double number = 0;
 };
 
-/// The counter itself counts, or the tests that expect no allocation could not fail.
+/// Without a working counter, tests that expect no allocation could not fail.
 TEST(Allocations, AreCounted) {
   const std::size_t before = allocations::count();
   std::vector<double> grows;

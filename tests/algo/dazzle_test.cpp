@@ -1,4 +1,4 @@
-// tests/algo/dazzle_test.cpp: beams that have not looked, and what may stand there.
+// tests/algo/dazzle_test.cpp: dazzled beams, and the hidden space behind them.
 #include "algo/dazzle.hpp"
 
 #include <cmath>
@@ -41,7 +41,7 @@ LaserScan with(LaserScan scan, double from, double to, BeamCode code = BeamCode:
   return scan;
 }
 
-TEST(Dazzle, AConeAheadHidesTheWay) {
+TEST(Dazzle, AConeAheadHidesThePath) {
   for (const BeamCode code : {BeamCode::Dazzled, BeamCode::Overflow, BeamCode::ReadError}) {
     EXPECT_TRUE(hidden(with(open_field(), -10, 10, code), disc()));
   }
@@ -50,7 +50,7 @@ TEST(Dazzle, AConeAheadHidesTheWay) {
   EXPECT_FALSE(hidden(open_field(), disc()));
 }
 
-TEST(Dazzle, WhatLiesBesideTheWayDoesNot) {
+TEST(Dazzle, ObstaclesBesideThePathDoNotCount) {
   EXPECT_FALSE(hidden(with(open_field(), 65, 90), disc()));
   EXPECT_FALSE(hidden(with(open_field(), -90, -65), disc()));
   // A long and narrow hull with its scanner in front: 0.2 + 0.05 m wide, seen from 0.1 m behind.
@@ -70,7 +70,7 @@ TEST(Dazzle, SingleBeamsAreNoCone) {
   EXPECT_EQ(widest_cone(scan).end, widest_cone(scan).begin);
 }
 
-TEST(Dazzle, ABeamWithoutAnEchoHasLookedAndDoesNotPartACone) {
+TEST(Dazzle, ABeamWithoutAnEchoHasLookedAndDoesNotSplitACone) {
   EXPECT_FALSE(hidden(with(open_field(), -40, 40, BeamCode::NoEcho), disc()));
   EXPECT_FALSE(hidden(with(open_field(), -40, 40, BeamCode::WeakSignal), disc()));  // a dark wall
   LaserScan scan = with(open_field(), -1, 1);                                       // five

@@ -1,4 +1,4 @@
-// tests/algo/diff_drive_test.cpp: laws of the differential drive and what it refuses.
+// tests/algo/diff_drive_test.cpp: laws of the differential drive and its refusals.
 #include "algo/diff_drive.hpp"
 
 #include <cmath>
@@ -26,8 +26,8 @@ TEST(DiffDrive, QuarterCircle) {
   EXPECT_NEAR(out.heading, std::numbers::pi / 2, 1e-12);
 }
 
-/// The straight line and the arc meet without a jump, whatever the turn.
-TEST(DiffDrive, SmallTurnsKeepTheirDigits) {
+/// The straight line and the arc agree without a jump, for any turn.
+TEST(DiffDrive, SmallTurnsKeepTheirPrecision) {
   for (const double omega : {1e-12, 9.9e-10, 1.1e-9, 1e-8, 1e-6}) {
     const Pose2 out = algo::integrate_arc({}, {1.0, omega}, 1.0);
     EXPECT_NEAR(out.x, 1.0, 1e-12) << omega;
@@ -36,7 +36,7 @@ TEST(DiffDrive, SmallTurnsKeepTheirDigits) {
   EXPECT_NEAR(algo::integrate_arc({}, {1.0, 1e-8}, 1.0).y, 0.5e-8, 1e-16);
 }
 
-TEST(DiffDrive, TwoHalvesAreTheWhole) {
+TEST(DiffDrive, TwoHalvesEqualTheWhole) {
   const Twist2 twist{0.4, -0.9};
   const Pose2 whole = algo::integrate_arc({1, 2, 3}, twist, 0.8);
   const Pose2 halves = algo::integrate_arc(algo::integrate_arc({1, 2, 3}, twist, 0.4), twist, 0.4);
@@ -84,7 +84,7 @@ TEST(DiffDrive, SaturationKeepsTheCurvature) {
   EXPECT_EQ(algo::saturate({-10, 2}, 5), (WheelSpeeds{-5, 1}));
 }
 
-TEST(DiffDrive, UnsoundNumbersAreRefused) {
+TEST(DiffDrive, InvalidNumbersAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -0.1, nan}) {
     EXPECT_THROW(algo::forward_kinematics({bad, 0.25}, {}), std::invalid_argument);

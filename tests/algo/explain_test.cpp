@@ -1,4 +1,4 @@
-// tests/algo/explain_test.cpp: the sentences carry the numbers of the tick.
+// tests/algo/explain_test.cpp: the sentences contain the numbers of the tick.
 #include "algo/explain.hpp"
 
 #include <memory>
@@ -22,20 +22,20 @@ Telemetry driving() {
   return t;
 }
 
-/// What `controller` says of `t`.
+/// The sentences of `controller` for `t`.
 Explanation said(const char* controller, const Telemetry& t) {
   Explanation words{"of a tick before", "and its why"};
   explain(t, *builtin_controllers().at(controller).make(), words);
   return words;
 }
 
-TEST(Explain, FreeDrivingSaysHowFarToGo) {
+TEST(Explain, FreeDrivingTellsTheDistanceToGo) {
   const Explanation words = said("modified", driving());
   EXPECT_EQ(words.what, "Driving to the goal");
   EXPECT_EQ(words.why, "5.00 m to go. The nearest return is 1.00 m from the robot's centre.");
 }
 
-TEST(Explain, ThePlannerSaysHowLongItsPathIs) {
+TEST(Explain, ThePlannerTellsThePathLength) {
   Telemetry t = driving();
   t.output.state = 1;
   t.output.measures.push_back({"plan.length", "m", 2.5});
@@ -43,7 +43,7 @@ TEST(Explain, ThePlannerSaysHowLongItsPathIs) {
   EXPECT_EQ(said("certainty_grid", t).why, "The path over the grid is 2.50 m long.");
 }
 
-TEST(Explain, TheHistogramSaysWhatIsFree) {
+TEST(Explain, TheHistogramTellsTheFreeSectors) {
   Telemetry t = driving();
   t.output.state = 1;
   t.output.measures.push_back({"histogram.free", "", 41});
@@ -56,7 +56,7 @@ TEST(Explain, TheHistogramSaysWhatIsFree) {
             "No sector of the histogram is free. 5.00 m to go. Move an obstacle or the goal.");
 }
 
-TEST(Explain, TheWindowSaysWhatItWeighed) {
+TEST(Explain, TheWindowTellsItsCandidates) {
   Telemetry t = driving();
   t.output.state = 1;
   t.output.twist = {0.25, -0.5};
@@ -65,7 +65,7 @@ TEST(Explain, TheWindowSaysWhatItWeighed) {
             "17 of 189 motions can be stopped in time; the best is 0.25 m/s, -0.50 rad/s.");
 }
 
-TEST(Explain, TheFullStripSaysHowFarAlongItTheGoalIs) {
+TEST(Explain, TheFullStripTellsTheDistanceAlongIt) {
   Telemetry t = driving();
   t.output.state = FullStripController::kFollowing;
   t.output.twist.v = 0.5;

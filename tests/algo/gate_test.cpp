@@ -1,4 +1,4 @@
-// tests/algo/gate_test.cpp: nothing dangerous passes the gate, and it says why.
+// tests/algo/gate_test.cpp: the gate holds dangerous commands and gives a reason.
 #include "algo/gate.hpp"
 
 #include <limits>
@@ -51,7 +51,7 @@ TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
   }
 }
 
-TEST_F(GateTest, ABumperHoldsUnlessTheDriverLeavesWhatItTouched) {
+TEST_F(GateTest, ABumperHoldsUnlessTheDriverBacksOff) {
   const BumperReading front{.mount_R = {0.35, 0, 0}, .stamp = 10, .pressed = true};
   const BumperReading rear{.mount_R = {-0.35, 0, 3.14}, .stamp = 10, .pressed = true};
   for (const bool at_front : {true, false}) {
@@ -76,13 +76,13 @@ TEST_F(GateTest, NothingDrivesWhereADazzledScannerSeesNothing) {
   input.hidden = true;
   EXPECT_EQ(gate(input, observation, command), holds::kDazzled);
   input.hidden = false;
-  input.blinded = true;  // lately: the last one that counted is young enough
+  input.blinded = true;  // only recently: the last usable scan is fresh enough
   EXPECT_EQ(gate(input, observation, command), Hold{});
   input.scan_stamp.reset();
   EXPECT_EQ(gate(input, observation, command), holds::kDazzled);
 }
 
-TEST_F(GateTest, StopComesFirst) {
+TEST_F(GateTest, StopHasPriority) {
   input.stopped = true;
   input.scan_stamp.reset();
   observation.odometry.pose.x = kNaN;

@@ -1,4 +1,4 @@
-// tests/algo/geometry_test.cpp: fields of view, nearest beams, and what perceive() makes of them.
+// tests/algo/geometry_test.cpp: fields of view, nearest beams, and the result of perceive().
 #include "algo/geometry.hpp"
 
 #include <cmath>
@@ -48,12 +48,12 @@ TEST(Fields, OfOtherScansAreTheSameAngles) {
   EXPECT_EQ(algo::left_beams(fine).end, 401U);
   // 360 values of 0.5 degree: the last beam is not used anyway.
   EXPECT_EQ(algo::left_beams(free_scan(360, -90, 0.5)).end, 330U);
-  // A scan to the left only has no right.
+  // A scan of the left side only has no right beams.
   const LaserScan left_only = free_scan(91, 0, 0.5);
   EXPECT_EQ(algo::right_beams(left_only).begin, algo::right_beams(left_only).end);
 }
 
-TEST(Fields, OfAnUnsoundScanAreEmpty) {
+TEST(Fields, OfAnInvalidScanAreEmpty) {
   for (const double step : {0.0, -0.5, std::nan("")}) {
     const LaserScan scan = free_scan(361, -90, step);
     EXPECT_EQ(algo::left_beams(scan).end, 0U);
@@ -90,7 +90,7 @@ TEST(NearestBeam, IsNearestToTheCentreNotToTheScanner) {
   EXPECT_NEAR(hit->distance, std::hypot(0.5 + 1.1 * 0.5, 1.1 * std::sqrt(3.0) / 2), 1e-12);
 }
 
-TEST(ObstacleCheck, LiteralTakesTheFirstBeamAndOursTheNearest) {
+TEST(ObstacleCheck, LiteralUsesTheFirstBeamAndOursTheNearest) {
   LaserScan scan = free_scan(361, -90, 0.5);
   scan.set_ok(101, 1.2);
   scan.set_ok(250, 0.9);
@@ -125,7 +125,7 @@ TEST(Perceive, PutsTheNearestOfEachSideIntoTheWorld) {
   EXPECT_LT((scene.right->point_W - expected).norm(), 1e-12);
   scene.scan.set_free(180);
   algo::perceive({}, scene);
-  EXPECT_FALSE(scene.left.has_value());  // not the one from before
+  EXPECT_FALSE(scene.left.has_value());  // the earlier point is dropped
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// tests/algo/grid_search_test.cpp: A* finds least-cost paths, or says that there is none.
+// tests/algo/grid_search_test.cpp: A* finds least-cost paths, or reports that there is none.
 #include "algo/grid_search.hpp"
 
 #include <cmath>
@@ -87,7 +87,7 @@ TEST(GridSearch, PrefersALongerCheaperWay) {
   EXPECT_LT(cost_of(drawn.view(), search.path()), 9);
 }
 
-TEST(GridSearch, WithoutAWayItLeadsToWhereItIsNearest) {
+TEST(GridSearch, WithoutAPathItLeadsToTheNearestReachableCell) {
   const Drawn drawn({"...#.", "...#.", "...#."});
   algo::GridSearch search;
   search.resize(drawn.costs.size());
@@ -98,7 +98,7 @@ TEST(GridSearch, WithoutAWayItLeadsToWhereItIsNearest) {
   EXPECT_EQ(search.path().back(), (GridCell{2, 1}));
 }
 
-TEST(GridSearch, StartAndGoalMayBeOneButNotOutside) {
+TEST(GridSearch, StartMayEqualGoalAndBothMustBeInside) {
   const Drawn drawn({"..", ".."});
   algo::GridSearch search;
   search.resize(drawn.costs.size());
@@ -109,7 +109,7 @@ TEST(GridSearch, StartAndGoalMayBeOneButNotOutside) {
   EXPECT_FALSE(search.find(drawn.view(), {-1, 0}, {1, 1}));
 }
 
-TEST(GridSearch, CostsWhatAnExhaustiveSearchSays) {
+TEST(GridSearch, CostEqualsThatOfAnExhaustiveSearch) {
   std::mt19937_64 random(3);
   std::uniform_int_distribution<int> kind(0, 9);
   algo::GridSearch search;

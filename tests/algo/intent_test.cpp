@@ -1,4 +1,4 @@
-// tests/algo/intent_test.cpp: what each request means, one after the other.
+// tests/algo/intent_test.cpp: the effect of each request.
 #include "algo/intent.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ SetGoal goal(double x) {
   return {.position_W = {x, 0}};
 }
 
-TEST(Intent, GoalsQueueAndANewOneTakesThePlaceOfAll) {
+TEST(Intent, GoalsQueueAndANewOneReplacesAll) {
   Intent intent;
   EXPECT_TRUE(intent.apply(AddGoal{goal(1)}));  // the first, as there is none
   EXPECT_FALSE(intent.apply(AddGoal{goal(2)}));
@@ -29,7 +29,7 @@ TEST(Intent, GoalsQueueAndANewOneTakesThePlaceOfAll) {
   EXPECT_FALSE(intent.goal);
 }
 
-TEST(Intent, TakingTheStickCancelsTheGoalsAndLettingGoBringsNoneBack) {
+TEST(Intent, TakingTheStickCancelsTheGoalsAndReleaseRestoresNone) {
   Intent intent;
   intent.apply(goal(1));
   EXPECT_FALSE(intent.apply(Joystick{}));

@@ -1,4 +1,4 @@
-// tests/algo/laser_scan_test.cpp: a scan's wire values, all at once and one by one.
+// tests/algo/laser_scan_test.cpp: packed beams of a scan, all at once and one by one.
 #include "algo/laser_scan.hpp"
 
 #include <limits>

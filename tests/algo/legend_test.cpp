@@ -1,4 +1,4 @@
-// tests/algo/legend_test.cpp: another number for other layers or measures, whatever their values.
+// tests/algo/legend_test.cpp: the number depends on the layers and measures, not on their values.
 #include "algo/legend.hpp"
 
 #include <functional>
@@ -25,7 +25,7 @@ std::uint32_t fresh(const Telemetry& t) {
   return Legend().of(t);
 }
 
-TEST(Legend, DoesNotDependOnValuesOrOnWhereTextsLie) {
+TEST(Legend, DoesNotDependOnValuesOrTextAddresses) {
   Telemetry t = shown();
   const std::uint32_t number = fresh(t);
   put(t.output.layers[0], Vec2{1, 2}, Vec2{3, 4});

@@ -18,7 +18,7 @@ constexpr double kDt = 0.02;  // [s]
 TEST(LocalLocalization, DrivesDistancesFromTheWheelsAndTurnsFromTheGyro) {
   LocalLocalization robot;
   robot.reset({1, 2, 0});
-  // A quarter turn of 1 m radius in 100 periods; the wheels say it was straight.
+  // A quarter turn of 1 m radius in 100 periods; the wheels report a straight line.
   const double quarter = std::numbers::pi / 2;
   for (int k = 0; k < 100; ++k) robot.update({quarter / 100, 0, 0}, quarter / 100 / kDt, kDt);
   EXPECT_NEAR(robot.pose_W().x, 2, 1e-3);
@@ -43,8 +43,7 @@ TEST(LocalLocalization, LearnsTheBiasWhileTheWheelsStand) {
   EXPECT_NEAR(robot.pose_W().x, 5, 1e-9);
 }
 
-/// [rad] Errors of the heading after a minute of turning to and fro on a floor that follows 95 % of
-/// what the wheels turn.
+/// [rad] Heading errors after a minute of turning left and right with 5 % yaw slip.
 struct Errors {
   double wheels = 0;
   double fused = 0;
@@ -76,7 +75,7 @@ TEST(LocalLocalization, UnderYawSlipTheHeadingIsBetterThanTheWheelsAlone) {
   EXPECT_LT(errors.fused, errors.wheels / 5);
 }
 
-TEST(LocalLocalization, SaysWhenTheWheelsSlip) {
+TEST(LocalLocalization, ReportsWheelSlip) {
   LocalLocalization robot;
   robot.reset({});
   const double spinning = 0.5 * kDt;  // [rad] a period, by the wheels; the gyro sees nothing
@@ -88,7 +87,7 @@ TEST(LocalLocalization, SaysWhenTheWheelsSlip) {
   EXPECT_FALSE(robot.slipping());
 }
 
-TEST(LocalLocalization, WhatIsNotFiniteMovesNothing) {
+TEST(LocalLocalization, NonFiniteInputsMoveNothing) {
   LocalLocalization robot;
   robot.reset({1, 1, 1});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

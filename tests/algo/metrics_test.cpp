@@ -1,4 +1,4 @@
-// tests/algo/metrics_test.cpp: the figures of a run on paths simple enough to do by hand.
+// tests/algo/metrics_test.cpp: the figures of a run on hand-computed paths.
 #include "algo/metrics.hpp"
 
 #include <numbers>
@@ -71,7 +71,7 @@ TEST_F(MetricsTest, ViaPointsAreHalfAMetreApartPerAxis) {
   EXPECT_GE(recorder.metrics().via_points, 4u);
 }
 
-TEST_F(MetricsTest, WithoutTruthTheOdometryAndTheScanCount) {
+TEST_F(MetricsTest, WithoutTruthUsesOdometryAndScan) {
   Telemetry t;
   t.clearance = 0.5;
   recorder.add(t, parameters);

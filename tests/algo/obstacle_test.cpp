@@ -1,4 +1,4 @@
-// tests/algo/obstacle_test.cpp: outlines, distances and refusals of shapes.
+// tests/algo/obstacle_test.cpp: outlines, distances and invalid shapes.
 #include "algo/obstacle.hpp"
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST(SignedDistance, OfEveryShape) {
   EXPECT_NEAR(algo::signed_distance(triangle, {-3, -4}), 5, 1e-12);
 }
 
-/// A box and the polygon of its corners are the same thing.
+/// A box equals the polygon of its corners.
 TEST(SignedDistance, BoxAndItsPolygonAgree) {
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> anywhere(-3, 3);
@@ -70,12 +70,12 @@ TEST(SignedDistance, BoxAndItsPolygonAgree) {
   }
 }
 
-TEST(Defect, SoundShapesHaveNone) {
+TEST(Defect, ValidShapesHaveNone) {
   EXPECT_EQ(algo::defect(at({}, Cylinder{0.3})), std::nullopt);
   EXPECT_EQ(algo::defect(at({}, Box{1000, 0.001})), std::nullopt);
   EXPECT_EQ(algo::defect(at({}, Wall{4, 0.1})), std::nullopt);
   EXPECT_EQ(algo::defect(polygon({{0, 0}, {1, 0}, {1, 1}, {0, 1}})), std::nullopt);
-  // A point in the middle of an edge does no harm.
+  // A point in the middle of an edge changes nothing.
   EXPECT_EQ(algo::defect(polygon({{0, 0}, {1, 0}, {2, 0}, {1, 1}})), std::nullopt);
 }
 
@@ -124,7 +124,7 @@ std::vector<Refused> refused() {
   };
 }
 
-TEST(Defect, SaysWhatIsWrong) {
+TEST(Defect, ErrorsAreSentences) {
   for (const Refused& each : refused()) {
     const auto said = algo::defect(each.obstacle);
     ASSERT_TRUE(said.has_value()) << "accepted: " << each.says;

@@ -37,7 +37,7 @@ std::size_t hits(const LaserScan& scan) {
   return count;
 }
 
-TEST(SensorMerge, WhatTheLaserMissedStandsInItsBeams) {
+TEST(SensorMerge, ObstaclesMissedByTheLaserEnterItsBeams) {
   SensorMerge merge;
   Observation observation;
   observation.infrared.push_back(reading(0, 0.8));
@@ -49,19 +49,19 @@ TEST(SensorMerge, WhatTheLaserMissedStandsInItsBeams) {
   for (std::size_t i = 178; i <= 182; ++i) EXPECT_NEAR(scan.ranges[i], 1.0, 1e-12) << i;
 }
 
-TEST(SensorMerge, AReadingThatIsReportedAgainStaysWhereItWas) {
+TEST(SensorMerge, ARepeatedReadingKeepsItsPosition) {
   SensorMerge merge;
   Observation observation;
   observation.sonar.push_back(reading(0, 0.8, 1.0));
   merge.take(observation);
-  observation.odometry.pose.x = 0.2;  // driven on since; the base says the same once more
+  observation.odometry.pose.x = 0.2;  // driven on since; the base repeats the reading
   merge.take(observation);
   LaserScan scan = free_scan();
   merge.enter(observation.odometry.pose, 1.1, scan);
   EXPECT_NEAR(scan.ranges[180], 0.8, 1e-12);
 }
 
-TEST(SensorMerge, WhatTheLaserSeesAsNearIsLeftToIt) {
+TEST(SensorMerge, ReadingsTheLaserSeesTooAreLeftOut) {
   SensorMerge merge;
   Observation observation;
   observation.sonar.push_back(reading(0, 0.8));
@@ -109,7 +109,7 @@ TEST(SensorMerge, AReadingHoldsUntilTheNextOneOrUntilItIsOld) {
   EXPECT_EQ(hits(gone), 0U);
 }
 
-TEST(SensorMerge, WhatLiesOutsideTheScannersFieldIsNotEntered) {
+TEST(SensorMerge, ReadingsOutsideTheScannersFieldAreLeftOut) {
   SensorMerge merge;
   Observation observation;
   observation.infrared.push_back({{-0.3, 0, std::numbers::pi}, 0, 0.5, 3.5, Beam::Ok});

@@ -24,7 +24,7 @@ BareSockets::BareSockets(std::size_t clients, std::size_t bytes) : bytes_(bytes,
   auto* const generic = reinterpret_cast<sockaddr*>(&address);
   require(::bind(listener, generic, size) == 0 && ::listen(listener, 128) == 0 &&
               ::getsockname(listener, generic, &size) == 0,
-          "No loopback socket to be had.");
+          "No loopback socket is available.");
   const int poll = ::epoll_create1(0);
   for (std::size_t i = 0; i < clients; ++i) {
     receivers_.push_back(::socket(AF_INET, SOCK_STREAM, 0));

@@ -1,4 +1,4 @@
-// tests/bench/bare_sockets.hpp: the least a stream to many clients can cost: send() in a loop.
+// tests/bench/bare_sockets.hpp: the least cost of a stream to many clients: send() in a loop.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace bench {
 
-/// Pairs of connected loopback TCP sockets; a thread reads and throws away.
+/// Pairs of connected loopback TCP sockets; a thread reads and discards.
 class BareSockets {
  public:
   BareSockets(std::size_t clients, std::size_t bytes);

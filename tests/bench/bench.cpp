@@ -16,7 +16,7 @@ namespace {
 constexpr int kRepetitions = 5;
 constexpr double kMinTime = 0.2;  // [s] of CPU time a repetition
 
-/// Keeps the CPU time of every repetition, by name.
+/// Collects the CPU time of every repetition by name.
 class Collector final : public benchmark::BenchmarkReporter {
  public:
   bool ReportContext(const Context& /*context*/) override { return true; }
@@ -42,7 +42,7 @@ double clock_seconds(clockid_t clock) {
 
 }  // namespace
 
-/// By its name an instruction counter knows where to count.
+/// An instruction counter finds the code to count by this name.
 extern "C" [[gnu::noinline]] void bench_counted(const std::function<void()>& call, int calls) {
   for (int i = 0; i < calls; ++i) call();
 }

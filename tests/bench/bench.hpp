@@ -1,4 +1,4 @@
-// tests/bench/bench.hpp: what a benchmark row needs: pairs timed together, checks, and figures.
+// tests/bench/bench.hpp: tools of a benchmark row: pairs timed together, checks, and figures.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct Figure {
   std::string note{};
 };
 
-/// What was timed does not do the same as its reference; what() is a sentence.
+/// The timed code does not give the result of its reference; what() is a sentence.
 class Disagreement : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -44,13 +44,13 @@ struct Subject {
   std::function<void()> call{};  // one unit of work; goes on to its next input by itself
 };
 
-/// One pass over the rows. A row checks that ours and its reference agree, then times, then adds
-/// figures. In a quick pass it checks all the same, on fewer inputs, and its figures mean nothing.
+/// One pass over the rows. A row checks that ours and its reference agree, then times both, then
+/// adds figures. A quick pass makes the same checks on fewer inputs; its figures are meaningless.
 class Pass {
  public:
   explicit Pass(bool quick) : quick_(quick) {}
-  /// A quick pass that makes `calls` calls of each subject in counted(), for a program that counts
-  /// instructions there (tests/dev/bench_instructions.py), and prints which they were.
+  /// A quick pass that makes `calls` calls of each subject in counted() and prints the subjects,
+  /// for a program that counts instructions there (tests/dev/bench_instructions.py).
   static Pass counting(int calls) {
     Pass pass(true);
     pass.calls_ = calls;
@@ -58,15 +58,15 @@ class Pass {
   }
 
   bool quick() const { return quick_; }
-  /// `full` of something, or few of it in a quick pass.
+  /// `full`, or the smaller number in a quick pass.
   template <typename Count>
   Count count(Count full, Count few) const {
     return quick_ ? few : full;
   }
-  /// Times all subjects in one interleaved run of Google Benchmark, so that noise of the machine
-  /// meets them alike.
+  /// Times all subjects in one interleaved run of Google Benchmark, so that the machine's noise
+  /// affects them alike.
   std::vector<Timing> time(const std::string& title, const std::vector<Subject>& subjects) const;
-  /// Adds a figure, and says so on the terminal.
+  /// Adds a figure and prints it.
   void add(Figure figure);
   /// Adds `reference` / `ours`.
   void add_ratio(Figure figure, const Timing& ours, const Timing& reference);
@@ -83,20 +83,20 @@ class Pass {
   void count_calls(const std::string& title, const std::vector<Subject>& subjects) const;
 
   bool quick_ = false;
-  int calls_ = 0;  // to be counted; 0: timed
+  int calls_ = 0;  // to count; 0: time instead
   std::vector<Figure> figures_{};
 };
 
 /// Median of at least one value, and the middle half's width over it.
 double median(std::vector<double> values);
 double spread(std::vector<double> values);
-/// The value that the share `q` of all stays at or below.
+/// The quantile `q`.
 double quantile(std::vector<double>& values, double q);
 
 /// "9.1 us".
 std::string duration(double seconds);
 
-/// [s] CPU time of the calling thread, and of the whole program, so far.
+/// [s] CPU time so far of the calling thread, and of the whole program.
 double thread_cpu();
 double process_cpu();
 /// [s] on the steady clock.

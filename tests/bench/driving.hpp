@@ -1,4 +1,4 @@
-// tests/bench/driving.hpp: a robot in W(20) that never stops driving: one tick after the other.
+// tests/bench/driving.hpp: a robot in W(20) that never stops driving, tick by tick.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ inline void stretch_strip(algo::Telemetry& t, std::size_t nodes, double step) {
   }
 }
 
-/// Gives a robot that has arrived, or is stuck, the next corner of a square about the middle.
+/// Gives an arrived or stuck robot the next corner of a square about the middle as goal.
 class Patrol {
  public:
   void direct(algo::Telemetry& t) {

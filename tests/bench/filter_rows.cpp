@@ -1,4 +1,4 @@
-// tests/bench/filter_rows.cpp: the pseudomedian against its definition, word for word.
+// tests/bench/filter_rows.cpp: the pseudomedian against its literal definition.
 #include <algorithm>
 #include <cmath>
 
@@ -12,8 +12,8 @@
 namespace bench {
 namespace {
 
-/// Eq. 1 of the thesis as it stands: the mean of the largest of the minima and the smallest of the
-/// maxima of the N + 1 groups of N + 1 neighbours in each window of 2 N + 1.
+/// Eq. 1 of the thesis literally: the mean of the largest minimum and the smallest maximum of the
+/// N + 1 groups of N + 1 neighbours in each window of 2 N + 1.
 void literal_pseudomedian(const std::vector<double>& in, int N, std::vector<double>& out) {
   const int n = static_cast<int>(in.size());
   const auto at = [&](int i) { return in[static_cast<std::size_t>(std::clamp(i, 0, n - 1))]; };

@@ -19,7 +19,7 @@ using sim::PhysicsKind;
 
 constexpr std::size_t kRobots = 100;
 constexpr std::uint32_t kAsMany = 180;  // obstacles of the W(K) whose room is 30 m wide
-constexpr std::size_t kObstacles = 20;  // of them that are kept
+constexpr std::size_t kObstacles = 20;  // of these are kept
 constexpr double kHalf = 15;            // [m] of the room
 
 /// The room with 20 obstacles and walls.
@@ -95,7 +95,7 @@ class Crowd {
   }
   sim::Fleet& fleet() { return fleet_; }
   const algo::Telemetry& telemetry(std::size_t k) const { return ticks_[k]; }
-  /// Of the robots, those that drive.
+  /// The number of driving robots.
   double driving() const {
     const auto drives = [](const algo::Telemetry& t) { return t.command.base != algo::Twist2{}; };
     return static_cast<double>(std::ranges::count_if(ticks_, drives)) / kRobots;
@@ -117,7 +117,7 @@ class Crowd {
   std::vector<algo::Telemetry> ticks_{};
 };
 
-/// With an ideal scanner every robot sees obstacles and robots where they are.
+/// With an ideal scanner every robot sees obstacles and robots at their true positions.
 void check_sight(int ticks) {
   sim::LaserConfig ideal = sim::LaserConfig::ideal(0.5);
   ideal.height = kPlane;
@@ -148,11 +148,11 @@ void check_sight(int ticks) {
       }
     }
   }
-  require(off == 0, fmt::format("P10: {} beams see something else than what is there", off));
+  require(off == 0, fmt::format("P10: {} beams differ from the true range", off));
   require(met > 100, fmt::format("P10: only {} beams meet a robot", met));
 }
 
-/// [s] of the run clock in a second of CPU time.
+/// [s] of the run clock per second of CPU time.
 void add_rate(Pass& pass, Figure figure, const Timing& tick, const Crowd& crowd) {
   figure.value = kTick / tick.seconds;
   figure.unit = "s/s";
@@ -169,7 +169,7 @@ void fleets(Pass& pass) {
   check_sight(pass.count(60, 8));
   Crowd full(hall_scenario(PhysicsKind::Bullet, full_laser()));
   Crowd flat(hall_scenario(PhysicsKind::Kinematic, full_laser()));
-  for (int tick = 0; tick < pass.count(150, 3); ++tick) {  // until they are on their ways
+  for (int tick = 0; tick < pass.count(150, 3); ++tick) {  // until all are driving
     full.tick();
     flat.tick();
   }

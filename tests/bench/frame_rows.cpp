@@ -64,7 +64,7 @@ json sensors_json(const algo::Observation& o) {
   return out;
 }
 
-/// What a driving tick's frame holds, as a document.
+/// The content of a driving tick's frame as a document.
 json frame_json(const algo::Telemetry& t) {
   const algo::ControlOutput& out = t.output;
   json frame = sensors_json(t.observation);
@@ -101,7 +101,7 @@ json frame_json(const algo::Telemetry& t) {
   return frame;
 }
 
-/// What comes out of both encodings is the same tick.
+/// Checks that both encodings decode to the same tick.
 void check_frame(const algo::Telemetry& t, server::FrameEncoder& encoder) {
   algo::Telemetry back;
   server::decode_frame(encoder.encode(t), back);

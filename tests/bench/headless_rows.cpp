@@ -20,7 +20,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The program on a free port with folders of its own.
+/// The program on a free port in temporary folders.
 class Program {
  public:
   explicit Program(const sim::Scenario& scenario)
@@ -79,7 +79,7 @@ class Program {
   std::thread thread_{};
 };
 
-/// Every tick of the newest run is there, in order, up to `seconds` of its time.
+/// Checks that the newest run has every tick in order, up to `seconds` of its time.
 void check_record(const std::string& database, double seconds) {
   db::RunReader reader(database);
   const db::RunId run = reader.list({}, 1).runs.at(0).id;
@@ -95,7 +95,7 @@ void check_record(const std::string& database, double seconds) {
 double run_once(Pass& pass, sim::PhysicsKind physics, std::uint64_t& seen) {
   const double seconds = pass.count(600.0, 20.0);
   sim::Scenario scenario = room_scenario(20, physics, {full_laser()});
-  // Slow enough to be on its way all the time.
+  // Slow enough to drive all the time.
   scenario.goal = algo::SetGoal{{4.3, 4.3}, std::nullopt};
   scenario.parameters = {{&algo::kMaxSpeed, 0.01}, {&algo::kFilterHalfWidth, 2}};
   Program program(scenario);

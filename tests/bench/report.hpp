@@ -20,13 +20,13 @@ std::string line(const Figure& figure);
 
 void print_table(const std::vector<Figure>& figures);
 
-/// Writes figures, what failed and what machine it was as JSON. Throws std::runtime_error.
+/// Writes figures, failures and the machine as JSON. Throws std::runtime_error.
 void write_results(const std::string& path,
                    const std::vector<Figure>& figures,
                    const std::vector<std::string>& failures);
 
-/// Prints every figure of two result files as a ratio, above 1 better. @return how many are worse.
-/// Throws std::runtime_error with a sentence when a file does not read.
+/// Prints every figure of two result files as a ratio; above 1 is better. @return how many are
+/// worse. Throws std::runtime_error with a sentence for an unreadable file.
 std::size_t compare(const std::string& old_path, const std::string& new_path);
 
 }  // namespace bench

@@ -1,4 +1,4 @@
-// tests/bench/rooms.hpp: what the rows share of the reference world W(K): poses, casters, noise.
+// tests/bench/rooms.hpp: poses, casters and noise in the reference world W(K), for several rows.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// tests/bench/rows.hpp: the rows there are, one function per family.
+// tests/bench/rows.hpp: all rows, one function per family.
 #pragma once
 
 #include "tests/bench/bench.hpp"

@@ -67,8 +67,8 @@ struct Bench {
   std::size_t turn = 0;
 };
 
-/// Ours and Bullet's beams are alike to 0.1 mm; where not, the oracle must side with ours. Bullet
-/// invents or misses a box about once in 7000 beams, and once in 800 where a beam passes dozens.
+/// Our beams and Bullet's agree to 0.1 mm; otherwise the oracle must agree with ours. Bullet adds
+/// or misses a box about once in 7000 beams, and once in 800 where a beam passes dozens.
 void check_against_bullet(Bench& bench, const std::string& row) {
   std::size_t off = 0;
   for (const algo::Pose2& pose : bench.poses) {
@@ -114,7 +114,7 @@ class RollingScan {
       : bench_(about, 1), model_(laser(about.range_max), 1, 0), trail_(step(), 0.1) {
     for (const algo::Obstacle& obstacle : bench_.world) model_.add(obstacle);
     trail_.reset(at(0), 0);
-    // The drive is no part of what is timed: its poses are made here, and one after the other.
+    // The drive is not timed: its poses are made here, one after another.
     for (std::size_t k = 0; k < kAround; ++k)
       driven_.push_back(at(static_cast<double>(k + 1) * step()));
     drive();

@@ -54,7 +54,7 @@ std::vector<Stored> ticks_of_a_drive(std::size_t count, std::size_t nodes, doubl
   return ticks;
 }
 
-/// A folder of our own, gone afterwards.
+/// A temporary folder.
 class Folder {
  public:
   Folder()
@@ -108,7 +108,7 @@ double write_all(const std::string& path, const std::vector<Stored>& ticks, std:
   return took;
 }
 
-/// Reads everything back and holds it against what was written, value by value.
+/// Reads everything back and compares it with the written ticks, value by value.
 void check_read_back(const std::string& path, const std::vector<Stored>& ticks) {
   db::RunReader reader(path);
   std::size_t i = 0;
@@ -179,15 +179,15 @@ class BorrowedFrame final : public server::RecordedFrame {
   const Stored& stored_;
 };
 
-/// How often the system has taken this thread off its processor.
+/// Number of involuntary context switches of this thread.
 long preemptions() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);
   return usage.ru_nivcsw;
 }
 
-/// Pushes everything through the recorder as fast as it takes it, and finds the longest push. One
-/// during which the system gave the processor to somebody else says nothing about us.
+/// Pushes everything through the recorder at full speed, and finds the longest push. Pushes during
+/// which the system ran another thread are left out.
 void stalls(Pass& pass, const std::string& path, const std::vector<Stored>& ticks) {
   std::vector<BorrowedFrame> frames;
   frames.reserve(ticks.size());
@@ -234,12 +234,12 @@ void stalls(Pass& pass, const std::string& path, const std::vector<Stored>& tick
             .unit = "rows/s"});
 }
 
-/// [MB] in an hour of as many bytes a tick.
+/// [MB] per hour for this many bytes per tick.
 double hourly(std::uint64_t bytes, std::size_t ticks) {
   return static_cast<double>(bytes) / 1e6 * static_cast<double>(kHour) / static_cast<double>(ticks);
 }
 
-/// What an hour takes without noise.
+/// The size of an hour without noise.
 void storage_without_noise(Pass& pass, const Folder& folder, std::size_t count) {
   std::uint64_t bytes = 0;
   write_all(folder.file("quiet.db"), ticks_of_a_drive(count, 0, 0.0), bytes);

@@ -29,7 +29,7 @@ std::uint64_t now_ns() {
 }
 
 /// Our server and hub, publishing a frame of 1,000 bytes at 40 Hz while it is on. The frame's time
-/// is the steady clock's, its first bytes count.
+/// is of the steady clock; its first bytes are a counter.
 class Stream {
  public:
   Stream() : running_(options()) {
@@ -55,7 +55,7 @@ class Stream {
     require(server::net::test::eventually(
                 [&] { return running_.on_io([&] { return hub_.clients(); }) >= clients; }, 60s),
             "The clients did not all arrive.");
-    std::this_thread::sleep_for(200ms);  // their subscriptions follow at once
+    std::this_thread::sleep_for(200ms);  // until they have subscribed
   }
   std::uint64_t published() {
     return running_.on_io([&] { return published_; });
@@ -99,7 +99,7 @@ bool allow_files(std::size_t count) {
   return setrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur >= count;
 }
 
-/// P14: turns about, so that the machine's moods meet both.
+/// P14: ours and the reference alternate, so that the machine's noise affects both.
 void fan_out(Pass& pass) {
   const auto clients = pass.count<std::size_t>(1000, 20);
   require(allow_files(4 * clients + 200), "P14 needs more open files: raise `ulimit -n`.");
@@ -191,7 +191,7 @@ double resident() {
   return static_cast<double>(pages) * 4096e-6;
 }
 
-/// Reads what waits for a client that slept. @return [ns] time of the last frame
+/// Reads the frames that wait for a client that slept. @return [ns] time of the last frame
 std::uint64_t last_stamp(WsTestClient& client) {
   std::uint64_t stamp = 0;
   for (;;) {

@@ -66,7 +66,7 @@ class ReferenceDriving {
   std::vector<double> draws_ = std::vector<double>(kBeams);
 };
 
-/// With an ideal scanner both see the same and command the same, tick by tick.
+/// With an ideal scanner both have the same scans and commands, tick by tick.
 void check_ticks(PhysicsKind physics, int ticks, const std::string& row) {
   sim::LaserConfig ideal = sim::LaserConfig::ideal(0.5);
   ideal.height = kPlane;
@@ -108,8 +108,8 @@ class Circling {
   algo::Observation seen_{};
 };
 
-/// Where the time of our tick goes: the world with ever less of its scanner, driven in a circle.
-/// Beside Bullet's physics the scanner's parts are less than the noise of the machine.
+/// The parts of our tick's time: the world with fewer and fewer scanner effects, driven in a
+/// circle. Beside Bullet's physics the scanner's parts are less than the noise of the machine.
 void shares(Pass& pass, PhysicsKind physics, const std::string& row, double whole) {
   const auto share = [&](const std::string& name, double seconds) {
     pass.add_detail(
@@ -171,7 +171,7 @@ void many_obstacles(Pass& pass) {
        .note = fmt::format("{} over {}", duration(times[0].seconds), duration(times[1].seconds))});
 }
 
-/// Keeps the thread on the processor it is on, while it lives.
+/// Pins the thread to its present processor while this object exists.
 class Pinned {
  public:
   Pinned() {
@@ -193,7 +193,7 @@ class Pinned {
   bool held_ = false;
 };
 
-/// Ticks of a drive with what was commanded, to be fed to a fresh pipeline.
+/// Ticks of a drive with their commands, to feed to a fresh pipeline.
 struct Recording {
   explicit Recording(std::size_t count) {
     Driving driving(room_scenario(20, PhysicsKind::Kinematic, {full_laser()}));
@@ -240,7 +240,7 @@ void control(Pass& pass) {
   std::size_t allocated = 0;
   double cpu = 0;
   constexpr std::size_t kWarm = 10;  // after a reset the first scans grow the buffers
-  // A live run's ticks come from a pool and have grown: so have these after once through.
+  // A live run's ticks come from a pool with grown buffers; one pass grows these too.
   pipeline.reset(record.start);
   for (algo::Telemetry& t : record.ticks) pipeline.tick(t);
   const Pinned pinned;

@@ -44,7 +44,7 @@ bool become_fifo() {
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
 }
 
-/// Sleeps to absolute deadlines and nothing else.
+/// Only sleeps to absolute deadlines.
 Lateness bare_timer(double period, double seconds) {
   Lateness late;
   const double start = wall();
@@ -61,8 +61,8 @@ Lateness bare_timer(double period, double seconds) {
   return late;
 }
 
-/// The same by the pacer that runs the robot's period. A deadline it left out counts as late as it
-/// was when left out, so that skipping does not flatter the quantiles.
+/// The same by the pacer of the robot's period. A skipped deadline counts with its lateness when
+/// skipped, so that skipping does not improve the quantiles.
 Lateness paced(double period, double seconds) {
   Lateness late;
   drivers::ask_for_punctual_timers();  // as the control thread of a real robot does
@@ -133,7 +133,7 @@ void add(Pass& pass,
          Lateness& ours,
          Lateness& reference,
          const std::string& more) {
-  // p99 <= 1.5 x ref + 20 us: how much of that is used up.
+  // p99 as a share of its limit, 1.5 x ref + 20 us.
   const double limit = 1.5 * reference.p99() + 20e-6;
   pass.add({.row = "P22",
             .name = name + ", p99 over 1.5 ref + 20 us",

@@ -54,7 +54,7 @@ void WsReaders::work() {
     event.events = EPOLLIN;
     event.data.ptr = reader.get();
     ::epoll_ctl(poll, EPOLL_CTL_ADD, reader->client.socket.fd(), &event);
-    take_frames(*reader);  // what came with the handshake
+    take_frames(*reader);  // frames that came with the handshake
   }
   std::array<epoll_event, 256> events{};
   while (!stopping_) {

@@ -1,4 +1,4 @@
-// tests/bench/ws_readers.hpp: many WebSocket clients on one thread, and when each frame came.
+// tests/bench/ws_readers.hpp: many WebSocket clients on one thread, and the age of each frame.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,10 @@
 namespace bench {
 
 /// Clients subscribed to the telemetry channel. From start() to stop() a thread reads all of them
-/// and notes how old each frame is when it has come: the frame's time is the steady clock's.
+/// and records each frame's age at arrival; a frame's time is of the steady clock.
 class WsReaders {
  public:
-  /// `expected`: room for so many ages, made at once so that reading takes no memory.
+  /// `expected`: the number of ages to reserve, so that reading allocates nothing.
   WsReaders(std::uint16_t port, std::size_t clients, std::size_t expected);
   ~WsReaders() { stop(); }
   WsReaders(const WsReaders&) = delete;
@@ -26,7 +26,7 @@ class WsReaders {
   std::uint64_t received() const { return received_.load(); }
   /// [s] CPU time of the reading thread so far.
   double cpu() const { return cpu_.load(); }
-  /// [s] ages of all frames; after stop(). Frames that are not whole or not in order are counted.
+  /// [s] ages of all frames; after stop(). Incomplete and out-of-order frames are counted.
   std::vector<double>& ages() { return ages_; }
   std::uint64_t wrong() const { return wrong_; }
 

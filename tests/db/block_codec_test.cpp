@@ -1,4 +1,4 @@
-// tests/db/block_codec_test.cpp: blocks give back every bit, or a sentence, and never a crash.
+// tests/db/block_codec_test.cpp: blocks decode bit for bit or give a sentence; they never crash.
 #include "db/block_codec.hpp"
 
 #include <algorithm>
@@ -261,7 +261,7 @@ TEST(BlockCodec, ScansOfChangingShapeComeBack) {
 }
 
 TEST(BlockCodec, WindowsPay) {
-  // A robot that turns before an uneven wall, three beams a tick: every range changes.
+  // A robot that turns in front of an uneven wall, three beams per tick: every range changes.
   std::mt19937_64 random(1);
   std::vector<Frame> frames(64);
   for (std::size_t tick = 0; tick < frames.size(); ++tick) {
@@ -323,7 +323,7 @@ TEST(BlockCodec, ABlockIsBounded) {
   EXPECT_EQ(decoder.frames(), db::kMaxBlockFrames);
 }
 
-TEST(BlockCodec, SaysWhatIsWrong) {
+TEST(BlockCodec, ErrorsAreSentences) {
   auto block = pack(made(3));
   EXPECT_THAT(refusal({}), HasSubstr("cut off"));
   EXPECT_THAT(refusal(std::span(block).first(30)), HasSubstr("cut off"));
@@ -359,7 +359,7 @@ TEST(BlockCodec, GarbageIsRefused) {
   for (int round = 0; round < 3000; ++round) {
     std::vector<std::byte> block(good);
     if (round % 2 == 0) block.resize(random() % 300);
-    const std::size_t from = round % 4 < 2 ? 20 : 0;  // often with a believable header
+    const std::size_t from = round % 4 < 2 ? 20 : 0;  // often with a plausible header
     const std::size_t hits = round % 2 == 0 ? block.size() : 1 + random() % 40;
     for (std::size_t i = 0; i < hits && block.size() > from; ++i) {
       const std::size_t at = round % 2 == 0 ? i : random() % block.size();

@@ -17,8 +17,8 @@ struct Frame {
   std::vector<db::Window> windows{};
 };
 
-/// 361 beams towards a wall that comes nearer, +-15 mm noise, a few free beams; around them
-/// doubles that move smoothly, a strip of `nodes` nodes and a sentence.
+/// 361 beams towards an approaching wall, +-15 mm noise, a few free beams; smoothly changing
+/// doubles, a strip of `nodes` nodes and a sentence.
 class FrameMaker {
  public:
   explicit FrameMaker(std::uint64_t seed, std::size_t nodes = 50) : random_(seed), nodes_(nodes) {}

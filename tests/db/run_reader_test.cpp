@@ -125,7 +125,7 @@ TEST_F(RunReaderTest, ADamagedBlockIsNamed) {
   });
   EXPECT_EQ(seen, 128U);
   EXPECT_THAT(why, HasSubstr("Run 1 is damaged at tick 128"));
-  // What lies before it is still there.
+  // The ticks before it are still readable.
   EXPECT_EQ(reader.frames(run, 100, 28, [&](std::uint64_t, std::span<const std::byte>) { ++seen; }),
             128U)
       << "the page ends before the damage";

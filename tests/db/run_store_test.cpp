@@ -1,4 +1,4 @@
-// tests/db/run_store_test.cpp: what is recorded is read back, whatever happens in between.
+// tests/db/run_store_test.cpp: recorded runs read back, despite failures in between.
 #include "db/run_store.hpp"
 
 #include <atomic>
@@ -58,7 +58,7 @@ TEST_F(RunStoreTest, ARunComesBackAsItWasRecorded) {
     raw += made[i].bytes.size();
   }
   EXPECT_LT(row_read.bytes, raw / 2);
-  EXPECT_GT(row_read.bytes, 150U * 223U);  // below the noise of the scans nothing can go
+  EXPECT_GT(row_read.bytes, 150U * 223U);  // the noise of the scans is a lower bound
 }
 
 TEST_F(RunStoreTest, ShortBlocksGrowFromCommitToCommit) {
@@ -243,7 +243,7 @@ TEST_F(RunStoreTest, ADroppedRunGoesOnInItsRow) {
   for (std::size_t i = 0; i < 3; ++i) append(store, run, i, made[i]);
   store.commit();
   append(store, run, 3, made[3]);
-  store.open();  // as after a failure: what was not committed is gone
+  store.open();  // as after a failure: uncommitted frames are lost
   EXPECT_FALSE(store.recording(run));
   EXPECT_EQ(store.resume_run(run), 3U);
   EXPECT_EQ(store.resume_run(run + 1), std::nullopt);
@@ -272,7 +272,7 @@ TEST_F(RunStoreTest, NumbersAreGivenOutBeforeTheirRowsAreWritten) {
     const db::RunId other = record(store, 1);
     EXPECT_GT(other, promised);
     EXPECT_EQ(store.begin_run(what(), promised), promised);
-    // A number that the file has already is not given to another run.
+    // A number used in the file is not given to another run.
     EXPECT_GT(store.begin_run(what(), other), other);
     store.commit();
   }

@@ -1,4 +1,4 @@
-// tests/db/store_files.hpp: a folder of its own for every test, and short ways to fill a store.
+// tests/db/store_files.hpp: a temporary folder for every test, and helpers that fill a store.
 #pragma once
 
 #include <filesystem>

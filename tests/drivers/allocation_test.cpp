@@ -1,5 +1,4 @@
-// tests/drivers/allocation_test.cpp: once scans have their size, reading and decoding allocate
-// nothing.
+// tests/drivers/allocation_test.cpp: after the first scans, reading and decoding allocate nothing.
 #include "tests/algo/allocations.hpp"
 #include "tests/drivers/lms200_telegrams.hpp"
 #include <gtest/gtest.h>
@@ -11,7 +10,7 @@
 namespace drivers {
 namespace {
 
-TEST(DriverAllocations, NoneForAStreamOfScans) {
+TEST(DriverAllocations, ScanStreamAllocatesNothing) {
   const Bytes stream = lms200::scan_361();
   const lms200::ScanDecoder decoder({180, 50}, lms200::WordFormat{});
   lms200::TelegramReader reader;
@@ -29,7 +28,7 @@ TEST(DriverAllocations, NoneForAStreamOfScans) {
   EXPECT_EQ(scans, 11);
 }
 
-TEST(DriverAllocations, NoneForMotorControllers) {
+TEST(DriverAllocations, MotorControllersAllocateNothing) {
   const Bytes body = hex("32 19x00");
   const std::string_view text = "C=3546:-1787\rFF=16\rS=100:-50\r";
   const ByteView lines(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());

@@ -1,4 +1,4 @@
-// tests/drivers/analog_base_test.cpp: volts and counts of a card that is not there.
+// tests/drivers/analog_base_test.cpp: voltages and counts of a fake card.
 #include "drivers/analog_base.hpp"
 
 #include <chrono>
@@ -86,7 +86,7 @@ TEST(AnalogBase, SpeedsBecomeVoltsAlongTheRamp) {
   EXPECT_EQ(bench.wiring.volts, kNone) << "a stop knows no ramp";
 }
 
-TEST(AnalogBase, WhatIsNoNumberMovesNothing) {
+TEST(AnalogBase, NanCommandsMoveNothing) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   bench.base.enable(true);
@@ -94,7 +94,7 @@ TEST(AnalogBase, WhatIsNoNumberMovesNothing) {
   EXPECT_EQ(bench.wiring.volts, kNone);
 }
 
-TEST(AnalogBase, TheRelayHearsATickAndNobodyElse) {
+TEST(AnalogBase, OnlyTicksToggleTheRelay) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   bench.base.enable(true);
@@ -115,7 +115,7 @@ TEST(AnalogBase, TheRelayHearsATickAndNobodyElse) {
   EXPECT_EQ(bench.wiring.volts, kNone);
 }
 
-TEST(AnalogBase, SwitchedOffItBrakesWithPowerAndThenOpensTheRelay) {
+TEST(AnalogBase, SwitchingOffBrakesWithPowerThenOpensTheRelay) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   bench.base.enable(true);
@@ -140,7 +140,7 @@ TEST(AnalogBase, SwitchedOffItBrakesWithPowerAndThenOpensTheRelay) {
   EXPECT_FALSE(bench.wiring.enabled);
 }
 
-TEST(AnalogBase, CountsAddUpOverTheWrap) {
+TEST(AnalogBase, OdometryContinuesOverTheCounterWrap) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   g_now += 1;
@@ -149,7 +149,7 @@ TEST(AnalogBase, CountsAddUpOverTheWrap) {
   EXPECT_NEAR(bench.base.state().twist.v, 0.2 * std::numbers::pi, 1e-9);
 }
 
-TEST(AnalogBase, ACounterThatWasSetAnewIsNoWay) {
+TEST(AnalogBase, ACounterResetAddsNoTravel) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   g_now += kTick;
@@ -160,7 +160,7 @@ TEST(AnalogBase, ACounterThatWasSetAnewIsNoWay) {
   EXPECT_NEAR(bench.base.state().pose.x, 0.02 * std::numbers::pi, 1e-9);
 }
 
-TEST(AnalogBase, AtRestNothingCreeps) {
+TEST(AnalogBase, NothingCreepsAtRest) {
   AnalogSetup with = setup();
   with.gain = 5;
   Bench bench(with);
@@ -171,7 +171,7 @@ TEST(AnalogBase, AtRestNothingCreeps) {
   EXPECT_EQ(bench.wiring.volts, kNone);
 }
 
-TEST(AnalogBase, AProportionalPartPullsASlowWheelAlong) {
+TEST(AnalogBase, TheProportionalTermSpeedsUpASlowWheel) {
   AnalogSetup with = setup();
   with.gain = 5;  // [V s/m]
   Bench bench(with);
@@ -184,7 +184,7 @@ TEST(AnalogBase, AProportionalPartPullsASlowWheelAlong) {
   EXPECT_NEAR(bench.wiring.volts[0], 2 + 5 * 0.1, 0.05);
 }
 
-TEST(AnalogBase, SaysWhatTheLinesSay) {
+TEST(AnalogBase, ReportsTheDigitalLines) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   bench.wiring.inputs.stop_button = true;
@@ -204,7 +204,7 @@ TEST(AnalogBase, SaysWhatTheLinesSay) {
   EXPECT_NE(bench.base.report().sentence.find("fault"), std::string::npos);
 }
 
-TEST(AnalogBase, ACardThatGoesIsLookedForAndComesBackOff) {
+TEST(AnalogBase, ALostCardIsReopenedWithMotorsOff) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
   bench.base.enable(true);
@@ -213,7 +213,7 @@ TEST(AnalogBase, ACardThatGoesIsLookedForAndComesBackOff) {
   bench.drive({0.1, 0}, 1);
   EXPECT_FALSE(bench.base.state().running);
   EXPECT_EQ(bench.base.report().sentence, "The card has gone.");
-  bench.base.stop();  // nothing to stop, and no harm
+  bench.base.stop();  // harmless at rest
   bench.base.cut();
   bench.wiring.gone = false;
   ASSERT_TRUE(bench.comes_to(true));

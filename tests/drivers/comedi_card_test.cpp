@@ -1,5 +1,4 @@
-// tests/drivers/comedi_card_test.cpp: the COMEDI driver on an emulated card, loaded as libcomedi
-// is.
+// tests/drivers/comedi_card_test.cpp: the COMEDI driver on an emulated card, loaded like libcomedi.
 #include "drivers/comedi_card.hpp"
 
 #include <filesystem>
@@ -40,7 +39,7 @@ struct Slot {
   std::unique_ptr<AnalogCard> open(const ComediSetup& with = setup()) const {
     return open_comedi_card(path().string(), with);
   }
-  /// The sentence that refuses it.
+  /// The error sentence for `setup`.
   std::string refusal(const ComediSetup& with = setup()) const {
     try {
       open(with);
@@ -76,7 +75,7 @@ TEST(ComediCard, WritesVoltsOfBothSigns) {
   EXPECT_NEAR(slot.memory().volts(0), -10, 1e-3);
 }
 
-TEST(ComediCard, CountsOnOverTheCountersEnd) {
+TEST(ComediCard, CountsContinueOverTheCounterWrap) {
   const Slot slot;
   slot.memory().turned[0] = 0xFF'FFFE;
   ComediSetup with = setup();
@@ -102,7 +101,7 @@ TEST(ComediCard, ReadsItsLines) {
   EXPECT_TRUE(inputs.stop_button && inputs.fault && inputs.bumper_front && inputs.bumper_rear);
 }
 
-TEST(ComediCard, TheRelayIsHeldByChanges) {
+TEST(ComediCard, TogglingHoldsTheRelayClosed) {
   const Slot slot;
   const auto card = slot.open();
   for (int i = 0; i < 5; ++i) card->set_relay_line(i % 2 == 0);
@@ -121,7 +120,7 @@ TEST(ComediCard, TheEnableInputIsLowAtFirst) {
   EXPECT_NE(slot.memory().levels & 0b10'0000U, 0U);
 }
 
-TEST(ComediCard, SaysWhatItFound) {
+TEST(ComediCard, ReportsItsChannels) {
   const Slot slot;
   std::string text;
   for (const auto& [name, value] : slot.open()->facts()) text += name + " " + value + "\n";
@@ -130,7 +129,7 @@ TEST(ComediCard, SaysWhatItFound) {
   EXPECT_THAT(text, HasSubstr("0: 2 analog outputs; 1: 2 counters; 2: 8 digital lines"));
 }
 
-TEST(ComediCard, ACardThatGoesIsSaidSo) {
+TEST(ComediCard, ALostCardIsReported) {
   const Slot slot;
   const auto card = slot.open();
   slot.memory().gone = 1;
@@ -140,7 +139,7 @@ TEST(ComediCard, ACardThatGoesIsSaidSo) {
   EXPECT_THAT(slot.refusal(), HasSubstr("cannot be opened: No such device"));
 }
 
-TEST(ComediCard, WhatIsNotThereIsSaidSo) {
+TEST(ComediCard, AMissingCardOrLibraryIsReported) {
   const Slot slot;
   const auto refused = [&](const std::function<void(ComediSetup&)>& change) {
     ComediSetup with = setup();
@@ -179,7 +178,7 @@ TEST(ComediCard, ACardWithoutTheChannelsIsRefused) {
   EXPECT_THAT(Slot({.lines = 0}).refusal(), HasSubstr("has no digital lines"));
 }
 
-TEST(ComediCard, AnEmulatorThatEndsLeavesTheCardOfTheNextOne) {
+TEST(ComediCard, AnEndingEmulatorKeepsTheNextOnesCardFile) {
   const tests::TemporaryFolder folder;
   const auto path = folder.path() / "card";
   auto first = std::make_unique<CardFile>(path, CardChannels{});
@@ -190,7 +189,7 @@ TEST(ComediCard, AnEmulatorThatEndsLeavesTheCardOfTheNextOne) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(ComediCard, AFileThatIsNoCardIsLeftAlone) {
+TEST(ComediCard, AnotherFileIsNotReplacedByACard) {
   const tests::TemporaryFolder folder;
   const auto path = folder.path() / "letter";
   std::ofstream(path) << "Dear Sir";

@@ -1,5 +1,5 @@
-// tests/drivers/emulated_laser.hpp: emulated devices as the bench of the driver's tests wants them,
-// and a whole LMS200 with its machine; the line takes its time, and nothing is waited for.
+// tests/drivers/emulated_laser.hpp: emulated devices for the test bench of the drivers, and an
+// LMS200 with its machine. The line takes its transfer time on a simulated clock.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace drivers {
 
-/// An emulated device as the bench wants one.
+/// Adapts an emulated device to the bench.
 class Emulated : public LineDevice {
  public:
   explicit Emulated(emulators::Device& device) : device_(device) {}
@@ -42,14 +42,14 @@ class Emulated : public LineDevice {
   }
 
  protected:
-  /// What the world does to it meanwhile.
+  /// Called with the time: the world's effect on the device.
   virtual void live(double /*now*/) {}
 
  private:
   emulators::Device& device_;
 };
 
-/// A room in which every beam of a sweep meets something else.
+/// A room in which every beam of a sweep has another range.
 class EmulatedLaser final : public Emulated {
  public:
   explicit EmulatedLaser(lms200::Emulator& emulator) : Emulated(emulator), emulator_(emulator) {}
@@ -98,7 +98,7 @@ struct Laser {
   bool running(double seconds) {
     return bench.run_until(seconds, [&] { return machine.stage() == lms200::Stage::Running; });
   }
-  /// Every beam of the next scan as the world has it, to the millimetre.
+  /// Expects every beam of the next scan to equal the world, to the millimetre.
   void expect_room(std::size_t beams) {
     algo::LaserScan scan;
     ASSERT_TRUE(bench.run_until(5, [&] { return machine.take(scan); }));

@@ -1,4 +1,4 @@
-// tests/drivers/fake_card.hpp: an acquisition card whose volts and counts the test holds.
+// tests/drivers/fake_card.hpp: an acquisition card whose voltages and counts the test sets.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace drivers {
 
-/// What is wired to the card.
+/// The devices wired to the card.
 struct Wiring {
   Volts volts{-1, -1};
   CardInputs inputs{};

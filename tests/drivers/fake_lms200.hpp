@@ -1,4 +1,4 @@
-// tests/drivers/fake_lms200.hpp: an LMS200 that does what the driver's tests need, and no more.
+// tests/drivers/fake_lms200.hpp: a minimal LMS200 for the driver's tests.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ class FakeLms200 final : public LineDevice {
  public:
   unsigned baud = 9600;
   std::uint8_t address = 0;
-  double boots_until = 0;  // [s] deaf and dumb before, says its greeting then
+  double boots_until = 0;  // [s] silent until then, then sends its greeting
   bool dead = false;
   bool refuses_variant = false;
   bool wrong_password = false;
-  unsigned highest_baud = 500'000;  // above it a change of the rate leads to silence
+  unsigned highest_baud = 500'000;  // a change to a higher rate leads to silence
   std::uint8_t status = 0x10;
   bool damages = false;  // flips a bit of every scan
   Variant variant{180, 100};
@@ -148,7 +148,7 @@ class FakeLms200 final : public LineDevice {
     if (wanted == 0x41) after = 19200;
     if (wanted == 0x42) after = 9600;
     if (wanted == 0x48) after = 500'000;
-    if (after && *after > highest_baud) after = 1;  // no rate anybody could listen at
+    if (after && *after > highest_baud) after = 1;  // a rate that no host can use
     if (!after) {
       streams = wanted == 0x24 || wanted == 0x2A;
       partial = wanted == 0x2A;

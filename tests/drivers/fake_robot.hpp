@@ -15,7 +15,7 @@ namespace drivers {
 
 inline constexpr double kPeriod = 0.05;  // [s] of the robot's ticks
 
-/// Time that passes only when somebody sleeps.
+/// A clock that advances only by sleeping.
 class FakeClock final : public Clock {
  public:
   explicit FakeClock(double& time) : time_(time) {}
@@ -67,7 +67,7 @@ class FakeScanner final : public Scanner {
   double last_ = 0;
 };
 
-/// Wheels that do as they are told, at once.
+/// Wheels that follow commands at once.
 class FakeBase final : public Base {
  public:
   explicit FakeBase(double& time) : time_(time) {

@@ -1,4 +1,4 @@
-// tests/drivers/hex.hpp: bytes written as the manuals print them.
+// tests/drivers/hex.hpp: bytes in the manuals' notation.
 #pragma once
 
 #include <cstdint>

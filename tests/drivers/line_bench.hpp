@@ -1,5 +1,5 @@
-// tests/drivers/line_bench.hpp: a machine and a device on a line of their own time: no thread, no
-// port, no waiting.
+// tests/drivers/line_bench.hpp: a machine and a device on a line with a simulated clock: no thread,
+// no port, no waiting.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace drivers {
 
-/// What stands at the other end.
+/// The device at the other end.
 class LineDevice {
  public:
   LineDevice() = default;
@@ -22,21 +22,21 @@ class LineDevice {
   LineDevice(const LineDevice&) = delete;
   LineDevice& operator=(const LineDevice&) = delete;
 
-  /// Bytes from the host, that were sent at `baud`.
+  /// Takes bytes that the host sent at `baud`.
   virtual void hear(double now, ByteView bytes, unsigned baud) = 0;
-  /// What the host receives at `now`; empty when there is nothing.
+  /// The bytes that the host receives at `now`.
   virtual Bytes say(double now, unsigned host_baud) = 0;
 };
 
-/// Moves time on in steps of a millisecond.
+/// Advances time in steps of a millisecond.
 class LineBench {
  public:
   LineBench(Machine& machine, LineDevice& device) : machine_(machine), device_(device) {}
 
-  /// [bit/s] what the port makes of a wish.
+  /// [bit/s] The port's actual rate for a wanted one.
   std::function<unsigned(unsigned)> port = [](unsigned wanted) { return wanted; };
 
-  /// [s] What comes waits so long on its way, and then all at once: a busy machine, a poor adapter.
+  /// [s] Received bytes are held this long and then delivered at once, as by a poor adapter.
   double bunch = 0;
 
   void open() {
@@ -66,7 +66,7 @@ class LineBench {
     }
     return done();
   }
-  /// Carries out what the machine has ordered by now.
+  /// Executes the machine's pending orders.
   void settle() {
     machine_.advance(now_);
     while (const auto order = machine_.next_order()) {

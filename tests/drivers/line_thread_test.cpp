@@ -18,7 +18,7 @@
 namespace drivers {
 namespace {
 
-/// Sends back what it receives, says goodbye when it leaves.
+/// Echoes its input and sends a farewell when it leaves.
 class EchoMachine final : public Machine {
  public:
   unsigned opening_baud() const override { return 38400; }
@@ -46,7 +46,7 @@ class EchoMachine final : public Machine {
   unsigned rate = 0;
   std::string reason{};
   bool gone = false;
-  double sleeps = 0;  // [s] the thread stands still, once
+  double sleeps = 0;  // [s] the thread sleeps this long, once
   std::atomic<bool> asleep{false};
   int lost = 0;
 };
@@ -91,7 +91,7 @@ class Terminal {
   std::string path_{};
 };
 
-/// Gives up after a time that only a broken program needs.
+/// Times out after much longer than a correct program needs.
 template <class Done>
 bool wait_for(Done&& done) {
   for (int i = 0; i < 3000; ++i) {
@@ -130,15 +130,15 @@ TEST(LineThread, CarriesBytesBothWaysAndLetsTheMachineLeave) {
   EXPECT_EQ(terminal.receive(1), hex("FF"));
 }
 
-TEST(LineThread, WhatWaitedWhileTheProgramSleptIsThrownAway) {
+TEST(LineThread, BytesFromASleepOfTheProgramAreDiscarded) {
   const Terminal terminal;
   EchoMachine machine;
   LineThread line(terminal.path(), machine);
   ASSERT_TRUE(opened(line, machine));
   terminal.send(hex("01"));
   EXPECT_EQ(terminal.receive(1), hex("01"));
-  // GIVEN a thread that stands still for half a second WHEN bytes come meanwhile THEN nobody can
-  // say how old they are.
+  // GIVEN a thread that sleeps for half a second WHEN bytes arrive meanwhile THEN their age is
+  // unknown.
   line.with([&] {
     machine.sleeps = 0.5;
     machine.orders.send_before(steady_now() + 0.1, ByteView(hex("EE")));
@@ -151,11 +151,11 @@ TEST(LineThread, WhatWaitedWhileTheProgramSleptIsThrownAway) {
     return lost == 1;
   }));
   terminal.send(hex("04"));
-  // Nor is a motion sent that was ordered before.
+  // A motion ordered before is not sent either.
   EXPECT_EQ(terminal.receive(1), hex("04"));
 }
 
-TEST(LineThread, PortThatIsNotThereIsASentenceAndWaitedFor) {
+TEST(LineThread, MissingPortIsReportedAndRetried) {
   EchoMachine machine;
   LineThread line("/dev/no_such_port", machine);
   EXPECT_TRUE(wait_for([&] {

@@ -1,4 +1,4 @@
-// tests/drivers/lms200_machine_test.cpp: finding, setting up, listening to and leaving a scanner.
+// tests/drivers/lms200_machine_test.cpp: finding, setting up, reading and leaving a scanner.
 #include "drivers/lms200_machine.hpp"
 
 #include "tests/drivers/fake_lms200.hpp"
@@ -47,7 +47,7 @@ TEST(Lms200Machine, FactoryFreshDeviceIsFoundAndSetUp) {
   EXPECT_EQ(report.trouble, "");
 }
 
-TEST(Lms200Machine, ConfigurationThatFitsIsNotWritten) {
+TEST(Lms200Machine, MatchingConfigurationIsNotWritten) {
   Fixture f;
   f.device.block[6] = 1;
   f.bench.open();
@@ -83,7 +83,7 @@ TEST(Lms200Machine, RangeChoosesModeAndUnit) {
   }
 }
 
-TEST(Lms200Machine, OneLeftStreamingAtTheWantedRateIsBackWithinASecond) {
+TEST(Lms200Machine, DeviceLeftStreamingAtTheWantedRateRunsWithinASecond) {
   Fixture f;
   f.device.baud = 500'000;
   f.device.streams = true;
@@ -93,7 +93,7 @@ TEST(Lms200Machine, OneLeftStreamingAtTheWantedRateIsBackWithinASecond) {
   EXPECT_TRUE(f.running(1));
 }
 
-TEST(Lms200Machine, FoundAtEveryRate) {
+TEST(Lms200Machine, DeviceIsFoundAtEveryRate) {
   for (const unsigned rate : {9600U, 19200U, 38400U, 500'000U}) {
     Fixture f;
     f.device.baud = rate;
@@ -104,7 +104,7 @@ TEST(Lms200Machine, FoundAtEveryRate) {
   }
 }
 
-TEST(Lms200Machine, AnswersFromAddressOneCount) {
+TEST(Lms200Machine, AnswersFromAddressOneAreAccepted) {
   Fixture f;
   f.device.address = 1;
   f.bench.open();
@@ -121,7 +121,7 @@ TEST(Lms200Machine, LatePowerOnIsWaitedFor) {
   EXPECT_TRUE(f.running(40));
 }
 
-TEST(Lms200Machine, OneThatNeverAnswersIsSaidSo) {
+TEST(Lms200Machine, DeviceThatNeverAnswersIsReported) {
   Fixture f;
   f.device.dead = true;
   f.bench.open();
@@ -152,7 +152,7 @@ TEST(Lms200Machine, GreetingAtItsOwnRateRestartsAtOnce) {
   ASSERT_TRUE(f.bench.run_until(5, [&] { return f.machine.report().set_ups == 2; }));
 }
 
-TEST(Lms200Machine, PortThatCannotMakeTheRateFallsBackAndSaysSo) {
+TEST(Lms200Machine, PortWithoutTheRateFallsBackWithARemark) {
   Fixture f;
   f.bench.port = [](unsigned wanted) { return wanted == 500'000 ? 460'800U : wanted; };
   f.bench.open();
@@ -163,7 +163,7 @@ TEST(Lms200Machine, PortThatCannotMakeTheRateFallsBackAndSaysSo) {
   EXPECT_TRUE(f.scan(scan));
 }
 
-TEST(Lms200Machine, RefusedVariantIsTakenAsItIs) {
+TEST(Lms200Machine, RefusedVariantKeepsTheDevicesOwn) {
   Fixture f;
   f.device.refuses_variant = true;
   f.bench.open();
@@ -196,7 +196,7 @@ TEST(Lms200Machine, QuarterDegreesComeInterlaced) {
   EXPECT_DOUBLE_EQ(scan.ranges[3], 1.237);  // of the fourth part
 }
 
-TEST(Lms200Machine, StampIsThatOfTheSweepAndNotOfItsArrival) {
+TEST(Lms200Machine, StampIsTheEndOfTheSweepNotItsArrival) {
   for (const unsigned baud : {38400U, 500'000U}) {
     LaserSetup setup;
     setup.baud = baud;
@@ -218,7 +218,7 @@ TEST(Lms200Machine, PeriodIsMeasured) {
   EXPECT_NEAR(f.machine.scan_period(), 2 * kTurnPeriod, 0.001);
 }
 
-TEST(Lms200Machine, ScansThatComeInBunchesAreNotTakenForAFasterScanner) {
+TEST(Lms200Machine, BunchedScansDoNotRaiseTheScanRate) {
   Fixture f;
   f.bench.open();
   ASSERT_TRUE(f.running(10));
@@ -242,7 +242,7 @@ TEST(Lms200Machine, UpsideDownIsTurnedRound) {
   EXPECT_DOUBLE_EQ(scan.ranges[717], 1.237);
 }
 
-TEST(Lms200Machine, ScansTheDeviceDoesNotStandByAreNotDelivered) {
+TEST(Lms200Machine, ScansMarkedUnreliableAreNotDelivered) {
   Fixture f;
   f.bench.open();
   ASSERT_TRUE(f.running(10));
@@ -259,7 +259,7 @@ TEST(Lms200Machine, ScansTheDeviceDoesNotStandByAreNotDelivered) {
   EXPECT_TRUE(f.scan(scan));
 }
 
-TEST(Lms200Machine, StormOfDamagedTelegramsShows) {
+TEST(Lms200Machine, StormOfDamagedTelegramsIsReported) {
   Fixture f;
   f.bench.open();
   ASSERT_TRUE(f.running(10));
@@ -275,7 +275,7 @@ TEST(Lms200Machine, StormOfDamagedTelegramsShows) {
   EXPECT_FALSE(f.machine.storm());
 }
 
-TEST(Lms200Machine, StormThatAbatesIsNotOverBeforeTheLineIsGood) {
+TEST(Lms200Machine, StormEndsOnlyWhenTheLineIsGood) {
   Fixture f;
   f.bench.open();
   ASSERT_TRUE(f.running(10));
@@ -292,7 +292,7 @@ TEST(Lms200Machine, StormThatAbatesIsNotOverBeforeTheLineIsGood) {
   EXPECT_TRUE(f.bench.run_until(10, [&] { return !f.machine.storm(); }));
 }
 
-TEST(Lms200Machine, LeftAsTheNextProgramExpectsIt) {
+TEST(Lms200Machine, DeviceIsLeftInItsInitialState) {
   Fixture f;
   f.bench.open();
   ASSERT_TRUE(f.running(10));

@@ -1,5 +1,5 @@
-// tests/drivers/lms200_protocol_test.cpp: every telegram printed in the manual or recomputed from
-// it, as we write it and as we read it.
+// tests/drivers/lms200_protocol_test.cpp: writes and reads every telegram that is printed in the
+// manual or computed from it.
 #include "drivers/lms200_protocol.hpp"
 
 #include "tests/drivers/lms200_telegrams.hpp"
@@ -85,7 +85,7 @@ std::vector<Row> requests() {
   };
 }
 
-TEST(Lms200Protocol, RequestsAsPrintedAndReadAgain) {
+TEST(Lms200Protocol, RequestsMatchTheManualAndDecodeAgain) {
   for (const Row& row : requests()) {
     EXPECT_EQ(bytes_of(row.command.view()), hex(row.bytes));
     Kept kept(Sender::Host);
@@ -114,14 +114,14 @@ TEST(Lms200Protocol, RequestsWithoutAPrintedExampleHaveTheirParametersInOrder) {
   EXPECT_EQ(write_second_configuration_command(Bytes(84, 7)).size(), 91U);
 }
 
-TEST(Lms200Protocol, NothingIsSentForWhatTheDeviceDoesNotHave) {
+TEST(Lms200Protocol, UnsupportedSettingsGiveNoTelegram) {
   EXPECT_EQ(variant_command({180, 25}).size(), 0U);
   EXPECT_EQ(variant_command({90, 100}).size(), 0U);
   EXPECT_EQ(installation_command("short").size(), 0U);
   EXPECT_EQ(write_second_configuration_command(Bytes(83)).size(), 0U);
 }
 
-TEST(Lms200Protocol, AnswersAsPrintedAreWrittenAlike) {
+TEST(Lms200Protocol, AnswersEncodeAsPrinted) {
   for (const char* text : {"02 80 03 00 A0 00 10 16 0A",
                            "02 81 03 00 A0 00 10 36 1A",
                            "02 80 02 00 92 10 7F 33",
@@ -172,7 +172,7 @@ TEST(Lms200Protocol, ConfigurationAnswers) {
   EXPECT_TRUE(answer->now.in_millimetres());
   EXPECT_FALSE(answer->now.sends_indices());
 
-  // Old devices send less; what was read can be written back in that length.
+  // Old devices send a shorter block, which can be written back at that length.
   const Bytes read = framed(0x80, hex("F4 00 00 70 00 02 06 00 00 00 10"));
   const auto shorter = configuration_answer(telegram_of(read));
   ASSERT_TRUE(shorter);
@@ -191,7 +191,7 @@ TEST(Lms200Protocol, StartUpRateAnswer) {
             (StartUpRateAnswer{.done = true, .now = StartUpRate::KeepPresent}));
 }
 
-TEST(Lms200Protocol, StatusByItsIndices) {
+TEST(Lms200Protocol, StatusFieldsAreReadByTheirIndices) {
   Bytes payload(154, 0);
   const auto word = [&payload](std::size_t at, unsigned value) {
     payload[at] = static_cast<std::uint8_t>(value & 0xFFU);
@@ -240,7 +240,7 @@ TEST(Lms200Protocol, ErrorsAsSentences) {
   EXPECT_FALSE(error_count(telegram_of(framed(0x80, hex("B2 03 12")))));
 }
 
-TEST(Lms200Protocol, HealthSaysWhetherToDrive) {
+TEST(Lms200Protocol, HealthTellsWhetherToDrive) {
   EXPECT_TRUE(Health(0x10).usable());
   EXPECT_EQ(health_text(Health(0x10)), "");
   EXPECT_TRUE(Health(0x92).usable());

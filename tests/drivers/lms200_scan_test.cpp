@@ -1,5 +1,4 @@
-// tests/drivers/lms200_scan_test.cpp: measured values of the LMS2xx, and partial scans put
-// together.
+// tests/drivers/lms200_scan_test.cpp: measured values of the LMS2xx, and joined partial scans.
 #include "drivers/lms200_scan.hpp"
 
 #include <numbers>
@@ -15,8 +14,8 @@ using algo::BeamCode;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A printed answer with its values; asserts that its CRC is right and that we would write the
-/// same.
+/// A printed answer with its values; asserts that its CRC is right and that we write the same
+/// bytes.
 class Printed {
  public:
   explicit Printed(const std::string& text) : bytes_(hex(text)) {
@@ -35,7 +34,7 @@ class Printed {
   Bytes bytes_;
 };
 
-/// All words as beams, whatever the variant.
+/// All words as beams, for any variant.
 algo::LaserScan beams_of(const MeasuredValues& values, std::uint8_t measuring_mode) {
   const ScanDecoder decoder({180, 100}, word_format(measuring_mode).value_or(WordFormat{}));
   algo::LaserScan scan;
@@ -73,7 +72,7 @@ TEST(Lms200Scan, Centimetres) {
   EXPECT_EQ(scan.codes[2], BeamCode::WeakSignal);
 }
 
-TEST(Lms200Scan, IndicesByTheLengthOfTheTelegram) {
+TEST(Lms200Scan, TelegramLengthTellsWhetherIndicesAreSent) {
   const Printed printed("02 80 0C 00 B0 03 40 F4 01 58 02 BC 02 07 2A 10 39 26");
   EXPECT_EQ(printed.values().indices, (Indices{.turn = 7, .telegram = 42}));
   EXPECT_EQ(printed.values().health, Health(0x10));
@@ -87,7 +86,7 @@ TEST(Lms200Scan, PartialScan) {
   EXPECT_EQ(beams_of(printed.values(), 0).ranges, (std::vector{1.5, 1.6}));
 }
 
-TEST(Lms200Scan, FieldFlagIsNoDistance) {
+TEST(Lms200Scan, FieldFlagIsNotReadAsDistance) {
   const Printed printed("02 80 08 00 B0 02 40 20 4E 00 FD 10 E6 D2");
   EXPECT_EQ(beams_of(printed.values(), 6).ranges, (std::vector{20.0, 32.0}));
 }
@@ -147,7 +146,7 @@ TEST(Lms200Scan, CountMustFitTheLength) {
   EXPECT_FALSE(measured_values(telegram_of(framed(0x80, hex("B7 01 00 03 00 01 40 E8 03 10")))));
 }
 
-TEST(Lms200Scan, MeansSayOfHowMany) {
+TEST(Lms200Scan, MeanValuesCarryTheirScanCount) {
   const auto mean = values_of(framed(0x80, hex("B6 05 01 40 E8 03 10")));
   EXPECT_EQ(mean.averaged, 5);
   EXPECT_EQ(mean.size(), 1U);
@@ -157,7 +156,7 @@ TEST(Lms200Scan, MeansSayOfHowMany) {
   EXPECT_EQ(range.size(), 2U);
 }
 
-TEST(Lms200Scan, NoCodeIsADistanceInAnyMode) {
+TEST(Lms200Scan, CodesAreNeverDistancesInAnyMode) {
   struct Row {
     std::uint8_t mode;
     unsigned top;
@@ -226,7 +225,7 @@ TEST_F(Lms200PartialScans, FourTurnsMakeOneScan) {
   EXPECT_NEAR(scan.angle(720), 90 * kDegree, 1e-12);
 }
 
-TEST_F(Lms200PartialScans, HalfDegreesAreThePartsZeroAndTwo) {
+TEST_F(Lms200PartialScans, HalfDegreeScansJoinPartsZeroAndTwo) {
   parts = PartialScans({180, 50}, WordFormat{});
   EXPECT_FALSE(add(part_frame(0, 1000)));
   ASSERT_TRUE(add(part_frame(2, 1000)));
@@ -248,7 +247,7 @@ TEST_F(Lms200PartialScans, SweepThatLacksAPartIsDroppedWhole) {
   EXPECT_EQ(parts.dropped_sweeps(), 3U);  // of the one without part 0 nothing had begun
 }
 
-TEST_F(Lms200PartialScans, IndicesTellPartsOfDifferentSweepsApart) {
+TEST_F(Lms200PartialScans, IndicesSeparatePartsOfDifferentSweeps) {
   EXPECT_FALSE(add(part_frame(0, 1000, {254, 0})));
   EXPECT_FALSE(add(part_frame(1, 1000, {255, 1})));
   EXPECT_FALSE(add(part_frame(2, 1000, {0, 2})));
@@ -258,13 +257,13 @@ TEST_F(Lms200PartialScans, IndicesTellPartsOfDifferentSweepsApart) {
   EXPECT_EQ(parts.dropped_sweeps(), 1U);
 }
 
-TEST_F(Lms200PartialScans, WholeScansAreNone) {
+TEST_F(Lms200PartialScans, WholeScansAreRefused) {
   EXPECT_FALSE(add(scan_181()));
   EXPECT_FALSE(ScanDecoder({180, 100}, WordFormat{}).decode(values_of(part_frame(0, 1)), scan));
 }
 
 /// The manual's figures for scans lost between two sent: 29..30, 15 and 8, none at 500000.
-TEST(Lms200ScanPeriod, IsWhatTheLineCarries) {
+TEST(Lms200ScanPeriod, FollowsTheLineRate) {
   struct Row {
     Variant variant{};
     unsigned baud = 0;

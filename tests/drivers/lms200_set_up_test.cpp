@@ -1,5 +1,5 @@
-// tests/drivers/lms200_set_up_test.cpp: scanners that are slow, deaf, wrong or dazzled: each set-up
-// ends in scans or in the right sentence, and each device is left as it was found.
+// tests/drivers/lms200_set_up_test.cpp: slow, deaf, faulty and dazzled scanners: each set-up ends
+// in scans or in the right sentence, and each device is left as it was found.
 #include <numbers>
 
 #include "tests/drivers/emulated_laser.hpp"
@@ -15,7 +15,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Says goodbye; false when that takes longer than a program waits.
+/// Leaves the device; false when that takes longer than a program waits.
 bool leaves(Laser& laser) {
   laser.machine.leave(laser.bench.now());
   laser.bench.settle();
@@ -24,7 +24,7 @@ bool leaves(Laser& laser) {
   return left;
 }
 
-TEST(Lms200SetUp, ModeSwitchesOfThreeSecondsEndInScans) {
+TEST(Lms200SetUp, SetUpSucceedsWithModeSwitchesOfThreeSeconds) {
   for (const unsigned found : {9600U, 38400U, 500'000U}) {
     lms200::EmulatorOptions options;
     options.times.mode = 3.0;
@@ -39,7 +39,7 @@ TEST(Lms200SetUp, ModeSwitchesOfThreeSecondsEndInScans) {
   }
 }
 
-TEST(Lms200SetUp, TwoSecondsOfSilenceAfterSwitchesAndPowerOnEndInScans) {
+TEST(Lms200SetUp, SetUpSucceedsWithTwoDeafSecondsAfterSwitchesAndPowerOn) {
   for (const double mode : {0.06, 3.0}) {
     lms200::EmulatorOptions options;
     options.powered = false;
@@ -54,7 +54,7 @@ TEST(Lms200SetUp, TwoSecondsOfSilenceAfterSwitchesAndPowerOnEndInScans) {
   }
 }
 
-TEST(Lms200SetUp, ADeviceDeafAfterItsSwitchIsLeftAtTheRateItWasFoundAt) {
+TEST(Lms200SetUp, ADeafDeviceIsLeftAtTheRateItWasFoundAt) {
   for (const unsigned found : {9600U, 38400U, 500'000U}) {
     lms200::EmulatorOptions options;
     options.times.deaf = 2.0;
@@ -79,7 +79,7 @@ TEST(Lms200SetUp, SlowDeviceLeftStreamingIsFoundAgain) {
   laser.expect_room(361);
 }
 
-TEST(Lms200SetUp, ADeviceThatTakesAllForDamagedIsSaidSo) {
+TEST(Lms200SetUp, ADeviceThatAnswersOnlyNakIsReported) {
   lms200::EmulatorOptions options;
   options.refusals = 1'000'000;
   Laser laser(options);
@@ -90,7 +90,7 @@ TEST(Lms200SetUp, ADeviceThatTakesAllForDamagedIsSaidSo) {
   EXPECT_TRUE(laser.running(20));
 }
 
-TEST(Lms200SetUp, OneThatBeginsToTakeAllForDamagedIsSaidSo) {
+TEST(Lms200SetUp, ADeviceThatStartsToAnswerOnlyNakIsReported) {
   Laser laser({});
   ASSERT_TRUE(laser.bench.run_until(10, [&] { return !laser.machine.report().type.empty(); }));
   laser.emulator.refuse_next(1'000'000);
@@ -98,7 +98,7 @@ TEST(Lms200SetUp, OneThatBeginsToTakeAllForDamagedIsSaidSo) {
   EXPECT_THAT(laser.machine.report().trouble, HasSubstr("NAK"));
 }
 
-TEST(Lms200SetUp, ADeviceThatIsOnlyLookedAtKeepsItsRateAndItsMemory) {
+TEST(Lms200SetUp, AnInspectedDeviceKeepsItsRateAndConfiguration) {
   for (const unsigned found : {9600U, 19200U, 38400U, 500'000U}) {
     lms200::EmulatorOptions options;
     options.start_rate = found;
@@ -126,7 +126,7 @@ TEST(Lms200SetUp, ADeviceThatRestartedIsLeftAtItsOwnRate) {
   EXPECT_EQ(laser.emulator.baud(), 38400U);
 }
 
-TEST(Lms200SetUp, AnotherPasswordIsAskedForInWordsAndUsedWhenGiven) {
+TEST(Lms200SetUp, AnUnknownPasswordIsReportedAndAGivenOneIsUsed) {
   lms200::EmulatorOptions options;
   options.password = "MOBILE_1";
   Laser stranger(options);
@@ -143,7 +143,7 @@ TEST(Lms200SetUp, AnotherPasswordIsAskedForInWordsAndUsedWhenGiven) {
   EXPECT_EQ(owner.emulator.configuration().measuring_mode(), 0x06);
 }
 
-TEST(Lms200SetUp, AnRs232LineFallsBackAndLeavesQuartersOfADegree) {
+TEST(Lms200SetUp, AnRs232LineFallsBackToHalfDegrees) {
   lms200::EmulatorOptions options;
   options.rs422 = false;
   Laser laser(options, setup(500'000, {180, 25}));
@@ -154,7 +154,7 @@ TEST(Lms200SetUp, AnRs232LineFallsBackAndLeavesQuartersOfADegree) {
   laser.expect_room(361);
 }
 
-TEST(Lms200Report, ADazzledScannerIsNotWell) {
+TEST(Lms200Report, ADazzledScannerIsReported) {
   Laser laser({});
   ASSERT_TRUE(laser.running(20));
   laser.bench.run(0.2);

@@ -26,12 +26,12 @@ Bytes joined(const std::vector<Bytes>& parts) {
   return all;
 }
 
-TEST(Lms200Telegram, CrcIsTheManualsOwn) {
+TEST(Lms200Telegram, CrcMatchesTheManual) {
   EXPECT_EQ(crc(hex("02 00 01 00 31")), 0x1215);
   EXPECT_EQ(crc({}), 0);
 }
 
-TEST(Lms200Telegram, WholeScansEndInThePrintedCheckValue) {
+TEST(Lms200Telegram, WholeScansHaveThePrintedCheckValue) {
   const Bytes half = scan_361();
   EXPECT_EQ(half.size(), 732U);
   EXPECT_EQ(Bytes(half.begin(), half.begin() + 11), hex("02 80 D6 02 B0 69 41 E8 03 E9 03"));
@@ -41,7 +41,7 @@ TEST(Lms200Telegram, WholeScansEndInThePrintedCheckValue) {
   EXPECT_EQ(Bytes(whole.end() - 3, whole.end()), hex("10 95 9D"));
 }
 
-TEST(Lms200Telegram, ReadsAcknowledgementsOutsideOfFramesOnly) {
+TEST(Lms200Telegram, ReadsAcknowledgementsOnlyOutsideOfFrames) {
   Kept kept;
   kept.feed(joined({ack(), mode_done(), {kNak}, scan_361()}));  // its values hold 06 and 15
   EXPECT_THAT(kept.frames, ElementsAre(mode_done(), scan_361()));
@@ -50,7 +50,7 @@ TEST(Lms200Telegram, ReadsAcknowledgementsOutsideOfFramesOnly) {
   EXPECT_EQ(kept.reader.pending(), 0U);
 }
 
-TEST(Lms200Telegram, TakesAnswersFromAnyAddressAndNoRequests) {
+TEST(Lms200Telegram, AcceptsAnswersFromAnyAddressAndNoRequests) {
   Kept device;
   device.feed(hex("02 81 03 00 A0 00 10 36 1A 02 00 01 00 31 15 12"));
   ASSERT_THAT(device.frames, SizeIs(1));
@@ -60,7 +60,7 @@ TEST(Lms200Telegram, TakesAnswersFromAnyAddressAndNoRequests) {
   EXPECT_THAT(host.frames, ElementsAre(hex("02 00 01 00 31 15 12")));
 }
 
-TEST(Lms200Telegram, RefusesLengthsNoFrameHas) {
+TEST(Lms200Telegram, RefusesImpossibleLengths) {
   for (const char* start : {"02 80 01 00 B0", "02 80 00 00 B0", "02 80 01 04 B0", "02 80 FF FF"}) {
     Kept kept;
     kept.feed(joined({hex(start), mode_done()}));
@@ -68,7 +68,7 @@ TEST(Lms200Telegram, RefusesLengthsNoFrameHas) {
   }
 }
 
-TEST(Lms200Telegram, PiecesOfAnySizeGiveTheSame) {
+TEST(Lms200Telegram, PiecesOfAnySizeGiveTheSameTelegrams) {
   const Bytes stream = joined({ack(), mode_done(), scan_181(), scan_361(), mode_done()});
   for (std::size_t piece = 1; piece < 800; ++piece) {
     Kept kept;
@@ -77,8 +77,8 @@ TEST(Lms200Telegram, PiecesOfAnySizeGiveTheSame) {
   }
 }
 
-// A request interrupts the scan under way: its rest never comes, an answer and whole scans follow.
-TEST(Lms200Telegram, ScanCutAtAnyByteCostsThatScanAlone) {
+// A request interrupts a scan: its rest never comes; an answer and whole scans follow.
+TEST(Lms200Telegram, ScanCutAtAnyByteLosesOnlyThatScan) {
   const Bytes scan = scan_361();
   for (std::size_t cut = 1; cut < scan.size(); ++cut) {
     const Bytes begun(scan.begin(), scan.begin() + static_cast<std::ptrdiff_t>(cut));
@@ -91,7 +91,7 @@ TEST(Lms200Telegram, ScanCutAtAnyByteCostsThatScanAlone) {
   }
 }
 
-TEST(Lms200Telegram, StreamEnteredAtAnyByteLosesTheFirstScanAlone) {
+TEST(Lms200Telegram, StreamEnteredAtAnyByteLosesOnlyTheFirstScan) {
   const Bytes stream = joined({scan_361(), scan_181(), scan_361()});
   for (std::size_t from = 1; from < scan_361().size(); ++from) {
     Kept kept;
@@ -101,7 +101,7 @@ TEST(Lms200Telegram, StreamEnteredAtAnyByteLosesTheFirstScanAlone) {
   }
 }
 
-TEST(Lms200Telegram, ByteLostOrChangedAnywhereCostsOneScan) {
+TEST(Lms200Telegram, OneLostOrChangedByteLosesOneScan) {
   const Bytes stream = joined({scan_181(), scan_361(), mode_done(), scan_181()});
   const std::size_t begin = scan_181().size();
   for (std::size_t at = begin; at < begin + scan_361().size(); ++at) {
@@ -119,7 +119,7 @@ TEST(Lms200Telegram, ByteLostOrChangedAnywhereCostsOneScan) {
   }
 }
 
-TEST(Lms200Telegram, WaitsForTheRestUntilToldThatNoneComes) {
+TEST(Lms200Telegram, WaitsForTheRestOfAFrameUntilTheTimeout) {
   const Bytes scan = scan_181();
   Kept kept;
   kept.feed(ByteView(scan).first(100));

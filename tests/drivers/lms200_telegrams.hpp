@@ -1,5 +1,5 @@
 // tests/drivers/lms200_telegrams.hpp: whole scans as the device sends them, and a reader that keeps
-// what it finds.
+// the telegrams.
 #pragma once
 
 #include <algorithm>

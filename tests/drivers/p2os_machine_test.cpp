@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Echoes greetings, sends states, keeps what it was told.
+/// Echoes greetings, sends states, keeps the commands it received.
 class FakePioneer final : public LineDevice {
  public:
   unsigned baud = 9600;
@@ -123,7 +123,7 @@ struct Fixture {
   bool running(double seconds = 5) {
     return bench.run_until(seconds, [&] { return machine.state().running; });
   }
-  /// What it is told by `action`.
+  /// The packets that the device receives during `action`.
   template <class Action>
   std::vector<Bytes> told(Action&& action) {
     device.heard.clear();
@@ -142,7 +142,7 @@ const Bytes kEmergencyStop{55};
 const Bytes kMotorsOff{4, 0x3B, 0, 0};
 const Bytes kClose{2};
 
-TEST(P2osMachine, IsGreetedAndOpenedWithItsMotorsOff) {
+TEST(P2osMachine, HandshakeOpensTheBaseWithItsMotorsOff) {
   Fixture f;
   ASSERT_TRUE(f.running());
   EXPECT_TRUE(f.device.was_told({4, 0x3B, 0, 0}));
@@ -160,7 +160,7 @@ TEST(P2osMachine, OldSessionIsClosedFirst) {
   EXPECT_TRUE(f.device.was_told({2}));
 }
 
-TEST(P2osMachine, IsFoundAtEveryRate) {
+TEST(P2osMachine, BaseIsFoundAtEveryRate) {
   for (const unsigned rate : {38400U, 57600U}) {
     Fixture f;
     f.device.baud = rate;
@@ -168,7 +168,7 @@ TEST(P2osMachine, IsFoundAtEveryRate) {
   }
 }
 
-TEST(P2osMachine, NothingIsSentUnlessTheTickSaysSo) {
+TEST(P2osMachine, SendsMotionOnlyOnATick) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.machine.enable(f.bench.now(), true);
@@ -186,7 +186,7 @@ TEST(P2osMachine, SpeedsGoOutInMillimetresAndDegrees) {
   EXPECT_THAT(told, ::testing::ElementsAre(Bytes{11, 0x3B, 40, 0}, Bytes{21, 0x1B, 6, 0}));
 }
 
-TEST(P2osMachine, LimitsHoldAndNoNumberStops) {
+TEST(P2osMachine, ClampsToTheLimitsAndStopsOnNaN) {
   Fixture f;
   ASSERT_TRUE(f.running());
   auto told = f.told([&] { f.machine.drive(f.bench.now(), {9, 0}); });
@@ -196,7 +196,7 @@ TEST(P2osMachine, LimitsHoldAndNoNumberStops) {
   EXPECT_EQ(told[0], kVelocityZero);
 }
 
-TEST(P2osMachine, UnchangedCommandIsRepeatedTenTimesASecondAndAStopGoesAtOnce) {
+TEST(P2osMachine, RepeatsAnUnchangedCommandAt10HzAndSendsAStopAtOnce) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.bench.settle();
@@ -212,7 +212,7 @@ TEST(P2osMachine, UnchangedCommandIsRepeatedTenTimesASecondAndAStopGoesAtOnce) {
   EXPECT_THAT(told, ::testing::ElementsAre(kVelocityZero, kTurnZero));
 }
 
-TEST(P2osMachine, PositionAddsUpOverTheWrap) {
+TEST(P2osMachine, PositionContinuesOverTheCounterWrap) {
   Fixture f;
   f.device.x = 32700;
   ASSERT_TRUE(f.running());
@@ -239,7 +239,7 @@ TEST(P2osMachine, StopButtonBumpersAndMotorsAreReported) {
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("stop button"));
 }
 
-TEST(P2osMachine, SilenceIsSaidAndTheBaseFoundAgain) {
+TEST(P2osMachine, ReportsSilenceAndFindsTheBaseAgain) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.device.mute = true;
@@ -250,7 +250,7 @@ TEST(P2osMachine, SilenceIsSaidAndTheBaseFoundAgain) {
   EXPECT_EQ(f.machine.state().set_ups, 2U);
 }
 
-TEST(P2osMachine, BrakesWithTheEmergencyStopWhichIsRepeatedAsPacketsMayBeLost) {
+TEST(P2osMachine, RepeatsTheEmergencyStopAsPacketsMayBeLost) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.machine.enable(f.bench.now(), true);
@@ -264,7 +264,7 @@ TEST(P2osMachine, BrakesWithTheEmergencyStopWhichIsRepeatedAsPacketsMayBeLost) {
       f.machine.halt(f.bench.now());
       f.bench.settle();
     }
-    // Zero from a controller is no gentler.
+    // A zero command from a controller does not soften the braking.
     f.bench.run(0.1);
     f.machine.drive(f.bench.now(), {});
   });
@@ -285,7 +285,7 @@ TEST(P2osMachine, MotorsGoOffOnceTheWheelsStand) {
   f.bench.run(0.2);
   auto told = f.told([&] { f.machine.enable(f.bench.now(), false); });
   EXPECT_THAT(told, ::testing::ElementsAre(kEmergencyStop));
-  // Nothing moves it meanwhile.
+  // It ignores commands meanwhile.
   told = f.told([&] { f.machine.drive(f.bench.now(), {0.1, 0}); });
   EXPECT_THAT(told, ::testing::IsEmpty());
   told = f.told([&] { f.bench.run(0.2); });
@@ -293,7 +293,7 @@ TEST(P2osMachine, MotorsGoOffOnceTheWheelsStand) {
   f.device.left_mm_s = f.device.right_mm_s = 0;
   told = f.told([&] { f.bench.run(0.15); });
   EXPECT_THAT(told, ::testing::Contains(kMotorsOff));
-  // GIVEN wheels that do not stand WHEN braking has taken too long THEN the motors go off as well.
+  // GIVEN wheels that keep turning WHEN braking takes too long THEN the motors go off anyway.
   f.machine.enable(f.bench.now(), true);
   f.bench.settle();
   f.device.left_mm_s = 100;
@@ -303,7 +303,7 @@ TEST(P2osMachine, MotorsGoOffOnceTheWheelsStand) {
     f.bench.run(braking_time({}) + 0.01);
   });
   EXPECT_EQ(told.back(), kMotorsOff);
-  // A base that does not obey is cut off at once.
+  // The motors of a base that does not obey are cut at once.
   f.machine.enable(f.bench.now(), true);
   f.bench.run(0.2);
   told = f.told([&] { f.machine.cut(f.bench.now()); });
@@ -316,7 +316,7 @@ TEST(P2osMachine, LeavesItAtRestSwitchedOffAndClosed) {
   auto told = f.told([&] { f.machine.leave(f.bench.now()); });
   EXPECT_THAT(told, ::testing::ElementsAre(kEmergencyStop, kMotorsOff, kClose));
   EXPECT_TRUE(f.machine.left());
-  // One that drives has to come to rest first.
+  // A driving base must come to rest first.
   Fixture g;
   ASSERT_TRUE(g.running());
   g.machine.enable(g.bench.now(), true);

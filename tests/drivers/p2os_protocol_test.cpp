@@ -43,7 +43,7 @@ Bytes packet(const Bytes& body) {
   return bytes;
 }
 
-TEST(P2osProtocol, CommandsAsPrintedAndReadAgain) {
+TEST(P2osProtocol, CommandsMatchTheManualAndDecodeAgain) {
   struct Row {
     Packet packet;
     const char* bytes;
@@ -137,7 +137,7 @@ TEST(P2osProtocol, StallsStopButtonAndTail) {
   EXPECT_EQ(state.tail->faults, 4);
 }
 
-TEST(P2osProtocol, StateThatEndsAnywhereIsRefusedOrReadAsFarAsItGoes) {
+TEST(P2osProtocol, TruncatedStateIsRefusedOrReadToItsEnd) {
   const Bytes printed = hex(kPrintedState);
   const ByteView body = body_of(printed);
   for (std::size_t size = 0; size < body.size(); ++size) {
@@ -146,7 +146,7 @@ TEST(P2osProtocol, StateThatEndsAnywhereIsRefusedOrReadAsFarAsItGoes) {
   }
 }
 
-TEST(P2osProtocol, DamagedByteCostsOnePacket) {
+TEST(P2osProtocol, DamagedByteLosesOnePacket) {
   const Bytes printed = hex(kPrintedState);
   const Bytes stopped = packet(hex("32 19x00"));
   for (std::size_t at = 0; at < printed.size(); ++at) {
@@ -189,7 +189,7 @@ TEST(P2osProtocol, EncodersAndGyro) {
   EXPECT_FALSE(gyro_counts(hex("98 02 F6 01 1E F8 01")));
 }
 
-TEST(P2osOdometer, WrapsAroundAndLeavesOutJumps) {
+TEST(P2osOdometer, WrapsAroundAndIgnoresJumps) {
   State state;
   Odometer odometer;
   state.x_count = 32700;

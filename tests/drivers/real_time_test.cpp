@@ -1,4 +1,4 @@
-// tests/drivers/real_time_test.cpp: what a thread asks the system for.
+// tests/drivers/real_time_test.cpp: the real-time requests of a thread.
 #include "drivers/real_time.hpp"
 
 #include <thread>
@@ -9,7 +9,7 @@
 namespace drivers {
 namespace {
 
-TEST(RealTime, TimersHaveNoSlackOnceAskedFor) {
+TEST(RealTime, TimersHaveNoSlackAfterTheRequest) {
   std::thread([] {
     ASSERT_EQ(::prctl(PR_SET_TIMERSLACK, 50'000, 0, 0, 0), 0);
     ask_for_punctual_timers();

@@ -1,4 +1,4 @@
-// tests/drivers/robot_file_analog_test.cpp: robots whose motors hang on an acquisition card.
+// tests/drivers/robot_file_analog_test.cpp: robots with motors on an acquisition card.
 #include <string>
 #include <variant>
 
@@ -42,7 +42,7 @@ std::string refusal(const std::string& more) {
   return error_of(kHead + more);
 }
 
-TEST(RobotFileAnalog, TheLeastIsEnough) {
+TEST(RobotFileAnalog, RequiredKeysAloneAreEnough) {
   const RobotFile file = robot("");
   const auto& entry = std::get<AnalogEntry>(file.base.setup);
   EXPECT_EQ(entry.card.library, "libcomedi.so.0");
@@ -53,7 +53,7 @@ TEST(RobotFileAnalog, TheLeastIsEnough) {
   EXPECT_EQ(file.base.watchdog, 0.2);
 }
 
-TEST(RobotFileAnalog, EveryKeyCounts) {
+TEST(RobotFileAnalog, EveryKeyIsRead) {
   const RobotFile file = robot(R"(watchdog = 0.3
 max_volts = 5
 gain = 2
@@ -96,7 +96,7 @@ rear_bumper_lines = [6]
   EXPECT_THAT(card.rear_bumper_lines, ElementsAre(6U));
 }
 
-TEST(RobotFileAnalog, WhatCannotBeIsNamedWithItsLine) {
+TEST(RobotFileAnalog, ErrorsNameTheirLine) {
   EXPECT_THAT(refusal("max_volts = 1\n"),
               HasSubstr("my.toml:12: [base] speed_per_volt is 0.100 m/s at the wheel, and [limits] "
                         "ask for 0.225"));
@@ -117,7 +117,7 @@ TEST(RobotFileAnalog, WhatCannotBeIsNamedWithItsLine) {
   EXPECT_THAT(error_of(coarse), HasSubstr("counts_per_turn makes one count 0.063 m"));
 }
 
-TEST(RobotFileAnalog, InputsOfAnotherSubdeviceHaveNumbersOfTheirOwn) {
+TEST(RobotFileAnalog, InputsOfAnotherSubdeviceMayReuseLineNumbers) {
   EXPECT_EQ(refusal("line_subdevice = 3\ninput_subdevice = 2\nstop_line = 0\n"), "");
 }
 

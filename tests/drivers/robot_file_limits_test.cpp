@@ -1,5 +1,5 @@
-// tests/drivers/robot_file_limits_test.cpp: every number a robot's file may have, at its limits and
-// beyond: whatever is refused is refused with its key and its line.
+// tests/drivers/robot_file_limits_test.cpp: every number of a robot's file, at its limits and
+// beyond: every refusal names its key and its line.
 #include <string>
 #include <vector>
 
@@ -16,7 +16,7 @@ using ::testing::StartsWith;
 
 enum class BaseType : unsigned char { Roboteq, Pioneer };
 
-/// A key, where it stands, and what it may be.
+/// A key, its place and its range.
 struct Row {
   const char* header = "";   // the line of its table; empty: before all tables
   const char* section = "";  // as messages call the table
@@ -77,7 +77,7 @@ std::vector<std::string> good_lines(BaseType base) {
   return lines;
 }
 
-/// The file with `row` set to `value`, and the line where that stands.
+/// The file with `row` set to `value`, and the line of that key.
 struct Written {
   std::string text{};
   std::size_t line = 0;
@@ -116,7 +116,7 @@ std::string number(double value) {
   return text;
 }
 
-TEST(RobotFileLimits, WhatIsNoNumberOrBeyondTheLimitsIsNamedWithItsLine) {
+TEST(RobotFileLimits, NonNumbersAndValuesBeyondLimitsNameTheirLine) {
   for (const Row& row : kRows) {
     std::vector<std::string> bad{"nan",
                                  "inf",
@@ -143,7 +143,7 @@ TEST(RobotFileLimits, WhatIsNoNumberOrBeyondTheLimitsIsNamedWithItsLine) {
   }
 }
 
-TEST(RobotFileLimits, AtItsLimitsAValueIsTakenOrClashesWithAnotherInWords) {
+TEST(RobotFileLimits, ValuesAtTheirLimitsAreAcceptedOrNameALine) {
   for (const Row& row : kRows) {
     for (const double value : {row.min, row.max}) {
       const std::string error = error_of(write(row, number(value)).text);
@@ -153,7 +153,7 @@ TEST(RobotFileLimits, AtItsLimitsAValueIsTakenOrClashesWithAnotherInWords) {
   }
 }
 
-TEST(RobotFileLimits, WhatTomlDoesNotHaveIsNamedWithItsLineToo) {
+TEST(RobotFileLimits, TomlSyntaxErrorsNameTheirLine) {
   for (const Row& row : kRows) {
     for (const char* value :
          {"", "1.", ".5", "1e", "0x", "--1", "1 2", "\"open", "1e99999999999"}) {
@@ -164,7 +164,7 @@ TEST(RobotFileLimits, WhatTomlDoesNotHaveIsNamedWithItsLineToo) {
   }
 }
 
-TEST(RobotFileLimits, SectionsOfAnotherKindAreSentences) {
+TEST(RobotFileLimits, WrongSectionTypesAreSentences) {
   for (const char* text : {"hull = 3",
                            "hull = []",
                            "name = \"a\"\nhull = 3\n",

@@ -1,4 +1,4 @@
-// tests/drivers/robot_file_test.cpp: what a robot's file may say, and what is said about mistakes.
+// tests/drivers/robot_file_test.cpp: valid robot files, and the sentences about mistakes.
 #include "drivers/robot_file.hpp"
 
 #include <numbers>
@@ -70,17 +70,18 @@ TEST(RobotFile, MistakesAreNamedWithTheirLine) {
             "my.toml:12: [base] 'shoe_size' is no key known here");
   EXPECT_EQ(error_of(with("port = \"/dev/lms-front\"", "port = \"/dev/lms-front\"\nrate = 57600")),
             "my.toml:6: [[laser]] rate is 57600; it can be 9600, 19200, 38400, 500000");
-  EXPECT_THAT(error_of(with("roboteq\"\nport", "segway\"\nport")), HasSubstr("pioneer, roboteq or analog"));
+  EXPECT_THAT(error_of(with("roboteq\"\nport", "segway\"\nport")),
+              HasSubstr("pioneer, roboteq or analog"));
   EXPECT_THAT(error_of(with("/dev/lms-front", "/dev/roboteq")), HasSubstr("used by two devices"));
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("there is no [hull]"));
   EXPECT_THAT(error_of(with("silvermate", "Silver Mate")), HasSubstr("must be of a-z"));
 }
 
-TEST(RobotFile, AFileThatIsNotThereIsASentence) {
+TEST(RobotFile, AMissingFileIsASentence) {
   EXPECT_THROW(read_robot_file("/no/such/file.toml"), RobotFileError);
 }
 
-TEST(RobotFile, CommandsHaveToComeThreeTimesWithinTheWatchdog) {
+TEST(RobotFile, WatchdogMustCoverThreePeriods) {
   EXPECT_THAT(error_of(with("track = 0.5", "track = 0.5\nwatchdog = 0.1")),
               HasSubstr("three times within the base's watchdog of 0.10 s"));
 }
@@ -153,7 +154,7 @@ TEST(RobotFile, QuarterDegreesNeedAFastLine) {
               AllOf(HasSubstr("my.toml:7: [[laser]] step_deg"), HasSubstr("38400 bit/s")));
 }
 
-TEST(RobotFile, WhatTheBaseCannotDoIsRefused) {
+TEST(RobotFile, LimitsBeyondTheBaseAreRefused) {
   EXPECT_THAT(error_of(with("encoder_lines = 500", "encoder_lines = 1\nfull_speed_rpm = 60000")),
               HasSubstr("too coarse"));
   EXPECT_THAT(error_of(with("gear = 20\nencoder_lines = 500",
@@ -169,7 +170,7 @@ TEST(RobotFile, WhatTheBaseCannotDoIsRefused) {
               HasSubstr("my.toml:5: [base] type is pioneer, which turns by whole degrees"));
 }
 
-TEST(RobotFile, NamesAndPortsThatCannotBeAreRefused) {
+TEST(RobotFile, InvalidNamesAndPortsAreRefused) {
   EXPECT_THAT(error_of("controller = \"best\"\n" + kGood),
               AllOf(HasSubstr("my.toml:1: controller is 'best'"), HasSubstr("modified")));
   EXPECT_THAT(error_of("filter = \"best\"\n" + kGood), HasSubstr("my.toml:1: filter is 'best'"));
@@ -181,7 +182,7 @@ TEST(RobotFile, NamesAndPortsThatCannotBeAreRefused) {
   EXPECT_EQ(error_of(with("port = \"/dev/lms-front\"", password + "\"LONGPASS\"")), "");
 }
 
-TEST(RobotFile, MotorsThatCannotGoThatFastAreRefused) {
+TEST(RobotFile, MotorsSlowerThanTheLimitsAreRefused) {
   EXPECT_THAT(error_of(with("gear = 20", "gear = 20\nfull_speed_rpm = 100")),
               HasSubstr("[limits] ask for"));
 }
@@ -192,7 +193,7 @@ TEST(RobotFile, ALaserAheadOrSonarIsNeeded) {
   EXPECT_THAT(error_of(back), HasSubstr("looks ahead"));
 }
 
-TEST(RobotFile, ThoseOfTheDocumentsAreGood) {
+TEST(RobotFile, ExamplesInTheDocumentsAreValid) {
   const std::string folder = (tests::folder().parent_path() / "docs/robots/").string();
   const RobotFile silvermate = read_robot_file(folder + "silvermate.toml");
   ASSERT_EQ(silvermate.lasers.size(), 2U);
@@ -200,7 +201,7 @@ TEST(RobotFile, ThoseOfTheDocumentsAreGood) {
   EXPECT_THAT(silvermate.warnings, IsEmpty());
   const RobotFile pioneer = read_robot_file(folder + "pioneer.toml");
   EXPECT_EQ(pioneer.base.sonar_mounts_R.size(), 16U);
-  // The watchdog of its memory cannot be set from here.
+  // The watchdog in the base's memory cannot be set from here.
   EXPECT_THAT(pioneer.warnings, ElementsAre(HasSubstr("0.20 m before its own watchdog")));
 }
 

@@ -155,7 +155,7 @@ struct Fixture {
   LineBench bench;
 };
 
-TEST(RoboteqMachine, ParametersAreReadAndOnlyThoseThatDifferAreSet) {
+TEST(RoboteqMachine, OnlyDifferingParametersAreSet) {
   Fixture f;
   ASSERT_TRUE(f.running());
   EXPECT_EQ(f.device.parameters["RWD"], "500");
@@ -166,21 +166,21 @@ TEST(RoboteqMachine, ParametersAreReadAndOnlyThoseThatDifferAreSet) {
   EXPECT_DOUBLE_EQ(*f.machine.state().volts, 24.0);
 }
 
-TEST(RoboteqMachine, ControllerThatKeepsItsWatchdogIsNotDriven) {
+TEST(RoboteqMachine, ControllerWithoutTheWantedWatchdogIsNotDriven) {
   Fixture f;
   f.device.keeps_parameters = true;
   EXPECT_FALSE(f.running());
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("keeps ^RWD at 1000"));
 }
 
-TEST(RoboteqMachine, OneChannelIsNoBase) {
+TEST(RoboteqMachine, OneChannelControllerIsRefused) {
   Fixture f;
   f.device.parameters["MMOD"] = "1";
   EXPECT_FALSE(f.running());
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("one channel"));
 }
 
-TEST(RoboteqMachine, SpeedsAreSharesOfFullSpeedAndOnlyWhenEnabled) {
+TEST(RoboteqMachine, SendsSpeedsAsSharesOfFullSpeedOnlyWhenEnabled) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.device.heard.clear();
@@ -200,7 +200,7 @@ TEST(RoboteqMachine, SpeedsAreSharesOfFullSpeedAndOnlyWhenEnabled) {
               ElementsAre("!G 1 191", "!G 2 191", "!G 1 -48", "!G 2 48", "!G 1 0", "!G 2 0"));
 }
 
-TEST(RoboteqMachine, SwappedAndReversedMotorsAreSorted) {
+TEST(RoboteqMachine, SwappedAndReversedMotorsAreMapped) {
   RoboteqSetup with = setup();
   with.swapped = true;
   with.reversed = {false, true};
@@ -213,7 +213,7 @@ TEST(RoboteqMachine, SwappedAndReversedMotorsAreSorted) {
   EXPECT_THAT(f.device.heard, ElementsAre("!G 1 -239", "!G 2 143"));
 }
 
-TEST(RoboteqMachine, CountsAddUpToAPoseOverTheWrap) {
+TEST(RoboteqMachine, PoseContinuesOverTheCounterWrap) {
   Fixture f;
   f.device.counts = "2147483647:2147483647";
   ASSERT_TRUE(f.running());
@@ -225,7 +225,7 @@ TEST(RoboteqMachine, CountsAddUpToAPoseOverTheWrap) {
   EXPECT_NEAR(f.machine.state().pose.heading, 0, 1e-12);
 }
 
-TEST(RoboteqMachine, LineThatLostItsColonIsNoControllerOfOneChannel) {
+TEST(RoboteqMachine, LineThatLostItsColonDoesNotMeanOneChannel) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.device.counts = "100100";
@@ -240,7 +240,7 @@ TEST(RoboteqMachine, LineThatLostItsColonIsNoControllerOfOneChannel) {
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("one channel"));
 }
 
-TEST(RoboteqMachine, SpoiltDigitIsNoPlaceFarAway) {
+TEST(RoboteqMachine, DamagedDigitDoesNotMoveThePose) {
   Fixture f;
   f.device.counts = "100:100";
   ASSERT_TRUE(f.running());
@@ -251,7 +251,7 @@ TEST(RoboteqMachine, SpoiltDigitIsNoPlaceFarAway) {
   f.bench.run(0.2);
   EXPECT_NEAR(f.machine.state().pose.x, 0.005 * std::numbers::pi, 1e-9);
   EXPECT_NEAR(f.machine.state().pose.heading, 0, 1e-12);
-  // WHEN the counters stay elsewhere THEN somebody has set them, and the robot has not moved.
+  // WHEN the counters stay at another value THEN they were reset, and the robot has not moved.
   f.device.counts = "500000:500000";
   f.bench.run(0.5);
   f.device.counts = "501000:501000";
@@ -275,12 +275,12 @@ TEST(RoboteqMachine, StopButtonFaultsAndCurrentAreReported) {
   f.device.faults = 0;
   f.device.amperes = "20:150";  // 2 A, 15 A
   f.bench.run(0.15);
-  EXPECT_FALSE(f.machine.state().over_current);  // a start may take that much
+  EXPECT_FALSE(f.machine.state().over_current);  // allowed while starting
   f.bench.run(0.5);
   EXPECT_TRUE(f.machine.state().over_current);
 }
 
-TEST(RoboteqMachine, StalledMotorIsBelievedTheSecondTimeItIsSaid) {
+TEST(RoboteqMachine, StalledMotorNeedsTwoReports) {
   Fixture f;
   ASSERT_TRUE(f.running());
   EXPECT_EQ(f.device.parameters["CLERD"], "1:1");
@@ -293,7 +293,7 @@ TEST(RoboteqMachine, StalledMotorIsBelievedTheSecondTimeItIsSaid) {
   EXPECT_THAT(f.machine.report(f.bench.now()).sentence, HasSubstr("blocked"));
 }
 
-TEST(RoboteqMachine, ControllerWithoutLoopErrorsIsDrivenAllTheSame) {
+TEST(RoboteqMachine, ControllerWithoutLoopErrorsIsStillDriven) {
   Fixture f;
   f.device.knows_loop_error = false;
   ASSERT_TRUE(f.running());
@@ -315,7 +315,7 @@ TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
   EXPECT_TRUE(f.machine.state().bumper_front);
 }
 
-TEST(RoboteqMachine, BumpersAtTheRearAreNotTakenForThoseAtTheFront) {
+TEST(RoboteqMachine, RearBumpersAreNotReportedAsFrontBumpers) {
   RoboteqSetup with = setup();
   with.bumper_inputs = {1};
   with.rear_bumper_inputs = {2};
@@ -330,7 +330,7 @@ TEST(RoboteqMachine, BumpersAtTheRearAreNotTakenForThoseAtTheFront) {
   }
 }
 
-TEST(RoboteqMachine, SilenceIsSaidAndEverythingCheckedAgain) {
+TEST(RoboteqMachine, ReportsSilenceAndRepeatsTheSetUp) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.device.mute = true;
@@ -344,7 +344,7 @@ TEST(RoboteqMachine, SilenceIsSaidAndEverythingCheckedAgain) {
 
 // 2 m/s2 are 20 * 60 / (2 pi 0.1) * 2 = 3819.7 rpm a second. The file's ramp: the wheel takes part
 // in 0.3 m/s2 ahead and in 1 rad/s2 of the turn, 0.55 m/s2 together.
-TEST(RoboteqMachine, BrakesWithTheSteepestRampAndDrivesWithTheFiles) {
+TEST(RoboteqMachine, BrakesWithTheSteepestRampAndDrivesWithTheFilesRamp) {
   Fixture f;
   ASSERT_TRUE(f.running());
   f.arm();
@@ -367,7 +367,7 @@ TEST(RoboteqMachine, PowerGoesOffOnceTheWheelsStand) {
   f.device.rpm = "190:190";
   f.bench.run(0.1);
   f.machine.enable(f.bench.now(), false);
-  f.machine.drive(f.bench.now(), {0.1, 0});  // by one who has not heard of it yet
+  f.machine.drive(f.bench.now(), {0.1, 0});  // from a caller that does not know of it yet
   f.bench.run(0.2);
   EXPECT_THAT(f.device.heard, ::testing::Not(Contains("!G 1 191")));
   EXPECT_EQ(std::count(f.device.heard.begin(), f.device.heard.end(), "!EX"), 1);  // of the set-up

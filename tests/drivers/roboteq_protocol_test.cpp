@@ -1,4 +1,5 @@
-// tests/drivers/roboteq_protocol_test.cpp: dialogues with a Roboteq controller, printed and cut.
+// tests/drivers/roboteq_protocol_test.cpp: dialogues with a Roboteq controller, whole and
+// truncated.
 #include "drivers/roboteq_protocol.hpp"
 
 #include <limits>
@@ -39,7 +40,7 @@ State state_after(std::string_view text) {
   return state;
 }
 
-TEST(RoboteqProtocol, LinesAsPrinted) {
+TEST(RoboteqProtocol, CommandLinesMatchTheManual) {
   EXPECT_EQ(echo_off().text(), "^ECHOF 1\r");
   EXPECT_EQ(query("FID").text(), "?FID\r");
   EXPECT_EQ(set_watchdog(500).text(), "^RWD 500\r");
@@ -67,12 +68,12 @@ TEST(RoboteqProtocol, RepeatedQueries) {
   EXPECT_EQ(repeat_queries(many, 50).size(), 0U);
 }
 
-TEST(RoboteqProtocol, EchoesAreNothing) {
+TEST(RoboteqProtocol, EchoesAreIgnored) {
   EXPECT_THAT(kinds_of("^ECHOF 1\r+\r"), ElementsAre(Kind::Nothing, Kind::Accepted));
   EXPECT_THAT(kinds_of("?S\rS=100:-50\r"), ElementsAre(Kind::Nothing, Kind::Values));
 }
 
-TEST(RoboteqProtocol, AnswersAsPrinted) {
+TEST(RoboteqProtocol, AnswersMatchTheManual) {
   EXPECT_THAT(kinds_of("+\r+\r"), ElementsAre(Kind::Accepted, Kind::Accepted));
   EXPECT_THAT(kinds_of("-\r"), ElementsAre(Kind::Refused));
   const Reply firmware = parse_reply("FID=Roboteq v2.0 SDC2XXX 01/01/2020");
@@ -97,12 +98,12 @@ TEST(RoboteqProtocol, StateFromAnswersInAnyOrder) {
   EXPECT_EQ(state_after("V=240\r").battery_volts, 24.0);
 }
 
-TEST(RoboteqProtocol, OneChannelIsNoBase) {
+TEST(RoboteqProtocol, OneChannelControllerIsRefused) {
   EXPECT_TRUE(state_after("S=100\r").one_channel);
   EXPECT_FALSE(state_after("S=100\r").rpm);
 }
 
-TEST(RoboteqProtocol, FaultsInWords) {
+TEST(RoboteqProtocol, FaultsHaveNames) {
   EXPECT_EQ(fault_text(0), "");
   EXPECT_EQ(fault_text(1 | 4 | 64), "overheated, voltage too low, power transistor failed");
   EXPECT_EQ(fault_text(256), "something unknown");
@@ -110,7 +111,7 @@ TEST(RoboteqProtocol, FaultsInWords) {
   EXPECT_TRUE(must_stop(4));
 }
 
-TEST(RoboteqProtocol, NoiseIsNothing) {
+TEST(RoboteqProtocol, NoiseIsIgnored) {
   for (const char* line : {"=5", "C=", "c=5", "+5", "46:-1787", "ABCDEFGHI=1", " C=1"}) {
     EXPECT_EQ(parse_reply(line).kind, Kind::Nothing) << line;
   }
@@ -120,7 +121,7 @@ TEST(RoboteqProtocol, NoiseIsNothing) {
   }
 }
 
-TEST(RoboteqLines, EndWithCrOrLfAndComeInAnyPieces) {
+TEST(RoboteqLines, LinesEndWithCrOrLfAndArriveInAnyPieces) {
   EXPECT_THAT(lines_of("S=1\r\nC=2\n\r\rV=3"), ElementsAre("S=1", "C=2"));
   LineReader reader;
   std::vector<std::string> lines;
@@ -130,14 +131,14 @@ TEST(RoboteqLines, EndWithCrOrLfAndComeInAnyPieces) {
   EXPECT_THAT(lines, ElementsAre("S=1", "C=2"));
 }
 
-TEST(RoboteqLines, OverlongLinesAreLeftOut) {
+TEST(RoboteqLines, OverlongLinesAreSkipped) {
   EXPECT_THAT(lines_of(std::string(161, 'x') + "\r"), IsEmpty());
   EXPECT_THAT(lines_of(std::string(160, 'x') + "\rS=1\r"),
               ElementsAre(std::string(160, 'x'), "S=1"));
   EXPECT_THAT(lines_of(std::string(5000, 'x') + "\rS=1\r"), ElementsAre("S=1"));
 }
 
-TEST(RoboteqWheel, BetweenMetresAndTurns) {
+TEST(RoboteqWheel, ConvertsMetresToTurns) {
   // A wheel of 1 m round, geared 10 to 1, 500 lines: 20000 counts a metre, 600 rpm at 1 m/s.
   const Wheel wheel{.radius = 1 / (2 * std::numbers::pi),
                     .gear = 10,

@@ -22,8 +22,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr SerialPort::Milliseconds kLong{5000};  // for what will come
-constexpr SerialPort::Milliseconds kShort{10};   // for what will not
+constexpr SerialPort::Milliseconds kLong{5000};  // when bytes will come
+constexpr SerialPort::Milliseconds kShort{10};   // when none will come
 
 /// The device's end of a pseudo-terminal.
 class Device {
@@ -100,7 +100,7 @@ TEST(SerialPort, CarriesEveryByteBothWays) {
   EXPECT_EQ(device.receive(256), every_byte());
 }
 
-TEST(SerialPort, TakesAnyRateAndSaysWhatThePortMadeOfIt) {
+TEST(SerialPort, SetsAnyRateAndReportsTheActualOne) {
   const Device device;
   SerialPort port(device.path(), 500000);
   EXPECT_EQ(port.baud(), 500000U);
@@ -110,14 +110,14 @@ TEST(SerialPort, TakesAnyRateAndSaysWhatThePortMadeOfIt) {
   }
 }
 
-TEST(SerialPort, SilenceIsNoBytes) {
+TEST(SerialPort, SilenceReturnsNoBytes) {
   const Device device;
   SerialPort port(device.path(), 9600);
   Bytes into(16);
   EXPECT_EQ(port.read(into, kShort), 0U);
 }
 
-TEST(SerialPort, DiscardsWhatWasNotRead) {
+TEST(SerialPort, DiscardsUnreadBytes) {
   const Device device;
   SerialPort port(device.path(), 9600);
   device.send(hex("01 02"));
@@ -127,7 +127,7 @@ TEST(SerialPort, DiscardsWhatWasNotRead) {
   EXPECT_EQ(port.read(first, kShort), 0U);
 }
 
-TEST(SerialPort, UnpluggedDeviceIsASentence) {
+TEST(SerialPort, UnpluggedDeviceIsReported) {
   Device device;
   SerialPort port(device.path(), 9600);
   device.unplug();
@@ -136,7 +136,7 @@ TEST(SerialPort, UnpluggedDeviceIsASentence) {
   EXPECT_THROW(port.write(every_byte(), kLong), LineError);
 }
 
-TEST(SerialPort, SecondOpenerIsTurnedAway) {
+TEST(SerialPort, SecondOpenerIsRefused) {
   const Device device;
   {
     const SerialPort port(device.path(), 9600);
@@ -145,12 +145,12 @@ TEST(SerialPort, SecondOpenerIsTurnedAway) {
   EXPECT_EQ(error_of(device.path()), "");
 }
 
-TEST(SerialPort, SaysWhyItDoesNotOpen) {
+TEST(SerialPort, ReportsWhyItDoesNotOpen) {
   EXPECT_THAT(error_of("/dev/no_such_port"), HasSubstr("plugged in"));
   EXPECT_THAT(error_of("/dev/null"), HasSubstr("no serial port"));
   EXPECT_THAT(error_of("/tmp"), HasSubstr("no serial port"));
   EXPECT_THAT(error_of("tcp:localhost"), HasSubstr("tcp:HOST:PORT"));
-  // Tests may run as root, who may open everything.
+  // Tests may run as root, which may open everything.
   EXPECT_THAT(open_error_text("/dev/null", EACCES),
               AllOf(HasSubstr("belongs to the group"), HasSubstr("adduser")));
 }

@@ -1,5 +1,5 @@
-// tests/drivers/serial_robot_test.cpp: what moves a robot of real devices, and what stops it; the
-// clock is a variable.
+// tests/drivers/serial_robot_test.cpp: the motion and the safety stops of a robot of real devices;
+// the clock is a variable.
 #include "drivers/serial_robot.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST(SerialRobot, CommandsTheBaseOncePerTickAndNeverBetween) {
   EXPECT_EQ(f.base->commands - before, 20);
 }
 
-TEST(SerialRobot, StopBrakesAsInAnEmergencyAndAZeroSpeedIsAnOrdinaryCommand) {
+TEST(SerialRobot, StopUsesTheEmergencyRampAndZeroSpeedTheDrivingRamp) {
   FakeRobot f;
   f.arm();
   const int before = f.base->brakes;
@@ -48,19 +48,19 @@ TEST(SerialRobot, StopBrakesAsInAnEmergencyAndAZeroSpeedIsAnOrdinaryCommand) {
   EXPECT_EQ(f.base->brakes, before);
   f.robot->stop();
   EXPECT_EQ(f.base->brakes, before + 1);
-  // WHEN the gate lets go THEN the robot drives on: Stop is no fault.
+  // WHEN the gate releases it THEN the robot drives on: Stop is no fault.
   f.step();
   EXPECT_TRUE(f.moves());
 }
 
-TEST(SerialRobot, LimitsHold) {
+TEST(SerialRobot, CommandsAreClampedToTheLimits) {
   FakeRobot f;
   f.arm();
   f.step(3, -9);
   EXPECT_EQ(f.base->commanded, (algo::Twist2{0.1, -0.5}));
 }
 
-TEST(SerialRobot, ObservationIsOnTheRunClockAndFromTheStart) {
+TEST(SerialRobot, ObservationUsesTheRunClockAndTheStartPose) {
   FakeRobot f;
   f.base->now.pose = {1, 2, 0.5};
   f.robot->reset(f.seen);
@@ -77,7 +77,7 @@ TEST(SerialRobot, ObservationIsOnTheRunClockAndFromTheStart) {
   EXPECT_EQ(f.seen.scans[0].mount_R, (algo::Pose2{0.2, 0, 0}));
 }
 
-TEST(SerialRobot, PoseIsOfTheTickThoughTheReportIsOlder) {
+TEST(SerialRobot, PoseIsExtrapolatedToTheTick) {
   FakeRobot f;
   f.base->now.twist = {0.1, 0.5};
   f.step();
@@ -88,7 +88,7 @@ TEST(SerialRobot, PoseIsOfTheTickThoughTheReportIsOlder) {
   EXPECT_NEAR(f.seen.odometry.pose.x, 0.01, 1e-4);
   EXPECT_NEAR(f.seen.odometry.pose.heading, 0.05, 1e-9);
   EXPECT_NEAR(f.seen.odometry.stamp, f.seen.stamp, 1e-9);
-  f.steps(2);  // no further than its reports are believed
+  f.steps(2);  // only as long as a report is valid
   EXPECT_NEAR(f.seen.odometry.pose.heading, 0.5 * SerialRobot::kBaseTimeout, 1e-9);
 }
 
@@ -107,12 +107,12 @@ TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
   EXPECT_TRUE(f.moves());
 }
 
-TEST(SerialRobot, SilentScannerOfAnyRateStopsItInTimeAndOneThatIsLateDoesNot) {
+TEST(SerialRobot, SilentScannerStopsItInTimeAndALateOneDoesNot) {
   for (const double period : {0.01332, 0.0266, 0.12, 0.24, 0.8}) {
     FakeRobot f;
     f.scanner->period = period;
     f.arm();
-    // A gap of one period and what a USB chip keeps is no silence.
+    // A gap of one period plus the delay of a USB chip is no silence.
     f.scanner->silent = true;
     f.steps(std::floor((period + SerialRobot::kArrivalJitter) / kPeriod) * kPeriod);
     EXPECT_TRUE(f.moves()) << period;
@@ -121,13 +121,13 @@ TEST(SerialRobot, SilentScannerOfAnyRateStopsItInTimeAndOneThatIsLateDoesNot) {
     f.scanner->silent = true;
     const double silent_at = f.time;
     while (f.moves() && f.time < silent_at + 3) f.step();
-    // The zero leaves at the beginning of the last of these steps.
+    // The stop is sent at the beginning of the last step.
     EXPECT_LE(f.time - kPeriod - silent_at, blind_time(period)) << period;
     EXPECT_EQ(f.seen.halt, Halt::ScannerLost) << period;
   }
 }
 
-TEST(SerialRobot, WhatLastsLongDisarms) {
+TEST(SerialRobot, LongFaultsDisarm) {
   FakeRobot f;
   f.arm();
   f.scanner->silent = true;
@@ -141,7 +141,7 @@ TEST(SerialRobot, WhatLastsLongDisarms) {
   EXPECT_TRUE(f.moves());
 }
 
-TEST(SerialRobot, EveryFaultStopsInTheTickThatSeesIt) {
+TEST(SerialRobot, EveryFaultStopsInTheTickThatDetectsIt) {
   const std::vector<std::pair<Halt, std::function<void(FakeRobot&)>>> faults{
       {Halt::StopButton, [](FakeRobot& f) { f.base->now.stop_button = true; }},
       {Halt::BaseFault, [](FakeRobot& f) { f.base->now.faulty = true; }},
@@ -178,7 +178,7 @@ TEST(SerialRobot, WheelsThatTurnWithoutACommandAreCutOff) {
   EXPECT_LE(f.time - began, 0.3);
   EXPECT_EQ(f.base->cuts, 1);
   EXPECT_THAT(f.robot->health().trouble, HasSubstr("does not turn as told"));
-  // Pushed without power it is left alone.
+  // Pushing it without power is no fault.
   f.steps(5);
   EXPECT_EQ(f.base->cuts, 1);
   f.base->now.twist = {};
@@ -186,7 +186,7 @@ TEST(SerialRobot, WheelsThatTurnWithoutACommandAreCutOff) {
   EXPECT_TRUE(f.armed());
 }
 
-TEST(SerialRobot, BaseWithoutAProperWatchdogIsNotArmed) {
+TEST(SerialRobot, BaseWithoutAUsableWatchdogIsNotArmed) {
   FakeRobot f;
   f.step();
   f.base->now.watchdog = 0;
@@ -201,7 +201,7 @@ TEST(SerialRobot, BaseWithoutAProperWatchdogIsNotArmed) {
               ::testing::Contains(HasSubstr("says that its watchdog is 2.00 s")));
 }
 
-TEST(SerialRobot, StateOfTheBaseMustNotBeOld) {
+TEST(SerialRobot, StaleBaseStateStops) {
   FakeRobot f;
   f.arm();
   f.base->silent = true;
@@ -211,7 +211,7 @@ TEST(SerialRobot, StateOfTheBaseMustNotBeOld) {
   EXPECT_EQ(f.seen.halt, Halt::BaseLost);
 }
 
-TEST(SerialRobot, BaseThatWasSetUpAnewHasToBeArmedAgain) {
+TEST(SerialRobot, BaseSetUpAgainMustBeArmedAgain) {
   FakeRobot f;
   f.arm();
   ++f.base->now.set_ups;
@@ -220,7 +220,7 @@ TEST(SerialRobot, BaseThatWasSetUpAnewHasToBeArmedAgain) {
   EXPECT_FALSE(f.armed());
 }
 
-TEST(SerialRobot, BatteryMaySagButNotStayLow) {
+TEST(SerialRobot, BatteryMaySagBrieflyButNotStayLow) {
   FakeRobot f;
   f.arm();
   f.base->now.volts = 10;
@@ -231,7 +231,7 @@ TEST(SerialRobot, BatteryMaySagButNotStayLow) {
   EXPECT_THAT(f.robot->health().trouble, HasSubstr("battery"));
 }
 
-TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
+TEST(SerialRobot, BumperLatchesUntilArmingThenAllowsOnlyBackingOff) {
   FakeRobot f;
   f.arm();
   f.base->now.bumper_front = true;
@@ -244,7 +244,7 @@ TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
   f.base->now.bumper_front = false;
   f.steps(1);
   EXPECT_FALSE(f.moves());
-  // A person who arms it with the bumper pressed knows.
+  // A person who arms it with the bumper pressed knows of the contact.
   f.base->now.bumper_front = true;
   f.arm();
   f.step(0.05, 0.2);
@@ -252,7 +252,7 @@ TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
   f.step(-0.05, 0.2);
   EXPECT_EQ(f.base->commanded, (algo::Twist2{-0.05, 0}));
   EXPECT_TRUE(f.armed());
-  // WHEN it has been free for a while THEN the next touch counts; one of the other bumper at once.
+  // WHEN it has been free for a while THEN the next hit counts; one of the other bumper at once.
   f.base->now.bumper_front = false;
   f.steps(1);
   EXPECT_TRUE(f.moves());
@@ -265,10 +265,10 @@ TEST(SerialRobot, BumperLatchesUntilSomebodyArmsAndThenAllowsOnlyTheWayBack) {
   EXPECT_FALSE(f.armed());
 }
 
-TEST(SerialRobot, CommandThatComesTooLateIsNone) {
+TEST(SerialRobot, LateCommandIsRejected) {
   FakeRobot f;
   f.arm();
-  f.time += 0.4;  // the control loop was elsewhere
+  f.time += 0.4;  // the control loop was delayed
   f.step();
   EXPECT_FALSE(f.moves());
   EXPECT_EQ(f.seen.halt, Halt::LateTick);
@@ -277,8 +277,8 @@ TEST(SerialRobot, CommandThatComesTooLateIsNone) {
   EXPECT_TRUE(f.moves());
 }
 
-TEST(SerialRobot, ProgramThatSleptFindsItselfLateAndDisarms) {
-  // Anywhere in its tick: before its deadline, or while it decides.
+TEST(SerialRobot, ProgramThatSleptDisarms) {
+  // At any point of the tick: before its deadline, or during the controller.
   for (const bool asleep : {true, false}) {
     FakeRobot f;
     f.arm();
@@ -297,7 +297,7 @@ TEST(SerialRobot, ProgramThatSleptFindsItselfLateAndDisarms) {
   }
 }
 
-TEST(SerialRobot, LateCommandIsTakenBackEvenWhenItWasOnItsWay) {
+TEST(SerialRobot, LateCommandIsStoppedAfterItWasSent) {
   FakeRobot f;
   f.arm();
   const int brakes = f.base->brakes;
@@ -307,7 +307,7 @@ TEST(SerialRobot, LateCommandIsTakenBackEvenWhenItWasOnItsWay) {
   EXPECT_EQ(f.base->brakes, brakes + 1);
 }
 
-TEST(SerialRobot, LatenessOfLessThanAPeriodDelaysNoDeadline) {
+TEST(SerialRobot, DelayBelowAPeriodShiftsNoDeadline) {
   FakeRobot f;
   for (int i = 0; i < 10; ++i) {
     f.time += 0.02;  // work within the period
@@ -327,7 +327,7 @@ TEST(SerialRobot, ResetAndStopDoNotLeaveItArmed) {
   EXPECT_FALSE(f.moves());
 }
 
-TEST(SerialRobot, IsNotArmedWhileSomethingIsWrong) {
+TEST(SerialRobot, IsNotArmedDuringAFault) {
   FakeRobot f;
   f.scanner->silent = true;
   f.steps(1);
@@ -336,7 +336,7 @@ TEST(SerialRobot, IsNotArmedWhileSomethingIsWrong) {
   EXPECT_THAT(*refusal, HasSubstr("front laser"));
 }
 
-TEST(SerialRobot, MotorsThatDoNotComeOnDisarm) {
+TEST(SerialRobot, MotorsThatStayOffDisarm) {
   FakeRobot f;
   f.base->motors_work = false;
   f.step();

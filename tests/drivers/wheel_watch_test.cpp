@@ -1,5 +1,5 @@
-// tests/drivers/wheel_watch_test.cpp: wheels that obey are never blamed, for ten hours; those that
-// do not are found within 0.3 s. The clock is a variable.
+// tests/drivers/wheel_watch_test.cpp: obedient wheels raise no fault in ten hours; disobedient ones
+// are detected within 0.3 s. The clock is a variable.
 #include "drivers/wheel_watch.hpp"
 
 #include <algorithm>
@@ -18,14 +18,14 @@ constexpr double kTick = 0.05;        // [s]
 const WheelDynamics kPioneer{.ramp_of_wheels = false, .ramps = {0.3, 1.0}, .checked = true};
 const WheelDynamics kRoboteq{.ramp_of_wheels = true, .ramps = {0.465, 0.465}, .checked = false};
 
-/// What is wrong with the wheels.
+/// The faults of the wheels.
 struct Wrong {
   double runaway = 0;         // [m/s] of both
   bool encoder_dead = false;  // of the left one
   double gain = 1;            // times as fast as told
 };
 
-/// A base on ramps, its wheels slipping, its line late by turns; and a watch over it.
+/// A base with ramps, slipping wheels and varying line delay, and a watch over it.
 class Driven {
  public:
   Driven(const WheelDynamics& dynamics, std::uint64_t seed)
@@ -34,7 +34,7 @@ class Driven {
   Wrong wrong{};
   double now = 100;
 
-  /// One tick with `wanted`; true when the watch finds fault.
+  /// One tick with `wanted`; true when the watch reports a fault.
   bool tick(const algo::Twist2& wanted, bool braking = false) {
     const double felt = now + uniform(0.02, 0.12);
     if (orders_.empty() || felt > orders_.back().time) orders_.push_back({felt, wanted, braking});
@@ -43,7 +43,7 @@ class Driven {
     for (const double end = now + kTick; now < end - 1e-9; now += kStep) {
       move();
       report();
-      // The newest report that has come, once a tick, as the control loop looks.
+      // The newest report to arrive, once per tick, as in the control loop.
     }
     if (arrived_) found = watch_.report(arrived_->stamp, arrived_->twist);
     return found;
@@ -88,7 +88,7 @@ class Driven {
     right_ = v_ + omega_ * kHalfTrack;
   }
 
-  /// A tenth of slip that comes and goes, by wheel, and a few millimetres a second of noise.
+  /// Intermittent slip of 10 % per wheel, and noise of a few mm/s.
   double measured(double speed, double phase) {
     const double slip = 1 + 0.1 * std::sin(now / 3 + phase);
     const double noise = speed == 0 ? 0 : uniform(-0.003, 0.003);
@@ -102,7 +102,7 @@ class Driven {
       double right = measured(wrong.gain * right_, 1);
       if (wrong.runaway != 0) left = right = wrong.runaway;
       if (wrong.encoder_dead) left = 0;
-      // Some wait on the line for a while, and those behind them too.
+      // Some reports are delayed on the line, and so are those behind them.
       const double late = uniform(0, 1) < 0.02 ? uniform(0, 0.12) : uniform(0, 0.02);
       const double arrives = std::max(now + late, pending_.empty() ? 0 : pending_.back().arrives);
       pending_.push_back(
@@ -125,7 +125,7 @@ class Driven {
   double left_ = 0, right_ = 0;
 };
 
-/// [s] until the watch finds fault; nothing within four.
+/// [s] until the watch reports a fault; nullopt if none within 4 s.
 std::optional<double> found_after(Driven& base, const algo::Twist2& wanted) {
   const double began = base.now;
   while (base.now < began + 4) {
@@ -134,7 +134,7 @@ std::optional<double> found_after(Driven& base, const algo::Twist2& wanted) {
   return std::nullopt;
 }
 
-TEST(WheelWatch, TenHoursOfRampsSlipAndJitterAreNoFault) {
+TEST(WheelWatch, TenHoursOfRampsSlipAndJitterRaiseNoFault) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     Driven base(dynamics, 7);
     std::mt19937_64 random(11);
@@ -164,7 +164,7 @@ TEST(WheelWatch, TenHoursOfRampsSlipAndJitterAreNoFault) {
   }
 }
 
-TEST(WheelWatch, WheelsThatTurnWithoutACommandAreFoundInTime) {
+TEST(WheelWatch, WheelsThatTurnWithoutACommandAreDetectedInTime) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       Driven base(dynamics, seed);
@@ -177,7 +177,7 @@ TEST(WheelWatch, WheelsThatTurnWithoutACommandAreFoundInTime) {
   }
 }
 
-TEST(WheelWatch, WheelsFasterThanToldAreFoundInTime) {
+TEST(WheelWatch, WheelsFasterThanCommandedAreDetectedInTime) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       Driven base(dynamics, seed);
@@ -190,8 +190,8 @@ TEST(WheelWatch, WheelsFasterThanToldAreFoundInTime) {
   }
 }
 
-/// What is told in the same moment excuses nothing that its ramp cannot have brought about.
-TEST(WheelWatch, WheelsFasterThanToldAreFoundWhileTheRobotIsToldToTurn) {
+/// A command of the same moment excuses only speeds that its ramp can have reached.
+TEST(WheelWatch, WheelsFasterThanCommandedAreDetectedInATurn) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     for (std::uint64_t seed = 1; seed < 20; ++seed) {
       Driven base(dynamics, seed);
@@ -208,7 +208,7 @@ TEST(WheelWatch, WheelsFasterThanToldAreFoundWhileTheRobotIsToldToTurn) {
   }
 }
 
-TEST(WheelWatch, EncoderThatDiesWhileDrivingIsFoundInTime) {
+TEST(WheelWatch, EncoderThatDiesWhileDrivingIsDetectedInTime) {
   for (const double speed : {0.04, 0.1, 0.5}) {
     for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
       for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -223,9 +223,9 @@ TEST(WheelWatch, EncoderThatDiesWhileDrivingIsFoundInTime) {
   }
 }
 
-// Nobody can tell before the ramp must have brought the wheel to speed: 0.3 s until it is seen, and
+// No detection is possible before the ramp must have moved the wheel: 0.3 s until it is seen, and
 // at half a ramp of 0.3 m/s2 another 0.2 s to 0.03 m/s.
-TEST(WheelWatch, EncoderThatWasDeadFromTheStartIsFoundOnceTheRampAllowsIt) {
+TEST(WheelWatch, EncoderDeadFromTheStartIsDetectedAfterTheRamp) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     Driven base(dynamics, 3);
     base.wrong.encoder_dead = true;
@@ -236,14 +236,14 @@ TEST(WheelWatch, EncoderThatWasDeadFromTheStartIsFoundOnceTheRampAllowsIt) {
   }
 }
 
-TEST(WheelWatch, RobotThatRollsWhenItIsArmedMayComeToRest) {
+TEST(WheelWatch, RobotRollingAtArmingMayCoastToRest) {
   WheelWatch watch(kPioneer, kHalfTrack);
   double now = 10;
   for (double speed = 0.3; speed > -0.3; speed -= 0.03, now += 0.1) {
     watch.command(now, {});
     EXPECT_FALSE(watch.report(now, {std::max(0.0, speed), 0}));
   }
-  // Rolling on is another thing.
+  // Rolling on without slowing is a fault.
   watch.restart();
   bool found = false;
   for (int i = 0; i < 40 && !found; ++i, now += 0.1) {
@@ -253,7 +253,7 @@ TEST(WheelWatch, RobotThatRollsWhenItIsArmedMayComeToRest) {
   EXPECT_TRUE(found);
 }
 
-TEST(WheelWatch, CreepingThatABaseRoundsToNothingIsNoFault) {
+TEST(WheelWatch, CreepSpeedRoundedToZeroRaisesNoFault) {
   for (const WheelDynamics& dynamics : {kPioneer, kRoboteq}) {
     WheelWatch watch(dynamics, kHalfTrack);
     double now = 10;
@@ -264,7 +264,7 @@ TEST(WheelWatch, CreepingThatABaseRoundsToNothingIsNoFault) {
   }
 }
 
-TEST(WheelWatch, OneSpoiltAnswerOfALineWithoutChecksIsNoFault) {
+TEST(WheelWatch, OneDamagedAnswerWithoutCheckValueRaisesNoFault) {
   WheelWatch watch(kRoboteq, kHalfTrack);
   double now = 10;
   for (int i = 0; i < 100; ++i, now += 0.05) {

@@ -1,5 +1,6 @@
 // tests/drivers/with_emulators_test.cpp: the drivers' machines against the strict emulators, which
-// were written from the manuals by themselves; the line takes its time, and nothing is waited for.
+// were written from the manuals independently. The line takes its transfer time on a simulated
+// clock.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -43,7 +44,7 @@ TEST(WithEmulators, QuartersOfADegreeComeInterlaced) {
   laser.expect_room(721);
 }
 
-TEST(WithEmulators, AddressOneSlowBootAndAStoredRateAreNoObstacles) {
+TEST(WithEmulators, SetUpHandlesAddressOneSlowBootAndStoredRate) {
   lms200::EmulatorOptions options;
   options.address = 1;
   options.powered = false;
@@ -60,7 +61,7 @@ TEST(WithEmulators, AddressOneSlowBootAndAStoredRateAreNoObstacles) {
   EXPECT_TRUE(fast.running(5));
 }
 
-TEST(WithEmulators, MemoryIsWrittenOnceInALifeAndNotAgain) {
+TEST(WithEmulators, ConfigurationIsWrittenOnlyOnce) {
   Laser laser({});
   ASSERT_TRUE(laser.running(15));
   const unsigned writes = laser.emulator.memory_writes();
@@ -70,7 +71,7 @@ TEST(WithEmulators, MemoryIsWrittenOnceInALifeAndNotAgain) {
   EXPECT_EQ(laser.machine.report().written, laser.machine.report().written > 0 ? 1U : 0U);
 }
 
-TEST(WithEmulators, DamagedTelegramsCostOnlyThemselves) {
+TEST(WithEmulators, OnlyDamagedTelegramsAreLost) {
   Laser laser({});
   ASSERT_TRUE(laser.running(15));
   laser.bench.run(0.5);
@@ -87,7 +88,7 @@ TEST(WithEmulators, DamagedTelegramsCostOnlyThemselves) {
   EXPECT_EQ(laser.machine.report().set_ups, 1U);
 }
 
-TEST(WithEmulators, NoisyLineIsSetUpAllTheSame) {
+TEST(WithEmulators, SetUpSucceedsOnANoisyLine) {
   lms200::EmulatorOptions options;
   options.seed = 7;
   Laser laser(options);
@@ -108,7 +109,7 @@ TEST(WithEmulators, LaserIsLeftAtItsFirstRate) {
 
 // ---- bases -----------------------------------------------------------------------------------
 
-/// Wheels that turn as the motors want.
+/// Wheels that follow the motors exactly.
 class EmulatedBase final : public Emulated {
  public:
   template <class Emulator>
@@ -181,7 +182,7 @@ struct Driven {
   LineBench bench;
 };
 
-/// What every base has to do.
+/// The requirements on every base.
 template <class Rig>
 void check_base(Rig& rig) {
   ASSERT_TRUE(rig.ready()) << rig.machine.report(rig.bench.now()).sentence;
@@ -199,7 +200,7 @@ void check_base(Rig& rig) {
   rig.bench.run(rig.machine.watchdog() + 1);
   EXPECT_NEAR(rig.device.motion.left, 0, 1e-9);
 
-  // Speeds as slow as the thesis drove.
+  // The slow speeds of the thesis.
   rig.drive({0.04, 0}, 2);
   EXPECT_NEAR(rig.device.motion.left, 0.04, 0.004);
 
@@ -225,7 +226,7 @@ void check_base(Rig& rig) {
   EXPECT_FALSE(rig.machine.state().stop_button);
   ASSERT_TRUE(rig.arm());
 
-  // A restart forgets everything; the base is found and set up again, its motors off.
+  // After a restart the base is found and set up again, with its motors off.
   rig.emulator.restart(rig.bench.now(), 2);
   ASSERT_TRUE(rig.bench.run_until(30, [&] { return rig.machine.state().set_ups == 2; }));
   EXPECT_FALSE(rig.machine.state().motors_on);
@@ -246,12 +247,12 @@ void check_braking(Rig& rig) {
   }
   EXPECT_EQ(rig.device.motion.left, 0);
   EXPECT_LE(rig.travel() - before, 0.3 * 0.3 / (2 * kEmergencyDeceleration) + 0.3 * 0.05);
-  // The motors are still on, and the driving ramp is the file's again.
+  // The motors stay on, and the driving ramp of the file is restored.
   rig.drive({0.3, 0}, 4);
   EXPECT_NEAR(rig.device.motion.left, 0.3, 0.01);
   rig.drive({}, 0.5);
   EXPECT_GT(rig.device.motion.left, 0.1);
-  // Switched off while it drives: it brakes first, and then nothing has power.
+  // Switched off while driving: it brakes first, then loses power.
   rig.drive({0.3, 0}, 4);
   rig.machine.enable(rig.bench.now(), false);
   rig.bench.run(0.05);
@@ -281,7 +282,7 @@ TEST(WithEmulators, RoboteqBrakesWithItsEmergencyRamp) {
   check_braking(rig);
 }
 
-TEST(WithEmulators, PioneerTellsItsWatchdog) {
+TEST(WithEmulators, PioneerReportsItsWatchdog) {
   Driven<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
                                                    std::type_identity<p2os::PioneerSetup>());
   ASSERT_TRUE(rig.ready());
@@ -290,7 +291,7 @@ TEST(WithEmulators, PioneerTellsItsWatchdog) {
   EXPECT_DOUBLE_EQ(*rig.machine.state().watchdog, 2.0);
 }
 
-TEST(WithEmulators, BlockedWheelOfARoboteqIsReportedWhateverTheCurrent) {
+TEST(WithEmulators, RoboteqReportsABlockedWheelAtAnyCurrent) {
   Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
       roboteq_setup(), std::type_identity<roboteq::RoboteqSetup>());
   ASSERT_TRUE(rig.ready());

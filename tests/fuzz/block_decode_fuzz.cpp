@@ -1,5 +1,5 @@
-// tests/fuzz/block_decode_fuzz.cpp: any bytes are a block or refused; a block packs again to the
-// same frames.
+// tests/fuzz/block_decode_fuzz.cpp: any bytes decode as a block or are refused; a decoded block
+// packs again to the same frames.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

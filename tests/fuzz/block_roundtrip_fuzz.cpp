@@ -1,4 +1,4 @@
-// tests/fuzz/block_roundtrip_fuzz.cpp: whatever frames and windows, what is packed comes back.
+// tests/fuzz/block_roundtrip_fuzz.cpp: any frames and windows come back from a packed block.
 //
 // Input: frame after frame: length, window count, then per window gap and count, one byte
 // each, then the frame's bytes.

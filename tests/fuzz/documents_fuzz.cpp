@@ -1,5 +1,5 @@
-// tests/fuzz/documents_fuzz.cpp: any text is a scenario, a request, both or neither; a scenario
-// that reads is written and read again to the same document.
+// tests/fuzz/documents_fuzz.cpp: any text is a scenario, a request, both or neither; a valid
+// scenario gives the same document after writing and reading.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
@@ -18,7 +18,7 @@ void read_scenario(const nlohmann::json& document) {
   } catch (const server::DocumentError&) {
     return;
   }
-  // What was accepted once must be accepted again: a throw here is a finding.
+  // An accepted document must be accepted again: a throw here is a finding.
   const nlohmann::json second = server::to_json(server::scenario_from_json(first));
   const nlohmann::json third = server::to_json(server::scenario_from_json(second));
   if (server::dump_json(second) != server::dump_json(third)) std::abort();

@@ -1,5 +1,5 @@
-// tests/fuzz/foxglove_fuzz.cpp: whatever a client sends, the hub answers or ignores; it never
-// throws and never closes. A line break ends a message; one that begins with a brace is text.
+// tests/fuzz/foxglove_fuzz.cpp: the hub answers or ignores any message of a client; it never throws
+// and never closes. A line break ends a message; a message that begins with a brace is text.
 #include <cstdint>
 #include <cstdlib>
 #include <memory>

@@ -1,5 +1,5 @@
-// tests/fuzz/frame_fuzz.cpp: any bytes are a telemetry frame or refused; what we wrote ourselves
-// reads and is written again to the same bytes.
+// tests/fuzz/frame_fuzz.cpp: any bytes are a telemetry frame or refused; our own frames encode
+// again to the same bytes.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -31,8 +31,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const server::WireError&) {
     return 0;
   }
-  // A stranger's frame may hold forces without a strip, which ours leave out: so from the second
-  // on.
+  // A foreign frame may hold forces without a strip, which ours leave out: so compare from the
+  // second encoding on.
   const std::vector<std::byte> second = write_again(write(t));
   if (write_again(second) != second) std::abort();
   return 0;

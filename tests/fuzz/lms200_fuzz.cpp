@@ -1,5 +1,5 @@
-// tests/fuzz/lms200_fuzz.cpp: any bytes are telegrams or skipped; the same ones in whatever pieces
-// they come, and what they hold is decoded without a code ever becoming a distance.
+// tests/fuzz/lms200_fuzz.cpp: any bytes are telegrams or skipped, with the same result for any
+// pieces; decoding never turns a code into a distance.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

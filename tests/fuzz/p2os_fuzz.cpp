@@ -1,5 +1,5 @@
-// tests/fuzz/p2os_fuzz.cpp: any bytes are packets or skipped, in whatever pieces they come; what
-// they hold is a state, an answer or refused.
+// tests/fuzz/p2os_fuzz.cpp: any bytes, in any pieces, are packets or skipped; a packet is a state,
+// an answer or refused.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -45,7 +45,7 @@ std::uint64_t read(ByteView bytes, std::size_t piece) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const ByteView bytes(data, size);
   if (read(bytes, size + 1) != read(bytes, 7)) std::abort();
-  // A body as it is, for those that mutation gives no right check value.
+  // The input as a body too, since mutation rarely gives a right check value.
   Odometer odometer;
   Handshake handshake;
   decode(bytes.first(std::min(size, kLongestBody)), odometer, handshake);

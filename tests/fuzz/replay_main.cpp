@@ -37,7 +37,7 @@ std::vector<Bytes> read_seeds(int count, char** folders) {
   return seeds;
 }
 
-/// Cuts, repeats, joins and overwrites, as a damaged file or a careless client would.
+/// Cuts, repeats, joins and overwrites inputs, like a damaged file or a faulty client.
 Bytes mutate(const std::vector<Bytes>& seeds, std::mt19937_64& random) {
   Bytes bytes = seeds[random() % seeds.size()];
   const auto somewhere = [&] { return static_cast<std::ptrdiff_t>(random() % (bytes.size() + 1)); };

@@ -1,4 +1,4 @@
-// tests/fuzz/roboteq_fuzz.cpp: any bytes are lines or left out; a line is a reply or nothing.
+// tests/fuzz/roboteq_fuzz.cpp: any bytes are lines or skipped; a line is a reply or is ignored.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The keys of [base] that only this kind has.
+/// The keys of [base] for this kind only.
 std::string base_keys(const BenchOptions& options) {
   switch (options.base) {
     case emulate::BaseKind::P2os:
@@ -53,7 +53,7 @@ std::string robot_file(const BenchOptions& options, const sim::Scenario& scenari
          base_keys(options);
 }
 
-/// `point` of W as the robot's own dead reckoning, which begins at its start, has it.
+/// `point` of W in the robot's own odometry frame, which begins at its start.
 algo::Vec2 from_start(const algo::Pose2& start, const algo::Vec2& point) {
   const algo::Vec2 d = point - start.position();
   const double c = std::cos(start.heading);
@@ -142,10 +142,10 @@ HeadlessResult Bench::drive(const std::stop_token& stop) {
     std::string said;
     bool moved = false;
     while (!done.stop_requested()) {
-      // Until it moves for the first time; a later disarming has its reason.
+      // Until its first motion; a later disarming has a cause of its own.
       moved = moved || robot_->health().halt == algo::Halt::None;
       if (!moved) arm(0.1);
-      // What holds the robot, as it changes: a reader of the trial's figures wants to know.
+      // Prints each change of the hold reason, for readers of the trial's figures.
       const algo::HealthReport report = robot_->health();
       if (report.trouble != said) fmt::print(stderr, "{}: {}\n", options_.scenario, report.trouble);
       said = report.trouble;

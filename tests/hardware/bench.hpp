@@ -1,5 +1,5 @@
 // tests/hardware/bench.hpp: the whole hardware path without hardware: an emulated robot, the real
-// drivers on its ports, a record of both sides.
+// drivers on its ports, and a record of both sides.
 #pragma once
 
 #include <chrono>
@@ -28,7 +28,7 @@ struct BenchOptions {
   double watchdog = 0.5;
 };
 
-/// A scan as the emulator sent it, and what became of it.
+/// A scan as the emulator sent it, and its fate.
 struct SentLine {
   std::uint64_t number = 0;
   double time = 0;  // [s] machine time
@@ -43,7 +43,7 @@ struct PoseLine {
   double time = 0;
   algo::Pose2 pose_W{};
 };
-/// The emulator's side of what happened.
+/// The emulator's record.
 struct Truth {
   std::vector<SentLine> scans{};
   std::vector<WheelLine> wheels{};
@@ -63,9 +63,9 @@ class Bench {
   std::filesystem::path record() const { return options_.folder / "truth"; }
   std::filesystem::path database() const { return options_.folder / "runs.db"; }
 
-  /// Drives to the goal or until `stop`; arms as soon as the robot can be. Stored in database().
+  /// Drives to the goal or until `stop`; arms as soon as possible. Stored in database().
   HeadlessResult drive(const std::stop_token& stop);
-  /// Arms when nothing is in the way of it; false after `seconds`.
+  /// Arms once that is possible; false after `seconds`.
   bool arm(double seconds);
   /// Waits for `condition`; false after `seconds`.
   static bool wait_for(const std::function<bool()>& condition, double seconds);

@@ -55,7 +55,7 @@ bool experiment(const std::string& scenario, BaseKind base, const fs::path& fold
   const HeadlessResult result = bench.drive({});
   const Truth truth = read_truth(bench.record());
   const StoredRun stored = read_stored(bench.database());
-  // The simulation's commands act as late as the base has heard of them, to a tick.
+  // The simulation's commands get the delay of the real line, to a tick.
   const double delay = command_delay(stored, truth, 2 * bench.robot().spec().half_track);
   const auto ticks = static_cast<unsigned>(std::lround(delay / bench.robot().spec().period));
   const auto path = simulated(scenario, 1, ticks);

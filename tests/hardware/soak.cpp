@@ -1,4 +1,4 @@
-// tests/hardware/soak.cpp: half an hour of damaged telegrams: memory, and where each scan went.
+// tests/hardware/soak.cpp: half an hour of damaged telegrams: memory, and the fate of each scan.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -37,7 +37,7 @@ struct Memory {
   double high = 0;
 };
 
-/// Prints a line a minute: a growth shows as one.
+/// Prints a line per minute, which shows growth.
 Memory watch(double seconds) {
   Memory memory;
   const double begin = machine_time();
@@ -67,10 +67,10 @@ std::uint64_t fact(const algo::HealthReport& report, std::string_view wanted) {
 }  // namespace
 
 bool soak(const std::filesystem::path& folder, double seconds) {
-  // Farther away than it gets in the time: one run, driving.
+  // A goal too far to reach in the time, so that one run drives throughout.
   const algo::Vec2 far_W{100, 0};
   Memory memory;
-  std::uint64_t sent = 0;  // whole, when the drivers are asked; the emulator goes on afterwards
+  std::uint64_t sent = 0;  // intact, when the drivers are queried; the emulator goes on afterwards
   std::uint64_t received = 0;
   std::uint64_t replaced = 0;
   StoredRun stored;
@@ -100,13 +100,13 @@ bool soak(const std::filesystem::path& folder, double seconds) {
   for (const auto& [fate, count] : fates) fmt::print("scans {}: {}\n", fate, count);
   const std::size_t found = found_in_order(stored.scans, truth.scans);
   const std::size_t kept = stored.scans.size();
-  fmt::print("scans received: {}, stored: {}, of them not as sent: {}, nobody took: {}\n",
+  fmt::print("scans received: {}, stored: {}, of them not as sent: {}, never read: {}\n",
              received,
              kept,
              kept - found,
              replaced);
   fmt::print("memory after the first minute: {:.2f} to {:.2f} MB\n", memory.low, memory.high);
-  // Between two reports a few more were sent and came, before the run and after it.
+  // Between the two reports a few more scans were sent and received, before and after the run.
   const bool all_there = received - (kept + replaced) <= 20 && sent - received <= 20;
   return memory.high - memory.low <= kMostGrowth && found == kept && all_there;
 }

@@ -1,4 +1,4 @@
-// tests/hardware/stored.cpp: frames of a database, and the two clocks brought together.
+// tests/hardware/stored.cpp: frames of a database, and the offset between the two clocks.
 #include "tests/hardware/stored.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace server::hardware {
 namespace {
 
-/// [s] of the machine's clock when the run's began. A scan's stamp is when its first byte left; the
-/// emulator notes when its last one did.
+/// [s] of the machine's clock at the start of the run's clock. A scan's stamp is the time of its
+/// first byte; the emulator records the time of its last one.
 double epoch_of(const StoredRun& run, const Truth& truth) {
   std::vector<double> offsets;
   auto at = truth.scans.begin();

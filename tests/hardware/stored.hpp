@@ -1,4 +1,4 @@
-// tests/hardware/stored.hpp: what a run of the drivers stored, beside what the emulators say.
+// tests/hardware/stored.hpp: compares the stored run of the drivers with the emulators' record.
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,12 @@ struct StoredRun {
 /// The newest run of `database`.
 StoredRun read_stored(const std::filesystem::path& database);
 
-/// How many of `stored` are among `sent`, in this order; all of them when nothing is wrong.
+/// How many of `stored` are among `sent`, in this order; all without an error.
 std::size_t found_in_order(const std::vector<StoredScan>& stored,
                            const std::vector<SentLine>& sent);
 
-/// [s] from the tick that decides a turn to the base that hears of it, on average: the shift at
-/// which the commands of both records agree best. `track` [m].
+/// [s] Mean delay from the tick that decides a turn until the base receives it: the shift at which
+/// the commands of both records agree best. `track` [m].
 double command_delay(const StoredRun& run, const Truth& truth, double track);
 
 }  // namespace server::hardware

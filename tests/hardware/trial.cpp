@@ -1,5 +1,5 @@
 // tests/hardware/trial.cpp: long trials of the drivers against emulated devices, in real time; each
-// prints a table and ends with status 1 when something did not hold.
+// prints a table and ends with status 1 when a limit did not hold.
 //
 //   hardware_trial experiments FOLDER [exp1-roboteq]   against pure simulation
 //   hardware_trial soak FOLDER SECONDS                 1 % of telegrams damaged

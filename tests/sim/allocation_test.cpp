@@ -1,4 +1,4 @@
-// tests/sim/allocation_test.cpp: a steady tick of the simulated robot takes nothing from the heap.
+// tests/sim/allocation_test.cpp: a steady tick of the simulated robot allocates nothing.
 #include <atomic>
 #include <cstdlib>
 #include <new>

@@ -34,8 +34,8 @@ TEST(BulletRays, AgreeWithTheCasterToATenthOfAMillimetre) {
         const double bullet_range = bullet.range(sensor.position(), angle, 8.191);
         ++beams;
         if (std::abs(bullet_range - ranges[i]) <= 1e-4) continue;
-        // About one beam in 7000 Bullet reports a box that the ray misses by some centimetres, or
-        // passes by a cylinder it grazes. The analytic oracle says who is right.
+        // For about one beam in 7000, Bullet reports a box that the ray misses by some centimetres,
+        // or misses a cylinder that it grazes. The analytic oracle decides which is right.
         ++off;
         EXPECT_NEAR(reference::range(world, sensor.position(), angle, 8.191), ranges[i], 1e-4);
       }

@@ -32,13 +32,13 @@ class BulletRoom {
   BulletRoom(const BulletRoom&) = delete;
   BulletRoom& operator=(const BulletRoom&) = delete;
 
-  /// Puts the obstacle given as number `index` where `obstacle` says.
+  /// Moves the obstacle with number `index` to the pose of `obstacle`.
   void move(std::size_t index, const algo::Obstacle& obstacle) {
     objects_[index]->setWorldTransform(sim::obstacle_transform(obstacle));
     world_.updateSingleAabb(objects_[index].get());
   }
 
-  /// [m] Range of one ray, `range_max` when it meets nothing.
+  /// [m] Range of one ray, `range_max` without a hit.
   double range(const algo::Vec2& origin, double angle, double range_max) const {
     const algo::Vec2 end = origin + range_max * algo::direction(angle);
     const btVector3 from(origin.x(), origin.y(), kPlane);

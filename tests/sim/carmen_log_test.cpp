@@ -82,7 +82,7 @@ TEST(CarmenLog, OtherMessagesAreSkippedNotRejected) {
   }
 }
 
-TEST(CarmenLog, DamagedLinesSayWhatIsWrong) {
+TEST(CarmenLog, DamagedLinesGiveASentence) {
   EXPECT_EQ(reason_of("FLASER"), "the number of readings is missing or out of bounds");
   EXPECT_EQ(reason_of("FLASER 1e9 1 2 3"), "the number of readings is missing or out of bounds");
   EXPECT_EQ(reason_of("FLASER 2.5 1 2 3"), "the number of readings is missing or out of bounds");
@@ -129,7 +129,7 @@ TEST(CarmenLog, GarbageNeverCrashes) {
   EXPECT_GT(refused, 10000u);
 }
 
-TEST(CarmenUnits, AreToldFromTheReadings) {
+TEST(CarmenUnits, AreInferredFromTheReadings) {
   const auto guess = [](std::initializer_list<std::uint32_t> readings_mm) {
     CarmenUnitGuess result;
     for (const std::uint32_t reading : readings_mm) result.see(reading);

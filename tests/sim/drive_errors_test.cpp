@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-TEST(DriveErrors, NoneLeaveEverythingAsItIs) {
+TEST(DriveErrors, NoErrorsLeaveTheRunUnchanged) {
   DriveErrors errors({}, 1);
   errors.reset({1, 2, 0.3});
   EXPECT_EQ(errors.act({0.5, -0.2}), (algo::Twist2{0.5, -0.2}));
@@ -45,7 +45,7 @@ TEST(DriveErrors, TheOdometryDriftsByItsScaleEachWayForSomeSeed) {
   EXPECT_TRUE(longer && shorter);
 }
 
-TEST(DriveErrors, NoiseIsTheSeedsOwn) {
+TEST(DriveErrors, NoiseDependsOnTheSeed) {
   const auto end = [](std::uint64_t seed) {
     DriveErrors errors({.odometry_noise = 0.02}, seed);
     errors.reset({});
@@ -57,7 +57,7 @@ TEST(DriveErrors, NoiseIsTheSeedsOwn) {
   EXPECT_NE(end(3), end(4));
 }
 
-TEST(DriveErrors, DefectsAreNamed) {
+TEST(DriveErrors, ConfigurationErrorsAreNamed) {
   EXPECT_EQ(defect(DriveConfig{.yaw_slip = 1}), "yaw_slip must be 0 to below 1");
   EXPECT_EQ(defect(DriveConfig{.max_v = 0}), "limits must be above 0");
   EXPECT_EQ(defect(DriveConfig{.delay_ticks = 101}), "delay_ticks must be 0 to 100");
@@ -121,7 +121,7 @@ TEST(World, SomethingThatDrivesIntoTheRobotIsACollision) {
   EXPECT_TRUE(world.ground_truth()->collided);
 }
 
-TEST(World, APostBesideTheWheelsIsNotInTheWay) {
+TEST(World, APostBesideTheWheelsDoesNotBlock) {
   // The wheels' support balls are wider than the hull; 3 cm beside it there is room.
   Scenario scenario;
   scenario.robot = server::builtin_robot("jackal");

@@ -1,4 +1,4 @@
-// tests/sim/fleet_test.cpp: robots that see, touch and refuse one another in one world.
+// tests/sim/fleet_test.cpp: robots that see and touch one another in one world.
 #include "sim/fleet.hpp"
 
 #include <atomic>
@@ -42,7 +42,7 @@ std::string complaint_about(const Scenario& scenario) {
   return "made";
 }
 
-/// `threads` of them take turns.
+/// Advances with `threads` threads.
 ForEach on_threads(std::size_t threads) {
   return [threads](std::size_t count, const std::function<void(std::size_t)>& call) {
     std::atomic<std::size_t> next{0};
@@ -76,7 +76,7 @@ TEST(Fleet, ARectangularRobotIsSeenAsARectangle) {
   EXPECT_NEAR(ahead(seen), 3 - 0.254, 1e-3);
 }
 
-TEST(Fleet, ARobotThatDrivesIsSeenWhereItHasGot) {
+TEST(Fleet, ADrivingRobotIsSeenAtItsPresentPose) {
   for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
     Fleet fleet(scenario_with({{3, 0, 0}}, physics), 1);
     algo::Observation seen;
@@ -94,7 +94,7 @@ TEST(Fleet, ARobotThatDrivesIsSeenWhereItHasGot) {
   }
 }
 
-/// Beyond the scanner it is as if it were not there, and it comes back.
+/// A robot beyond scanner range is left out of the world, and returns later.
 TEST(Fleet, ARobotOutOfSightLeavesTheWorldAndComesBack) {
   Fleet fleet(scenario_with({{2, 1.5, 0}}), 1);
   algo::Observation seen;
@@ -112,7 +112,7 @@ TEST(Fleet, ARobotOutOfSightLeavesTheWorldAndComesBack) {
   EXPECT_NEAR(fleet.robot(0).ground_truth()->obstacle_distance, std::hypot(2, 1.5) - 0.35, 1e-9);
 }
 
-TEST(Fleet, AloneItIsTheSameAsAWorld) {
+TEST(Fleet, AFleetOfOneEqualsAWorld) {
   Scenario scenario;
   scenario.obstacles = reference::room(20);
   Fleet fleet(scenario, 7);
@@ -135,8 +135,8 @@ TEST(Fleet, AloneItIsTheSameAsAWorld) {
   }
 }
 
-/// One drives into another that stands: both feel it, neither is pushed.
-TEST(Fleet, ARobotDrivenAgainstStopsTheOtherAndBothFeelIt) {
+/// One robot drives into a standing one: both bumpers report, neither robot is pushed.
+TEST(Fleet, ARobotDrivenIntoAnotherStopsAndBothBumpersReport) {
   for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
     Fleet fleet(scenario_with({{1.5, 0, 0}}, physics), 1);
     algo::Observation a;
@@ -163,7 +163,7 @@ TEST(Fleet, ARobotDrivenAgainstStopsTheOtherAndBothFeelIt) {
   }
 }
 
-/// What touches an obstacle beside a robot does not touch the robot.
+/// A robot that touches an obstacle beside another robot does not touch that robot.
 TEST(Fleet, ContactWithAnObstacleIsNotContactWithARobot) {
   Scenario scenario = scenario_with({{0.6, 0.8, 0}});
   scenario.obstacles.push_back({.id = 1, .pose_W = {0.8, 0, 0}, .shape = algo::Box{0.4, 0.4}});
@@ -180,7 +180,7 @@ TEST(Fleet, ContactWithAnObstacleIsNotContactWithARobot) {
   EXPECT_TRUE(a.bumpers[0].pressed);
 }
 
-/// Every number that `fleet` gives in some ticks of a crowd that wanders and collides.
+/// Every number of `fleet` in some ticks of a wandering, colliding crowd.
 std::vector<double> wander(Fleet& fleet) {
   std::vector<double> numbers;
   std::vector<algo::Observation> seen(fleet.size());
@@ -232,7 +232,7 @@ TEST(Fleet, TheSameBitForBitOnOneTwoAndFourThreads) {
   }
 }
 
-TEST(Fleet, RobotsHaveNoiseOfTheirOwn) {
+TEST(Fleet, EachRobotHasItsOwnNoise) {
   Scenario scenario;
   scenario.robots.emplace_back().start = {100, 0, 0};
   scenario.robots.emplace_back().start = {200, 0, 0};
@@ -287,7 +287,7 @@ TEST(Fleet, EditsReachEveryRobotOrNone) {
   EXPECT_EQ(fleet.edit(algo::RemoveObstacle{5}), "There is no obstacle 5.");
   fleet.advance();
   for (std::size_t k = 0; k < 2; ++k) fleet.read(k, seen);
-  // The robots are still in one another's world.
+  // The robots still see each other.
   EXPECT_NEAR(fleet.robot(0).ground_truth()->clearance, 3 - 0.7, 1e-9);
 }
 
@@ -299,7 +299,7 @@ TEST(Fleet, RobotsCannotBeEdited) {
   EXPECT_EQ(fleet.edit(algo::RemoveObstacle{kRobotIds + 4}), "There is no robot 4.");
 }
 
-TEST(Fleet, SaysWhereTheOthersAre) {
+TEST(Fleet, ReportsThePosesOfTheOthers) {
   const Scenario scenario = scenario_with({{3, 0, 0}, {0, 3, 1}});
   Fleet fleet(scenario, 1);
   fleet.write(2, {{0.5, 0}});

@@ -23,7 +23,7 @@ using std::numbers::pi;
 
 constexpr double kTick = 0.026;
 
-/// Nothing but the rays and their timing.
+/// A scanner with exact rays and timing, without noise.
 LaserConfig exact(double degrees, bool rolling) {
   LaserConfig config = LaserConfig::ideal(degrees);
   config.rolling = rolling;
@@ -72,7 +72,7 @@ TEST(LaserConfig, ResolutionsOfTheDevice) {
   EXPECT_THROW(LaserConfig::with_resolution(std::nan("")), std::invalid_argument);
 }
 
-TEST(LaserConfig, DefectsAreNamed) {
+TEST(LaserConfig, ConfigurationErrorsAreNamed) {
   const auto problem = [](auto change) {
     LaserConfig config = LaserConfig::with_resolution(0.5);
     change(config);
@@ -216,7 +216,7 @@ TEST(LaserModel, SkewOfATurningScanIsCentimetres) {
   EXPECT_LT(std::sqrt(sum / count), 0.10);
 }
 
-TEST(LaserModel, NoiseHasTheStatisticsAskedFor) {
+TEST(LaserModel, NoiseHasTheConfiguredStatistics) {
   LaserConfig config = LaserConfig::ideal(0.5);
   config.noise = 0.005;
   config.bias = 0.015;
@@ -286,7 +286,7 @@ TEST(LaserModel, CentimetreModeReadsFartherAndCoarser) {
   EXPECT_EQ(scan.status[180], Beam::Ok);
 }
 
-TEST(LaserModel, ScansAreAlreadyWhatTheWireCanHold) {
+TEST(LaserModel, ScansAreQuantizedAsOnTheWire) {
   LaserConfig config = LaserConfig::with_resolution(0.5);
   config.salt = 0.02;
   config.pepper = 0.02;
@@ -303,7 +303,7 @@ TEST(LaserModel, ScansAreAlreadyWhatTheWireCanHold) {
   }
 }
 
-TEST(LaserModel, DropoutSaltAndPepperOccurAsOftenAsAskedFor) {
+TEST(LaserModel, DropoutSaltAndPepperOccurAtTheConfiguredRates) {
   LaserConfig config = LaserConfig::ideal(0.5);
   config.dropout = 0.002;
   config.salt = 0.01;
@@ -390,7 +390,7 @@ class MixedPixels : public testing::Test {
   }
 };
 
-TEST_F(MixedPixels, BetweenSurfacesWithinReachTheReadingIsInMidAir) {
+TEST_F(MixedPixels, BetweenNearSurfacesTheReadingIsInMidAir) {
   Bench bench(config());
   const LaserScan& scan = scan_of(bench, 2, 3);
   int mixed = 0;
@@ -422,7 +422,7 @@ TEST_F(MixedPixels, AcrossAWideGapOneOfTheSurfacesIsReported) {
   EXPECT_GE(near, near_by_centre);  // 0.3 of the spot is enough: the post looks wider, not thinner
 }
 
-TEST_F(MixedPixels, AgainstNothingThePostIsReportedOrNothing) {
+TEST_F(MixedPixels, AgainstFreeSpaceThePostOrNothingIsReported) {
   Bench bench(config());
   const LaserScan& scan = scan_of(bench, 7.5, 30);
   int seen = 0;
@@ -446,7 +446,7 @@ TEST_F(MixedPixels, ASteepWallIsNotAnEdge) {
   for (std::size_t i = 200; i < scan.size(); ++i) EXPECT_EQ(scan.ranges[i], centre.ranges[i]);
 }
 
-TEST(LaserSurfaces, DarkThingsAreSeenOnlyNear) {
+TEST(LaserSurfaces, DarkObjectsAreSeenOnlyNearby) {
   // 10 m sqrt(0.02 / 0.1) = 4.47 m.
   LaserConfig config = LaserConfig::ideal(0.5);
   config.reflectivity = true;
@@ -461,7 +461,7 @@ TEST(LaserSurfaces, DarkThingsAreSeenOnlyNear) {
   }
 }
 
-TEST(LaserSurfaces, AMirrorIsSeenOnlySquareOn) {
+TEST(LaserSurfaces, AMirrorIsSeenOnlyAtNormalIncidence) {
   LaserConfig config = LaserConfig::ideal(0.5);
   for (const bool on : {true, false}) {
     config.reflectivity = on;

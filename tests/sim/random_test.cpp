@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-TEST(Random, SameSeedSameNumbersAndEachPurposeItsOwn) {
+TEST(Random, SameSeedSameNumbersAndOneStreamPerPurpose) {
   Random a(7, 1);
   Random b(7, 1);
   Random other(7, 2);
@@ -68,7 +68,7 @@ TEST(Random, NumbersToBothSidesAreTheUniformOnesStretchedToTheBit) {
   for (const double value : row) EXPECT_EQ(value, 2.0 * alone.uniform() - 1.0);
 }
 
-TEST(RareEvents, PicksTheShareAskedForWhateverTheLengthOfARow) {
+TEST(RareEvents, PicksTheGivenShareForAnyRowLength) {
   RareEvents events(Random(5), 0.002);
   std::size_t picked = 0;
   std::size_t trials = 0;

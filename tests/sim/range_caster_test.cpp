@@ -1,4 +1,4 @@
-// tests/sim/range_caster_test.cpp: the caster against an analytic oracle, world by world.
+// tests/sim/range_caster_test.cpp: the caster against an analytic oracle, in many worlds.
 #include "sim/range_caster.hpp"
 
 #include <numbers>
@@ -48,7 +48,7 @@ TEST(RangeCaster, HandComputedRanges) {
   EXPECT_NEAR(ranges[180], 2.5, 1e-12);  // straight ahead: 3 - 1/2
   EXPECT_NEAR(ranges[360], 1.5, 1e-12);  // to the left: 2 - 0.5
   EXPECT_NEAR(ranges[190], 2.5 / std::cos(5 * kDegree), 1e-12);
-  EXPECT_EQ(ranges[100], 8);  // nothing there: exactly range_max
+  EXPECT_EQ(ranges[100], 8);  // no obstacle: exactly range_max
   EXPECT_EQ(caster.obstacle(hits[180]).id, 7u);
   EXPECT_EQ(caster.obstacle(hits[360]).id, 9u);
   EXPECT_EQ(hits[100], RangeCaster::kNothing);
@@ -96,7 +96,7 @@ TEST(RangeCaster, SensorInsideAnObstacleReadsZero) {
   }
 }
 
-TEST(RangeCaster, MoveAndRemoveChangeWhatIsSeen) {
+TEST(RangeCaster, MoveAndRemoveChangeTheRanges) {
   RangeCaster caster = caster_of({cylinder(4, 2, 0, 0.5), box(5, {4, 0, 0}, 1, 1)});
   EXPECT_NEAR(one_range(caster, {0, 0, 0}), 1.5, 1e-12);
   caster.move(4, {0, 3, 0});

@@ -1,5 +1,5 @@
-// tests/sim/reference_world.hpp: the room W(K) of the benchmarks and an analytic ray oracle that
-// shares nothing with the caster.
+// tests/sim/reference_world.hpp: the room W(K) of the benchmarks and an analytic ray oracle without
+// code shared with the caster.
 #pragma once
 
 #include <algorithm>

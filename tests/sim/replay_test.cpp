@@ -1,4 +1,4 @@
-// tests/sim/replay_test.cpp: a small log through the port.
+// tests/sim/replay_test.cpp: replays a small log as a robot.
 #include "sim/replay.hpp"
 
 #include <chrono>
@@ -66,7 +66,7 @@ TEST(Replay, OneScanATickWithPosesTwistsAndStamps) {
   EXPECT_EQ(seen.stamp, 0);
 }
 
-TEST(Replay, FixedPeriodWhereTheStampsSayNothing) {
+TEST(Replay, FixedPeriodWithoutUsableStamps) {
   const std::string poses = "0 0 0 0 0 0";
   const auto robot = replay(scan("1 1 1 1", poses, "5") + scan("1 1 1 1", poses, "5") +
                             scan("1 1 1 1", poses, "4") + scan("1 1 1 1", poses, "4.1") +
@@ -84,15 +84,15 @@ TEST(Replay, FixedPeriodWhereTheStampsSayNothing) {
   EXPECT_NEAR(stamps[3], 0.7, 1e-9);  // a day later: a clock was set
 }
 
-TEST(Replay, StampsTooCloseForAnyScannerSayNothing) {
+TEST(Replay, StampsTooCloseForAnyScannerAreUnusable) {
   std::string log;
   for (int i = 0; i < 5; ++i)
     log += scan("1 2 3 4", "0 0 0 0 0 0", "100.000000" + std::to_string(i));
   const auto robot = replay(log);
-  EXPECT_GT(robot->spec().period, 1e-3);  // what sizes buffers must not come near zero
+  EXPECT_GT(robot->spec().period, 1e-3);  // it sizes buffers and must not be near zero
 }
 
-TEST(Replay, SaysHowLongTheNextScanTakes) {
+TEST(Replay, ReportsThePeriodOfTheNextScan) {
   const auto robot =
       replay(scan("1 1 1 1", "0 0 0 0 0 0", "1") + scan("1 1 1 1", "0 0 0 0 0 0", "1.05"));
   algo::Observation seen;
@@ -137,7 +137,7 @@ TEST(Replay, DamagedLinesAreSkippedAndCounted) {
   EXPECT_EQ(robot->skipped().first_reason, "a number of the odometry is missing or not finite");
 }
 
-TEST(Replay, SaysWhyALogCannotBeReplayed) {
+TEST(Replay, ReportsWhyALogCannotBeReplayed) {
   EXPECT_EQ(failure(""), "The log test.log is empty.");
   EXPECT_EQ(failure("PARAM a 1\nODOM 1 2 0.5 0.3 -0.1 0 7.5 host 0.2\nFLASER 4 1\n"),
             "The log test.log holds no scan (FLASER, RLASER or ROBOTLASER1): 3 lines, 1 of them "

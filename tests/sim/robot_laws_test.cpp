@@ -1,4 +1,4 @@
-// tests/sim/robot_laws_test.cpp: what holds for every robot behind the port.
+// tests/sim/robot_laws_test.cpp: laws that every algo::Robot obeys.
 #include <functional>
 #include <memory>
 #include <sstream>
@@ -33,7 +33,7 @@ std::unique_ptr<Robot> bullet(std::uint64_t seed) {
 std::unique_ptr<Robot> kinematic(std::uint64_t seed) {
   return std::make_unique<World>(scenario(PhysicsKind::Kinematic), seed);
 }
-/// A log as another seed would have recorded it: the seed is in the readings.
+/// A log for a seed: the readings depend on the seed.
 std::unique_ptr<Robot> log(std::uint64_t seed) {
   std::ostringstream text;
   for (int scan = 0; scan < 200; ++scan) {
@@ -183,7 +183,7 @@ TEST_P(RobotLaws, ResetStartsTheSameRunAgain) {
   }
 }
 
-TEST_P(RobotLaws, TheNextStepTakesAsLongAsItSays) {
+TEST_P(RobotLaws, TheNextStepTakesItsAnnouncedTime) {
   const auto robot = make();
   Observation seen;
   robot->reset(seen);
@@ -215,7 +215,7 @@ TEST_P(RobotLaws, EveryBeamSurvivesTheWire) {
   EXPECT_GT(beams, 0u);
 }
 
-TEST_P(RobotLaws, RequestsThatAreNoEditsAreNoneOfItsBusiness) {
+TEST_P(RobotLaws, RequestsThatAreNoEditsAreIgnored) {
   const auto robot = make();
   algo::Editing* const editing = robot->editing();
   if (editing == nullptr) return;

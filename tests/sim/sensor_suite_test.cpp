@@ -1,5 +1,4 @@
-// tests/sim/sensor_suite_test.cpp: infrared scanners, gyro, bumpers and what the odometry is made
-// of.
+// tests/sim/sensor_suite_test.cpp: infrared scanners, gyro, bumpers and the sources of odometry.
 #include <cmath>
 #include <numbers>
 
@@ -53,7 +52,7 @@ TEST(InfraredModel, MeasuresAlongItsBeamsOncePerPeriod) {
   EXPECT_LE(scans, 6);
 }
 
-TEST(InfraredModel, SeesWhatIsLowAndNothingBeyondItsRange) {
+TEST(InfraredModel, SeesLowObstaclesAndNothingBeyondItsRange) {
   InfraredModel scanner(narrow(), 1, 0);
   scanner.add(post(1, 2, 0, 0.15));
   PoseTrail trail(0.01, 1);
@@ -70,7 +69,7 @@ TEST(InfraredModel, SeesWhatIsLowAndNothingBeyondItsRange) {
   EXPECT_EQ(readings[1].range, 3.5);
 }
 
-TEST(InfraredModel, SaysWhatIsWrong) {
+TEST(InfraredModel, ErrorsAreSentences) {
   InfraredConfig config;
   config.beams = 0;
   EXPECT_EQ(defect(config), "beams must be 1 to 361");
@@ -112,7 +111,7 @@ Turn turn(PhysicsKind physics, Localization localization) {
   return {observation.odometry.pose, world.ground_truth()->pose};
 }
 
-TEST(World, TheGyroMakesGoodWhatTheWheelsSlip) {
+TEST(World, TheGyroCorrectsWheelSlip) {
   for (const PhysicsKind physics : {PhysicsKind::Kinematic, PhysicsKind::Bullet}) {
     const auto error = [&](Localization localization) {
       const Turn drive = turn(physics, localization);
@@ -123,7 +122,7 @@ TEST(World, TheGyroMakesGoodWhatTheWheelsSlip) {
   }
 }
 
-TEST(World, ThreeBumpersTellWhereTheContactIs) {
+TEST(World, ThreeBumpersLocateTheContact) {
   Scenario scenario;
   scenario.period = 0.05;
   scenario.robot.sensors.bumpers = 3;
@@ -182,7 +181,7 @@ TEST(World, FrontAndRearScannersReportFromTheirMounts) {
   EXPECT_EQ(ahead, 0U);
 }
 
-TEST(ReportedPath, OfSlipCountsTheTurnThatTheFloorLost) {
+TEST(ReportedPath, SlipIsAddedToTheReportedTurn) {
   std::vector<algo::Pose2> path{{0, 0, 0}, {1, 0, 0}, {1, 0, 0.95}};
   const auto reported = reported_path(path, {.odometry_slip = 0.05}, 1);
   ASSERT_EQ(reported.size(), 3U);

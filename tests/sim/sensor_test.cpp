@@ -1,4 +1,4 @@
-// tests/sim/sensor_test.cpp: further sensors fill their channels at their own times.
+// tests/sim/sensor_test.cpp: further sensors fill their channels at their own rates.
 #include "sim/sensor.hpp"
 
 #include <cmath>
@@ -57,7 +57,7 @@ TEST(Sensors, AScriptedValueIsReadOnceInAPeriodAndIsLinearInBetween) {
   EXPECT_EQ(o.channels.size(), 1U) << "it begins anew with the world";
 }
 
-TEST(Sensors, ACompassTurnsWithTheRobotAndItsNoiseIsOfTheSeed) {
+TEST(Sensors, ACompassTurnsWithTheRobotAndItsNoiseDependsOnTheSeed) {
   const SensorConfig compass{.sensor = "compass",
                              .channel = "heading",
                              .settings = {{"north", {0.25}}, {"noise", {0.01}}, {"period", {0}}}};
@@ -79,7 +79,7 @@ TEST(Sensors, ACompassTurnsWithTheRobotAndItsNoiseIsOfTheSeed) {
   EXPECT_NE(readings(1), readings(2));
 }
 
-TEST(Sensors, ADefectIsASentence) {
+TEST(Sensors, AConfigurationErrorIsASentence) {
   const auto complaint = [](auto change) {
     SensorConfig config = battery();
     change(config);

@@ -1,4 +1,4 @@
-// tests/sim/sonar_model_test.cpp: who pings when, and which echo comes back.
+// tests/sim/sonar_model_test.cpp: the order of the pings, and which echo returns.
 #include "sim/sonar_model.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ algo::Obstacle post(double x, double y, double radius) {
   return {.id = 1, .pose_W = {x, y, 0}, .shape = algo::Cylinder{radius}};
 }
 
-/// A long wall whose near face meets the x axis at `x`, turned by `angle` off square.
+/// A long wall whose near face meets the x axis at `x`, turned by `angle` from perpendicular.
 algo::Obstacle wall(double x, double angle) {
   return {.id = 1, .pose_W = {x, 0, std::numbers::pi / 2 + angle}, .shape = algo::Wall{40, 1e-3}};
 }
@@ -100,7 +100,7 @@ TEST(SonarModel, APartOfATurnHasASensorAtEitherBorder) {
   EXPECT_NEAR(readings[7].mount_R.heading, std::numbers::pi / 2, 1e-12);
 }
 
-TEST(SonarModel, SaysWhatIsWrongWithItsConfiguration) {
+TEST(SonarModel, ConfigurationErrorsAreSentences) {
   EXPECT_FALSE(sim::defect(SonarConfig{}));
   SonarConfig config;
   config.count = 0;

@@ -1,4 +1,4 @@
-// tests/sim/spot_kernel_test.cpp: the spots of a sweep against one spot after the other.
+// tests/sim/spot_kernel_test.cpp: the spots of a sweep at once against one spot at a time.
 #include "sim/spot_kernel.hpp"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ struct Echo {
 };
 using Spot = std::array<Echo, sim::kSpotRays>;
 
-/// As the words of judge_spots() have it.
+/// The definition in the comment of judge_spots(), literally.
 Echo judged(Spot spot) {
   const Echo own = spot.back();
-  // Equals keep their order. std::stable_sort would take memory past the counted operator new.
+  // Equal ranges keep their order. std::stable_sort would bypass the counted operator new.
   for (std::size_t k = 1; k < spot.size(); ++k) {
     for (std::size_t i = k; i > 0 && spot[i].range < spot[i - 1].range; --i) {
       std::swap(spot[i], spot[i - 1]);

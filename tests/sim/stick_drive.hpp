@@ -1,5 +1,4 @@
-// tests/sim/stick_drive.hpp: somebody who knows nothing pushes the stick about at random, and what
-// the robot touches meanwhile.
+// tests/sim/stick_drive.hpp: drives by a random stick and records contacts.
 #pragma once
 
 #include <array>
@@ -16,7 +15,7 @@
 
 namespace stick {
 
-/// A new deflection every 0.3 to 2.5 s: as often full as anything in between, now and then none.
+/// A new deflection every 0.3 to 2.5 s: full as often as partial, sometimes none.
 class RandomStick {
  public:
   explicit RandomStick(std::uint64_t seed) : random_(seed, 0x5714C) {}
@@ -42,16 +41,16 @@ class RandomStick {
 };
 
 struct Outcome {
-  int contacts = 0;                  // begun by a robot that moved
+  int contacts = 0;                  // caused by the moving robot
   double driven = 0;                 // [m] of its centre, by its true pose
   double turned = 0;                 // [rad]
   double backed = 0;                 // [m] of those backwards
   double fastest_back = 0;           // [m/s]
   double least = 10;                 // [m] clearance
-  std::vector<std::string> where{};  // each contact, in words
+  std::vector<std::string> where{};  // a text per contact
 };
 
-/// Drives `scenario` for `seconds` by `stick(stamp)`, heard ten times a second.
+/// Drives `scenario` for `seconds` by `stick(stamp)`, sampled at 10 Hz.
 template <typename Stick>
 Outcome drive(const sim::Scenario& scenario, std::uint64_t seed, double seconds, Stick&& stick) {
   sim::World world(scenario, seed);
@@ -124,7 +123,7 @@ inline void add_room(sim::Scenario& scenario, double half_x, double half_y) {
 /// round.
 inline constexpr std::array<const char*, 4> kWorlds{"room", "corridor", "slalom", "narrow"};
 
-/// One of kWorlds for `robot`, with the default scanner and nothing that looks back.
+/// One of kWorlds for `robot`, with the default scanner and no rear sensor.
 inline sim::Scenario world(const std::string& name,
                            const std::string& robot,
                            sim::PhysicsKind physics) {

@@ -1,4 +1,4 @@
-// tests/sim/stick_test.cpp: minutes of random stick; stick_trial drives for as long as one likes.
+// tests/sim/stick_test.cpp: minutes of random stick motion; stick_trial drives for any time.
 #include "tests/sim/stick_drive.hpp"
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TEST_P(StickTest, TouchesNothingWhileItMoves) {
   EXPECT_GT(sum.turned, 15);
 }
 
-/// Commands that act late are what it must brake for, too.
+/// The guard must also brake in time when commands act late.
 TEST(Stick, TouchesNothingWithADelay) {
   for (const char* robot : {"silvermate", "jackal"}) {
     sim::Scenario scenario = stick::world("room", robot, sim::PhysicsKind::Bullet);

@@ -1,4 +1,4 @@
-// tests/sim/stick_trial.cpp: the random stick for as long as one likes; by hand:
+// tests/sim/stick_trial.cpp: the random stick for any time; run by hand:
 // stick_trial [SECONDS a row [FIRST SEED [WORLDS]]].
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +16,7 @@ struct Row {
   int worlds = 40;
 };
 
-/// `seconds` over all of kWorlds and over as many random rooms again.
+/// `seconds` in all of kWorlds and in as many random rooms.
 int row(const char* robot, sim::PhysicsKind physics, const Row& about) {
   stick::Outcome sum;
   const auto take = [&](const std::string& name,

@@ -1,4 +1,4 @@
-// tests/sim/vehicle_test.cpp: the figures of the vehicle models, and of the arithmetic they share.
+// tests/sim/vehicle_test.cpp: the figures of the vehicle models and of their shared arithmetic.
 #include "sim/vehicle.hpp"
 
 #include <cmath>
@@ -27,7 +27,7 @@ TEST(Substeps, AreEqualAndNeverSlowerThan240Hertz) {
   EXPECT_EQ(Substeps(0.001).count, 1u);
 }
 
-TEST(WithinLimits, KeepsTheCurvatureAndDropsWhatIsNoNumber) {
+TEST(WithinLimits, KeepsTheCurvatureAndRejectsNan) {
   const RobotModel robot = server::builtin_robot("silvermate");  // 0.5 m/s, 1 rad/s
   EXPECT_EQ(within_limits({0.4, -0.9}, robot), (Twist2{0.4, -0.9}));
   const Twist2 fast = within_limits({1.0, 0.5}, robot);
@@ -134,7 +134,7 @@ TEST(BulletVehicle, AcceleratesWithinItsLimits) {
   EXPECT_GT(largest_omega, 4 * 0.9);
 }
 
-TEST(BulletVehicle, StopsDeadAndThenDoesNotMoveByABit) {
+TEST(BulletVehicle, StopsAndThenDoesNotMoveAtAll) {
   Track track("silvermate");
   track.run({0.5, 0.4}, 3);
   track.run({0, 0}, 2.5);
@@ -142,7 +142,7 @@ TEST(BulletVehicle, StopsDeadAndThenDoesNotMoveByABit) {
   const Pose2 stopped = track.state().pose_W;
   track.run({0, 0}, 60);
   EXPECT_EQ(track.state().pose_W, stopped);
-  // Parking is not a trap.
+  // A robot at rest can start again.
   track.run({0.2, 0}, 1);
   EXPECT_NEAR(track.state().twist.v, 0.2, 0.004);
 }
@@ -169,7 +169,7 @@ TEST(BulletVehicle, StartsExactlyAtTheStart) {
   EXPECT_NEAR(std::atan2(way.y(), way.x()), 2.2, 0.003);
 }
 
-TEST(BulletVehicle, BumperTellsOfAWallAndTheWallHolds) {
+TEST(BulletVehicle, BumperReportsAWallAndTheWallHolds) {
   Track track("silvermate");
   //  robot r 0.35 ->      | wall face at x = 1.0
   track.place({.id = 1, .pose_W = {1.05, 0, std::numbers::pi / 2}, .shape = algo::Wall{4, 0.1}});
@@ -239,7 +239,7 @@ TEST(KinematicVehicle, DrivesTheExactArc) {
   EXPECT_EQ(trail.back(0), vehicle.state().pose_W);
 }
 
-TEST(KinematicVehicle, RampsOnlyWhenAskedTo) {
+TEST(KinematicVehicle, RampsOnlyIfConfigured) {
   const RobotModel robot = server::builtin_robot("silvermate");
   const ObstacleSet nothing;
   PoseTrail trail(Substeps(0.05).length, 0.2);

@@ -85,7 +85,7 @@ TEST(World, EditsAreCarriedOutOrRefusedWithTheReason) {
   }
 }
 
-TEST(World, AnAddedObstacleIsSeenAndInTheWay) {
+TEST(World, AnAddedObstacleIsSeenAndBlocks) {
   for (const PhysicsKind physics : {PhysicsKind::Bullet, PhysicsKind::Kinematic}) {
     Scenario scenario;
     scenario.physics = physics;
@@ -93,7 +93,7 @@ TEST(World, AnAddedObstacleIsSeenAndInTheWay) {
     const auto world = world_of(scenario);
     Observation seen;
     world->reset(seen);
-    ASSERT_EQ(seen.scans.size(), 1u);  // without motion in it, a scan is there from the start
+    ASSERT_EQ(seen.scans.size(), 1u);  // a flat-time scan is available from the start
     EXPECT_EQ(seen.scans[0].status[180], algo::Beam::Free);
     ASSERT_EQ(world->edit(algo::AddObstacle{cylinder(1, 1.5, 0)}), std::nullopt);
     ASSERT_TRUE(world->step({{0.5, 0}}, seen));
@@ -106,7 +106,7 @@ TEST(World, AnAddedObstacleIsSeenAndInTheWay) {
     EXPECT_TRUE(pressed);
     EXPECT_TRUE(world->ground_truth()->collided);
     EXPECT_LT(world->ground_truth()->pose.x, 0.86);
-    // Out of the way again, the robot goes on.
+    // With the obstacle removed, the robot drives on.
     ASSERT_EQ(world->edit(algo::MoveObstacle{1, {1.5, 3, 0}}), std::nullopt);
     for (int tick = 0; tick < 60; ++tick) ASSERT_TRUE(world->step({{0.5, 0}}, seen));
     EXPECT_GT(world->ground_truth()->pose.x, 1.2);

@@ -1,5 +1,5 @@
-// tests/algo/baselines/behaviour_test.cpp: what the literature says of the comparison controllers:
-// where each reaches the goal, and where each does not.
+// tests/algo/baselines/behaviour_test.cpp: the published behaviour of the baseline controllers:
+// where each reaches the goal, and where it does not.
 #include <numbers>
 #include <ostream>
 #include <set>
@@ -60,12 +60,12 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values("edge_detection", "potential_field", "certainty_grid", "vff", "vfh", "dwa"),
     [](const auto& about) { return about.param; });
 
-TEST(Baselines, GoToGoalHitsWhatStandsInItsWay) {
+TEST(Baselines, GoToGoalHitsAnObstacleInItsWay) {
   EXPECT_EQ(Drive("go_to_goal", post(0), kGoal).run().name, "collided");
 }
 
-/// Forces that cancel head-on: Koren and Borenstein's own objection to force fields. The VFF, whose
-/// cells are never quite symmetric, comes past this one.
+/// Forces cancel head-on: Koren and Borenstein's own objection to force fields. The VFF passes this
+/// post, since its cells are never quite symmetric.
 TEST(Baselines, ThePotentialFieldComesToRestBeforeAPostOnItsLine) {
   const Outcome outcome = Drive("potential_field", post(0), kGoal).run();
   EXPECT_EQ(outcome.name, "out_of_time");
@@ -73,7 +73,7 @@ TEST(Baselines, ThePotentialFieldComesToRestBeforeAPostOnItsLine) {
   EXPECT_LT(outcome.late_path, 0.01);
 }
 
-/// A local minimum: none of these knows more than what is near.
+/// A local minimum: these controllers know only nearby obstacles.
 TEST(Baselines, LocalMethodsAreTrappedInADeadEnd) {
   for (const char* name : {"potential_field", "vff", "vfh", "dwa"}) {
     const Outcome outcome = Drive(name, dead_end(), kGoal).run(60);
@@ -83,7 +83,7 @@ TEST(Baselines, LocalMethodsAreTrappedInADeadEnd) {
   }
 }
 
-TEST(Baselines, TheCertaintyGridFindsTheWayOutOfADeadEnd) {
+TEST(Baselines, TheCertaintyGridFindsThePathOutOfADeadEnd) {
   bool replanned_back = false;
   const Outcome outcome = Drive("certainty_grid", dead_end(), kGoal)
                               .watch([&](const algo::ControlOutput& out) {
@@ -100,7 +100,7 @@ TEST(Baselines, TheCertaintyGridFindsTheWayOutOfADeadEnd) {
   EXPECT_TRUE(replanned_back);
 }
 
-TEST(Baselines, WithoutAnyWayTheCertaintyGridStopsAndSaysSo) {
+TEST(Baselines, WithoutAPathTheCertaintyGridStopsWithAReason) {
   const worlds::World cell{{},
                            {box(-1.2, -1.2, 1.2, -1.1),
                             box(-1.2, 1.1, 1.2, 1.2),
@@ -115,8 +115,8 @@ TEST(Baselines, WithoutAnyWayTheCertaintyGridStopsAndSaysSo) {
   EXPECT_GT(outcome.clearance, 0);
 }
 
-/// It stands still for half a second at each scan it takes, and only then.
-TEST(Baselines, EdgeDetectionStopsToTakeItsScans) {
+/// It stands still for half a second at each scan, and only then.
+TEST(Baselines, EdgeDetectionStopsForItsScans) {
   int standing = 0;
   int longest = 0;
   int scans = 0;
@@ -134,7 +134,7 @@ TEST(Baselines, EdgeDetectionStopsToTakeItsScans) {
   EXPECT_EQ(longest, 10);  // of 50 ms
 }
 
-TEST(Baselines, TheDynamicWindowChoosesWhatItCanReachAndStop) {
+TEST(Baselines, TheDynamicWindowChoosesReachableSpeedsItCanStopFrom) {
   algo::Twist2 before;
   const Outcome outcome =
       Drive("dwa", post(0), kGoal)
@@ -154,11 +154,11 @@ TEST(Baselines, TheDynamicWindowChoosesWhatItCanReachAndStop) {
           })
           .run();
   EXPECT_EQ(outcome.name, "reached");
-  EXPECT_GE(outcome.clearance, 0.04);  // its margin of 5 cm, less what it drives in a tick
+  EXPECT_GE(outcome.clearance, 0.04);  // its margin of 5 cm, less the motion of one tick
 }
 
-/// A rectangle passes lengthwise where the circle about it does not.
-TEST(Baselines, TheDynamicWindowKnowsRectangles) {
+/// A rectangle passes lengthwise where its circumscribed circle does not.
+TEST(Baselines, TheDynamicWindowHandlesRectangles) {
   const worlds::World gap{{}, {box(2, 0.32, 4, 9), box(2, -9, 4, -0.32)}};
   Drive disc("dwa", gap, kGoal);
   disc.spec().radius = 0.3327;

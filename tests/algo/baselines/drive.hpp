@@ -1,5 +1,5 @@
-// tests/algo/baselines/drive.hpp: drives a controller through a world: a robot whose speeds follow
-// the commands within its accelerations, an exact flat-time scan, nothing else.
+// tests/algo/baselines/drive.hpp: drives a controller through a world, with limited accelerations
+// and an exact flat-time scan only.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Outcome {
   double late_path = 0;  // [m] driven in the last 20 s
 };
 
-/// What the robot senses with besides its scanner.
+/// The robot's sensors besides its scanner.
 using Sense = std::function<void(const algo::Pose2&, const worlds::World&, algo::Observation&)>;
 
 class Drive {
@@ -78,7 +78,7 @@ class Drive {
     return outcome;
   }
 
-  /// Of the disc, or of points all round the rectangle, which come within 3 mm of a corner.
+  /// Clearance of the disc, or of points on the rectangle's outline, at most 3 mm from a corner.
   double hull_clearance() const {
     if (!(spec_.half_length > 0)) {
       return worlds::surface_distance(pose_.position(), world_) - spec_.radius;

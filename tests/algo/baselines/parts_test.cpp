@@ -1,4 +1,4 @@
-// tests/algo/baselines/parts_test.cpp: the comparison controllers' mathematics, piece by piece.
+// tests/algo/baselines/parts_test.cpp: the mathematics of the baseline controllers, part by part.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -20,14 +20,14 @@ namespace {
 
 using algo::Vec2;
 
-TEST(RollingGrid, KeepsWhatItStillCoversAndForgetsTheRest) {
+TEST(RollingGrid, KeepsTheCellsItStillCoversAndDropsTheRest) {
   algo::RollingGrid<int> grid(0.1, 9);
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> step(-0.5, 0.5);
   Vec2 p{0, 0};
   grid.centre_on(p);
   for (int k = 0; k < 200; ++k) {
-    // Every covered cell holds its own number; after the move those still covered must.
+    // Every cell holds its own number; cells that stay covered must keep it.
     const auto number = [](algo::Cell c) { return 1 + 1000 * c.i + c.j; };
     const algo::Cell old = grid.first();
     for (int j = old.j; j < old.j + 9; ++j) {
@@ -45,7 +45,7 @@ TEST(RollingGrid, KeepsWhatItStillCoversAndForgetsTheRest) {
   }
 }
 
-TEST(RollingGrid, APlaceBeyondEveryMapIsStillAPlace) {
+TEST(RollingGrid, ACellFarBeyondTheMapIsStillValid) {
   algo::RollingGrid<int> grid(0.1, 9);
   grid.centre_on({1e300, -1e300});
   EXPECT_TRUE(grid.covers(grid.cell_of({1e300, -1e300})));
@@ -63,7 +63,7 @@ TEST(HistogramGrid, CountsToFifteen) {
   EXPECT_EQ(sum, 15);
 }
 
-/// What the sonar ring gives beside a scan is looked at too.
+/// Sonar readings beside a scan are checked too.
 TEST(Baseline, ASonarReadingThatIsNotFiniteGivesZero) {
   algo::Scene scene;
   algo::RobotSpec spec;
@@ -117,7 +117,7 @@ TEST(Vfh, SteersByTheWidthOfTheValley) {
   EXPECT_FALSE(algo::steering_sector(valley(5, 4), 300, 33)) << "none free";
 }
 
-TEST(CertaintyGrid, TheProbabilitiesAreThoseOfTheFormula) {
+TEST(CertaintyGrid, TheProbabilitiesMatchTheFormula) {
   const algo::RangeSector sector{
       .mount_W = {}, .width = 0.5, .range = 2, .nearest = 0.2, .hit = true};
   EXPECT_NEAR(algo::empty_probability(sector, 0.2, 0), 1, 1e-12);
@@ -175,7 +175,7 @@ TEST(EdgeDetection, FindsTheEdgesOfAPost) {
   EXPECT_GT(beside.y(), 0.6);
 }
 
-TEST(EdgeDetection, AWallAcrossTheFieldHasNone) {
+TEST(EdgeDetection, AWallAcrossTheFieldHasNoEdges) {
   algo::LaserScan scan;
   const worlds::World world{{}, {{{1, -9}, {1.1, -9}, {1.1, 9}, {1, 9}}}};
   worlds::scan_world({}, world, 80.0, scan);
@@ -187,7 +187,7 @@ TEST(EdgeDetection, AWallAcrossTheFieldHasNone) {
   EXPECT_FALSE(algo::bounding_edges(scan, 180).right);
 }
 
-/// [m] driven and [rad] turned when the hull first holds the point, by small steps.
+/// [m] driven and [rad] turned until the hull first contains the point, by small steps.
 algo::ArcRoom stepped(const algo::Hull& hull, const algo::Twist2& twist, const Vec2& point) {
   const double dt = 1e-3;
   for (int k = 0; k < 8000; ++k) {
@@ -203,7 +203,7 @@ algo::ArcRoom stepped(const algo::Hull& hull, const algo::Twist2& twist, const V
   return {};
 }
 
-TEST(Dwa, RoomOnAnArcIsWhatSmallStepsFind) {
+TEST(Dwa, ClearanceOnAnArcMatchesSmallSteps) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> place(-1.5, 1.5);
   std::uniform_real_distribution<double> speed(0.2, 1.0);
@@ -228,7 +228,7 @@ TEST(Dwa, RoomOnAnArcIsWhatSmallStepsFind) {
   EXPECT_GT(touched, 100);
 }
 
-TEST(Dwa, OnlyWhatCanBeStoppedIsAdmissible) {
+TEST(Dwa, OnlySpeedsThatCanStopAreAdmissible) {
   algo::RobotSpec spec;
   spec.max_acceleration = 0.5;
   spec.max_angular_acceleration = 2;
@@ -241,7 +241,7 @@ TEST(Dwa, OnlyWhatCanBeStoppedIsAdmissible) {
   EXPECT_TRUE(algo::admissible({0, 0}, {0, 0}, spec, 0));
 }
 
-TEST(Dwa, TheWindowIsWhatAccelerationReachesWithinTheLimits) {
+TEST(Dwa, TheWindowIsReachableByAccelerationWithinTheLimits) {
   algo::RobotSpec spec;
   spec.max_acceleration = 0.4;
   spec.max_angular_acceleration = 2;

@@ -7,7 +7,7 @@
 
 namespace {
 
-TEST(CausalMedian, AStepComesHalfAWindowLate) {
+TEST(CausalMedian, AStepIsDelayedByHalfAWindow) {
   for (const std::size_t window : {1U, 3U, 5U, 21U}) {
     algo::CausalMedian median(window);
     EXPECT_EQ(median.push(1).value(), 1);
@@ -17,7 +17,7 @@ TEST(CausalMedian, AStepComesHalfAWindowLate) {
   }
 }
 
-TEST(CausalMedian, ANumberThatIsNotFiniteDoesNotEnter) {
+TEST(CausalMedian, ANonFiniteNumberDoesNotEnter) {
   algo::CausalMedian median(3);
   EXPECT_EQ(median.push(std::numeric_limits<double>::quiet_NaN()), std::nullopt);
   EXPECT_EQ(median.push(4).value(), 4);  // this is the first sample

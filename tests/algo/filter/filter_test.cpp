@@ -241,7 +241,7 @@ TEST(Lulu, WithAllValidIsTheSame) {
   });
 }
 
-/// What stands in an invalid sample must not reach any other.
+/// The value of an invalid sample must not reach any other sample.
 TEST(Lulu, NeverReadsAnInvalidSample) {
   algo::FilterScratch scratch;
   for_random_cases(3, [&](const Case& each) {
@@ -266,7 +266,7 @@ TEST(Lulu, NeverReadsAnInvalidSample) {
 }
 
 /// equations.md A, the table "what it really does", for the pseudomedian and lulu.
-TEST(Filters, WhatTheyMakeOfASpikeAStepAndARamp) {
+TEST(Filters, ResponsesToASpikeAStepAndARamp) {
   algo::FilterScratch scratch;
   const auto filtered = [&](auto kernel, const Samples& in, int N) {
     Samples out(in.size());
@@ -291,7 +291,7 @@ TEST(Filters, WhatTheyMakeOfASpikeAStepAndARamp) {
   for (std::size_t i = 1; i + 1 < wave.size(); ++i) EXPECT_EQ(flat[i], 2);  // the midrange
 }
 
-TEST(Filters, UnsoundCallsAreRefused) {
+TEST(Filters, InvalidArgumentsAreRefused) {
   algo::FilterScratch scratch;
   const Samples in(5, 1.0);
   Samples out(5);
@@ -346,7 +346,7 @@ TEST(ScanFilter, FreeCountsAsRangeMaxAndStaysFree) {
   EXPECT_EQ(out.stamp, 4);
 }
 
-TEST(ScanFilter, AnInvalidBeamNeverEntersAndKeepsWhatItIs) {
+TEST(ScanFilter, AnInvalidBeamNeverEntersAndKeepsItsValue) {
   algo::ScanFilter filter;
   for (const auto& info : algo::filter_table()) {
     LaserScan in = scan_of({3, 3, 3, 3, 3, 3, 3});
@@ -362,7 +362,7 @@ TEST(ScanFilter, AnInvalidBeamNeverEntersAndKeepsWhatItIs) {
   }
 }
 
-TEST(ScanFilter, ANumberThatIsNotFiniteBecomesInvalid) {
+TEST(ScanFilter, ANonFiniteRangeBecomesInvalid) {
   algo::ScanFilter filter;
   for (const auto& info : algo::filter_table()) {
     for (const double bad :
@@ -379,7 +379,7 @@ TEST(ScanFilter, ANumberThatIsNotFiniteBecomesInvalid) {
   }
 }
 
-TEST(ScanFilter, WithoutAFiniteRangeMaxNothingIsBelieved) {
+TEST(ScanFilter, WithoutAFiniteRangeMaxEveryBeamIsInvalid) {
   algo::ScanFilter filter;
   LaserScan in = scan_of({3, 3, 3, 8, 3});
   in.range_max = std::numeric_limits<double>::quiet_NaN();
@@ -388,13 +388,13 @@ TEST(ScanFilter, WithoutAFiniteRangeMaxNothingIsBelieved) {
   for (const Beam status : out.status) EXPECT_EQ(status, Beam::Invalid);
 }
 
-TEST(ScanFilter, TooFewBelievedNeighboursMakeABeamInvalid) {
+TEST(ScanFilter, TooFewValidNeighboursMakeABeamInvalid) {
   algo::ScanFilter filter;
   LaserScan in = scan_of({3, 3, 3, 4, 3, 3, 3});
   in.set_invalid(2, BeamCode::NoEcho);
   in.set_invalid(4, BeamCode::NoEcho);
   LaserScan out;
-  filter.apply(FilterKind::Pseudomedian, 1, in, out);  // 1 of 3 believed, 2 needed
+  filter.apply(FilterKind::Pseudomedian, 1, in, out);  // 1 of 3 is valid, 2 are needed
   EXPECT_EQ(out.status[3], Beam::Invalid);
   EXPECT_EQ(out.ranges[3], 4);
   EXPECT_EQ(out.codes[3], BeamCode::Unknown);

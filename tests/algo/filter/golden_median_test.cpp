@@ -27,7 +27,7 @@ TEST(MedianGolden, SortVectors) {
   }
 }
 
-/// Pushing a whole window leaves nothing of the prefill.
+/// Pushing a whole window replaces the prefill completely.
 TEST(MedianGolden, SortVectorsAsStream) {
   const Json document = golden::load("B_median.json");
   for (const Json& vector : document.at("sort_vectors")) {

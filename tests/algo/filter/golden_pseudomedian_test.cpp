@@ -87,7 +87,7 @@ TEST(PseudomedianGolden, InvalidAwareScan) {
   }
 }
 
-/// "3000 everywhere, 1500 at indices 150..210"; empty when the words are others.
+/// Parses "3000 everywhere, 1500 at indices 150..210"; empty for any other text.
 std::vector<double> base_scan(const std::string& text) {
   std::vector<double> scan;
   std::istringstream parts(text);

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/distance_field_test.cpp: the same distances as a look at every cell gives.
+// tests/algo/full_strip/distance_field_test.cpp: the distances equal an exhaustive search.
 #include "algo/full_strip/distance_field.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ struct Grid {
 };
 
 /// In the middle of the window, over its edges and in its corners.
-TEST(DistanceField, IsThatOfTheNearestOfAllCells) {
+TEST(DistanceField, IsTheDistanceToTheNearestCell) {
   std::mt19937 random(5);
   for (const int corner : {0, 200, kSize - 96}) {
     std::uniform_int_distribution<int> place(corner, corner + 95);
@@ -66,8 +66,8 @@ TEST(DistanceField, IsThatOfTheNearestOfAllCells) {
   }
 }
 
-/// Until a tile's turn comes, a distance may be too short, never too long.
-TEST(DistanceField, IsNeverTooLongMeanwhile) {
+/// Until a tile is rebuilt, a distance may be too short, never too long.
+TEST(DistanceField, IsNeverTooLongDuringAnUpdate) {
   Grid grid;
   for (int x = 20; x < 480; x += 4) grid.occupy(x, 100);
   for (int x = 20; x < 480; x += 8) grid.free(x, 100);

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/full_strip_controller_test.cpp: what the layers do together.
+// tests/algo/full_strip/full_strip_controller_test.cpp: all layers together.
 #include "algo/full_strip/full_strip_controller.hpp"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 using algo::Vec2;
 
-/// A robot that does what it is told, among posts.
+/// A robot that follows commands exactly, among posts.
 struct Drive {
   worlds::World world{};
   algo::RobotSpec spec{.radius = 0.35,
@@ -58,7 +58,7 @@ struct Drive {
   }
 };
 
-TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
+TEST(FullStrip, ASlowRobotIsNotReportedStuck) {
   Drive drive;
   drive.parameters.set(algo::kMaxSpeed, 0.04);
   drive.controller.reset({});
@@ -70,7 +70,7 @@ TEST(FullStrip, ASlowRobotIsNotTakenForAStuckOne) {
   EXPECT_GT(drive.pose.x, 1.9);
 }
 
-TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
+TEST(FullStrip, StaysWithinItsLimitsEvenWhenEnclosed) {
   Drive drive;
   drive.parameters.set(algo::kMaxSpeed, 0.05);
   drive.parameters.set(algo::kMaxTurnRate, 0.3);
@@ -84,7 +84,7 @@ TEST(FullStrip, NeverAsksForMoreThanItsLimitsEvenWhenItIsShutIn) {
     EXPECT_LE(std::abs(drive.out.twist.v), 0.05 + 1e-12);
     EXPECT_LE(std::abs(drive.out.twist.omega), 0.3 + 1e-12);
   }
-  EXPECT_LT(drive.pose.position().norm(), 0.3);  // there is no way out, and it says so
+  EXPECT_LT(drive.pose.position().norm(), 0.3);  // there is no way out, and it reports that
   EXPECT_NE(drive.out.state, algo::FullStripController::kFollowing);
 }
 
@@ -98,8 +98,8 @@ TEST(FullStrip, ReachesAGoalFarBeyondItsMap) {
   EXPECT_EQ(drive.out.state, algo::FullStripController::kFollowing);
 }
 
-/// Where the map ends, half a metre of it is no goal: a strip laid to there ended beside a goal
-/// just beyond and was never laid anew.
+/// The outer half metre of the map is no goal: a strip to there once ended beside a goal just
+/// beyond the map and was never replanned.
 TEST(FullStrip, ReachesAGoalAtTheEdgeOfItsMap) {
   for (const double far : {12.2, 12.4, 12.5, 12.6, 12.7, 12.8, 13.0}) {
     Drive drive;
@@ -111,7 +111,7 @@ TEST(FullStrip, ReachesAGoalAtTheEdgeOfItsMap) {
   }
 }
 
-TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
+TEST(FullStrip, AGoalInAnObstacleIsRefusedOrApproachedAsConfigured) {
   for (const double near : {1.0, 0.0}) {
     Drive drive;
     drive.parameters.set(algo::kNearestGoal, near);
@@ -130,8 +130,8 @@ TEST(FullStrip, AGoalInAnObstacleIsRefusedOrGoneNearToAsOneLikes) {
   }
 }
 
-/// Room of 2 to 6 cm beside the hull is less than one would like, and is enough.
-TEST(FullStrip, ReachesAGoalWithLessRoomThanWished) {
+/// A clearance of 2 to 6 cm is less than wanted, but enough.
+TEST(FullStrip, ReachesAGoalWithLessThanTheWantedClearance) {
   for (const double room : {0.02, 0.04, 0.06}) {
     Drive drive;
     drive.world.circles = {{{3, 0.35 + room + 0.4}, 0.4}};
@@ -141,8 +141,8 @@ TEST(FullStrip, ReachesAGoalWithLessRoomThanWished) {
   }
 }
 
-/// It says so to the end instead of trying again and again.
-TEST(FullStrip, AGoalWithoutRoomStaysRefused) {
+/// It keeps the refusal instead of trying again and again.
+TEST(FullStrip, AGoalWithoutClearanceStaysRefused) {
   Drive drive;
   drive.world.circles = {{{3, 0.6}, 0.4}};
   drive.controller.reset({});
@@ -155,9 +155,9 @@ TEST(FullStrip, AGoalWithoutRoomStaysRefused) {
   EXPECT_LT((drive.pose.position() - Vec2(3, 0)).norm(), 0.3);
 }
 
-/// Where the goal itself lies nearer to a post than the strip would keep, it keeps what the goal
-/// has, and no more.
-TEST(FullStrip, GoesNoNearerToAPostThanTheGoalLies) {
+/// If the goal is nearer to a post than the strip's clearance, the strip keeps the goal's
+/// clearance.
+TEST(FullStrip, GoesNoNearerToAPostThanItsGoal) {
   Drive drive;
   drive.parameters.set(algo::kSafetyDistance, 1.0);
   drive.parameters.set(algo::kMaxSpeed, 0.2);
@@ -175,10 +175,9 @@ TEST(FullStrip, GoesNoNearerToAPostThanTheGoalLies) {
   EXPECT_LT(least, lies + 0.1);
 }
 
-/// In a niche, with the goal behind it and a post close behind its back that no beam shows:
-/// whatever it tries, it must not back into the post. It may turn on the spot, being round, and
-/// see.
-TEST(FullStrip, DoesNotBackIntoWhatItHasNotSeen) {
+/// In a niche, with the goal behind it and an unseen post close behind it: it must not back into
+/// the post. Being round, it may turn on the spot and look.
+TEST(FullStrip, DoesNotBackIntoUnseenSpace) {
   for (const double gap : {0.05, 0.12}) {
     for (const double aside : {0.0, 0.2}) {
       Drive drive;
@@ -199,7 +198,7 @@ TEST(FullStrip, DoesNotBackIntoWhatItHasNotSeen) {
   }
 }
 
-/// As above, but with nothing behind it: it turns round or backs out.
+/// As above, but with free space behind it: it turns round or backs out.
 TEST(FullStrip, GetsOutOfANicheItStartsIn) {
   Drive drive;
   for (const double x : {0.48, 0.30, 0.12}) {
@@ -212,9 +211,9 @@ TEST(FullStrip, GetsOutOfANicheItStartsIn) {
   EXPECT_LT((drive.pose.position() - Vec2(-4, 0.5)).norm(), 0.2);
 }
 
-/// A long robot with something close before its nose has to back before it can turn. It once gave
-/// the escape up after each tick and went nowhere.
-TEST(FullStrip, HoldsAnEscapeToItsEnd) {
+/// A long robot with an obstacle close ahead must back before it can turn. It once abandoned the
+/// escape after each tick and did not move.
+TEST(FullStrip, CompletesAnEscape) {
   Drive drive;
   drive.spec.half_length = 0.35;
   drive.spec.half_width = 0.22;
@@ -238,8 +237,7 @@ TEST(FullStrip, HoldsAnEscapeToItsEnd) {
   EXPECT_LT((drive.pose.position() - Vec2(4, 0)).norm(), 0.2);
 }
 
-/// Between things that stand about, the strip must come to rest instead of swinging, and the robot
-/// with it.
+/// Between standing obstacles the strip must settle instead of oscillating, and so must the robot.
 TEST(FullStrip, DoesNotSway) {
   Drive drive;
   drive.parameters.set(algo::kMaxSpeed, 0.5);

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/local_map_test.cpp: what becomes occupied, what free again, and distances.
+// tests/algo/full_strip/local_map_test.cpp: occupied and freed cells, and distances.
 #include "algo/full_strip/local_map.hpp"
 
 #include <cmath>
@@ -39,7 +39,7 @@ worlds::World post(double x, double y, double radius) {
   return {{{{x, y}, radius}}, {}};
 }
 
-TEST(LocalMap, DistancesAreThoseToTheSurfaceSeen) {
+TEST(LocalMap, DistancesAreToTheSurfaceSeen) {
   LocalMap map;
   see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
   EXPECT_GT(occupied(map), 5U);
@@ -88,7 +88,7 @@ TEST(LocalMap, OneStrayHitIsNoObstacle) {
   EXPECT_EQ(occupied(map), 1U);
 }
 
-TEST(LocalMap, WhatIsLookedThroughBecomesFreeAndItsDistancesGrow) {
+TEST(LocalMap, CellsThatBeamsPassBecomeFreeAndDistancesGrow) {
   LocalMap map;
   see(map, post(2, 0, 0.3), {0, 0, 0}, 5);
   const worlds::World empty{{{{6, 0}, 0.5}}, {}};
@@ -96,7 +96,7 @@ TEST(LocalMap, WhatIsLookedThroughBecomesFreeAndItsDistancesGrow) {
   EXPECT_EQ(map.distance({1.6, 0}), LocalMap::kReach);
 }
 
-TEST(LocalMap, AMovedWindowKeepsWhatItHolds) {
+TEST(LocalMap, AMovedWindowKeepsItsContents) {
   LocalMap map;
   see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
   const std::size_t before = occupied(map);
@@ -109,7 +109,7 @@ TEST(LocalMap, AMovedWindowKeepsWhatItHolds) {
   EXPECT_EQ(occupied(map), 0U);
 }
 
-TEST(LocalMap, TheDistancesAreThoseOfAllCellsWhateverTheOrderOfEvents) {
+TEST(LocalMap, TheDistancesDoNotDependOnTheOrderOfEvents) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-3, 3);
   LocalMap map;
@@ -117,7 +117,7 @@ TEST(LocalMap, TheDistancesAreThoseOfAllCellsWhateverTheOrderOfEvents) {
     see(map, post(place(random), place(random), 0.2), {place(random), place(random), 0}, 6);
   }
   const worlds::World empty{{{{20, 0}, 0.5}}, {}};
-  for (int k = 0; k < 40; ++k) see(map, empty, {0, 0, 0.1 * k});  // all rebuilds have come to pass
+  for (int k = 0; k < 40; ++k) see(map, empty, {0, 0, 0.1 * k});  // until all rebuilds are done
   for (int k = 0; k < 500; ++k) {
     const Vec2 p{place(random), place(random)};
     double least = LocalMap::kReach;
@@ -126,9 +126,9 @@ TEST(LocalMap, TheDistancesAreThoseOfAllCellsWhateverTheOrderOfEvents) {
   }
 }
 
-/// What nobody looks at fades, and then counts as never seen. In between there was once a time in
-/// which it was neither occupied nor unseen, and a robot backed into it.
-TEST(LocalMap, WhatFadesIsNeverTakenForFree) {
+/// Cells that no beam passes fade, and then count as unseen. Once they were for a while neither
+/// occupied nor unseen, and a robot backed into them.
+TEST(LocalMap, FadingCellsAreNeverFree) {
   LocalMap map;
   see(map, post(1.5, 0, 0.3), {0, 0, 0}, 6);
   const Vec2 front{1.2, 0};
@@ -143,8 +143,8 @@ TEST(LocalMap, WhatFadesIsNeverTakenForFree) {
   EXPECT_TRUE(faded);
 }
 
-/// One return may be a stray; nor is it a proof that nothing stands there.
-TEST(LocalMap, ASuspicionIsNotTakenForFree) {
+/// A single return may be a stray, but the cell must not count as free.
+TEST(LocalMap, SuspectedCellsAreNotFree) {
   LocalMap map;
   LaserScan scan = three_beams();
   for (std::size_t i = 0; i < 3; ++i) scan.set_ok(i, 1.02 + 0.1 * static_cast<double>(i));
@@ -160,12 +160,12 @@ TEST(LocalMap, ASuspicionIsNotTakenForFree) {
   }
 }
 
-TEST(LocalMap, ErasesWhereItIsTold) {
+TEST(LocalMap, ErasesNearAPoint) {
   LocalMap map;
   see(map, post(2, 0, 0.3), {0, 0, 0}, 3);
   map.erase_near({2, 0}, 1, [](const Vec2&) { return true; });
   EXPECT_EQ(occupied(map), 0U);
-  // Seen again it stands again, and is freed again no faster than at first.
+  // Seen again it is occupied again, and is freed no faster than the first time.
   see(map, post(2, 0, 0.3), {0, 0, 0}, 5);
   LocalMap fresh;
   see(fresh, post(2, 0, 0.3), {0, 0, 0}, 5);

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/motion_test.cpp: room around hulls, roll-outs to rest, manoeuvres.
+// tests/algo/full_strip/motion_test.cpp: clearance around hulls, roll-outs to rest, manoeuvres.
 #include "algo/full_strip/motion.hpp"
 
 #include <cmath>
@@ -39,14 +39,14 @@ TEST(HullCheck, IsExactNearby) {
     LocalMap map;
     occupy(map, {{0.254 + gap, 0.1}});
     EXPECT_NEAR(hull.clearance(map, {0, 0, 0}), gap, 1e-6);
-    // Turned by a quarter its side is there.
+    // Turned by a quarter turn, its side is there.
     LocalMap aside;
     occupy(aside, {{0.215 + gap, 0.1}});
     EXPECT_NEAR(hull.clearance(aside, {0, 0, 90_deg}), gap, 1e-6);
   }
 }
 
-TEST(HullCheck, ADiscIsADisc) {
+TEST(HullCheck, ADiscCoversADisc) {
   algo::RobotSpec spec;
   spec.radius = 0.35;
   LocalMap map;
@@ -54,7 +54,7 @@ TEST(HullCheck, ADiscIsADisc) {
   EXPECT_NEAR(HullCheck(spec).clearance(map, {0, 0, 1}), std::hypot(0.3, 0.3) - 0.35, 1e-6);
 }
 
-TEST(HullCheck, CoversOnlyWhatLiesWellInside) {
+TEST(HullCheck, CoversOnlyCellsWellInside) {
   const HullCheck hull(rectangle());
   EXPECT_TRUE(hull.covers({1, 1, 0}, {1.1, 1.1}));
   EXPECT_FALSE(hull.covers({1, 1, 0}, {1.24, 1}));
@@ -104,7 +104,7 @@ TEST(Maneuver, BacksOutOfAPocketAndTurns) {
   }
   EXPECT_TRUE(facing_out(search.pieces().back().end_W));
 
-  // And driven by a base that does what it is told, it ends there.
+  // Executed by an ideal base, the manoeuvre ends there.
   const algo::MotionLimits limits{0.5, 1, 10, 40};
   algo::ManeuverDrive drive;
   drive.start(search.pieces());
@@ -119,7 +119,7 @@ TEST(Maneuver, BacksOutOfAPocketAndTurns) {
   EXPECT_LT(robot.pose_W.x, -0.7);
 }
 
-TEST(Maneuver, BacksIntoNothingUnseen) {
+TEST(Maneuver, BacksOnlyIntoSeenSpace) {
   const HullCheck hull(rectangle());
   LocalMap map;
   occupy(map, pocket());
@@ -134,7 +134,7 @@ TEST(Maneuver, BacksIntoNothingUnseen) {
   EXPECT_EQ(state, algo::ManeuverSearch::State::NoWay);
 }
 
-TEST(Maneuver, SaysWhenThereIsNone) {
+TEST(Maneuver, ReportsThatThereIsNone) {
   const HullCheck hull(rectangle());
   LocalMap map;
   std::vector<Vec2> box = pocket();

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/planner_test.cpp: ways, no ways, replaced goals, and bounded work.
+// tests/algo/full_strip/planner_test.cpp: paths, missing paths, replaced goals, and bounded work.
 #include "algo/full_strip/planner.hpp"
 
 #include <cmath>
@@ -52,7 +52,7 @@ TEST(Planner, TakesTheGapAndKeepsItsClearance) {
   for (const Vec2& p : path) EXPECT_GE(map.distance(p), 0.28);
 }
 
-TEST(Planner, SaysWhenThereIsNoWay) {
+TEST(Planner, ReportsThatThereIsNoPath) {
   LocalMap map;
   for (const double y : {-1.5, 1.5}) wall(map, {2.5, y}, {5.5, y});
   for (const double x : {2.5, 5.5}) wall(map, {x, -1.5}, {x, 1.5});
@@ -70,7 +70,7 @@ TEST(Planner, AGoalInAnObstacleIsReplacedByThePlaceBesideIt) {
   EXPECT_TRUE(planner.goal_taken());
 }
 
-TEST(Planner, AReplacedGoalLiesWhereOneHasSeen) {
+TEST(Planner, AReplacedGoalLiesInSeenSpace) {
   LocalMap map;
   wall(map, {4, -0.5}, {4, 0.5});
   map.seen().follow({0, 0});
@@ -84,7 +84,7 @@ TEST(Planner, AReplacedGoalLiesWhereOneHasSeen) {
   EXPECT_LT(path.back().x(), 4);
 }
 
-TEST(Planner, AGoalRightBeforeTheRobotIsTriedWithoutRoomIfWished) {
+TEST(Planner, ANearGoalIsTriedWithoutClearanceIfConfigured) {
   LocalMap map;
   wall(map, {0.5, -0.1}, {0.5, 0.1});
   Planner planner;
@@ -106,7 +106,7 @@ TEST(Planner, AGoalBeyondTheMapIsReplacedOnItsBorder) {
   EXPECT_LT(path.back().x(), 20);
 }
 
-TEST(Planner, DoesNoMoreThanItsBudget) {
+TEST(Planner, StaysWithinItsBudget) {
   LocalMap map;
   Planner planner;
   planner.start(map, {-5, -5}, {5, 4}, 0.3, true);
@@ -120,7 +120,7 @@ algo::Recycled<Vec2> path_of(std::initializer_list<Vec2> points) {
   return path;
 }
 
-TEST(Straighten, LeavesNoCornerOfTheLatticeWhereNothingStands) {
+TEST(Straighten, LeavesNoLatticeCornerInFreeSpace) {
   const LocalMap map;
   algo::Recycled<Vec2> path = path_of({{0, 0}, {1, 1}, {2, 2}, {3, 2}, {4, 2}});
   algo::straighten(map, 0.75, path);
@@ -129,8 +129,8 @@ TEST(Straighten, LeavesNoCornerOfTheLatticeWhereNothingStands) {
   EXPECT_EQ(path[1], Vec2(4, 2));
 }
 
-/// Around the end of a wall no line may come nearer than the way itself does.
-TEST(Straighten, KeepsItsRoomBesideWhatStands) {
+/// Around the end of a wall, the smoothed line may come no nearer than the path itself.
+TEST(Straighten, KeepsItsClearanceToStandingObstacles) {
   LocalMap map;
   wall(map, {2, -3}, {2, 0});
   algo::Recycled<Vec2> path =
@@ -144,8 +144,8 @@ TEST(Straighten, KeepsItsRoomBesideWhatStands) {
   }
 }
 
-/// Where there is less room than that, the way stays as it was found.
-TEST(Straighten, TouchesNothingInANarrowPlace) {
+/// With less clearance than that, the path stays as found.
+TEST(Straighten, TouchesNothingInANarrowPassage) {
   LocalMap map;
   wall(map, {-1, 0.6}, {6, 0.6});
   wall(map, {-1, -0.6}, {6, -0.6});
@@ -171,7 +171,7 @@ TEST(NodeStrip, RelaxesToTheMiddleOfACorridor) {
   EXPECT_LT(strip.broken_at(map, settings), 0);
 }
 
-TEST(NodeStrip, FollowCutsWhatThePassedRobotLeftBehind) {
+TEST(NodeStrip, FollowCutsThePartBehindTheRobot) {
   algo::Recycled<Vec2> path;
   path.push_back({0, 0});
   path.push_back({3, 0});
@@ -183,7 +183,7 @@ TEST(NodeStrip, FollowCutsWhatThePassedRobotLeftBehind) {
   EXPECT_EQ(strip.end_W(), Vec2(3, 0));
 }
 
-TEST(NodeStrip, IsBrokenWhereSomethingHasComeToStand) {
+TEST(NodeStrip, IsBrokenByANewObstacle) {
   LocalMap map;
   algo::Recycled<Vec2> path;
   path.push_back({0, 0});

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/seen_space_test.cpp: what counts as seen.
+// tests/algo/full_strip/seen_space_test.cpp: which space counts as seen.
 #include "algo/full_strip/seen_space.hpp"
 
 #include "tests/algo/worlds.hpp"
@@ -19,7 +19,7 @@ void look(SeenSpace& seen, const worlds::World& world, const Pose2& pose) {
   for (int k = 0; k < 4; ++k) seen.look(scan, pose);
 }
 
-TEST(SeenSpace, IsWhatTheBeamsWentThrough) {
+TEST(SeenSpace, IsTheSpaceThatBeamsPassed) {
   SeenSpace seen;
   EXPECT_FALSE(seen.seen({0.5, 0}));
   look(seen, {{{{1, 0}, 0.2}}, {}}, {0, 0, 0});
@@ -31,7 +31,7 @@ TEST(SeenSpace, IsWhatTheBeamsWentThrough) {
   for (double y = -1.5; y < 1.6; y += 0.1) EXPECT_TRUE(seen.seen({0.2, y})) << y;
 }
 
-TEST(SeenSpace, RollsAlong) {
+TEST(SeenSpace, RollsWithTheRobot) {
   SeenSpace seen;
   const Pose2 start{0.31, -0.2, 0};
   look(seen, {}, start);
@@ -40,7 +40,7 @@ TEST(SeenSpace, RollsAlong) {
   EXPECT_TRUE(seen.seen({1.3, -0.2}));
   seen.follow({7.8, 3});
   EXPECT_FALSE(seen.seen({1.3, -0.2}));
-  // What came in again has never been seen, nor what shares its cells.
+  // Space that re-entered the window counts as unseen, like all that shares its cells.
   seen.follow({1, 0});
   EXPECT_FALSE(seen.seen({1.3, -0.2}));
   EXPECT_FALSE(seen.seen({1.3 + SeenSpace::kSize * SeenSpace::kCell, -0.2}));
@@ -56,7 +56,7 @@ algo::RobotSpec rectangle() {
   return spec;
 }
 
-TEST(SeenSpace, ARoundRobotMayAlwaysTurnAndBacksOnlyWhereItHasBeen) {
+TEST(SeenSpace, ARoundRobotAlwaysTurnsAndBacksOnlyWhereItWas) {
   algo::RobotSpec spec;
   spec.radius = 0.35;
   const algo::HullCheck hull(spec);
@@ -65,7 +65,7 @@ TEST(SeenSpace, ARoundRobotMayAlwaysTurnAndBacksOnlyWhereItHasBeen) {
   EXPECT_FALSE(hull.enters_unseen(seen, {0, 0, 0}, {0, 1}));
   EXPECT_FALSE(hull.enters_unseen(seen, {0, 0, 0}, {0.5, 1}));
   EXPECT_TRUE(hull.enters_unseen(seen, {0, 0, 0}, {-0.2, 0}));
-  // A metre on it may back, but not to where it began.
+  // After a metre it may back, but not to its start.
   look(seen, {}, {0, 0, 0});
   for (double x = 0; x < 1; x += 0.05) {
     look(seen, {}, {x, 0, 0});
@@ -76,7 +76,7 @@ TEST(SeenSpace, ARoundRobotMayAlwaysTurnAndBacksOnlyWhereItHasBeen) {
   EXPECT_TRUE(hull.enters_unseen(seen, {-0.1, 0, 0}, {-0.2, 0}));
 }
 
-TEST(SeenSpace, ARectangleHasRoomToTurnInWhereItWasPutAndThenWhereItHasLooked) {
+TEST(SeenSpace, ARectangleTurnsAtItsStartAndThenInSeenSpace) {
   const algo::HullCheck hull(rectangle());
   SeenSpace seen;
   hull.take_place(seen, {0, 0, 0});

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/space_time_test.cpp: giving way to what moves, and to what turns.
+// tests/algo/full_strip/space_time_test.cpp: giving way to moving and turning obstacles.
 #include "algo/full_strip/space_time.hpp"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ struct Meeting {
     return in;
   }
 
-  /// Drives to (8, 0) past a body that comes towards it beside its way and at `turn_at`
-  /// [s] turns across. The least room between them.
+  /// Drives to (8, 0) past an oncoming body beside its path, which turns across it at `turn_at`
+  /// [s]. Returns the least clearance between them.
   double drive(double turn_at) {
     Vec2 at_W(6, 1.3);
     Vec2 velocity_W(-1.2, 0);
@@ -55,8 +55,8 @@ struct Meeting {
   }
 };
 
-/// A jamb of a gap may look as if it moved. Whatever comes from where, it never drives into what
-/// stands.
+/// The jamb of a gap may look like a moving body. The robot must never evade a body into a standing
+/// obstacle.
 TEST(SpaceTime, DoesNotFleeIntoAWall) {
   for (int from = -6; from <= 6; ++from) {
     const double bearing = 0.5 * from;
@@ -78,13 +78,13 @@ TEST(SpaceTime, DoesNotFleeIntoAWall) {
   }
 }
 
-TEST(SpaceTime, PassesWhatComesTowardsIt) {
+TEST(SpaceTime, PassesAnOncomingObstacle) {
   Meeting meeting;
   EXPECT_GT(meeting.drive(100), 0.1);
   EXPECT_GT(meeting.robot.pose_W.x, 5);
 }
 
-TEST(SpaceTime, KeepsRoomEnoughForWhatTurnsAcross) {
+TEST(SpaceTime, KeepsClearanceToAnObstacleThatTurnsAcross) {
   for (const double turn_at : {0.6, 1.0, 1.2, 1.4}) {
     Meeting meeting;
     EXPECT_GT(meeting.drive(turn_at), 0) << "turned after " << turn_at << " s";

@@ -1,4 +1,4 @@
-// tests/algo/full_strip/tracker_test.cpp: what moves, what may, and what belongs to the map.
+// tests/algo/full_strip/tracker_test.cpp: moving bodies, possible ones, and those in the map.
 #include "algo/full_strip/tracker.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using algo::Vec2;
 
 constexpr double kPeriod = 0.05;  // [s]
 
-/// A scanner at the origin that sees `world` change.
+/// A scanner at the origin of a changing `world`.
 struct Watch {
   worlds::World world{};
   algo::Tracker tracker{};
@@ -92,7 +92,7 @@ TEST(Tracker, PostsAndWallsBelongToTheMapAtOnce) {
   EXPECT_EQ(watch.beams_taken(), 0U);
 }
 
-TEST(Tracker, TwoThatPassEachOtherKeepTheirOwnWays) {
+TEST(Tracker, TwoPassingBodiesKeepTheirTracks) {
   Watch watch;
   watch.world.circles = {{{3, -2}, 0.4}, {{4, 2}, 0.4}};
   watch.run(4.0, [&](double t) {
@@ -107,7 +107,7 @@ TEST(Tracker, TwoThatPassEachOtherKeepTheirOwnWays) {
   EXPECT_NEAR(second->velocity_W.y(), -1, 0.15);
 }
 
-TEST(Tracker, BodiesSideBySideAreTwo) {
+TEST(Tracker, BodiesSideBySideAreTwoTracks) {
   Watch watch;
   watch.world.circles = {{{3, 0.45}, 0.5}, {{3, -0.45}, 0.5}};  // they overlap
   watch.tick();
@@ -116,8 +116,8 @@ TEST(Tracker, BodiesSideBySideAreTwo) {
 }
 
 /// An LMS200 fires its beams one by one, and a sweep is up to a tick old when it is read. Its
-/// tracks must be no slower for that, and be where the walker is when they are asked for.
-TEST(Tracker, ASweepingScanReadsTheSameSpeedAsAFlatOne) {
+/// tracks must still have the right speed, and the walker's position at the time of the query.
+TEST(Tracker, ASweepingScanGivesTheSpeedOfAFlatOne) {
   constexpr double kTick = 0.026;
   constexpr double kSpeed = 1.2;
   const auto walker_at = [](double t) { return Vec2(3, -2 + kSpeed * t); };
@@ -153,7 +153,7 @@ TEST(Tracker, ASweepingScanReadsTheSameSpeedAsAFlatOne) {
   EXPECT_NEAR(track.position_W.y(), walker_at(now).y(), 0.06);
 }
 
-TEST(Tracker, WhatIsNoLongerThereIsForgotten) {
+TEST(Tracker, VanishedBodiesAreDropped) {
   Watch watch;
   watch.world.circles.push_back({{3, 0}, 0.5});
   watch.run(0.5, [&](double t) { watch.world.circles[0].centre = {3, t}; });

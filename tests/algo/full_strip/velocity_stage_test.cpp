@@ -1,4 +1,4 @@
-// tests/algo/full_strip/velocity_stage_test.cpp: which commands are proven, and which are not.
+// tests/algo/full_strip/velocity_stage_test.cpp: which commands are proven safe.
 #include "algo/full_strip/velocity_stage.hpp"
 
 #include "tests/algo/worlds.hpp"
@@ -37,8 +37,8 @@ struct Stage {
   }
 };
 
-/// The scanner sees nothing behind, and something may stand there: what once ended in collisions.
-TEST(VelocityStage, DoesNotBackIntoWhatNobodyHasSeen) {
+/// The scanner does not see behind, where an obstacle may stand: this once caused collisions.
+TEST(VelocityStage, DoesNotBackIntoUnseenSpace) {
   Stage s;
   EXPECT_FALSE(s.stage.back_off(s.in, s.out));
   EXPECT_FALSE(s.stage.proven(s.in, {-0.15, -1}, s.out));
@@ -55,8 +55,8 @@ TEST(VelocityStage, BacksWhereItHasLooked) {
   EXPECT_EQ(s.stage.proven(s.in, {-0.15, -1}, s.out), (Twist2{-0.15, -1}));
 }
 
-/// What stood there may still: the map only has not seen it for long.
-TEST(VelocityStage, DoesNotBackIntoWhatTheMapHasForgotten) {
+/// An obstacle that the map has not seen for long may still be there.
+TEST(VelocityStage, DoesNotBackIntoForgottenSpace) {
   Stage s;
   s.look_from({0, 0, 3.0});
   s.look_from({0, 0, 1.5});
@@ -66,7 +66,7 @@ TEST(VelocityStage, DoesNotBackIntoWhatTheMapHasForgotten) {
   EXPECT_FALSE(s.stage.back_off(s.in, s.out));
 }
 
-/// At 40 mm/s an arc would take half a metre to turn by so much, and lead past the strip meanwhile.
+/// At 40 mm/s an arc would need half a metre for this turn, and leave the strip meanwhile.
 TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   Stage s;
   algo::Recycled<Vec2> path;
@@ -80,8 +80,8 @@ TEST(VelocityStage, ASlowRobotTurnsAlongItsStripFirst) {
   EXPECT_GT(slow->v, 0);
 }
 
-/// A strip that bends away in front of a wall is no reason to be unable to stop before it: what was
-/// once a contact, when the strip changed in mid-curve.
+/// Even if the strip bends away in front of a wall, the robot must be able to stop before it: a
+/// strip that changed in mid-curve once caused a contact.
 TEST(VelocityStage, CanAlwaysBrakeToRestAtOnce) {
   int given = 0;
   for (int cm = 5; cm < 50; cm += 2) {

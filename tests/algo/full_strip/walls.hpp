@@ -16,7 +16,7 @@ inline void wall(algo::LocalMap& map, const algo::Vec2& a, const algo::Vec2& b) 
   scan.resize(count);
   std::vector<algo::Vec2> points;
   for (std::size_t i = 0; i < count; ++i) {
-    scan.set_ok(i, 0.01);  // looks through nothing
+    scan.set_ok(i, 0.01);  // clears no cells
     points.push_back(a + (b - a) * (static_cast<double>(i) / static_cast<double>(count)));
   }
   map.insert(scan, {-1000, -1000, 0}, points, {});

@@ -1,4 +1,4 @@
-// tests/algo/mapping/occupancy_map_test.cpp: what beams leave in the cells.
+// tests/algo/mapping/occupancy_map_test.cpp: the effect of beams on cells.
 #include "algo/mapping/occupancy_map.hpp"
 
 #include <vector>
@@ -47,7 +47,7 @@ TEST(OccupancyMap, ReturnsBeyondReachClearTheWayOnly) {
   EXPECT_FALSE(ahead(map, 1.5).known());
 }
 
-TEST(OccupancyMap, WhatWentAwayIsNoLongerOccupied) {
+TEST(OccupancyMap, AVanishedObstacleIsNoLongerOccupied) {
   OccupancyMap map(0.1, 41, {0, 0});
   for (int k = 0; k < 3; ++k) map.insert(beam(1.05), {0, 0.01, 0}, 8);
   EXPECT_TRUE(ahead(map, 1.05).occupied());
@@ -58,7 +58,7 @@ TEST(OccupancyMap, WhatWentAwayIsNoLongerOccupied) {
   EXPECT_EQ(ahead(map, 1.05).passes, 20);
 }
 
-TEST(OccupancyMap, TellsOccupiedCellsByTheMeanOfTheirHits) {
+TEST(OccupancyMap, OccupiedCellsLieAtTheMeanOfTheirHits) {
   OccupancyMap map(0.1, 41, {0, 0});
   map.insert(beam(1.02), {0, 0.01, 0}, 8);
   map.insert(beam(1.06), {0, 0.01, 0}, 8);

@@ -27,7 +27,7 @@ inline algo::LaserScan scan_at(const algo::Pose2& pose_W) {
   return scan;
 }
 
-/// Once round an ellipse in the room, in `steps` poses; the last is the first again.
+/// One lap of an ellipse in the room, in `steps` poses; the last equals the first.
 inline std::vector<algo::Pose2> round_trip(int steps) {
   std::vector<algo::Pose2> path_W;
   for (int k = 0; k <= steps; ++k) {

@@ -1,4 +1,4 @@
-// tests/algo/mapping/scan_matcher_test.cpp: lines through points, and poses found again.
+// tests/algo/mapping/scan_matcher_test.cpp: lines through points, and recovered poses.
 #include "algo/mapping/scan_matcher.hpp"
 
 #include <array>
@@ -42,7 +42,7 @@ TEST(SurfaceFit, IsTheLineOfLeastSquares) {
   EXPECT_NEAR(std::abs(line->normal_W.dot(Vec2(-1, 2) / std::sqrt(5.0))), 1, 1e-12);
 }
 
-TEST(SurfaceFit, AHeapOrAPairIsNoLine) {
+TEST(SurfaceFit, AClusterOrAPairIsNoLine) {
   SurfaceFit pair;
   pair.add({0, 0}, 1);
   pair.add({1, 0}, 1);
@@ -68,7 +68,7 @@ TEST(ScanMatcher, FindsAPoseThatIsOffByDecimetresAndDegrees) {
   }
 }
 
-TEST(ScanMatcher, SearchesWhenTheGuessIsFarther) {
+TEST(ScanMatcher, SearchesWhenTheGuessIsFarOff) {
   const OccupancyMap map = map_seen_from(kHere);
   ScanMatcher matcher;
   matcher.take(rooms::scan_at(kHere), kReach);
@@ -79,7 +79,7 @@ TEST(ScanMatcher, SearchesWhenTheGuessIsFarther) {
   EXPECT_LT(off(match.pose_W, kHere), 0.01);
 }
 
-TEST(ScanMatcher, SaysTheGuessWhereTheMapSaysNothing) {
+TEST(ScanMatcher, ReturnsTheGuessWhereTheMapIsEmpty) {
   const OccupancyMap map(0.05, 400, {0, 0});
   ScanMatcher matcher;
   matcher.take(rooms::scan_at(kHere), kReach);
@@ -90,7 +90,7 @@ TEST(ScanMatcher, SaysTheGuessWhereTheMapSaysNothing) {
   EXPECT_EQ(matcher.match(map, kHere, {}).pose_W, kHere);
 }
 
-TEST(ScanMatcher, InACorridorTheOdometryTellsHowFarAlongIt) {
+TEST(ScanMatcher, InACorridorOdometryGivesThePositionAlongIt) {
   worlds::World corridor;
   corridor.polygons = {{{-30, -1}, {30, -1}, {30, 1}, {-30, 1}}};
   algo::LaserScan scan;

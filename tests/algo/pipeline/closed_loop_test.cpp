@@ -187,8 +187,7 @@ void expect_accepted(const std::string& name, const std::string& controller, std
   }
 }
 
-// A sanitizer makes a drive thirty times slower and finds nothing in the third that the first
-// hides.
+// A sanitizer makes a drive thirty times slower, and further drives find nothing new.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kSeeds = 1;
 #else

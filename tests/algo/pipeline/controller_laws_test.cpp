@@ -33,7 +33,7 @@ using algo::Vec2;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A robot before a post on its way, everything sound.
+/// A robot in front of a post on its way, with valid inputs.
 struct Situation {
   Scene scene{};
   algo::Observation observation{};
@@ -91,7 +91,7 @@ Vec2 point(const algo::Layer& layer, std::size_t k) {
   return {layer.values[2 * k], layer.values[2 * k + 1]};
 }
 
-/// Whether a layer's values are as many as its kind asks, and numbers.
+/// Whether a layer has as many values as its kind needs, all finite.
 void expect_well_formed(const algo::Layer& layer) {
   SCOPED_TRACE(layer.name);
   EXPECT_FALSE(layer.name.empty());
@@ -138,7 +138,7 @@ class EveryController : public ::testing::TestWithParam<std::string> {
   }
 };
 
-/// Those that stand still to take a scan move within a second of it.
+/// Controllers that stand still for a scan move within a second after it.
 TEST_P(EveryController, MovesWhenAllIsSound) {
   Situation s;
   const auto controller = make();
@@ -152,7 +152,7 @@ TEST_P(EveryController, MovesWhenAllIsSound) {
   EXPECT_NE(*out.pass_W, s.in.odometry.pose.position());
 }
 
-TEST_P(EveryController, ShowsWellFormedLayersAndMeasuresOfNamesOfTheirOwn) {
+TEST_P(EveryController, ShowsWellFormedLayersAndMeasuresWithUniqueNames) {
   Situation s;
   s.in.grids = true;
   const auto controller = make();
@@ -168,7 +168,7 @@ TEST_P(EveryController, ShowsWellFormedLayersAndMeasuresOfNamesOfTheirOwn) {
     }
     EXPECT_EQ(std::set(layers.begin(), layers.end()).size(), layers.size());
     if (tick == 0) first = layers;
-    EXPECT_EQ(layers, first);  // so that each finds its own buffers again
+    EXPECT_EQ(layers, first);  // so that each reuses its own buffers
     std::set<std::string_view> measures;
     for (const algo::Measure& each : out.measures) {
       EXPECT_TRUE(measures.insert(each.name).second) << each.name;
@@ -177,7 +177,7 @@ TEST_P(EveryController, ShowsWellFormedLayersAndMeasuresOfNamesOfTheirOwn) {
   }
 }
 
-TEST_P(EveryController, AGridThatNobodyWantsIsNotMadeAndChangesNoCommand) {
+TEST_P(EveryController, AnUnrequestedGridIsNotMadeAndChangesNoCommand) {
   Situation s;
   const auto with = make();
   const auto without = make();
@@ -194,7 +194,7 @@ TEST_P(EveryController, AGridThatNobodyWantsIsNotMadeAndChangesNoCommand) {
   }
 }
 
-TEST_P(EveryController, HasWordsForWhatItDoes) {
+TEST_P(EveryController, HasSentencesForItsStates) {
   Situation s;
   const auto controller = make();
   algo::Telemetry t;
@@ -218,8 +218,8 @@ TEST_P(EveryController, HasWordsForWhatItDoes) {
   EXPECT_NE(t.words.why.find("Move an obstacle or the goal."), std::string::npos);
 }
 
-/// The law of the strips alone; the others have none. That of many nodes ends at the goal, that of
-/// three where the forces begin.
+/// Only strip controllers have a strip. The one with many nodes ends at the goal, the one with
+/// three nodes where the forces begin.
 TEST_P(EveryController, AStripRunsFromTheRobotThroughThePassPoint) {
   const Situation s;
   ControlOutput out;
@@ -387,7 +387,7 @@ TEST_P(EveryController, StaysWithinItsSpeeds) {
     s.parameters.set(algo::kMaxSpeed, 0.7);
     s.parameters.set(algo::kMaxTurnRate, 0.6);
     controller->update(s.in, s.parameters, out);
-    ASSERT_GE(out.twist.v, 0);  // the strip never drives backwards, where nothing is seen
+    ASSERT_GE(out.twist.v, 0);  // the strip never drives backwards into unseen space
     ASSERT_LE(out.twist.v, 0.7);
     ASSERT_LE(std::abs(out.twist.omega), 0.6);
   }
@@ -395,7 +395,7 @@ TEST_P(EveryController, StaysWithinItsSpeeds) {
 
 TEST_P(EveryController, ParametersActAtOnce) {
   Situation s({-0.8, 0, 0});     // far enough for all of them to drive on
-  s.spec.max_acceleration = 10;  // nor does any have to get up speed first
+  s.spec.max_acceleration = 10;  // so none has to accelerate first
   const auto controller = make();
   ControlOutput slow;
   ControlOutput fast;

@@ -1,4 +1,4 @@
-// tests/algo/pipeline/parameter_table_test.cpp: the union of all parameters and what it refuses.
+// tests/algo/pipeline/parameter_table_test.cpp: the table of all parameters and its refusals.
 #include "algo/pipeline/parameter_table.hpp"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST(ParameterTable, KnowsTheOlderNames) {
   EXPECT_EQ(algo::find_parameter("strip.k_r"), algo::find_parameter("k_r"));
 }
 
-TEST(ParameterTable, HoldsWhatEveryControllerReads) {
+TEST(ParameterTable, HasEveryParameterThatControllersRead) {
   for (const algo::ControllerInfo& controller : algo::builtin_controllers().entries()) {
     EXPECT_FALSE(controller.parameters.empty()) << controller.name;
     for (const ParameterInfo* each : controller.parameters) {
@@ -97,7 +97,7 @@ TEST(Parameters, AreTheSameWhenTheirValuesAre) {
   EXPECT_EQ(twice.settings().size(), 2U);
 }
 
-TEST(Parameters, TellWhetherAllAreNumbers) {
+TEST(Parameters, TellWhetherAllAreFinite) {
   Parameters parameters;
   EXPECT_TRUE(parameters.all_finite());
   parameters.set(kMaxSpeed, std::numeric_limits<double>::quiet_NaN());
@@ -124,7 +124,7 @@ TEST(Refusal, LimitsAreInclusiveAndNamed) {
   EXPECT_EQ(algo::refusal(wide, kMaxSpeed, 5).value(), "v_max must be from 0.01 to 2 m/s, not 5");
 }
 
-TEST(Refusal, AWholeNumberIsWanted) {
+TEST(Refusal, AnIntegerParameterRefusesFractions) {
   const Parameters parameters;
   EXPECT_EQ(algo::refusal(parameters, kFilterHalfWidth, 2), std::nullopt);
   EXPECT_EQ(algo::refusal(parameters, kFilterHalfWidth, 1.5).value(),
@@ -132,7 +132,7 @@ TEST(Refusal, AWholeNumberIsWanted) {
 }
 
 /// equations.md D, consequence 2: S must be below K_r d_safe, 600 mm at 0.6 and 300 mm at 0.3.
-TEST(Refusal, AStepThatWinsOverTheForceIsUnsafe) {
+TEST(Refusal, AStepLargerThanTheForceIsUnsafe) {
   Parameters parameters;
   EXPECT_EQ(algo::refusal(parameters, kStripStep, 0.59), std::nullopt);
   const auto said = algo::refusal(parameters, kStripStep, 0.6);

@@ -1,5 +1,4 @@
-// tests/algo/pipeline/pipeline_test.cpp: one tick after the other: what reaches the motors, and
-// why.
+// tests/algo/pipeline/pipeline_test.cpp: the command of each tick and the reason of each hold.
 #include "algo/pipeline/pipeline.hpp"
 
 #include <limits>
@@ -28,7 +27,7 @@ RobotSpec disc() {
 
 struct PipelineTest : ::testing::Test {
   PipelineTest() { pipeline.reset({}); }
-  /// One tick with a scan of free beams, but for `obstacle` straight ahead [m] when it is given.
+  /// One tick with a scan of free beams, except for an optional `obstacle` straight ahead [m].
   const Telemetry& tick(double obstacle = 0,
                         bool with_scan = true,
                         bool dazzled = false,
@@ -81,7 +80,7 @@ TEST_F(PipelineTest, AStaleScanHoldsAndAFreshOneLetsGo) {
   EXPECT_GT(t.command.base.v, 0);
 }
 
-TEST_F(PipelineTest, ABlindedScanIsNone) {
+TEST_F(PipelineTest, ABlindedScanIsTreatedAsMissing) {
   ask(SetGoal{{3, 0}, std::nullopt});
   tick();
   for (int i = 0; i < 8; ++i) tick(0, true, true);
@@ -102,7 +101,7 @@ TEST_F(PipelineTest, ADazzledConeAheadHoldsAtOnceAndUntilItIsGone) {
   EXPECT_EQ(tick(0, true, false, 2).hold, Hold{});
 }
 
-TEST(PipelineGrid, ComesTwiceASecondAndOnlyAnew) {
+TEST(PipelineGrid, IsSentTwiceASecondAndOnlyIfNew) {
   Pipeline pipeline({.controller = "vff"}, disc());
   pipeline.want_grids(true);
   pipeline.reset({});
@@ -164,7 +163,7 @@ struct Spoken {
   }
 };
 
-TEST(PipelineWords, ComeTwiceASecondAndHoldInBetween) {
+TEST(PipelineWords, AreSentTwiceASecondAndHoldInBetween) {
   Spoken robot;
   for (int k = 0; k < 200; ++k) {  // 5 s
     robot.tick();
@@ -173,7 +172,7 @@ TEST(PipelineWords, ComeTwiceASecondAndHoldInBetween) {
   EXPECT_NEAR(robot.fresh, 10, 1);
 }
 
-TEST(PipelineWords, TheLegendComesEveryTwoSecondsAndAtOnceWhenItHasChanged) {
+TEST(PipelineWords, TheLegendIsSentEveryTwoSecondsAndAtOnceAfterAChange) {
   Spoken robot;
   std::uint32_t legend = 0;
   int fresh = 0;
@@ -191,7 +190,7 @@ TEST(PipelineWords, TheLegendComesEveryTwoSecondsAndAtOnceWhenItHasChanged) {
   EXPECT_GE(fresh, 3);
 }
 
-TEST(PipelineWords, ComeAtOnceWhenTheStateChanges) {
+TEST(PipelineWords, AreSentAtOnceWhenTheStateChanges) {
   Spoken robot;
   for (int k = 0; k < 5; ++k) robot.tick();
   EXPECT_EQ(robot.fresh, 1);
@@ -207,7 +206,7 @@ TEST(PipelineWords, ComeAtOnceWhenTheStateChanges) {
   EXPECT_EQ(robot.t.words.what, "Stopped");
 }
 
-/// One tick of a robot that has a sonar ring and no scanner; the sonar ahead pings in each fourth.
+/// One tick of a robot with a sonar ring and no scanner; the front sonar pings every fourth tick.
 struct SonarPipeline {
   explicit SonarPipeline(const char* controller)
       : pipeline({.controller = controller}, without_laser()) {
@@ -235,7 +234,7 @@ struct SonarPipeline {
   int ticks = 0;
 };
 
-TEST(PipelineBySonar, ItsStampsCountAndGoStale) {
+TEST(PipelineBySonar, ItsStampsAreCheckedForStaleness) {
   for (const char* controller : {"vff", "vfh", "certainty_grid", "potential_field"}) {
     SonarPipeline robot(controller);
     EXPECT_EQ(robot.tick(false).hold, holds::kStaleScan) << "nothing has come yet";
@@ -258,7 +257,7 @@ TEST(PipelineBySonar, AControllerThatNeedsALaserIsHeld) {
   }
 }
 
-/// A scanner that has not reported yet is no licence to drive by sonar.
+/// A robot whose scanner has not reported yet must not drive by sonar.
 TEST(PipelineBySonar, ARobotWithALaserWaitsForIt) {
   Pipeline pipeline({.controller = "vff"}, disc());
   Telemetry t;
@@ -313,7 +312,7 @@ TEST_F(PipelineTest, NotANumberNeverReachesTheMotors) {
   EXPECT_EQ(t.command, Command{});
 }
 
-TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
+TEST_F(PipelineTest, RefusesUnsupportedRequestsWithASentence) {
   EXPECT_FALSE(pipeline.refusal(SetParameter{&algo::kRepulsionGain, 0.5}));
   EXPECT_TRUE(pipeline.refusal(SetParameter{&algo::kRepulsionGain, 50}));
   EXPECT_TRUE(pipeline.refusal(SetParameter{&algo::kStripStep, 0.6}));  // S >= K_r d_safe
@@ -324,7 +323,7 @@ TEST_F(PipelineTest, RefusesWhatItCannotDoWithASentence) {
   EXPECT_TRUE((Pipeline{{}, log}.refusal(SetGoal{{1, 0}, {}})));
 }
 
-/// With K_c = 1 the via point that is kept never settles.
+/// With K_c = 1 a kept via point never settles.
 TEST_F(PipelineTest, RefusesFullContractionOfAViaThatIsKept) {
   const SetParameter full{&algo::kContractionGain, 1.0};
   EXPECT_FALSE(pipeline.refusal(full));

@@ -1,5 +1,5 @@
-// tests/algo/pipeline/reactive_test.cpp: who wins, whose limits bind, and how long a proposal is
-// held.
+// tests/algo/pipeline/reactive_test.cpp: which behaviour wins, which limits apply, and how long a
+// proposal is held.
 #include "algo/pipeline/reactive.hpp"
 
 #include <cmath>
@@ -54,14 +54,14 @@ struct CoordinatorTest : ::testing::Test {
   BehaviourCoordinator coordinator{};
 };
 
-TEST_F(CoordinatorTest, NobodyActiveMeansRest) {
+TEST_F(CoordinatorTest, NoActiveBehaviourMeansRest) {
   add(behaviours::kAvoid, {.active = false, .twist = {1, 1}});
   const Decision decision = coordinator.decide(resource, output);
   EXPECT_EQ(decision.winner, behaviours::kRest);
   EXPECT_EQ(decision.twist, Twist2{});
 }
 
-TEST_F(CoordinatorTest, TheFirstActiveOneWinsAndAllLimitsBind) {
+TEST_F(CoordinatorTest, TheFirstActiveBehaviourWinsAndAllLimitsApply) {
   add(behaviours::kManual, {.active = true, .twist = {0.5, 0.4}, .limits = {.v_max = 0.4}});
   add(behaviours::kAvoid,
       {.active = true, .twist = {0.1, 0}, .limits = {.v_max = 0.2, .omega_max = 0.3}});
@@ -71,7 +71,7 @@ TEST_F(CoordinatorTest, TheFirstActiveOneWinsAndAllLimitsBind) {
   EXPECT_DOUBLE_EQ(decision.twist.omega, 0.3);
 }
 
-TEST_F(CoordinatorTest, ALimitOfOneThatDoesNotDriveBindsAndIsNamed) {
+TEST_F(CoordinatorTest, ALimitOfANonDrivingBehaviourAppliesAndIsNamed) {
   add(behaviours::kManual,
       {.active = false, .limits = {.v_max = 0.1, .reason = {"slope", "The ground falls away."}}});
   add(behaviours::kAvoid, {.active = true, .twist = {0.5, -0.2}, .limits = {.omega_min = -0.5}});
@@ -82,7 +82,7 @@ TEST_F(CoordinatorTest, ALimitOfOneThatDoesNotDriveBindsAndIsNamed) {
   EXPECT_EQ(decision.limit.why, "The ground falls away.");
 }
 
-TEST_F(CoordinatorTest, BothWaysOfTurningHaveALimitOfTheirOwn) {
+TEST_F(CoordinatorTest, EachTurnDirectionHasItsOwnLimit) {
   Scripted* turning =
       add(behaviours::kAvoid,
           {.active = true, .twist = {0, -0.4}, .limits = {.omega_min = -0.1, .omega_max = 0.3}});

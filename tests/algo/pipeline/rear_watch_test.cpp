@@ -1,4 +1,4 @@
-// tests/algo/pipeline/rear_watch_test.cpp: what counts as looking back, and for how long.
+// tests/algo/pipeline/rear_watch_test.cpp: which sensors look back, and for how long.
 #include "algo/pipeline/rear_watch.hpp"
 
 #include <array>
@@ -40,14 +40,14 @@ bool looks(const Observation& seen, double later = 0) {
   return watch.looks(seen.stamp + later);
 }
 
-TEST(RearWatch, NothingLooksBackAtFirstNorDoesAScannerThatLooksAhead) {
+TEST(RearWatch, AForwardScannerDoesNotLookBack) {
   Observation seen;
   EXPECT_FALSE(looks(seen));
   add_scan(seen, 0, 180_deg);
   EXPECT_FALSE(looks(seen));
 }
 
-TEST(RearWatch, AScannerAtTheBackDoesAndSoDoesOneAllRound) {
+TEST(RearWatch, ARearScannerAndAFullTurnScannerLookBack) {
   for (const auto& [heading, field] :
        {std::array{180_deg, 180_deg}, {-170_deg, 180_deg}, {180_deg, 100_deg}, {0.0, 359_deg}}) {
     Observation seen;
@@ -59,13 +59,13 @@ TEST(RearWatch, AScannerAtTheBackDoesAndSoDoesOneAllRound) {
   }
 }
 
-TEST(RearWatch, WideIsNotAllRound) {
+TEST(RearWatch, AWideScannerIsNotAFullTurn) {
   Observation seen;
   add_scan(seen, 0, 270_deg);
   EXPECT_FALSE(looks(seen));
 }
 
-TEST(RearWatch, ADazzledSectorIsNotLookedAt) {
+TEST(RearWatch, ADazzledSectorIsUnseen) {
   Observation seen;
   add_scan(seen, 180_deg, 180_deg);
   algo::LaserScan& scan = seen.scans[0];
@@ -75,7 +75,7 @@ TEST(RearWatch, ADazzledSectorIsNotLookedAt) {
   EXPECT_FALSE(looks(seen));
 }
 
-TEST(RearWatch, ARingOfSonarsDoesAndItsFrontHalfDoesNot) {
+TEST(RearWatch, AFullSonarRingLooksBackAndItsFrontHalfDoesNot) {
   Observation ring;
   add_sonars(ring, 0, 330_deg, 30_deg);
   EXPECT_TRUE(looks(ring));

@@ -14,10 +14,10 @@ TEST(StuckDetector, WindowIsTwentySecondsOrEightHundredMillimetresOfTravel) {
   EXPECT_DOUBLE_EQ(StuckDetector::window(0.02), 40.0);  // 0.8 / 0.02
 }
 
-TEST(StuckDetector, SaysStuckOnceTheWholeWindowLiesWithinSixtyMillimetres) {
+TEST(StuckDetector, ReportsStuckOnceTheWholeWindowIsWithinSixtyMillimetres) {
   StuckDetector detector;
   detector.reset(kPeriod);
-  // 20 s of 0.05 s = 400 earlier positions; the 401st call is the first that may say stuck.
+  // 20 s of 0.05 s = 400 earlier positions; the 401st call is the first that may report stuck.
   for (int i = 0; i < 400; ++i) ASSERT_FALSE(detector.update({0, 0}, 0.1)) << i;
   EXPECT_TRUE(detector.update({0.059, 0}, 0.1));
   EXPECT_FALSE(detector.update({0.061, 0}, 0.1));
@@ -77,7 +77,7 @@ TEST_F(SequencerTest, GoesOnFromGoalToGoalAndArrivesAtTheLast) {
   EXPECT_EQ(intent.goal, SetGoal{.position_W = Vec2(3, 0)});
 }
 
-TEST_F(SequencerTest, ANewGoalTakesThePlaceOfAllThereAre) {
+TEST_F(SequencerTest, ANewGoalReplacesAllOthers) {
   ask(AddGoal{{.position_W = {1, 0}}});
   ask(AddGoal{{.position_W = {2, 0}}});
   ask(SetGoal{.position_W = {0, 5}});

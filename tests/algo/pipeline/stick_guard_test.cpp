@@ -1,5 +1,5 @@
-// tests/algo/pipeline/stick_guard_test.cpp: a stick held all the way, and where the robot comes to
-// rest.
+// tests/algo/pipeline/stick_guard_test.cpp: where the robot stops while the stick is held at full
+// deflection.
 #include "algo/pipeline/stick_guard.hpp"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ struct ByHand {
     while (stamp < end - 1e-9) tick(stick);
   }
 
-  /// [m] From the hull's outline, looked at every centimetre.
+  /// [m] From the hull's outline, sampled every centimetre.
   double clearance() const {
     if (spec.half_length <= 0) {
       return worlds::surface_distance(pose.position(), world) - spec.radius;
@@ -137,7 +137,7 @@ std::vector<Vec2> box(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
 }
 
-TEST(StickGuard, StopsAheadWhateverTheDelayAndHoweverTheBaseAnswers) {
+TEST(StickGuard, StopsAheadForAnyDelayAndBaseResponse) {
   for (const bool rectangle : {false, true}) {
     for (const unsigned delay : {0U, 4U}) {
       for (const bool at_once : {false, true}) {
@@ -157,8 +157,8 @@ TEST(StickGuard, StopsAheadWhateverTheDelayAndHoweverTheBaseAnswers) {
   }
 }
 
-/// What it has passed is out of sight, and its corners reach out farther than its sides.
-TEST(StickGuard, ARectangleDoesNotTurnIntoWhatItHasPassed) {
+/// Passed obstacles are out of sight, and the corners reach farther out than the sides.
+TEST(StickGuard, ARectangleDoesNotTurnIntoAPassedObstacle) {
   for (const double turn : {1.0, -1.0}) {
     ByHand robot(true);
     robot.pose = {-1.5, 0, 0};
@@ -174,7 +174,7 @@ TEST(StickGuard, ARectangleDoesNotTurnIntoWhatItHasPassed) {
   }
 }
 
-TEST(StickGuard, BacksSlowlyWhereNothingLooksBack) {
+TEST(StickGuard, BacksSlowlyWithoutARearSensor) {
   ByHand robot;
   robot.start();
   robot.hold({1, 0}, 4);
@@ -186,8 +186,8 @@ TEST(StickGuard, BacksSlowlyWhereNothingLooksBack) {
   EXPECT_NEAR(there - robot.pose.x, 0.39, 0.03);
 }
 
-/// At the start nobody knows what is behind: it takes a driver who insists.
-TEST(StickGuard, BacksIntoTheUnseenForADriverWhoInsists) {
+/// At the start the space behind is unknown: the driver must insist.
+TEST(StickGuard, BacksIntoUnseenSpaceForAPersistentDriver) {
   ByHand robot;
   robot.start();
   robot.hold({-1, 0}, 1.9);
@@ -219,9 +219,9 @@ TEST(StickGuard, SonarsLetItBackFastAndStopIt) {
   EXPECT_LT(robot.least, 0.15);
 }
 
-TEST(StickGuard, LetsOneDriveOutOfATightPlace) {
+TEST(StickGuard, ADriverCanLeaveATightPlace) {
   ByHand robot;
-  robot.world.polygons.push_back(box({0.38, -1}, {0.6, 1}));  // 3 cm before its nose
+  robot.world.polygons.push_back(box({0.38, -1}, {0.6, 1}));  // 3 cm ahead of the hull
   robot.start();
   robot.hold({0, 1}, std::numbers::pi);
   EXPECT_NEAR(std::abs(robot.pose.heading), std::numbers::pi, 0.3);

@@ -82,7 +82,7 @@ TEST(SideChoice, TakesTheSideWithLessOfTheObstacle) {
   EXPECT_EQ(even.choice.state().side, Side::Left);
 }
 
-TEST(SideChoice, IsMadeOnlyWithinTheReachPlus100Millimetres) {
+TEST(SideChoice, SideIsChosenOnlyWithinTheReachPlus100Millimetres) {
   Bench far(post(1.67, 0));  // surface at 1.47
   EXPECT_TRUE(far.at(0).blocked_beam.has_value());
   EXPECT_EQ(far.choice.state().side, Side::None);
@@ -93,7 +93,7 @@ TEST(SideChoice, IsMadeOnlyWithinTheReachPlus100Millimetres) {
   EXPECT_EQ(near.choice.state().since, 3.5);
 }
 
-TEST(SideChoice, IsKeptWhileBlockedAndForgottenTwoSecondsAfter) {
+TEST(SideChoice, SideIsKeptWhileBlockedAndDroppedTwoSecondsAfter) {
   Bench bench(post(1.5, 0.1));
   bench.at(0);
   EXPECT_EQ(bench.choice.state().side, Side::Right);
@@ -165,7 +165,7 @@ TEST(ChooseSide, CountsFromTheGoalsBearingInTheScanner) {
   const double two_beams = std::numbers::pi / 180;
   EXPECT_EQ(algo::choose_side(even, 180, two_beams), Side::Left);
   EXPECT_EQ(algo::choose_side(even, 180, -two_beams), Side::Right);
-  LaserScan turned = even;  // the scanner looks two beams to the left, the goal is ahead of R
+  LaserScan turned = even;  // the scanner is turned two beams left; the goal is ahead in R
   turned.mount_R.heading = two_beams;
   EXPECT_EQ(algo::choose_side(turned, 180, 0), Side::Right);
 }
@@ -180,7 +180,7 @@ TEST(SideChoice, AScannerMountedElsewhereSeesTheSameLane) {
   EXPECT_FALSE(ahead.at(0).blocked_beam.has_value());
 }
 
-/// Of a first tick.
+/// The push of a first tick.
 algo::StripForces forces_of(const char* name,
                             const algo::ControlInput& in,
                             const algo::Parameters& parameters) {
@@ -190,8 +190,8 @@ algo::StripForces forces_of(const char* name,
   return dynamic_cast<const algo::ElasticStripController&>(*controller).forces();
 }
 
-/// Force law and side choice can be had in any combination: the side choice adds its push to what
-/// the law alone gives, and nothing else.
+/// Force law and side choice combine freely: the side choice only adds its push to the force of the
+/// law alone.
 TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
   const algo::Pose2 pose{0, 0, 0};
   algo::Scene scene;
@@ -221,7 +221,7 @@ TEST(SideChoice, AddsOnlyItsPushToEachLaw) {
 }
 
 /// A side belongs to one goal.
-TEST(SideChoice, AnotherGoalForgetsTheSide) {
+TEST(SideChoice, AnotherGoalResetsTheSide) {
   const algo::Pose2 pose{0, 0, 0};
   algo::Scene scene;
   worlds::scan_world(pose, post(1.4, 0.02, 0.3), 8, scene.scan);

@@ -1,4 +1,4 @@
-// tests/algo/strip/strip_test.cpp: what the force laws promise, and the units of Eq. 13.
+// tests/algo/strip/strip_test.cpp: properties of the force laws, and the units of Eq. 13.
 #include "algo/strip/strip.hpp"
 
 #include <cmath>
@@ -69,12 +69,12 @@ TEST(PublishedFactor, TheSecondBranchMeansMillimetres) {
   EXPECT_GT(bare, 9 * kStep);
   // The pole is cut 10 mm from the reach: 0.6 * 1350 / 10 = 81 mm.
   EXPECT_NEAR(algo::published_factor(kReach, kReach, 0.6), 81_mm, 1e-12);
-  // Inside, the first branch is a length already; never more than 1 m.
+  // Inside, the first branch is a length already, at most 1 m.
   EXPECT_NEAR(algo::published_factor(0.35, kReach, 0.6), 600_mm, 1e-12);
   EXPECT_EQ(algo::published_factor(0.0, 3.35, 1.0), 1.0);
 }
 
-TEST(LinearFactor, IsThePublishedWithoutItsSecondBranch) {
+TEST(LinearFactor, IsThePublishedForceWithoutItsSecondBranch) {
   EXPECT_EQ(algo::linear_factor(1.0, kReach, 0.6), algo::published_factor(1.0, kReach, 0.6));
   EXPECT_EQ(algo::linear_factor(kReach, kReach, 0.6), 0);
   EXPECT_EQ(algo::linear_factor(2.0, kReach, 0.6), 0);

@@ -21,7 +21,7 @@ TEST(ViaBuffer, AGoalAtTheOriginIsLegal) {
   EXPECT_EQ(buffer.get_position(2), (Via{{0, 0}, true}));
 }
 
-TEST(ViaBuffer, TheCorrectedRuleTakesAViaStraightAhead) {
+TEST(ViaBuffer, TheCorrectedRuleAcceptsAViaStraightAhead) {
   ViaBuffer buffer;
   buffer.reset({0, 0}, {5, 0});
   EXPECT_FALSE(buffer.insert({2, 0}, IsSortRule::Literal));

@@ -1,4 +1,4 @@
-// tests/drivers/emulators/line_test.cpp: bytes and their times, faults, wrong rates.
+// tests/drivers/emulators/line_test.cpp: byte times, faults and wrong rates.
 #include "drivers/emulators/line.hpp"
 
 #include "tests/drivers/hex.hpp"
@@ -28,14 +28,14 @@ TEST(Line, EveryByteTakesTenBitTimes) {
   EXPECT_EQ(left_by(line, 2.0), hex("03"));
 }
 
-TEST(Line, OneTelegramAfterTheOther) {
+TEST(Line, TelegramsAreSentOneAfterAnother) {
   Line line(9600);
   line.say(hex("01"), 1.0);
   const Sending second = line.say(hex("02"), 1.0);
   EXPECT_NEAR(second.begin, 1.0 + 10.0 / 9600, 1e-12);
 }
 
-TEST(Line, WhatIsCutOffNeverComes) {
+TEST(Line, AbortedBytesNeverArrive) {
   Line line(9600);
   line.say(hex("01 02 03"), 0);
   EXPECT_TRUE(line.cut(15.0 / 9600));
@@ -43,7 +43,7 @@ TEST(Line, WhatIsCutOffNeverComes) {
   EXPECT_FALSE(line.cut(2.0));
 }
 
-TEST(Line, BytesThatLeaveKeepTheirRate) {
+TEST(Line, BytesBeingSentKeepTheirRate) {
   Line line(9600);
   line.say(hex("01"), 0);
   line.set_baud(500000);
@@ -68,7 +68,7 @@ TEST(Line, BytesFromTheHostArriveOneByOne) {
   EXPECT_NEAR(line.quiet(1.1), 0.1 - 20.0 / 9600, 1e-9);
 }
 
-TEST(Line, FaultsHappenAsOftenAsAsked) {
+TEST(Line, FaultsOccurAtTheGivenProbability) {
   Line line(500000, 7);
   line.faults.drop = 0.1;
   const Bytes all(10000, 0x55);
@@ -85,7 +85,7 @@ TEST(Line, FaultsHappenAsOftenAsAsked) {
   EXPECT_NEAR(static_cast<double>(changed), 1000, 150);
 }
 
-TEST(Line, DamageSpoilsOneByteOfATelegram) {
+TEST(Line, DamageChangesOneByteOfATelegram) {
   Line line(500000, 3);
   line.faults.damage = 0.5;
   const Bytes telegram(100, 0xAA);
@@ -114,7 +114,7 @@ TEST(Line, SameSeedSameFaults) {
   EXPECT_NE(fate(5), fate(6));
 }
 
-TEST(Misread, TheRightRateReadsWhatWasSent) {
+TEST(Misread, TheRightRateReadsTheBytesSent) {
   Bytes all(256);
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint8_t>(i);
   EXPECT_EQ(misread(all, 9600, 9600), all);

@@ -1,5 +1,5 @@
-// tests/drivers/emulators/lms200_emulator_test.cpp: the emulated LMS200 against the telegrams of
-// the manual, and against what the manual forbids.
+// tests/drivers/emulators/lms200_emulator_test.cpp: the emulated LMS200 against the telegrams that
+// the manual prints, and those it forbids.
 #include "drivers/emulators/lms200_emulator.hpp"
 
 #include "tests/drivers/emulators/talk.hpp"
@@ -53,7 +53,7 @@ struct Row {
   std::string answer;
 };
 
-TEST(Lms200Emulator, AnswersAsTheManualPrintsIt) {
+TEST(Lms200Emulator, AnswersMatchTheManual) {
   const std::vector<Row> rows{
       {"02 00 01 00 3A 1E 12",
        "02 80 17 00 BA 4C 4D 53 32 30 30 3B 33 30 31 30 36 33 3B 56 30 32 2E 31 30 20 10 22 61"},
@@ -77,7 +77,7 @@ TEST(Lms200Emulator, AnswersAsTheManualPrintsIt) {
   EXPECT_EQ(device.memory_writes(), 1U);
 }
 
-TEST(Lms200Emulator, ResetsAndGreets) {
+TEST(Lms200Emulator, ResetsAndSendsItsGreeting) {
   Emulator device;
   Host host(device);
   Bytes expected = hex("06 02 80 02 00 91 10 79 30");
@@ -87,7 +87,7 @@ TEST(Lms200Emulator, ResetsAndGreets) {
   EXPECT_EQ(host.ask(hex("02 00 01 00 10 34 12"), 3.0), expected);
 }
 
-TEST(Lms200Emulator, IsDeafUntilItHasStarted) {
+TEST(Lms200Emulator, IgnoresRequestsUntilItHasStarted) {
   EmulatorOptions options;
   options.powered = false;
   options.boot_time = 9;
@@ -120,7 +120,7 @@ TEST(Lms200Emulator, WrongPasswordChangesNothing) {
   EXPECT_EQ(device.mode(), Mode::OnRequest);
 }
 
-TEST(Lms200Emulator, NaksWhatIsDamagedAndDropsWhatIsTooSlow) {
+TEST(Lms200Emulator, NaksDamagedTelegramsAndDropsSlowOnes) {
   Emulator device;
   Host host(device);
   EXPECT_EQ(host.ask(hex("02 00 01 00 31 15 13")), hex("15"));
@@ -144,10 +144,10 @@ TEST(Lms200Emulator, ChangesItsRateAfterTheAnswer) {
   EXPECT_EQ(rest, hex(kAcked + kModeDone));
   EXPECT_EQ(device.baud(), 500000U);
   device.restart(host.now(), 0.5);
-  EXPECT_EQ(device.baud(), 9600U);  // nobody stored it
+  EXPECT_EQ(device.baud(), 9600U);  // it was not stored
 }
 
-TEST(Lms200Emulator, KeepsTheRateThatWasStored) {
+TEST(Lms200Emulator, KeepsAStoredRate) {
   Emulator device;
   Host host(device);
   host.ask(hex("02 00 02 00 20 40 50 08"));
@@ -168,7 +168,7 @@ TEST(Lms200Emulator, NoHalfMegabaudOnRs232) {
   EXPECT_EQ(device.baud(), 9600U);
 }
 
-TEST(Lms200Emulator, WritesItsConfigurationInInstallationModeAlone) {
+TEST(Lms200Emulator, WritesItsConfigurationOnlyInInstallationMode) {
   Emulator device;
   Host host(device);
   const std::string write = "02 00 23 00 77 00 00 46 00 02 06 01 00 00 02 02 21x00 02 00 8D A6";
@@ -180,7 +180,7 @@ TEST(Lms200Emulator, WritesItsConfigurationInInstallationModeAlone) {
   EXPECT_EQ(written[0][5], 1);
   EXPECT_TRUE(device.configuration().sends_indices());
   EXPECT_EQ(device.configuration().measuring_mode(), 6);
-  // What it cannot be is refused, and what is in force comes back.
+  // An impossible variant is refused, and the answer has the present one.
   Configuration odd = device.configuration();
   odd.set_measuring_mode(0x77);
   const std::vector<Bytes> refused = telegrams(host.ask(write_configuration_command(odd).view()));
@@ -202,7 +202,7 @@ TEST(Lms200Emulator, RefusesVariantsThatDoNotExist) {
   EXPECT_EQ(answer->now, (Variant{180, 100}));
 }
 
-TEST(Lms200Emulator, SaysItsState) {
+TEST(Lms200Emulator, ReportsItsStatus) {
   EmulatorOptions options = still({100, 25});
   options.address = 3;
   Emulator device(options);
@@ -233,7 +233,7 @@ TEST(Lms200Emulator, SendsTheScanOfTheManualOnRequest) {
   EXPECT_EQ(host.listen(1.0), Bytes{});  // one was asked for
 }
 
-/// Streams for `seconds` at `baud`, a scan each `turns` of the mirror.
+/// Streams for `seconds` at `baud`, one scan every `turns` of the mirror.
 std::vector<SentScan> streamed(unsigned baud, Variant variant, double seconds) {
   EmulatorOptions options = still(variant);
   options.start_rate = baud;
@@ -290,7 +290,7 @@ TEST(Lms200Emulator, ARequestCutsTheScanInTheMiddle) {
   EXPECT_EQ(sent[0].fate, SentScan::Fate::Cut);
 }
 
-TEST(Lms200Emulator, CodesAndFlagsAsInTheManual) {
+TEST(Lms200Emulator, CodesAndFlagsMatchTheManual) {
   EmulatorOptions options = still({100, 100});
   options.field_a = 1.5;
   Emulator device(options);
@@ -324,7 +324,7 @@ TEST(Lms200Emulator, CodesAndFlagsAsInTheManual) {
   EXPECT_EQ(measured_values(telegram_of(blind[0]))->word(0), 0x9FFE);
 }
 
-TEST(Lms200Emulator, TellsWhatAReceiverIsToKeep) {
+TEST(Lms200Emulator, RecordsTheBeamsThatAReceiverMustKeep) {
   for (const bool millimetres : {true, false}) {
     for (const std::uint8_t mode : std::array<std::uint8_t, 3>{0, 3, 6}) {
       EmulatorOptions options = still({100, 50});
@@ -358,7 +358,7 @@ TEST(Lms200Emulator, TellsWhatAReceiverIsToKeep) {
   }
 }
 
-TEST(Lms200Emulator, MeansAreMeans) {
+TEST(Lms200Emulator, MeanValuesAreAveragesOfScans) {
   Emulator device(still({100, 100}));
   Host host(device);
   host.tell(hex("02 00 02 00 36 02 3E 1E"));
@@ -379,7 +379,7 @@ TEST(Lms200Emulator, MeansAreMeans) {
   EXPECT_EQ(values->word(1), 1001);  // one of two had an echo
 }
 
-TEST(Lms200Emulator, RangesHaveTheirNumbers) {
+TEST(Lms200Emulator, RangesCarryTheNumberOfTheirFirstValue) {
   Emulator device(still());
   Host host(device);
   EXPECT_EQ(telegrams(host.ask(hex("02 00 05 00 37 01 00 69 01 EB 75"))).size(), 0U);
@@ -400,7 +400,7 @@ TEST(Lms200Emulator, RangesHaveTheirNumbers) {
   EXPECT_EQ(host.ask(range_command({1, 362}).view()), hex(kAcked + kRefused));
 }
 
-TEST(Lms200Emulator, PartialScansInTurn) {
+TEST(Lms200Emulator, PartialScansComeInOrder) {
   EmulatorOptions options = still();
   options.interlaced = true;
   options.start_rate = 500000;
@@ -422,7 +422,7 @@ TEST(Lms200Emulator, PartialScansInTurn) {
   EXPECT_EQ(parts.dropped_sweeps(), 0U);
 }
 
-TEST(Lms200Emulator, AStreamDoesNotOutliveItsVariant) {
+TEST(Lms200Emulator, ANewVariantEndsAStream) {
   Emulator device(still());
   Host host(device);
   host.ask(hex(kStream));
@@ -432,7 +432,7 @@ TEST(Lms200Emulator, AStreamDoesNotOutliveItsVariant) {
   EXPECT_EQ(device.sweep().variant, (Variant{180, 100}));
 }
 
-TEST(Lms200Emulator, SaysNothingWhileMuteAndNothingWhileBusy) {
+TEST(Lms200Emulator, SendsNothingWhileMuteOrBusy) {
   Emulator device;
   Host host(device);
   device.mute(host.now() + 1);

@@ -43,7 +43,7 @@ class Driven {
     host.ask(hex(kEnable), 0.05);
   }
 
-  /// `seconds` go by, its wheels turning as it wants unless they are blocked.
+  /// Advances by `seconds`; the wheels follow the motors unless they are blocked.
   Bytes drive(double seconds, bool blocked = false) {
     Bytes got;
     for (int i = 0; i < static_cast<int>(seconds / kStep + 0.5); ++i) {
@@ -83,7 +83,7 @@ TEST(P2osEmulator, EchoesTheHandshakeInOrderAndNamesItself) {
   EXPECT_EQ(host.listen(1.0), Bytes{});
 }
 
-TEST(P2osEmulator, ABadSumIsDroppedInSilence) {
+TEST(P2osEmulator, APacketWithAWrongSumIsDroppedSilently) {
   Driven base;
   base.host.ask(hex("FA FB 06 0B 3B C8 00 D3 3C"), 0.05);
   EXPECT_EQ(base.device.bad_packets(), 1U);
@@ -99,13 +99,13 @@ TEST(P2osEmulator, MovesOnlyWithMotorsOn) {
   EXPECT_EQ(base.speed(), 0);
   base.host.ask(hex(kEnable), 0.05);
   base.drive(0.5);
-  EXPECT_EQ(base.speed(), 0);  // the order of before was not kept
+  EXPECT_EQ(base.speed(), 0);  // the earlier command was dropped
   base.host.ask(hex(kForward), 0.05);
   base.drive(1);
   EXPECT_NEAR(base.speed(), 0.2, 1e-9);
 }
 
-TEST(P2osEmulator, AcceleratesAsItWasTold) {
+TEST(P2osEmulator, AcceleratesAsConfigured) {
   Driven base;
   base.host.ask(hex("FA FB 06 05 3B 2C 01 31 3C"), 0.05);  // 300 mm/s2
   base.drive(0.01);
@@ -129,7 +129,7 @@ TEST(P2osEmulator, WheelSpeedsAndTurns) {
   EXPECT_NEAR(turn.right, 30 * std::numbers::pi / 180 * 0.165, 1e-9);
 }
 
-TEST(P2osEmulator, StopsByItselfWhenNothingComesAndGoesOnWithTheNext) {
+TEST(P2osEmulator, WatchdogStopsItUntilTheNextCommand) {
   Driven base;
   base.host.ask(hex(kForward), 0.02);
   base.drive(1.9);
@@ -144,7 +144,7 @@ TEST(P2osEmulator, StopsByItselfWhenNothingComesAndGoesOnWithTheNext) {
   EXPECT_NEAR(base.speed(), 0.2, 1e-9);
 }
 
-TEST(P2osEmulator, TheStopButtonTurnsTheMotorsOffUntilEnabledAnew) {
+TEST(P2osEmulator, TheStopButtonTurnsTheMotorsOffUntilEnabledAgain) {
   Driven base;
   base.host.ask(hex(kForward), 0.02);
   base.drive(1);
@@ -161,7 +161,7 @@ TEST(P2osEmulator, TheStopButtonTurnsTheMotorsOffUntilEnabledAnew) {
   EXPECT_TRUE(base.device.motors_on());
 }
 
-TEST(P2osEmulator, ReportsWhereItIsAndCountsRoundTheEnd) {
+TEST(P2osEmulator, ReportsItsPositionAndWrapsItsCounters) {
   EmulatorOptions options;
   options.first_x_mm = 0x7FFF - 100;
   Driven base(options);
@@ -184,7 +184,7 @@ TEST(P2osEmulator, ReportsWhereItIsAndCountsRoundTheEnd) {
   EXPECT_NEAR(seen.back().volts, 12.6, 1e-9);
 }
 
-TEST(P2osEmulator, BumpersStallAndStopWhenToldTo) {
+TEST(P2osEmulator, BumpersStopTheBaseWhenConfigured) {
   Driven base;
   base.host.ask(hex("FA FB 06 2C 3B 03 00 2F 3B"), 0.02);  // BUMPSTALL 3
   base.host.ask(hex(kForward), 0.02);

@@ -18,7 +18,7 @@ using emulators::Host;
 using emulators::WheelMotion;
 using ::testing::HasSubstr;
 
-/// A controller with echo off, and wheels that turn as it wants.
+/// A controller with echo off, and wheels that follow it exactly.
 class Driven {
  public:
   explicit Driven(const EmulatorOptions& options = {}) : device(options), host(device) {
@@ -50,7 +50,7 @@ EmulatorOptions with_200_rpm() {
   return options;
 }
 
-TEST(RoboteqEmulator, AnswersAsTheVectorsHaveIt) {
+TEST(RoboteqEmulator, AnswersMatchTheVectors) {
   Emulator device(with_200_rpm());
   Host host(device);
   EXPECT_EQ(emulators::text(host.ask(std::string("^ECHOF 1\r"), 0.1)), "^ECHOF 1\r+\r");
@@ -79,7 +79,7 @@ TEST(RoboteqEmulator, RepeatsItsQueriesInTurn) {
   EXPECT_EQ(base.drive(0.5), "");
 }
 
-TEST(RoboteqEmulator, CountsRoundTheEnd) {
+TEST(RoboteqEmulator, CountersWrapAround) {
   EmulatorOptions options;
   options.first_count = std::numeric_limits<std::int32_t>::max() - 10;
   options.wheel_radius = 1 / (2 * std::numbers::pi);
@@ -100,7 +100,7 @@ TEST(RoboteqEmulator, CountsRoundTheEnd) {
   EXPECT_EQ(base.say("?CR 1\r"), "CR=0\r");
 }
 
-TEST(RoboteqEmulator, TheWatchdogStopsWhatNobodyCommands) {
+TEST(RoboteqEmulator, TheWatchdogStopsMotorsWithoutCommands) {
   Driven base;
   std::vector<emulators::BaseCommand> commands;
   base.device.on_command = [&](const emulators::BaseCommand& c) { commands.push_back(c); };
@@ -117,7 +117,7 @@ TEST(RoboteqEmulator, TheWatchdogStopsWhatNobodyCommands) {
   EXPECT_GT(base.senses.motion.left, 0.01);
 }
 
-TEST(RoboteqEmulator, EmergencyStopForgetsTheCommand) {
+TEST(RoboteqEmulator, EmergencyStopDiscardsTheCommand) {
   Driven base;
   base.say("!G 1 100_!G 2 100\r");
   base.drive(0.2);

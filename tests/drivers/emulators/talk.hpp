@@ -1,4 +1,4 @@
-// tests/drivers/emulators/talk.hpp: says something to an emulated device and keeps what it answers.
+// tests/drivers/emulators/talk.hpp: sends bytes to an emulated device and keeps the answers.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ class Host {
   explicit Host(Device& device) : device_(device) { device_.advance(now_); }
 
   double now() const { return now_; }
-  /// Everything that comes within `seconds`.
+  /// All bytes that arrive within `seconds`.
   Bytes listen(double seconds) {
     Bytes got;
     const double end = now_ + seconds;

@@ -1,5 +1,5 @@
-// tests/server/cli/doctor_test.cpp: what the doctor makes of ports that are not there, and of
-// spikes; a scan as a line of a log.
+// tests/server/cli/doctor_test.cpp: the doctor's findings about missing ports and spikes; a scan as
+// a line of a log.
 #include "server/cli/doctor.hpp"
 
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-TEST(Doctor, PortsThatAreNotThereAreBadAndComeWithAdvice) {
+TEST(Doctor, MissingPortsAreBadWithAdvice) {
   const drivers::RobotFile file = drivers::parse_robot(R"(name = "none"
 hull = { radius = 0.3 }
 [[laser]]
@@ -44,7 +44,7 @@ track = 0.33
   for (const Finding& f : bad) EXPECT_NE(f.advice, "");
 }
 
-/// What is said of an emulated scanner after `command`, and that not all is well.
+/// The findings about an emulated scanner after `command`; expects a bad one.
 std::string bad_words_after(const std::string& command) {
   namespace fs = std::filesystem;
   const fs::path folder =
@@ -70,19 +70,19 @@ std::string bad_words_after(const std::string& command) {
   return bad;
 }
 
-TEST(Doctor, ADazzledScannerIsNeverWell) {
+TEST(Doctor, ADazzledScannerIsAlwaysBad) {
   EXPECT_THAT(bad_words_after("dazzle on"), HasSubstr("It is blinded"));
   EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
 }
 
-TEST(Doctor, SpikesStandAloneAgainstBothNeighbours) {
+TEST(Doctor, SpikesDifferFromBothNeighbours) {
   EXPECT_EQ(count_spikes({2, 2, 2, 2}), 0U);
   EXPECT_EQ(count_spikes({2, 1, 2, 2}), 1U);
   EXPECT_EQ(count_spikes({2, 2, 4, 4}), 0U);  // an edge
   EXPECT_EQ(count_spikes({}), 0U);
 }
 
-TEST(Doctor, WheelsThatGoAnotherWayThanToldAreNotWell) {
+TEST(Doctor, WheelsThatMoveOtherThanCommandedAreBad) {
   EXPECT_TRUE(drove_as_told(0.05, 0.05));
   EXPECT_TRUE(drove_as_told(-0.05, -0.045));
   EXPECT_FALSE(drove_as_told(0.05, -0.05));  // reversed
@@ -91,7 +91,7 @@ TEST(Doctor, WheelsThatGoAnotherWayThanToldAreNotWell) {
   EXPECT_FALSE(drove_as_told(0.05, 0));
 }
 
-/// A scan written, and read by those who replay logs.
+/// A written scan is readable by the log reader.
 TEST(CarmenLine, IsReadBack) {
   for (const double field : {180.0, 100.0}) {
     algo::LaserScan scan;

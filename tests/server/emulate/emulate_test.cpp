@@ -33,7 +33,7 @@ using drivers::SerialPort;
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-constexpr int kPatience = 30000;  // [ms] for what will come
+constexpr int kPatience = 30000;  // [ms] timeout
 
 class EmulationTest : public ::testing::Test {
  protected:
@@ -66,12 +66,12 @@ class EmulationTest : public ::testing::Test {
   EmulationOptions options_{};
 };
 
-/// The host of a scanner, without any of the driver's cleverness.
+/// A minimal host of a scanner, without the driver.
 class ScannerHost {
  public:
   ScannerHost(const fs::path& link, unsigned baud) : port_(link.string(), baud) {}
 
-  /// Calls `on_telegram` for each until it returns true or patience ends.
+  /// Calls `on_telegram` for each telegram until it returns true or kPatience is over.
   template <class OnTelegram>
   bool listen(OnTelegram&& on_telegram, int patience_ms = kPatience) {
     bool done = false;
@@ -99,7 +99,7 @@ class ScannerHost {
   lms200::TelegramReader reader_{};
 };
 
-TEST_F(EmulationTest, AScannerAtAnotherRateIsNotUnderstood) {
+TEST_F(EmulationTest, AScannerAtAnotherRateIsUnreadable) {
   add_scanner();
   Emulation emulation(options_);
   emulation.start();
@@ -184,7 +184,7 @@ std::unique_ptr<drivers::AnalogCard> open_card(const fs::path& path) {
   return drivers::open_comedi_card(path.string(), setup);
 }
 
-TEST_F(EmulationTest, VoltsTurnTheWheelsOfTheWorldWhileTheRelayIsHeld) {
+TEST_F(EmulationTest, VoltagesTurnTheWheelsWhileTheRelayIsClosed) {
   add_base(BaseKind::Analog);
   Emulation emulation(options_);
   emulation.start();
@@ -202,7 +202,7 @@ TEST_F(EmulationTest, VoltsTurnTheWheelsOfTheWorldWhileTheRelayIsHeld) {
   const auto rolled = [&] { return card->read().counts[0]; };
   ASSERT_TRUE(drive(true, [&] { return rolled() > 100 && rolled() < 1U << 31; }));
   ASSERT_TRUE(drive(true, [&] { return card->read().relay_closed == true; }));
-  // Volts alone, as after the death of the program that gave them.
+  // Voltages without ticks, as after the death of the host program.
   ASSERT_TRUE(drive(false, [&] { return card->read().relay_closed == false; }));
   ASSERT_TRUE(drive(true, [&] { return card->read().relay_closed == true; }));
   emulation.command("stop on");
@@ -213,7 +213,7 @@ TEST_F(EmulationTest, VoltsTurnTheWheelsOfTheWorldWhileTheRelayIsHeld) {
   EXPECT_GT(truth["base"]["commands"].get<int>(), 0);
 }
 
-TEST_F(EmulationTest, ACardGoesAndComesBack) {
+TEST_F(EmulationTest, ACardIsUnpluggedAndReturns) {
   add_base(BaseKind::Analog);
   Emulation emulation(options_);
   emulation.start();
@@ -228,7 +228,7 @@ TEST_F(EmulationTest, ACardGoesAndComesBack) {
   EXPECT_THROW(emulation.command("drop 0.1"), std::invalid_argument);
 }
 
-TEST_F(EmulationTest, UnpluggedPortsGoAndComeBack) {
+TEST_F(EmulationTest, UnpluggedPortsDisappearAndReturn) {
   add_scanner();
   Emulation emulation(options_);
   emulation.start();
@@ -243,7 +243,7 @@ TEST_F(EmulationTest, UnpluggedPortsGoAndComeBack) {
   EXPECT_TRUE(host.ask(lms200::type_command(), lms200::Answer::Type));
 }
 
-TEST_F(EmulationTest, LinksGoWithTheProgramAndNeverReplaceAFile) {
+TEST_F(EmulationTest, LinksAreRemovedAtTheEndAndNeverReplaceAFile) {
   add_scanner();
   {
     const Emulation emulation(options_);
@@ -255,7 +255,7 @@ TEST_F(EmulationTest, LinksGoWithTheProgramAndNeverReplaceAFile) {
   EXPECT_TRUE(fs::is_regular_file(options_.scanner_links[0]));
 }
 
-TEST_F(EmulationTest, CommandsThatMeanNothingAreSentences) {
+TEST_F(EmulationTest, InvalidCommandsAreRefusedWithASentence) {
   add_scanner();
   add_base(BaseKind::P2os);
   Emulation emulation(options_);

@@ -1,4 +1,4 @@
-// tests/server/experiment/judge_test.cpp: each judge on ticks made by hand, and the table of all.
+// tests/server/experiment/judge_test.cpp: each judge on hand-made ticks, and the table of judges.
 #include "server/experiment/judge.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using algo::Outcome;
 
-/// A judge of a run of ticks that a test makes.
+/// A judge that watches ticks made by the test.
 class Watched {
  public:
   explicit Watched(const char* judge, Settings settings = {}) : settings_(std::move(settings)) {
@@ -106,7 +106,7 @@ TEST(PathJudge, BendingIsSquaredTurnOverTheLaterSegment) {
 }
 
 TEST(PathJudge, StepsBelowFiftyMillimetresAreMerged) {
-  // 30 mm and 30 mm east count as one segment of 60 mm; the jog of 10 mm north is not kept.
+  // 30 mm and 30 mm east count as one segment of 60 mm; the step of 10 mm north is left out.
   Watched path("path");
   path.at({0, 0, 0}, 5), path.at({0.03, 0, 0}, 5), path.at({0.06, 0, 0}, 5);
   path.at({0.06, 0.01, 0}, 5), path.at({0.12, 0, 0}, 5);
@@ -130,7 +130,7 @@ TEST(PathJudge, ShareOfTheStripBeforeItsVia) {
 
 // ---- standing ----------------------------------------------------------------------------------
 
-TEST(StandingJudge, APauseIsARestThatTheRobotDrivesOnFrom) {
+TEST(StandingJudge, APauseIsARestBeforeDrivingOn) {
   // At most 1 m/s and 1 rad/s, ticks of 0.05 s: at rest below 2.5 mm and 2.5 mrad a tick.
   Watched standing("standing");
   standing.robot.period = 0.05;
@@ -224,7 +224,7 @@ TEST_F(BarnScoreTest, ARobotThatNeverMovesIsGivenAMinute) {
 
 // ---- contact -----------------------------------------------------------------------------------
 
-TEST(ContactJudge, SpeaksOfWhatMovesOnly) {
+TEST(ContactJudge, CountsOnlyMovingObstacles) {
   for (const bool moves : {true, false}) {
     Watched contact("contact");
     contact.robot = {.radius = 0.35,
@@ -284,7 +284,7 @@ TEST_F(SilenceTest, AReasonGivenMeanwhileIsEnough) {
   EXPECT_EQ(silence["silent"], 0);
 }
 
-TEST_F(SilenceTest, WhoMovesMayKeepSilent) {
+TEST_F(SilenceTest, AMovingRobotNeedsNoReason) {
   for (int second = 0; second <= 300; ++second) tick(0.1 * second, false);
   EXPECT_FALSE(silence.ending());
   tick(31, false);
@@ -292,7 +292,7 @@ TEST_F(SilenceTest, WhoMovesMayKeepSilent) {
   EXPECT_EQ(silence["silent"], 0);
 }
 
-TEST_F(SilenceTest, ArrivalContactAndWhatIsNoNumberEndIt) {
+TEST_F(SilenceTest, ArrivalContactAndNanEndIt) {
   tick(0, false, algo::Mission::Arrived);
   EXPECT_EQ(silence.ending()->outcome, Outcome::Reached);
   silence = Watched("silence");

@@ -1,5 +1,4 @@
-// tests/server/experiment/oracle_test.cpp: contacts that could have been avoided, and those that
-// not.
+// tests/server/experiment/oracle_test.cpp: avoidable and unavoidable contacts.
 #include "server/experiment/oracle.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +20,7 @@ sim::Scenario oncoming() {
   return scenario;
 }
 
-TEST(Oracle, WhoStandsInTheWayCouldHaveDrivenOn) {
+TEST(Oracle, AStandingRobotInTheWayCouldHaveAvoidedContact) {
   const algo::RobotSpec spec{.radius = 0.35,
                              .max_v = 1,
                              .max_omega = 2,
@@ -30,13 +29,13 @@ TEST(Oracle, WhoStandsInTheWayCouldHaveDrivenOn) {
   std::vector<Moment> trail;
   for (int k = 0; k <= 60; ++k) trail.push_back({6.15 + 0.05 * k, {0, 0, 1.57}, {}});
   EXPECT_EQ(judge_contact(oncoming(), spec, trail), Contact::Avoidable);
-  // Who can hardly move could not.
+  // A robot that can hardly move could not.
   algo::RobotSpec lame = spec;
   lame.max_v = lame.max_omega = 0.01;
   EXPECT_EQ(judge_contact(oncoming(), lame, trail), Contact::Unavoidable);
 }
 
-TEST(Oracle, AnObstacleThatJumpedIsNobodysFault) {
+TEST(Oracle, AnObstacleThatJumpedIsNotTheRobotsFault) {
   const algo::RobotSpec spec{.radius = 0.35, .max_v = 1, .max_omega = 2, .max_acceleration = 2};
   std::vector<Moment> trail;
   for (int k = 0; k <= 60; ++k) trail.push_back({18.0 + 0.05 * k, {9.1, 0, 0}, {}});

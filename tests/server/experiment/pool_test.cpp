@@ -1,4 +1,4 @@
-// tests/server/experiment/pool_test.cpp: each job once, shards, and what ends a pool early.
+// tests/server/experiment/pool_test.cpp: each job once, shards, and early ends of a pool.
 #include "server/experiment/pool.hpp"
 
 #include <algorithm>
@@ -72,14 +72,14 @@ TEST(Pool, TheFirstFailureEndsTheOthersAndIsThrown) {
   const auto job = [&](std::size_t i, const std::stop_token& stop) {
     ++begun;
     if (i == 0) throw std::runtime_error("job 0 broke");
-    while (!stop.stop_requested()) std::this_thread::yield();  // hangs unless it is told
+    while (!stop.stop_requested()) std::this_thread::yield();  // hangs without a stop request
   };
   EXPECT_THAT([&] { for_each(100, {.threads = 3}, job); },
               ThrowsMessage<std::runtime_error>("job 0 broke"));
   EXPECT_LE(begun, 3);
 }
 
-TEST(Pool, IsStoppedFromOutside) {
+TEST(Pool, IsStoppedByTheCaller) {
   std::stop_source source;
   std::atomic<int> begun{0};
   for_each(100, {.threads = 2, .stop = source.get_token()}, [&](std::size_t, const auto& stop) {
@@ -89,7 +89,7 @@ TEST(Pool, IsStoppedFromOutside) {
   EXPECT_EQ(begun, 2);
 }
 
-/// As the queue of the server is: jobs come while others are at work.
+/// As in the server's queue, jobs arrive while others run.
 TEST(Pool, ASourceMayWaitForItsJobs) {
   std::mutex mutex;
   std::condition_variable_any wake;

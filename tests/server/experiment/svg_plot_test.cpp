@@ -1,4 +1,4 @@
-// tests/server/experiment/svg_plot_test.cpp: metres to pixels, and words within XML.
+// tests/server/experiment/svg_plot_test.cpp: metres to pixels, and text within XML.
 #include "server/experiment/svg_plot.hpp"
 
 #include <gmock/gmock.h>

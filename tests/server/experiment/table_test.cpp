@@ -1,4 +1,4 @@
-// tests/server/experiment/table_test.cpp: one table in each of its forms.
+// tests/server/experiment/table_test.cpp: one table in each format.
 #include "server/experiment/table.hpp"
 
 #include <filesystem>
@@ -60,13 +60,13 @@ TEST(Table, AsJsonNumbersAreNumbers) {
   EXPECT_EQ(json[1]["time s"], 7);
   EXPECT_EQ(json[0]["share"], "50 %");
   EXPECT_TRUE(json[1]["share"].is_null());
-  // A word that looks like a number stays a word.
+  // A text that looks like a number stays a text.
   const Table words{.header = {"world", "x"}, .rows = {{"7", "inf"}}, .words = 1};
   EXPECT_EQ(to_json(words)[0]["world"], "7");
   EXPECT_TRUE(to_json(words)[0]["x"].is_null());
 }
 
-TEST(Table, IsWrittenInTheFormOfItsEnding) {
+TEST(Table, FileExtensionSelectsTheFormat) {
   const auto folder =
       std::filesystem::temp_directory_path() / ("tautline_table_" + std::to_string(::getpid()));
   std::filesystem::create_directories(folder);

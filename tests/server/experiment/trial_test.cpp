@@ -1,5 +1,5 @@
-// tests/server/experiment/trial_test.cpp: a trial gives a row, and many of them the same rows
-// however they are shared out.
+// tests/server/experiment/trial_test.cpp: a trial gives a row; many trials give the same rows for
+// any distribution over threads and shards.
 #include "server/experiment/trial.hpp"
 
 #include <atomic>
@@ -59,14 +59,14 @@ TEST(Trial, GivesTheOutcomeAndTheColumnsOfItsJudges) {
   ASSERT_EQ(row.tick_us.size(), row.track_W.size());
   for (const float us : row.tick_us) EXPECT_GT(us, 0);
   EXPECT_THROW(row["beauty"], std::out_of_range);
-  // The same without clock and track.
+  // Equal apart from clock and track.
   const Row plain = run_trial(short_trial(0));
   EXPECT_TRUE(same(plain, row));
   EXPECT_TRUE(plain.track_W.empty());
   EXPECT_TRUE(plain.tick_us.empty());
 }
 
-TEST(Trial, AJudgeMayEndTheRunInItsOwnTerms) {
+TEST(Trial, AJudgeMayEndTheRun) {
   Trial trial = short_trial(0);
   trial.judges = {{.name = "barn_score", .settings = {{"goal_radius", 0.5}}}, {.name = "place"}};
   EXPECT_GT(run_trial(trial)["end_x_m"], 0.8);  // it watches only
@@ -76,7 +76,7 @@ TEST(Trial, AJudgeMayEndTheRunInItsOwnTerms) {
   EXPECT_NEAR(row["end_x_m"], 0.5, 0.05);
 }
 
-TEST(Trial, SaysWhatItsJudgesAreNot) {
+TEST(Trial, UnknownJudgesAreReported) {
   Trial trial = short_trial(0);
   trial.judges = {{.name = "beauty"}};
   EXPECT_THAT([&] { run_trial(trial); },
@@ -122,7 +122,7 @@ TEST(Trials, ShardsInterleaveToTheWhole) {
 TEST(Trials, AFailureNamesItsTrial) {
   const auto trial = [](std::size_t i) {
     Trial each = short_trial(i);
-    // Something stands where the robot begins.
+    // An obstacle stands at the start.
     if (i == 2) each.spec.scenario.obstacles.front().pose_W = {0, 0, 0};
     return each;
   };
@@ -130,7 +130,7 @@ TEST(Trials, AFailureNamesItsTrial) {
               ThrowsMessage<std::runtime_error>(HasSubstr("short, seed 3: Obstacle 1")));
 }
 
-TEST(Trials, WhatAStopLeavesOutIsStopped) {
+TEST(Trials, TrialsSkippedByAStopAreMarkedStopped) {
   std::stop_source source;
   const auto trial = [&](std::size_t i) {
     if (i == 1) source.request_stop();
@@ -171,7 +171,7 @@ Series two_runs() {
           {run(Outcome::Reached, 10, 0.70, 0.01), run(Outcome::Stuck, 20, 0.60, 0.05)}};
 }
 
-TEST(Series, MeansWorstAndLeastAsTheColumnsSay) {
+TEST(Series, ColumnsSelectMeanMaximumOrMinimum) {
   const Series series = two_runs();
   EXPECT_DOUBLE_EQ(figure(series, "time_s"), 15);
   EXPECT_DOUBLE_EQ(figure(series, "min_clearance_m"), 0.6);
@@ -193,7 +193,7 @@ TEST(Series, MeansWorstAndLeastAsTheColumnsSay) {
   EXPECT_THROW(figure(series, "path_m"), std::out_of_range);
 }
 
-TEST(Series, InJsonWhatIsNotFiniteIsNull) {
+TEST(Series, NonFiniteNumbersAreNullInJson) {
   Series series = two_runs();
   for (Row& run : series.runs) run.figures[1].second = std::numeric_limits<double>::infinity();
   const nlohmann::json json = figures_json(series);

@@ -1,10 +1,10 @@
-// tests/server/experiment/unchanged_runs_test.cpp: the measure of "nothing changed": a hash over
-// what every tick sensed, was asked, commanded and held, in each built-in scenario with each
-// controller and two seeds.
+// tests/server/experiment/unchanged_runs_test.cpp: the check that behaviour is unchanged: a hash
+// over the observation, requests, command and hold of every tick, in each built-in scenario with
+// each controller and two seeds.
 //
-// The hash is taken over values, not over how they are encoded, so that moving code, opening types
-// and changing the wire leave it as it is. What changes it on purpose is a commit of its own, with
-// the new hashes: TAUTLINE_WRITE_HASHES=1 writes tests/golden/run_hashes.json anew.
+// The hash covers values, not their encoding, so moving code or changing the wire format does not
+// change it. An intended change is a commit of its own with new hashes: TAUTLINE_WRITE_HASHES=1
+// rewrites tests/golden/run_hashes.json.
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -32,7 +32,7 @@
 
 namespace {
 
-/// FNV-1a over values, each in a width of its own.
+/// FNV-1a over values, each with a fixed width.
 class Hash {
  public:
   void add(std::uint64_t value) {
@@ -162,7 +162,7 @@ void add(Hash& hash, const algo::Telemetry& t) {
 
 constexpr double kSpan = 18;  // [s] of each run
 
-/// What somebody does meanwhile, so that gate, stick and edits are in the hash too.
+/// An operator's requests during the run, so that the hash covers gate, stick and edits too.
 std::vector<std::pair<double, algo::Request>> script(const algo::Pose2& start_W) {
   algo::Obstacle post{.id = 9000, .shape = algo::Cylinder{.radius = 0.1}};
   post.pose_W = algo::compose(start_W, {.x = 2.0, .y = 1.5});
@@ -205,8 +205,8 @@ std::uint64_t hash_of(const server::RunSpec& spec) {
   return hash.value();
 }
 
-/// What this machine's mathematical library makes of some numbers: the last bit of a sine differs
-/// between processors, and after ten seconds of driving so does the place.
+/// A fingerprint of this machine's mathematical library: the last bit of a sine differs between
+/// processors, and after ten seconds of driving so does the pose.
 std::string arithmetic() {
   Hash hash;
   for (int i = 1; i < 20'000; ++i) {
@@ -256,7 +256,7 @@ TEST(UnchangedRuns, SenseAskCommandAndHoldWhatTheyDid) {
       try {
         spec = server::make_spec(library.load(job.scenario), overrides);
       } catch (const std::exception& e) {
-        text = e.what();  // a controller that cannot drive this robot says so, and that too stays
+        text = e.what();  // a refusal to drive this robot is compared too
         break;
       }
       text += fmt::format("{}{:016x}", text.empty() ? "" : " ", hash_of(spec));

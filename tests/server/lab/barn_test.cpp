@@ -55,7 +55,7 @@ TEST(BarnFile, ReadsPostsAndMovingCylinders) {
   EXPECT_EQ(moving.paths[0].at(5), algo::Vec2(4, 0));
 }
 
-TEST(BarnFile, SaysWhatIsWrongAndWhere) {
+TEST(BarnFile, NamesTheErrorAndItsPlace) {
   json document = lane();
   document["worlds"][0]["goal"] = {1, "two"};
   EXPECT_EQ(complaint(document).substr(0, 15), "worlds/0/goal/1");
@@ -118,7 +118,7 @@ TEST(BarnRun, ScoresByTheOfficialFormula) {
   EXPECT_GT(sum.tick_us_p99, 0);
 }
 
-/// 600 successes summed up as sixhundredths once came to more than 1.
+/// Summing 600 times 1/600 once gave a rate above 1.
 TEST(BarnRun, RatesAreFractionsOfOne) {
   Result result;
   result.runs.resize(600);
@@ -176,8 +176,8 @@ TEST(BarnRun, AShardHasItsOwnWorldsAndSeeds) {
   EXPECT_EQ(table.rows[1][2], "reached");
 }
 
-/// It stands in the way of what comes, and the contact is judged with the rest.
-TEST(BarnRun, AContactWithWhatMovesIsJudgedWithHindsight) {
+/// The robot stands in the way of a moving obstacle, and the contact is judged with the others.
+TEST(BarnRun, AContactWithAMovingObstacleIsJudgedWithHindsight) {
   json document = crossing();
   document["worlds"][0]["obstacles"][0]["keys"] = {{0, 8, 0}, {10, -8, 0}, {20, 8, 0}};
   Options options;

@@ -46,7 +46,7 @@ TEST(Bottleneck, TheGapIsTheOnlyWay) {
     const sim::Scenario scene = bottleneck(gap);
     const Vec2 goal = scene.goal->position_W;
     EXPECT_NEAR(nearest_surface(scene.obstacles, {goal.x() / 2, 0}), gap / 2, 1e-9);
-    // Along the parting wall everything but the gap is within an obstacle.
+    // Along the dividing wall everything except the gap lies within an obstacle.
     for (int mm = -4000; mm <= 4000; mm += 50) {
       const double y = mm / 1000.0;
       const double distance = nearest_surface(scene.obstacles, {goal.x() / 2, y});
@@ -55,7 +55,7 @@ TEST(Bottleneck, TheGapIsTheOnlyWay) {
     for (const Vec2& place : {Vec2(0, 0), goal}) {
       EXPECT_GT(nearest_surface(scene.obstacles, place), 1.35);
     }
-    // The hall has no door: a ring round it, inside the walls' thickness, is solid.
+    // The hall has no door: a closed ring within the thickness of its walls is solid.
     for (int mm = -2000; mm <= 8000; mm += 50) {
       EXPECT_LT(nearest_surface(scene.obstacles, {mm / 1000.0, 4.1}), 0);
       EXPECT_LT(nearest_surface(scene.obstacles, {mm / 1000.0, -4.1}), 0);
@@ -75,7 +75,7 @@ TEST(Contestants, ThoseThatCanAlsoDriveBySonar) {
   const std::vector<std::string> unknown{"vfg"};
   EXPECT_THROW(contestants(unknown), std::runtime_error);
   for (const Contestant& each : contestants({})) {
-    const RunSpec spec = make_run(bottleneck(1.0), each, 3);  // refuses who needs a laser
+    const RunSpec spec = make_run(bottleneck(1.0), each, 3);  // refuses laser controllers
     EXPECT_EQ(spec.scenario.robot.sensors.has_laser(), each.sensing == Sensing::Laser);
     EXPECT_EQ(spec.seed, 3U);
   }
@@ -152,7 +152,7 @@ Series row(const char* scene, const char* contestant, std::vector<Row> runs) {
   return {scene, contestant, std::move(runs)};
 }
 
-/// The bottlenecks of `contestant`, one run each: a letter a gap.
+/// The bottlenecks of `contestant`, one run each: one letter per gap.
 void add_bottlenecks(std::vector<Series>& rows, const char* contestant, std::string_view letters) {
   const std::vector<double> gaps = bottleneck_gaps();
   for (std::size_t i = 0; i < letters.size(); ++i) {
@@ -188,7 +188,7 @@ TEST(Passage, TheSmallestGapFromWhichAllAreReached) {
   EXPECT_EQ(passage_of(rows, "dwa").runs, 0U);
 }
 
-TEST(Findings, BottlenecksTrapWhatIsStuckBySomeGapInEveryRun) {
+TEST(Findings, BottlenecksTrapAControllerStuckAtSomeGapInEveryRun) {
   std::vector<Series> rows;
   add_bottlenecks(rows, "vff", "ssrrrrrrr");
   add_bottlenecks(rows, "vff by sonar", "ttrrrrrrr");
@@ -215,17 +215,17 @@ struct PausingWorlds : ::testing::Test {
   Verdict vff() { return about(judge(rows, {}), "VFF").verdict; }
 };
 
-TEST_F(PausingWorlds, EdgeDetectionStopsWhereItsWayIsBlocked) {
+TEST_F(PausingWorlds, EdgeDetectionStopsWhereItsPathIsBlocked) {
   EXPECT_EQ(edge(), Verdict::Reproduced);  // case2, where nothing is in the way, does not count
   rows[4].runs[0] = ended(Outcome::Reached, 3);
   EXPECT_EQ(edge(), Verdict::InPart);  // another one rests longer
   rows[4].runs[0] = ended(Outcome::Stuck, 3);
-  EXPECT_EQ(edge(), Verdict::Reproduced);  // being trapped is another claim's business
+  EXPECT_EQ(edge(), Verdict::Reproduced);  // another claim covers trapped runs
   rows[2].runs[0] = ended(Outcome::Reached, 0);
   EXPECT_EQ(edge(), Verdict::NotReproduced);
 }
 
-TEST_F(PausingWorlds, VffDoesNotStopWhenNoRunPausesOrIsStuck) {
+TEST_F(PausingWorlds, VffDoesNotStopIfNoRunPausesOrSticks) {
   EXPECT_EQ(vff(), Verdict::InPart);
   rows[4].runs[0] = ended(Outcome::OutOfTime);
   EXPECT_EQ(vff(), Verdict::Reproduced);
@@ -235,11 +235,11 @@ TEST_F(PausingWorlds, VffDoesNotStopWhenNoRunPausesOrIsStuck) {
   EXPECT_EQ(vff(), Verdict::NotReproduced);
 }
 
-TEST(Findings, WithoutRunsThereIsNothingToSay) {
+TEST(Findings, WithoutRunsThereIsNoVerdict) {
   EXPECT_TRUE(judge({}, {}).empty());
 }
 
-TEST(StripOnLayouts, NinetyNineOfAHundredAndNoCollision) {
+TEST(StripOnLayouts, NinetyNinePercentAndNoCollisionPass) {
   LayoutSet set;
   set.paper = {row("random-2-0001", "strip", std::vector<Row>(99, ended(Outcome::Reached))),
                row("random-2-0001", "original", {ended(Outcome::Collided)})};
@@ -254,7 +254,7 @@ TEST(StripOnLayouts, NinetyNineOfAHundredAndNoCollision) {
 
 // ---- documents and the whole -------------------------------------------------------------------
 
-TEST(Marked, OnlyWhatLiesBetweenTheMarksIsReplaced) {
+TEST(Marked, OnlyTextBetweenTheMarksIsReplaced) {
   std::string text = "a <1> old <2> b";
   EXPECT_TRUE(reproduce::replace_marked(text, {"<1>", "<2>"}, "<1> new <2>"));
   EXPECT_EQ(text, "a <1> new <2> b");
@@ -282,7 +282,7 @@ TEST(Compare, TheBlindOneFromEndToEnd) {
   const nlohmann::json document = to_json(comparison);
   EXPECT_EQ(document["bottlenecks"].size(), 18U);
   EXPECT_EQ(document["random_layouts"][2]["obstacles"], 4);
-  // A judge that was asked for adds its columns, and one that is there already none.
+  // A requested judge adds its columns, unless it is included already.
   EXPECT_GT(document["bottlenecks"][0]["metrics"]["barn_score"], 0.0);
   const experiment::Table rows = rows_table(comparison);
   EXPECT_EQ(rows.rows.size(), 18U);

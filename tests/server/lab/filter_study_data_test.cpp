@@ -39,9 +39,9 @@ TEST(FilterStudyData, EveryScanIsReadInTheDevicesOwnStep) {
   EXPECT_THAT(steps, ElementsAre(10, 10, 1));
 }
 
-/// On real scans too the pseudomedian leaves outliers that lulu takes away, keeps edges and makes
-/// up values; the mean blurs.
-TEST(FilterStudyData, FiltersDoToRealScansWhatTheyDoToSignals) {
+/// On real scans too, the pseudomedian leaves outliers that lulu removes, keeps edges and gives
+/// values that were not measured; the mean blurs.
+TEST(FilterStudyData, FiltersActOnRealScansAsOnSignals) {
   const auto filters = study_filters_table();
   for (const Recording& each : recordings()) {
     for (const int N : {1, 2}) {

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using Samples = std::vector<double>;
 namespace fs = std::filesystem;
 
-/// The study without recordings; made once, it is the same each time but for the cost.
+/// The study without recordings, made once: only the cost differs between repetitions.
 const FilterStudy& study() {
   static const FilterStudy made = study_filters({});
   return made;
@@ -62,7 +62,7 @@ TEST(FilterReferences, AnInvalidSampleNeverEntersTheMean) {
   EXPECT_THAT(out_valid, ElementsAre(1, 1, 0, 1, 1));
 }
 
-/// What cost is measured against must be the same filter.
+/// The baseline of the cost must be the same filter.
 TEST(FilterReferences, TextbookFormsEqualTheProduct) {
   sim::Random random(1);
   Samples in(200);
@@ -77,13 +77,13 @@ TEST(FilterReferences, TextbookFormsEqualTheProduct) {
 }
 
 TEST(FilterReferences, EquationOneAsPrintedIsAnotherFilter) {
-  // N = 1: the one group is [1..2], so the result is the mean of a sample and the one before it.
+  // N = 1: the only group is [1..2], so the result is the mean of a sample and its predecessor.
   EXPECT_THAT(pseudomedian_as_printed(Samples{0, 0, 1, 1, 5}, 1), ElementsAre(0, 0, 0.5, 1, 3));
 }
 
 // ---- The figures ----
 
-TEST(FilterFigures, OfASpikeAndAnEdgeByHand) {
+TEST(FilterFigures, ASpikeAndAnEdgeByHand) {
   FilterScene scene{.name = "", .title = "", .half_width = 1, .spikes = {{5, 3000}}};
   scene.truth_mm.assign(40, 1000);
   std::fill(scene.truth_mm.begin() + 20, scene.truth_mm.end(), 2000);
@@ -93,7 +93,7 @@ TEST(FilterFigures, OfASpikeAndAnEdgeByHand) {
   Samples after = scene.before_mm;
   after[5] = 2000;     // half of the spike
   after[20] = 1000;    // the edge one beam later
-  after[30] = 2000.5;  // made up
+  after[30] = 2000.5;  // not a measured value
   const FilterFigures figures = judge_scene(scene, "some", after, 1);
   EXPECT_EQ(figures.impulses, 1);
   EXPECT_EQ(figures.height_left, 0.5);
@@ -104,7 +104,7 @@ TEST(FilterFigures, OfASpikeAndAnEdgeByHand) {
   EXPECT_NEAR(*figures.rms_mm, std::sqrt((2e6 + 0.25) / 40), 1e-9);
 }
 
-TEST(FilterFigures, AnEdgeThatIsGoneCountsAsFarOff) {
+TEST(FilterFigures, ALostEdgeCountsAsFarAway) {
   FilterScene scene{.name = "", .title = "", .half_width = 1};
   scene.truth_mm.assign(40, 1000);
   std::fill(scene.truth_mm.begin() + 20, scene.truth_mm.end(), 2000);
@@ -148,7 +148,7 @@ TEST(FilterScenes, AreThoseOfTheThesis) {
     for (std::size_t i = 0; i < 360; ++i) {
       EXPECT_EQ(scene.before_mm[i], std::nearbyint(scene.before_mm[i])) << "whole millimetres";
     }
-    // One edge either side of each obstacle.
+    // One edge on either side of each obstacle.
     const FilterFigures before = judge_scene(scene, "before", scene.before_mm, scene.half_width);
     EXPECT_EQ(before.impulses, static_cast<double>(scene.spikes.size())) << scene.title;
     EXPECT_EQ(before.edge_blur, 0) << scene.title;
@@ -217,7 +217,7 @@ TEST(FilterStudy, VerdictsFollowTheFigures) {
   // The cost has no expected verdict: it is measured.
 }
 
-/// The rules decide, not the names: a study in which the filter does nothing loses its verdicts.
+/// The figures decide the verdicts: in a study with a filter that does nothing, the claims fail.
 TEST(FilterStudy, VerdictsTurnWhenTheFiguresDo) {
   FilterStudy changed = study();
   for (SignalResult& each : changed.signals) {
@@ -239,7 +239,7 @@ TEST(FilterStudy, VerdictsTurnWhenTheFiguresDo) {
   EXPECT_EQ(judge_claims(changed).at(8).verdict, Verdict::NotReproduced);
 }
 
-TEST(FilterStudy, IsTheSameEachTimeButForTheCost) {
+TEST(FilterStudy, RepeatsExactlyExceptForTheCost) {
   json first = to_json(study());
   FilterStudy again = study_filters({});
   again.cost = study().cost;
@@ -247,7 +247,7 @@ TEST(FilterStudy, IsTheSameEachTimeButForTheCost) {
   EXPECT_EQ(first, to_json(again));
 }
 
-TEST(FilterStudy, SaysWhenNoRecordingsWereGiven) {
+TEST(FilterStudy, ReportsMissingRecordings) {
   EXPECT_TRUE(study().example.simulated);
   EXPECT_THAT(to_text(study()), HasSubstr("No folder of recordings was given"));
   EXPECT_THAT(to_markdown(study(), "pictures"), HasSubstr("No folder of recordings was given"));
@@ -255,7 +255,7 @@ TEST(FilterStudy, SaysWhenNoRecordingsWereGiven) {
   for (const json& each : document.at("recordings")) EXPECT_EQ(each.at("simulated"), true);
 }
 
-/// A folder of its own for one test.
+/// A temporary folder for one test.
 class FilterStudyFiles : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
-// tests/server/lab/map_data_test.cpp: a real log, spoilt and matched: a part of it, the whole is
-// docs/mapping.md.
+// tests/server/lab/map_data_test.cpp: part of a real log with added errors, matched;
+// docs/mapping.md has the whole log.
 #include <filesystem>
 
 #include "tests/folders.hpp"
@@ -10,7 +10,7 @@
 namespace server::mapping {
 namespace {
 
-TEST(MapData, FreiburgIsHeldTogetherByItsScans) {
+TEST(MapData, ScanMatchingCorrectsTheFreiburgMap) {
   constexpr std::size_t kScans = 700;
   const std::filesystem::path folder = tests::shared_data();
   Recording log = read_recording(folder / "laser/freiburg-079-first2000.log");

@@ -18,14 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 using algo::Pose2;
 
-/// `count` poses 1 m apart along x, each turned by `turn` against the one before when walked on.
+/// `count` poses at steps of 1 m, each turned by `turn` from the previous one.
 std::vector<Pose2> straight(int count, double scale = 1) {
   std::vector<Pose2> path;
   for (int k = 0; k < count; ++k) path.push_back({scale * k, 0, 0});
   return path;
 }
 
-TEST(PathError, OfAScaleIsThatShareOfThePiece) {
+TEST(PathError, AScaleErrorIsThatShareOfThePiece) {
   // 21 poses: a piece of 10 m from each of the first 11, estimated 10.2 m; the end 0.4 m off.
   const PathError error = path_error(straight(21), straight(21, 1.02));
   EXPECT_EQ(error.pieces, 11U);
@@ -36,7 +36,7 @@ TEST(PathError, OfAScaleIsThatShareOfThePiece) {
   EXPECT_NEAR(error.turn_10m, 0, 1e-12);
 }
 
-TEST(PathError, DoesNotChargeAPieceWithWhatWentWrongBefore) {
+TEST(PathError, EarlierErrorsDoNotCountForAPiece) {
   std::vector<Pose2> bent = straight(21);
   for (Pose2& pose : bent) pose = algo::compose({0, 0, 0.3}, pose);
   const PathError error = path_error(straight(21), bent);
@@ -44,7 +44,7 @@ TEST(PathError, DoesNotChargeAPieceWithWhatWentWrongBefore) {
   EXPECT_NEAR(error.end, 2 * 20 * std::sin(0.15), 1e-12);
 }
 
-TEST(PathError, OfAShortPathHasNoPieces) {
+TEST(PathError, AShortPathHasNoPieces) {
   const PathError error = path_error(straight(5), straight(5, 2));
   EXPECT_EQ(error.pieces, 0U);
   EXPECT_EQ(error.rms_10m, 0);
@@ -53,7 +53,7 @@ TEST(PathError, OfAShortPathHasNoPieces) {
   EXPECT_THROW(path_error(straight(5), straight(4)), std::invalid_argument);
 }
 
-/// Scans of a wall 2 m ahead, taken on the way along it.
+/// Scans of a wall 2 m ahead from a drive along it.
 std::vector<algo::LaserScan> scans_of_a_wall(std::size_t count) {
   algo::LaserScan scan;
   scan.angle_min = std::numbers::pi / 2 - 0.5;
@@ -125,7 +125,7 @@ TEST_F(MapStudyOfALog, WithoutErrorsThePathIsTheLogs) {
   EXPECT_FALSE(json["runs"][0].contains("matched"));
 }
 
-TEST_F(MapStudyOfALog, EachSeedSpoilsInItsOwnWayAndRepeatsItself) {
+TEST_F(MapStudyOfALog, EachSeedGivesItsOwnErrorsAndRepeatsThem) {
   const Recording log = read_recording(folder_ / "corridor.log");
   MapOptions options;
   options.errors = {.odometry_scale = 0.02, .odometry_noise = 0.01, .odometry_slip = 0.05};
@@ -147,7 +147,7 @@ TEST_F(MapStudyOfALog, EachSeedSpoilsInItsOwnWayAndRepeatsItself) {
   }
 }
 
-TEST_F(MapStudyOfALog, ThePageKeepsWhatStandsAroundTheTables) {
+TEST_F(MapStudyOfALog, ThePageKeepsTheTextAroundTheTables) {
   const fs::path page = folder_ / "docs" / "mapping.md";
   fs::create_directories(page.parent_path());
   std::ofstream(page) << "# Maps\n\nBefore.\n";
@@ -166,7 +166,7 @@ TEST_F(MapStudyOfALog, ThePageKeepsWhatStandsAroundTheTables) {
   EXPECT_THAT(picture.str(), testing::EndsWith("</svg>\n"));
 }
 
-TEST_F(MapStudyOfALog, WhatIsWrongIsSaidInASentence) {
+TEST_F(MapStudyOfALog, ErrorsAreSentences) {
   EXPECT_THROW(read_recording(folder_ / "nothing.log"), std::runtime_error);
   MapOptions options;
   options.errors.odometry_slip = 1;

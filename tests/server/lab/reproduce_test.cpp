@@ -84,7 +84,7 @@ TEST(StudyFile, TheEmbeddedOneIsRead) {
   EXPECT_THAT(file.sweeps[1].values, ElementsAre(0.1, 0.2, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2));
 }
 
-/// The nine scenes are built in as well, for the page: the same world, twice written down.
+/// The nine scenes are also built in for the page: both definitions must give the same world.
 TEST(StudyFile, ItsScenariosAreTheBuiltInOnes) {
   const ScenarioLibrary library("", "");
   for (const sim::Scenario& ours : embedded_study_file().scenarios) {
@@ -157,7 +157,7 @@ TEST(StudyFile, AMalformedOneSaysWhere) {
   EXPECT_THAT(complaint_with("/sweeps/0/values", {1}), HasSubstr("sweeps/0/values: must be two"));
 }
 
-TEST(StudyFile, AScenarioThatCannotBeRunIsSaidBeforeAnyRun) {
+TEST(StudyFile, AnInvalidScenarioIsReportedBeforeAnyRun) {
   json overlapping = paper();
   overlapping["scenarios"][1]["obstacles"][0] = {
       {"id", 1}, {"type", "cylinder"}, {"x", 0.3}, {"y", 0}, {"radius", 0.1}};
@@ -195,7 +195,7 @@ Series two_runs(const char* reading) {
 
 // ---- the limits --------------------------------------------------------------------------------
 
-TEST(Accept, ALimitThatFailsIsSaidWithItsFigure) {
+TEST(Accept, AFailedLimitIsReportedWithItsFigure) {
   const auto asked = [](Limit limit) {
     limit.scenario = "case1";
     limit.controller = "modified";
@@ -236,7 +236,7 @@ TEST(Accept, AComparisonIsStrict) {
   EXPECT_TRUE(all_held(evaluate(file, rows, {})));
   EXPECT_EQ(evaluate(file, rows, {})[0].subject, "modified < original");
   rows.pop_back();
-  EXPECT_FALSE(all_held(evaluate(file, rows, {})));  // nothing to compare with
+  EXPECT_FALSE(all_held(evaluate(file, rows, {})));  // no rows to compare with
 }
 
 TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
@@ -254,12 +254,12 @@ TEST(Claims, OnlyWithOurExtensionWhenNoPrintedReadingHolds) {
   EXPECT_THAT(claims[0].held_by, ElementsAre("modified"));
   rows[1].runs[0].outcome = Outcome::Reached;
   EXPECT_EQ(judge_claims(rows)[0].verdict, Verdict::Reproduced);
-  rows[0].runs[0].outcome = Outcome::Reached;  // the original is not stuck: nothing of it holds
+  rows[0].runs[0].outcome = Outcome::Reached;  // the original is not stuck: no claim holds
   EXPECT_EQ(judge_claims(rows)[0].verdict, Verdict::NotReproduced);
 }
 
 /// exp1's goal is 773 mm from the cylinder, and a run may end 100 mm beyond it.
-TEST(FullStrip, IsNotBlamedForWhereAGoalLies) {
+TEST(FullStrip, IntrusionDueToTheGoalIsReportedApart) {
   const Depths least = least_depths(embedded_study_file());
   EXPECT_NEAR(least.at("exp1"), 0.127, 0.001);
   EXPECT_EQ(least.at("case1"), 0);
@@ -268,7 +268,7 @@ TEST(FullStrip, IsNotBlamedForWhereAGoalLies) {
               HasSubstr("exp1 by 159 mm (127 mm at least"));
 }
 
-TEST(FullStrip, IsHeldAgainstTheReadingsThatReach) {
+TEST(FullStrip, IsComparedWithTheReadingsThatReach) {
   const auto row = [](const char* reading, Outcome outcome, double turning, double time) {
     Series made{"case1", reading, {run_of(outcome, time, 1, 1, 0)}};
     set(made.runs[0], "turning_rad", turning);
@@ -290,7 +290,7 @@ TEST(FullStrip, IsHeldAgainstTheReadingsThatReach) {
   EXPECT_THAT(strip_sentences(strip_beside(strip, readings)), HasSubstr("every run: case1"));
 }
 
-TEST(Sweeps, RisingAllowsTheNoiseAtAStepAndWantsMoreInAll) {
+TEST(Sweeps, RisingAllowsNoisePerStepButNeedsATotalRise) {
   EXPECT_TRUE(rises({100, 110, 200}, 15));
   EXPECT_TRUE(rises({100, 90, 200}, 15));
   EXPECT_FALSE(rises({100, 80, 200}, 15));

@@ -1,4 +1,4 @@
-// tests/server/lab/soak_test.cpp: random worlds, their truth, and a few of them driven.
+// tests/server/lab/soak_test.cpp: random worlds, their true reachability, and runs in a few.
 #include "server/lab/soak/soak.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ TEST(RandomWorld, IsTheSameForTheSameSeedAndAValidScenario) {
   EXPECT_NE(to_json(random_world(1, "strip")), to_json(random_world(2, "strip")));
 }
 
-TEST(RandomWorld, AClosedDoorIsNoWay) {
+TEST(RandomWorld, AClosedDoorIsNoPath) {
   sim::Scenario world;
   algo::Obstacle wall;
   wall.id = 1;
@@ -31,11 +31,11 @@ TEST(RandomWorld, AClosedDoorIsNoWay) {
   world.obstacles.push_back(wall);
   EXPECT_FALSE(reachable(world, {-2, 0}, {2, 0}, 0.35, 0.1));
   EXPECT_TRUE(reachable(world, {-2, 0}, {-3, 3}, 0.35, 0.1));
-  world.obstacles[0].shape = algo::Wall{8, 0.1};  // it ends within the room
+  world.obstacles[0].shape = algo::Wall{8, 0.1};  // the wall ends within the room
   EXPECT_TRUE(reachable(world, {-2, 0}, {2, 0}, 0.35, 0.1));
 }
 
-TEST(Soak, NothingThatMustNotHappenDoes) {
+TEST(Soak, NoForbiddenOutcomeOccurs) {
   const std::vector<World> worlds = run_worlds({.worlds = 3});
   for (const World& world : worlds) {
     EXPECT_FALSE(is_fault(world.row))
@@ -48,8 +48,8 @@ TEST(Soak, NothingThatMustNotHappenDoes) {
   EXPECT_EQ(counted, 3);
 }
 
-/// It backed, in these, into what its scanner had never looked at.
-TEST(Soak, WorldsWhereTheRobotOnceBackedIntoTheUnseen) {
+/// In these worlds the robot once backed into space that its scanner had never seen.
+TEST(Soak, WorldsOfFormerCollisionsInReverse) {
   for (const std::uint64_t seed : {227U, 350U, 509U}) {
     const experiment::Row row = run_trial(trial_of(seed, "strip"));
     EXPECT_EQ(ending(row), "reached") << seed << ": " << row.reason;

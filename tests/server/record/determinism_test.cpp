@@ -1,5 +1,5 @@
-// tests/server/record/determinism_test.cpp: same spec, same run; a record fed back gives the same
-// commands.
+// tests/server/record/determinism_test.cpp: the same spec gives the same run; a replayed record
+// gives the same commands.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -55,7 +55,7 @@ TEST(Determinism, TheSameSpecGivesTheSameBytesAndAnotherSeedOthers) {
   }
 }
 
-/// Keeps frames as a run's record does, one of them changed on the way.
+/// Keeps frames like a run's record, with one of them changed.
 class TamperingSink final : public FrameSink {
  public:
   TamperingSink(std::shared_ptr<RunChannel> channel, std::uint64_t tick)
@@ -210,7 +210,7 @@ TEST_F(RecordedRun, AGapOrACutIsIncompleteAndSaysSo) {
   EXPECT_EQ(verify(cut).incomplete, "It was cut.");
 }
 
-TEST_F(RecordedRun, WhateverWasAcceptedIsVerified) {
+TEST_F(RecordedRun, EveryAcceptedRunIsVerified) {
   RunSpec spec = case1("kinematic");
   spec.scenario.period = 0.5;
   spec.scenario.drive.delay_ticks = 100;      // 50 s
@@ -228,7 +228,7 @@ TEST_F(RecordedRun, WhateverWasAcceptedIsVerified) {
   EXPECT_EQ(verification.incomplete, std::nullopt);
 }
 
-TEST_F(RecordedRun, AnUnknownRunIsSaidToBeMissing) {
+TEST_F(RecordedRun, AnUnknownRunIsReportedMissing) {
   const db::RunId run = record(case1("kinematic"), {});
   EXPECT_THROW(verify(run + 1), std::runtime_error);
 }

@@ -1,4 +1,4 @@
-// tests/server/record/encoded_frame_test.cpp: one encoding for all who want it.
+// tests/server/record/encoded_frame_test.cpp: one encoding shared by all readers.
 #include "server/record/encoded_frame.hpp"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// tests/server/record/filtered_scans_test.cpp: the scans made anew from a stored run are those that
-// its controller saw, beam for beam.
+// tests/server/record/filtered_scans_test.cpp: the scans recomputed from a stored run equal those
+// of its controller, beam for beam.
 #include "server/record/filtered_scans.hpp"
 
 #include <cstddef>
@@ -30,7 +30,7 @@ class FilteredScansTest : public test::StoreFiles {
  protected:
   static constexpr std::uint64_t kTicks = 400;
 
-  /// Drives `scenario`, changing the filter on the way; keeps what its controller saw.
+  /// Drives `scenario` with filter changes; keeps the scans of its controller.
   void drive(const char* scenario) {
     const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load(scenario), {});
     const std::unique_ptr<algo::Robot> robot = make_robot(spec);
@@ -88,7 +88,7 @@ class FilteredScansTest : public test::StoreFiles {
   std::size_t entered = 0;      // beams much nearer than the laser's
 };
 
-TEST_F(FilteredScansTest, AreThoseThatTheControllerSaw) {
+TEST_F(FilteredScansTest, AreTheScansOfTheController) {
   drive("sensors");
   EXPECT_GT(entered, 0U) << "sonar and infrared entered nothing: the test says little";
   FilteredScans scans = scans_of_run();
@@ -97,7 +97,7 @@ TEST_F(FilteredScansTest, AreThoseThatTheControllerSaw) {
   expect_seen(found, 0);
 }
 
-TEST_F(FilteredScansTest, BeginAnywhereAndGoOnOrBack) {
+TEST_F(FilteredScansTest, CanStartAnywhereAndSeekForwardOrBack) {
   drive("sensors");
   FilteredScans scans = scans_of_run();
   for (const std::uint64_t from : {231U, 281U, 300U, 90U, 99U, 229U, 0U}) {

@@ -1,5 +1,5 @@
-// tests/server/record/frame_codec_test.cpp: what a pipeline needs comes back bit for bit; garbage
-// does not.
+// tests/server/record/frame_codec_test.cpp: the data that a pipeline needs decode bit for bit;
+// garbage is refused.
 #include "server/record/frame_codec.hpp"
 
 #include <algorithm>
@@ -160,7 +160,7 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   }
 }
 
-TEST(FrameCodec, StampsOfTheirOwnAndThoseOfTheFrameComeBack) {
+TEST(FrameCodec, OwnStampsAndFrameStampsComeBack) {
   algo::Telemetry t = full_telemetry();
   algo::Observation& o = t.observation;
   for (const double own : {0.0, 1e-9}) {
@@ -175,7 +175,7 @@ TEST(FrameCodec, StampsOfTheirOwnAndThoseOfTheFrameComeBack) {
   }
 }
 
-TEST(FrameCodec, WhatARobotLacksTakesNoByte) {
+TEST(FrameCodec, AbsentSensorsTakeNoByte) {
   algo::Telemetry t = full_telemetry();
   FrameEncoder encoder;
   const std::size_t whole = encoder.encode(t).size();
@@ -219,7 +219,7 @@ TEST(FrameCodec, AScannerUnlikeTheDefaultComesBack) {
   }
 }
 
-TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
+TEST(FrameCodec, LayersAndMeasuresAreReadable) {
   algo::Telemetry t = full_telemetry();
   algo::Layer& grid = add_layer(t.output.layers, kGrid);
   put(grid, algo::Vec2{-1.5, 2}, 0.125, 3);
@@ -258,7 +258,7 @@ TEST(FrameCodec, LayersAndMeasuresAreThereForTheirReaders) {
   EXPECT_EQ(frame.more()->Get(1)->text()->str(), "here");
 }
 
-TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
+TEST(FrameCodec, LayerValuesAreRoundedToDisplayPrecision) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   algo::Telemetry t;
   algo::Layer& layer = add_layer(t.output.layers, kStrip);
@@ -278,8 +278,8 @@ TEST(FrameCodec, ValuesOfLayersAreRoundedToWhatPeopleSee) {
   EXPECT_TRUE(std::ranges::equal(narrow, expected));
 }
 
-/// One value that needs more than 16 bits takes the whole frame along.
-TEST(FrameCodec, WhatDoesNotFitInto16BitsIsWide) {
+/// One value beyond 16 bits makes the whole frame wide.
+TEST(FrameCodec, ValuesBeyond16BitsAreStoredWide) {
   const auto is_wide = [](const algo::Telemetry& t) {
     FrameEncoder encoder;
     const wire::Frame& frame = read(encoder, t);
@@ -321,8 +321,8 @@ TEST(FrameCodec, RoundingGivesTheNearestStepAndTheEvenOneOfTwo) {
   }
 }
 
-/// What the encoder keeps of the tick before changes no byte.
-TEST(FrameCodec, LayersThatComeAndGoAreWrittenAsByAFreshEncoder) {
+/// The encoder's state from the previous tick changes no byte.
+TEST(FrameCodec, ChangingLayersEncodeAsWithAFreshEncoder) {
   FrameEncoder kept;
   algo::Telemetry t = full_telemetry();
   const auto expect_same = [&](const char* what) {
@@ -352,7 +352,7 @@ TEST(FrameCodec, LayersThatComeAndGoAreWrittenAsByAFreshEncoder) {
   expect_same("with none");
 }
 
-TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
+TEST(FrameCodec, UnchangedWordsAreLeftOut) {
   algo::Telemetry t = full_telemetry();
   t.words_fresh = t.legend_fresh = false;
   FrameEncoder encoder;
@@ -367,7 +367,7 @@ TEST(FrameCodec, WordsThatAreNotNewAreLeftOut) {
   t.words_fresh = false;
   algo::Telemetry back;
   decode_frame(encoder.encode(full_telemetry()), back);
-  decode_frame(encoder.encode(t), back);  // nothing of it stays
+  decode_frame(encoder.encode(t), back);  // no old value stays
   EXPECT_FALSE(back.words_fresh);
   EXPECT_TRUE(back.words.what.empty());
 }
@@ -401,14 +401,14 @@ TEST(FrameCodec, AScanOnItsOwnIsAMessage) {
   EXPECT_EQ(read.stamp(), scan.stamp);
 }
 
-TEST(FrameCodec, AFrameReadsWhereverItLies) {
+TEST(FrameCodec, AFrameIsReadableAtAnyAlignment) {
   FrameEncoder encoder;
   const auto bytes = encoder.encode(full_telemetry());
   for (std::size_t shift = 1; shift < 8; ++shift) {
     std::vector<std::byte> message(shift);
     message.insert(message.end(), bytes.begin(), bytes.end());
     algo::Telemetry back;
-    decode_frame(std::span(message).subspan(shift), back);  // the sanitizers watch
+    decode_frame(std::span(message).subspan(shift), back);  // sanitizers check the alignment
     EXPECT_EQ(back.observation.odometry, full_telemetry().observation.odometry);
   }
 }

@@ -1,4 +1,4 @@
-// tests/server/record/people_run_test.cpp: a hall of people who walk about and do not step aside.
+// tests/server/record/people_run_test.cpp: a hall of walking people who do not give way.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -22,8 +22,8 @@ TEST(PeopleRun, TheRobotCrossesTheirHallWithoutTouchingAnyone) {
   }
 }
 
-/// People who are said to be elsewhere than they are would be drawn so.
-TEST(PeopleRun, SaysInEachTickWhereTheyAre) {
+/// The page draws people at the recorded positions, so these must be the true ones.
+TEST(PeopleRun, RecordsTheirPositionsInEachTick) {
   const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("people"), {});
   const auto robot = make_robot(spec);
   const std::shared_ptr<FramePool> pool = FramePool::make(2);

@@ -1,4 +1,4 @@
-// tests/server/record/recorder_fixture.hpp: a recorder's frames, counted, and what became of them.
+// tests/server/record/recorder_fixture.hpp: a recorder with counted frames, and its reports.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace test {
 
-/// A frame that counts how many of its kind are still referred to.
+/// A frame that counts how many frames are still referenced.
 class CountedFrame final : public server::RecordedFrame {
  public:
   CountedFrame(const Frame& frame, std::uint64_t tick, double time, std::atomic<int>& alive)
@@ -45,7 +45,7 @@ class RecorderFiles : public StoreFiles {
     return server::FrameHandle(
         new CountedFrame(made[tick % made.size()], tick, time_of(tick), alive));
   }
-  /// As a simulated run does it: waits when the ring is full.
+  /// Like a simulated run, waits when the ring is full.
   void push(server::RunChannel& channel, std::uint64_t tick) {
     server::FrameHandle frame = handle(tick);
     while (!channel.push(frame)) std::this_thread::yield();
@@ -78,7 +78,7 @@ class RecorderFiles : public StoreFiles {
           heard, [&](const std::string& line) { return line.find(words) != std::string::npos; });
     });
   }
-  /// What the gaps of a run are for, in order.
+  /// The reasons of a run's gaps, in order.
   std::vector<db::GapCause> causes(db::RunId run) {
     db::RunReader reader(path);
     std::vector<db::GapCause> found;

@@ -1,5 +1,5 @@
-// tests/server/record/recorder_health_test.cpp: a store that is locked, full, deleted or damaged
-// costs ticks of the record, and nothing else.
+// tests/server/record/recorder_health_test.cpp: a locked, full, deleted or damaged store loses
+// ticks of the record, and nothing else.
 #include <fstream>
 
 #include "tests/server/record/recorder_fixture.hpp"
@@ -143,7 +143,7 @@ TEST_F(RecorderHealthTest, ManyResetsWhileTheStoreFailsLeaveNoRunWithoutItsEnd) 
   }));
 }
 
-TEST_F(RecorderHealthTest, ADeletedFileIsBegunAnew) {
+TEST_F(RecorderHealthTest, ADeletedFileIsCreatedAgain) {
   Recorder recorder(path, quick());
   const auto live = recorder.begin(what());
   push(*live, 0, 100);
@@ -171,7 +171,7 @@ TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAndTheRunGoesOnInANewOne) {
   recorder.flush();
   Connection(path, Connection::Mode::Write).execute("PRAGMA wal_checkpoint(TRUNCATE)");
   spoil(0, static_cast<std::int64_t>(std::filesystem::file_size(path) / 4096));
-  // What the store has in its memory would do for a while: it is made to look at the file.
+  // The store's cache would hide the damage for a while: force it to read the file.
   refusal([&] { recorder.ask([](db::RunStore& store) { store.open(); }); });
   push(*live, 2000, 2001);
   ASSERT_TRUE(tells(recorder, "set aside as"));
@@ -188,7 +188,7 @@ TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAndTheRunGoesOnInANewOne) {
     aside += entry.path().filename().string().starts_with("runs.damaged-") ? 1U : 0U;
   }
   EXPECT_GE(aside, 1u);
-  // What people are told does not give the host's folders away.
+  // The sentence to users does not reveal the host's folders.
   for (const std::string& news : heard) {
     EXPECT_THAT(news, testing::Not(HasSubstr(folder.string())));
   }
@@ -220,7 +220,7 @@ TEST_F(RecorderHealthTest, AStoreOfAnOlderProgramIsSetAsideWhole) {
   EXPECT_EQ(kept.query_integer("PRAGMA user_version"), 4);
 }
 
-TEST_F(RecorderHealthTest, AStoreThatIsDamagedAtTheStartIsSetAsideAndATextIsNot) {
+TEST_F(RecorderHealthTest, ADamagedStoreIsSetAsideAtTheStartButATextFileIsNot) {
   {
     db::RunStore store(path);
     record(store, 100);
@@ -278,7 +278,7 @@ TEST_F(RecorderHealthTest, AStoreThatIsLockedAtTheStartIsOpenedLater) {
   EXPECT_EQ(get(reader, live->run()).status, RunStatus::Finished);
 }
 
-TEST_F(RecorderHealthTest, APauseIsMarkedAsOne) {
+TEST_F(RecorderHealthTest, APauseIsMarked) {
   Recorder recorder(path, quick());
   const auto live = recorder.begin(what());
   push(*live, 0, 10);

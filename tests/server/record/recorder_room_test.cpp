@@ -1,4 +1,4 @@
-// tests/server/record/recorder_room_test.cpp: what is kept when there is no room for everything.
+// tests/server/record/recorder_room_test.cpp: which ticks are kept when room is short.
 #include <algorithm>
 #include <filesystem>
 #include <string>
@@ -42,7 +42,7 @@ class RecorderRoomTest : public test::RecorderFiles {
   }
 };
 
-TEST_F(RecorderRoomTest, ALiveRunKeepsItsNewestHourAndNobodyElsesRunGoes) {
+TEST_F(RecorderRoomTest, ALiveRunDropsItsOwnOldestTicksAndNoOtherRun) {
   constexpr std::uint64_t kTicks = 4000;  // 104 s, of which 20 s are to stay
   Recorder recorder(path, limited(0));
   const db::RunId old = finished(recorder, 300);
@@ -64,7 +64,7 @@ TEST_F(RecorderRoomTest, ALiveRunKeepsItsNewestHourAndNobodyElsesRunGoes) {
   EXPECT_EQ(run.gaps[0].first_tick, 0u);
   EXPECT_EQ(run.ticks, kTicks - first);
   EXPECT_GT(run.ticks, 20 / 0.026);        // the span, and
-  EXPECT_LT(run.ticks, 20 / 0.026 + 600);  // what blocks and slices leave over
+  EXPECT_LT(run.ticks, 20 / 0.026 + 600);  // the remainder of blocks and slices
   EXPECT_EQ(run.lost_ticks, 0u);
   std::uint64_t oldest = 0;
   reader.frames(
@@ -140,7 +140,7 @@ TEST_F(RecorderRoomTest, AMachineTooSlowToMakeRoomInTimeDoesNotFillTheDisk) {
   EXPECT_FALSE(live->failed());
 }
 
-TEST_F(RecorderRoomTest, ALiveRunMakesDoWithTheRoomThatIsLeft) {
+TEST_F(RecorderRoomTest, ALiveRunFitsIntoTheRemainingRoom) {
   constexpr std::uint64_t kLimit = 6'000'000;
   RecorderOptions options = limited(kLimit);
   options.live_span = 1e9;  // more than there is room for
@@ -176,7 +176,7 @@ TEST_F(RecorderRoomTest, AStoreFullOfFinishedRunsStopsRecordingAndSaysSo) {
   }
   ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
   const auto live = recorder.begin(what());
-  push(*live, 0, 2000);  // nobody waits
+  push(*live, 0, 2000);  // without waiting
   ASSERT_TRUE(comes([&] { return recorder.status().kind == RecordKind::Full; }));
   EXPECT_TRUE(live->failed());
   EXPECT_THAT(live->problem(), HasSubstr("never deleted unasked"));
@@ -187,7 +187,7 @@ TEST_F(RecorderRoomTest, AStoreFullOfFinishedRunsStopsRecordingAndSaysSo) {
     for (const db::RunId run : kept) EXPECT_TRUE(reader.exists(run)) << run;
   }
 
-  // Somebody makes room: the record goes on, and says what it lacks.
+  // With new room the record goes on, and reports the missing ticks.
   for (std::size_t i = 0; i < kept.size() / 2; ++i) {
     recorder.ask([&](db::RunStore& store) { return store.delete_run(kept[i]); });
   }
@@ -209,7 +209,7 @@ TEST_F(RecorderRoomTest, ARunToBeKeptWholeWaitsForRoom) {
   RecorderOptions options = limited(kLimit);
   options.ring_frames = 64;
   Recorder recorder(path, std::move(options));
-  const db::RunId old = finished(recorder, 3000);  // more than what comes too fast
+  const db::RunId old = finished(recorder, 3000);  // more room than the fast run needs
   const auto whole = recorder.open(what());
   std::uint64_t tick = 0;
   server::FrameHandle frame = handle(tick);
@@ -226,7 +226,7 @@ TEST_F(RecorderRoomTest, ARunToBeKeptWholeWaitsForRoom) {
   EXPECT_THAT(causes(whole->run()), IsEmpty());
 }
 
-TEST_F(RecorderRoomTest, WhoAsksForItHasTheOldestRunsDeleted) {
+TEST_F(RecorderRoomTest, TheOldestRunsAreDeletedOnRequest) {
   constexpr std::uint64_t kLimit = 2'000'000;
   RecorderOptions options = limited(kLimit);
   options.evict_oldest = true;
@@ -242,7 +242,7 @@ TEST_F(RecorderRoomTest, WhoAsksForItHasTheOldestRunsDeleted) {
   EXPECT_TRUE(tells(recorder, "Deleted run 1 (case1, 2026-11-21T10:40:47Z, 1000 ticks)"));
 }
 
-TEST_F(RecorderRoomTest, SomeOfTheDiskIsLeftToOthers) {
+TEST_F(RecorderRoomTest, SomeDiskSpaceIsLeftFree) {
   std::atomic<std::uint64_t> free = 100 << 20;
   RecorderOptions options = limited(0);
   options.disk = [&](const std::string&) {

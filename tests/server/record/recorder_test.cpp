@@ -1,5 +1,5 @@
-// tests/server/record/recorder_test.cpp: frames go from control threads to the disk, whatever goes
-// wrong.
+// tests/server/record/recorder_test.cpp: frames go from control threads to the disk, despite
+// failures.
 #include "server/record/recorder.hpp"
 
 #include "tests/server/record/recorder_fixture.hpp"
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 class RecorderTest : public test::RecorderFiles {};
 
-TEST_F(RecorderTest, TwoRunsAtOnceLoseNothing) {
+TEST_F(RecorderTest, TwoConcurrentRunsLoseNoFrames) {
   Recorder recorder(path);
   constexpr std::size_t kTicks = 4000;  // several times the ring
   std::array<db::RunId, 2> runs{};
@@ -49,7 +49,7 @@ TEST_F(RecorderTest, TwoRunsAtOnceLoseNothing) {
   }
 }
 
-TEST_F(RecorderTest, CommitsAboutOnceASecondWithoutBeingAsked) {
+TEST_F(RecorderTest, CommitsAboutOnceASecondByItself) {
   Recorder recorder(path, {.commit_interval = std::chrono::milliseconds(100)});
   const auto channel = recorder.open(what());
   RunReader reader(path);
@@ -62,10 +62,10 @@ TEST_F(RecorderTest, CommitsAboutOnceASecondWithoutBeingAsked) {
   EXPECT_EQ(get(reader, channel->run()).ticks, 1U);
 }
 
-TEST_F(RecorderTest, AFullRingIsTheProducersBusiness) {
+TEST_F(RecorderTest, AFullRingLeavesTheFrameWithTheProducer) {
   Recorder recorder(path, {.ring_frames = 8});
   const auto channel = recorder.open(what());
-  // The database thread is kept busy, so nobody empties the ring.
+  // The database thread is kept busy, so the ring is not emptied.
   std::promise<void> go;
   recorder.post([&](db::RunStore&) { go.get_future().wait(); });
   std::uint64_t tick = 0;
@@ -81,7 +81,7 @@ TEST_F(RecorderTest, AFullRingIsTheProducersBusiness) {
   EXPECT_EQ(alive, 0);
 }
 
-TEST_F(RecorderTest, QueuedRunsAreRecordedWhenTheirTurnComes) {
+TEST_F(RecorderTest, QueuedRunsAreRecordedInOrder) {
   Recorder recorder(path);
   const db::RunId run = recorder.ask([&](db::RunStore& store) { return store.queue_run(what()); });
   RunReader reader(path);
@@ -155,7 +155,7 @@ TEST_F(RecorderTest, AFrameThatCannotBeStoredEndsItsOwnRunOnly) {
   EXPECT_NE(get(reader, bad->run()).status, RunStatus::Finished);
 }
 
-/// What the child tells its parent; it outlives the kill.
+/// Memory shared by child and parent; it survives the kill.
 struct Shared {
   std::atomic<std::uint64_t> pushed = 0;
   std::atomic<double> latest = 0;  // [s] by which the machine woke a sleeping thread too late
@@ -170,8 +170,8 @@ struct Shared {
   }
 }
 
-// The child records at the pace of a real run and says in shared memory how far it is; then it is
-// killed. A run may lose 1.1 s, and what an overloaded machine keeps any thread from running.
+// The child records at the rate of a real run and writes its progress to shared memory; then it is
+// killed. A run may lose 1.1 s plus the time that an overloaded machine runs no thread.
 TEST_F(RecorderTest, AKillLosesAtMostElevenTenthsOfASecond) {
   constexpr double kPeriod = 0.026;
   void* memory =

@@ -1,5 +1,5 @@
-// tests/server/record/replay_data_test.cpp: a real log through pipeline and database: every scan is
-// there, equal to the text of the log to the millimetre, the device's codes masked.
+// tests/server/record/replay_data_test.cpp: a real log through pipeline and database: every scan
+// equals the text of the log to the millimetre, with the device's codes masked.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The readings of every FLASER line, parsed here anew.
+/// The readings of every FLASER line, parsed independently.
 std::vector<std::vector<double>> read_log(const fs::path& path) {
   std::vector<std::vector<double>> scans;
   std::ifstream in(path);

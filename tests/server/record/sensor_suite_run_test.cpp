@@ -30,7 +30,7 @@ HeadlessResult run(const std::string& sensors, const char* controller, bool hash
   return run_headless(spec, *robot, {.hash_frames = hash}, {});
 }
 
-TEST(SensorSuiteRun, WhatTheLaserCannotSeeIsAvoidedByTheInfraredScanner) {
+TEST(SensorSuiteRun, TheInfraredScannerAvoidsWhatTheLaserMisses) {
   for (const char* controller : {"modified", "original_side", "strip"}) {
     EXPECT_NE(run("", controller).run.outcome, algo::Outcome::Reached) << controller;
     const HeadlessResult seen = run(kInfrared, controller);
@@ -39,7 +39,7 @@ TEST(SensorSuiteRun, WhatTheLaserCannotSeeIsAvoidedByTheInfraredScanner) {
   }
 }
 
-TEST(SensorSuiteRun, AllSensorsTogetherDriveAndRepeatThemselves) {
+TEST(SensorSuiteRun, ARunWithAllSensorsIsRepeatable) {
   const std::string all = std::string(kInfrared) + kSuite;
   const HeadlessResult first = run(all, "modified", true);
   EXPECT_EQ(first.run.outcome, algo::Outcome::Reached) << first.run.reason;

@@ -50,7 +50,7 @@ TEST(SonarRun, AControllerThatNeedsALaserIsRefused) {
   }
 }
 
-TEST(SonarRun, TheRobotInTheRecordSaysThatItHasNoLaser) {
+TEST(SonarRun, TheRecordedRobotHasNoLaser) {
   const RunSpec spec = by_sonar("vff", "");
   const auto robot = make_robot(spec);
   EXPECT_FALSE(robot->spec().has_laser);

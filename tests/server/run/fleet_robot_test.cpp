@@ -1,4 +1,4 @@
-// tests/server/run/fleet_robot_test.cpp: several robots behind the port of the first.
+// tests/server/run/fleet_robot_test.cpp: several robots behind the interface of the first.
 #include "server/run/fleet_robot.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ sim::Scenario swap(sim::PhysicsKind physics) {
   return scenario;
 }
 
-/// What the run of `spec` gives in each tick, for `seconds`.
+/// The results of each tick of a run of `spec`, for `seconds`.
 template <typename See>
 void drive(const RunSpec& spec, algo::Robot& robot, double seconds, See see) {
   algo::Pipeline pipeline(pipeline_config(spec), robot.spec());
@@ -170,7 +170,7 @@ TEST(FleetRobot, RefusesScenariosWhoseRobotsOverlap) {
   }
 }
 
-/// A robot that nobody drives by hand commands what it would command anyway.
+/// Without manual driving, a robot's commands stay the same.
 TEST(FleetRobot, WithoutAStickAPipelineCommandsTheSame) {
   const RunSpec spec = make_spec(ScenarioLibrary({}, {}).load("case2"), {});
   sim::World world(spec.scenario, 1);

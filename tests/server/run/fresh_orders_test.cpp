@@ -25,14 +25,14 @@ TEST(FreshOrdersTest, GoalsAndTheStickAreRefusedWhileTheMotorsAreOff) {
   EXPECT_FALSE(orders.refusal(kGoal, 1));
 }
 
-TEST(FreshOrdersTest, DisarmingEndsWhatWasOrderedHoweverShortItWas) {
+TEST(FreshOrdersTest, EvenABriefDisarmingCancelsEarlierOrders) {
   FreshOrders orders;
   orders.notice(1);
   EXPECT_FALSE(orders.accept(kGoal));
   EXPECT_TRUE(orders.notice(0));
   orders.accept(algo::ClearGoal{});
   EXPECT_FALSE(orders.notice(2));
-  // WHEN it was disarmed and armed again between two looks THEN the goal is void all the same.
+  // WHEN it was disarmed and armed again between two polls THEN the goal is void too.
   orders.accept(kGoal);
   EXPECT_TRUE(orders.notice(3));
   orders.accept(algo::ClearGoal{});
@@ -40,7 +40,7 @@ TEST(FreshOrdersTest, DisarmingEndsWhatWasOrderedHoweverShortItWas) {
   EXPECT_TRUE(orders.notice(0));
 }
 
-TEST(FreshOrdersTest, StopEndsGoalsAndAReleaseBringsNoneBack) {
+TEST(FreshOrdersTest, StopCancelsGoalsAndAReleaseRestoresNone) {
   FreshOrders orders;
   orders.notice(1);
   orders.accept(kGoal);
@@ -52,12 +52,12 @@ TEST(FreshOrdersTest, StopEndsGoalsAndAReleaseBringsNoneBack) {
   EXPECT_FALSE(orders.refusal(kGoal, 0));
 }
 
-TEST(FreshOrdersTest, AStickThatWasHeldMeanwhileHasToBeLetGo) {
+TEST(FreshOrdersTest, AStickHeldMeanwhileMustBeReleased) {
   FreshOrders orders;
   for (double now = 0; now < 1; now += 0.05) EXPECT_TRUE(orders.refusal(kPushed, now));
-  orders.notice(1);  // GIVEN somebody arms while the stick is held
+  orders.notice(1);  // GIVEN an operator arms while the stick is held
   for (double now = 1; now < 5; now += 0.05) EXPECT_TRUE(orders.refusal(kPushed, now)) << now;
-  // WHEN it is let go THEN it counts again; silence is as good.
+  // WHEN the stick is released or silent THEN it counts again.
   EXPECT_FALSE(orders.refusal(kLetGo, 5));
   EXPECT_FALSE(orders.refusal(kPushed, 5.1));
   orders.accept(kStop);

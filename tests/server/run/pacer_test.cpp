@@ -1,4 +1,4 @@
-// tests/server/run/pacer_test.cpp: deadlines on a clock that is a variable, and the waiting itself.
+// tests/server/run/pacer_test.cpp: deadlines on a simulated clock, and real waiting.
 #include "server/run/pacer.hpp"
 
 #include <algorithm>
@@ -29,14 +29,14 @@ TEST(Deadlines, MissedPeriodsAreCountedAndLeftOut) {
   Deadlines deadlines;
   const Clock::time_point start{1s};
   deadlines.next(start, 26ms);
-  // Woken at 100 ms for 26 ms: of 52, 78 and 104 ms, 52 went by for good; 78 is merely late.
+  // Woken at 100 ms for 26 ms: of 52, 78 and 104 ms, 52 is missed; 78 is only late.
   EXPECT_EQ(deadlines.next(start + 100ms, 26ms), start + 78ms);
   EXPECT_EQ(deadlines.missed(), 1u);
   EXPECT_EQ(deadlines.next(start + 101ms, 26ms), start + 104ms);
   EXPECT_EQ(deadlines.missed(), 1u);
 }
 
-TEST(Deadlines, NoStallIsMadeGoodInABurst) {
+TEST(Deadlines, AStallIsNotFollowedByABurst) {
   for (const Clock::duration stall : {30ms, 60ms, 200ms, 499ms, 600ms, 60000ms}) {
     Deadlines deadlines;
     const Clock::time_point start{1s};
@@ -84,7 +84,7 @@ TEST(Pacer, RealTimeTakesRealTime) {
   EXPECT_GE(seconds_since(start), 0.1);
 }
 
-TEST(Pacer, CountsWhatACallerSleptThrough) {
+TEST(Pacer, CountsPeriodsThatACallerSleptThrough) {
   Pacer pacer;
   EXPECT_TRUE(pacer.wait(0.01));
   std::this_thread::sleep_for(100ms);
@@ -105,7 +105,7 @@ TEST(Pacer, SpeedDividesAndZeroDoesNotWait) {
   EXPECT_LT(seconds_since(start), 1);
 }
 
-TEST(Pacer, PausedLetsNothingPassAndSingleStepsAddUp) {
+TEST(Pacer, NoPeriodPassesWhilePausedAndSingleStepsAddUp) {
   Pacer pacer;
   pacer.set({.paused = true});
   const Clock::time_point now = Clock::now();
@@ -116,7 +116,7 @@ TEST(Pacer, PausedLetsNothingPassAndSingleStepsAddUp) {
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(pacer.pass(10, now));
   EXPECT_FALSE(pacer.pass(10, now));
   pacer.set({.paused = true, .single_steps = 5});
-  pacer.set({.paused = true});  // a plain pause cancels what is left
+  pacer.set({.paused = true});  // a plain pause cancels the remaining steps
   EXPECT_FALSE(pacer.pass(10, now));
 }
 

@@ -1,4 +1,4 @@
-// tests/server/run/paths_test.cpp: what visitors are told of files.
+// tests/server/run/paths_test.cpp: the file names that visitors see.
 #include "server/run/paths.hpp"
 
 #include <string>

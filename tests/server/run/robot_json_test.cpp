@@ -1,5 +1,5 @@
 // tests/server/run/robot_json_test.cpp: robot models as files: the built-in ones, a user's own, and
-// what is said of bad ones.
+// the sentences about invalid ones.
 #include "server/run/robot_json.hpp"
 
 #include <cmath>
@@ -53,7 +53,7 @@ std::string complaint(const json& document) {
   return "read";
 }
 
-/// A folder of its own, gone afterwards.
+/// A temporary folder.
 class RobotFolder : public testing::Test {
  protected:
   RobotFolder() { std::filesystem::create_directories(folder); }
@@ -85,7 +85,7 @@ TEST(RobotJson, TheRobotOfAScenarioThatNamesNoneIsTheSilvermate) {
   EXPECT_EQ(robot_document(sim::RobotModel()), robot_document(builtin_robot("silvermate")));
 }
 
-TEST(RobotJson, AFileSaysWhatItMustAndTheRestIsUsual) {
+TEST(RobotJson, AFileNeedsOnlyRequiredFields) {
   const sim::RobotModel robot = read(carrier());
   EXPECT_FALSE(robot.round);
   EXPECT_DOUBLE_EQ(robot.radius, std::hypot(0.6, 0.35));
@@ -99,7 +99,7 @@ TEST(RobotJson, AFileSaysWhatItMustAndTheRestIsUsual) {
 }
 
 TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
-  using Change = std::pair<const char*, const char*>;  // merge patch, what is said
+  using Change = std::pair<const char*, const char*>;  // merge patch, part of the sentence
   const std::vector<Change> changes{
       {R"({"name": null})", "name: is missing"},
       {R"({"name": 7})", "name: must be"},
@@ -156,7 +156,7 @@ TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
   EXPECT_THAT(complaint(json::array()), HasSubstr("must be an object, not array"));
 }
 
-TEST_F(RobotFolder, FilesThatDoNotReadAreListedWithTheReasonAndNotLoaded) {
+TEST_F(RobotFolder, InvalidFilesAreListedWithTheReasonAndNotLoaded) {
   write("carrier.json", carrier().dump());
   write("other.json", carrier().dump());
   write("broken.json", "{\"name\": ");
@@ -203,7 +203,7 @@ TEST_F(RobotFolder, AScenarioKeepsTheWholeModelOfAUsersRobot) {
   EXPECT_EQ(again.robot.sensors.lasers.size(), 2U);
 }
 
-TEST_F(RobotFolder, TheSensorsOfAScenarioComeBeforeThoseOfItsRobot) {
+TEST_F(RobotFolder, TheSensorsOfAScenarioReplaceThoseOfItsRobot) {
   write("carrier.json", carrier().dump());
   const sim::Scenario scenario = scenario_from_json(
       json::parse(R"({"name":"a","robot":"carrier","lasers":[{}]})"), RobotLibrary(folder));
@@ -227,7 +227,7 @@ TEST_F(RobotFolder, ARobotIsChosenByNameOrWhole) {
   EXPECT_THROW(make_spec(sensors, overrides), DocumentError);
 }
 
-TEST(RobotJson, AGyroOfTheScenarioTakesThePlaceOfNone) {
+TEST(RobotJson, AScenarioCanAddAGyro) {
   json robot = carrier();
   robot["gyro"] = false;
   json document = {{"name", "a"}, {"robot", robot}};
@@ -238,7 +238,7 @@ TEST(RobotJson, AGyroOfTheScenarioTakesThePlaceOfNone) {
   EXPECT_EQ(to_json(scenario), to_json(scenario_from_json(to_json(scenario))));
 }
 
-TEST(RobotJson, ASonarCanBeTakenAway) {
+TEST(RobotJson, AScenarioCanRemoveTheSonar) {
   json robot = carrier();
   robot["sonar"] = json::object();
   const json document = {{"name", "a"}, {"robot", robot}, {"sonar", false}};
@@ -291,7 +291,7 @@ TEST_F(RobotFolder, TheNewestModelOfTheSameNameDrivesWithTheScenariosSensors) {
   EXPECT_EQ(make_spec(scenario, overrides).scenario.robot.mass, 200);  // no newer one there
 }
 
-TEST(RobotJson, WhatIsAcceptedReadsAgain) {
+TEST(RobotJson, AcceptedModelsReadBack) {
   for (const char* patch : {R"({"hull": {"low": 0, "high": 0.0015}})",
                             R"({"hull": {"length": 0.05, "width": 0.05}, "track": 0.05})"}) {
     json document = carrier();

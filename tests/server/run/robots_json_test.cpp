@@ -1,5 +1,5 @@
-// tests/server/run/robots_json_test.cpp: the other robots of a scenario to JSON and back, and what
-// is said of bad ones.
+// tests/server/run/robots_json_test.cpp: the other robots of a scenario to JSON and back, and the
+// sentences about invalid ones.
 #include <cmath>
 #include <string>
 #include <utility>
@@ -39,7 +39,7 @@ TEST(RobotsJson, ComeBackFromTheirText) {
   }
 }
 
-TEST(RobotsJson, WhatIsAbsentIsTheFirstRobots) {
+TEST(RobotsJson, AbsentFieldsAreTheFirstRobots) {
   const sim::Scenario s = read(R"([{"start":{"x":5,"y":-2}},{"start":{"x":1,"y":2},"goal":null},)"
                                R"({"start":{"x":1,"y":4},"goal":{"x":1,"y":9},)"
                                R"("waypoints":[{"x":-3,"y":4}]}])");
@@ -126,7 +126,7 @@ TEST(RobotsJson, EachRobotIsCheckedAgainstItsController) {
   EXPECT_EQ(complaint(kept, overrides).substr(0, 30), "robots/1/parameters: k_c must ");
 }
 
-TEST(RobotsJson, EditsMayNameRobotsAndNothingAboveThem) {
+TEST(RobotsJson, EditsAcceptRobotIdsAndNoHigherOnes) {
   EXPECT_NO_THROW(request_from_json({{"type", "remove_obstacle"}, {"id", 1'000'000'002}}));
   EXPECT_THROW(request_from_json({{"type", "remove_obstacle"}, {"id", 1'000'001'002}}),
                DocumentError);

@@ -1,4 +1,4 @@
-// tests/server/run/run_spec_test.cpp: what no run is made of.
+// tests/server/run/run_spec_test.cpp: invalid run specs.
 #include "server/run/run_spec.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// tests/server/run/runner_test.cpp: the loop with a robot of paper: what ends a run, what is
-// refused, and that the robot is stopped on every way out.
+// tests/server/run/runner_test.cpp: the loop with a fake robot: ends of a run, refusals, and that
+// the robot is stopped at every exit.
 #include "server/run/runner.hpp"
 
 #include <thread>
@@ -13,7 +13,7 @@
 namespace server {
 namespace {
 
-/// Drives where it is told on an endless plain; can lose its link, run out of data, or be real.
+/// Follows commands on an endless plain; can lose its link, run out of data, or be real.
 class PaperRobot final : public algo::Robot, public algo::Editing, public algo::Arming {
  public:
   PaperRobot() {
@@ -104,7 +104,7 @@ TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
   EXPECT_TRUE(robot.stopped);
 }
 
-TEST_F(RunnerTest, IsOverAtTheLastOfSeveralGoals) {
+TEST_F(RunnerTest, EndsAtTheLastOfSeveralGoals) {
   const algo::AddGoal then{{{2.0, 0.0}, std::nullopt}};
   const RunResult result = go({kGoal, then}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
@@ -125,7 +125,7 @@ TEST_F(RunnerTest, ALostLinkFailsTheRunWithTheReason) {
   EXPECT_TRUE(robot.stopped);
 }
 
-TEST_F(RunnerTest, RealRobotThatIsHeldBrakesAndASimulatedOneTakesItsZero) {
+TEST_F(RunnerTest, AHeldRealRobotBrakesAndASimulatedOneGetsZero) {
   for (const bool real : {true, false}) {
     robot = PaperRobot();
     robot.real = real;
@@ -163,7 +163,7 @@ TEST_F(RunnerTest, AnswersRequestsAndRecordsOnlyWhatWasAccepted) {
   EXPECT_TRUE(replies[2].refusal);
 }
 
-TEST_F(RunnerTest, AStopThatFoundTheRingFullComesAfterAReleaseInIt) {
+TEST_F(RunnerTest, AStopThatMetAFullRingActsAfterAnEarlierRelease) {
   links.rings = &rings;
   rings.requests.push({1, algo::Stop{false}});
   while (rings.requests.push({2, algo::Joystick{1, 0}})) {
@@ -176,8 +176,8 @@ TEST_F(RunnerTest, AStopThatFoundTheRingFullComesAfterAReleaseInIt) {
   go({kGoal}, {});
 }
 
-TEST_F(RunnerTest, AFullStreamCostsOnlyTheViewersAFrame) {
-  links.rings = &rings;  // nobody drains it
+TEST_F(RunnerTest, AFullStreamDropsOnlyAViewersFrame) {
+  links.rings = &rings;  // never drained
   const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.lost_ticks, 0u);
@@ -198,7 +198,7 @@ TEST_F(RunnerTest, APausedWorldServesRequestsAndKeepsItsTick) {
   EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
   EXPECT_EQ(rings.replies.read_available(), 2U);
   ASSERT_EQ(seen.size(), 1U);
-  // WHEN a single step is asked for THEN it brings the goal, and no more follow.
+  // WHEN a single step is requested THEN it reaches the goal, and no further step follows.
   pacer.set({.paused = true, .single_steps = 1});
   EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
   ASSERT_EQ(seen.size(), 2U);
@@ -210,7 +210,7 @@ TEST_F(RunnerTest, APausedWorldServesRequestsAndKeepsItsTick) {
   EXPECT_TRUE(robot.stopped);
 }
 
-TEST_F(RunnerTest, AdvancedTooEarlyItDoesNothingButSayWhen) {
+TEST_F(RunnerTest, AdvancedTooEarlyItOnlyReturnsTheNextTime) {
   Pacer pacer({.speed = 0.05});  // a period of 0.05 s lasts a second
   links.pacer = &pacer;
   links.rings = &rings;
@@ -222,7 +222,7 @@ TEST_F(RunnerTest, AdvancedTooEarlyItDoesNothingButSayWhen) {
   EXPECT_EQ(first.when, Run::Next::When::At);
   EXPECT_EQ(first.time, second.time);
   EXPECT_EQ(robot.steps, 0);
-  rings.requests.push({1, kGoal});  // answered all the same
+  rings.requests.push({1, kGoal});  // still answered
   one.advance();
   EXPECT_EQ(rings.replies.read_available(), 1U);
   stop.request_stop();
@@ -253,7 +253,7 @@ class BrokenSink final : public FrameSink {
   int pushed = 0;
 };
 
-TEST_F(RunnerTest, ARecordThatIsRequiredStopsTheRobotWhenItBreaks) {
+TEST_F(RunnerTest, ARequiredRecordThatFailsStopsTheRobot) {
   BrokenSink sink;
   links.record = &sink;
   const RunResult result = go({kGoal}, {.require_record = true});
@@ -262,7 +262,7 @@ TEST_F(RunnerTest, ARecordThatIsRequiredStopsTheRobotWhenItBreaks) {
   EXPECT_TRUE(robot.stopped);
 }
 
-TEST_F(RunnerTest, ARecordThatTakesNothingStopsNoRobot) {
+TEST_F(RunnerTest, AFailedOptionalRecordStopsNoRobot) {
   BrokenSink sink;
   links.record = &sink;
   const RunResult result = go(
@@ -274,7 +274,7 @@ TEST_F(RunnerTest, ARecordThatTakesNothingStopsNoRobot) {
   EXPECT_LT(sink.pushed, 9 + 100 + static_cast<int>(result.metrics.ticks));
 }
 
-/// Notes which ticks it was given and how often it was told to pause.
+/// Records its ticks and counts its pauses.
 class NotingSink final : public FrameSink {
  public:
   bool push(const FrameRef& frame) override {
@@ -286,7 +286,7 @@ class NotingSink final : public FrameSink {
   int pauses = 0;
 };
 
-TEST_F(RunnerTest, TheRecordPausesWhenNothingHappensAndGoesOnWithTheNextGoal) {
+TEST_F(RunnerTest, TheRecordPausesAtRestAndResumesWithTheNextGoal) {
   NotingSink sink;
   links.record = &sink;
   links.rings = &rings;
@@ -334,11 +334,11 @@ TEST(FramePool, GrowsWithThoseWhoHoldFramesAndShrinksWhenTheyLetGo) {
   EXPECT_EQ(pool->size(), 1U);
   std::vector<FrameRef> held;
   while (FrameRef frame = pool->take()) held.push_back(std::move(frame));
-  EXPECT_EQ(held.size(), 5U);  // two of its own and all the room there is
+  EXPECT_EQ(held.size(), 5U);  // two of its own and all the shared room
   std::vector<FrameRef> others;
   while (FrameRef frame = other->take()) others.push_back(std::move(frame));
   EXPECT_EQ(others.size(), 2U);
-  // WHEN nobody holds more than one for a while THEN the others go, and make room.
+  // WHEN no reader holds more than one frame for a while THEN the others are freed.
   held.clear();
   for (int i = 0; i < 600; ++i) EXPECT_TRUE(pool->take());
   EXPECT_EQ(pool->size(), 1U);
@@ -357,7 +357,7 @@ TEST(FramePool, FramesOutliveTheirRun) {
   more.reset();
   EXPECT_EQ(kept->telemetry.tick, 7U);
   kept.reset();
-  for (int i = 0; i < 8; ++i) EXPECT_TRUE(room->take()) << i;  // all of it is back
+  for (int i = 0; i < 8; ++i) EXPECT_TRUE(room->take()) << i;  // all room is free again
   EXPECT_FALSE(room->take());
 }
 

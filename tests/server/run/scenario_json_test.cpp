@@ -1,5 +1,5 @@
-// tests/server/run/scenario_json_test.cpp: scenarios to JSON and back, and what is said of bad
-// ones.
+// tests/server/run/scenario_json_test.cpp: scenarios to JSON and back, and the sentences about
+// invalid ones.
 #include "server/run/scenario_json.hpp"
 
 #include <cmath>
@@ -92,7 +92,7 @@ TEST(ScenarioJson, AWallBetweenTwoPointsIsTheWallOfThatLength) {
   EXPECT_EQ(std::get<algo::Wall>(ends.shape).thickness, 0.1);
 }
 
-TEST(ScenarioJson, PolygonPointsAreTheWorldsWithoutAPoseAndItsOwnWithOne) {
+TEST(ScenarioJson, PolygonPointsAreInWorldFrameOrInThatOfAGivenPose) {
   const auto world = obstacle_from_json(
       json::parse(R"({"type":"polygon","points":[[3,3],[4,3],[4,4],[3,4]]})"), "");
   EXPECT_EQ(world.pose_W, (algo::Pose2{3.5, 3.5, 0}));
@@ -112,7 +112,7 @@ TEST(ScenarioJson, AClockwisePolygonIsTurnedRound) {
   EXPECT_EQ(clockwise, counter);
 }
 
-TEST(ScenarioJson, IdsGivenStayAndTheOthersAreFilledIn) {
+TEST(ScenarioJson, GivenIdsStayAndMissingOnesAreFilledIn) {
   const sim::Scenario s =
       read(R"({"name":"a","obstacles":[{"type":"cylinder","x":3,"y":0,"radius":1},)"
            R"({"id":1,"type":"cylinder","x":6,"y":0,"radius":1},)"

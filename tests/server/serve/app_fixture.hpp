@@ -1,4 +1,4 @@
-// tests/server/serve/app_fixture.hpp: a whole program on a free port, with folders of its own.
+// tests/server/serve/app_fixture.hpp: the whole program on a free port, in temporary folders.
 #pragma once
 
 #include <algorithm>

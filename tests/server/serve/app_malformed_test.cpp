@@ -1,5 +1,5 @@
-// tests/server/serve/app_malformed_test.cpp: the program under bad requests and bad frames: each
-// gets its answer, and everybody else goes on.
+// tests/server/serve/app_malformed_test.cpp: bad requests and bad frames each get an answer, and
+// other clients are not affected.
 #include <string>
 #include <vector>
 
@@ -180,7 +180,7 @@ TEST_F(AppTest, BrokenWebSocketFramesEndInACleanClose) {
   }
 }
 
-TEST_F(AppTest, ATornConnectionDisturbsNobody) {
+TEST_F(AppTest, ABrokenConnectionDisturbsNoOther) {
   Viewer healthy(port_);
   healthy.subscribe("/telemetry");
   for (int i = 0; i < 10; ++i) {

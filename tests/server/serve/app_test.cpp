@@ -48,7 +48,7 @@ void expect_required(const json& api, json schema, const json& sample, const std
   }
 }
 
-TEST_F(AppTest, TheDescriptionListsExactlyTheRoutesThereAre) {
+TEST_F(AppTest, TheDescriptionListsExactlyTheRoutes) {
   const json api = get("/openapi.json");
   std::multiset<std::string> described;
   for (const auto& [path, methods] : api.at("paths").items()) {
@@ -164,7 +164,7 @@ TEST_F(AppTest, AGoodScenarioIsKeptReadRunAndDeleted) {
 }
 
 TEST_F(AppTest, EveryScenarioThatCanBeSavedCanBeLoaded) {
-  // Each is longer with every value spelled out than a request may be.
+  // With every value written out, each is longer than a request may be.
   json many = {{"vehicle", "kinematic"}, {"goal", {{"x", 1.5}, {"y", 0}}}};
   for (int i = 0; i < 2000; ++i) {
     many["obstacles"].push_back(
@@ -198,7 +198,7 @@ TEST_F(AppTest, AScenarioWithWaypointsDrivesThroughThem) {
   EXPECT_GT(row["metrics"]["path_length"], 1.7);  // 0.6 + 0.78 + 0.78, less the reach of each
 }
 
-TEST_F(AppTest, ATwofoldExperimentReachesAndItsRecordsAgree) {
+TEST_F(AppTest, BothRunsOfAnExperimentReachAndAgree) {
   const Answer accepted =
       ask("POST", "/runs", R"({"scenario":"case1","vehicle":"kinematic","repeats":2,"seed":7})");
   ASSERT_EQ(accepted.status, 202) << accepted.body;
@@ -276,9 +276,9 @@ TEST_F(AppTest, ABatchOfTenThousandIsQueuedWithOneDocument) {
   EXPECT_EQ(last["seed"], 10'000);
   EXPECT_EQ(last["document"]["scenario"]["name"], "case1");
   EXPECT_EQ(get("/runs?status=queued&limit=500")["items"].size(), 500u);
-  // The live run's frames were taken in between: none was lost for want of room.
+  // The live run's frames were stored in between: none was lost for lack of room.
   EXPECT_EQ(get("/session")["lost_ticks"], 0);
-  // A second of the same fits, a third is more than is kept waiting.
+  // A second one fits into the queue; a third exceeds it.
   const std::string more = R"({"scenario":"case1","vehicle":"kinematic","repeats":10000})";
   EXPECT_EQ(ask("POST", "/runs", more).status, 202);
   expect_problem(ask("POST", "/runs", more), 503, "queued already");
@@ -309,7 +309,7 @@ TEST_F(AppTest, RunsAreCancelledDeletedAndThenGone) {
   }
 }
 
-TEST_F(AppTest, ARunThatPeopleDroveIsNotRunAgainByItself) {
+TEST_F(AppTest, ARunDrivenByAPersonIsNotRepeatedAlone) {
   const std::string run = get("/session")["run"]["id"].dump();
   ASSERT_TRUE(eventually([&] { return ask("GET", "/runs/" + run).status == 200; }));
   expect_problem(ask("POST", "/runs/" + run + "/resume"), 409, "People drove this run");

@@ -1,6 +1,6 @@
-// tests/server/serve/app_walk_test.cpp: a walk over every described operation, with good requests
-// and all kinds of bad ones: each status that occurs is named, each failure is a problem document,
-// and no answer tells a folder of this machine.
+// tests/server/serve/app_walk_test.cpp: good and bad requests to every described operation: each
+// status that occurs is documented, each failure is a problem document, and no answer reveals a
+// folder of this machine.
 #include <set>
 #include <string>
 #include <utility>
@@ -37,7 +37,7 @@ class AppWalk : public AppTest {
     return api_.at(json::json_pointer(part["$ref"].get<std::string>().substr(1)));
   }
 
-  /// A body as the schema asks for it, with the names of things there are.
+  /// A body that the schema accepts, with existing names.
   json sample(const json& described, const std::string& name = "") const {
     const json& schema = resolve(described);
     const std::string ref = described.value("$ref", "");
@@ -79,7 +79,7 @@ class AppWalk : public AppTest {
     return {path, path + "?limit=x&cursor=y&from=-1&status=z", path + "?limit=0&from=99999999999"};
   }
 
-  /// The answer's status is one the operation names, in the form it names.
+  /// Expects a status and form of answer that the operation documents.
   void expect_named(const json& operation, const Answer& answer, const std::string& what) {
     SCOPED_TRACE(what);
     seen_.insert(answer.status);
@@ -113,7 +113,7 @@ class AppWalk : public AppTest {
     return out + "\r\n" + body;
   }
 
-  /// What can be wrong with any request, and with one that changes something.
+  /// Malformed variants of any request, and of one that changes something.
   std::vector<std::string> bad_requests(const std::string& method,
                                         const std::string& target) const {
     const std::string json_type = "Content-Type: application/json\r\n";
@@ -151,7 +151,7 @@ class AppWalk : public AppTest {
   std::set<int> seen_{};
 };
 
-TEST_F(AppWalk, EveryStatusThatOccursIsNamed) {
+TEST_F(AppWalk, EveryStatusThatOccursIsDocumented) {
   for (const auto& [path, methods] : api_.at("paths").items()) {
     for (const auto& [name, operation] : methods.items()) {
       const std::string method = upper(name);
@@ -162,7 +162,7 @@ TEST_F(AppWalk, EveryStatusThatOccursIsNamed) {
       for (const std::string& target : targets(path)) {
         const std::string what = method + ' ' + target;
         expect_named(operation, net::test::ask(port_, request(method, target, "", body)), what);
-        // Again: what was there may be gone, what was not there may be.
+        // Again: the first request may have created or removed the thing.
         expect_named(operation, net::test::ask(port_, request(method, target, "", body)), what);
         for (const std::string& bad : bad_requests(method, target)) {
           expect_named(operation, net::test::ask(port_, bad), bad.substr(0, 300));
@@ -197,13 +197,13 @@ TEST_F(AppWalk, WhatHasNoOperationIsNamedBesideThem) {
   expect(net::test::ask(port_, request("GET", "/ws", "")), 426);
 }
 
-/// The same with a token, which the walker does not have.
+/// The same on a server with a token, which the requests lack.
 class AppWalkOutside : public AppTest {
  protected:
   AppWalkOutside() : AppTest(kinematic_case1(), kToken) {}
 };
 
-TEST_F(AppWalkOutside, AStrangerLearnsNothing) {
+TEST_F(AppWalkOutside, ARequestWithoutATokenLearnsNothing) {
   const auto known = net::test::ask(
       port_,
       "GET /api/v1/openapi.json HTTP/1.1\r\nHost: localhost\r\nAuthorization: Bearer " + kToken +

@@ -1,5 +1,5 @@
-// tests/server/serve/experiments_test.cpp: queued runs when the program ends and when there is no
-// room.
+// tests/server/serve/experiments_test.cpp: queued runs at the end of the program and with a full
+// store.
 #include "server/serve/experiments.hpp"
 
 #include <atomic>
@@ -56,7 +56,7 @@ class ExperimentsTest : public test::RecorderFiles {
   }
 };
 
-TEST_F(ExperimentsTest, RunsThatWereCutAreInterruptedAndRunAgainUnderTheirNumbers) {
+TEST_F(ExperimentsTest, InterruptedRunsRunAgainUnderTheirNumbers) {
   std::vector<db::RunId> runs;
   {
     Recorder recorder(path, recorder_options());
@@ -100,7 +100,7 @@ TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
   free = 0;
   ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
   EXPECT_THAT(refused(experiments, {.spec = case1()}), HasSubstr("almost full"));
-  // The one at work has ticks that wait for room: it ends all the same.
+  // The active run has ticks that wait for room: it ends anyway.
   for (const db::RunId run : {runs[0], runs[1]}) {
     EXPECT_TRUE(experiments.cancel(run));
     EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
@@ -121,7 +121,7 @@ TEST_F(ExperimentsTest, SeveralThreadsWorkOffOneQueue) {
   ASSERT_TRUE(comes_to(runs[1], RunStatus::Recording));
   RunReader reader(path);
   EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
-  // Each is cancelled for itself, and the next takes its place.
+  // Each is cancelled separately, and the next takes its place.
   EXPECT_TRUE(experiments.cancel(runs[1]));
   EXPECT_TRUE(comes_to(runs[1], RunStatus::Cancelled));
   EXPECT_TRUE(comes_to(runs[2], RunStatus::Recording));
@@ -130,7 +130,7 @@ TEST_F(ExperimentsTest, SeveralThreadsWorkOffOneQueue) {
   for (const db::RunId run : runs) EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
 }
 
-TEST_F(ExperimentsTest, LargeWorldsThatWaitAreCountedInBytes) {
+TEST_F(ExperimentsTest, WaitingWorldsAreLimitedInBytes) {
   Recorder recorder(path, recorder_options());
   Experiments experiments(recorder);
   Experiment large{.spec = case1(), .pace = 0.1};

@@ -1,5 +1,5 @@
 // tests/server/serve/foxglove_hub_test.cpp: subscriptions, parameters, services and publishing of a
-// hub, against clients that only write down what they are sent.
+// hub, with clients that only record its messages.
 #include <string>
 #include <vector>
 
@@ -14,7 +14,7 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-/// A socket that keeps what it is told to send; `slow` makes it drop as a full ring would.
+/// A socket that keeps its messages; `slow` makes it drop like a full ring.
 class FakeSocket final : public net::WsClient {
  public:
   explicit FakeSocket(std::uint32_t id) : id_(id) {}
@@ -142,7 +142,7 @@ class FoxgloveHub : public testing::Test {
            json::array(
                {{{"id", id}, {"topic", topic}, {"encoding", "json"}, {"schemaName", "x"}}})}});
   }
-  /// The only text since the last look, which must be a status.
+  /// The only text since the last call, which must be a status.
   std::string status_of(FakeSocket& socket, int level) {
     if (socket.texts.size() != 1) return "texts: " + std::to_string(socket.texts.size());
     const json status = socket.texts[0];
@@ -174,7 +174,7 @@ TEST_F(FoxgloveHub, GreetsWithServerInfoChannelsAndServices) {
   EXPECT_EQ("flatbuffer", channels[2].at("encoding"));
   EXPECT_EQ("tautline.wire.Frame", channels[2].at("schemaName"));
   EXPECT_EQ(2u, socket->texts[2].at("services").size());
-  // The same session for the next client, another for another hub.
+  // The next client gets the same session id; another hub has another one.
   EXPECT_EQ(socket->texts[0].at("sessionId"), connect(2)->texts[0].at("sessionId"));
   Hub other;
   const auto stranger = std::make_shared<FakeSocket>(1);
@@ -182,7 +182,7 @@ TEST_F(FoxgloveHub, GreetsWithServerInfoChannelsAndServices) {
   EXPECT_NE(socket->texts[0].at("sessionId"), stranger->texts[0].at("sessionId"));
 }
 
-TEST_F(FoxgloveHub, SendsToSubscribersUnderTheirOwnIds) {
+TEST_F(FoxgloveHub, SendsToSubscribersByTheirOwnIds) {
   const auto a = greeted(1);
   const auto b = greeted(2);
   EXPECT_FALSE(hub_.wanted(scan_));
@@ -229,20 +229,20 @@ TEST_F(FoxgloveHub, AChannelEncodedOnDemandIsEncodedForItsFirstSubscriber) {
   subscribe(*first, 1, strip);
   EXPECT_EQ(message_bytes(1, 9, "one"), first->data.at(0).bytes);
   const auto second = greeted(2);
-  subscribe(*second, 1, strip);  // while somebody subscribes, what was sent last is the newest
+  subscribe(*second, 1, strip);  // with a subscriber, the last message sent is the newest
   EXPECT_EQ(message_bytes(1, 9, "one"), second->data.at(0).bytes);
   EXPECT_EQ(1, encoded);
   hub_.publish(strip, 10, payload("two"));
   endpoint_.on_close(*first);
   endpoint_.on_close(*second);
-  now = nullptr;  // another run has begun: what was sent in the last is not of this one
+  now = nullptr;  // another run has begun: older messages do not belong to it
   const auto third = greeted(3);
   subscribe(*third, 1, strip);
   EXPECT_TRUE(third->data.empty());
   EXPECT_EQ(2, encoded);
 }
 
-TEST_F(FoxgloveHub, AClientThatComesAtRestIsToldTheRunClock) {
+TEST_F(FoxgloveHub, AClientThatConnectsAtRestGetsTheRunClock) {
   EXPECT_TRUE(connect(1)->data.empty());
   hub_.broadcast_time(7, steady_clock::now());
   hub_.broadcast_time(8, steady_clock::now());  // too soon to be sent, not to be known
@@ -279,7 +279,7 @@ TEST_F(FoxgloveHub, GarbageIsAStatusMessage) {
   EXPECT_NE(std::string::npos, status_of(*socket, 2).find("not advertised"));
 }
 
-TEST_F(FoxgloveHub, EventsGoToARingAndDropsAreSaidOncePerEpisode) {
+TEST_F(FoxgloveHub, EventsGoToARingAndDropsAreReportedOncePerEpisode) {
   const ChannelId log = hub_.add_channel({"/log", "foxglove.Log"});
   const auto socket = greeted(1);
   subscribe(*socket, 1, log);
@@ -297,7 +297,7 @@ TEST_F(FoxgloveHub, EventsGoToARingAndDropsAreSaidOncePerEpisode) {
   EXPECT_NE(std::string::npos, status_of(*socket, 1).find("Send buffer limit reached"));
 }
 
-TEST_F(FoxgloveHub, TimeGoesToEverybodyTenTimesASecondAtMost) {
+TEST_F(FoxgloveHub, TimeGoesToAllClientsAtMostTenTimesASecond) {
   const auto socket = greeted(1);
   const steady_clock::time_point start{};
   for (int ms = 0; ms <= 1000; ms += 26) {
@@ -310,7 +310,7 @@ TEST_F(FoxgloveHub, TimeGoesToEverybodyTenTimesASecondAtMost) {
   EXPECT_EQ(std::string("\x02\x00\xea\x32\x06\0\0\0\0", 9), socket->data[1].bytes);
 }
 
-TEST_F(FoxgloveHub, TimeRidesWithTheNextMessageOfWhoIsServed) {
+TEST_F(FoxgloveHub, TimeIsSentWithTheClientsNextMessage) {
   const auto served = greeted(1);
   const auto idle = greeted(2);
   subscribe(*served, 7, scan_);
@@ -321,7 +321,7 @@ TEST_F(FoxgloveHub, TimeRidesWithTheNextMessageOfWhoIsServed) {
   EXPECT_TRUE(served->data.empty());
   EXPECT_EQ(std::string("\x02\x00\xea\x32\x06\0\0\0\0", 9), served->rider);
   ASSERT_EQ(1U, idle->data.size());
-  // Nothing was published since: it is told at once, and nothing rides.
+  // Nothing was published since: the time is sent at once, and no rider is needed.
   hub_.broadcast_time(208'000'000, start + milliseconds(104));
   ASSERT_EQ(1U, served->data.size());
   EXPECT_EQ("", served->rider);
@@ -453,7 +453,7 @@ TEST_F(FoxgloveHub, WrongAdvertisementsAreStatusMessages) {
   EXPECT_NE(std::string::npos, status_of(*socket, 1).find("at most 64"));
 }
 
-TEST_F(FoxgloveHub, TellsWhenAPublisherOrAClientIsGone) {
+TEST_F(FoxgloveHub, ReportsWhenAPublisherOrAClientIsGone) {
   const auto socket = greeted(3);
   advertise_goal(*socket, 1, "/goal_pose");
   advertise_goal(*socket, 2, "/goal_pose");
@@ -464,7 +464,7 @@ TEST_F(FoxgloveHub, TellsWhenAPublisherOrAClientIsGone) {
   EXPECT_EQ(0u, hub_.clients());
 }
 
-TEST_F(FoxgloveHub, AnnouncesToEverybody) {
+TEST_F(FoxgloveHub, AnnouncesToAllClients) {
   const auto a = greeted(1);
   const auto b = greeted(2);
   hub_.announce(StatusLevel::Info, "a new run");

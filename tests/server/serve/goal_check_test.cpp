@@ -1,4 +1,4 @@
-// tests/server/serve/goal_check_test.cpp: goals in walls and out of reach are told.
+// tests/server/serve/goal_check_test.cpp: goals in walls and out of reach are reported.
 #include "server/serve/goal_check.hpp"
 
 #include <chrono>
@@ -40,7 +40,7 @@ std::string said(const algo::Vec2& goal, const std::vector<algo::Obstacle>& obst
   return goal_trouble(disc(), {goal, {}}, {}, obstacles).value_or("");
 }
 
-TEST(GoalCheckTest, AGoalInsideOrTooNearAnObstacleIsTold) {
+TEST(GoalCheckTest, AGoalInsideOrTooNearAnObstacleIsReported) {
   const std::vector<algo::Obstacle> post{{.pose_W = {3, 0, 0}, .shape = algo::Cylinder{0.3}}};
   EXPECT_EQ(said({3.1, 0}, post), "The goal lies inside an obstacle.");
   EXPECT_EQ(said({3.5, 0}, post),
@@ -50,7 +50,7 @@ TEST(GoalCheckTest, AGoalInsideOrTooNearAnObstacleIsTold) {
   EXPECT_EQ(said({3.7, 0}, {}), "");
 }
 
-TEST(GoalCheckTest, AGoalThatWallsShutOffIsTold) {
+TEST(GoalCheckTest, AGoalBehindClosedWallsIsReported) {
   const std::string shut =
       "There is no way there: obstacles shut it off for a robot of this width.";
   EXPECT_EQ(said({4, 0}, room(4, 0)), shut);
@@ -61,7 +61,7 @@ TEST(GoalCheckTest, AGoalThatWallsShutOffIsTold) {
   EXPECT_EQ(said({0.5, 0.5}, room(0, 0)), "");  // with its goal
 }
 
-TEST(GoalCheckTest, AWorldOfThousandsIsJudgedInTheTimeOfAFrame) {
+TEST(GoalCheckTest, AWorldOfThousandsIsCheckedWithinAFrame) {
   std::vector<algo::Obstacle> many;
   for (int i = 0; i < 2000; ++i) {
     many.push_back({.pose_W = {50, 50, 0}, .shape = algo::Cylinder{40.0 - 0.001 * i}});
@@ -71,7 +71,7 @@ TEST(GoalCheckTest, AWorldOfThousandsIsJudgedInTheTimeOfAFrame) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
 }
 
-TEST(GoalCheckTest, TheScanTellsWhatStandsOnTheGoalOrBeforeIt) {
+TEST(GoalCheckTest, TheScanShowsObstaclesOnOrBeforeTheGoal) {
   algo::LaserScan scan;
   scan.range_max = 8;
   scan.angle_min = -std::numbers::pi / 2;

@@ -1,5 +1,4 @@
-// tests/server/serve/hardware_test.cpp: the program on devices that are made up: armed, driven,
-// stopped.
+// tests/server/serve/hardware_test.cpp: the program on fake devices: armed, driven, stopped.
 #include "server/run/hardware.hpp"
 
 #include <atomic>
@@ -23,7 +22,7 @@ namespace {
 
 using net::test::eventually;
 
-/// Nothing within range, 40 times a second.
+/// A scanner that sees nothing, at 40 Hz.
 class OpenField final : public drivers::Scanner {
  public:
   bool take(algo::LaserScan& scan) override {
@@ -49,7 +48,7 @@ class OpenField final : public drivers::Scanner {
   double last_ = 0;
 };
 
-/// Goes exactly as told.
+/// A base that follows commands exactly.
 class GoodBase final : public drivers::Base {
  public:
   explicit GoodBase(std::shared_ptr<std::atomic<bool>> button) : button_(std::move(button)) {}
@@ -106,7 +105,7 @@ class HardwareAppTest : public AppTest {
       return h.is_object() && h.at("halt") == halt;
     });
   }
-  /// The same while somebody is there: a sign of life with each look.
+  /// The same with an operator: each poll is a sign of life.
   bool watched_until(const std::function<bool()>& condition) const {
     return eventually([&] {
       EXPECT_EQ(ask("POST", "/session/watch").status, 200);
@@ -116,7 +115,7 @@ class HardwareAppTest : public AppTest {
   bool gets_beyond(double x) const {
     return watched_until([&] { return get("/session").at("pose").at("x") > x; });
   }
-  /// [m] of the way in a tenth of a second.
+  /// [m] driven in a tenth of a second.
   double way() const {
     const double from = get("/session").at("pose").at("x");
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -168,7 +167,7 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   EXPECT_EQ(get("/session").at("hold"), "halted");
   EXPECT_NEAR(get("/session").at("pose").at("x").get<double>(), 0, 1e-9);
 
-  // WHEN the goal follows the arming at once THEN it is taken: no tick has to pass between.
+  // WHEN the goal follows the arming at once THEN it is accepted: no tick has to pass between.
   ASSERT_EQ(control("arm").status, 200);
   EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":5,"y":0})").status, 200);
   EXPECT_TRUE(gets_beyond(0.1));
@@ -185,7 +184,7 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   EXPECT_FALSE(hardware().at("armed"));
 }
 
-TEST_F(HardwareAppTest, AGoalIsRefusedInWordsUntilTheRobotMayGo) {
+TEST_F(HardwareAppTest, AGoalIsRefusedWithASentenceUntilTheRobotIsArmed) {
   ASSERT_TRUE(comes_to_halt("disarmed"));
   const std::string goal = R"({"x":5,"y":0})";
   expect_problem(ask("PUT", "/session/goal", goal), 409, "Arm the robot first");
@@ -201,7 +200,7 @@ TEST_F(HardwareAppTest, AGoalIsRefusedInWordsUntilTheRobotMayGo) {
   EXPECT_TRUE(gets_beyond(0.05));
 }
 
-TEST_F(HardwareAppTest, NeitherArmingNorAReleaseDrivesToAGoalOfBefore) {
+TEST_F(HardwareAppTest, NeitherArmingNorAReleaseDrivesToAnEarlierGoal) {
   arm();
   for (const auto& [end, begin] :
        {std::pair("stop", "release"), std::pair("disarm", "arm"), std::pair("button", "arm")}) {
@@ -226,10 +225,10 @@ TEST_F(HardwareAppTest, NeitherArmingNorAReleaseDrivesToAGoalOfBefore) {
   }
 }
 
-TEST_F(HardwareAppTest, AGoalWhereSomethingIsSeenOrNothingIsKnownIsTold) {
+TEST_F(HardwareAppTest, AGoalOnAnObstacleOrInUnknownSpaceIsReported) {
   arm();
   ASSERT_TRUE(eventually([&] { return get("/session").at("watchers") == 0; }));
-  // Looks at goals may take a tenth of the time, so that one may have to be asked for again.
+  // Goal checks may take a tenth of the time, so one request may have to be repeated.
   const auto told = [&](const char* goal) {
     auto reply = ask("POST", "/session/goal/check", goal);
     EXPECT_TRUE(eventually([&] {
@@ -250,12 +249,12 @@ TEST_F(HardwareAppTest, AGoalWhereSomethingIsSeenOrNothingIsKnownIsTold) {
   }));
 }
 
-TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
+TEST_F(HardwareAppTest, StopsWithoutAnOperatorWhoCouldStopIt) {
   arm();
-  // WHEN it stands and nobody asks THEN it stays armed.
+  // WHEN it stands without requests THEN it stays armed.
   std::this_thread::sleep_for(OperatorWatch::kPatience + std::chrono::milliseconds(500));
   EXPECT_TRUE(hardware().at("armed"));
-  // WHEN it is on its way and a script only looks on THEN it is not.
+  // WHEN it moves and a script only reads THEN it is disarmed.
   EXPECT_EQ(ask("PUT", "/session/goal", R"({"x":50,"y":0})").status, 200);
   ASSERT_TRUE(gets_beyond(0.1));
   const auto last = OperatorWatch::Clock::now();
@@ -266,7 +265,7 @@ TEST_F(HardwareAppTest, StopsWhenNobodyIsLeftWhoCouldStopIt) {
   EXPECT_TRUE(eventually([&] { return way() == 0; }));
 }
 
-TEST_F(HardwareAppTest, ThoseWhoWatchAreCounted) {
+TEST_F(HardwareAppTest, ViewersAreCounted) {
   const auto watchers = [&] { return get("/session").at("watchers").get<int>(); };
   ASSERT_TRUE(comes_to_halt("disarmed"));
   EXPECT_TRUE(eventually([&] { return watchers() == 0; }));
@@ -278,7 +277,7 @@ TEST_F(HardwareAppTest, ThoseWhoWatchAreCounted) {
   expect_problem(ask("POST", "/session/watch", R"({"for":9})"), 422, "for");
 }
 
-TEST_F(HardwareAppTest, AResetDisarmsAndNoSimulationTakesItsPlace) {
+TEST_F(HardwareAppTest, AResetDisarmsAndASimulationCannotReplaceIt) {
   ASSERT_TRUE(comes_to_halt("disarmed"));
   ASSERT_EQ(control("arm").status, 200);
   EXPECT_EQ(control("reset").status, 200);
@@ -308,7 +307,7 @@ TEST_F(HardwareAppTest, ObstaclesAreNotPlaced) {
       "by hand");
 }
 
-TEST_F(AppTest, ASimulatedRobotTakesAGoalInAnObstacleAndSaysSo) {
+TEST_F(AppTest, ASimulatedRobotAcceptsAGoalInAnObstacleWithAWarning) {
   const auto told = [&](const char* goal) {
     const net::test::Answer answer = ask("PUT", "/session/goal", goal);
     EXPECT_EQ(answer.status, 200) << answer.body;
@@ -317,7 +316,7 @@ TEST_F(AppTest, ASimulatedRobotTakesAGoalInAnObstacleAndSaysSo) {
   EXPECT_EQ(told(R"({"x":1.75,"y":2.5})"), "The goal lies inside an obstacle.");
   EXPECT_EQ(get("/session").at("goal").at("x"), 1.75);
   EXPECT_EQ(told(R"({"x":3.5,"y":5})"), "");
-  // Stop keeps a simulated robot's goal: a release lets it drive on.
+  // Stop keeps a simulated robot's goal: after the release it drives on.
   EXPECT_EQ(ask("POST", "/session/control", R"({"action":"stop"})").status, 200);
   EXPECT_EQ(told(R"({"x":3.5,"y":4})"), "");
   EXPECT_EQ(get("/session").at("goal").at("y"), 4);

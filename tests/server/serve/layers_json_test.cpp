@@ -1,4 +1,4 @@
-// tests/server/serve/layers_json_test.cpp: every kind of layer is drawn, by foxglove's primitives.
+// tests/server/serve/layers_json_test.cpp: every kind of layer as Foxglove primitives.
 #include "server/serve/layers_json.hpp"
 
 #include <limits>
@@ -38,14 +38,14 @@ double number(const json& point, const char* axis) {
   return point.at(axis).get<double>();
 }
 
-TEST(LayersJson, AnEntityIsNamedAsItsLayerAndGoesByItself) {
+TEST(LayersJson, AnEntityIsNamedAsItsLayerAndExpires) {
   const json entity = drawn({.name = "strip", .kind = LayerKind::Polyline}, {0, 0, 1, 0});
   EXPECT_EQ(entity.at("id"), "strip");
   EXPECT_EQ(entity.at("frame_id"), "map");
   EXPECT_EQ(entity.at("lifetime").at("nsec"), 500'000'000);
 }
 
-TEST(LayersJson, WhatIsEmptyIsNotDrawn) {
+TEST(LayersJson, EmptyLayersAreNotDrawn) {
   algo::Telemetry t;
   add_layer(t.output.layers, {.name = "strip"});
   EXPECT_TRUE(json::parse(layers_json(t)).at("entities").empty());
@@ -70,7 +70,7 @@ TEST(LayersJson, DashedPointsAreTiedToTheRobot) {
   EXPECT_EQ(number(ties[3], "x"), 5);
 }
 
-TEST(LayersJson, APositionThatIsNoNumberBeginsANewLine) {
+TEST(LayersJson, ANanPositionStartsANewLine) {
   const json entity = drawn({.name = "plan", .kind = LayerKind::Polyline},
                             {0, 0, 1, 0, 2, 0, kNan, kNan, 5, 5, 6, 6});
   ASSERT_EQ(entity.at("lines").size(), 2U);
@@ -136,7 +136,7 @@ TEST(LayersJson, APolarStandsAboutTheRobot) {
   EXPECT_NEAR(height(2), 0.5, 1e-9);
 }
 
-TEST(LayersJson, TextHasALineAPosition) {
+TEST(LayersJson, TextHasOneLinePerPosition) {
   const json entity =
       drawn({.name = "names", .kind = LayerKind::Text}, {0, 0, 1, 1, 2, 2}, {}, "one\ntwo");
   ASSERT_EQ(entity.at("texts").size(), 2U);

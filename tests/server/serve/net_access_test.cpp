@@ -22,13 +22,13 @@ Request request_of(const std::string& method, std::vector<Header> headers, bool 
   return request;
 }
 
-/// Status of the refusal, 0 when it may pass.
+/// Status of the refusal, 0 for an accepted request.
 int refused(Access& access, const Request& request, bool upgrade = false) {
   const auto refusal = access.refuse(request, "10.1.2.3", upgrade, true, Clock::now());
   return refusal ? refusal->status : 0;
 }
 
-TEST(NetAccess, TakesTheNamesOfThisServerOnly) {
+TEST(NetAccess, AcceptsOnlyTheNamesOfThisServer) {
   Access access({.allow_hosts = {"robot.lan", "demo.example:8443"}});
   for (const char* host : {"localhost",
                            "LocalHost:8080",
@@ -90,7 +90,7 @@ TEST(NetAccess, TheDefaultPortMayBeWrittenOrNot) {
   }
 }
 
-TEST(NetAccess, WhoLooksLogsInOrAsksForTheHealthDoesNotDrive) {
+TEST(NetAccess, ReadingLoginAndHealthRequestsAreNotDriving) {
   const Access access({.token = kToken});
   for (const auto& [method, path, drives] : {std::tuple{"PUT", "/api/v1/session/goal", true},
                                              {"POST", "/api/v1/session/control", true},
@@ -106,7 +106,7 @@ TEST(NetAccess, WhoLooksLogsInOrAsksForTheHealthDoesNotDrive) {
   EXPECT_TRUE(access.may_drive(request_of("GET", {}), true, false));  // an upgrade
 }
 
-TEST(NetAccess, OriginIsJudgedOnUpgradesButNotOnReading) {
+TEST(NetAccess, OriginIsCheckedOnUpgradesButNotOnReading) {
   Access access({});
   const Request foreign =
       request_of("GET", {{"Host", "localhost"}, {"Origin", "http://evil.example"}});
@@ -114,7 +114,7 @@ TEST(NetAccess, OriginIsJudgedOnUpgradesButNotOnReading) {
   EXPECT_EQ(403, refused(access, foreign, true));
 }
 
-TEST(NetAccess, WithoutOriginOnlyFromHereOrWithTheTokenOrInsecure) {
+TEST(NetAccess, WithoutOriginOnlyLocallyOrWithTokenOrInsecure) {
   const std::vector<Header> host{{"Host", "localhost"}};
   Access plain({});
   Access insecure({.insecure = true});
@@ -146,7 +146,7 @@ TEST(NetAccess, BehindATrustedProxyThatEncryptsTheOriginIsHttps) {
   EXPECT_EQ(0, status("127.0.0.1", "robot.lan:8443", "https://robot.lan:8443"));
   EXPECT_EQ(403, status("127.0.0.1", "robot.lan", "http://robot.lan"));
   EXPECT_EQ(403, status("127.0.0.1", "robot.lan", "https://evil.example"));
-  // The header says nothing when somebody else sends it.
+  // The header counts only from a trusted proxy.
   EXPECT_EQ(403, status("127.0.0.2", "robot.lan", "https://robot.lan"));
   Request untrusted = request_of("POST", {{"Host", "robot.lan"}, {"Origin", "https://robot.lan"}});
   const auto refusal = access.refuse(untrusted, "10.1.2.3", false, true, Clock::now());
@@ -154,7 +154,7 @@ TEST(NetAccess, BehindATrustedProxyThatEncryptsTheOriginIsHttps) {
   EXPECT_NE(std::string::npos, refusal->body->find("--trusted-proxy"));
 }
 
-TEST(NetAccess, WrongTokensAreToldToWaitAndTheRightOnePassesAllTheSame) {
+TEST(NetAccess, WrongTokensMustWaitAndTheRightOneStillPasses) {
   std::vector<std::string> lines;
   Access access({.token = kToken}, [&](std::string_view line) { lines.emplace_back(line); });
   const Clock::time_point now = Clock::now();
@@ -246,9 +246,9 @@ TEST(NetAccess, AScriptElsewhereMayLogInWithoutAnOrigin) {
   EXPECT_EQ(0, refused(access, request));
 }
 
-TEST(NetAccess, TheTokenIsNeededWhole) {
+TEST(NetAccess, TheWholeTokenIsNeeded) {
   Access access({.token = kToken});
-  int guest = 0;  // each from an address of its own, so that none is told to wait
+  int guest = 0;  // each from another address, so that none must wait
   const auto status = [&](const std::string& value) {
     Request request = request_of("GET", {{"Host", "localhost"}, {"Authorization", value}});
     request.peer = "10.9.9." + std::to_string(++guest);
@@ -322,7 +322,7 @@ TEST_F(NetLogin, TheRightTokenGivesACookieThatOpensApiAndSocket) {
   EXPECT_EQ(101, read_answer(socket, false).status);
 }
 
-TEST_F(NetLogin, WithoutItNothingButTheHealthCheckAnswers) {
+TEST_F(NetLogin, WithoutATokenOnlyTheHealthCheckAnswers) {
   EXPECT_EQ(401, ask(port(), get_request("/api/v1/session")).status);
   EXPECT_EQ(401, ask(port(), upgrade_request()).status);
   EXPECT_EQ(401,
@@ -355,7 +355,7 @@ TEST_F(NetLogin, AForeignHostIsMisdirected) {
   EXPECT_EQ(421, ask(port(), "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n").status);
 }
 
-TEST_F(NetLogin, ALogoutEndsTheCookieAndTheSocketsOpenedWithIt) {
+TEST_F(NetLogin, ALogoutEndsTheCookieAndItsSockets) {
   const auto log_in = [&] {
     const Answer login =
         ask(port(), post_request("/api/v1/login", R"({"token":")" + kToken + R"("})"));

@@ -1,4 +1,4 @@
-// tests/server/serve/net_address_test.cpp: addresses in every form, and whom a proxy speaks for.
+// tests/server/serve/net_address_test.cpp: addresses in every form, and the clients of a proxy.
 #include <string>
 #include <utility>
 #include <vector>
@@ -85,7 +85,7 @@ Sender sender(const char* peer, std::vector<Header> headers) {
   return proxies.sender(*Address::parse(peer), request);
 }
 
-TEST(NetProxy, TheRightmostAddressThatIsNoProxysIsTheClient) {
+TEST(NetProxy, TheRightmostNonProxyAddressIsTheClient) {
   const auto client = [](const char* chain) {
     return sender("127.0.0.1", {{"X-Forwarded-For", chain}}).address.text();
   };
@@ -103,19 +103,19 @@ TEST(NetProxy, TheRightmostAddressThatIsNoProxysIsTheClient) {
   EXPECT_EQ("203.0.113.7", split.address.text());
 }
 
-TEST(NetProxy, NobodyElseIsBelieved) {
+TEST(NetProxy, UntrustedForwardedHeadersAreIgnored) {
   const std::vector<Header> headers{{"X-Forwarded-For", "203.0.113.7"},
                                     {"X-Forwarded-Proto", "https"}};
   const Sender stranger = sender("198.51.100.1", headers);
   EXPECT_EQ("198.51.100.1", stranger.address.text());
   EXPECT_FALSE(stranger.https);
-  // A proxy on this machine that was not named: its clients are not on this machine.
+  // An untrusted proxy on this machine: its clients do not count as local.
   EXPECT_FALSE(sender("127.0.0.2", headers).loopback);
   EXPECT_FALSE(sender("127.0.0.2", {{"Forwarded", "for=203.0.113.7"}}).loopback);
   EXPECT_TRUE(sender("127.0.0.2", {}).loopback);
 }
 
-TEST(NetProxy, ItsClientsAreNotOnThisMachineAndMayBeEncrypted) {
+TEST(NetProxy, ProxyClientsAreRemoteAndMayBeEncrypted) {
   EXPECT_FALSE(sender("127.0.0.1", {{"X-Forwarded-For", "203.0.113.7"}}).loopback);
   EXPECT_TRUE(sender("127.0.0.1", {{"X-Forwarded-For", "127.0.0.1"}}).loopback);
   EXPECT_TRUE(sender("127.0.0.1", {}).loopback) << "its own health check";

@@ -1,5 +1,5 @@
-// tests/server/serve/net_body_test.cpp: where a body ends: what is refused, and bodies made while
-// sent.
+// tests/server/serve/net_body_test.cpp: the length of bodies, refusals, and bodies produced while
+// being sent.
 #include <atomic>
 #include <memory>
 #include <optional>
@@ -38,7 +38,7 @@ class NetBody : public testing::Test {
   std::optional<RunningServer> running_{};
 };
 
-/// A body read with the wrong length would run as a second request.
+/// The rest of a body read with a wrong length would run as a second request.
 TEST_F(NetBody, AnUnknownTransferCodingIs501AndTheEndOfTheConnection) {
   serve();
   for (const char* coding : {"gzip",
@@ -104,7 +104,7 @@ TEST_F(NetBody, ARouteMayTakeLessThanTheServer) {
                 .status);
 }
 
-TEST_F(NetBody, LargeBodiesOfAllClientsTogetherHaveABoundAndSmallOnesPass) {
+TEST_F(NetBody, LargeBodiesShareALimitAndSmallOnesPass) {
   serve();
   const std::string large =
       "POST /api/v1/echo HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
@@ -128,7 +128,7 @@ TEST_F(NetBody, LargeBodiesOfAllClientsTogetherHaveABoundAndSmallOnesPass) {
   }));
 }
 
-/// Counts to `slices` in slices of 100 kB; breaks off instead of the slice after `good`.
+/// Sends `slices` slices of 100 kB; aborts after slice `good`.
 class Counting final : public BodyStream {
  public:
   Counting(int slices, int good, std::atomic<int>& made)
@@ -190,7 +190,7 @@ TEST_F(NetStream, EndsWithTheConnectionForHttp10) {
   EXPECT_TRUE(client.ends_within(5s));
 }
 
-TEST_F(NetStream, IsMadeNoFasterThanItIsTaken) {
+TEST_F(NetStream, IsProducedNoFasterThanItIsRead) {
   serve(10'000, 20'000);  // 1 GB
   Client client(running_.port(), 4096);
   client.send(get_request("/stream"));
@@ -202,7 +202,7 @@ TEST_F(NetStream, IsMadeNoFasterThanItIsTaken) {
   EXPECT_TRUE(eventually([&] { return made_ > made; }));
 }
 
-TEST_F(NetStream, BreaksOffWhenTheRestCannotBeMade) {
+TEST_F(NetStream, AbortsWhenTheRestCannotBeProduced) {
   serve(9, 2);
   Client client(running_.port());
   client.send(get_request("/stream"));
@@ -211,7 +211,7 @@ TEST_F(NetStream, BreaksOffWhenTheRestCannotBeMade) {
   EXPECT_EQ(client.input().find("\r\n0\r\n\r\n"), std::string::npos);
 }
 
-TEST_F(NetStream, AHeadRequestMakesNothing) {
+TEST_F(NetStream, AHeadRequestProducesNoBody) {
   serve(3, 9);
   EXPECT_EQ(test::ask(running_.port(), "HEAD /stream HTTP/1.1\r\nHost: localhost\r\n\r\n").status,
             200);

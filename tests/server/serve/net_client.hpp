@@ -32,7 +32,7 @@ using std::chrono::steady_clock;
 /// How long a client waits for an answer; sanitizers on a busy machine are slow.
 constexpr std::chrono::milliseconds kPatience = 20s;
 
-/// A blocking TCP connection to 127.0.0.1 that gives up waiting after `patience`.
+/// A blocking TCP connection to 127.0.0.1 with the timeout `patience`.
 class Client {
  public:
   /// @param receive_buffer  bytes, 0: the system's default
@@ -101,7 +101,7 @@ class Client {
     input_.erase(0, size);
     return bytes;
   }
-  /// Everything up to and with `end`, or nothing.
+  /// All bytes up to and including `end`, or nothing.
   std::optional<std::string> take_through(std::string_view end,
                                           std::chrono::milliseconds patience = kPatience) {
     while (input_.find(end) == std::string::npos) {
@@ -109,7 +109,7 @@ class Client {
     }
     return take(input_.find(end) + end.size());
   }
-  /// True when the server ends the connection in time; input on the way is thrown away.
+  /// True when the server ends the connection in time; input until then is discarded.
   bool ends_within(std::chrono::milliseconds patience) {
     const auto deadline = steady_clock::now() + patience;
     while (!ended_ && steady_clock::now() < deadline) {

@@ -1,5 +1,4 @@
-// tests/server/serve/net_connections_test.cpp: room among connections, on connections without a
-// socket.
+// tests/server/serve/net_connections_test.cpp: limits on connections, without sockets.
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,7 +31,7 @@ Address at(const std::string& text) {
 
 class NetConnections : public testing::Test {
  protected:
-  /// A connection that was let in, idle from now on; null when there was no room.
+  /// An accepted connection, idle from now on; null when there was no room.
   Fake enter(const std::string& from, Kind kind = Kind::Request, bool busy = false) {
     now_ += 1ms;
     room_ = open_.make_room(at(from), false, now_);
@@ -48,7 +47,7 @@ class NetConnections : public testing::Test {
   Connections::Number last_ = 0;
 };
 
-TEST_F(NetConnections, BeyondItsShareAVisitorTakesItsOwnLongestIdlePlace) {
+TEST_F(NetConnections, BeyondItsShareAVisitorReplacesItsOwnLongestIdleConnection) {
   const Fake busy = enter("10.0.0.1", Kind::Request, true);
   const Fake first = enter("10.0.0.1");
   const Fake second = enter("10.0.0.1");
@@ -62,14 +61,14 @@ TEST_F(NetConnections, BeyondItsShareAVisitorTakesItsOwnLongestIdlePlace) {
   EXPECT_TRUE(enter("10.0.0.2")->open);
 }
 
-TEST_F(NetConnections, OneWhoUsesAllItsPlacesIsRefusedAndNobodyElse) {
+TEST_F(NetConnections, OnlyAVisitorWithAllConnectionsInUseIsRefused) {
   for (int i = 0; i < 16; ++i) ASSERT_TRUE(enter("10.0.0.1", Kind::Request, true));
   EXPECT_FALSE(enter("10.0.0.1"));
   EXPECT_EQ(Room::AddressFull, room_);
   EXPECT_TRUE(enter("10.0.0.2"));
 }
 
-TEST_F(NetConnections, WhenItIsFullANewcomerTakesAPlaceOfWhoHasMost) {
+TEST_F(NetConnections, WhenFullANewcomerReplacesAConnectionOfTheLargestUser) {
   Fake first;
   for (int i = 0; i < 16; ++i) {
     const Fake one = enter("10.0.0.1");
@@ -83,7 +82,7 @@ TEST_F(NetConnections, WhenItIsFullANewcomerTakesAPlaceOfWhoHasMost) {
   EXPECT_FALSE(first->open);
 }
 
-TEST_F(NetConnections, RoomIsKeptForThisMachineAndForWhoDroveLately) {
+TEST_F(NetConnections, RoomIsReservedForThisMachineAndRecentDrivers) {
   for (int i = 0; i < 32; ++i) {  // all of them at work, each for another
     ASSERT_TRUE(enter("10.0.1." + std::to_string(i), Kind::Request, true));
   }
@@ -93,14 +92,14 @@ TEST_F(NetConnections, RoomIsKeptForThisMachineAndForWhoDroveLately) {
   EXPECT_TRUE(enter("127.0.0.1"));
   EXPECT_TRUE(enter("10.0.0.9"));
   EXPECT_FALSE(enter("10.0.0.8"))
-      << "though both are idle: nobody loses the only one to a stranger";
+      << "although both are idle: no visitor loses their only connection to another";
   now_ += Connections::kKnownFor + 1s;
   EXPECT_FALSE(enter("10.0.0.8"));
   for (int i = 0; i < 6; ++i) EXPECT_TRUE(enter("::1", Kind::Request, true));
   EXPECT_TRUE(enter("127.0.0.1")) << "in place of the idle one of 10.0.0.9 or of its own";
 }
 
-TEST_F(NetConnections, ManyStrangersWhoDriveDoNotFillTheMemory) {
+TEST_F(NetConnections, ManyUnknownDriversDoNotFillTheMemory) {
   for (int i = 0; i < 100'000; ++i) {
     now_ += 1ms;
     open_.welcome(at("10." + std::to_string(i >> 16) + '.' + std::to_string(i >> 8 & 255) + '.' +
@@ -126,7 +125,7 @@ TEST_F(NetConnections, AnAddressKeepsPlacesForRequestsBesideItsSockets) {
   EXPECT_TRUE(open_.may_open_socket(at("10.0.0.1")));
 }
 
-TEST_F(NetConnections, AProxysConnectionCountsForWhomItCarriesARequest) {
+TEST_F(NetConnections, AProxysConnectionCountsForItsClient) {
   const Address proxy = at("10.9.9.9");
   std::vector<Connections::Number> numbers;
   for (int i = 0; i < 20; ++i) {  // more than one address may have
@@ -147,7 +146,7 @@ TEST_F(NetConnections, AProxysConnectionCountsForWhomItCarriesARequest) {
   for (int i = 0; i < 16; ++i) ASSERT_TRUE(enter("10.0.0.1")) << "nothing is left in the books";
 }
 
-TEST_F(NetConnections, TheLogHearsOfItOnceAMinute) {
+TEST_F(NetConnections, TheLogReportsItOnceAMinute) {
   for (int i = 0; i < 100; ++i) enter("10.0.0.1");
   EXPECT_EQ("84 connections were closed or refused to make room for others, lately of 10.0.0.1.",
             open_.report(now_));

@@ -1,4 +1,4 @@
-// tests/server/serve/net_http_test.cpp: plain HTTP values, routing, and JSON from strangers.
+// tests/server/serve/net_http_test.cpp: plain HTTP values, routing, and untrusted JSON.
 #include <string>
 #include <vector>
 
@@ -104,7 +104,7 @@ TEST(NetHttp, AProblemMayQuoteBrokenText) {
   EXPECT_NO_THROW(nlohmann::json::parse(*problem(400, "bad: \xff").body));
 }
 
-TEST(NetHttp, AResponderAnswersOnceAndNeverNot) {
+TEST(NetHttp, AResponderAnswersExactlyOnce) {
   std::vector<int> statuses;
   const auto send = [&](const Response& response) { statuses.push_back(response.status); };
   {
@@ -157,7 +157,7 @@ TEST_F(NetRouter, MatchesSegmentsAndParameters) {
   }
 }
 
-TEST_F(NetRouter, AnotherMethodIsToldWhatIsAllowed) {
+TEST_F(NetRouter, AnotherMethodGetsTheAllowedOnes) {
   router_.add("GET", "/goal", says("get"));
   router_.add("PUT", "/goal", says("put"));
   const Response response = go("POST", "/goal");
@@ -199,7 +199,7 @@ std::string json_error(const std::string& text, const JsonLimits& limits = {}) {
   return "";
 }
 
-TEST(JsonLimits, ReadsWhatTheLibraryReads) {
+TEST(JsonLimits, AcceptsTheSameTextsAsTheLibrary) {
   const std::string text =
       R"({"a":[1,-2,3.5,true,null,"x\u00e9"],"b":{"c":{}},"d":[[],[{}]],"e":18446744073709551615})";
   EXPECT_EQ(nlohmann::json::parse(text), parse_json(text));
@@ -226,7 +226,7 @@ TEST(JsonLimits, SizeIsBounded) {
   EXPECT_NE(std::string::npos, json_error("[12]", {.max_bytes = 3}).find("4 bytes"));
 }
 
-TEST(JsonLimits, SaysWhatIsWrongAndWhere) {
+TEST(JsonLimits, NamesTheErrorAndItsPlace) {
   EXPECT_EQ(0u, json_error("{\"a\":1,\n \"b\":}").find("bad JSON at line 2, column 6"))
       << json_error("{\"a\":1,\n \"b\":}");
   for (const char* text : {"",

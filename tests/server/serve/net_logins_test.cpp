@@ -1,4 +1,4 @@
-// tests/server/serve/net_logins_test.cpp: guesses and cookies on a clock of the test's own.
+// tests/server/serve/net_logins_test.cpp: guesses and cookies, with a simulated clock.
 #include <string>
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ TEST(NetGuesses, TenAtOnceAndOneEveryFiveSeconds) {
   EXPECT_TRUE(throttle.wrong(at("10.0.0.1"), now).wait);
 }
 
-TEST(NetGuesses, OneWhoGuessesFasterThanAPersonCanIsNotLookedAt) {
+TEST(NetGuesses, GuessesFasterThanAPersonAreNotChecked) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
   int looked_at = 0;
@@ -43,7 +43,7 @@ TEST(NetGuesses, OneWhoGuessesFasterThanAPersonCanIsNotLookedAt) {
   EXPECT_TRUE(throttle.may_look(at("10.0.0.1"), now));
 }
 
-TEST(NetGuesses, AnIpv6VisitorHasOneAccountAndManyAddressesNoMoreMemory) {
+TEST(NetGuesses, AnIpv6VisitorCountsOnceAndManyAddressesTakeNoMoreMemory) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
   for (int i = 0; i < 10; ++i) throttle.wrong(at("2001:db8:0:1::" + std::to_string(i)), now);
@@ -61,7 +61,7 @@ TEST(NetGuesses, AnIpv6VisitorHasOneAccountAndManyAddressesNoMoreMemory) {
   EXPECT_FALSE(throttle.wrong(at("192.0.2.1"), now).wait) << "those who stopped are forgotten";
 }
 
-TEST(NetGuesses, TheLogHasALineAMinuteForEachAddressAndNotTooManyForAll) {
+TEST(NetGuesses, TheLogIsLimitedPerAddressAndInTotal) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
   EXPECT_EQ("A wrong token came from 10.0.0.1.", throttle.wrong(at("10.0.0.1"), now).line);
@@ -79,7 +79,7 @@ TEST(NetGuesses, TheLogHasALineAMinuteForEachAddressAndNotTooManyForAll) {
   EXPECT_EQ("Somebody at 10.0.0.9 has logged in.", throttle.right(at("10.0.0.9"), now));
 }
 
-TEST(NetLoginSessions, LiveWhileTheyAreUsed) {
+TEST(NetLoginSessions, LastWhileTheyAreUsed) {
   Clock::time_point now{};
   LoginSessions logins;
   const std::string id = logins.open(now);
@@ -99,7 +99,7 @@ TEST(NetLoginSessions, LiveWhileTheyAreUsed) {
   logins.keep(id, now - 2 * LoginSessions::kIdle);
 }
 
-TEST(NetLoginSessions, OfTooManyTheOneUsedLongestAgoGoes) {
+TEST(NetLoginSessions, TheLeastRecentlyUsedIsDroppedWhenFull) {
   Clock::time_point now{};
   LoginSessions logins;
   const std::string driver = logins.open(now);

@@ -20,7 +20,7 @@ Outgoing control(const std::string& value) {
   return message;
 }
 
-/// Everything in the order it would be written.
+/// All messages in the order in which they would be written.
 std::vector<std::string> drain(SendQueue& queue) {
   std::vector<std::string> out;
   Outgoing message;
@@ -38,7 +38,7 @@ TEST(NetSendQueue, ControlComesFirstAndInOrder) {
   EXPECT_EQ((Texts{"a", "b", "data"}), drain(queue));
 }
 
-TEST(NetSendQueue, TheLatestOfAKeyWinsAndKeepsItsTurn) {
+TEST(NetSendQueue, TheLatestMessageOfAKeyReplacesTheOlderAtItsPlace) {
   SendQueue queue({});
   EXPECT_TRUE(queue.push_latest(1, {}, text("one old"), 1));
   EXPECT_TRUE(queue.push_latest(2, {}, text("two"), 1));
@@ -79,7 +79,7 @@ TEST(NetSendQueue, ARingMayGrow) {
   EXPECT_EQ((Texts{"b", "c", "d"}), drain(queue));
 }
 
-TEST(NetSendQueue, CountsWhatWaits) {
+TEST(NetSendQueue, CountsWaitingMessages) {
   SendQueue queue({});
   const std::array<std::byte, 13> header{};
   queue.push_latest(1, header, text("12345"), 1);

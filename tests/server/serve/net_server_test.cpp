@@ -229,7 +229,7 @@ TEST_F(NetServer, RefusesABodyThatIsNotJson) {
           .status);
 }
 
-TEST_F(NetServer, UnknownPathsAndMethodsArePointedAnswers) {
+TEST_F(NetServer, UnknownPathsAndMethodsGetSpecificAnswers) {
   serve();
   EXPECT_EQ(404, ask(get_request("/api/v1/nothing")).status);
   const Answer answer = ask(get_request("/api/v1/echo"));
@@ -280,7 +280,7 @@ TEST_F(NetServer, ClosesSlowHeadersAndSlowBodies) {
   body.send(
       "POST /api/v1/echo HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
       "Content-Length: 10\r\n\r\n{");
-  // Bytes that trickle in do not extend the time.
+  // Slow bytes do not extend the timeout.
   const auto deadline = steady_clock::now() + 2s;
   bool header_open = true;
   while (header_open && steady_clock::now() < deadline) {
@@ -291,7 +291,7 @@ TEST_F(NetServer, ClosesSlowHeadersAndSlowBodies) {
   EXPECT_TRUE(body.ends_within(1s));
 }
 
-TEST_F(NetServer, FiftyHalfOpenConnectionsDelayNobodyAndEnd) {
+TEST_F(NetServer, FiftyHalfOpenConnectionsDelayNoClientAndEnd) {
   ServerOptions options;
   options.timeouts.header = 600ms;
   serve(options);
@@ -339,12 +339,12 @@ TEST_F(NetServer, AtTheConnectionLimitItSays503) {
   EXPECT_TRUE(eventually([&] { return ask(get_request("/api/v1/healthz")).status == 200; }));
 }
 
-TEST_F(NetServer, IdleConnectionsOfOneAddressStarveNobody) {
+TEST_F(NetServer, IdleConnectionsOfOneAddressStarveNoOther) {
   ServerOptions options;
   options.limits.connections = 300;
   options.limits.connections_per_address = 64;
   serve(options);
-  // Half a request each, as who wants to hold a place sends it; from more addresses than one.
+  // Half a request each, as an attacker holds a connection; from several addresses.
   std::vector<Client> idle;
   for (const char* from : {"127.0.0.2",
                            "127.0.0.2",
@@ -388,7 +388,7 @@ TEST_F(NetServer, AClientBehindATrustedProxyIsCountedForItself) {
   ASSERT_TRUE(eventually([&] { return running_->on_io([&] { return waiting_.size(); }) == 47; }));
   EXPECT_EQ(429, ask(later("203.0.113.39")).status);
   EXPECT_EQ(200, ask(get_request("/api/v1/healthz", "X-Forwarded-For: 203.0.113.40\r\n")).status);
-  // One connection of the proxy carries requests of many in turn.
+  // One connection of the proxy carries requests of many clients in turn.
   Client shared(port());
   for (int visitor = 0; visitor < 20; ++visitor) {
     const std::string header = "X-Forwarded-For: 198.51.100." + std::to_string(visitor) + "\r\n";
@@ -412,7 +412,7 @@ TEST_F(NetServer, TimersKeepTheirPeriodAndSurviveAnException) {
   running_->start();
   const auto seen = [&] { return running_->on_io([&] { return calls; }); };
   EXPECT_TRUE(eventually([&] { return seen() >= 5; }, 30s));
-  // A loaded machine may miss some; what was missed is never made up for in a burst.
+  // A loaded machine may miss periods; missed ones are never repeated in a burst.
   const int count = seen();
   EXPECT_LE(count, (std::chrono::steady_clock::now() - start) / 20ms + 1);
 }
@@ -431,7 +431,7 @@ TEST(NetServerSetup, APortInUseIsOneSentence) {
   }
 }
 
-TEST(NetServerSetup, BeyondLoopbackOnlyWithTokenOrInsecure) {
+TEST(NetServerSetup, ListensBeyondLoopbackOnlyWithTokenOrInsecure) {
   ServerOptions options;
   options.address = "0.0.0.0";
   options.port = 0;

@@ -1,4 +1,4 @@
-// tests/server/serve/net_static_test.cpp: only the page's files, whatever the path says.
+// tests/server/serve/net_static_test.cpp: only the page's files are served, for any path.
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -79,7 +79,7 @@ TEST_F(NetStatic, NothingOutsideTheRoot) {
     EXPECT_EQ(404, answer.status) << path;
     EXPECT_EQ(std::string::npos, answer.body.find("\"secret\"")) << path;
   }
-  // Not even well formed: an encoded NUL, overlong UTF-8 for "../".
+  // Malformed: an encoded NUL, overlong UTF-8 for "../".
   EXPECT_EQ(400, get("/index.html%00.js").status);
   EXPECT_EQ(400, get("/%c0%ae%c0%ae/secret.txt").status);
 }
@@ -109,7 +109,7 @@ TEST_F(NetStatic, ALargeFileReachesASlowReaderWhole) {
   EXPECT_EQ(large, read_answer(slow).body);
 }
 
-TEST(NetStaticSetup, WithoutAPageItSaysSo) {
+TEST(NetStaticSetup, AMissingPageIsReported) {
   RunningServer running;
   running.start();
   const Answer answer = ask(running.port(), get_request("/"));

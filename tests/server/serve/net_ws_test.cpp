@@ -13,7 +13,7 @@
 namespace server::net::test {
 namespace {
 
-/// Counts what clients do; echoes text that does not ask for something else. Io thread only.
+/// Counts client events; echoes text other than commands. Io thread only.
 struct Recorder {
   std::map<std::uint32_t, std::shared_ptr<WsClient>> clients{};
   std::vector<std::string> received{};
@@ -143,7 +143,7 @@ TEST_F(NetWs, SendsHeaderAndSharedPayloadAsOneMessage) {
   EXPECT_EQ("\x01\x02\x03", client.read().payload);
 }
 
-TEST_F(NetWs, ARiderComesBeforeTheNextMessageOnce) {
+TEST_F(NetWs, ARiderIsSentOnceBeforeTheNextMessage) {
   serve();
   WsTestClient client(port());
   ASSERT_TRUE(eventually([&] { return opened() == 1; }));
@@ -207,7 +207,7 @@ TEST_F(NetWs, TenMalformedFramesEndTheirConnectionOnly) {
   EXPECT_TRUE(eventually([&] { return closed() == static_cast<int>(cases.size()); }));
 }
 
-TEST_F(NetWs, ACutFrameIsACloseAndNothingElse) {
+TEST_F(NetWs, ACutFrameOnlyClosesTheConnection) {
   serve();
   {
     const WsTestClient client(port());
@@ -266,7 +266,7 @@ TEST_F(NetWs, PingsAQuietClientAndDropsASilentOne) {
   EXPECT_EQ("alive", frame.payload);
 }
 
-TEST_F(NetWs, StoppingSaysGoodbyeAndCallsOnCloseOnce) {
+TEST_F(NetWs, StoppingSendsCloseAndCallsOnCloseOnce) {
   serve();
   WsTestClient first(port());
   const WsTestClient deaf(port());  // never answers the closing handshake
@@ -281,7 +281,7 @@ TEST_F(NetWs, StoppingSaysGoodbyeAndCallsOnCloseOnce) {
   running_->stop();
   EXPECT_EQ(2, recorder_.closed);
   running_.reset();
-  // Handles kept beyond the server's life do nothing.
+  // Handles that outlive the server do nothing.
   for (const auto& client : kept) {
     EXPECT_FALSE(client->open());
     client->send_control(FrameKind::Text, std::make_shared<const std::string>("late"));
@@ -304,7 +304,7 @@ std::uint64_t number_of(const Frame& frame) {
   return number;
 }
 
-TEST_F(NetWs, ASlowClientDelaysNobodyGrowsNoMemoryAndResumesAtTheNewest) {
+TEST_F(NetWs, ASlowClientDelaysNoOtherGrowsNoMemoryAndResumesAtTheNewest) {
   serve();
   constexpr std::uint64_t kFrames = 4000;
   constexpr std::size_t kSize = 4096;
@@ -319,14 +319,14 @@ TEST_F(NetWs, ASlowClientDelaysNobodyGrowsNoMemoryAndResumesAtTheNewest) {
       for (const auto& [id, client] : recorder_.clients) client->send_latest(1, {}, frame);
       return 0;
     });
-    // In step with the healthy client: it misses nothing whatever the slow one does.
+    // Paced by the healthy client, which misses nothing despite the slow one.
     ASSERT_EQ(n, number_of(healthy.read()));
   }
   const WsCounters counters =
       running_->on_io([&] { return recorder_.clients.begin()->second->counters(); });
   EXPECT_EQ(1u, counters.buffered_messages);
   EXPECT_EQ(kSize, counters.buffered_bytes);
-  // 16 MB were published; what the kernel took is far less.
+  // 16 MB were published; the kernel buffered far less.
   EXPECT_LT(counters.sent_bytes, 1'000'000u);
   EXPECT_GT(counters.dropped_messages, 3000u);
 
@@ -342,11 +342,11 @@ TEST_F(NetWs, ASlowClientDelaysNobodyGrowsNoMemoryAndResumesAtTheNewest) {
   EXPECT_EQ(counters.sent_messages + 2, frames);  // one was being written, one was waiting
 }
 
-TEST_F(NetWs, PongsNeverCutIntoAMessageThatTheKernelTookInParts) {
+TEST_F(NetWs, PongsNeverSplitAPartlySentMessage) {
   serve();
   WsTestClient slow(port(), "foxglove.websocket.v1", 4096);
   ASSERT_TRUE(eventually([&] { return opened() == 1; }));
-  constexpr int kRounds = 30;  // 3 MB, within what may wait
+  constexpr int kRounds = 30;  // 3 MB, below the queue's limit
   int pongs = 0;
   int messages = 0;
   const auto take = [&] {
@@ -375,7 +375,7 @@ TEST_F(NetWs, PongsNeverCutIntoAMessageThatTheKernelTookInParts) {
       take();  // falls behind, so that the kernel's buffer stays full
   }
   while (messages < kRounds && !HasFatalFailure()) take();
-  // Beast answers the newest of the pings that wait, as RFC 6455 (5.5.3) allows.
+  // Beast answers only the newest waiting ping, as RFC 6455 (5.5.3) allows.
   EXPECT_GT(pongs, 0);
 }
 

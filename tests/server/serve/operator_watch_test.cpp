@@ -1,5 +1,5 @@
-// tests/server/serve/operator_watch_test.cpp: who watches, and what becomes of a robot that nobody
-// does; the clock is an argument.
+// tests/server/serve/operator_watch_test.cpp: counting watchers, and disarming a robot without one;
+// the clock is an argument.
 #include "server/serve/operator_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -12,38 +12,38 @@ using std::chrono::seconds;
 
 const OperatorWatch::Time kStart{seconds(1000)};
 
-TEST(OperatorWatchTest, ARobotOnItsWayIsDisarmedOneAndAHalfSecondsAfterTheLastSign) {
+TEST(OperatorWatchTest, AMovingRobotIsDisarmed1500MsAfterTheLastSign) {
   OperatorWatch watch;
   watch.page_sign(7, kStart);
   EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(1500)), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(1501)), OperatorWatch::kGone);
-  // WHEN another sign comes THEN it counts from there.
+  // WHEN another sign comes THEN the time restarts.
   watch.script_sign(kStart + milliseconds(1600));
   EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(3000)), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(3200)), OperatorWatch::kGone);
 }
 
-TEST(OperatorWatchTest, WithoutAnySignNobodyIsThere) {
+TEST(OperatorWatchTest, WithoutAnySignThereIsNoOperator) {
   OperatorWatch watch;
   EXPECT_STREQ(watch.why_disarm(1, true, kStart), OperatorWatch::kGone);
   EXPECT_STREQ(watch.why_disarm(1, false, kStart), nullptr);
 }
 
-TEST(OperatorWatchTest, AnArmedRobotAtRestIsGivenAMinute) {
+TEST(OperatorWatchTest, AnArmedRobotAtRestIsDisarmedAfterAMinute) {
   OperatorWatch watch;
   watch.script_sign(kStart);
-  // GIVEN a robot that is armed long after the last sign, as by --armed THEN it counts from then.
+  // GIVEN a robot armed long after the last sign, as by --armed THEN the time starts at the arming.
   const auto armed = kStart + seconds(500);
   EXPECT_STREQ(watch.why_disarm(0, false, armed - seconds(1)), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, false, armed), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, false, armed + seconds(60)), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, false, armed + seconds(61)), OperatorWatch::kLeft);
-  // WHEN somebody looks on THEN it stays armed.
+  // WHEN a watcher is there THEN it stays armed.
   watch.page_sign(1, armed + seconds(61));
   EXPECT_STREQ(watch.why_disarm(1, false, armed + seconds(100)), nullptr);
 }
 
-TEST(OperatorWatchTest, ADisarmedRobotAndOneThatNeedsNobodyAreLeftAlone) {
+TEST(OperatorWatchTest, DisarmedAndUnattendedRobotsAreNotDisarmed) {
   OperatorWatch watch;
   EXPECT_STREQ(watch.why_disarm(0, true, kStart), nullptr);
   watch.need_nobody();
@@ -51,7 +51,7 @@ TEST(OperatorWatchTest, ADisarmedRobotAndOneThatNeedsNobodyAreLeftAlone) {
   EXPECT_STREQ(watch.why_disarm(1, false, kStart + seconds(3600)), nullptr);
 }
 
-TEST(OperatorWatchTest, WatchersAreThosePagesAndScriptsWithAFreshSign) {
+TEST(OperatorWatchTest, WatchersArePagesAndScriptsWithARecentSign) {
   OperatorWatch watch;
   EXPECT_EQ(watch.watchers(kStart), (Watchers{0, false}));
   watch.page_sign(1, kStart);
@@ -60,13 +60,13 @@ TEST(OperatorWatchTest, WatchersAreThosePagesAndScriptsWithAFreshSign) {
   watch.script_sign(kStart);
   EXPECT_EQ(watch.watchers(kStart + seconds(1)), (Watchers{2, true}));
   EXPECT_EQ(watch.watchers(kStart + seconds(2)), (Watchers{1, false}));
-  // WHEN a page is closed THEN it is gone at once, and its last sign still counts for the robot.
+  // WHEN a page is closed THEN it no longer counts as watcher, but its last sign still counts.
   watch.page_gone(2);
   EXPECT_EQ(watch.watchers(kStart + seconds(2)), (Watchers{0, false}));
   EXPECT_STREQ(watch.why_disarm(1, true, kStart + seconds(2)), nullptr);
 }
 
-TEST(OperatorWatchTest, ARobotIsOnItsWayWithAGoalACommandOrWheelsThatTurn) {
+TEST(OperatorWatchTest, AGoalACommandOrTurningWheelsMeanMoving) {
   algo::Telemetry t;
   EXPECT_FALSE(on_its_way(t));
   t.goal = algo::SetGoal{{1, 0}, {}};

@@ -7,7 +7,7 @@
 namespace server {
 namespace {
 
-TEST(PathTrail, KeepsAPoseForEachTwoCentimetres) {
+TEST(PathTrail, KeepsAPoseEveryTwoCentimetres) {
   PathTrail trail;
   for (int i = 0; i <= 100; ++i) trail.add({i * 0.006, 0, 0});
   EXPECT_EQ(trail.poses_W().size(), 26u);  // 0, then the first beyond 2 cm: 2.4 cm apart
@@ -24,7 +24,7 @@ TEST(PathTrail, IsBoundedAndKeepsItsShape) {
   EXPECT_LT(trail.message(0).size(), std::size_t{400} << 10);
 }
 
-/// A pose costs the text of one pose, not of the path.
+/// Appending a pose writes the text of one pose, not of the whole path.
 TEST(PathTrail, WritesEachPoseOnce) {
   PathTrail trail;
   trail.add({1, 2, 0});

@@ -1,4 +1,4 @@
-// tests/server/serve/scheduler_test.cpp: deadlines before the fast, fair shares, and leaving.
+// tests/server/serve/scheduler_test.cpp: deadlines before fast tasks, fair shares, and removal.
 #include "server/serve/scheduler.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ using Clock = Run::Clock;
 using net::test::eventually;
 using When = Run::Next::When;
 
-/// Counts how often it was advanced, and finds out when two threads do it at once.
+/// Counts its advances, and detects two threads at once.
 class Counter final : public Scheduler::Task {
  public:
   explicit Counter(std::function<Run::Next()> then) : then_(std::move(then)) {}
@@ -53,7 +53,7 @@ void spin(Clock::duration span) {
   }
 }
 
-TEST(Scheduler, AdvancesATaskAtItsTimeUntilItIsOver) {
+TEST(Scheduler, AdvancesATaskAtItsTimeUntilItEnds) {
   Scheduler scheduler(2);
   std::atomic<int> left{20};
   const auto start = Clock::now();
@@ -63,7 +63,7 @@ TEST(Scheduler, AdvancesATaskAtItsTimeUntilItIsOver) {
   EXPECT_GE(Clock::now() - start, 19ms);
   std::this_thread::sleep_for(20ms);
   EXPECT_EQ(task.count, 20);
-  scheduler.remove(task);  // though it has gone by itself
+  scheduler.remove(task);  // although it has ended by itself
 }
 
 TEST(Scheduler, WakingDoesNotWaitForTheTime) {
@@ -93,7 +93,7 @@ TEST(Scheduler, ATaskThatIsWokenWhileItRunsRunsOnceMore) {
   scheduler.remove(task);
 }
 
-TEST(Scheduler, RemovingWaitsForTheThreadThatIsInsideAndNoneComesAfter) {
+TEST(Scheduler, RemovingWaitsForTheRunningThreadAndNoneEntersAfter) {
   Scheduler scheduler(2);
   for (int i = 0; i < 200; ++i) {
     auto task = std::make_unique<Counter>([] {
@@ -110,7 +110,7 @@ TEST(Scheduler, RemovingWaitsForTheThreadThatIsInsideAndNoneComesAfter) {
   }
 }
 
-TEST(Scheduler, TheFastShareFairlyAndHoldUpNoDeadline) {
+TEST(Scheduler, FastTasksShareFairlyAndDelayNoDeadline) {
   Scheduler scheduler(1);
   std::array<std::unique_ptr<Counter>, 4> fast{};
   for (auto& task : fast) {
@@ -134,8 +134,8 @@ TEST(Scheduler, TheFastShareFairlyAndHoldUpNoDeadline) {
   EXPECT_LT(std::ranges::max(counts()), 3 * std::ranges::min(counts()));
 }
 
-/// Reported, not judged by the wall clock: how late the ticks of twenty worlds are.
-TEST(Scheduler, TwentyWorldsInRealTimeAllGoOn) {
+/// Prints how late the ticks of twenty worlds are; the wall clock does not decide the test.
+TEST(Scheduler, TwentyRealTimeWorldsAllAdvance) {
   Scheduler scheduler;
   const RunHouse house{.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)};
   std::vector<std::unique_ptr<Session>> sessions;

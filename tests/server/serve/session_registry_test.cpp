@@ -1,5 +1,5 @@
-// tests/server/serve/session_registry_test.cpp: many sessions in one program: ids, limits, ends,
-// and that none sees another's.
+// tests/server/serve/session_registry_test.cpp: many sessions in one program: ids, limits, ends and
+// isolation.
 #include "server/serve/session_registry.hpp"
 
 #include <chrono>
@@ -39,7 +39,7 @@ class SessionsTest : public AppTest {
   net::test::WsTestClient viewer(const std::string& query) const {
     return net::test::WsTestClient(port_, "foxglove.websocket.v1", 0, "/ws" + query);
   }
-  /// What the server says first on the WebSocket: a text, or a close code and its reason.
+  /// The server's first message on the WebSocket: a text, or a close code and its reason.
   std::string first_words(const std::string& query) const {
     const net::test::Frame frame = viewer(query).read();
     if (frame.opcode != 8 || frame.payload.size() < 2) return frame.payload;
@@ -49,7 +49,7 @@ class SessionsTest : public AppTest {
   }
 };
 
-TEST_F(SessionsTest, EachHasAnIdOfItsOwnThatIsNoNumber) {
+TEST_F(SessionsTest, EachSessionHasAUniqueNonNumericId) {
   std::set<std::string> ids;
   for (int i = 0; i < 3; ++i) ids.insert(open());
   ASSERT_EQ(ids.size(), 3U);
@@ -62,7 +62,7 @@ TEST_F(SessionsTest, EachHasAnIdOfItsOwnThatIsNoNumber) {
   EXPECT_EQ(get(at("main")).at("run"), get("/session").at("run"));
 }
 
-TEST_F(SessionsTest, NoMoreThanTheServerHasRoomForAndAnEndMakesRoom) {
+TEST_F(SessionsTest, SessionsAreLimitedAndAnEndedOneMakesRoom) {
   const std::string first = open();
   open();
   open();
@@ -71,7 +71,7 @@ TEST_F(SessionsTest, NoMoreThanTheServerHasRoomForAndAnEndMakesRoom) {
   EXPECT_FALSE(open().empty());
 }
 
-TEST_F(SessionsTest, WhatIsNotThereIsSaidInASentence) {
+TEST_F(SessionsTest, AMissingSessionIsASentence) {
   for (const std::string& id : {std::string("nothing"), std::string(32, '0')}) {
     expect_problem(ask("GET", at(id)), 404, "There is no such session");
     expect_problem(ask("POST", at(id, "/control"), R"({"action":"stop"})"), 404, "no such session");
@@ -83,12 +83,12 @@ TEST_F(SessionsTest, WhatIsNotThereIsSaidInASentence) {
   EXPECT_EQ(get("/sessions").at("count"), 0);
 }
 
-TEST_F(SessionsTest, ItEndsWhileItDrivesAndWhileItLoads) {
+TEST_F(SessionsTest, ASessionCanEndWhileDrivingOrLoading) {
   for (int i = 0; i < 6; ++i) {
     const std::string id = open({{"scenario", "demo"}});
     ASSERT_EQ(ask("PUT", at(id, "/goal"), R"({"x":3,"y":1})").status, 200);
     const std::int64_t run = get(at(id)).at("run").at("id");
-    Client loads(port_);  // nobody waits for the answer
+    Client loads(port_);  // its answer is not awaited
     if (i % 2 == 1) {
       loads.send(net::test::post_request("/api/v1" + at(id, "/control"), R"({"action":"reset"})"));
     }
@@ -98,7 +98,7 @@ TEST_F(SessionsTest, ItEndsWhileItDrivesAndWhileItLoads) {
   }
 }
 
-TEST_F(SessionsTest, ASessionHasSoManyRunsAndMainAnyNumber) {
+TEST_F(SessionsTest, RunsOfASessionAreLimitedAndThoseOfMainAreNot) {
   const std::string id = open();  // its first
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(ask("POST", at(id, "/control"), R"({"action":"reset"})").status, 200);
@@ -109,7 +109,7 @@ TEST_F(SessionsTest, ASessionHasSoManyRunsAndMainAnyNumber) {
   }
 }
 
-TEST_F(SessionsTest, TheSocketShowsTheSessionThatItNames) {
+TEST_F(SessionsTest, TheSocketShowsTheSessionItNames) {
   const std::string id = open({{"seed", 77}});
   EXPECT_NE(first_words("").find("serverInfo"), std::string::npos);
   EXPECT_NE(first_words("?session=" + id).find("serverInfo"), std::string::npos);
@@ -124,7 +124,7 @@ class PerVisitorTest : public SessionsTest {
       : SessionsTest({.sessions = 8, .idle = std::chrono::seconds(1), .per_visitor = true}) {}
 };
 
-TEST_F(PerVisitorTest, IdsAreNobodyElsesAndTheSocketAsksForOne) {
+TEST_F(PerVisitorTest, IdsAreUniqueAndTheSocketNeedsOne) {
   const std::string id = open();
   const json list = get("/sessions");
   EXPECT_EQ(list.at("count"), 1);
@@ -134,7 +134,7 @@ TEST_F(PerVisitorTest, IdsAreNobodyElsesAndTheSocketAsksForOne) {
   EXPECT_NE(first_words("?session=main").find("serverInfo"), std::string::npos);
 }
 
-TEST_F(PerVisitorTest, WhoLeavesASessionLosesItAndWhoStaysDoesNot) {
+TEST_F(PerVisitorTest, AnUnusedSessionEndsAndAUsedOneStays) {
   const std::string left = open();
   const std::string asked = open();
   const std::string watched = open();
@@ -147,8 +147,8 @@ TEST_F(PerVisitorTest, WhoLeavesASessionLosesItAndWhoStaysDoesNot) {
   EXPECT_EQ(ask("GET", at(watched)).status, 200);
 }
 
-/// Two sessions are edited, stopped, reset and ended at random, and each is all the while what its
-/// own requests made of it.
+/// Edits, stops, resets and ends two sessions at random: the state of each depends only on its own
+/// requests.
 TEST_F(SessionsTest, NoneEverSeesAnothersState) {
   struct Known {
     std::string id{};

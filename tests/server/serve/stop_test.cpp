@@ -1,4 +1,4 @@
-// tests/server/serve/stop_test.cpp: Stop waits for nothing.
+// tests/server/serve/stop_test.cpp: Stop is answered without waiting.
 #include <optional>
 #include <string>
 
@@ -23,7 +23,7 @@ class StopTest : public AppTest {
   }
 };
 
-/// Without poll() nothing the control thread says is heard: the answer needs no tick.
+/// Without poll() no event of the control thread arrives: so the answer needs no tick.
 TEST(Stop, IsAnsweredInTheCallThatMakesIt) {
   Scheduler scheduler;
   Session session({.scheduler = scheduler, .frames = std::make_shared<FrameRoom>(1024)});

@@ -1,4 +1,4 @@
-// tests/server/serve/words_test.cpp: the sentences of the server, and the frames that bring them:
+// tests/server/serve/words_test.cpp: the server's sentences and their frames:
 // tests/golden/words.json, which the page's tests read too.
 #include <cstdlib>
 #include <fstream>
@@ -26,7 +26,7 @@ const std::string kFile = (tests::folder() / "golden/words.json").string();
 
 using Controller = std::unique_ptr<algo::Controller>;
 
-/// A tick and the controller whose it is.
+/// A tick and its controller.
 struct Tick {
   algo::Telemetry t{};
   Controller controller{};
@@ -44,7 +44,7 @@ algo::Telemetry driving() {
   return t;
 }
 
-/// The strip's controller pushed by `force` [m] from one side, at 6.63 s and now.
+/// The strip controller pushed by `force` [m] from one side, at 6.63 s and now.
 Tick pushed(const char* controller, bool by_left, double force, double post_aside = 0) {
   Tick tick{driving(), algo::builtin_controllers().at(controller).make()};
   algo::Telemetry& t = tick.t;
@@ -53,7 +53,7 @@ Tick pushed(const char* controller, bool by_left, double force, double post_asid
   (by_left ? t.scene.right : t.scene.left).reset();
   const double aside = by_left ? 0.5 : -0.5;
   pushes->point_W = pose.position() + pushes->distance * algo::direction(pose.heading + aside);
-  // A post in the way to the goal, which makes it choose a side.
+  // A post on the way to the goal makes it choose a side.
   const algo::Vec2 way = (t.goal->position_W - pose.position()).normalized();
   const algo::Vec2 post = pose.position() + 1.2 * way + post_aside * algo::Vec2(-way.y(), way.x());
   worlds::scan_world(pose, {{{post, 0.3}}, {}}, 8, t.scene.scan);

@@ -1,4 +1,4 @@
-// tests/server/serve/workers_test.cpp: long work beside the io thread, and never on it.
+// tests/server/serve/workers_test.cpp: long work runs beside the io thread, never on it.
 #include "server/serve/workers.hpp"
 
 #include <atomic>
@@ -19,7 +19,7 @@ namespace {
 using net::test::Client;
 using net::test::eventually;
 
-TEST(Workers, RunJobsInTheOrderPostedAndDropWhatIsLeft) {
+TEST(Workers, RunJobsInTheOrderPostedAndDropTheRest) {
   Workers workers("none", 1);
   std::vector<int> done;
   std::promise<void> last;
@@ -82,7 +82,7 @@ TEST(PageRoom, PagesGetShorterWhileManyAreHeld) {
   EXPECT_EQ(room.page(), first);
 }
 
-/// The routes of a server all of whose workers are busy.
+/// The routes of a server with all workers busy.
 class BusyWorkers : public ::testing::Test {
  protected:
   BusyWorkers() {
@@ -174,7 +174,7 @@ TEST_F(BusyWorkers, StopIsAnsweredWhileEveryOtherRouteWaits) {
     EXPECT_NE(stop.body.find("\"stop\""), std::string::npos) << stop.body;
   }
   release();
-  // None of them did its work on the io thread, which refuses it with 500.
+  // None of them worked on the io thread, which would answer 500.
   for (auto& [what, client] : asked) {
     const int status = net::test::read_answer(client, false).status;
     EXPECT_GE(status, 200) << what;
