@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "drivers/comedi_library.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers {
 namespace {
@@ -81,24 +82,24 @@ class ComediCard final : public AnalogCard {
 
   std::vector<std::pair<std::string, std::string>> facts() const override {
     const auto pair = [](const Channel& left, const Channel& right) {
-      return format(
-          "%u:%u and %u:%u", left.subdevice, left.channel, right.subdevice, right.channel);
+      return fmt::format(
+          "{}:{} and {}:{}", left.subdevice, left.channel, right.subdevice, right.channel);
     };
     const Output& out = outputs_[0];
-    return {
-        {"kind", "analog"},
-        {"board", library_.board_name(device_.get())},
-        {"driver", library_.driver_name(device_.get())},
-        {"outputs",
-         pair(out.at, outputs_[1].at) + format(", %g to %g V in steps of %.2g V",
-                                               out.range->min,
-                                               out.range->max,
-                                               (out.range->max - out.range->min) / out.maxdata)},
-        {"counters",
-         pair(counters_[0].at, counters_[1].at) +
-             format(", modulo %.0f", static_cast<double>(counters_[0].maxdata) + 1)},
-        {"relay", format("%u:%u", lines_, setup_.relay_line)},
-        {"subdevices", subdevices()}};
+    return {{"kind", "analog"},
+            {"board", library_.board_name(device_.get())},
+            {"driver", library_.driver_name(device_.get())},
+            {"outputs",
+             pair(out.at, outputs_[1].at) +
+                 fmt::format(", {:g} to {:g} V in steps of {:.2g} V",
+                             out.range->min,
+                             out.range->max,
+                             (out.range->max - out.range->min) / out.maxdata)},
+            {"counters",
+             pair(counters_[0].at, counters_[1].at) +
+                 fmt::format(", modulo {:.0f}", static_cast<double>(counters_[0].maxdata) + 1)},
+            {"relay", fmt::format("{}:{}", lines_, setup_.relay_line)},
+            {"subdevices", subdevices()}};
   }
 
  private:
@@ -157,7 +158,7 @@ class ComediCard final : public AnalogCard {
     if (found.empty()) refuse("has no " + noun);
     if (!asked) return found.front();
     if (std::ranges::find(found, *asked) == found.end()) {
-      refuse(format("has no %s on subdevice %u", noun.c_str(), *asked));
+      refuse(fmt::format("has no {} on subdevice {}", noun.c_str(), *asked));
     }
     return *asked;
   }
@@ -165,8 +166,8 @@ class ComediCard final : public AnalogCard {
   void check(const Channel& at, const std::string& key, const std::string& noun) const {
     const int count = std::max(0, library_.channels(device_.get(), at.subdevice));
     if (at.channel >= static_cast<unsigned>(count)) {
-      refuse("has " + plural(count, noun) + format(" on subdevice %u, and ", at.subdevice) + key +
-             format(" asks for number %u", at.channel));
+      refuse("has " + plural(count, noun) + fmt::format(" on subdevice {}, and ", at.subdevice) +
+             key + fmt::format(" asks for number {}", at.channel));
     }
   }
 
@@ -189,7 +190,7 @@ class ComediCard final : public AnalogCard {
       comedi_range* const range =
           library_.range(device_.get(), out.at.subdevice, out.at.channel, index);
       if (range == nullptr || range->unit != UNIT_volt) continue;
-      known += format("%s%g to %g V", known.empty() ? "" : ", ", range->min, range->max);
+      known += fmt::format("{}{:g} to {:g} V", known.empty() ? "" : ", ", range->min, range->max);
       if (range->min > -setup_.max_volts || range->max < setup_.max_volts) continue;
       if (out.range != nullptr && range->max - range->min >= out.range->max - out.range->min) {
         continue;
@@ -198,9 +199,9 @@ class ComediCard final : public AnalogCard {
       out.range_index = index;
     }
     if (out.range == nullptr || out.maxdata == 0) {
-      refuse(format("gives no -%g to %g V, which max_volts asks for, but ",
-                    setup_.max_volts,
-                    setup_.max_volts) +
+      refuse(fmt::format("gives no -{:g} to {:g} V, which max_volts asks for, but ",
+                         setup_.max_volts,
+                         setup_.max_volts) +
              (known.empty() ? "no volts at all" : known));
     }
   }
@@ -235,7 +236,7 @@ class ComediCard final : public AnalogCard {
         library_.set_counter_mode(device_.get(), at.subdevice, at.channel, *setup_.counter_mode) <
             0 ||
         library_.arm(device_.get(), at.subdevice, NI_GPCT_ARM_IMMEDIATE) < 0) {
-      fail(format("does not accept counter_mode %u", *setup_.counter_mode));
+      fail(fmt::format("does not accept counter_mode {}", *setup_.counter_mode));
     }
   }
   lsampl_t raw_count(const Counter& counter) const {
@@ -284,10 +285,10 @@ class ComediCard final : public AnalogCard {
     check(line, key, "digital line");
     if (!is(line.subdevice, COMEDI_SUBD_DIO)) return;  // its lines have one direction
     if (library_.configure_line(device_.get(), line.subdevice, line.channel, direction) < 0) {
-      refuse(format("cannot use digital line %u as an %s, which %s asks for",
-                    line.channel,
-                    direction == COMEDI_OUTPUT ? "output" : "input",
-                    key));
+      refuse(fmt::format("cannot use digital line {} as an {}, which {} asks for",
+                         line.channel,
+                         direction == COMEDI_OUTPUT ? "output" : "input",
+                         key));
     }
   }
   void set_line(unsigned line, bool high) const {

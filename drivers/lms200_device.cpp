@@ -5,8 +5,9 @@
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "algo/units.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::lms200 {
 namespace {
@@ -71,37 +72,37 @@ algo::DeviceReport describe(const LaserReport& report, double now) {
   const bool storm = report.storm;
   out.well = running && report.health.usable() && !storm && !report.blinded && !report.dazzled;
   out.sentence = report.trouble;
-  if (running) out.sentence = format("Well, %.1f scans a second.", 1.0 / report.scan_period);
+  if (running) out.sentence = fmt::format("Well, {:.1f} scans a second.", 1.0 / report.scan_period);
   if (running && !health.empty()) out.sentence = health;
   if (running && report.dazzled) {
-    out.sentence = format("It is dazzled from %.0f to %.0f degrees: ",
-                          report.dazzled->from / algo::units::kRadiansPerDegree,
-                          report.dazzled->to / algo::units::kRadiansPerDegree) +
+    out.sentence = fmt::format("It is dazzled from {:.0f} to {:.0f} degrees: ",
+                               report.dazzled->from / algo::units::kRadiansPerDegree,
+                               report.dazzled->to / algo::units::kRadiansPerDegree) +
                    kSight;
   }
   if (running && report.blinded) {
     out.sentence = std::string("It is blinded, most of its beams measure nothing: ") + kSight;
   }
   if (running && storm) {
-    out.sentence = format(
-        "%.0f %% of its telegrams are damaged: look at the cable, its "
+    out.sentence = fmt::format(
+        "{:.0f} % of its telegrams are damaged: look at the cable, its "
         "shield, and what else the port's computer does.",
         100 * report.damaged);
   }
   out.remarks = report.remarks;
   out.facts = {{"kind", "SICK LMS2xx"}};
   if (!report.type.empty()) out.facts.emplace_back("type", report.type);
-  if (report.baud > 0) out.facts.emplace_back("rate", format("%u bit/s", report.baud));
+  if (report.baud > 0) out.facts.emplace_back("rate", fmt::format("{} bit/s", report.baud));
   if (report.address > 0) out.facts.emplace_back("address", std::to_string(report.address));
   if (running) {
     out.facts.emplace_back("field",
-                           format("%u degrees, %.2f degree steps",
-                                  report.variant.angle_degrees,
-                                  report.variant.step_centidegrees / 100.0));
+                           fmt::format("{} degrees, {:.2f} degree steps",
+                                       report.variant.angle_degrees,
+                                       report.variant.step_centidegrees / 100.0));
     out.facts.emplace_back("unit", report.in_millimetres ? "millimetres" : "centimetres");
-    out.facts.emplace_back("scan rate", format("%.2f Hz", 1.0 / report.scan_period));
+    out.facts.emplace_back("scan rate", fmt::format("{:.2f} Hz", 1.0 / report.scan_period));
     if (report.last_scan > 0) {
-      out.facts.emplace_back("newest scan", format("%.2f s ago", now - report.last_scan));
+      out.facts.emplace_back("newest scan", fmt::format("{:.2f} s ago", now - report.last_scan));
     }
   }
   out.facts.emplace_back("scans", std::to_string(report.scans));

@@ -6,9 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "algo/dazzle.hpp"
 #include "algo/perceive.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::lms200 {
 namespace {
@@ -45,7 +46,7 @@ void LaserMachine::opened(double now, unsigned baud) {
   baud_ = told_baud_ = found_baud_ = 0;
   last_byte_ = now;
   if (!fixed_rate_ && !close_enough(wanted_, baud)) {
-    fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
+    fall_back(fmt::format("This port makes {} bit/s of {}.", baud, wanted_));
   }
   searching_since_ = now;
   search(now);
@@ -65,7 +66,7 @@ void LaserMachine::rate_set(double now, unsigned baud) {
   if (step_ != Step::Probe || fixed_rate_ || close_enough(port_baud_, baud)) return;
   // Do not probe at a rate that this port cannot make.
   if (port_baud_ == wanted_) {
-    fall_back(format("This port makes %u bit/s of %u.", baud, wanted_));
+    fall_back(fmt::format("This port makes {} bit/s of {}.", baud, wanted_));
   }
   orders_.clear();
   ++rate_index_;
@@ -76,9 +77,10 @@ void LaserMachine::rate_set(double now, unsigned baud) {
 void LaserMachine::fall_back(const std::string& why) {
   if (wanted_ <= kFallbackRate) return;
   wanted_ = kFallbackRate;
-  remark(why + format(" The line runs at %u bit/s instead, which brings 4 to 5 scans a second at "
-                      "half a degree instead of 37: drive slowly.",
-                      kFallbackRate));
+  remark(why +
+         fmt::format(" The line runs at {} bit/s instead, which brings 4 to 5 scans a second at "
+                     "half a degree instead of 37: drive slowly.",
+                     kFallbackRate));
 }
 
 void LaserMachine::remark(const std::string& sentence) {
@@ -114,8 +116,8 @@ void LaserMachine::advance(double now) {
       begin(Step::RateConfirmed, now);
       return;
     case Step::Streaming:
-      trouble_ = format("The scanner has been silent for %.1f s; it is looked for again.",
-                        now - last_heard_);
+      trouble_ = fmt::format("The scanner has been silent for {:.1f} s; it is looked for again.",
+                             now - last_heard_);
       searching_since_ = now;
       search(now);
       return;
@@ -164,13 +166,14 @@ void LaserMachine::listen(double now) {
   step_ = Step::Listen;
   deadline_ = now + kListen;
   const double waited = now - searching_since_;
-  trouble_ = nak_baud_ > 0 ? damaged_words()
-             : waited < kBootTime
-                 ? format("No answer at any rate; waiting for power-on, %.0f s so far.", waited)
-                 : format(
-                       "No answer at any rate for %.0f s. Is it powered, are RX and TX the right "
-                       "way round, does the plug's jumper fit the line (RS-232 or RS-422)?",
-                       waited);
+  trouble_ =
+      nak_baud_ > 0 ? damaged_words()
+      : waited < kBootTime
+          ? fmt::format("No answer at any rate; waiting for power-on, {:.0f} s so far.", waited)
+          : fmt::format(
+                "No answer at any rate for {:.0f} s. Is it powered, are RX and TX the right "
+                "way round, does the plug's jumper fit the line (RS-232 or RS-422)?",
+                waited);
   if (fixed_rate_ || port_baud_ == kStartRate) return;
   orders_.set_baud(kStartRate);
   port_baud_ = kStartRate;
@@ -313,7 +316,7 @@ void LaserMachine::unanswered(double now) {
       identified(now);  // optional: scans arrive without it too
       return;
     case Step::RateConfirmed:
-      fall_back(format("The scanner does not answer at %u bit/s.", wanted_));
+      fall_back(fmt::format("The scanner does not answer at {} bit/s.", wanted_));
       search(now);
       return;
     case Step::WriteConfiguration:

@@ -3,8 +3,9 @@
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
+
 #include "drivers/lms200_machine.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::lms200 {
 namespace {
@@ -30,8 +31,8 @@ std::optional<Rate> rate_of(unsigned baud) {
 }
 
 std::string variant_text(const Variant& variant) {
-  return format(
-      "%u degrees in steps of %.2f", variant.angle_degrees, variant.step_centidegrees / 100.0);
+  return fmt::format(
+      "{} degrees in steps of {:.2f}", variant.angle_degrees, variant.step_centidegrees / 100.0);
 }
 
 }  // namespace
@@ -43,8 +44,8 @@ bool good_password(std::string_view password) {
 
 std::string refusal(const LaserSetup& setup) {
   if (carries(setup.variant, setup.baud)) return "";
-  return format(
-      "180 degrees in steps of 0.25 come interlaced, which a line of %u bit/s does not "
+  return fmt::format(
+      "180 degrees in steps of 0.25 come interlaced, which a line of {} bit/s does not "
       "carry: take steps of 0.5, 100 degrees, or 500000 bit/s",
       setup.baud);
 }
@@ -165,8 +166,8 @@ bool LaserMachine::takes_all_for_damaged() const {
 }
 
 std::string LaserMachine::damaged_words() const {
-  return format(
-      "A device answers at %u bit/s, but only with NAK (damaged). Look at the cable, its shield "
+  return fmt::format(
+      "A device answers at {} bit/s, but only with NAK (damaged). Look at the cable, its shield "
       "and its ground; another kind of device would not send NAK.",
       nak_baud_ > 0 ? nak_baud_ : port_baud_);
 }
@@ -188,8 +189,8 @@ void LaserMachine::identified(double now) {
 void LaserMachine::choose_variant(double now) {
   if (!carries(setup_.variant, baud_)) {
     setup_.variant = {180, 50};
-    remark(format("A line of %u bit/s does not carry quarters of a degree: half degrees come.",
-                  baud_));
+    remark(fmt::format("A line of {} bit/s does not carry quarters of a degree: half degrees come.",
+                       baud_));
   }
   begin(variant_ == set_variant() ? Step::Installation : Step::Variant, now);
 }
@@ -201,7 +202,7 @@ void LaserMachine::rate_answered(double now, const Telegram& telegram) {
       fall_back(why);
       identified(now);
     } else {
-      remark(format("It stays at %u bit/s: ", baud_) + why);
+      remark(fmt::format("It stays at {} bit/s: ", baud_) + why);
       choose_variant(now);
     }
     return;

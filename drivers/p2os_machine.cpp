@@ -6,9 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "algo/diff_drive.hpp"
 #include "algo/units.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::p2os {
 namespace {
@@ -95,8 +96,8 @@ void PioneerMachine::advance(double now) {
     case Step::Running:
       state_.running = false;
       state_.motors_on = false;
-      trouble_ = format("The base has been silent for %.1f s; it is looked for again.",
-                        now - state_.stamp);
+      trouble_ = fmt::format("The base has been silent for {:.1f} s; it is looked for again.",
+                             now - state_.stamp);
       searching_since_ = now;
       search(now);
       return;
@@ -110,8 +111,8 @@ void PioneerMachine::advance(double now) {
         greet(now);
         return;
       }
-      trouble_ = format(
-          "No base answers at any rate, for %.0f s now. Is it switched on, and the "
+      trouble_ = fmt::format(
+          "No base answers at any rate, for {:.0f} s now. Is it switched on, and the "
           "cable at its HOST port?",
           now - searching_since_);
       step_ = Step::Waiting;
@@ -342,7 +343,7 @@ algo::DeviceReport PioneerMachine::report(double now) const {
   out.well = state_.running && trouble_.empty() && !state_.stop_button && !state_.faulty;
   out.sentence = trouble_;
   if (state_.running && state_.faulty) {
-    out.sentence = format("The base reports fault flags 0x%04x.", packet_.tail->faults);
+    out.sentence = fmt::format("The base reports fault flags 0x{:04x}.", packet_.tail->faults);
   }
   if (state_.running && state_.stop_button) {
     out.sentence = "Its stop button is pressed: release it, then arm.";
@@ -352,18 +353,19 @@ algo::DeviceReport PioneerMachine::report(double now) const {
   }
   if (state_.stalled) out.remarks.emplace_back("A wheel is blocked.");
   if (jumps_ > 0) {
-    out.remarks.push_back(format("Its position jumped %.0f times; the jumps were left out.",
-                                 static_cast<double>(jumps_)));
+    out.remarks.push_back(fmt::format("Its position jumped {:.0f} times; the jumps were left out.",
+                                      static_cast<double>(jumps_)));
   }
-  out.facts = {{"kind", "Pioneer (P2OS)"}, {"rate", format("%u bit/s", port_baud_)}};
+  out.facts = {{"kind", "Pioneer (P2OS)"}, {"rate", fmt::format("{} bit/s", port_baud_)}};
   if (!identity_.name.empty()) {
     out.facts.emplace_back("type",
                            identity_.type + "-" + identity_.subtype + ", " + identity_.name);
   }
   if (state_.running) {
-    out.facts.emplace_back("battery", format("%.1f V", state_.volts.value_or(0)));
-    if (state_.watchdog) out.facts.emplace_back("watchdog", format("%.1f s", *state_.watchdog));
-    out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
+    out.facts.emplace_back("battery", fmt::format("{:.1f} V", state_.volts.value_or(0)));
+    if (state_.watchdog)
+      out.facts.emplace_back("watchdog", fmt::format("{:.1f} s", *state_.watchdog));
+    out.facts.emplace_back("age", fmt::format("{:.2f} s", now - state_.stamp));
   }
   out.facts.emplace_back(
       "damaged packets",

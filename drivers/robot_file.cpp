@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "algo/filter/filter.hpp"
@@ -38,7 +39,8 @@ void judge_way(const Section& in,
                const std::string& sentence,
                RobotFile& robot) {
   if (way > kLongestWay) {
-    in.fail(key, "is refused: " + sentence + format(" At most %g m are allowed.", kLongestWay));
+    in.fail(key,
+            "is refused: " + sentence + fmt::format(" At most {:g} m are allowed.", kLongestWay));
   }
   if (noted) {
     robot.warnings.push_back(robot.path + ":" + std::to_string(in.line_of(key)) + ": " + sentence);
@@ -71,13 +73,14 @@ void judge_period(const Section& in, const lms200::LaserSetup& setup, RobotFile&
             "rate",
             way,
             way > kNotedBraking,
-            format("the scanner brings a scan every %.2f s at this rate, so that the robot goes on "
-                   "blind for up to %.2f m (%.2f m/s for %.2f s): take a faster line or a lower "
-                   "speed.",
-                   period,
-                   way,
-                   robot.limits.speed,
-                   time),
+            fmt::format(
+                "the scanner brings a scan every {:.2f} s at this rate, so that the robot goes on "
+                "blind for up to {:.2f} m ({:.2f} m/s for {:.2f} s): take a faster line or a lower "
+                "speed.",
+                period,
+                way,
+                robot.limits.speed,
+                time),
             robot);
 }
 
@@ -89,11 +92,12 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
   laser.name = in.text_or("name", "laser " + std::to_string(number));
   laser.mount_R = read_mount(in);
   if (!on_hull(laser.mount_R, robot.spec)) {
-    in.fail(in.has("x") ? "x" : "y",
-            format("puts the scanner at (%g, %g) m, outside of the hull: obstacles in between "
-                   "would be invisible",
-                   laser.mount_R.x,
-                   laser.mount_R.y));
+    in.fail(
+        in.has("x") ? "x" : "y",
+        fmt::format("puts the scanner at ({:g}, {:g}) m, outside of the hull: obstacles in between "
+                    "would be invisible",
+                    laser.mount_R.x,
+                    laser.mount_R.y));
   }
   lms200::LaserSetup& setup = laser.setup;
   setup.baud =
@@ -119,17 +123,18 @@ LaserEntry read_laser(Section& in, std::size_t number, RobotFile& robot) {
 void judge_watchdog(const Section& in, RobotFile& robot) {
   const double watchdog = robot.base.watchdog;
   const double coast = robot.limits.speed * watchdog;
-  judge_way(in,
-            "watchdog",
-            coast,
-            coast > kNotedCoast || watchdog > kNotedWatchdog,
-            format("should this program die, the robot goes on for up to %.2f m before its own "
-                   "watchdog stops it (%.2f m/s for %.2f s): take a lower speed or a shorter "
-                   "watchdog.",
-                   coast,
-                   robot.limits.speed,
-                   watchdog),
-            robot);
+  judge_way(
+      in,
+      "watchdog",
+      coast,
+      coast > kNotedCoast || watchdog > kNotedWatchdog,
+      fmt::format("should this program die, the robot goes on for up to {:.2f} m before its own "
+                  "watchdog stops it ({:.2f} m/s for {:.2f} s): take a lower speed or a shorter "
+                  "watchdog.",
+                  coast,
+                  robot.limits.speed,
+                  watchdog),
+      robot);
 }
 
 void read_limits(Section in, RobotFile& robot) {
@@ -145,11 +150,12 @@ void read_limits(Section in, RobotFile& robot) {
             "acceleration",
             braking,
             braking > kNotedBraking,
-            format("from %.2f m/s the robot needs %.2f m to brake (at %.2f m/s2): take a lower "
-                   "speed or a larger acceleration.",
-                   limits.speed,
-                   braking,
-                   limits.acceleration),
+            fmt::format(
+                "from {:.2f} m/s the robot needs {:.2f} m to brake (at {:.2f} m/s2): take a lower "
+                "speed or a larger acceleration.",
+                limits.speed,
+                braking,
+                limits.acceleration),
             robot);
 }
 
@@ -183,9 +189,10 @@ void check(const Section& top, const RobotFile& robot) {
   if (robot.spec.period > robot.base.watchdog / 3) {
     top.fail(
         "period",
-        format("is %.3f s; commands must come three times within the base's watchdog of %.2f s",
-               robot.spec.period,
-               robot.base.watchdog));
+        fmt::format(
+            "is {:.3f} s; commands must come three times within the base's watchdog of {:.2f} s",
+            robot.spec.period,
+            robot.base.watchdog));
   }
   std::set<std::string> ports{robot.base.port};
   std::set<std::string> names{"base"};

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "algo/units.hpp"
 
 namespace drivers {
@@ -24,17 +26,19 @@ void check_speed(const Section& in,
                  double half_track) {
   const double needed = limits.speed + limits.turn * half_track;
   if (fastest >= needed) return;
-  in.fail(key, format("is %.3f m/s at the wheel, and [limits] ask for %.3f", fastest, needed));
+  in.fail(key,
+          fmt::format("is {:.3f} m/s at the wheel, and [limits] ask for {:.3f}", fastest, needed));
 }
 
 /// Refuses encoders too coarse for odometry. `way` [m] of the wheel per count.
 void check_count(const Section& in, std::string_view key, double way) {
   constexpr double kCoarsestCount = 0.01;  // [m]
   if (way <= kCoarsestCount) return;
-  in.fail(key,
-          format("makes one count %.3f m of the wheel's way; odometry needs %.2f m or less",
-                 way,
-                 kCoarsestCount));
+  in.fail(
+      key,
+      fmt::format("makes one count {:.3f} m of the wheel's way; odometry needs {:.2f} m or less",
+                  way,
+                  kCoarsestCount));
 }
 
 p2os::PioneerSetup read_pioneer(Section& in, const BaseLimits& limits) {
@@ -48,11 +52,12 @@ p2os::PioneerSetup read_pioneer(Section& in, const BaseLimits& limits) {
   setup.sonar = in.flag_or("sonar", true);
   constexpr double kSlowest = kRadiansPerDegree;  // [rad/s] commands are whole degrees per second
   if (limits.turn < kSlowest) {
-    in.fail("type",
-            format("is pioneer, which turns by whole degrees a second: [limits] turn must be at "
-                   "least %.4f, not %g",
-                   kSlowest,
-                   limits.turn));
+    in.fail(
+        "type",
+        fmt::format("is pioneer, which turns by whole degrees a second: [limits] turn must be at "
+                    "least {:.4f}, not {:g}",
+                    kSlowest,
+                    limits.turn));
   }
   return setup;
 }
@@ -85,18 +90,20 @@ void check_roboteq(const Section& in, const roboteq::RoboteqSetup& setup) {
   const double fastest = wheel.speed(wheel.full_speed_rpm);
   check_speed(in, "full_speed_rpm", fastest, limits, setup.half_track);
   if (limits.speed < kLeastSteps * fastest / kCommands) {
-    in.fail("full_speed_rpm",
-            format("makes steps of %.3f m/s at the wheel, too coarse for a speed of %.3f m/s",
-                   fastest / kCommands,
-                   limits.speed));
+    in.fail(
+        "full_speed_rpm",
+        fmt::format("makes steps of {:.3f} m/s at the wheel, too coarse for a speed of {:.3f} m/s",
+                    fastest / kCommands,
+                    limits.speed));
   }
   check_count(in, "encoder_lines", wheel.metres(1));
   const double ramp = wheel.rpm(limits.acceleration + limits.turn_acceleration * setup.half_track);
   if (ramp > kFastestRamp) {
-    in.fail("gear",
-            format("makes a ramp of %.0f rpm/s of [limits]; the controller takes %.0f at most",
-                   ramp,
-                   kFastestRamp));
+    in.fail(
+        "gear",
+        fmt::format("makes a ramp of {:.0f} rpm/s of [limits]; the controller takes {:.0f} at most",
+                    ramp,
+                    kFastestRamp));
   }
 }
 
@@ -192,10 +199,11 @@ void read_track(Section& in, algo::RobotSpec& spec) {
   const double track = in.number("track", {0.05, 1.5});
   const double width = 2 * (spec.half_length > 0 ? spec.half_width : spec.radius);
   if (track > width) {
-    in.fail("track",
-            format("is %g m, and the hull is %g m wide: the wheels would stand outside of it",
-                   track,
-                   width));
+    in.fail(
+        "track",
+        fmt::format("is {:g} m, and the hull is {:g} m wide: the wheels would stand outside of it",
+                    track,
+                    width));
   }
   spec.half_track = track / 2;
 }

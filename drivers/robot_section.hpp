@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include "drivers/robot_file.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers {
 
@@ -52,7 +52,7 @@ class Section {
     const std::optional<double> value = node->value<double>();
     if (!value || !node->is_number()) fail(key, "must be a number");
     if (!(*value >= limits.min && *value <= limits.max)) {
-      fail(key, format("must be %g to %g, not %g", limits.min, limits.max, *value));
+      fail(key, fmt::format("must be {:g} to {:g}, not {:g}", limits.min, limits.max, *value));
     }
     return *value;
   }
@@ -88,8 +88,8 @@ class Section {
     const double value = number_or(key, fallback, {-1e9, 1e9});
     if (std::find(allowed.begin(), allowed.end(), value) != allowed.end()) return value;
     std::string known;
-    for (const double a : allowed) known += (known.empty() ? "" : ", ") + format("%g", a);
-    fail(key, format("is %g; it can be ", value) + known);
+    for (const double a : allowed) known += (known.empty() ? "" : ", ") + fmt::format("{:g}", a);
+    fail(key, fmt::format("is {:g}; it can be ", value) + known);
   }
   Section table(std::string_view key) {
     const toml::node* node = find(key);
@@ -130,7 +130,7 @@ class Section {
       const auto value = item.value<std::int64_t>();
       if (!value || !item.is_integer() || static_cast<double>(*value) < limits.min ||
           static_cast<double>(*value) > limits.max) {
-        fail(key, format("must be whole numbers from %g to %g", limits.min, limits.max));
+        fail(key, fmt::format("must be whole numbers from {:g} to {:g}", limits.min, limits.max));
       }
       out.push_back(static_cast<int>(*value));
     }

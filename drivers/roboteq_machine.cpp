@@ -6,8 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "algo/diff_drive.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::roboteq {
 namespace {
@@ -145,8 +146,9 @@ void RoboteqMachine::advance(double now) {
     case Step::Running:
       searching_since_ = now;
       greet(now);
-      trouble_ = format("The motor controller has been silent for %.1f s; it is looked for again.",
-                        now - state_.stamp);
+      trouble_ =
+          fmt::format("The motor controller has been silent for {:.1f} s; it is looked for again.",
+                      now - state_.stamp);
       return;
     default:
       break;
@@ -159,10 +161,11 @@ void RoboteqMachine::advance(double now) {
   } else if ((step_ == Step::Reading || step_ == Step::Writing) && wanted_[parameter_].optional) {
     skip_parameter(now);
   } else if (step_ == Step::Greeting) {
-    refuse(format("No motor controller answers, for %.0f s now. Is it powered, and is its serial "
-                  "line at %u bit/s?",
-                  now - searching_since_,
-                  setup_.baud),
+    refuse(fmt::format(
+               "No motor controller answers, for {:.0f} s now. Is it powered, and is its serial "
+               "line at {} bit/s?",
+               now - searching_since_,
+               setup_.baud),
            now);
   } else {
     refuse("The motor controller stopped answering while it was being set up.", now);
@@ -386,20 +389,22 @@ algo::DeviceReport RoboteqMachine::report(double now) const {
   if (refused_ > 0) {
     out.remarks.push_back("It has refused " + std::to_string(refused_) + " commands.");
   }
-  out.facts = {{"kind", "Roboteq"}, {"rate", format("%u bit/s", setup_.baud)}};
+  out.facts = {{"kind", "Roboteq"}, {"rate", fmt::format("{} bit/s", setup_.baud)}};
   if (!firmware_.empty()) out.facts.emplace_back("firmware", firmware_);
   if (state_.running) {
-    if (state_.volts) out.facts.emplace_back("battery", format("%.1f V", *state_.volts));
+    if (state_.volts) out.facts.emplace_back("battery", fmt::format("{:.1f} V", *state_.volts));
     if (values_.motor_amperes) {
       out.facts.emplace_back(
           "motors",
-          format("%.1f A, %.1f A", (*values_.motor_amperes)[0], (*values_.motor_amperes)[1]));
+          fmt::format(
+              "{:.1f} A, {:.1f} A", (*values_.motor_amperes)[0], (*values_.motor_amperes)[1]));
     }
     if (values_.motor_flags) {
       out.facts.emplace_back(
-          "motor flags", format("%u, %u", (*values_.motor_flags)[0], (*values_.motor_flags)[1]));
+          "motor flags",
+          fmt::format("{}, {}", (*values_.motor_flags)[0], (*values_.motor_flags)[1]));
     }
-    out.facts.emplace_back("age", format("%.2f s", now - state_.stamp));
+    out.facts.emplace_back("age", fmt::format("{:.2f} s", now - state_.stamp));
   }
   return out;
 }

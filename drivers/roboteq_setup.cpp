@@ -1,8 +1,9 @@
 // drivers/roboteq_setup.cpp: the set-up of a Roboteq controller before it is driven.
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "drivers/roboteq_machine.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers::roboteq {
 namespace {
@@ -72,11 +73,11 @@ void RoboteqMachine::parameter_read(double now, const Reply& reply) {
   } else if (wanted.optional) {
     skip_parameter(now);
   } else {
-    refuse(format("The motor controller keeps ^%.*s at %d instead of %d.",
-                  static_cast<int>(wanted.name.size()),
-                  wanted.name.data(),
-                  reply.values[0],
-                  wanted.value),
+    refuse(fmt::format("The motor controller keeps ^%.*s at {} instead of {}.",
+                       static_cast<int>(wanted.name.size()),
+                       wanted.name.data(),
+                       reply.values[0],
+                       wanted.value),
            now);
   }
 }

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "algo/diff_drive.hpp"
 #include "algo/explain.hpp"
 #include "drivers/lms200_device.hpp"
 #include "drivers/serial_base.hpp"
-#include "drivers/text.hpp"
 
 namespace drivers {
 namespace {
@@ -250,7 +251,8 @@ bool SerialRobot::came_late(double now) {
       armed = armed_;
     }
     if (armed) {
-      disarm(format("The program stood still for %.1f s. Its motors are off: arm it again.", late));
+      disarm(fmt::format("The program stood still for {:.1f} s. Its motors are off: arm it again.",
+                         late));
     }
   }
   return true;
@@ -334,17 +336,17 @@ std::optional<std::string> SerialRobot::watchdog_refusal(const BaseState& base) 
            "one in the base's memory.";
   }
   if (time < 3 * file_.spec.period) {
-    return format(
-        "The base's own watchdog is %.2f s; commands must come three times within, and the "
-        "file's period is %.3f s.",
+    return fmt::format(
+        "The base's own watchdog is {:.2f} s; commands must come three times within, and the "
+        "file's period is {:.3f} s.",
         time,
         file_.spec.period);
   }
   const double coast = file_.limits.speed * time;
   if (coast > kLongestCoast) {
-    return format(
-        "The base's own watchdog is %.1f s: should this program die, the robot would go on "
-        "for %.1f m. Take a lower speed or set a shorter one.",
+    return fmt::format(
+        "The base's own watchdog is {:.1f} s: should this program die, the robot would go on "
+        "for {:.1f} m. Take a lower speed or set a shorter one.",
         time,
         coast);
   }
@@ -355,9 +357,9 @@ std::optional<std::string> SerialRobot::watchdog_refusal(const BaseState& base) 
 std::string SerialRobot::watchdog_warning(const BaseState& base) const {
   constexpr double kRounding = 0.05;  // [s]
   if (!base.watchdog || std::abs(*base.watchdog - file_.base.watchdog) < kRounding) return "";
-  return format(
-      "The base says that its watchdog is %.2f s, the file says %.2f s: should this program "
-      "die, the robot goes on for up to %.2f m.",
+  return fmt::format(
+      "The base says that its watchdog is {:.2f} s, the file says {:.2f} s: should this program "
+      "die, the robot goes on for up to {:.2f} m.",
       *base.watchdog,
       file_.base.watchdog,
       file_.limits.speed * *base.watchdog);

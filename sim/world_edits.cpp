@@ -1,6 +1,7 @@
 // sim/world_edits.cpp: obstacles that are added, moved and removed while the world runs.
-#include <cstdio>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "sim/world.hpp"
 
@@ -8,17 +9,15 @@ namespace sim {
 namespace {
 
 std::string metres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f m", value);
-  return text;
+  return fmt::format("{:.2f} m", value);
 }
 
 std::string name_of(const algo::Obstacle& obstacle) {
-  return "Obstacle " + std::to_string(obstacle.id);
+  return fmt::format("Obstacle {}", obstacle.id);
 }
 
 std::string there_is_none(std::uint32_t id) {
-  return "There is no obstacle " + std::to_string(id) + ".";
+  return fmt::format("There is no obstacle {}.", id);
 }
 
 }  // namespace
