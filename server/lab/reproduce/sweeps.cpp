@@ -182,8 +182,9 @@ void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
 }
 
 void judge_filter(Sweep& sweep, double /*tolerance_mm*/) {
-  sweep.claim = "(The sources say nothing about the effect of N on the path; these are figures "
-                "only.)";
+  sweep.claim =
+      "(The sources say nothing about the effect of N on the path; these are figures "
+      "only.)";
   sweep.rule = "None.";
   sweep.verdict = "no claim";
   double most = 0;
