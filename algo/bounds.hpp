@@ -1,4 +1,4 @@
-// algo/bounds.hpp: the boxes along the axes that hold things.
+// algo/bounds.hpp: axis-aligned bounding boxes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 
 namespace algo {
 
-/// The least box along the axes of W that holds `obstacle`.
+/// The smallest axis-aligned box in W that holds `obstacle`.
 inline Eigen::AlignedBox2d bounds_W(const Obstacle& obstacle) {
   Eigen::AlignedBox2d box;
   if (const auto* cylinder = std::get_if<Cylinder>(&obstacle.shape)) {

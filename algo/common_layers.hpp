@@ -1,4 +1,4 @@
-// algo/common_layers.hpp: layers that several controllers show: one description of each.
+// algo/common_layers.hpp: the descriptions of layers that several controllers show.
 #pragma once
 
 #include "algo/layer.hpp"
@@ -17,8 +17,7 @@ inline constexpr LayerInfo kPlan{.name = "plan",
                                  .kind = LayerKind::Polyline,
                                  .tone = Tone::Plan,
                                  .style = LayerStyle::Dashed};
-// Motions that were weighed: those that could not be stopped in time, the others, and the one
-// taken.
+// Candidate motions: those that could not stop in time, the others, and the chosen one.
 inline constexpr LayerInfo kRefused{.name = "window.refused",
                                     .label = "Motions refused",
                                     .kind = LayerKind::Arcs,

@@ -1,10 +1,9 @@
-// algo/dazzle.hpp: where a scanner tells nothing, because light shines into it or its window is
-// bad.
+// algo/dazzle.hpp: finds beams that were dazzled by light or failed because of a bad window.
 //
-// A beam that returned nothing (no echo, farther than the range) or too little (a dark or shining
-// wall, which rooms have) has looked. One that was dazzled or in error has not: anything may stand
-// there. A dropout here and there is no harm; neighbouring beams that have not looked make a cone
-// in which a person can stand unseen.
+// A beam without an echo (free within range) or with a weak one (a dark or shining wall, common in
+// rooms) did measure. A beam that was dazzled or in error did not: anything may stand there. A
+// single dropout is harmless. Neighbouring beams that did not measure form a blind cone that can
+// hide a person.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +14,14 @@
 
 namespace algo {
 
-/// Neighbouring beams that have not looked, from which on they are a cone.
+/// Neighbouring beams without a measurement count as a cone from this number on.
 inline constexpr std::size_t kLeastCone = 3;
 
-/// The widest cone of `scan`; empty when there is none.
+/// The widest blind cone of `scan`; empty if there is none.
 BeamSpan widest_cone(const LaserScan& scan);
 
-/// Whether a cone of `scan` hides a place in the way of the hull: straight ahead, as wide as the
-/// hull and a little more, from a hand's breadth before it.
+/// True if a blind cone of `scan` hides part of the hull's way. The way is straight ahead, slightly
+/// wider than the hull, and begins a hand's breadth ahead of it.
 bool hidden(const LaserScan& scan, const RobotSpec& spec);
 
 }  // namespace algo

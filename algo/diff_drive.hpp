@@ -1,7 +1,7 @@
-// algo/diff_drive.hpp: two driven wheels: speeds, dead reckoning, saturation.
+// algo/diff_drive.hpp: kinematics of two driven wheels: speeds, dead reckoning, saturation.
 //
-// Source: Nong 2008 (thesis), section 4.1, whose equations are given as a figure only. Its list
-// calls r "the angular velocity at the centre"; it is the wheel radius.
+// Source: Nong 2008 (thesis), section 4.1, which gives the equations only in a figure. Its list
+// calls r "the angular velocity at the centre"; r is the wheel radius.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct WheelCounts {
   std::int64_t right = 0;
 };
 
-/// What the two sides of a base do on the ground: speeds [m/s], or ways [m].
+/// Motion of the two sides of a base over the ground: speeds [m/s] or distances [m].
 struct SideMotion {
   double left = 0;
   double right = 0;
@@ -49,24 +49,24 @@ Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& spee
 /// q_l = (v - w l) / r, q_r = (v + w l) / r. Throws std::invalid_argument as above.
 WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twist);
 
-/// The pose after `dt` [s] at constant `twist`: exact along the arc.
+/// The pose after `dt` [s] at constant `twist`; exact along the arc.
 /// Throws std::invalid_argument when dt is below 0 or not finite.
 Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt);
 
-/// The pose after the wheels have moved by `counts` of `counts_per_turn`: each wheel rolled
-/// s = 2 pi r n / counts_per_turn, taken as one arc.
+/// The pose after the wheels have moved by `counts` of `counts_per_turn`. Each wheel rolls
+/// s = 2 pi r n / counts_per_turn; the motion is taken as one arc.
 /// Throws std::invalid_argument when r, l or counts_per_turn is not above 0.
 Pose2 integrate_counts(const DriveGeometry& geometry,
                        double counts_per_turn,
                        const Pose2& pose,
                        const WheelCounts& counts);
 
-/// now - before of a counter of `bits` bits that wraps around, as the smaller signed difference.
+/// now - before, for a counter of `bits` bits that wraps around: the smaller signed difference.
 /// Throws std::invalid_argument when bits is not 2..32.
 std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits = 32);
 
-/// Both wheels scaled by one factor so that neither exceeds `max_speed` [rad/s]: the curvature of
-/// the path is kept. Throws std::invalid_argument when max_speed is not above 0.
+/// Scales both wheels by one factor so that neither exceeds `max_speed` [rad/s]. This keeps the
+/// curvature of the path. Throws std::invalid_argument when max_speed is not above 0.
 WheelSpeeds saturate(const WheelSpeeds& speeds, double max_speed);
 
 }  // namespace algo

@@ -1,5 +1,5 @@
-// algo/driving.hpp: what all controllers share: from a direction to a twist, the turn at the end,
-// and whether the numbers they read are numbers.
+// algo/driving.hpp: code that all controllers share: steering in a direction, the final turn, and
+// the check for finite inputs.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace algo {
 
-// ---- What most controllers read ----
+// ---- Parameters that most controllers read ----
 
 inline constexpr ParameterInfo kMaxSpeed{.name = "drive.v_max",
                                          .label = "Top speed",
@@ -57,7 +57,7 @@ inline constexpr ParameterInfo kSafetyDistance{
     .initial = 1.0,
     .help = "Obstacles nearer to the robot's centre than this plus its radius push linearly.",
     .alias = "safety_distance"};
-/// What steering towards a point and turning at the goal read.
+/// The parameters for steering towards a point and turning at the goal.
 inline constexpr auto kDrivingParameters =
     std::to_array<const ParameterInfo*>({&kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
@@ -70,14 +70,14 @@ Twist2 drive_along(const Pose2& pose_W,
                    double speed,
                    const Parameters& parameters);
 
-/// [rad] A wanted heading counts as reached within this: for turning as for arriving.
+/// [rad] Tolerance of a wanted heading, for turning as for arriving.
 inline constexpr double kHeadingReach = 0.05;
 
-/// Turns in place to a wanted heading; at rest when there is none or it is reached.
+/// Turns in place to the goal's heading. Zero twist if there is none or it is reached.
 Twist2 turn_to(const Pose2& pose_W, const SetGoal& goal, const Parameters& parameters);
 
-/// Whether every number a controller may read is finite; the ranges of Ok beams only, since those
-/// of the others are not distances.
+/// True if every number that a controller may read is finite. Ranges are checked for Ok beams only,
+/// since those of other beams are not distances.
 bool all_finite(const ControlInput& in, const Parameters& parameters);
 
 }  // namespace algo

@@ -1,4 +1,4 @@
-// algo/gate.hpp: the last word before the motors: zero command, and why.
+// algo/gate.hpp: the last check before the motors: may hold the robot at zero, and says why.
 #pragma once
 
 #include "algo/parameters.hpp"
@@ -20,10 +20,10 @@ inline constexpr ParameterInfo kScanTimeout{
 struct GateInput {
   bool stopped = false;                // Stop is latched
   double scan_timeout = 0;             // [s]
-  std::optional<double> scan_stamp{};  // [s] of the newest scan; none yet
-  bool blinded = false;                // most of the newest scan tells nothing: it does not count
-  bool hidden = false;                 // the command leads where a dazzled scanner saw nothing
-  bool by_hand = false;                // a person drives, and may back away from what was hit
+  std::optional<double> scan_stamp{};  // [s] of the newest scan; empty before the first
+  bool blinded = false;  // most beams of the newest scan measured nothing: it is ignored
+  bool hidden = false;   // the command leads into a dazzled scanner's blind cone
+  bool by_hand = false;  // a person drives, and may back away from a contact
 };
 
 namespace holds {
@@ -38,12 +38,12 @@ inline constexpr Hold kDazzled{
     "dazzled", "Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
-/// By the robot itself: observation.halt says why.
+/// The robot holds itself; observation.halt says why.
 inline constexpr Hold kHalted{"halted", "Holding still", "The robot holds its wheels still."};
 
 }  // namespace holds
 
-/// Why `command` must not be carried out; no hold when it may.
+/// The reason why `command` must not be carried out; no hold when it may be.
 Hold gate(const GateInput& in, const Observation& observation, const Command& command);
 
 }  // namespace algo

@@ -1,4 +1,4 @@
-// algo/grid_search.hpp: A* over a grid of cell costs, eight neighbours a cell.
+// algo/grid_search.hpp: A* over a grid of cell costs with eight neighbours per cell.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct GridCell {
   bool operator==(const GridCell&) const = default;
 };
 
-/// Costs of entering a cell, row-major, at least 1 per cell edge of way; kBlocked: impassable.
+/// Cost of entering each cell, row-major, at least 1 per cell edge travelled; kBlocked: impassable.
 struct CostGrid {
   static constexpr float kBlocked = -1;
   int columns = 0;
@@ -32,26 +32,26 @@ struct CostGrid {
 };
 
 /// Finds least-cost paths. A step costs its length in cells (1 or sqrt 2) times the cost of the
-/// cell it enters; a diagonal step needs both cells beside it passable, so that no corner is cut.
+/// entered cell. A diagonal step needs both cells beside it passable, so that it cuts no corner.
 /// Allocates in resize() only. Deterministic: ties are broken by the order of insertion.
 class GridSearch {
  public:
-  /// Room for grids of up to `cells` cells.
+  /// Makes room for grids of up to `cells` cells.
   void resize(std::size_t cells);
 
-  /// Whether `goal` is reached. path() then leads from start to goal; otherwise to the cell nearest
-  /// to the goal that can be reached. The start's own cost is not asked for;
-  /// a start or goal outside the grid gives false and an empty path.
+  /// True if `goal` is reachable. path() then leads from start to goal; otherwise it leads to the
+  /// reachable cell nearest to the goal. The start's own cost is ignored. A start or goal outside
+  /// the grid gives false and an empty path.
   bool find(const CostGrid& grid, GridCell start, GridCell goal);
 
   std::span<const GridCell> path() const { return path_; }
 
  private:
   struct Open {
-    float total = 0;  // cost so far plus the least that can follow
+    float total = 0;  // cost so far plus a lower bound of the rest
     std::uint32_t order = 0;
     std::uint32_t cell = 0;
-    /// Of equals the one that came later is dearer.
+    /// Of equals, the one inserted later is larger.
     bool operator>(const Open& other) const {
       return total != other.total ? total > other.total : order > other.order;
     }
@@ -61,12 +61,12 @@ class GridSearch {
   std::size_t pop();
   void trace(const CostGrid& grid, std::size_t from, std::size_t to);
 
-  // A cell's g and parent count only where its mark is the present search's number.
+  // A cell's cost and parent are valid only where its mark equals the current search_.
   std::vector<float> cost_{};
   std::vector<std::uint32_t> parent_{};
   std::vector<std::uint32_t> mark_{};
   std::vector<std::uint8_t> closed_{};
-  std::vector<Open> open_{};  // a heap, least total first
+  std::vector<Open> open_{};  // a heap, smallest total first
   std::vector<GridCell> path_{};
   std::uint32_t search_ = 0;
   std::uint32_t pushed_ = 0;

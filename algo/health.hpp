@@ -1,4 +1,4 @@
-// algo/health.hpp: how a robot of real devices is, as people see it.
+// algo/health.hpp: the state of a robot of real devices, as shown to people.
 #pragma once
 
 #include <algorithm>
@@ -17,16 +17,16 @@ struct DeviceReport {
   std::string name{};  // "front laser", "base"
   std::string port{};
   bool well = false;
-  std::string sentence{};              // how it is, or what is wrong and what to do
-  std::vector<std::string> remarks{};  // what is not as it was asked for
+  std::string sentence{};              // its state, or the fault and the remedy
+  std::vector<std::string> remarks{};  // settings that differ from those requested
   std::vector<std::pair<std::string, std::string>> facts{};  // "rate", "500000 bit/s"
 };
 
-/// How late a loop woke for its ticks. Written by one thread; copies are for others.
+/// Histogram of how late a loop woke for its ticks. One thread writes it; other threads get copies.
 class LatenessHistogram {
  public:
   static constexpr std::array<double, 8> kLimits{
-      1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 5e-2};  // [s] upper ends; one more beyond the last
+      1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 5e-2};  // [s] upper ends; one open bucket more
   static constexpr std::size_t kBuckets = kLimits.size() + 1;
 
   void add(double late) {  // [s]
@@ -45,17 +45,17 @@ class LatenessHistogram {
   std::uint64_t ticks_ = 0;
 };
 
-/// What people want to know of a robot of real devices.
+/// The health of a robot of real devices.
 struct HealthReport {
   bool armed = false;
   Halt halt = Halt::None;
   std::string trouble{};  // why the wheels are held still, a sentence; empty when they may turn
   std::vector<DeviceReport> devices{};
-  std::vector<std::string> warnings{};  // what the file or the system leaves to be wished for
-  bool real_time = false;               // the loop has its priority
+  std::vector<std::string> warnings{};  // weak points of the configuration or the system
+  bool real_time = false;               // the loop runs at its real-time priority
   bool memory_locked = false;
   LatenessHistogram lateness{};
-  std::uint64_t missed_periods = 0;  // gone by unused because a tick came too late
+  std::uint64_t missed_periods = 0;  // periods lost because a tick came too late
 };
 
 }  // namespace algo

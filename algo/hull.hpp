@@ -8,15 +8,15 @@
 
 namespace algo {
 
-/// A rectangle about R, or a disc when it has no length.
+/// A rectangle centred on R, or a disc when half_length is 0.
 struct Hull {
-  double radius = 0;       // [m] of the disc, or of the circle about the rectangle
+  double radius = 0;       // [m] of the disc, or of the rectangle's circumscribed circle
   double half_length = 0;  // [m] along R's x
   double half_width = 0;   // [m] along R's y
   bool is_disc() const { return !(half_length > 0); }
 };
 
-/// [m] From `p` to the outline of a rectangle about the origin, negative inside.
+/// [m] Distance from `p` to the outline of a rectangle about the origin; negative inside.
 inline double to_rectangle(const Vec2& p, double half_length, double half_width) {
   const double dx = std::abs(p.x()) - half_length;
   const double dy = std::abs(p.y()) - half_width;

@@ -1,4 +1,4 @@
-// algo/intent.hpp: what people want of a robot, and the one place that says what a request means.
+// algo/intent.hpp: what people have requested of a robot; the one place that interprets requests.
 #pragma once
 
 #include <cstddef>
@@ -13,27 +13,27 @@ namespace algo {
 
 constexpr std::size_t kMostGoalsAhead = 100;
 
-/// All requests so far added up. The control thread owns the true one; a session and a page keep
-/// copies to which the same requests are applied once they were accepted.
+/// The sum of all requests so far. The control thread owns the original. A session and a page keep
+/// copies, to which they apply the same requests once accepted.
 struct Intent {
   std::optional<SetGoal> goal{};
-  std::vector<SetGoal> goals_ahead{};  // after that one, in order
+  std::vector<SetGoal> goals_ahead{};  // after `goal`, in order
   bool stop = false;
   Joystick stick{};
   Parameters parameters{};
   std::vector<Obstacle> obstacles{};
 
-  /// True when the goals began anew: what is known of the way to the old ones is void. Allocates
-  /// nothing for goals once there is room for kMostGoalsAhead.
+  /// Applies `request`. Returns true if it replaced the goals: state about the way to the old ones
+  /// is then void. Does not allocate for goals once there is room for kMostGoalsAhead.
   bool apply(const Request& request);
-  /// The goal is reached: the first of those ahead is the goal. There must be one.
+  /// Replaces the reached goal by the first of goals_ahead, which must not be empty.
   void go_on();
 
  private:
   bool set_goal(const std::optional<SetGoal>& to);
 };
 
-/// True for what a robot that has Editing carries out: a change of its obstacles.
+/// True if `request` changes obstacles, which needs a robot with Editing.
 bool is_edit(const Request& request);
 
 }  // namespace algo

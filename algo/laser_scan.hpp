@@ -1,5 +1,5 @@
-// algo/laser_scan.hpp: one sweep of a scanner, with a status per beam so that a device code can
-// never be mistaken for a distance.
+// algo/laser_scan.hpp: one sweep of a scanner. Each beam has a status, so that a device code is
+// never mistaken for a distance.
 #pragma once
 
 #include <cstddef>
@@ -11,14 +11,14 @@
 
 namespace algo {
 
-/// What a beam's reading is. Only Ok carries a distance.
+/// The meaning of a beam's reading. Only Ok carries a distance.
 enum class Beam : std::uint8_t {
   Ok = 0,       // ranges[i] is a distance
   Free = 1,     // nothing within range_max
   Invalid = 2,  // the device could not measure; codes[i] says why
 };
 
-/// Last hex digit of an LMS2xx code (the top digits are the unit's mask).
+/// Last hex digit of an LMS2xx code (the upper digits are a mask of the unit).
 enum class BeamCode : std::uint8_t {
   None = 0,
   Unknown = 1,
@@ -72,42 +72,42 @@ struct LaserScan {
   }
 };
 
-/// Unit vectors of a scan's beams, kept while the scanner stays the same.
+/// Unit vectors of a scan's beams, cached while the scanner stays the same.
 class BeamDirections {
  public:
-  /// In a frame in which the scanner's heading is `heading` [rad]; B vectors.
+  /// B vectors in a frame in which the scanner's heading is `heading` [rad].
   const std::vector<Vec2>& of(const LaserScan& scan, double heading = 0);
 
  private:
   std::vector<Vec2> directions_{};
-  double angle_min_ = 0, angle_increment_ = 0, heading_ = 0;  // [rad] that they are of
+  double angle_min_ = 0, angle_increment_ = 0, heading_ = 0;  // [rad] of the cached vectors
 };
 
-/// No infinity and no NaN among them; quick, for all ranges of a scan.
+/// True if no number is infinite or NaN. Fast enough for all ranges of a scan.
 bool all_finite(std::span<const double> numbers);
 
-// A packed beam, as the record and its viewers have it: one uint16 of millimetres, free, or a code.
-// Measured values are clipped below the codes.
+// A beam packed into one uint16, as in the record and its viewers: millimetres, free, or a code.
+// Ranges are clipped below the codes.
 constexpr std::uint16_t kPackedFree = 65535;
 constexpr std::uint16_t kPackedCodeBase = 65519;  // + BeamCode (1..15) = 65520..65534
 constexpr std::uint16_t kPackedMaxRange = 65519;  // [mm]
 
-/// Beam `i` of `scan` packed; a range is rounded to the nearest millimetre.
+/// Packs beam `i` of `scan`; rounds a range to the nearest millimetre.
 inline std::uint16_t pack_beam(const LaserScan& scan, std::size_t i) {
   if (scan.status[i] == Beam::Free) return kPackedFree;
   if (scan.status[i] == Beam::Invalid) {
     const auto code = static_cast<std::uint16_t>(scan.codes[i]);
     return static_cast<std::uint16_t>(kPackedCodeBase + (code == 0 ? 1 : code));
   }
-  // Adding this number leaves no room for a fraction: rounds as nearbyint() does, which without
-  // SSE 4.1 is a call. Beyond 2^51 it does not, but there the range is clipped.
+  // Adding this number leaves no bits for a fraction: it rounds as nearbyint(), which is a call
+  // without SSE 4.1. This fails beyond 2^51, where the range is clipped anyway.
   constexpr double kNoFraction = 0x1.8p52;
   const double mm = (scan.ranges[i] * 1000.0 + kNoFraction) - kNoFraction;
   if (!(mm > 0)) return 0;
   return mm >= kPackedMaxRange ? kPackedMaxRange : static_cast<std::uint16_t>(mm);
 }
 
-/// All beams of `scan` packed, `out` having room for as many; the same as one by one.
+/// Packs all beams of `scan`, with the same result as pack_beam(). `out` must have room for them.
 void pack_beams(const LaserScan& scan, std::span<std::uint16_t> out);
 
 inline void unpack_beam(LaserScan& scan, std::size_t i, std::uint16_t packed) {
@@ -120,8 +120,8 @@ inline void unpack_beam(LaserScan& scan, std::size_t i, std::uint16_t packed) {
   }
 }
 
-/// Rounds every range to what a packed beam can hold. Each Robot calls it before a scan leaves the
-/// port, so that a stored run replays to identical commands.
+/// Rounds every range to a value that a packed beam can hold. Every Robot calls it before a scan
+/// leaves the port, so that a stored run replays to identical commands.
 inline void quantise(LaserScan& scan) {
   for (std::size_t i = 0; i < scan.size(); ++i) unpack_beam(scan, i, pack_beam(scan, i));
 }

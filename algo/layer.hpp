@@ -1,5 +1,5 @@
-// algo/layer.hpp: a drawing as data: the page, Foxglove and the record draw and keep it by its
-// kind, without knowing whose it is.
+// algo/layer.hpp: a drawing as data. The page, Foxglove and the record handle a layer by its kind,
+// without knowing which method made it.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace algo {
 
-/// What the values of a layer are; p is a position of `axes` numbers.
+/// How to read a layer's values; p is a position of `axes` numbers.
 enum class LayerKind : std::uint8_t {
-  Points,    // p ...  Dashed: each is tied to the robot by a dotted line
-  Polyline,  // p ...  a position that is not a number begins a new line
-  Arrows,    // p d ...  from p, by the vector d
+  Points,    // p ...  Dashed: a dotted line ties each to the robot
+  Polyline,  // p ...  a position that is not finite begins a new line
+  Arrows,    // p d ...  from p, along the vector d
   Circles,   // p r ...
   Arcs,      // length turn ...  [m] driven and [rad] turned from the origin of R, along an arc
   Grid,      // corner_x corner_y cell columns; the bytes of `cells` row by row, columns along x
   Polar,     // density of each sector about the robot, by bearing in the layer's frame, ccw from 0
-  Text,      // p ...; `text` has one line a position
+  Text,      // p ...; `text` has one line per position
 };
 enum class LayerFrame : std::uint8_t { World, Robot };
-/// Which meaning the colour has: the page and Foxglove have one palette for it.
+/// The meaning of a layer's colour. The page and Foxglove share one palette.
 enum class Tone : std::uint8_t {
   Accent,
   Internal,
@@ -38,7 +38,7 @@ enum class Tone : std::uint8_t {
 };
 enum class LayerStyle : std::uint8_t { Solid, Dashed, Faint };
 
-/// What stays the same of a layer; its texts in static storage.
+/// The constant part of a layer. Its texts are in static storage.
 struct LayerInfo {
   std::string_view name{};   // "strip.nodes": the key of its switch in the page
   std::string_view label{};  // "Strip": for people
@@ -47,11 +47,11 @@ struct LayerInfo {
   Tone tone = Tone::Accent;
   LayerStyle style = LayerStyle::Solid;
   std::uint8_t axes = 2;    // coordinates of a position: 2 on the ground, 3 in space
-  std::string_view unit{};  // of the values that are no positions
+  std::string_view unit{};  // of the values other than positions
 };
 
 struct Layer : LayerInfo {
-  float level = 0;  // of a polar: below it a sector is free
+  float level = 0;  // of a polar: a sector below it is free
   std::vector<float> values{};
   std::vector<std::uint8_t> cells{};  // of a grid: 0 free, 127 even, 254 occupied, or kUnknownCell
   std::string text{};
@@ -61,9 +61,9 @@ struct Layer : LayerInfo {
 
 constexpr std::uint8_t kUnknownCell = 255;
 
-/// A further layer, empty. A controller adds its layers in the same order each tick, also those
-/// that have nothing to show, so that each finds its own buffers again. With room for `values`: a
-/// tick with more than its predecessors then allocates nothing.
+/// Appends an empty layer. A controller adds its layers in the same order each tick, empty ones
+/// too, so that each reuses its own buffers. Reserves room for `values`, so that a tick with more
+/// values than the last does not allocate.
 inline Layer& add_layer(Recycled<Layer>& layers, const LayerInfo& info, std::size_t values = 0) {
   Layer& layer = layers.append();
   static_cast<LayerInfo&>(layer) = info;

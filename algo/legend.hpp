@@ -1,4 +1,4 @@
-// algo/legend.hpp: which layers and measures a tick has, as one number: viewers are told names,
+// algo/legend.hpp: a number that identifies the layers and measures of a tick. Viewers get names,
 // labels and kinds only when it changes.
 #pragma once
 
@@ -9,16 +9,16 @@
 
 namespace algo {
 
-/// Remembers the tick before, so that the same legend costs a comparison.
+/// Remembers the previous tick, so that an unchanged legend costs one comparison.
 class Legend {
  public:
-  /// The same number for the same names, labels, units, kinds, frames, tones, styles, axes and
-  /// levels in the same order, in every program; those of layers that are empty count too. Values,
-  /// cells and texts do not.
+  /// The same number, in every program, for the same names, labels, units, kinds, frames, tones,
+  /// styles, axes and levels in the same order. Empty layers count too. Values, cells and texts do
+  /// not.
   std::uint32_t of(const Telemetry& t);
 
  private:
-  /// Texts of one description lie in one place.
+  /// The texts of one description always have the same address.
   struct Entry {
     const char* name = nullptr;
     const char* label = nullptr;

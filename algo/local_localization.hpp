@@ -6,19 +6,19 @@
 
 namespace algo {
 
-/// Distances from the encoders, turns from the gyro.
+/// Odometry with distances from the encoders and turns from the gyro.
 ///
 ///   theta(k) = theta(k-1) + (g(k) - b) dt
 ///   x(k) = x(k-1) + d cos(theta(k-1) + (g(k) - b) dt / 2),  y likewise with sin
 ///
-/// g is the gyro's rate, b its bias, d the way of both wheels in the mean. The bias is what the
-/// gyro reads while both wheels stand: after kStill seconds of that, b is the mean of all readings
-/// since they came to rest, at most the newest kMemory seconds of them weighed alike:
+/// g is the gyro's rate, b its bias, and d the mean distance of the two wheels. The bias is the
+/// gyro's reading while both wheels stand. After kStill seconds of standing, b is the mean of all
+/// readings since they came to rest; at most the newest kMemory seconds are weighed alike:
 ///
 ///   b(n) = b(n-1) + (g(n) - b(n-1)) / min(n, kMemory / dt)
 ///
-/// Wheels that turn on a floor that does not follow count a turn that the gyro does not see; when
-/// both differ by more than kSlipRate for kSlipTime, slipping() says so (sensors.md 4).
+/// Wheels that slip in a turn count a rotation that the gyro does not see. When the two differ by
+/// more than kSlipRate for kSlipTime, slipping() is true (sensors.md 4).
 class LocalLocalization {
  public:
   static constexpr double kStill = 1.0;        // [s]
@@ -26,15 +26,16 @@ class LocalLocalization {
   static constexpr double kSlipRate = 0.1745;  // [rad/s] 10 degrees a second
   static constexpr double kSlipTime = 0.3;     // [s]
 
-  /// The robot stands at `start_W`; the bias is kept, as the gyro's own.
+  /// Places the robot at `start_W`. Keeps the bias, which belongs to the gyro.
   void reset(const Pose2& start_W);
 
-  /// One period of `dt` [s], in which the wheels alone would say that R moved by `wheels_R` and the
-  /// gyro read `rate` [rad/s]. Returns the new pose. What is not finite counts as no motion.
+  /// Advances one period of `dt` [s] and returns the new pose. `wheels_R` is R's motion by the
+  /// wheels alone; `rate` [rad/s] is the gyro's reading. Input that is not finite counts as no
+  /// motion.
   const Pose2& update(const Pose2& wheels_R, double rate, double dt);
 
   const Pose2& pose_W() const { return pose_W_; }
-  /// [rad/s] of the gyro, as far as it is known.
+  /// [rad/s] Estimated bias of the gyro.
   double bias() const { return bias_; }
   bool slipping() const { return slip_time_ > kSlipTime; }
 
@@ -43,10 +44,10 @@ class LocalLocalization {
 
   Pose2 pose_W_{};
   double bias_ = 0;        // [rad/s]
-  double still_ = 0;       // [s] both wheels have stood
-  double still_mean_ = 0;  // [rad/s] of the gyro since
+  double still_ = 0;       // [s] since both wheels came to rest
+  double still_mean_ = 0;  // [rad/s] of the gyro since then
   double still_count_ = 0;
-  double slip_time_ = 0;  // [s] wheels and gyro have differed
+  double slip_time_ = 0;  // [s] for which wheels and gyro have differed
 };
 
 }  // namespace algo

@@ -1,4 +1,4 @@
-// algo/metrics.hpp: the figures of one run.
+// algo/metrics.hpp: the metrics of one run.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace algo {
 
-/// How a run came out; Running until it is over.
+/// The outcome of a run; Running until it is over.
 enum class Outcome : std::uint8_t {
   Running,
   Reached,
@@ -19,26 +19,26 @@ enum class Outcome : std::uint8_t {
   Collided,
   Stopped,  // ended by a person: reset, another scenario, shutdown
   EndOfLog,
-  Failed,  // the link was lost or something broke
+  Failed,  // the link was lost or a fault occurred
 };
-/// "out_of_time": for REST, the database and the command line.
+/// "out_of_time", as REST, the database and the command line spell it.
 std::string_view name(Outcome outcome);
 
 struct Metrics {
   std::uint64_t ticks = 0;
   double time = 0;         // [s]
   double path_length = 0;  // [m] sum of the tick-to-tick distances
-  /// [m] least distance from the hull to an obstacle; infinite in an empty world.
+  /// [m] Least distance from the hull to an obstacle; infinite in an empty world.
   double min_clearance = std::numeric_limits<double>::infinity();
-  double intrusion = 0;       // [m] depth into the circle of radius d_safe about the centre
-  double infringed_time = 0;  // [s] inside it
-  double turning = 0;         // [rad] of the path resampled at 50 mm
+  double intrusion = 0;  // [m] greatest depth into the circle of radius d_safe about the centre
+  double infringed_time = 0;  // [s] with an obstacle inside it
+  double turning = 0;         // [rad] total turning of the path resampled at 50 mm
   std::uint32_t via_points = 0;
   bool collided = false;
 };
 
-/// Follows a run tick by tick. Uses the true pose and clearance where the robot has them, the
-/// odometry and the filtered scan where it has not.
+/// Measures a run tick by tick. Uses the true pose and clearance if the robot has them, else the
+/// odometry and the filtered scan.
 class MetricsRecorder {
  public:
   void reset(const RobotSpec& spec);

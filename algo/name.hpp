@@ -1,4 +1,4 @@
-// algo/name.hpp: a short word kept by value: no table of all of them, nothing to outlive.
+// algo/name.hpp: a short word held by value, without a table of names or a lifetime to observe.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace algo {
 
-/// "stale_scan", "avoid", "air.temperature": as REST, CSV and the wire spell it.
+/// "stale_scan", "avoid", "air.temperature", as REST, CSV and the wire spell it.
 class Name {
  public:
   static constexpr std::size_t kLongest = 31;

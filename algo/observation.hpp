@@ -1,4 +1,5 @@
-// algo/observation.hpp: everything a robot sensed by one instant. A sensor it lacks stays empty.
+// algo/observation.hpp: all sensor data of a robot at one instant. Fields of absent sensors are
+// empty.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace algo {
 
-/// Pose integrated from the encoders, and the twist of the last period.
+/// Pose integrated from the encoders, and the twist over the last period.
 struct Odometry {
   double stamp = 0;  // [s] run clock
   Pose2 pose{};      // of R in W
@@ -50,7 +51,7 @@ struct Inclinometer {
   bool operator==(const Inclinometer&) const = default;
 };
 
-/// Raw counts since reset; a difference is taken modulo 2^32 as signed.
+/// Raw counts since reset. Take a difference modulo 2^32, as signed.
 struct Encoders {
   double stamp = 0;
   std::uint32_t left = 0;
@@ -58,18 +59,18 @@ struct Encoders {
   bool operator==(const Encoders&) const = default;
 };
 
-/// Why real hardware holds its own wheels still, whatever it is told. The port has done so already
-/// when it says so; the device concerned is named where people look for devices.
+/// Why real hardware holds its own wheels still, whatever the command. The port reports it after it
+/// has acted. The health report names the device.
 enum class Halt : std::uint8_t {
   None,
   Disarmed,      // nobody has enabled the motors
-  BaseLost,      // the base is not there, or has been silent for too long
+  BaseLost,      // the base is absent, or silent for too long
   ScannerLost,   // no whole scan for three of its periods
-  BadLine,       // more telegrams damaged than whole
-  ScannerFault,  // the scanner says that its values must not be relied on
+  BadLine,       // more damaged telegrams than whole ones
+  ScannerFault,  // the scanner reports that its values are unreliable
   StopButton,    // pressed on the robot
   BaseFault,     // the motor controller reports a fault
-  OverCurrent,   // a motor takes more than it may
+  OverCurrent,   // a motor draws more than its limit
   BatteryLow,
   MotorsOff,  // armed, but the base has not switched its motors on
   LateTick,   // the control loop came too late for its own deadlines
@@ -77,14 +78,14 @@ enum class Halt : std::uint8_t {
 
 constexpr std::size_t kMostChannels = 256;
 
-/// What a further sensor of the robot reports: numbers that the pipeline only passes on, to record,
-/// page and export. What it acts on has a field of its own in Observation.
+/// A further sensor's channel. The pipeline only passes its numbers on to the record, the page and
+/// the export. A sensor that the pipeline acts on has its own field in Observation.
 struct ChannelInfo {
   std::string name{};              // "air.temperature"
-  std::string kind{};              // what the values are: "temperature"; for people and readers
+  std::string kind{};              // what the values are, for people and readers: "temperature"
   std::string unit{};              // of each value: "degC"
-  std::uint32_t values = 1;        // in a reading
-  std::optional<Pose2> mount_R{};  // where a place matters
+  std::uint32_t values = 1;        // per reading
+  std::optional<Pose2> mount_R{};  // if its place matters
   bool operator==(const ChannelInfo&) const = default;
 };
 
@@ -100,7 +101,7 @@ struct Observation {
   double stamp = 0;  // [s] run clock, the only clock algo sees
   Halt halt = Halt::None;
   Odometry odometry{};
-  Recycled<LaserScan> scans{};  // empty when no new one came this tick
+  Recycled<LaserScan> scans{};  // empty if no new scan came this tick
   Recycled<RangeReading> sonar{};
   Recycled<RangeReading> infrared{};
   Recycled<BumperReading> bumpers{};

@@ -1,4 +1,4 @@
-// algo/obstacle.hpp: the planar shapes a world is made of. Pure geometry, no physics.
+// algo/obstacle.hpp: the planar shapes of a world's obstacles. Pure geometry, no physics.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct Obstacle {
   std::uint32_t id = 0;  // unique in its world
   Pose2 pose_W{};
   Shape shape{};
-  double height = 1.0;  // [m] it stands on the floor
+  double height = 1.0;  // [m] above the floor, on which it stands
   /// Diffuse reflectivity of the surface to the laser, 0.02 to 1.
   double reflectivity = 0.5;
   bool specular = false;
@@ -47,13 +47,13 @@ struct Obstacle {
 /// Vertices in W, counter-clockwise; empty for a cylinder. B = 4 for a box or wall.
 std::vector<Vec2> outline_W(const Obstacle& obstacle);
 
-/// [m2] The square of the distance from `p` to the segment from `a` to `b`.
+/// [m2] Squared distance from `p` to the segment from `a` to `b`.
 double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b);
 
-/// [m] From `p_W` to the nearest surface point, negative inside.
+/// [m] Distance from `p_W` to the nearest surface point; negative inside.
 double signed_distance(const Obstacle& obstacle, const Vec2& p_W);
 
-/// What is wrong with the shape as a sentence part ("radius must be above 0"), or nothing.
+/// The defect of the shape as part of a sentence ("radius must be above 0"), or nothing.
 std::optional<std::string> defect(const Obstacle& obstacle);
 
 }  // namespace algo

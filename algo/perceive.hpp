@@ -1,5 +1,5 @@
-// algo/perceive.hpp: the block "local localization" of the thesis (Fig. 22): from the filtered scan
-// to the nearest obstacle point on either side.
+// algo/perceive.hpp: the block "local localization" of the thesis (Fig. 22): finds the nearest
+// obstacle point on either side in the filtered scan.
 #pragma once
 
 #include "algo/telemetry.hpp"
@@ -7,20 +7,20 @@
 
 namespace algo {
 
-/// Fills scene.left and scene.right from scene.scan, taken with the robot at `pose_W`; a side
-/// without a return below range_max is empty (equations.md C).
+/// Fills scene.left and scene.right from scene.scan, which was taken with the robot at `pose_W`. A
+/// side without a return below range_max is empty (equations.md C).
 void perceive(const Pose2& pose_W, Scene& scene);
 
-/// The same from a sonar ring: takes the new `readings` into scene.echoes, then the nearest echoes
-/// of the used field either side.
+/// The same from a sonar ring: takes the new `readings` into scene.echoes, then the nearest echo of
+/// the used field on either side.
 void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene);
 
-/// The scan of this tick that looks ahead, null without a new one: a scanner that looks back says
-/// nothing about the way ahead.
+/// This tick's scan of a scanner that looks ahead; null if there is no new one. A scanner that
+/// looks back says nothing about the way ahead.
 const LaserScan* front_scan(const Observation& observation);
 
-/// Whether a scan is too blind to drive by: fewer than half of its beams within 45 degrees of
-/// straight ahead measured anything, be it that nothing is there. Sun or another scanner does that.
+/// True if a scan is too blind to drive by: fewer than half of the beams within 45 degrees of
+/// straight ahead are Ok or Free. The sun or another scanner causes this.
 bool blinded(const LaserScan& scan);
 
 }  // namespace algo

@@ -1,5 +1,5 @@
-// algo/recycled.hpp: a vector whose elements keep their buffers across clear(), so that a control
-// tick which fills the same lists again and again allocates nothing.
+// algo/recycled.hpp: a vector whose elements keep their buffers across clear(). A control tick that
+// fills the same lists again and again then allocates nothing.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,13 @@ class Recycled {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
   void clear() { size_ = 0; }
-  /// Makes `count` elements that append() will hand out.
+  /// Creates `count` elements for append() to hand out.
   void reserve(std::size_t count) {
     if (items_.size() < count) items_.resize(count);
   }
 
-  /// A further element. It still holds what it held before the last clear(): overwrite every field.
+  /// Appends an element. It still holds its value from before the last clear(): overwrite every
+  /// field.
   T& append() {
     if (size_ == items_.size()) items_.emplace_back();
     return items_[size_++];
@@ -40,7 +41,7 @@ class Recycled {
   Recycled(Recycled&& other) noexcept = default;
   Recycled& operator=(Recycled&& other) noexcept = default;
   Recycled(const Recycled& other) : items_(other.begin(), other.end()), size_(other.size_) {}
-  /// Copies element by element into the buffers already here.
+  /// Copies each element into the buffers already here.
   Recycled& operator=(const Recycled& other) {
     if (this == &other) return *this;
     clear();

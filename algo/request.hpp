@@ -1,5 +1,5 @@
-// algo/request.hpp: all a person or a script can ask for; the same values from browser, REST,
-// tests and the record.
+// algo/request.hpp: all requests of a person or a script. The browser, REST, tests and the record
+// use the same values.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace algo {
 
 struct SetGoal {
   Vec2 position_W{0, 0};
-  std::optional<double> heading{};  // [rad] wanted on arrival; any when absent
+  std::optional<double> heading{};  // [rad] wanted on arrival; absent: any
   bool operator==(const SetGoal&) const = default;
 };
-/// A goal for when those before it are reached; the first when there is none.
+/// Appends a goal to the queue; it becomes the current goal if there is none.
 struct AddGoal {
   SetGoal goal{};
   bool operator==(const AddGoal&) const = default;
@@ -38,10 +38,10 @@ struct RemoveObstacle {
   std::uint32_t id = 0;
   bool operator==(const RemoveObstacle&) const = default;
 };
-/// Stick of a manual driver, each axis in [-1, 1] of the robot's limits.
+/// A manual driver's stick; each axis in [-1, 1] of the robot's limits.
 struct Joystick {
   double forward = 0;
-  double turn = 0;  // left positive
+  double turn = 0;  // left is positive
   bool operator==(const Joystick&) const = default;
 };
 /// `engaged` latches the robot at rest until a Stop{false} releases it.

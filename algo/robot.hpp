@@ -16,7 +16,7 @@
 
 namespace algo {
 
-/// What a robot sensed and was told in one of its last periods.
+/// The robot's state and command in one of its last periods.
 struct Moment {
   double stamp = 0;  // [s] run clock
   Halt halt = Halt::None;
@@ -25,7 +25,7 @@ struct Moment {
   Command command{};
 };
 
-/// The link to the robot is lost. what() is a sentence for a person; `last` are its last moments,
+/// The link to the robot is lost. what() is a sentence for a person. `last` holds its last moments,
 /// oldest first, as far as the robot keeps them.
 class RobotError : public std::runtime_error {
  public:
@@ -37,7 +37,7 @@ class RobotError : public std::runtime_error {
 struct RobotSpec {
   std::string name{};
   double radius = 0;                    // [m] of the hull's circle about R
-  double half_length = 0;               // [m] of a rectangular hull along R's x; 0: the disc is it
+  double half_length = 0;               // [m] of a rectangular hull along R's x; 0: a disc
   double half_width = 0;                // [m] of a rectangular hull along R's y
   double half_track = 0;                // [m] centre to wheel
   double period = 0;                    // [s] of one tick
@@ -46,12 +46,12 @@ struct RobotSpec {
   double max_acceleration = 0;          // [m/s2]
   double max_angular_acceleration = 0;  // [rad/s2]
   double command_delay = 0;             // [s] from a command's tick until it acts
-  bool has_laser = true;                // looking ahead; without one the sonar ring stands in
-  bool drives = false;                  // commands move it; a recorded log does not
-  std::vector<ChannelInfo> channels{};  // of its further sensors
+  bool has_laser = true;  // has a scanner that looks ahead; if not, the sonar ring replaces it
+  bool drives = false;    // commands move it; a recorded log does not
+  std::vector<ChannelInfo> channels{};  // of further sensors
 };
 
-/// How a robot stands on ground that is not level.
+/// The robot's height and inclination on ground that is not level.
 struct Tilt {
   double z = 0;      // [m] of R above the level z = 0
   double roll = 0;   // [rad] left side up positive
@@ -65,38 +65,38 @@ struct GroundTruth {
   double obstacle_distance = 0;  // [m] from the robot's centre to the nearest surface
   double clearance = 0;          // [m] from the hull's outline to it, negative inside
   bool collided = false;
-  std::optional<Tilt> tilt{};  // where the ground is not level
+  std::optional<Tilt> tilt{};  // if the ground is not level
   bool operator==(const GroundTruth&) const = default;
 };
 
-/// Where an obstacle stands that moves by itself; for display, as the truth.
+/// Pose of an obstacle that moves by itself; true, for display only.
 struct Moved {
   std::uint32_t id = 0;
   Pose2 pose_W{};
   bool operator==(const Moved&) const = default;
 };
 
-/// Motors that have to be switched on, and the devices behind them. All calls from any thread.
+/// Motors that must be switched on, and the devices behind them. Callable from any thread.
 class Arming {
  public:
   virtual ~Arming() = default;
-  /// Switches the motors on, or says why not, as a sentence.
+  /// Switches the motors on; if it cannot, returns the reason as a sentence.
   virtual std::optional<std::string> arm() = 0;
-  /// From now on nothing moves the robot until it is armed again: it brakes as hard as it can, and
-  /// its motors go off once the wheels stand. `why` is the sentence for people.
+  /// Brakes as hard as the robot can and switches the motors off once the wheels stand. Nothing
+  /// moves the robot until it is armed again. `why` is a sentence for people.
   virtual void disarm(const std::string& why) = 0;
-  /// Which arming this is: another number each time the motors were switched on, 0 while they are
-  /// off.
+  /// Identifies the current arming: a new number each time the motors are switched on, 0 while they
+  /// are off.
   virtual std::uint32_t epoch() const = 0;
   virtual HealthReport health() const = 0;
 };
 
-/// Obstacles that can be added, moved and removed. Belongs to the thread of the robot.
+/// Adds, moves and removes obstacles. Call from the robot's thread only.
 class Editing {
  public:
   virtual ~Editing() = default;
-  /// Carries out AddObstacle, MoveObstacle or RemoveObstacle; leaves other requests alone. Returns
-  /// why it was refused, as a sentence.
+  /// Carries out AddObstacle, MoveObstacle or RemoveObstacle and ignores other requests. Returns
+  /// the reason for a refusal as a sentence.
   virtual std::optional<std::string> edit(const Request& request) = 0;
 };
 
@@ -105,27 +105,27 @@ class Robot {
   virtual ~Robot() = default;
   virtual const RobotSpec& spec() const = 0;
 
-  /// Arms the robot and reports the first observation, robot at rest.
+  /// Arms the robot and reports the first observation, with the robot at rest.
   virtual void reset(Observation& observation) = 0;
 
   /// Writes `command`, advances one period and reads the newest data into `observation`. Simulated
-  /// and recorded time advances at once; a robot of real devices waits for its own next deadline
-  /// (absolute, so that no period is lost). Returns false, with the observation untouched, when
-  /// recorded data has come to its end. Throws RobotError when the link is lost.
+  /// and recorded time advances at once. A robot of real devices waits for its next deadline, which
+  /// is absolute, so that no period is lost. Returns false at the end of recorded data and leaves
+  /// the observation unchanged. Throws RobotError when the link is lost.
   virtual bool step(const Command& command, Observation& observation) = 0;
-  /// [s] of the run clock that the next step() takes.
+  /// [s] Run-clock time that the next step() advances.
   virtual double next_period() const { return spec().period; }
 
-  /// Zero velocity now; allowed in every state.
+  /// Commands zero velocity now; allowed in every state.
   virtual void stop() noexcept = 0;
 
-  // What some robots can do besides; null from those that cannot.
+  // Optional capabilities; null if the robot lacks them.
 
-  /// A robot that is armed is made of real devices and keeps its own time.
+  /// A robot with Arming consists of real devices and keeps its own time.
   virtual Arming* arming() { return nullptr; }
   virtual Editing* editing() { return nullptr; }
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
-  /// Overwrites `moved`, whose buffers stay.
+  /// Lists the obstacles that move by themselves. Overwrites `moved` but keeps its buffers.
   virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
 };
 

@@ -1,5 +1,5 @@
-// algo/rolling_grid.hpp: a square of cells that follows the robot and forgets what it
-// leaves behind.
+// algo/rolling_grid.hpp: a square of cells that follows the robot and forgets the cells that it
+// leaves.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +19,8 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 
-/// side x side cells of type T, fixed to W. Cells never move in memory: cell (i, j) lies at
-/// (i mod side, j mod side). Allocates in the constructor only.
+/// side x side cells of type T, fixed to W. Cells never move in memory: cell (i, j) lies at (i mod
+/// side, j mod side). Allocates in the constructor only.
 template <typename T>
 class RollingGrid {
  public:
@@ -38,11 +38,11 @@ class RollingGrid {
   bool covers(Cell c) const {
     return c.i >= first_.i && c.i < first_.i + side_ && c.j >= first_.j && c.j < first_.j + side_;
   }
-  /// Only for a cell that is covered.
+  /// The cell must be covered.
   T& operator[](Cell c) { return cells_[place(c)]; }
   const T& operator[](Cell c) const { return cells_[place(c)]; }
 
-  /// Moves the square so that the cell of `p_W` is its middle; cells that come in are T{}.
+  /// Moves the square so that the cell of `p_W` is its middle. New cells are T{}.
   void centre_on(const Vec2& p_W) {
     const Cell middle = cell_of(p_W);
     const Cell next = {middle.i - side_ / 2, middle.j - side_ / 2};
@@ -59,7 +59,7 @@ class RollingGrid {
     for (int k = 0; k < std::abs(dj); ++k) clear_row(dj > 0 ? before.j + side_ + k : next.j + k);
   }
 
-  /// What people see of it, as a layer of the kind Grid: byte(cell) for every cell.
+  /// Draws the grid as a layer of the kind Grid, with byte(cell) for every cell.
   template <typename Byte>
   void show(Layer& layer, Byte&& byte) const {
     put(layer, first_.i * edge_, first_.j * edge_, edge_, side_);
@@ -72,11 +72,11 @@ class RollingGrid {
 
  private:
   int index(double x) const {
-    constexpr double kFarthest = 1e9;  // still an int, with room for a window about it
+    constexpr double kFarthest = 1e9;  // fits an int, with room for a window about it
     return static_cast<int>(std::clamp(std::floor(x / edge_), -kFarthest, kFarthest));
   }
   int wrapped(int k) const { return (k % side_ + side_) % side_; }
-  /// A covered cell is less than a turn of the ring from the first: no division.
+  /// A covered cell is less than one turn of the ring from the first, so no division is needed.
   int turned(int k, int first, int at) const {
     const int place = k - first + at;
     return place < side_ ? place : place - side_;
@@ -94,7 +94,7 @@ class RollingGrid {
 
   double edge_ = 0;  // [m]
   int side_ = 0;
-  Cell first_{};  // the covered cell of least i and j
+  Cell first_{};  // the covered cell with the least i and j
   Cell ring_{};   // its column and row in memory
   std::vector<T> cells_{};
 };

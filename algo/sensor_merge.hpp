@@ -1,5 +1,5 @@
-// algo/sensor_merge.hpp: what the sonar ring and the infrared scanners returned, entered into the
-// front scan where its scanner did not see it.
+// algo/sensor_merge.hpp: enters the returns of the sonar ring and the infrared scanners into the
+// front scan where its scanner missed them.
 #pragma once
 
 #include <cstddef>
@@ -11,33 +11,34 @@
 
 namespace algo {
 
-/// What is low, high or transparent lies outside a laser's plane. Entered into the scan, the
-/// returns of the other sensors are obstacles to all that look at the scan: the search for the
-/// nearest point on either side, the forces, the side choice, maps and clearances.
+/// Obstacles that are low, high or transparent lie outside the laser's plane. Once entered, the
+/// returns of the other sensors are obstacles to every reader of the scan: the nearest points on
+/// either side, the forces, the side choice, maps and clearances.
 ///
-/// A reading holds until its sensor's beam is read again, for kMemory at most, fixed to W. It is
-/// explained, and left out, when the laser returns from as near within the sensor's beam: a sonar
-/// does not know where in its cone the echo came from, so that its axis would be a guess. Otherwise
-/// it stands in for the beams within kHalfBeam of its axis. Allocates only while sensors appear.
+/// A reading, fixed to W, holds until its sensor's beam is read again, for kMemory at most. It
+/// counts as explained, and is left out, if the laser returns from as near within the sensor's
+/// beam: the origin of a sonar's echo within its cone is unknown, so its axis would be a guess.
+/// Otherwise the reading replaces the beams within kHalfBeam of its axis. Allocates only while new
+/// sensors appear.
 class SensorMerge {
  public:
   static constexpr double kMemory = 0.5;       // [s]
-  static constexpr double kHalfBeam = 0.0175;  // [rad] 1 degree: infrared, and what is filled in
+  static constexpr double kHalfBeam = 0.0175;  // [rad] 1 degree: infrared, and the beams replaced
   static constexpr double kHalfCone = 0.2618;  // [rad] 15 degrees: sonar
-  static constexpr double kAsNear = 0.15;      // [m] a laser return may be farther and explain it
-  static constexpr std::size_t kArc = 5;       // points of an echo that is no beam's
+  static constexpr double kAsNear = 0.15;  // [m] a laser return up to this much farther explains it
+  static constexpr std::size_t kArc = 5;   // points of an echo outside the beams
 
   void reset() { kept_.clear(); }
 
-  /// Takes this tick's readings, of a robot at `observation.odometry`.
+  /// Takes this tick's readings. The robot is at `observation.odometry`.
   void take(const Observation& observation);
 
-  /// Enters into `scan`, of a robot at `pose_W` at `now` [s, run clock], what is not explained.
+  /// Enters the unexplained readings into `scan`. The robot is at `pose_W` at `now` [s, run clock].
   void enter(const Pose2& pose_W, double now, LaserScan& scan);
 
-  /// Calls `see(point_W)` for what was returned from where `scan` has no beams: behind a robot
-  /// whose scanner looks ahead. A sonar's echo may have come from anywhere over its cone, so that
-  /// it makes kArc points.
+  /// Calls `see(point_W)` for returns from directions where `scan` has no beams: behind a robot
+  /// whose scanner looks ahead. A sonar's echo may come from anywhere in its cone, so it gives kArc
+  /// points.
   template <typename See>
   void each_beside(const Pose2& pose_W, double now, const LaserScan& scan, See&& see) const {
     for (const Kept& kept : kept_) {
@@ -53,10 +54,10 @@ class SensorMerge {
     double half_width = 0;                                    // [rad]
     double stamp = -std::numeric_limits<double>::infinity();  // [s] run clock
     bool hit = false;
-    Vec2 from_W{0, 0};  // where the sensor was
+    Vec2 from_W{0, 0};  // position of the sensor
     Vec2 point_W{0, 0};
-    double range = 0, bearing = 0;  // [m], [rad] from the scanner that it is entered for,
-    bool missed = false;            // which did not see it
+    double range = 0, bearing = 0;  // [m], [rad] from the scanner of the scan it enters
+    bool missed = false;            // that scanner did not see it
   };
   static bool holds(const Kept& kept, double now);
   static bool within(const Kept& kept, const Pose2& pose_W, const LaserScan& scan);
@@ -65,8 +66,8 @@ class SensorMerge {
   Kept& place_of(const Pose2& mount_R, double half_width);
   void take(const Recycled<RangeReading>& readings, const Pose2& pose_W, double half_width);
 
-  Recycled<Kept> kept_{};   // one a sensor's beam
-  std::size_t cursor_ = 0;  // where the next reading is looked for first: they come in one order
+  Recycled<Kept> kept_{};   // one per sensor beam
+  std::size_t cursor_ = 0;  // where to look for the next reading first: their order repeats
 };
 
 }  // namespace algo

@@ -18,13 +18,13 @@ using Vec2 = Eigen::Vector2d;
 
 /// `angle` [rad] wrapped to (-pi, pi].
 inline double wrap_angle(double angle) {
-  // Nearly always it is within already, and the division costs more than all else here.
+  // The angle is nearly always within the range already, and the division is the costly part.
   if (std::abs(angle) < std::numbers::pi) return angle;
   const double wrapped = std::remainder(angle, 2.0 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? std::numbers::pi : wrapped;
 }
 
-/// Position and heading of a frame in its parent: of the robot R in W, of a sensor in R.
+/// Position and heading of a frame in its parent: robot R in W, or a sensor in R.
 struct Pose2 {
   double x = 0;        // [m]
   double y = 0;        // [m]
@@ -74,7 +74,7 @@ inline Pose2 pose_step(const Pose2& from_W, const Pose2& to_W) {
   return {p.x(), p.y(), wrap_angle(to_W.heading - from_W.heading)};
 }
 
-/// The pose a share `t` of the way from `a` to `b`, by the shorter turn.
+/// The pose at fraction `t` of the way from `a` to `b`, by the shorter turn.
 inline Pose2 interpolated(const Pose2& a, const Pose2& b, double t) {
   return {a.x + t * (b.x - a.x),
           a.y + t * (b.y - a.y),
@@ -93,11 +93,11 @@ inline bool finite(const Twist2& twist) {
 
 constexpr std::size_t kMostJoints = 8;
 
-/// What the robot is told for one period.
+/// The command for one period.
 struct Command {
   Twist2 base{};
-  std::uint8_t joints = 0;                        // of the robot's arm
-  std::array<double, kMostJoints> joint_rates{};  // [rad/s]; of the first `joints`, 0 beyond
+  std::uint8_t joints = 0;                        // number of the arm's joints
+  std::array<double, kMostJoints> joint_rates{};  // [rad/s]; 0 beyond the first `joints`
   bool operator==(const Command&) const = default;
 };
 

@@ -1,4 +1,4 @@
-// algo/units.hpp: literals for the two edges where millimetres and degrees live.
+// algo/units.hpp: literals for the two interfaces that use millimetres and degrees.
 #pragma once
 
 #include <numbers>

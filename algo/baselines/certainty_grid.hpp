@@ -1,5 +1,5 @@
-// algo/baselines/certainty_grid.hpp: a grid of how surely each cell is empty or occupied, and a
-// path over it (Moravec and Elfes 1985; equations.md F.2).
+// algo/baselines/certainty_grid.hpp: a grid of certainties that each cell is empty or occupied, and
+// a path over it (Moravec and Elfes 1985; equations.md F.2).
 #pragma once
 
 #include <vector>
@@ -11,27 +11,28 @@
 
 namespace algo {
 
-/// One range reading as a sector of space.
+/// One range reading as a sector of the plane.
 struct RangeSector {
   Pose2 mount_W{};     // apex and axis
   double width = 0;    // [rad] w, whole beam, below pi / 2
   double range = 0;    // [m] R
-  double nearest = 0;  // [m] R_min: below it nothing can be measured
-  bool hit = false;    // something returned from R; false: empty as far as R
+  double nearest = 0;  // [m] R_min: no measurement below it
+  bool hit = false;    // R is a return; false: empty as far as R
 };
 
 /// p_E = (1 - ((s - R_min) / (R - e - R_min))^2) (1 - (2 a / w)^2) for R_min <= s <= R - e, else 0:
-/// how surely a cell at distance `s` and angle `a` off the axis is empty. e = 0.1 m [D].
+/// the certainty that a cell at distance `s` and angle `a` off the axis is empty. e = 0.1 m [D].
 double empty_probability(const RangeSector& sector, double s, double a);
 /// p_O = (1 - ((s - R) / e)^2) (1 - (2 a / w)^2) for |s - R| <= e, else 0.
 double occupied_probability(const RangeSector& sector, double s, double a);
 
-/// The map. A reading adds E := E + p_E - E p_E, then O := O + q - O q with q = p_O (1 - E),
-/// normalised to the sum 1 over the arc. A laser beam's arc is a cell or three: it is sure at once.
+/// The map. A reading adds E := E + p_E - E p_E, then O := O + q - O q. Here q = p_O (1 - E),
+/// normalised to the sum 1 over the arc. A laser beam's arc is one to three cells, which become
+/// certain at once.
 class CertaintyGrid {
  public:
   static constexpr double kCell = 0.1;  // [m]
-  static constexpr int kSide = 81;      // [D] cells remembered: 4 m round the robot
+  static constexpr int kSide = 81;      // [D] cells remembered: 4 m around the robot
 
   CertaintyGrid();
   void clear() {
@@ -40,7 +41,7 @@ class CertaintyGrid {
   }
   void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
   void add(const RangeSector& sector);
-  /// Every beam of a new picture: scan or sonar ring.
+  /// Enters every beam of a new scan or sonar ring.
   void sense(const ControlInput& in);
 
   Cell first() const { return cells_.first(); }
@@ -68,10 +69,10 @@ class CertaintyGrid {
   NewPicture is_new_{};
 };
 
-/// Plans with A* on the grid five times a second [D] and follows the path: occupied cells are kept
-/// off by the hull and a margin, unknown ones count as free. A goal beyond the grid is sought at
-/// its border; without a way the robot drives to where it is nearest to the goal, and stands when
-/// it is too near to something already.
+/// Plans with A* on the grid five times a second [D] and follows the path. It keeps the hull plus a
+/// margin away from occupied cells; unknown cells count as free. For a goal beyond the grid it
+/// plans to the border. Without a way the robot drives to the reachable place nearest to the goal.
+/// It stands still if it is already too near to an obstacle.
 class CertaintyGridPlanner final : public Baseline {
  public:
   static ParameterList parameters();

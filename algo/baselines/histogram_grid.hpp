@@ -1,5 +1,5 @@
-// algo/baselines/histogram_grid.hpp: the histogram grid of VFF and VFH: how often each cell
-// returned a reading (Borenstein and Koren 1989, 1991; equations.md F.4).
+// algo/baselines/histogram_grid.hpp: the histogram grid of VFF and VFH, which counts the readings
+// of each cell (Borenstein and Koren 1989, 1991; equations.md F.4).
 #pragma once
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 
 namespace algo {
 
-/// Certainty values C of 0..15. A reading adds one to the cell of its return and nothing takes
-/// any away: an obstacle that leaves stays until the robot has driven on.
+/// Certainty values C of 0..15. A reading adds one to the cell of its return, and nothing lowers a
+/// cell: an obstacle that leaves stays in the grid until the robot has driven on.
 class HistogramGrid {
  public:
   static constexpr double kCell = 0.1;          // [m]
   static constexpr int kWindow = 33;            // cells of the active window's edge, odd
-  static constexpr int kSide = 81;              // [D] cells remembered: 4 m round the robot
-  static constexpr std::uint8_t kCertain = 15;  // C at most
+  static constexpr int kSide = 81;              // [D] cells remembered: 4 m around the robot
+  static constexpr std::uint8_t kCertain = 15;  // largest C
 
   void clear() {
     cells_.clear();
@@ -25,7 +25,7 @@ class HistogramGrid {
   }
   void centre_on(const Vec2& p_W) { cells_.centre_on(p_W); }
 
-  /// One reading that returned from `point_W`.
+  /// Adds one reading with a return at `point_W`.
   void add(const Vec2& point_W) {
     const Cell cell = cells_.cell_of(point_W);
     if (!cells_.covers(cell)) return;
@@ -33,15 +33,15 @@ class HistogramGrid {
     c = std::min<std::uint8_t>(kCertain, static_cast<std::uint8_t>(c + 1));
   }
 
-  /// Follows the robot and counts every return of a picture that is new.
+  /// Follows the robot and adds every return of a new scan or sonar ring.
   void sense(const ControlInput& in) {
     centre_on(in.odometry.pose.position());
     if (!is_new_(*in.scene)) return;
     for_each_return(in, [this](const Vec2& point_W) { add(point_W); });
   }
 
-  /// visit(offset, C) for every cell of the active window with C > 0, offset [m] from `robot_W` to
-  /// the cell's centre. The grid must be centred on the robot.
+  /// Calls visit(offset, C) for every cell of the active window with C > 0. `offset` [m] leads from
+  /// `robot_W` to the cell's centre. The grid must be centred on the robot.
   template <typename Visit>
   void for_each_in_window(const Vec2& robot_W, Visit&& visit) const {
     constexpr int kHalf = kWindow / 2;
@@ -54,7 +54,7 @@ class HistogramGrid {
     }
   }
 
-  /// A cell that returned nothing is unknown: the grid knows no free ones.
+  /// A cell without readings is shown as unknown: the grid has no free cells.
   void show(const ControlInput& in, ControlOutput& out) const {
     Layer& layer = add_layer(out.layers, kShown);
     if (!in.grids) return;

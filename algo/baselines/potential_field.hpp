@@ -1,5 +1,5 @@
-// algo/baselines/potential_field.hpp: the goal pulls, every obstacle near enough pushes, and the
-// robot follows the sum (Khatib 1986).
+// algo/baselines/potential_field.hpp: the goal pulls, every near obstacle pushes, and the robot
+// follows the sum (Khatib 1986).
 #pragma once
 
 #include <vector>
@@ -8,25 +8,25 @@
 
 namespace algo {
 
-/// [D] All of them: the papers leave them open. With the parameters' initial values a robot of
-/// 0.35 m comes to rest 0.64 m (centre to surface) before a single post on its line.
+/// All are [D], since the papers leave them open. With the parameters' initial values, a robot of
+/// radius 0.35 m comes to rest 0.64 m (centre to surface) before a single post on its line.
 struct PotentialSettings {
-  double k_a = 0;    // [1/m] with force as a bare number
-  double f_max = 1;  // largest pull; infinite: not limited
+  double k_a = 0;    // [1/m]; forces have no unit
+  double f_max = 1;  // largest pull; infinite: no limit
   double eta = 0;    // [m2]
-  double rho_0 = 0;  // [m] beyond it nothing pushes
+  double rho_0 = 0;  // [m] obstacles beyond it do not push
 };
 
-/// F_att = -k_a (p - goal), its length limited to f_max.
+/// F_att = -k_a (p - goal), with its length limited to f_max.
 Vec2 attraction(const PotentialSettings& settings, const Vec2& p_W, const Vec2& goal_W);
 
-/// F_rep = eta (1/rho - 1/rho_0) / rho^2 grad rho for 0 < rho <= rho_0, else 0; rho = |p -
-/// obstacle| is taken as 0.05 m where it is less. Source: Khatib 1986 (equations.md F.3).
+/// F_rep = eta (1/rho - 1/rho_0) / rho^2 grad rho for 0 < rho <= rho_0, else 0.
+/// rho = |p - obstacle|, but at least 0.05 m. Source: Khatib 1986 (equations.md F.3).
 Vec2 repulsion(const PotentialSettings& settings, const Vec2& p_W, const Vec2& obstacle_W);
 
-/// One obstacle is what the scanner sees without a jump of more than 0.3 m between two beams; it
+/// A run of beams without a jump of more than 0.3 m between neighbours is one obstacle, which
 /// pushes from its nearest point. Otherwise a wall of a hundred beams would push like a hundred
-/// posts. Sonar readings are an obstacle each.
+/// posts. Each sonar reading is an obstacle.
 class PotentialField final : public Baseline {
  public:
   static ParameterList parameters();
@@ -39,7 +39,7 @@ class PotentialField final : public Baseline {
   std::vector<Vec2> obstacles_W_{};
 };
 
-/// The nearest point of every obstacle to the robot, as above.
+/// The point of each obstacle nearest to the robot, as above.
 void nearest_points(const ControlInput& in, std::vector<Vec2>& points_W);
 
 }  // namespace algo

@@ -1,5 +1,5 @@
-// algo/baselines/returns.hpp: the returns a comparison controller sees, once each: of the filtered
-// front scan or, on a robot without a scanner, of the sonar ring.
+// algo/baselines/returns.hpp: the returns that a baseline controller reads, once each: from the
+// filtered front scan or, on a robot without a scanner, from the sonar ring.
 #pragma once
 
 #include <cmath>
@@ -9,12 +9,12 @@
 
 namespace algo {
 
-/// A robot without a scanner: no front scan has ever come.
+/// True for a robot without a scanner: no front scan has ever come.
 inline bool lacks_laser(const Scene& scene) {
   return scene.scan.size() == 0;
 }
 
-/// Whether every number of the sonar ring is finite; ranges of Ok readings only.
+/// True if every number of the sonar ring is finite; checks ranges of Ok readings only.
 inline bool finite_sonar(const Observation& observation) {
   for (const RangeReading& reading : observation.sonar) {
     const bool placed =
@@ -24,8 +24,8 @@ inline bool finite_sonar(const Observation& observation) {
   return true;
 }
 
-/// Calls visit(point_W) for every return of this tick's picture, the newest scan even when it is
-/// older than the tick.
+/// Calls visit(point_W) for every return that this tick reads; the newest scan may be older than
+/// the tick.
 template <typename Visit>
 void for_each_return(const ControlInput& in, Visit&& visit) {
   const LaserScan& scan = in.scene->scan;
@@ -41,8 +41,8 @@ void for_each_return(const ControlInput& in, Visit&& visit) {
   }
 }
 
-/// Tells a new picture from one that was seen before: a grid may count each reading only once.
-/// Sonar readings come in the tick they were taken in, so that they are always new.
+/// Tells whether a scan is new: a grid may count each reading only once. Sonar readings arrive in
+/// the tick in which they were taken, so they are always new.
 class NewPicture {
  public:
   void reset() { stamp_.reset(); }

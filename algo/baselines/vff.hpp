@@ -1,5 +1,5 @@
-// algo/baselines/vff.hpp: virtual force field: certain cells push, the goal pulls, the robot steers
-// to the sum (Borenstein and Koren 1989; equations.md F.4).
+// algo/baselines/vff.hpp: virtual force field: cells push by their certainty, the goal pulls, and
+// the robot steers to the sum (Borenstein and Koren 1989; equations.md F.4).
 #pragma once
 
 #include "algo/baselines/baseline.hpp"
@@ -19,8 +19,8 @@ struct VffForces {
 VffForces vff_forces(
     const HistogramGrid& grid, const Vec2& robot_W, const Vec2& goal_W, double f_cr, double f_ct);
 
-/// v_max when nothing pushes, else v_max (1 - |cos(angle between the velocity and F_r)|); the
-/// velocity points along `heading`.
+/// v_max without a push, else v_max (1 - |cos(angle between the velocity and F_r)|). The velocity
+/// points along `heading`.
 double vff_speed(const Vec2& repulsion_W, double heading, double v_max);
 
 class Vff final : public Baseline {

@@ -1,6 +1,6 @@
-// algo/baselines/vfh.hpp: vector field histogram: the certain cells round the robot make a polar
-// density, and the robot steers through the free valley nearest to the goal's direction
-// (Borenstein and Koren 1991; equations.md F.5).
+// algo/baselines/vfh.hpp: vector field histogram: the cells around the robot give a polar density.
+// The robot steers through the free valley nearest to the goal's direction (Borenstein and Koren
+// 1991; equations.md F.5).
 #pragma once
 
 #include <array>
@@ -21,21 +21,21 @@ using PolarDensity = std::array<double, kSectors>;
 int sector_of(double bearing);  // 0..71
 double sector_centre(int k);    // [rad] 5 k + 2.5 degrees
 
-/// Sum over the cells of a sector of m = C^2 (a - b d), d in cells, a = b d_max,
+/// The density of a sector: the sum over its cells of m = C^2 (a - b d), d in cells, a = b d_max,
 /// d_max = sqrt(2) (window - 1) / 2, so that m is 0 in the window's corners; b = 1.
 PolarDensity polar_density(const HistogramGrid& grid, const Vec2& robot_W);
 
-/// h'_k = sum over |q| <= l of (l + 1 - |q|) h_{k+q} / (2 l + 1), l = 5, cyclic. The paper prints l
-/// as the weight of the centre; l + 1 follows from its own sequence.
+/// h'_k = sum over |q| <= l of (l + 1 - |q|) h_{k+q} / (2 l + 1), l = 5, cyclic. The paper prints
+/// the weight l for the centre; l + 1 follows from its own sequence.
 PolarDensity smooth(const PolarDensity& density);
 
-/// The sector to steer along, nothing when none is below `threshold`. Of the valleys (runs of free
-/// sectors, cyclic) the one nearest to `target`, the lower first sector of equals. A valley wider
-/// than 18 sectors: straight to the target when both its borders are 9 sectors away, else 9 in
-/// from the border nearest to it. A narrow one: its middle.
+/// The sector to steer along; nothing if none is below `threshold`. Takes the valley (a cyclic run
+/// of free sectors) nearest to `target`; of equals, the one with the lower first sector. In a
+/// valley wider than 18 sectors: the target if both borders are 9 sectors away, else 9 sectors in
+/// from the border nearest to it. In a narrow valley: its middle.
 std::optional<int> steering_sector(const PolarDensity& smoothed, double threshold, int target);
 
-/// v_max (1 - min(h'_c, h_m) / h_m), h'_c the density straight ahead.
+/// v_max (1 - min(h'_c, h_m) / h_m); h'_c is the density straight ahead.
 double vfh_speed(double density_ahead, double h_m, double v_max);
 
 class Vfh final : public Baseline {

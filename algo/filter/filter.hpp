@@ -1,4 +1,4 @@
-// algo/filter/filter.hpp: the scan filters by name, and their use on a LaserScan.
+// algo/filter/filter.hpp: the table of scan filters, and their use on a LaserScan.
 #pragma once
 
 #include <cstdint>
@@ -16,13 +16,13 @@ namespace algo {
 enum class FilterKind : std::uint8_t { None, Pseudomedian, Median, Lulu };
 
 struct FilterInfo {
-  std::string_view name{};   // "pseudomedian": REST, command line, scenario files
+  std::string_view name{};   // "pseudomedian", as in REST, command line, scenario files
   std::string_view label{};  // for people
   std::string_view help{};
   FilterKind kind{};
 };
 
-/// All filters, the papers' own first.
+/// All filters; those from the papers come first.
 std::span<const FilterInfo> filter_table();
 std::optional<FilterKind> find_filter(std::string_view name);
 
@@ -37,17 +37,17 @@ inline constexpr ParameterInfo kFilterHalfWidth{
     .help = "The scan filter looks at N beams on either side; 0 switches it off.",
     .alias = "filter_half_width"};
 
-/// Filters whole scans. Keeps its buffers: give each pipeline one of its own.
+/// Filters whole scans. Keeps its buffers: give each pipeline its own.
 class ScanFilter {
  public:
-  /// `out` becomes `in` with filtered ranges; it must be another scan.
+  /// Filters the ranges of `in` into `out`, which must be another scan.
   ///
-  /// A Free beam counts as range_max and is believed; an Invalid one, and one whose range is not a
-  /// finite number, never enters. An output is Ok when believed and below range_max, Free when
-  /// believed and at or beyond it; an Invalid beam keeps its flag, code and value, and a beam with
-  /// too few believed neighbours becomes Invalid with code Unknown (equations.md A). No border
-  /// sample is invented: the edge beam is repeated, since a scan of 180 degrees is not periodic.
-  /// Without a finite range_max no beam can be believed.
+  /// A Free beam counts as range_max and is valid. An Invalid beam, or one whose range is not
+  /// finite, is never used. An output is Ok if valid and below range_max, Free if valid and at or
+  /// beyond it. An Invalid beam keeps its flag, code and value. A beam with too few valid
+  /// neighbours becomes Invalid with code Unknown (equations.md A). At the border the edge beam is
+  /// repeated, since a scan of 180 degrees is not periodic. Without a finite range_max no beam is
+  /// valid.
   ///
   /// Any number of beams is legal. Throws std::invalid_argument when half_width is below 0, and
   /// when ranges, status and codes of `in` differ in number.

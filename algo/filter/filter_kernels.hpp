@@ -1,10 +1,10 @@
-// algo/filter/filter_kernels.hpp: the scan filters on bare numbers; algo/filter/filter.hpp puts
-// them on scans.
+// algo/filter/filter_kernels.hpp: the scan filters on plain numbers; algo/filter/filter.hpp applies
+// them to scans.
 //
-// Every kernel takes n finite values (the caller has sorted out what is not: these files are
-// compiled for finite numbers), gives n values in the same unit and is bit-exact to its definition.
-// n = 0 and n < 2N+1 are legal; N = 0 returns the input. N < 0, or an output of another length,
-// throws std::invalid_argument. `out` may be the same memory as `in`.
+// Every kernel takes n values and gives n values in the same unit, bit-exact to its definition. All
+// values must be finite: these files are compiled for finite numbers only. n = 0 and n < 2N+1 are
+// legal; N = 0 returns the input. N < 0, or an output of another length, throws
+// std::invalid_argument. `out` may be the same memory as `in`.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 
 namespace algo {
 
-/// What stands beyond the first and the last sample.
+/// The values assumed beyond the first and the last sample.
 enum class Border : std::uint8_t {
-  Replicate,  // the edge sample again and again: invents no value
-  Reflect,    // mirrored at the edge sample, which is not repeated
+  Replicate,  // repeats the edge sample: invents no value
+  Reflect,    // mirrors at the edge sample, which is not repeated
 };
 
-/// Buffers of the kernels; keep one per filter, so that nothing is allocated once it is warm.
+/// Buffers of the kernels. Keep one per filter, so that nothing is allocated after the first scans.
 struct FilterScratch {
   std::vector<double> padded{};
   std::vector<double> low{};
@@ -40,7 +40,7 @@ void pseudomedian(std::span<const double> in,
                   FilterScratch& scratch,
                   std::span<double> out);
 
-/// Middle value of the window of 2N+1.
+/// The middle value of the window of 2N+1.
 void median(std::span<const double> in,
             int half_width,
             Border border,
@@ -55,10 +55,10 @@ void lulu(std::span<const double> in,
           FilterScratch& scratch,
           std::span<double> out);
 
-// The same with samples that must not be believed: `valid` (0 or 1) says which may be. Each group
-// or window uses its valid samples only, an empty group is skipped. A sample of the output is
-// valid when its own input is and its border-replicated window of 2N+1 holds at least N+1 valid
-// ones; any other keeps its input value and is marked 0 in `out_valid`.
+// The same filters with a mask: `valid` (0 or 1) tells which samples may be used. Each group or
+// window uses its valid samples only; an empty group is skipped. An output sample is valid if its
+// own input is valid and its border-replicated window of 2N+1 holds at least N+1 valid samples. Any
+// other keeps its input value and is marked 0 in `out_valid`.
 
 void pseudomedian(std::span<const double> in,
                   std::span<const std::uint8_t> valid,
@@ -67,7 +67,7 @@ void pseudomedian(std::span<const double> in,
                   std::span<double> out,
                   std::span<std::uint8_t> out_valid);
 
-/// Of an even number of valid samples: the upper of the two in the middle.
+/// For an even number of valid samples, takes the upper of the two in the middle.
 void median(std::span<const double> in,
             std::span<const std::uint8_t> valid,
             int half_width,

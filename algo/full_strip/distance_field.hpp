@@ -1,5 +1,5 @@
-// algo/full_strip/distance_field.hpp: how far it is from each cell of a square window to the
-// nearest occupied one.
+// algo/full_strip/distance_field.hpp: the distance from each cell of a square window to the nearest
+// occupied cell.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,12 @@
 
 namespace algo {
 
-/// A square of `size` x `size` cells moved by (columns, rows) down and left; what comes in is
-/// `fresh`.
+/// Moves a square of `size` x `size` cells by (columns, rows) down and left. New cells are `fresh`.
 template <typename T>
 void move_cells(std::vector<T>& cells, int size, int columns, int rows, T fresh) {
   const int x0 = std::max(0, -columns);
   const int x1 = std::min(size, size - columns);
-  // In the order in which no row is overwritten before it has been moved.
+  // This order moves every row before it is overwritten.
   for (int k = 0; k < size; ++k) {
     const int y = rows >= 0 ? k : size - 1 - k;
     T* const to = &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(size)];
@@ -34,42 +33,43 @@ void move_cells(std::vector<T>& cells, int size, int columns, int rows, T fresh)
   }
 }
 
-/// Distances between cell centres, known up to kReach. A cell that becomes occupied lowers those
-/// around it at once. One that becomes free leaves them too low, which is safe, until their tiles
-/// have been rebuilt, a few each tick. Everything is allocated in the constructor.
+/// Distances between cell centres, known up to kReach. A cell that becomes occupied lowers the
+/// distances around it at once. A cell that becomes free leaves them too low, which is safe, until
+/// their tiles are rebuilt, a few each tick. Allocates in the constructor only.
 class DistanceField {
  public:
   static constexpr double kCell = 0.05;  // [m]
   static constexpr int kSize = 512;      // cells along an edge
   static constexpr int kTile = 32;       // cells along a tile's edge
-  /// [m] A little more than the circle of 1 m that the papers keep free: what pushes away from an
-  /// obstacle must end outside of it.
+  /// [m] A little more than the circle of 1 m that the papers keep free: an obstacle's push must
+  /// end outside that circle.
   static constexpr double kReach = 1.02;
 
   DistanceField();
 
-  /// Nothing is occupied.
+  /// Clears all occupied cells.
   void reset();
   void occupy(int column, int row);
   void free(int column, int row);
-  /// Rebuilds the tiles that wait for it longest. A cell counts as occupied when its `hits` are at
-  /// least `occupied`.
+  /// Rebuilds the tiles that have waited longest. A cell is occupied if it has at least `occupied`
+  /// `hits`.
   void rebuild(std::span<const std::uint8_t> hits, std::uint8_t occupied);
-  /// Moves the window by whole tiles; what comes in is far from everything.
+  /// Moves the window by whole tiles. New cells are farther than kReach from any obstacle.
   void shift(int tile_columns, int tile_rows);
 
-  /// [mm] Of a cell inside the window.
+  /// [mm] The distance of a cell inside the window.
   std::int16_t at(int column, int row) const { return field_[index(column, row)]; }
-  /// Of a cell of the window, row by row.
+  /// The row-major index of a cell of the window.
   static std::size_t index(int column, int row) {
     return static_cast<std::size_t>(row) * kSize + static_cast<std::size_t>(column);
   }
-  /// The distances [mm] of (column, row) and the cells right of it; the next row is kSize further.
+  /// The distances [mm] of (column, row) and the cells right of it; the next row is kSize further
+  /// on.
   const std::int16_t* from(int column, int row) const { return &field_[index(column, row)]; }
 
  private:
   static constexpr int kRadius = 21;                      // cells: kReach
-  static constexpr std::size_t kWidth = 2 * kRadius + 1;  // of what a cell lowers
+  static constexpr std::size_t kWidth = 2 * kRadius + 1;  // edge of the area that a cell lowers
   static constexpr int kTiles = kSize / kTile;
   static constexpr int kSpan = kTile + 2 * kRadius;  // cells that a tile's distances depend on
   /// For each row of a tile, the cells up or down to the nearest occupied one in each column.
@@ -83,10 +83,10 @@ class DistanceField {
 
   std::vector<std::int16_t> field_;   // [mm]
   std::vector<std::int16_t> kernel_;  // [mm] around an occupied cell
-  std::vector<int> reaches_;          // cells to either side that a row of it lowers, by its offset
-  std::vector<std::int16_t> metric_;  // [mm] by the square of a distance in cells
-  std::vector<std::uint8_t> soiled_;  // tiles whose distances are too short
-  std::vector<std::uint16_t> tiles_;  // those, in the order they became so
+  std::vector<int> reaches_;          // half width, in cells, of each row of kernel_, by row offset
+  std::vector<std::int16_t> metric_;  // [mm] by the squared distance in cells
+  std::vector<std::uint8_t> soiled_;  // marks tiles whose distances are too low
+  std::vector<std::uint16_t> tiles_;  // the marked tiles, oldest first
   Gaps gaps_{};                       // workspace of rebuild()
 };
 

@@ -1,5 +1,5 @@
-// algo/full_strip/full_strip_controller.hpp: `strip`, the full elastic strip: a planner on the map
-// of the scans (deliberative), a strip of many nodes (reactive), phases and recoveries
+// algo/full_strip/full_strip_controller.hpp: `strip`, the full elastic strip. It has a planner on
+// the map of the scans (deliberative), a strip of many nodes (reactive), phases and recoveries
 // (sequencing), and a velocity stage that proves every command.
 #pragma once
 
@@ -38,14 +38,14 @@ class FullStripController final : public Controller {
  public:
   static ParameterList parameters();
 
-  /// `among_moving`: things that move are tracked and the beam search gives way to them.
+  /// `among_moving`: tracks moving obstacles, and gives way to them by the beam search.
   explicit FullStripController(bool among_moving = false) : among_moving_(among_moving) {}
 
   void reset(const Pose2& start_W) override;
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void explain(const Telemetry& t, Explanation& words) const override;
 
-  /// What it is about, for its words: ControlOutput::state.
+  /// The state that its words explain: ControlOutput::state.
   using State = std::uint8_t;
   static constexpr std::uint8_t kNone = 0;
   static constexpr std::uint8_t kFollowing = 1;    // along the strip
@@ -53,11 +53,12 @@ class FullStripController final : public Controller {
   static constexpr std::uint8_t kManeuvering = 3;  // to and fro in a narrow place
   static constexpr std::uint8_t kGivingWay = 4;    // to moving obstacles
   static constexpr std::uint8_t kCornered = 5;     // every motion would meet a moving obstacle
-  static constexpr std::uint8_t kEscaping = 6;     // out of too narrow a place
-  static constexpr std::uint8_t kBackingOff = 7;   // the way was blocked for long
-  static constexpr std::uint8_t kNoWay = 8;        // the map has no way to the goal
-  static constexpr std::uint8_t kBlocked = 9;      // nothing is free just now
-  static constexpr std::uint8_t kGoalTaken = 10;   // something stands on it; it drives no farther
+  static constexpr std::uint8_t kEscaping = 6;     // out of a place that is too narrow
+  static constexpr std::uint8_t kBackingOff = 7;   // after a long blockage
+  static constexpr std::uint8_t kNoWay = 8;        // the map has no path to the goal
+  static constexpr std::uint8_t kBlocked = 9;      // no motion is free at present
+  static constexpr std::uint8_t kGoalTaken = 10;   // an obstacle stands on the goal; drives no
+                                                   // farther
 
  private:
   void forget_way();
@@ -86,7 +87,7 @@ class FullStripController final : public Controller {
   void show_weighed(ControlOutput& out) const;
 
   bool among_moving_ = false;
-  bool placed_ = false;  // the place of the start is entered into the map
+  bool placed_ = false;  // the start pose is entered into the map
   ScanPoints points_{};
   LocalMap map_{};
   Tracker tracker_{};
@@ -98,30 +99,30 @@ class FullStripController final : public Controller {
   ManeuverSearch search_{};
   ManeuverDrive maneuver_{};
   double next_search_ = 0;  // [s] run clock
-  Vec2 way_W_{0, 0};        // where the robot last made way, turning not counted
+  Vec2 way_W_{0, 0};        // last place of progress, turning not counted
   double way_since_ = 0;    // [s]
   StripSettings settings_{};
   MotionLimits limits_{};
-  double break_room_ = 0;   // [m] the strip may be narrower than what was planned
+  double break_room_ = 0;   // [m] the strip's clearance may fall this far below the planned
   double plan_period_ = 0;  // [s]
 
   std::optional<Vec2> goal_W_{};
-  std::size_t level_ = 0;  // of the planner's clearance, 0 the widest
-  bool no_way_ = false;    // not even at the narrowest
+  std::size_t level_ = 0;  // of the planner's clearance; 0 is the widest
+  bool no_way_ = false;    // not even at the narrowest clearance
   bool goal_taken_ = false;
-  std::optional<double> tight_since_{};  // [s] the goal is tried for without room
+  std::optional<double> tight_since_{};  // [s] since when it tries for a goal without room
   double broken_at_ = -1;                // [m] along the strip; negative: whole
   double next_plan_ = 0;                 // [s] run clock
   State state_ = kNone;
-  Weighing weighed_{};        // in this tick
-  Vec2 progress_W_{0, 0};     // where the robot last made way
+  Weighing weighed_{};        // of this tick
+  Vec2 progress_W_{0, 0};     // last place of progress
   double progress_at_ = 0;    // [s]
   double back_until_ = -1;    // [s]
-  Twist2 escape_{};           // the one under way
+  Twist2 escape_{};           // the present escape
   double escape_until_ = -1;  // [s]
 
-  std::vector<Twist2> under_way_{};  // commands given that do not act yet, oldest first
-  Recycled<Vec2> path_W_{};          // the planner's, last found
+  std::vector<Twist2> under_way_{};  // commands sent that do not act yet, oldest first
+  Recycled<Vec2> path_W_{};          // the planner's latest path
 };
 
 }  // namespace algo

@@ -1,5 +1,5 @@
-// algo/full_strip/local_map.hpp: what the scans have shown around the robot: a rolling occupancy
-// grid and the distance to the nearest occupied cell.
+// algo/full_strip/local_map.hpp: a rolling occupancy grid of the scans around the robot, and the
+// distance to the nearest occupied cell.
 #pragma once
 
 #include <algorithm>
@@ -20,42 +20,43 @@
 
 namespace algo {
 
-/// A square window of the odometry frame W that moves along with the robot in whole cells.
+/// A square window of the odometry frame W that follows the robot in whole cells.
 ///
-/// A cell is occupied after two hits and free again after the scanner has looked through it
-/// several times; where nobody looks it ages, and then counts as never seen. Everything is
-/// allocated in the constructor.
+/// A cell is occupied after two hits. It is free again after the scanner has looked through it
+/// several times. Where the scanner does not look, a cell ages, and then counts as never seen.
+/// Allocates in the constructor only.
 class LocalMap {
  public:
   static constexpr double kCell = DistanceField::kCell;    // [m]
   static constexpr int kSize = DistanceField::kSize;       // cells along an edge: 25.6 m
   static constexpr double kReach = DistanceField::kReach;  // [m] distances are known up to here
-  static constexpr std::uint8_t kOccupied = 3;  // hits from which on a cell is occupied: two
+  static constexpr std::uint8_t kOccupied = 3;             // hits that make a cell occupied: two
 
-  /// Whether the distance to the nearest occupied cell is kept: half of a map's memory, and most of
-  /// its work. Without it distance(), gradient(), sees() and cell_distance() must not be called.
+  /// Whether to keep the distances to the nearest occupied cell, which take half of a map's memory
+  /// and most of its work. Without them do not call distance(), gradient(), sees() or
+  /// cell_distance().
   enum class Distances : std::uint8_t { Kept, None };
   explicit LocalMap(Distances distances = Distances::Kept);
   bool keeps_distances() const { return field_.has_value(); }
 
-  /// Forgets everything; the window is centred on `centre_W`.
+  /// Forgets everything and centres the window on `centre_W`.
   void reset(const Vec2& centre_W);
 
-  /// Scans without a hit after which a cell begins to fade.
+  /// Sets the number of scans without a hit after which a cell begins to fade.
   void remember_for(std::uint16_t scans) { age_after_ = scans; }
 
-  /// Moves the window when the robot has left its middle; true when it moved.
+  /// Moves the window if the robot has left its middle; true if it moved.
   bool follow(const Vec2& position_W);
 
-  /// Enters the hits of `scan` as points of W, but for those on something that moves, and clears
-  /// what it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
+  /// Enters the hits of `scan` as points of W, except those on moving obstacles, and clears the
+  /// cells that it looked through. `sensor_W` is the scanner's pose at the middle of its sweep,
   /// `points_W` B points (only those of Ok beams count).
   void insert(const LaserScan& scan,
               const Pose2& sensor_W,
               const std::vector<Vec2>& points_W,
               const Tracker& tracker);
-  /// Frees each occupied or suspected cell of the square of half edge `reach` [m] about `p_W` for
-  /// which `free(point_W)` holds: where the robot itself stands, or what has begun to move.
+  /// Frees each occupied or suspected cell for which `free(point_W)` holds, in the square of half
+  /// edge `reach` [m] about `p_W`: the robot's own place, or an obstacle that has begun to move.
   template <typename Free>
   void erase_near(const Vec2& p_W, double reach, Free&& free) {
     each_cell(p_W, reach, [&](std::size_t cell) {
@@ -63,13 +64,14 @@ class LocalMap {
     });
   }
 
-  /// [m] From `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
+  /// [m] Distance from `p_W` to the nearest occupied cell's centre, at most kReach; kReach outside.
   double distance(const Vec2& p_W) const;
-  /// Gradient of distance(): away from the nearest obstacle, zero where none is within reach.
+  /// Gradient of distance(): away from the nearest obstacle; zero if none is within reach.
   Vec2 gradient(const Vec2& p_W) const;
 
   /// Calls `see(point_W)` for each occupied cell of the square of half edge `reach` [m] about
-  /// `p_W`, with the mean of the hits in it: where the surface is, closer than its cell tells.
+  /// `p_W`. The point is the mean of the cell's hits, which is closer to the surface than its
+  /// centre.
   template <typename See>
   void each_near(const Vec2& p_W, double reach, See&& see) const {
     each_cell(p_W, reach, [&](std::size_t cell) {
@@ -77,22 +79,22 @@ class LocalMap {
     });
   }
 
-  /// Whether the straight line between two points keeps `room` [m] from all that is occupied.
+  /// True if the straight line between two points keeps `room` [m] from all occupied cells.
   bool sees(const Vec2& from_W, const Vec2& to_W, double room) const;
   const Vec2& corner_W() const { return corner_W_; }
   /// [mm] Distance of the cell (column, row), which must be inside.
   std::int16_t cell_distance(int column, int row) const { return field_->at(column, row); }
-  /// Where it has looked at all: what is neither occupied nor seen is anyone's guess.
+  /// The space that the scanner has seen: elsewhere, a cell without hits is unknown, not free.
   const SeenSpace& seen() const { return space_; }
   SeenSpace& seen() { return space_; }
 
-  /// The part that people look at: `side` x `side` cells about the robot.
+  /// Draws the displayed part: `side` x `side` cells about the robot.
   void draw(const Vec2& about_W, std::uint32_t side, Layer& out) const;
 
  private:
-  /// Where in a cell its hits lie, from its middle [m].
+  /// The mean of a cell's hits, from its centre [m].
   using Offset = std::array<float, 2>;
-  /// What is known of a cell with hits, on its way to another place in memory.
+  /// The data of a cell with hits while it moves to another place in memory.
   struct Moved {
     std::uint32_t cell = 0;
     std::uint16_t seen = 0;
@@ -137,7 +139,7 @@ class LocalMap {
     void operator()(void* memory) const { std::free(memory); }
   };
 
-  // Only cells with hits are written: most of a window costs no memory.
+  // Only cells with hits are written: most of a window takes up no memory.
   std::unique_ptr<std::uint8_t[], Release> hits_;
   std::unique_ptr<std::uint16_t[]> seen_;  // scan number of the last hit
   std::unique_ptr<Offset[]> means_;        // of the hits
@@ -148,7 +150,7 @@ class LocalMap {
   SeenSpace space_{};
   std::uint16_t age_after_ = 20 * 30;
   std::uint32_t scans_ = 0;
-  std::array<std::uint32_t, 2> looks_{};  // of scanners that look ahead, and back
+  std::array<std::uint32_t, 2> looks_{};  // by scanners that look ahead, and back
 };
 
 }  // namespace algo

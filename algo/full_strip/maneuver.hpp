@@ -1,5 +1,5 @@
-// algo/full_strip/maneuver.hpp: moves to and fro, with the hull's true outline, where a place is
-// too narrow to turn in.
+// algo/full_strip/maneuver.hpp: plans moves to and fro, with the hull's true outline, where a place
+// is too narrow to turn in.
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 
 namespace algo {
 
-/// One piece of a manoeuvre: an arc of constant curvature driven forward or back, or a turn on the
-/// spot when `length` is 0.
+/// One piece of a manoeuvre: an arc of constant curvature, forward or backward, or a turn in place
+/// if `length` is 0.
 struct Piece {
   Pose2 end_W{};
   double length = 0;  // [m] negative: backwards
   double turn = 0;    // [rad]
 };
 
-/// A* over (x, y, heading) around the robot, a bounded piece of it at a time.
+/// A* over (x, y, heading) around the robot, in bounded portions.
 class ManeuverSearch {
  public:
   enum class State : std::uint8_t { Idle, Searching, Found, NoWay };
@@ -30,14 +30,14 @@ class ManeuverSearch {
   void reset() { state_ = State::Idle; }
   State state() const { return state_; }
 
-  /// Looks for a way from `start_W` to a pose that `arrived` accepts; `target_W` is where those
-  /// are, more or less. All the way the hull keeps `margin` [m].
+  /// Searches for a way from `start_W` to a pose that `arrived` accepts. `target_W` is roughly
+  /// where such poses are. The hull keeps `margin` [m] all the way.
   void start(const Pose2& start_W, const Vec2& target_W, double margin);
   State search(const LocalMap& map,
                const HullCheck& hull,
                const std::function<bool(const Pose2&)>& arrived,
                int budget);
-  /// The way found, first piece first.
+  /// The pieces of the way found, first one first.
   const Recycled<Piece>& pieces() const { return pieces_; }
 
  private:
@@ -81,7 +81,7 @@ class ManeuverDrive {
   void reset() { pieces_.clear(); }
   bool active() const { return next_ < pieces_.size(); }
   void start(const Recycled<Piece>& pieces);
-  /// The command at `pose_W`; nothing when the last piece is done.
+  /// The command at `pose_W`; nothing once the last piece is done.
   std::optional<Twist2> next(const Pose2& pose_W, const MotionLimits& limits);
 
  private:

@@ -1,5 +1,5 @@
-// algo/full_strip/motion.hpp: how the base will move under commands, and whether its hull has room
-// on the way.
+// algo/full_strip/motion.hpp: predicts the base's motion under commands, and checks the room for
+// its hull on the way.
 #pragma once
 
 #include <array>
@@ -12,31 +12,31 @@
 
 namespace algo {
 
-/// Room around the hull in the map. Coarse: the hull as equal discs along R's x axis that cover it,
-/// one look at the map's distances each. Where that finds little room: the outline itself against
-/// the hits in the cells around.
+/// Room around the hull in the map. The coarse check covers the hull by equal discs along R's x
+/// axis and reads the map's distance once for each. If that finds little room, the fine check
+/// measures from the outline to the hits in the cells around.
 class HullCheck {
  public:
   explicit HullCheck(const RobotSpec& spec = {});
   bool is_of(const RobotSpec& spec) const;
   double half_width() const { return half_width_; }  // [m] of the hull, or the radius of a disc
-  /// [m] Free room around the hull at `pose_W`; exact where it is less than kExact, there negative
-  /// when something is inside the hull.
+  /// [m] Free room around the hull at `pose_W`. Exact if less than kExact; negative if something is
+  /// inside the hull.
   double clearance(const LocalMap& map, const Pose2& pose_W) const;
-  /// [m] From the hull at `pose_W` to one point, negative inside.
+  /// [m] Distance from the hull at `pose_W` to one point; negative inside.
   double distance(const Pose2& pose_W, const Vec2& point_W) const;
-  /// Whether the hull at `pose_W` stands on `point_W`, by more than what a hit may be off.
+  /// True if the hull at `pose_W` covers `point_W` by more than a hit's error.
   bool covers(const Pose2& pose_W, const Vec2& point_W) const;
-  /// Whether a part of the hull that looks back moves under `twist` into what nobody has seen. What
-  /// looks ahead moves into what the scanner looks at.
+  /// True if the rear half of the hull moves into unseen space under `twist`. The front half moves
+  /// into what the scanner looks at.
   bool enters_unseen(const SeenSpace& seen, const Pose2& pose_W, const Twist2& twist) const;
-  /// Marks as seen where the hull stands.
+  /// Marks the hull's area as seen.
   void stand_on(SeenSpace& seen, const Pose2& pose_W) const;
-  /// Marks as seen the room to turn in at the start, which nobody could look for otherwise.
+  /// Marks as seen the room to turn in at the start, which no sensor could look at otherwise.
   void take_place(SeenSpace& seen, const Pose2& pose_W) const;
 
  private:
-  /// A place on the outline, a little outside it, and which way it faces.
+  /// A place on the outline, slightly outside it, and the direction that it faces.
   struct Rim {
     Vec2 point_R{0, 0};
     Vec2 normal_R{0, 0};
@@ -48,13 +48,13 @@ class HullCheck {
   double exact(const LocalMap& map, const Pose2& pose_W) const;
   double outside(const Vec2& d, const Vec2& ahead) const;
 
-  std::array<double, kMost> along_{};  // [m] centres
+  std::array<double, kMost> along_{};  // [m] centres of the discs
   std::size_t count_ = 1;
   double disc_ = 0;         // [m] radius of a disc
   double radius_ = 0;       // [m] of the circle about the hull
   double half_length_ = 0;  // [m] 0: the hull is a disc
   double half_width_ = 0;
-  std::array<Rim, kRims> rims_{};  // of the half that looks back
+  std::array<Rim, kRims> rims_{};  // of the rear half
   std::size_t rim_count_ = 0;
 };
 
@@ -68,14 +68,14 @@ struct MotionState {
   Twist2 twist{};
 };
 
-/// `state` after `dt` [s] under `command`: the twist moves towards it as fast as the limits allow.
+/// `state` after `dt` [s] under `command`: the twist approaches it as fast as the limits allow.
 MotionState advanced(const MotionState& state,
                      const Twist2& command,
                      const MotionLimits& limits,
                      double dt);
 
-/// Whether `state` braked to rest, both parts at once, passes only states for which `free(state)`
-/// holds.
+/// True if `state`, braked to rest in both parts at once, passes only states for which
+/// `free(state)` holds.
 template <typename Free>
 bool rests(MotionState state, const MotionLimits& limits, double dt, Free&& free) {
   constexpr int kMost = 400;  // a base that cannot brake is not proven safe
@@ -87,8 +87,8 @@ bool rests(MotionState state, const MotionLimits& limits, double dt, Free&& free
   return false;
 }
 
-/// Whether `state` braked to rest keeps `margin` [m] of room all the way and backs into nothing
-/// unseen.
+/// True if `state`, braked to rest, keeps `margin` [m] of room all the way and never backs into
+/// unseen space.
 bool rests_clear(const LocalMap& map,
                  const HullCheck& hull,
                  const MotionState& state,

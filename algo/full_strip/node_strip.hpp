@@ -19,13 +19,13 @@ struct Node {
 struct StripSettings {
   double contraction = 0.4;     // K_c
   double repulsion = 0.6;       // K_r
-  double rest_distance = 0.75;  // [m] d_o: clearance from which on nothing pushes
+  double rest_distance = 0.75;  // [m] d_o: clearance above which nothing pushes
   double least_clearance = 0;   // [m] below it the strip is broken
 };
 
-/// Nodes from the robot to the goal, every kSpacing. Each is pulled straight by its neighbours
-/// (Eq. 2 of the thesis) and pushed by what stands on its left and on its right (the thesis' two
-/// sides, at every node).
+/// Nodes from the robot to the goal, every kSpacing. Its neighbours pull each node straight (Eq. 2
+/// of the thesis). Obstacles on its left and on its right push it (the two sides of the thesis, at
+/// every node).
 class NodeStrip {
  public:
   static constexpr double kSpacing = 0.15;  // [m]
@@ -35,20 +35,21 @@ class NodeStrip {
   void clear() { nodes_.clear(); }
   bool empty() const { return nodes_.size() < 2; }
 
-  /// Lays the strip along `path` (robot to goal).
+  /// Lays the strip along `path`, from the robot to the goal.
   void lay(const Recycled<Vec2>& path);
-  /// Cuts what the robot has passed, lets it start at the robot, spaces the nodes evenly.
+  /// Cuts off the part that the robot has passed, starts the strip at the robot, and spaces the
+  /// nodes evenly.
   void follow(const Vec2& robot_W);
-  /// `sweeps` rounds of forces over the first `reach` [m] of the strip, the rest less often.
+  /// Runs `sweeps` rounds of forces over the first `reach` [m] of the strip; the rest gets fewer.
   void relax(const LocalMap& map, const StripSettings& settings, int sweeps);
-  /// Whether a node lacks room: metres from the robot to it, or a negative number when none does.
+  /// [m] Distance from the robot to the first node without room; negative if there is none.
   double broken_at(const LocalMap& map, const StripSettings& settings) const;
 
-  /// Cost [m] of the strip in the planner's measure.
+  /// Cost [m] of the strip by the planner's cost function.
   double cost(const LocalMap& map) const;
-  /// [m] along its nodes.
+  /// [m] Length along its nodes.
   double length() const;
-  /// The point `s` [m] along the strip, its end when it is shorter.
+  /// The point `s` [m] along the strip; its end if the strip is shorter.
   Vec2 at(double s) const;
   const Recycled<Node>& nodes() const { return nodes_; }
   Vec2 end_W() const { return nodes_.back().position_W; }

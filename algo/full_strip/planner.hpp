@@ -1,4 +1,4 @@
-// algo/full_strip/planner.hpp: the deliberative layer: a way to the goal through the local map.
+// algo/full_strip/planner.hpp: the deliberative layer: plans a path to the goal on the local map.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace algo {
 
-/// A* on a lattice of 0.1 m, from the goal to the robot, a bounded piece of it at a time.
+/// A* on a lattice of 0.1 m, from the goal to the robot, in bounded portions.
 ///
-/// A step costs its length x (1 + 3 ((0.7 - d) / 0.5)^2) for a clearance d below 0.7 m; below
-/// the least clearance there is no way, but for the cells at the robot, which may stand anywhere.
+/// A step costs its length x (1 + 3 ((0.7 - d) / 0.5)^2) for a clearance d below 0.7 m. Below the
+/// least clearance there is no way, except at the robot, which may stand anywhere.
 class Planner {
  public:
   enum class State : std::uint8_t { Idle, Searching, Found, NoWay };
@@ -22,9 +22,9 @@ class Planner {
   Planner();
   void reset() { state_ = State::Idle; }
 
-  /// Begins a search. A goal without room is replaced by the nearest place that has it; one outside
-  /// the map by a place on its border. One right before the robot is kept if `try_tight`: the map
-  /// may be off by what is missing.
+  /// Begins a search. The nearest place with room replaces a goal without room; a place on the
+  /// border replaces a goal outside the map. With `try_tight`, a goal without room right before the
+  /// robot is kept: the map's error may account for the missing room.
   void start(const LocalMap& map,
              const Vec2& robot_W,
              const Vec2& goal_W,
@@ -34,20 +34,20 @@ class Planner {
   State search(const LocalMap& map, int budget);
 
   State state() const { return state_; }
-  /// Whether the way ends at another place than the goal asked for because something stands there.
+  /// True if the path ends away from the requested goal because an obstacle stands there.
   bool goal_taken() const { return goal_taken_; }
-  /// Whether it was kept although it has no room.
+  /// True if the goal was kept although it has no room.
   bool goal_tight() const { return goal_tight_; }
-  /// The way found, robot first. At most one point a lattice step.
+  /// The path found, robot first. At most one point per lattice step.
   void path(Recycled<Vec2>& out) const;
 
-  /// Cost [m per m] of moving with clearance `d` [m].
+  /// Cost [m per m] of motion with clearance `d` [m].
   static double unit_cost(double d);
 
  private:
   static constexpr int kSize = LocalMap::kSize / 2;
   static constexpr double kStep = 2 * LocalMap::kCell;  // [m]
-  /// A point waiting to be expanded; those of a bucket are chained.
+  /// A point waiting to be expanded; the entries of a bucket are chained.
   struct Entry {
     std::uint32_t point = 0;
     std::uint32_t next = 0;  // entry + 1; 0: the last
@@ -72,20 +72,20 @@ class Planner {
   Vec2 goal_W_{0, 0};
   std::uint32_t robot_ = 0;
   std::uint32_t root_ = 0;
-  std::uint32_t round_ = 0;  // of the search: what an older one wrote does not count
-  std::vector<std::uint32_t> opened_, closed_;  // round in which it was
+  std::uint32_t round_ = 0;                     // of the search; data of earlier rounds is void
+  std::vector<std::uint32_t> opened_, closed_;  // the last round in which a point was
   std::vector<float> g_;                        // [m]
-  std::vector<std::uint8_t> towards_;           // neighbour on the way to the goal
-  std::vector<std::uint32_t> costed_;           // round in which cost_ was found
+  std::vector<std::uint8_t> towards_;           // the neighbour on the way to the goal
+  std::vector<std::uint32_t> costed_;           // the round in which cost_ was found
   std::vector<float> cost_;                     // [m per m]; negative: no way
-  // A queue of buckets kBucket wide: costs rise along a search, so the first filled one is near.
+  // A queue of buckets kBucket wide. Costs rise along a search, so the first filled bucket is near.
   std::vector<std::uint32_t> buckets_;  // entry + 1
   std::vector<Entry> entries_;
   std::size_t bucket_ = 0;
 };
 
-/// Leaves out points of `path` wherever the straight line past them keeps `room` [m], so that no
-/// corner of the lattice is left where nothing stands near.
+/// Removes points of `path` wherever the straight line past them keeps `room` [m]. This removes the
+/// lattice's corners in open space.
 void straighten(const LocalMap& map, double room, Recycled<Vec2>& path);
 
 }  // namespace algo

@@ -1,5 +1,5 @@
-// algo/full_strip/scan_points.hpp: where the returns of a scan lie, of a scanner that turns while
-// the robot moves.
+// algo/full_strip/scan_points.hpp: the positions of a scan's returns, for a scanner that sweeps
+// while the robot moves.
 #pragma once
 
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace algo {
 
-/// Remembers where the robot was, and maps each beam of a scan from where it was fired.
+/// Remembers the robot's poses, and maps each beam of a scan from the pose at which it was fired.
 class ScanPoints {
  public:
   ScanPoints();
   void reset() { trail_.clear(); }
-  /// The robot is at `pose_W` at `stamp` [s], by its odometry; once a tick, in order.
+  /// Adds the odometry pose `pose_W` at `stamp` [s]. Call once per tick, in order.
   void follow(const Pose2& pose_W, double stamp);
-  /// Maps the believed beams of `scan` into points_W(). The scanner's pose at the middle of its
-  /// sweep. follow() must have been called.
+  /// Maps the valid beams of `scan` into points_W(). Returns the scanner's pose at the middle of
+  /// its sweep. Call follow() first.
   Pose2 map(const LaserScan& scan);
-  /// One a beam; where no distance was measured, what was there before.
+  /// One point per beam; a beam without a distance keeps its old point.
   const std::vector<Vec2>& points_W() const { return points_W_; }
 
  private:

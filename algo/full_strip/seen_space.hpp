@@ -1,5 +1,5 @@
-// algo/full_strip/seen_space.hpp: where the scanner has looked, around the robot: a robot may back
-// only into what it has seen.
+// algo/full_strip/seen_space.hpp: the space around the robot that the scanner has seen. A robot may
+// back only into seen space.
 #pragma once
 
 #include <cmath>
@@ -12,9 +12,9 @@
 
 namespace algo {
 
-/// A square window of the odometry frame W that rolls along with the robot. A cell counts as seen
-/// when a beam went through it or ended in or just before it: whether something stands there is
-/// then the map's to say. Everything is allocated in the constructor.
+/// A square window of the odometry frame W that follows the robot. A cell is seen if a beam passed
+/// through it or ended in it or just before it. The map tells whether a seen cell is occupied.
+/// Allocates in the constructor only.
 class SeenSpace {
  public:
   static constexpr double kCell = 0.05;  // [m]
@@ -22,16 +22,16 @@ class SeenSpace {
 
   SeenSpace() : seen_(static_cast<std::size_t>(kSize) * kSize) { reset({0, 0}); }
 
-  /// Forgets everything; the window is centred on `centre_W`.
+  /// Forgets everything and centres the window on `centre_W`.
   void reset(const Vec2& centre_W);
-  /// The window follows the robot.
+  /// Moves the window with the robot.
   void follow(const Vec2& position_W);
 
   /// Enters the beams of `scan`, taken at `sensor_W`, up to kLook.
   void look(const LaserScan& scan, const Pose2& sensor_W);
-  /// Takes the disc about `centre_W` for seen: the robot stands there, or has room to turn there.
+  /// Marks the disc about `centre_W` as seen: the robot stands there, or has room to turn there.
   void mark(const Vec2& centre_W, double radius) { set_disc(centre_W, radius, 1); }
-  /// The disc about `centre_W` counts as never seen.
+  /// Marks the disc about `centre_W` as never seen.
   void forget(const Vec2& centre_W, double radius) { set_disc(centre_W, radius, 0); }
 
   bool seen(const Vec2& p_W) const {
@@ -42,7 +42,7 @@ class SeenSpace {
 
  private:
   static int cell_of(double metres) { return static_cast<int>(std::floor(metres / kCell)); }
-  /// The cells of the plane share those of the window, like a chart rolled both ways.
+  /// Cells of the plane map to those of the window periodically, as on a torus.
   static std::size_t index(int column, int row) {
     constexpr auto kMask = static_cast<unsigned>(kSize - 1);
     return (static_cast<unsigned>(row) & kMask) * static_cast<std::size_t>(kSize) +
@@ -54,7 +54,7 @@ class SeenSpace {
   void set_disc(const Vec2& centre_W, double radius, std::uint8_t seen);
 
   std::vector<std::uint8_t> seen_;  // 0: never
-  int left_ = 0, bottom_ = 0;       // of the window, in cells of W
+  int left_ = 0, bottom_ = 0;       // corner of the window, in cells of W
   std::size_t looks_ = 0;
 };
 

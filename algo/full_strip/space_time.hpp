@@ -1,5 +1,5 @@
-// algo/full_strip/space_time.hpp: a beam search over motions in space and time, among things that
-// move: driving on, waiting, giving way and stepping back are all just motions.
+// algo/full_strip/space_time.hpp: a beam search over motions in space and time, among moving
+// obstacles. Driving on, waiting, giving way and stepping back are all motions of the search.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,23 @@ struct SpaceTimeInput {
   double lead = 0;                          // [s] from the tracks' time to that of `state`
   MotionState state{};
   MotionLimits limits{};
-  Vec2 carrot_W{0, 0};  // where the straight way to go ends,
-  double beyond = 0;    // [m] and how far the goal is from there
+  Vec2 carrot_W{0, 0};  // end of the straight way ahead
+  double beyond = 0;    // [m] distance from there to the goal
 };
 
-/// Commands are held for a level of the search; each level keeps the best few states. The first
-/// command of the cheapest motion that stays clear to the end is the answer.
+/// A command is held for one level of the search; each level keeps the best few states. The answer
+/// is the first command of the cheapest motion that stays clear to the end.
 class SpaceTimeSearch {
  public:
   SpaceTimeSearch();
 
-  /// Whether a track may come near the robot or its way along `strip` within the next seconds.
+  /// True if a track may come near the robot, or near its way along `strip`, within the next
+  /// seconds.
   static bool needed(const SpaceTimeInput& in, const NodeStrip& strip);
-  /// The command of a motion that stays clear to the end; if there is none, of one that does so
-  /// with less room; else the one that comes least near to anything.
+  /// The first command of a motion that stays clear to the end; if there is none, of one that stays
+  /// clear with less room; else of the one with the largest least distance.
   Twist2 search(const SpaceTimeInput& in, Weighing& out);
-  /// Whether the last answer stays clear to the end.
+  /// True if the last answer stays clear to the end.
   bool clear() const { return clear_; }
 
  private:
@@ -52,10 +53,10 @@ class SpaceTimeSearch {
   Twist2 least_bad(const SpaceTimeInput& in) const;
   bool step(
       const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const;
-  /// How near what moves will be.
+  /// The distance to moving obstacles in the future.
   struct Nearness {
     double room = 0;  // [m] beyond the margin
-    double risk = 0;  // 0: it could not come here soon if it turned; 1: it is here
+    double risk = 0;  // 0: no obstacle could turn and soon be here; 1: one is here
   };
   Nearness nearness(const SpaceTimeInput& in, double time, const MotionState& at) const;
   void keep_best();
@@ -65,10 +66,10 @@ class SpaceTimeSearch {
   std::vector<std::uint32_t> order_;
   std::uint32_t round_ = 0;
   std::vector<Track> near_tracks_;
-  std::vector<double> near_speeds_;  // [m/s] theirs
-  double static_margin_ = 0;         // [m] of this search
-  double margin_share_ = 1;          // of the margins from what moves
-  std::vector<char> stops_;  // whether a brake after that command keeps clear of what stands
+  std::vector<double> near_speeds_;  // [m/s] of near_tracks_
+  double static_margin_ = 0;         // [m] for this search
+  double margin_share_ = 1;          // share of the margins from moving obstacles
+  std::vector<char> stops_;          // whether braking after that command avoids static obstacles
   bool clear_ = false;
 };
 

@@ -1,4 +1,4 @@
-// algo/full_strip/tracker.hpp: things that move, seen in the scans: clusters fitted by circles and
+// algo/full_strip/tracker.hpp: tracks moving obstacles in the scans: clusters fitted by circles and
 // followed by constant-velocity Kalman filters.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace algo {
 
-/// An obstacle seen moving.
+/// An obstacle that was seen moving.
 struct Track {
   Vec2 position_W{0, 0};
   Vec2 velocity_W{0, 0};  // [m/s]
@@ -21,38 +21,38 @@ struct Track {
   double unseen = 0;      // [s] since it was last seen
 };
 
-/// A round body as thick as a person or more is taken for one that may move from its first scan on,
-/// until it has stood for a while. Anything else counts as moving only once it has gone somewhere
-/// at a speed that its uncertainty does not explain. What stands belongs to the static map.
+/// A round body at least as thick as a person counts as possibly moving from its first scan on,
+/// until it has stood for a while. Any other cluster counts as moving only once it has travelled at
+/// a speed that its uncertainty does not explain. Static obstacles belong to the map.
 class Tracker {
  public:
   Tracker();
   void reset();
 
-  /// Follows the clusters of a new scan, each as of the time when its own beams were fired.
+  /// Tracks the clusters of a new scan, each at the time at which its own beams were fired.
   /// `points_W` B points (only those of Ok beams count), `sensor_W` the scanner at the middle of
-  /// its sweep. Scans must come in order; they are always older than the run clock says.
+  /// its sweep. Scans must come in order; they are always older than the run clock.
   void update(const LaserScan& scan, const Pose2& sensor_W, const std::vector<Vec2>& points_W);
-  /// Tells moving() as of `stamp` [s, run clock], which the last scan did not know.
+  /// Predicts moving() at `stamp` [s, run clock], which is later than the last scan.
   void predict(double stamp) { publish(stamp); }
 
-  /// Whether beam `i` of the last scan hit something that moves or may.
+  /// True if beam `i` of the last scan hit an obstacle that moves or may move.
   bool on_moving(std::size_t i) const { return i < moving_beam_.size() && moving_beam_[i] != 0; }
-  /// What moves or may, at the time of the last update() or predict().
+  /// The obstacles that move or may move, at the time of the last update() or predict().
   const Recycled<Track>& moving() const { return moving_; }
-  /// Circles that have begun to count as moving in the last update(): the map holds traces of them.
+  /// The circles that the last update() began to count as moving: the map holds traces of them.
   const Recycled<Track>& just_found() const { return just_found_; }
 
  private:
   struct Cluster {
     std::size_t first = 0, last = 0;  // beams
-    double stamp = 0;                 // [s] at which they were fired, in the middle
+    double stamp = 0;                 // [s] when they were fired, at the middle
     Vec2 centre_W{0, 0};
     double radius = 0;    // [m]
     double residual = 0;  // [m] root mean square off the circle
     double chord = 0;     // [m] between its ends
     bool round = false;
-    bool body = false;  // round beyond doubt, and no thin thing
+    bool body = false;  // surely round, and not thin
     bool taken = false;
   };
   struct Filter {
@@ -83,16 +83,16 @@ class Tracker {
   void advance(double stamp);
   void correct(Filter& f, const Cluster& c);
   void associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp);
-  /// A track and a cluster that may be its.
+  /// A track and a cluster that may belong to it.
   struct Pair {
     double distance = 0;  // [m]
     std::uint32_t filter = 0, cluster = 0;
   };
-  /// An earlier scan, kept to see what has changed since.
+  /// An earlier scan, kept to find changes since.
   struct Memory {
     double stamp = -1;
     Pose2 sensor_W{};
-    std::vector<float> ranges{};  // [m] 0 where nothing was measured, beyond range_max where free
+    std::vector<float> ranges{};  // [m] 0 without a measurement, above range_max if free
   };
   void begin(const Cluster& c, double stamp);
   void judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points_W, double stamp);
@@ -109,7 +109,7 @@ class Tracker {
   std::vector<std::uint8_t> moving_beam_{};
   Recycled<Track> moving_{};
   Recycled<Track> just_found_{};
-  double now_ = 0;  // [s] of the filters' states: of the last scan
+  double now_ = 0;  // [s] of the filters' states: time of the last scan
   static constexpr std::size_t kMemories = 12;
   std::array<Memory, kMemories> memories_{};
   std::size_t newest_ = 0;

@@ -1,4 +1,4 @@
-// algo/full_strip/velocity_stage.hpp: the command of one tick, proven before it is given.
+// algo/full_strip/velocity_stage.hpp: chooses the command of a tick and proves it safe first.
 #pragma once
 
 #include <optional>
@@ -9,46 +9,46 @@
 
 namespace algo {
 
-/// What a stage knows of the tick.
+/// The inputs of the stage in one tick.
 struct StageInput {
   const LocalMap* map = nullptr;
   const NodeStrip* strip = nullptr;
-  MotionState state{};  // when the new command will begin to act
+  MotionState state{};  // when the new command begins to act
   MotionLimits limits{};
   double dt = 0;        // [s]
-  double stop_at = -1;  // [m] along the strip where it ends for now; negative: at the goal
+  double stop_at = -1;  // [m] along the strip, its end for now; negative: the goal
 };
 
-/// Drives along the strip by pure pursuit. A command is admissible when the robot, following the
-/// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and backs into
-/// nothing that nobody has seen: the next tick then has an admissible command too, the rest of that
-/// same motion. It must do so as well when it is braked after the one tick, as that is what happens
-/// when the strip changes or somebody presses Stop.
+/// Drives along the strip by pure pursuit. A command is admissible if the robot, following the
+/// strip for kHorizon and then braking to rest, keeps kMargin of room all the way and never backs
+/// into unseen space. The next tick then has an admissible command too: the rest of the same
+/// motion. The same must hold if the robot brakes after this one tick, as it does when the strip
+/// changes or a person presses Stop.
 class VelocityStage {
  public:
   static constexpr double kHorizon = 1.0;  // [s]
-  static constexpr double kMargin = 0.03;  // [m] the scanner itself may be off by half of it
+  static constexpr double kMargin = 0.03;  // [m] the scanner's own error may be half of it
   static constexpr double kEscape = 0.6;   // [s]
 
   void set_hull(const HullCheck& hull) { hull_ = hull; }
   const HullCheck& hull() const { return hull_; }
 
-  /// The fastest admissible command along the strip, nothing when there is none. Notes in `out`
-  /// what was weighed and where the robot is sent.
+  /// The fastest admissible command along the strip; nothing if there is none. Records the
+  /// candidates and the pass point in `out`.
   std::optional<Twist2> follow(const StageInput& in, Weighing& out);
 
-  /// `wanted` when the robot can still be braked to rest after a tick of it.
+  /// `wanted` if the robot can still brake to rest safely after one tick of it.
   std::optional<Twist2> proven(const StageInput& in, const Twist2& wanted, Weighing& out) const;
 
-  /// A way out of too narrow a place, to be held for kEscape: the primitive whose clearance grows
-  /// most and never falls.
+  /// A way out of a place that is too narrow, to be held for kEscape: the primitive whose clearance
+  /// grows most and never falls.
   std::optional<Twist2> escape(const StageInput& in, Weighing& out) const;
-  /// Whether an escape under way may be held for `horizon` [s] more.
+  /// True if a running escape may go on for `horizon` [s].
   bool still_escapes(const StageInput& in,
                      const Twist2& twist,
                      double horizon,
                      Weighing& out) const;
-  /// Straight back, as far as it is free.
+  /// Straight back, as far as that is free.
   std::optional<Twist2> back_off(const StageInput& in, Weighing& out) const;
 
  private:

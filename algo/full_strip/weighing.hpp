@@ -1,4 +1,5 @@
-// algo/full_strip/weighing.hpp: what the velocity stage and the beam search weighed in a tick.
+// algo/full_strip/weighing.hpp: the candidate motions of the velocity stage and the beam search in
+// a tick.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@
 
 namespace algo {
 
-/// A motion that was weighed: constant twist held for `horizon`.
+/// A candidate motion: a constant twist held for `horizon`.
 struct Candidate {
   Twist2 twist{};
   double horizon = 0;    // [s]
@@ -17,7 +18,7 @@ struct Candidate {
   bool chosen = false;
 };
 
-/// Candidates in a fixed array: no tick allocates, however many it weighs.
+/// Candidates in a fixed array, so that no tick allocates.
 class Weighing {
  public:
   static constexpr std::size_t kMost = 32;
@@ -29,7 +30,7 @@ class Weighing {
   }
 
   Recycled<Candidate> candidates{};
-  std::optional<Vec2> pass_W{};  // where the robot is sent
+  std::optional<Vec2> pass_W{};  // the point the robot drives to
 };
 
 }  // namespace algo

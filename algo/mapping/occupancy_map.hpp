@@ -1,5 +1,5 @@
-// algo/mapping/occupancy_map.hpp: what all scans of a run have shown: how often a cell returned a
-// beam, how often one went through it, and where in the cell the returns lie.
+// algo/mapping/occupancy_map.hpp: an occupancy map of all scans of a run. Each cell counts the
+// beams that ended in it and that passed through it, and averages its returns.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,11 @@
 
 namespace algo {
 
-/// A square of W that keeps all it has seen: where nothing is forgotten, a robot that comes back
-/// finds the walls it saw at first. The rolling grid of the certainty grid, standing still.
+/// A square of W that forgets nothing, so that a returning robot finds the walls that it saw first.
+/// Like the certainty grid's rolling grid, but fixed.
 ///
-/// A cell's occupancy is hits / (hits + passes), the share of the beams that came to it and ended
-/// there (counting model; Haehnel, Burgard, Thrun 2003). Everything is allocated in the
-/// constructor.
+/// A cell's occupancy is hits / (hits + passes): of the beams that reached it, the share that ended
+/// there (counting model; Haehnel, Burgard, Thrun 2003). Allocates in the constructor only.
 class OccupancyMap {
  public:
   struct Tally {
@@ -24,14 +23,15 @@ class OccupancyMap {
     std::uint16_t hits = 0;    // beams that ended here
     std::uint16_t passes = 0;  // beams that went through
     bool known() const { return hits > 0 || passes > 0; }
-    /// Walls met at a slant are passed often, things that went away much oftener.
+    /// Beams pass often through cells of walls seen at a slant, and far more often through those of
+    /// things that left.
     bool occupied() const { return hits > 0 && 4 * hits >= passes; }
   };
 
-  /// `side` cells of edge `cell` [m] in x and in y about `centre_W`; what lies outside is not kept.
+  /// `side` cells of edge `cell` [m] in x and in y about `centre_W`; ignores everything outside.
   OccupancyMap(double cell, int side, const Vec2& centre_W);
 
-  /// Enters the Ok beams of `scan`, taken by a scanner at `sensor_W`, those up to `reach` [m].
+  /// Enters the Ok beams of `scan` up to `reach` [m], taken by a scanner at `sensor_W`.
   void insert(const LaserScan& scan, const Pose2& sensor_W, double reach);
 
   /// Calls `see(point_W)` for each occupied cell of the square of half edge `reach` [m] about
@@ -54,7 +54,7 @@ class OccupancyMap {
   Vec2 corner_W() const {
     return {cells_.first().i * cells_.edge(), cells_.first().j * cells_.edge()};
   }
-  /// Counted from that corner.
+  /// Columns and rows count from that corner.
   const Tally& at(int column, int row) const {
     return cells_[{cells_.first().i + column, cells_.first().j + row}];
   }

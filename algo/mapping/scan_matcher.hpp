@@ -1,5 +1,4 @@
-// algo/mapping/scan_matcher.hpp: where a robot must stand for its scan to lie on the walls of a
-// map.
+// algo/mapping/scan_matcher.hpp: finds the pose at which a robot's scan lies on the walls of a map.
 #pragma once
 
 #include <array>
@@ -16,15 +15,15 @@ namespace algo {
 
 /// A piece of wall in a map.
 struct Surface {
-  Vec2 on_W{0, 0};      // [m] a point of it
+  Vec2 on_W{0, 0};      // [m] a point on it
   Vec2 normal_W{1, 0};  // unit
 };
 
-/// Weighted moments of points near each other, and the line through them.
+/// Weighted moments of neighbouring points, and the line through them.
 class SurfaceFit {
  public:
   void add(const Vec2& point, double weight);
-  /// The line of least squares; nothing when the points are too few or too round a heap for one.
+  /// The least-squares line; nothing if the points are too few or too round a cluster.
   std::optional<Surface> line() const;
 
  private:
@@ -34,7 +33,7 @@ class SurfaceFit {
   double xx_ = 0, xy_ = 0, yy_ = 0;
 };
 
-/// How far the odometry is believed, as if so many points said the same as it does.
+/// The weight of the odometry, as a number of points that agree with it.
 struct MatchPrior {
   double position = 4;  // points
   double heading = 8;   // points x m2
@@ -45,29 +44,29 @@ struct ScanMatch {
   double share = 0;  // of the scan's points that found a surface
 };
 
-/// Point-to-line ICP (Chen and Medioni 1992; Censi 2008) with a correlative search before it where
-/// the odometry is too far off (Olson 2009). Minimises over the pose of R
+/// Point-to-line ICP (Chen and Medioni 1992; Censi 2008), after a correlative search if the
+/// odometry is too far off (Olson 2009). Minimises over the pose of R
 ///
 ///   sum_i rho(n_i . (T p_i - c_i)) + prior: w_p |t - t0|^2 + w_h (heading - heading0)^2
 ///
 /// with (c_i, n_i) the line through the map's points around T p_i, found anew in each step, in
-/// squares that shrink; rho is Geman and McClure's. Allocates only while scans grow; the same input
+/// squares that shrink; rho is Geman and McClure's. Allocates only while scans grow. The same input
 /// gives the same pose bit for bit.
 ///
 /// A Map has `each_near(p_W, reach, see)`: LocalMap and OccupancyMap.
 class ScanMatcher {
  public:
-  /// Takes the scan to be matched: its Ok beams up to `reach` [m], thinned to kSpacing apart, so
-  /// that near walls do not outvote far ones.
+  /// Takes the scan to match: its Ok beams up to `reach` [m], thinned to kSpacing apart, so that
+  /// near walls do not outweigh far ones.
   void take(const LaserScan& scan, double reach);
 
-  /// The pose near `guess_W` in which the scan lies on the map best; `guess_W` itself when the map
-  /// says nothing.
+  /// The pose near `guess_W` at which the scan fits the map best; `guess_W` itself if the map
+  /// constrains nothing.
   template <typename Map>
   ScanMatch match(const Map& map, const Pose2& guess_W, const MatchPrior& prior) const;
 
-  /// The pose of the window about `guess_W` in which most points lie on the map: coarse, for a
-  /// match to begin at.
+  /// The pose in the window about `guess_W` at which most points lie on the map: coarse, as the
+  /// start of a match.
   template <typename Map>
   Pose2 search(const Map& map, const Pose2& guess_W) const;
 
@@ -75,20 +74,20 @@ class ScanMatcher {
   static constexpr double kSpacing = 0.08;                           // [m] between two points
   static constexpr std::size_t kFewest = 20;                         // points
   static constexpr std::array<double, 3> kReaches{0.5, 0.25, 0.15};  // [m] half edge of the square
-  static constexpr int kIterations = 8;                              // at most, of each
+  static constexpr int kIterations = 8;                              // at most, per reach
   static constexpr double kSettled = 1e-4;                           // [m] and [rad]
   static constexpr double kWindow = 0.6;       // [m] of the search, either way
   static constexpr double kWindowStep = 0.1;   // [m]
   static constexpr double kTurnWindow = 0.26;  // [rad]
   static constexpr double kTurnStep = 0.02;    // [rad]
-  static constexpr std::size_t kSearched = 3;  // every third point
+  static constexpr std::size_t kSearched = 3;  // uses every third point
 
   /// Normal equations of one Gauss-Newton step about `pose_W`.
   class Step {
    public:
     Step(const Pose2& pose_W, const Pose2& guess_W, const MatchPrior& prior);
     void add(const Vec2& p_W, const Surface& surface, double scale);
-    /// The pose a step on; the same when the equations do not say where.
+    /// The pose after one step; the same pose if the equations are singular.
     Pose2 taken() const;
     std::size_t used() const { return used_; }
 
@@ -109,7 +108,7 @@ class ScanMatcher {
     return fit.line();
   }
 
-  /// How many of the points searched with have something of the map about them.
+  /// The number of search points with map points around them.
   template <typename Map>
   std::size_t lying_on(const Map& map, const Pose2& pose_W) const;
 

@@ -1,5 +1,5 @@
-// algo/pipeline/controllers.hpp: the catalogue of controllers: the readings of the elastic strip,
-// and their baselines.
+// algo/pipeline/controllers.hpp: the catalogue of controllers: the variants of the elastic strip,
+// and the baselines.
 #pragma once
 
 #include <functional>
@@ -15,17 +15,18 @@
 namespace algo {
 
 struct ControllerInfo {
-  std::string_view name{};   // "modified": REST, command line, scenario files
+  std::string_view name{};   // "modified", as in REST, command line, scenario files
   std::string_view label{};  // for people
   std::string_view help{};
-  bool by_sonar = false;  // drives a robot that has a sonar ring and no laser
+  bool by_sonar = false;  // can drive a robot with a sonar ring and no laser
   ParameterList parameters{};
   std::function<std::unique_ptr<Controller>()> make{};
-  /// Why it cannot run with these values, as a sentence; nothing when it can. May be empty.
+  /// Why it cannot run with these values, as a sentence; nothing if it can. The function may be
+  /// empty.
   std::function<std::optional<std::string>(const Parameters&)> refusal{};
 };
 
-/// The controllers that a run may choose from. A value: the maker of a pipeline may add to it.
+/// The controllers that a run may choose from. A value: code that makes a pipeline may add to it.
 class ControllerCatalogue {
  public:
   ControllerCatalogue() = default;
@@ -33,9 +34,9 @@ class ControllerCatalogue {
       : entries_(std::move(entries)) {}
 
   const std::vector<ControllerInfo>& entries() const { return entries_; }
-  /// Null when none is called so.
+  /// Null if no controller has that name.
   const ControllerInfo* find(std::string_view name) const;
-  /// Throws std::invalid_argument naming the known ones.
+  /// Throws std::invalid_argument that lists the known names.
   const ControllerInfo& at(std::string_view name) const;
 
  private:

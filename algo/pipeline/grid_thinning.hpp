@@ -1,5 +1,5 @@
-// algo/pipeline/grid_thinning.hpp: grids are large: people need them twice a second, and only when
-// they are others.
+// algo/pipeline/grid_thinning.hpp: limits grids, which are large, to two a second, and only if they
+// have changed.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace algo {
 class GridThinning {
  public:
   void reset();
-  /// Whether the controller is to bring its grids in the tick at `stamp` [s, run clock].
+  /// True if the controller is to make its grids in the tick at `stamp` [s, run clock].
   bool due(double stamp);
-  /// Takes out of `layers`, which were due at `stamp`, grids that people have already.
+  /// Removes grids that people have already from `layers`, which were due at `stamp`.
   void thin(double stamp, Recycled<Layer>& layers);
 
  private:
-  Recycled<Layer> shown_{};           // the newest that telemetry brought
+  Recycled<Layer> shown_{};           // the newest in the telemetry
   std::optional<double> asked_at_{};  // [s]
   std::optional<double> shown_at_{};  // [s]
 };

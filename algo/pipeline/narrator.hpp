@@ -1,4 +1,4 @@
-// algo/pipeline/narrator.hpp: when a tick is worth new words, and the newest of them.
+// algo/pipeline/narrator.hpp: decides when a tick needs new words, and keeps the newest.
 #pragma once
 
 #include <optional>
@@ -14,13 +14,13 @@ class Narrator {
     said_.reset();
     shown_at_.reset();
   }
-  /// Fills t.words: anew when hold, limit, mission, behaviour or the controller's state has
-  /// changed, else twice a second; the same as in the tick before otherwise. Fills t.legend, which
+  /// Fills t.words: new words if hold, limit, mission, behaviour or the controller's state has
+  /// changed, else twice a second; otherwise the words of the previous tick. Fills t.legend, which
   /// is fresh when it has changed, and every two seconds.
   void tell(const Controller& controller, Telemetry& t);
 
  private:
-  /// What the words were about.
+  /// The facts that the words explain.
   struct Said {
     double stamp = 0;  // [s] run clock
     Hold hold{};

@@ -1,5 +1,5 @@
-// algo/pipeline/pipeline.hpp: one tick, sense to command: plain data, no clock, file, socket or
-// chance.
+// algo/pipeline/pipeline.hpp: one tick, from sensing to command: plain data, without clock, file,
+// socket or randomness.
 #pragma once
 
 #include <optional>
@@ -21,12 +21,12 @@ struct PipelineConfig {
   std::string controller = "modified";
   FilterKind filter = FilterKind::Pseudomedian;
   Parameters parameters{};
-  /// A person may take the stick. A robot that nobody can reach needs no map for that.
+  /// A person may take the stick. If false, the pipeline keeps no map for that.
   bool by_hand = true;
 };
 
-/// Everything that turns observations and requests into commands for one robot. Fed the same
-/// observations and requests again, a fresh one gives the same commands bit for bit.
+/// Turns observations and requests into commands for one robot. A fresh pipeline with the same
+/// observations and requests gives the same commands bit for bit.
 class Pipeline {
  public:
   /// Throws std::invalid_argument on an unknown controller.
@@ -37,21 +37,21 @@ class Pipeline {
   /// Starts over with the robot at rest at `start_W`.
   void reset(const Pose2& start_W);
 
-  /// Why `request` cannot be applied now, as a sentence. Obstacle edits are the robot's business.
+  /// Why `request` cannot be applied now, as a sentence. The robot checks obstacle edits.
   std::optional<std::string> refusal(const Request& request) const;
-  /// The same of a parameter, when the others are as in `now`: some accepted before it may be on
-  /// their way still.
+  /// The same for a parameter, with the others as in `now`, which may hold accepted values that are
+  /// not applied yet.
   std::optional<std::string> refusal(const Parameters& now, const SetParameter& set) const;
 
-  /// Fills the rest of `t`, whose observation and requests are given. Allocates nothing once its
-  /// buffers have grown.
+  /// Fills the rest of `t` from its observation and requests. Does not allocate once its buffers
+  /// have grown.
   void tick(Telemetry& t);
 
-  /// Whether grids are made for people to see, at most twice a second. Never changes a command.
+  /// Turns grids for display on or off, at most two a second. Never changes a command.
   void want_grids(bool wanted) { grids_wanted_ = wanted; }
 
   const Parameters& parameters() const { return intent_.parameters; }
-  /// Of all requests but obstacle edits, up to the newest tick.
+  /// The sum of all requests except obstacle edits, up to the newest tick.
   const Intent& intent() const { return intent_; }
 
  private:
@@ -67,18 +67,18 @@ class Pipeline {
   bool by_hand_ = true;
   ControllerInfo controller_{};
   Parameters initial_parameters_{};
-  Intent intent_{};  // but for the obstacles, which are the robot's
+  Intent intent_{};  // without the obstacles, which belong to the robot
   Sensing sensing_;
   BehaviourCoordinator coordinator_{};
-  const Controller* avoiding_ = nullptr;  // one of its behaviours'
+  const Controller* avoiding_ = nullptr;  // the controller of one of its behaviours
   Sequencer sequencer_{};
   Scene scene_{};
-  bool by_sonar_ = false;               // the ring stands in for the scanner
-  std::optional<double> scan_stamp_{};  // or of the newest sonar reading, when by_sonar_
-  bool blinded_ = false;                // the newest scan is
+  bool by_sonar_ = false;               // the sonar ring replaces the scanner
+  std::optional<double> scan_stamp_{};  // or of the newest sonar reading, if by_sonar_
+  bool blinded_ = false;                // the newest scan is blinded
   double clearance_ = 0;                // [m] of the newest scan
-  std::uint64_t joystick_ticks_ = 0;    // ticks the stick's value still counts
-  std::vector<Twist2> under_way_{};     // commands given that do not act yet, oldest first
+  std::uint64_t joystick_ticks_ = 0;    // ticks for which the stick's value remains valid
+  std::vector<Twist2> under_way_{};     // commands sent that do not act yet, oldest first
   GridThinning grids_{};
   bool grids_wanted_ = false;
   Narrator narrator_{};

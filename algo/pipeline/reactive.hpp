@@ -1,5 +1,5 @@
-// algo/pipeline/reactive.hpp: the reactive layer of the thesis' hybrid architecture: the resource
-// behaviours read, behaviours that propose, a coordinator that picks, and the actuator's limits.
+// algo/pipeline/reactive.hpp: the reactive layer of the thesis' hybrid architecture: the inputs of
+// behaviours, behaviours that propose, a coordinator that picks, and the actuator's limits.
 //
 // Nong 2008 (thesis) Fig. 22: obstacle avoidance = AvoidBehaviour's controller, determining
 // velocity = the controllers' driving law, actuator = actuate().
@@ -19,17 +19,17 @@
 
 namespace algo {
 
-/// What every behaviour may look at in one tick. Nothing here knows the true pose.
+/// The inputs of every behaviour in one tick. None contains the true pose.
 struct Resource : ControlInput {
-  const SensorMerge* merge = nullptr;   // what sonar and infrared returned of late
-  std::span<const Twist2> under_way{};  // commands given that do not act yet, oldest first
+  const SensorMerge* merge = nullptr;   // recent sonar and infrared returns
+  std::span<const Twist2> under_way{};  // commands sent that do not act yet, oldest first
   const Parameters* parameters = nullptr;
   Mission mission = Mission::Idle;
   Joystick joystick{};
-  bool manual = false;  // a driver's stick is live
+  bool manual = false;  // a driver's stick is active
 };
 
-/// Bounds that a behaviour sets for the twist of any behaviour, with the reason.
+/// Bounds that one behaviour sets for the twist of any behaviour, with the reason.
 struct TwistLimits {
   double v_min = -std::numeric_limits<double>::infinity();      // [m/s]
   double v_max = std::numeric_limits<double>::infinity();       // [m/s]
@@ -41,18 +41,18 @@ struct TwistLimits {
 struct Proposal {
   bool active = false;  // wants the base
   Twist2 twist{};
-  TwistLimits limits{};  // also of a behaviour that does not want the base
+  TwistLimits limits{};  // apply even if the behaviour does not want the base
 };
 
 class Behaviour {
  public:
   virtual ~Behaviour() = default;
-  /// "avoid": as REST and CSV spell it.
+  /// "avoid", as REST and CSV spell it.
   virtual Name name() const = 0;
-  /// [s] between samples; its proposal is held in between. 0: every tick.
+  /// [s] Time between samples; the proposal is held in between. 0: every tick.
   virtual double period() const { return 0; }
   virtual void reset(const Pose2& start_W) = 0;
-  /// `output` is what the page draws and the record keeps; only AvoidBehaviour fills it.
+  /// `output` is drawn by the page and kept by the record; only AvoidBehaviour fills it.
   virtual Proposal propose(const Resource& resource, ControlOutput& output) = 0;
 };
 
@@ -81,7 +81,7 @@ inline constexpr ParameterInfo kJoystickTimeout{
     .help = "The robot stops when the stick has been silent for this long.",
     .alias = "joystick_timeout"};
 
-/// Follows the driver's stick as far as its guard lets it.
+/// Follows the driver's stick as far as its guard allows.
 class ManualBehaviour final : public Behaviour {
  public:
   Name name() const override { return behaviours::kManual; }
@@ -95,11 +95,11 @@ class ManualBehaviour final : public Behaviour {
 struct Decision {
   Name winner = behaviours::kRest;
   Twist2 twist{};
-  Limit limit{};  // that changed the twist; of several the last
+  Limit limit{};  // the limit that changed the twist; the last of several
 };
 
-/// Samples each behaviour at its own period, takes the first active one in the order given (the
-/// order is the priority) and applies the limits of all, also of those that are not active.
+/// Samples each behaviour at its own period and takes the first active one in the order given,
+/// which is the priority. Applies the limits of all behaviours, inactive ones too.
 class BehaviourCoordinator {
  public:
   void add(std::unique_ptr<Behaviour> behaviour) {
@@ -117,11 +117,11 @@ class BehaviourCoordinator {
   std::vector<Slot> slots_{};
 };
 
-/// `twist` within `limits`, one part after the other. Limits that contradict each other allow
-/// nothing: zero. What is not a number stays so, for the gate.
+/// `twist` within `limits`, each component on its own. Contradictory limits give zero. NaN stays,
+/// for the gate.
 Twist2 limited(const Twist2& twist, const TwistLimits& limits);
 
-/// The command for the base: `twist` within the robot's own limits.
+/// The command to the base: `twist` within the robot's own limits.
 Command actuate(const Twist2& twist, const RobotSpec& spec);
 
 }  // namespace algo

@@ -1,4 +1,4 @@
-// algo/pipeline/rear_watch.hpp: whether any sensor looks at where a robot backs to.
+// algo/pipeline/rear_watch.hpp: tells whether any sensor looks at the area behind the robot.
 #pragma once
 
 #include <array>
@@ -8,18 +8,18 @@
 
 namespace algo {
 
-/// The quarter turn behind the robot, in sectors. A sector is looked at for kMemory after a
-/// scanner, an infrared beam or a sonar measured anything in it, be it that nothing is there. A
-/// scanner that fell silent, or is dazzled, looks at nothing.
+/// The quarter turn behind the robot, in sectors. A sector counts as watched for kMemory after a
+/// scanner, an infrared beam or a sonar measured in it, even if it found nothing. A scanner that is
+/// silent or dazzled watches nothing.
 class RearWatch {
  public:
-  static constexpr double kMemory = 1.0;  // [s] longer than a ring of sonars needs for a round
+  static constexpr double kMemory = 1.0;  // [s] longer than one round of a sonar ring
 
   RearWatch() { reset(); }
   void reset();
   /// Takes this tick's readings.
   void take(const Observation& observation);
-  /// Whether every sector was looked at, at `now` [s, run clock].
+  /// True if every sector is watched at `now` [s, run clock].
   bool looks(double now) const;
 
  private:

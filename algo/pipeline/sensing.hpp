@@ -1,5 +1,5 @@
-// algo/pipeline/sensing.hpp: the front scan as a controller sees it: filtered, and with what sonar
-// and infrared returned entered into it.
+// algo/pipeline/sensing.hpp: the front scan as a controller reads it: filtered, with sonar and
+// infrared returns entered.
 #pragma once
 
 #include "algo/filter/filter.hpp"
@@ -8,22 +8,22 @@
 
 namespace algo {
 
-/// Fed the observations of a run one after another, which a record keeps, it gives the scans that
-/// the run's controller saw, beam for beam.
+/// Given the recorded observations of a run in order, it reproduces the scans of the run's
+/// controller beam for beam.
 class Sensing {
  public:
   explicit Sensing(FilterKind kind) : kind_(kind) {}
 
   void reset() { merge_.reset(); }
 
-  /// Takes an observation; every tick's, as echoes are remembered. A new front scan goes to `scan`,
-  /// as the controller is to see it. Returns it as the scanner measured it; null when none has
-  /// come, and `scan` stays as it is.
+  /// Takes the observation of every tick, since echoes are remembered. Writes a new front scan,
+  /// prepared for the controller, to `scan` and returns the scan as measured. Returns null and
+  /// leaves `scan` unchanged if there is no new one.
   const LaserScan* take(const Observation& observation,
                         const Parameters& parameters,
                         LaserScan& scan);
 
-  /// What sonar and infrared returned of late.
+  /// Recent sonar and infrared returns.
   const SensorMerge& merge() const { return merge_; }
 
  private:

@@ -9,13 +9,13 @@
 
 namespace algo {
 
-/// All positions of the last window lie within 60 mm of the present one: window = max(20 s, 0.8 m /
-/// v_max). Allocates only in reset().
+/// Stuck: all positions in the window lie within 60 mm of the present one; window = max(20 s, 0.8 m
+/// / v_max). Allocates only in reset().
 class StuckDetector {
  public:
   /// `period` [s] of one tick, > 0.
   void reset(double period);
-  /// Forgets the past: a new goal starts a new window.
+  /// Starts a new window, as for a new goal.
   void restart() { count_ = 0; }
   bool update(const Vec2& position_W, double v_max);
   static double window(double v_max);  // [s]
@@ -27,17 +27,17 @@ class StuckDetector {
   std::size_t count_ = 0;
 };
 
-/// The goal's state machine. A stuck robot keeps trying and counts as driving again as soon as it
-/// gets away; an arrived one waits for the next goal.
+/// The goal's state machine. A stuck robot keeps trying, and counts as driving again once it gets
+/// away. An arrived robot waits for the next goal.
 class Sequencer {
  public:
   void reset(double period);
-  /// The goals began anew (Intent::apply).
+  /// The goals were replaced (Intent::apply).
   void begin(const Intent& intent);
-  /// The robot was held: standing still does not mean that it is stuck.
+  /// The robot was held: standing still then does not mean stuck.
   void interrupt() { stuck_.restart(); }
-  /// The state for this tick, before control; `pose_W` is the odometry's. A goal of `intent` that
-  /// is reached gives way to the next; the robot has arrived at the last only.
+  /// The state for this tick, before control; `pose_W` is the odometry's. A reached goal of
+  /// `intent` gives way to the next; the robot arrives only at the last.
   Mission update(const Pose2& pose_W, Intent& intent);
 
  private:

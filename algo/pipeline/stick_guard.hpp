@@ -1,4 +1,4 @@
-// algo/pipeline/stick_guard.hpp: how much of a driver's stick is let through.
+// algo/pipeline/stick_guard.hpp: limits a driver's stick to safe motions.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,27 @@ namespace algo {
 
 struct Resource;
 
-/// Lets a driver have the motion nearest to the stick after which the robot can still come to rest
-/// kMargin from all that it knows: surfaces in the scans of late, fixed to W by the odometry, and
-/// the newest sonar and infrared returns from where no scanner looks. The true hull counts, along
-/// the arc it will go on while the command acts and while it brakes, and commands that do not act
-/// yet count too. No part of the hull that looks back moves into what nobody has seen, unless the
-/// driver insists: straight back for kInsist. Where no sensor looks back at the time, it backs at
-/// kBlindSpeed at most.
+/// Allows the motion nearest to the stick from which the robot can still stop kMargin short of all
+/// known obstacles: surfaces in recent scans, fixed to W by the odometry, and the newest sonar and
+/// infrared returns where no scanner looks. It checks the true hull along the arc while the command
+/// acts and while the robot brakes, and includes commands that do not act yet. The rear half of the
+/// hull never moves into unseen space, unless the driver insists: straight back for kInsist. Where
+/// no sensor looks back at that time, it backs at kBlindSpeed at most.
 class StickGuard {
  public:
-  static constexpr double kMargin = 0.05;     // [m] three times what the scanner may be off
+  static constexpr double kMargin = 0.05;     // [m] three times the scanner's error
   static constexpr double kBlindSpeed = 0.1;  // [m/s]
   static constexpr double kInsist = 2.0;      // [s]
 
   StickGuard();
   void reset(const Pose2& start_W);
-  /// Takes what was sensed; every tick. While nobody holds the stick it looks now and then only.
+  /// Takes the sensor data of every tick. Maps less often while nobody holds the stick.
   void sense(const Resource& in);
-  /// What is let through of `wanted`; at rest when nothing can be.
+  /// The allowed part of `wanted`; zero if no motion is allowed.
   Twist2 limit(const Resource& in, const Twist2& wanted);
 
  private:
-  /// How a base may answer: within its limits, or faster than they say.
+  /// The base's assumed answer: within its limits, or faster than they say.
   enum class Answer : std::uint8_t { Ramped, AtOnce };
   void look(const Resource& in, const LaserScan& scan);
   void watch_insistence(const Resource& in);
@@ -45,17 +44,17 @@ class StickGuard {
   bool safe(const Resource& in, const Twist2& command, Answer answer) const;
 
   HullCheck hull_{};
-  LocalMap map_{LocalMap::Distances::None};  // it only asks who is very near
-  const Tracker nothing_moves_{};            // this map holds moving obstacles like all others
+  LocalMap map_{LocalMap::Distances::None};  // it needs near obstacles only
+  const Tracker nothing_moves_{};            // this map holds moving obstacles too
   ScanPoints points_{};
   RearWatch rear_{};
-  bool placed_ = false;                          // the place of the start is entered into the map
+  bool placed_ = false;                          // the start pose is entered into the map
   double next_look_ = 0;                         // [s] run clock, while nobody holds the stick
   std::optional<double> straight_back_since_{};  // [s] run clock
   bool insists_ = false;
-  bool may_back_ = false;         // into what no scanner has seen, in this tick
+  bool may_back_ = false;         // into unseen space, in this tick
   MotionLimits limits_{};         // of this tick's robot
-  std::vector<Vec2> beside_W_{};  // returns from where no scanner looks, of this tick
+  std::vector<Vec2> beside_W_{};  // this tick's returns from where no scanner looks
 };
 
 }  // namespace algo

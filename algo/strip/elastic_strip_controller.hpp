@@ -16,13 +16,13 @@ enum class Sides : std::uint8_t {
   Both,     // the nearest of each side
 };
 
-/// How the sources' text is read (equations.md D and E).
+/// The variant of the published equations in use (equations.md D and E).
 struct StripReading {
   ForceLaw law = ForceLaw::C1;
   Sides sides = Sides::Both;
   bool choose_side = true;
-  /// The pass point of the tick before is P^j. Otherwise the via is new on each tick and lies on
-  /// the chord, so that F_int is zero and K_c has no effect.
+  /// The previous tick's pass point is P^j. Otherwise each tick's via is new and lies on the chord,
+  /// so that F_int is zero and K_c has no effect.
   bool keep_via = false;
 };
 
@@ -33,7 +33,7 @@ struct StripForces {
   Vec2 right_W{0, 0};
   Vec2 push_W{0, 0};       // of the side choice
   Vec2 elastic_W{0, 0};    // their sum
-  Side side = Side::None;  // on which the obstacle is passed
+  Side side = Side::None;  // on which to pass the obstacle
   double side_since = 0;   // [s] run clock at which it was chosen
   double side_alpha = 0;   // share of the push, 0..1
   std::optional<std::size_t> blocked_beam{};
@@ -47,7 +47,7 @@ class ElasticStripController final : public Controller {
   void update(const ControlInput& in, const Parameters& parameters, ControlOutput& out) override;
   void explain(const Telemetry& t, Explanation& words) const override;
 
-  /// Of the last tick.
+  /// The forces of the last tick.
   const StripForces& forces() const { return forces_; }
 
  private:
@@ -62,8 +62,8 @@ class ElasticStripController final : public Controller {
   StripReading reading_{};
   StripForces forces_{};
   SideChoice side_{};
-  std::optional<SetGoal> goal_{};     // of the tick before
-  std::optional<Vec2> kept_via_W_{};  // pass point of the tick before
+  std::optional<SetGoal> goal_{};     // of the previous tick
+  std::optional<Vec2> kept_via_W_{};  // pass point of the previous tick
 };
 
 }  // namespace algo

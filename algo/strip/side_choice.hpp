@@ -1,8 +1,8 @@
-// algo/strip/side_choice.hpp: on which side to pass an obstacle on the line to the goal
+// algo/strip/side_choice.hpp: chooses the side on which to pass an obstacle on the line to the goal
 // (equations.md E.4).
 //
-// Not in the sources. It is needed because head-on every continuous reading of Eq. 13-14 has a
-// balance point, at which the robot stays stuck.
+// Not in the sources. It is needed because every continuous reading of Eq. 13-14 has a balance
+// point head-on, at which the robot would stay stuck.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace algo {
 
 enum class Side : std::int8_t { Right = -1, None = 0, Left = 1 };
 
-/// What is remembered from tick to tick.
+/// State kept from tick to tick.
 struct SideState {
   Side side = Side::None;
   double since = 0;                      // [s] run clock of the choice
@@ -28,10 +28,10 @@ struct SideInput {
   Vec2 goal_W{0, 0};
   double reach = 0;                 // [m] d_r = safety distance + robot radius
   double robot_radius = 0;          // [m]
-  const LaserScan* scan = nullptr;  // filtered, the same as the force's; never null
+  const LaserScan* scan = nullptr;  // filtered, the same as for the force; never null
 };
 
-/// What the choice adds to this tick.
+/// The contribution of the choice to this tick.
 struct SidePush {
   Vec2 force_W{0, 0};  // [m] to be added to the external force
   double alpha = 0;    // its share, 0..1
@@ -43,8 +43,8 @@ class SideChoice {
   void reset() { state_ = {}; }
   const SideState& state() const { return state_; }
 
-  /// One tick: is the lane to the goal blocked, is a side to be chosen or forgotten, and how much
-  /// of `force_W` (the external force without a push) is turned sideways.
+  /// Runs one tick: checks whether the lane to the goal is blocked, chooses or forgets a side, and
+  /// turns a share of `force_W` (the external force without a push) sideways.
   SidePush update(const SideInput& in, const Vec2& force_W);
 
  private:
@@ -54,10 +54,9 @@ class SideChoice {
   BeamDirections directions_R_{};
 };
 
-/// The side with less of the obstacle beyond the goal's bearing: grows a cluster from `beam` to
-/// both sides while the next beam's range is below that of `beam` + 0.8 m (a beam without a
-/// measurement is passed over), and takes the end nearer to the goal; left when both are equally
-/// near.
+/// The side on which less of the obstacle lies beyond the goal's bearing. Grows a cluster from
+/// `beam` to both sides while the next beam's range is below that of `beam` + 0.8 m (skips beams
+/// without a measurement), and takes the end nearer to the goal; left if both are equally near.
 Side choose_side(const LaserScan& scan, std::size_t beam, double goal_bearing_R);
 
 /// clamp((c - cos 45) / (cos 15 - cos 45), 0, 1) with c = -F.u / |F|: 1 when the force points

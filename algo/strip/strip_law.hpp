@@ -1,5 +1,5 @@
-// algo/strip/strip_law.hpp: the parameters of the elastic strips, what must hold between them, and
-// the driving law of the strip of three points.
+// algo/strip/strip_law.hpp: the parameters of the elastic strips, the constraints between them, and
+// the driving law of the three-point strip.
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ inline constexpr ParameterInfo kStripStep{
         "safety distance, or the goal's pull can win over an obstacle's push.",
     .alias = "strip_step"};
 
-/// What the strips of three points read.
+/// The parameters of the three-point strips.
 inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
                                                                               &kContractionGain,
                                                                               &kSafetyDistance,
@@ -56,12 +56,12 @@ inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&k
                                                                               &kHeadingGain,
                                                                               &kGoalReach});
 
-/// Why these values do not go together, as a sentence: S >= K_r d_safe, with which the strip can be
-/// pushed into an obstacle. Head-on it balances at a body clearance of d_safe - S / K_r
-/// (equations.md D, consequence 2).
+/// Why these values do not go together, as a sentence: with S >= K_r d_safe the strip can be pushed
+/// into an obstacle. Head-on it balances at a body clearance of d_safe - S / K_r (equations.md D,
+/// consequence 2).
 std::optional<std::string> strip_refusal(const Parameters& parameters);
 
-/// The twist towards `pass_W`: e = pass - p, along e at v = min(v_max, |e| v_max / S); zero for
+/// The twist towards `pass_W`: with e = pass - p, along e at v = min(v_max, |e| v_max / S); zero if
 /// e = 0 (equations.md D).
 Twist2 drive_to(const Pose2& pose_W, const Vec2& pass_W, const Parameters& parameters);
 

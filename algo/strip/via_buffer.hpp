@@ -1,9 +1,9 @@
 // algo/strip/via_buffer.hpp: the list of via points of the sibling thesis (Fig. 25-27), for the
 // record and the page.
 //
-// Never let it steer: while a via is refused the robot keeps driving to the stale one, and seven of
-// nine canonical layouts end in a collision (equations.md D). The controller goes to the direct
-// pass point on every tick.
+// For display only; it must never steer. While a via is refused the robot would drive to the stale
+// one, and seven of nine canonical layouts end in a collision (equations.md D). The controller
+// drives to the direct pass point on every tick.
 #pragma once
 
 #include <cstddef>
@@ -17,10 +17,10 @@ namespace algo {
 
 enum class IsSortRule : std::uint8_t {
   Corrected,  // both |dx| and |dy| below 500 mm: too near
-  Literal,    // either: refuses a via 2 m straight ahead
+  Literal,    // either one: refuses a via 2 m straight ahead
 };
 
-/// Whether a new via at `point_W` is far enough from `reference_W` to be worth inserting.
+/// True if a new via at `point_W` is far enough from `reference_W` to be inserted.
 /// Source: sibling thesis, IsSort, which prints "or".
 bool is_sort(const Vec2& point_W, const Vec2& reference_W, IsSortRule rule);
 
@@ -40,20 +40,20 @@ class ViaBuffer {
   void reset(const Vec2& start_W, const Vec2& goal_W);
   void clear();
 
-  /// Any list of points. Throws std::invalid_argument when there are more than kCapacity, or when
+  /// Sets any list of points. Throws std::invalid_argument if there are more than kCapacity, or if
   /// `cursor` is not one of them (0 for an empty list).
   void assign(const std::vector<Via>& points, std::size_t cursor);
 
   std::size_t cursor() const { return cursor_; }
   std::size_t last() const { return points_.size(); }
 
-  /// Point `index`, or nothing when there is none. The source also takes the point (0, 0) for
-  /// "none"; a goal at the origin is legal here.
+  /// Point `index`, or nothing if there is none. The source also reads the point (0, 0) as "none";
+  /// a goal at the origin is legal here.
   std::optional<Via> get_position(std::size_t index) const;
 
   /// One obstacle check: inserts `pass_W` after the point last reached, followed by the present
-  /// goal. False, with nothing changed, when there is no point left to drive to, when IsSort
-  /// refuses, or when the buffer is full.
+  /// goal. Returns false and changes nothing if no point is left to drive to, if IsSort refuses, or
+  /// if the buffer is full.
   bool insert(const Vec2& pass_W, IsSortRule rule = IsSortRule::Corrected);
 
   /// SortPosition: if IsSort accepts `pass_W` against buf[cur], drops buf[cur+1..last) and appends
@@ -62,8 +62,8 @@ class ViaBuffer {
                      const Vec2& goal_W,
                      IsSortRule rule = IsSortRule::Corrected);
 
-  /// Moves the cursor on past every via within `via_reach` and the goal within `goal_reach` [m] of
-  /// `position_W`; true when it moved.
+  /// Moves the cursor past every via within `via_reach` and the goal within `goal_reach` [m] of
+  /// `position_W`; true if it moved.
   bool advance(const Vec2& position_W, double via_reach = 0.6, double goal_reach = 0.1);
 
  private:
