@@ -1,4 +1,4 @@
-// algo/dazzle.cpp: beams that have not looked, and what they hide.
+// algo/dazzle.cpp: finds beams without a measurement, and the space that they hide.
 #include "algo/dazzle.hpp"
 
 #include <algorithm>
@@ -7,14 +7,14 @@
 namespace algo {
 namespace {
 
-/// Whether beam `i` has not looked.
+/// True if beam `i` did not measure.
 bool unknown(const LaserScan& scan, std::size_t i) {
   if (scan.status[i] != Beam::Invalid) return false;
   return scan.codes[i] != BeamCode::NoEcho && scan.codes[i] != BeamCode::WeakSignal;
 }
 
-/// The widest run of neighbours of which `counts` holds for kLeastCone or more. Beams without an
-/// echo do not end a run: between dazzled ones they have seen no more.
+/// The widest run of neighbours that contains kLeastCone or more beams for which `counts` holds.
+/// Free beams do not end a run: between dazzled ones they tell no more.
 template <class Counts>
 BeamSpan widest_run(const LaserScan& scan, Counts&& counts) {
   BeamSpan widest;
@@ -50,7 +50,7 @@ bool hidden(const LaserScan& scan, const RobotSpec& spec) {
   const BeamSpan cone = widest_run(scan, [&](std::size_t i) {
     if (!unknown(scan, i)) return false;
     const Vec2 beam = direction(scan.mount_R.heading + scan.angle(i));
-    // Beside the way by y + ahead tan(bearing) there; multiplied by the cosine.
+    // The lateral offset at `ahead` is y + ahead tan(bearing); here multiplied by the cosine.
     const double beside = scan.mount_R.y * beam.x() + ahead * beam.y();
     return beam.x() > 0 && std::abs(beside) <= half * beam.x();
   });

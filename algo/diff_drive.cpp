@@ -10,7 +10,7 @@
 namespace algo {
 namespace {
 
-constexpr double kStraight = 1e-9;  // [rad] a smaller turn is driven as a straight line
+constexpr double kStraight = 1e-9;  // [rad] a smaller turn counts as a straight line
 
 void require_positive(const char* what, double value) {
   if (std::isfinite(value) && value > 0) return;
@@ -46,7 +46,7 @@ Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt) {
     moved.x += twist.v * dt * std::cos(pose.heading);
     moved.y += twist.v * dt * std::sin(pose.heading);
   } else {
-    // v/w (sin(th + a) - sin th) written by the half angle: the difference of two nearly equal
+    // v/w (sin(th + a) - sin th), written with the half angle: the difference of two nearly equal
     // sines would lose half of the digits at small turns.
     const double chord = 2 * twist.v / twist.omega * std::sin(turn / 2);
     moved.x += chord * std::cos(pose.heading + turn / 2);

@@ -16,7 +16,7 @@ bool finite(const LaserScan& scan) {
       !std::isfinite(scan.angle_increment) || !std::isfinite(scan.range_max)) {
     return false;
   }
-  // Usually all ranges are, also those that nobody reads.
+  // Usually all ranges are finite, unused ones too.
   if (all_finite(scan.ranges)) return true;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] == Beam::Ok && !std::isfinite(scan.ranges[i])) return false;

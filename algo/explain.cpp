@@ -1,4 +1,4 @@
-// algo/explain.cpp: words for a tick.
+// algo/explain.cpp: composes the words of a tick.
 #include "algo/explain.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// algo/gate.cpp: the checks, the worst first.
+// algo/gate.cpp: the checks, most severe first.
 #include "algo/gate.hpp"
 
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace algo {
 namespace {
 
-/// Whether every bumper that is pressed lies behind the motion.
+/// True if every pressed bumper lies behind the motion.
 bool leaves_bumpers(const Observation& observation, double v) {
   for (const BumperReading& bumper : observation.bumpers) {
     const bool front = bumper.mount_R.x >= 0;
@@ -27,7 +27,7 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   }
   const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);
   if (observation.bumper_pressed() && !leaves) return holds::kBumper;
-  // Written so that a stamp that is not a number counts as stale.
+  // Written so that a NaN stamp counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
   if (!fresh) return in.blinded ? holds::kDazzled : holds::kStaleScan;
   return in.hidden ? holds::kDazzled : Hold{};

@@ -1,4 +1,4 @@
-// algo/geometry.cpp: beams to points and the nearest of them, equations.md C.
+// algo/geometry.cpp: positions of returns and the nearest of them, equations.md C.
 #include "algo/geometry.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kOnLimit = 1e-6;  // [rad] far below a beam's spacing, far above rounding
 
-/// First beam at or beyond `bearing`.
+/// The first beam at or beyond `bearing`.
 std::size_t first_beam(const LaserScan& scan, double bearing) {
   const double index = std::ceil((bearing - kOnLimit - scan.angle_min) / scan.angle_increment);
   return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(scan.size())));
@@ -39,13 +39,13 @@ BeamSpan right_beams(const LaserScan& scan) {
 }
 
 BeamSpan left_beams(const LaserScan& scan) {
-  return beams_between(scan, 0.0, kUsedHalfField + 2 * kOnLimit);  // the limit itself is used
+  return beams_between(scan, 0.0, kUsedHalfField + 2 * kOnLimit);  // includes the limit itself
 }
 
 namespace {
 
-/// Least square of the believed ranges from `begin` to `end`; infinite where there is none. Eight
-/// at a time, so that it vectorises; a NaN is never the least.
+/// The smallest squared range of the Ok beams from `begin` to `end`; infinite if there is none.
+/// Eight at a time, so that it vectorises. NaN is never the smallest.
 double least_square(const LaserScan& scan, BeamSpan beams) {
   constexpr std::size_t kLanes = 8;
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -67,7 +67,7 @@ double least_square(const LaserScan& scan, BeamSpan beams) {
   return *std::min_element(least.begin(), least.end());
 }
 
-/// The scanner at the robot's centre: the ranges themselves are compared, so that equal ones tie.
+/// For a scanner at the robot's centre: compares the ranges themselves, so that equal ones tie.
 std::optional<NearestBeam> nearest_centred(const LaserScan& scan, BeamSpan beams) {
   const double least = least_square(scan, beams);
   if (std::isinf(least)) return std::nullopt;

@@ -16,7 +16,7 @@ constexpr std::size_t kNeighbours = 8;
 constexpr std::array<GridCell, kNeighbours> kSteps{
     {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
 
-/// The length of the shortest eight-neighbour path over free cells: never above the true cost,
+/// The length of the shortest eight-neighbour path over free cells. It never exceeds the true cost,
 /// since every cell costs at least 1.
 float least_cost(GridCell a, GridCell b) {
   const auto across = static_cast<float>(std::abs(a.column - b.column));
@@ -29,7 +29,7 @@ GridCell at(const CostGrid& grid, std::size_t index) {
   return {static_cast<int>(index % columns), static_cast<int>(index / columns)};
 }
 
-/// Whether `step` from `c` is possible.
+/// True if `step` from `c` is possible.
 bool passable(const CostGrid& grid, GridCell c, GridCell step) {
   if (grid.blocked({c.column + step.column, c.row + step.row})) return false;
   if (step.column == 0 || step.row == 0) return true;
@@ -44,7 +44,7 @@ void GridSearch::resize(std::size_t cells) {
   parent_.assign(cells, 0);
   mark_.assign(cells, 0);
   closed_.assign(cells, 0);
-  // A cell is pushed once for every neighbour that reaches it at less cost.
+  // Each neighbour that reaches a cell at a lower cost pushes it once.
   open_.reserve(kNeighbours * cells + 1);
   path_.reserve(cells);
   search_ = 0;
@@ -54,7 +54,7 @@ void GridSearch::begin() {
   open_.clear();
   path_.clear();
   pushed_ = 0;
-  if (++search_ == 0) {  // the counter has come round: old marks could be taken for new ones
+  if (++search_ == 0) {  // the counter wrapped: old marks could match new ones
     std::fill(mark_.begin(), mark_.end(), 0U);
     search_ = 1;
   }
@@ -95,7 +95,7 @@ bool GridSearch::find(const CostGrid& grid, GridCell start, GridCell goal) {
   float least = least_cost(start, goal);
   while (!open_.empty()) {
     const std::size_t here = pop();
-    if (closed_[here] != 0) continue;  // an older, dearer way to it
+    if (closed_[here] != 0) continue;  // an older, costlier way to it
     closed_[here] = 1;
     const GridCell cell = at(grid, here);
     if (least_cost(cell, goal) < least) {

@@ -1,4 +1,4 @@
-// algo/intent.cpp: the meaning of each request.
+// algo/intent.cpp: the effect of each request.
 #include "algo/intent.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ bool Intent::apply(const Request& request) {
                  [&](const ClearGoal&) { return set_goal(std::nullopt); },
                  [&](const Joystick& pushed) {
                    stick = pushed;
-                   // A silent driver must leave a robot that stands still, not one that drives off
-                   // to an old goal.
+                   // When a driver goes silent the robot must stand still, not drive off to an old
+                   // goal.
                    return pushed != Joystick{} && set_goal(std::nullopt);
                  },
                  [&](const Stop& wanted) {

@@ -1,4 +1,4 @@
-// algo/laser_scan.cpp: a whole scan at once, written so that it vectorises.
+// algo/laser_scan.cpp: functions on whole scans, written so that they vectorise.
 #include "algo/laser_scan.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace algo {
 namespace {
 
-/// Ranges as if all were distances. The sum leaves no room for a fraction; the clamps turn a NaN
-/// into 0. By way of 32 bits, since that conversion exists for vectors.
+/// Packs all ranges as distances. The sum leaves no bits for a fraction; the clamps turn NaN into
+/// 0. Converts by way of 32 bits, since vectors have that conversion.
 TAUTLINE_WIDE void pack_ranges(const double* ranges,
                                std::size_t count,
                                std::uint16_t* __restrict out) {
@@ -41,7 +41,7 @@ const std::vector<Vec2>& BeamDirections::of(const LaserScan& scan, double headin
   return directions_;
 }
 
-/// x - x is 0 for a finite number and otherwise none; Eigen adds that up in vectors.
+/// x - x is 0 for a finite number and NaN otherwise; Eigen vectorises the sum.
 bool all_finite(std::span<const double> numbers) {
   const Eigen::Map<const Eigen::ArrayXd> x(numbers.data(),
                                            static_cast<Eigen::Index>(numbers.size()));
@@ -50,7 +50,7 @@ bool all_finite(std::span<const double> numbers) {
 
 void pack_beams(const LaserScan& scan, std::span<std::uint16_t> out) {
   pack_ranges(scan.ranges.data(), scan.size(), out.data());
-  // Beams without a distance come in stretches: eight are looked at together.
+  // Beams without a distance come in stretches, so eight are checked together.
   constexpr std::size_t kTogether = sizeof(std::uint64_t);
   std::size_t first = 0;
   for (; first + kTogether <= scan.size(); first += kTogether) {

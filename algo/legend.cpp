@@ -1,4 +1,4 @@
-// algo/legend.cpp: compared by where the texts lie, numbered by what they say.
+// algo/legend.cpp: compares entries by the addresses of their texts, and numbers them by content.
 #include "algo/legend.hpp"
 
 #include <bit>
@@ -32,7 +32,7 @@ struct Digest {
 
 }  // namespace
 
-/// Takes the entries of `t` for the next time.
+/// Stores the entries of `t`; true if they equal the previous ones.
 bool Legend::as_before(const Telemetry& t) {
   std::size_t count = 0;
   bool same = true;
@@ -69,7 +69,7 @@ std::uint32_t Legend::of(const Telemetry& t) {
       digest.add(std::bit_cast<std::uint32_t>(layer.level));
     }
   }
-  digest.add(std::string_view{});  // where the measures begin
+  digest.add(std::string_view{});  // the start of the measures
   for (const Measure& each : t.output.measures) {
     digest.add(each.name);
     digest.add(each.unit);

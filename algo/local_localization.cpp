@@ -7,7 +7,7 @@
 namespace algo {
 namespace {
 
-constexpr double kStanding = 1e-6;  // [m] and [rad] in a period: less than a count of an encoder
+constexpr double kStanding = 1e-6;  // [m] and [rad] in a period: below one encoder count
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// algo/metrics.cpp: the figures of one run.
+// algo/metrics.cpp: the metrics of one run.
 #include "algo/metrics.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ void MetricsRecorder::add(const Telemetry& t, const Parameters& parameters) {
   const double clearance = t.ground_truth ? t.ground_truth->clearance : t.clearance;
   metrics_.min_clearance = std::min(metrics_.min_clearance, clearance);
   metrics_.intrusion = std::max(metrics_.intrusion, d_safe - distance);
-  // A tick is the time since the one before: at the start none has gone by.
+  // A tick is the time since the previous one; the first has no duration.
   if (distance < d_safe && metrics_.ticks > 1) metrics_.infringed_time += period_;
   if (t.ground_truth && t.ground_truth->collided) metrics_.collided = true;
 

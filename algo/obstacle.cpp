@@ -1,4 +1,4 @@
-// algo/obstacle.cpp: outline, distance and soundness of the planar shapes.
+// algo/obstacle.cpp: outline, distance and validity of the planar shapes.
 #include "algo/obstacle.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace algo {
 namespace {
 
 constexpr double kMaxSize = 1000.0;             // [m] of any length of a shape
-constexpr std::size_t kMaxPolygonPoints = 256;  // keeps every check cheap, whatever is sent
+constexpr std::size_t kMaxPolygonPoints = 256;  // keeps every check cheap for any input
 constexpr double kMinReflectivity = 0.02;
 constexpr double kMaxReflectivity = 1.0;
 constexpr double kFlat = 1e-9;  // [rad] below it two edges count as one straight line
@@ -89,7 +89,7 @@ std::string point_name(std::size_t i) {
   return "point " + std::to_string(i + 1);
 }
 
-/// Each point by itself: count, finite, within size, no neighbour in the same place.
+/// Checks the points alone: count, finite, size, no two neighbours in the same place.
 std::optional<std::string> points_defect(const std::vector<Vec2>& points) {
   const std::size_t n = points.size();
   if (n < 3) return "a polygon needs at least 3 points, this one has " + std::to_string(n);
@@ -112,8 +112,8 @@ std::optional<std::string> points_defect(const std::vector<Vec2>& points) {
   return std::nullopt;
 }
 
-/// The sum of the turns at the corners tells a convex outline (one whole turn, every corner to
-/// the left) from all others.
+/// In a convex outline the turns at the corners sum to one whole turn, and every corner turns left.
+/// No other outline satisfies both.
 std::optional<std::string> polygon_defect(const std::vector<Vec2>& points) {
   if (auto wrong = points_defect(points)) return wrong;
   const std::size_t n = points.size();

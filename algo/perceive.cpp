@@ -17,7 +17,7 @@ std::optional<Nearest> nearest(const Pose2& pose_W, const LaserScan& scan, BeamS
   return Nearest{static_cast<std::uint32_t>(i), point_W, hit->distance};
 }
 
-/// The place of the sonar at `mount_R` in the ring; a new one when it has not reported before.
+/// The entry of the sonar at `mount_R` in the ring; a new one at its first report.
 Echo& echo_of(Recycled<Echo>& ring, const Pose2& mount_R) {
   for (Echo& echo : ring) {
     if (echo.mount_R == mount_R) return echo;
@@ -72,7 +72,8 @@ bool blinded(const LaserScan& scan) {
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] == Beam::Invalid && ahead(i)) ++silent;
   }
-  // Few are, so that a few beams that look ahead settle it; those are most often in the middle.
+  // Invalid beams are rare: stop counting once the forward beams are twice as many. Most of these
+  // are near the middle, so start there.
   std::size_t looking = 0;
   for (std::size_t k = 0; k < scan.size() && looking < 2 * silent; ++k) {
     if (ahead((scan.size() / 2 + k) % scan.size())) ++looking;

@@ -1,4 +1,4 @@
-// algo/sensor_merge.cpp: kept readings and the beams they stand in for.
+// algo/sensor_merge.cpp: keeps readings and enters them in place of beams.
 #include "algo/sensor_merge.hpp"
 
 #include <cmath>
@@ -28,7 +28,7 @@ void SensorMerge::take(const Recycled<RangeReading>& readings,
   for (const RangeReading& reading : readings) {
     if (reading.status == Beam::Invalid) continue;
     Kept& kept = place_of(reading.mount_R, half_width);
-    // A base reports all of its sonars each time: one that has not sent since stays where it was.
+    // A base reports all of its sonars each time: one without a new reading stays where it was.
     if (kept.stamp == reading.stamp) continue;
     kept.stamp = reading.stamp;
     kept.hit = reading.status == Beam::Ok && std::isfinite(reading.range);
@@ -44,11 +44,11 @@ void SensorMerge::take(const Observation& observation) {
 }
 
 bool SensorMerge::holds(const Kept& kept, double now) {
-  // Written so that what is not a number does not hold.
+  // Written so that NaN gives false.
   return kept.hit && now - kept.stamp <= kMemory;
 }
 
-/// Whether `scan` has a beam where `kept` returned from.
+/// True if `scan` has a beam in the direction of `kept`'s return.
 bool SensorMerge::within(const Kept& kept, const Pose2& pose_W, const LaserScan& scan) {
   const Pose2 sensor_W = compose(pose_W, scan.mount_R);
   const Vec2 p = to_child(sensor_W, kept.point_W);
@@ -57,7 +57,7 @@ bool SensorMerge::within(const Kept& kept, const Pose2& pose_W, const LaserScan&
   return beams.begin < beams.end;
 }
 
-/// The `k`th of `points`, evenly over the cone and as far from the sensor as its echo.
+/// The `k`th of `points`, spread evenly over the cone at the distance of the echo.
 Vec2 SensorMerge::arc_point(const Kept& kept, std::size_t k, std::size_t points) {
   if (points < 2) return kept.point_W;
   const double share = static_cast<double>(k) / static_cast<double>(points - 1);
@@ -69,7 +69,8 @@ Vec2 SensorMerge::arc_point(const Kept& kept, std::size_t k, std::size_t points)
 
 void SensorMerge::enter(const Pose2& pose_W, double now, LaserScan& scan) {
   const Pose2 sensor_W = compose(pose_W, scan.mount_R);
-  // First all questions to the laser alone, then all answers: none explains another.
+  // First compare all readings with the laser alone, then enter them, so that none explains
+  // another.
   for (Kept& kept : kept_) {
     kept.missed = false;
     if (!holds(kept, now)) continue;

@@ -1,4 +1,4 @@
-// algo/telemetry.cpp: names and words of the states.
+// algo/telemetry.cpp: names and texts of the states.
 #include "algo/telemetry.hpp"
 
 #include <array>
@@ -42,7 +42,7 @@ std::string_view name(const Hold& hold) {
 
 const HaltInfo& info(Halt halt) {
   const auto k = static_cast<std::size_t>(halt);
-  return kHalts[k < kHalts.size() ? k : 0];  // a record may say anything
+  return kHalts[k < kHalts.size() ? k : 0];  // a record may hold any value
 }
 
 std::string_view name(Mission mission) {

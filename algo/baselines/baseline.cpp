@@ -1,4 +1,4 @@
-// algo/baselines/baseline.cpp: the frame round every comparison controller.
+// algo/baselines/baseline.cpp: the common frame of the baseline controllers.
 #include "algo/baselines/baseline.hpp"
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace algo {
 namespace {
 
-constexpr double kShownStep = 0.5;  // [m] from the robot to the pass point that is shown
+constexpr double kShownStep = 0.5;  // [m] from the robot to the displayed pass point
 
-/// On an obstacle point there is no direction away from it.
+/// On an obstacle point, no direction leads away from it.
 bool on_obstacle(const Scene& scene) {
   const auto touches = [](const auto& side) { return side && !(side->distance > 0); };
   return touches(scene.left) || touches(scene.right);

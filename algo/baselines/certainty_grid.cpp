@@ -1,4 +1,4 @@
-// algo/baselines/certainty_grid.cpp: the map: what a reading says of the cells in its sector.
+// algo/baselines/certainty_grid.cpp: the map: the effect of a reading on the cells in its sector.
 #include "algo/baselines/certainty_grid.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 constexpr double kTolerance = 0.1;         // [m] [D] e, half the thickness of the arc
 constexpr double kSonarWidth = 0.5;        // [rad] [D] whole beam of a sonar, about 30 degrees
 constexpr double kSonarNearest = 0.15;     // [m] [D] R_min of a sonar
-constexpr std::size_t kLongestArc = 1024;  // cells, more than any sector within the grid has
+constexpr std::size_t kLongestArc = 1024;  // cells; no sector within the grid has more
 
 double across(const RangeSector& sector, double a) {
   const double off = 2 * a / sector.width;
@@ -36,14 +36,14 @@ CertaintyGrid::CertaintyGrid() {
   arc_.reserve(kLongestArc);
 }
 
-/// visit(cell, s, a) for every covered cell whose centre lies in the sector: column by column of
-/// the axis that the sector runs along, between its two edges.
+/// Calls visit(cell, s, a) for every covered cell whose centre lies in the sector: column by column
+/// along the grid axis nearest to the sector's axis, between its two edges.
 template <typename Visit>
 void CertaintyGrid::for_each_in(const RangeSector& sector, Visit&& visit) const {
   const Vec2 apex = sector.mount_W.position();
   const double axis = sector.mount_W.heading;
   const bool along_x = std::abs(std::cos(axis)) >= std::abs(std::sin(axis));
-  const auto u = static_cast<Eigen::Index>(along_x ? 0 : 1);  // runs with the sector
+  const auto u = static_cast<Eigen::Index>(along_x ? 0 : 1);  // the axis along the sector
   const Eigen::Index v = 1 - u;
   const double far = sector.range + kTolerance;
   const Vec2 left = direction(axis + sector.width / 2);
@@ -92,7 +92,7 @@ void CertaintyGrid::sense(const ControlInput& in) {
   const Pose2& pose = in.odometry.pose;
   centre_on(pose.position());
   if (!is_new_(*in.scene)) return;
-  // A sector narrower than a cell at its end could end between the cells' centres.
+  // A sector that ends narrower than a cell could end between the cells' centres.
   const auto at_least_a_cell = [](double width, double range) {
     return range > 0 ? std::max(width, 2 * std::atan(kCell / (2 * range))) : width;
   };

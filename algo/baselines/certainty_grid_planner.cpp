@@ -1,4 +1,5 @@
-// algo/baselines/certainty_grid_planner.cpp: from the map to costs, a path, and a twist along it.
+// algo/baselines/certainty_grid_planner.cpp: turns the map into costs, a path, and a twist along
+// it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,11 +11,11 @@ namespace algo {
 namespace {
 
 constexpr double kReplanPeriod = 0.2;  // [s] [D]
-constexpr double kOccupied = 0.25;     // [D] certainty from which a cell is kept off
-constexpr double kComfort = 0.3;       // [m] [D] beyond the margin cells still cost more
-constexpr float kNearCost = 3;         // [D] what a cell at the margin costs on top
-constexpr float kWayOutCost = 10;      // [D] of a cell under the robot that is too near
-constexpr double kWayOut = 0.3;        // [m] [D] round the robot where such cells are not blocked
+constexpr double kOccupied = 0.25;     // [D] certainty from which a cell counts as occupied
+constexpr double kComfort = 0.3;       // [m] [D] width beyond the margin where cells cost more
+constexpr float kNearCost = 3;         // [D] extra cost of a cell at the margin
+constexpr float kWayOutCost = 10;      // [D] of a cell under the robot inside the margin
+constexpr double kWayOut = 0.3;        // [m] [D] around the robot such cells are not blocked
 constexpr LayerInfo kGrid{.name = "certainty.grid",
                           .label = "Certainty grid",
                           .kind = LayerKind::Grid,
@@ -67,7 +68,7 @@ CostGrid CertaintyGridPlanner::view() const {
   return {CertaintyGrid::kSide, CertaintyGrid::kSide, costs_};
 }
 
-/// 1 in the open, more near occupied cells, blocked within `hard` [m] of one.
+/// Costs: 1 in the open, more near occupied cells, blocked within `hard` [m] of one.
 void CertaintyGridPlanner::fill_costs(double hard) {
   constexpr int kSide = CertaintyGrid::kSide;
   constexpr double kCell = CertaintyGrid::kCell;
@@ -95,7 +96,7 @@ void CertaintyGridPlanner::fill_costs(double hard) {
   }
 }
 
-/// Cells under the robot that are too near to something, but not occupied, may be crossed.
+/// Unblocks free cells under the robot that are too near to an obstacle.
 void CertaintyGridPlanner::open_way_out(const Vec2& robot_W) {
   constexpr int kSide = CertaintyGrid::kSide;
   const CostGrid view = this->view();
@@ -119,11 +120,12 @@ void CertaintyGridPlanner::plan(const ControlInput& in, double margin) {
   constexpr int kHalf = CertaintyGrid::kSide / 2;
   const double farthest = (kHalf - 1) * CertaintyGrid::kCell;
   const double over = (aim - p).cwiseAbs().maxCoeff() / farthest;
-  if (over > 1) aim = p + (aim - p) / over;  // on the border of the grid
+  if (over > 1) aim = p + (aim - p) / over;  // move it to the border of the grid
   reaches_ = search_.find(view(), place(grid_.cell_of(p)), place(grid_.cell_of(aim)));
   path_W_.clear();
   path_W_.push_back(p);
-  // Out of too narrow a place only to the goal: the place nearest to it could be a wall.
+  // Leaves a place that is too narrow only to the goal: the nearest reachable place could be a
+  // wall.
   if (trapped && !reaches_) return;
   const auto path = search_.path();
   for (std::size_t k = 1; k < path.size(); ++k) {
@@ -135,7 +137,7 @@ void CertaintyGridPlanner::plan(const ControlInput& in, double margin) {
   path_W_.back() = aim;
 }
 
-/// The point of the path `ahead` [m] on from its point nearest to the robot.
+/// The point `ahead` [m] further along the path than its point nearest to the robot.
 Vec2 CertaintyGridPlanner::next_point(const Vec2& p_W, double ahead) const {
   const auto nearest = std::ranges::min_element(
       path_W_, {}, [&](const Vec2& point) { return (point - p_W).squaredNorm(); });
@@ -159,7 +161,7 @@ void CertaintyGridPlanner::steer(const ControlInput& in,
   show_plan(out);
   const Vec2 p = in.odometry.pose.position();
   const Vec2 next = next_point(p, parameters[kLookAhead]);
-  if ((next - p).norm() < CertaintyGrid::kCell / 2) return;  // as near as it gets
+  if ((next - p).norm() < CertaintyGrid::kCell / 2) return;  // as near as it can get
   steer_along(in, bearing_W(p, next), parameters[kMaxSpeed], parameters, out);
   out.pass_W = next;
 }

@@ -13,12 +13,12 @@ namespace algo {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kInterval = 0.25;  // [s] the paper's control interval
+constexpr double kInterval = 0.25;  // [s] control interval of the paper
 constexpr int kSpeeds = 9;          // [D] samples of the window
 constexpr int kTurns = 21;          // [D]
 constexpr int kMotions = kSpeeds * kTurns;
-constexpr double kFarthest = 3.0;  // [m] [D] more room than this is no better
-constexpr double kShown = 1.5;     // [s] [D] of each candidate that is drawn
+constexpr double kFarthest = 3.0;  // [m] [D] more room is no better
+constexpr double kShown = 1.5;     // [s] [D] drawn length of each candidate
 constexpr std::size_t kBearings = 180;
 constexpr std::uint8_t kWindow = 1;
 constexpr std::uint8_t kNoWindow = 2;
@@ -74,7 +74,7 @@ bool inside(const Hull& hull, const Vec2& p) {
   return std::abs(p.x()) < hull.half_length && std::abs(p.y()) < hull.half_width;
 }
 
-/// Straight ahead.
+/// The room straight ahead.
 double straight_room(const Hull& hull, const Vec2& p) {
   const double half = hull.is_disc() ? hull.radius : hull.half_width;
   if (!(std::abs(p.y()) < half) || p.x() < 0) return kInf;
@@ -82,8 +82,8 @@ double straight_room(const Hull& hull, const Vec2& p) {
   return std::max(0.0, p.x() - front);
 }
 
-/// The turn until a disc whose centre circles about `c` meets a point: as seen from c the disc is
-/// 2 beta wide at the point's distance.
+/// The turn until a disc whose centre circles about `c` meets a point. Seen from c, the disc is 2
+/// beta wide at the point's distance.
 double disc_turn(double radius, const Vec2& c, const Vec2& q, double sign) {
   const double way = c.norm();
   const double rho = q.norm();
@@ -94,8 +94,8 @@ double disc_turn(double radius, const Vec2& c, const Vec2& q, double sign) {
   return std::max(0.0, ahead - beta);
 }
 
-/// The turn until a rectangle that circles about `c` = (0, c_y) meets a point: the least from one
-/// of the places where the point's circle crosses the rectangle's edges.
+/// The turn until a rectangle that circles about `c` = (0, c_y) meets a point: the least turn to a
+/// crossing of the point's circle with the rectangle's edges.
 double box_turn(const Hull& hull, const Vec2& c, const Vec2& q, double sign) {
   const double square = q.squaredNorm();
   double least = kInf;
@@ -122,8 +122,8 @@ double box_turn(const Hull& hull, const Vec2& c, const Vec2& q, double sign) {
   return least;
 }
 
-/// Sample `k` of `count` over [from, to]; the one nearest to zero is zero, so that a window about
-/// zero holds going straight.
+/// Sample `k` of `count` over [from, to]. The sample nearest to zero is set to zero, so that a
+/// window about zero includes going straight.
 double sample(double from, double to, int k, int count) {
   const double step = (to - from) / (count - 1);
   const double value = from + k * step;
@@ -140,7 +140,7 @@ ArcRoom arc_room(const Hull& hull, const Twist2& twist, const Vec2& point_R) {
   const Vec2 q = point_R - c;
   const double angle =
       hull.is_disc() ? disc_turn(hull.radius, c, q, sign) : box_turn(hull, c, q, sign);
-  // In place a disc meets nothing, and a way of no length has no end.
+  // A disc turning in place meets nothing, and the room of a way of no length is infinite.
   const double distance = twist.v > 0 ? angle * c.norm() : kInf;
   return {distance, angle};
 }
@@ -201,7 +201,7 @@ void Dwa::forget() {
   points_R_.reserve(kBearings);
 }
 
-/// Keeps what lies within `reach` [m], the nearest of each two degrees.
+/// Keeps the returns within `reach` [m], the nearest in every two degrees.
 void Dwa::gather(const ControlInput& in, double reach) {
   std::array<double, kBearings> least{};
   least.fill(reach);
@@ -236,7 +236,8 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
       parameters[kHeadingWeight], parameters[kRoomWeight], parameters[kSpeedWeight]};
   const double reaction = in.dt + spec.command_delay;
 
-  // Room for all of them in each: references to a layer do not outlive the next add_layer().
+  // Reserve room for all candidates in each: references to a layer do not outlive the next
+  // add_layer().
   for (const LayerInfo* info : {&layers::kRefused, &layers::kAllowed, &layers::kChosen}) {
     add_layer(out.layers, *info, std::size_t{2} * kMotions);
   }
@@ -271,7 +272,7 @@ void Dwa::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   out.pass_W = goal_W(in);
   out.state = best ? kWindow : kNoWindow;
   out.waits = !best;
-  if (!best) return;  // nothing can be stopped in time: brake
+  if (!best) return;  // no twist can be stopped in time: brake
   show(chosen, *best);
   out.twist = *best;
   out.pass_W = integrate_arc(in.odometry.pose, out.twist, kShown).position();

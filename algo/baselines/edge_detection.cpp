@@ -13,7 +13,7 @@ namespace {
 constexpr double kJump = 0.3;          // [m] [D]
 constexpr double kAside = 0.45;        // [m] [D]
 constexpr double kStandingTime = 0.5;  // [s] [D]
-constexpr double kViaReach = 0.1;      // [m] [D] the via point counts as reached
+constexpr double kViaReach = 0.1;      // [m] [D] reach of the via point
 
 constexpr auto kParameters = std::to_array<const ParameterInfo*>(
     {&kSafetyDistance, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
@@ -21,7 +21,7 @@ constexpr auto kParameters = std::to_array<const ParameterInfo*>(
 /// The first edge from `beam` on, going left (step +1) or right (step -1).
 std::optional<Edge> first_edge(const LaserScan& scan, std::size_t beam, int step) {
   Edge edge{beam, scan.ranges[beam]};
-  // Unsigned, so that a step below beam 0 ends it as well.
+  // Unsigned, so that a step below beam 0 also ends the loop.
   for (std::size_t i = beam + static_cast<std::size_t>(step); i < scan.size();
        i += static_cast<std::size_t>(step)) {
     if (scan.status[i] == Beam::Invalid) continue;
@@ -55,7 +55,7 @@ void EdgeDetection::forget() {
   via_W_.reset();
 }
 
-/// The beam that hits what stands in the lane to the goal, if anything does.
+/// The beam that hits an obstacle in the lane to the goal, if any.
 std::optional<std::size_t> EdgeDetection::blocking_beam(const ControlInput& in,
                                                         const Parameters& parameters) {
   const double reach = parameters[kSafetyDistance] + in.spec->radius;
@@ -64,7 +64,7 @@ std::optional<std::size_t> EdgeDetection::blocking_beam(const ControlInput& in,
   return lane_.update(input, {0, 0}).blocked_beam;
 }
 
-/// Whether the robot must go on standing for its scan.
+/// True if the robot must still stand for its scan.
 bool EdgeDetection::wait(double stamp) {
   if (!standing_since_) standing_since_ = stamp;
   return stamp - *standing_since_ < kStandingTime;

@@ -1,4 +1,4 @@
-// algo/baselines/go_to_goal.cpp: one tick of it.
+// algo/baselines/go_to_goal.cpp: one tick of go-to-goal.
 #include "algo/baselines/go_to_goal.hpp"
 
 namespace algo {

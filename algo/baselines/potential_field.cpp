@@ -1,4 +1,4 @@
-// algo/baselines/potential_field.cpp: the two forces and the robot in them.
+// algo/baselines/potential_field.cpp: the two forces, and the motion of the robot under them.
 #include "algo/baselines/potential_field.hpp"
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 namespace algo {
 namespace {
 
-constexpr double kLeastRho = 0.05;  // [m] rho is clamped to it (equations.md F.3)
-constexpr double kGap = 0.3;        // [m] [D] a jump between neighbours that parts two obstacles
+constexpr double kLeastRho = 0.05;  // [m] smallest rho (equations.md F.3)
+constexpr double kGap = 0.3;  // [m] [D] a jump between neighbours that separates two obstacles
 
-/// Groups points that come in the order of their bearings; each group leaves its nearest one.
+/// Groups points that come in order of bearing, and keeps the nearest point of each group.
 class NearestOfEach {
  public:
   NearestOfEach(const Vec2& robot_W, std::vector<Vec2>& points_W)
       : robot_W_(robot_W), points_W_(points_W) {
     points_W_.clear();
   }
-  /// A further return of the group; the caller ends a group with a gap in range or bearing.
+  /// Adds a return. The caller starts a new group after a gap in range or bearing.
   void add(const Vec2& point_W, bool new_group) {
     if (new_group || points_W_.empty()) {
       points_W_.push_back(point_W);
@@ -86,8 +86,8 @@ void nearest_points(const ControlInput& in, std::vector<Vec2>& points_W) {
     return;
   }
   const LaserScan& scan = in.scene->scan;
-  bool open = false;  // the beam before was a return, or could not be measured
-  double range = 0;   // [m] of the return before
+  bool open = false;  // the previous beam was a return or Invalid
+  double range = 0;   // [m] of the previous return
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (scan.status[i] == Beam::Free) open = false;
     if (scan.status[i] != Beam::Ok) continue;
@@ -99,7 +99,7 @@ void nearest_points(const ControlInput& in, std::vector<Vec2>& points_W) {
 }
 
 void PotentialField::forget() {
-  constexpr std::size_t kMost = 1024;  // beams of the finest scan there is, so groups too
+  constexpr std::size_t kMost = 1024;  // beams of the finest scan, hence the most groups
   obstacles_W_.reserve(kMost);
 }
 
@@ -115,7 +115,7 @@ void PotentialField::steer(const ControlInput& in,
   Vec2 force = attraction(settings, p, goal_W(in));
   nearest_points(in, obstacles_W_);
   for (const Vec2& obstacle : obstacles_W_) force += repulsion(settings, p, obstacle);
-  if (!(force.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
+  if (!(force.norm() > 0)) return;  // pull and pushes cancel: no direction
   const double share = std::min(1.0, force.norm() / settings.f_max);
   steer_along(in, std::atan2(force.y(), force.x()), share * parameters[kMaxSpeed], parameters, out);
 }

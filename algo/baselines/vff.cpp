@@ -27,8 +27,8 @@ constexpr ParameterInfo kAttraction{.name = "vff.attraction",
                                     .help = "How strongly the goal pulls."};
 constexpr auto kParameters = std::to_array<const ParameterInfo*>(
     {&kRepulsion, &kAttraction, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
-// [D] Share of v_max that is always left. The law stands still before the faintest push from
-// straight ahead, for good: nothing else then changes.
+// [D] The least share of v_max. Under the faintest push from straight ahead, the law would stand
+// still for ever, since nothing else then changes.
 constexpr double kCreep = 0.1;
 
 }  // namespace
@@ -67,7 +67,7 @@ void Vff::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const VffForces forces = vff_forces(
       grid_, pose.position(), goal_W(in), parameters[kRepulsion], parameters[kAttraction]);
   const Vec2 sum = forces.sum();
-  if (!(sum.norm() > 0)) return;  // pull and pushes cancel: there is no way to go
+  if (!(sum.norm() > 0)) return;  // pull and pushes cancel: no direction
   const double v_max = parameters[kMaxSpeed];
   const double speed = std::max(kCreep * v_max, vff_speed(forces.repulsion, pose.heading, v_max));
   steer_along(in, std::atan2(sum.y(), sum.x()), speed, parameters, out);

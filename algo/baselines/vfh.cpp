@@ -43,7 +43,7 @@ int cyclic(int k) {
   return (k % kSectors + kSectors) % kSectors;
 }
 
-/// Sectors from `a` to `b` the shorter way round.
+/// Number of sectors from `a` to `b`, the shorter way round.
 int apart(int a, int b) {
   const int d = cyclic(a - b);
   return std::min(d, kSectors - d);
@@ -140,7 +140,7 @@ void Vfh::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   const double to_goal = bearing_W(pose.position(), goal_W(in));
   const int target = sector_of(to_goal);
   const auto sector = steering_sector(density, threshold, target);
-  if (!sector) {  // stops and turns until a way opens
+  if (!sector) {  // stops and turns until a valley opens
     out.state = kWalled;
     out.waits = true;
     out.twist = {0, parameters[algo::kMaxTurnRate]};
@@ -149,7 +149,7 @@ void Vfh::steer(const ControlInput& in, const Parameters& parameters, ControlOut
   out.state = kThroughValley;
   const double ahead = density[static_cast<std::size_t>(sector_of(pose.heading))];
   const double speed = vfh_speed(ahead, parameters[kStandstill], parameters[kMaxSpeed]);
-  // In a free sector the goal itself, not the middle of its sector.
+  // In a free sector, heads for the goal itself, not for the middle of its sector.
   const double bearing = *sector == target ? to_goal : sector_centre(*sector);
   steer_along(in, bearing, speed, parameters, out);
 }

@@ -1,5 +1,4 @@
-// algo/filter/filter.cpp: decides per beam what may enter a filter, filters, and sets the status
-// again.
+// algo/filter/filter.cpp: selects the valid beams, filters them, and sets the status again.
 #include "algo/filter/filter.hpp"
 
 #include <algorithm>
@@ -29,7 +28,7 @@ constexpr std::array<FilterInfo, 4> kTable{{
     {"none", "None", "The scan as the scanner gave it.", FilterKind::None},
 }};
 
-/// Ranges and states as set_ok() and set_free() make them, in two passes that vectorise. `filtered`
+/// Writes ranges and status as set_ok() and set_free() do, in two passes that vectorise. `filtered`
 /// may be the ranges of `out`.
 void set_states(std::span<const double> filtered, LaserScan& out) {
   const double range_max = out.range_max;
@@ -75,14 +74,13 @@ void ScanFilter::apply(FilterKind kind, int half_width, const LaserScan& in, Las
   }
 }
 
-/// Fills values_ with what each beam says and believed_ with whether it may be believed; true when
-/// all may.
+/// Fills values_ with each beam's value and believed_ with its validity; true if all are valid.
 bool ScanFilter::believe(const LaserScan& in) {
   const std::size_t n = in.size();
   values_.resize(n);
   believed_.resize(n);
   const double range_max = in.range_max;
-  // Restricted: bytes may be part of anything, so that each store would make all be read again.
+  // __restrict: a byte store may alias anything, so each one would force all to be read again.
   const double* const ranges = in.ranges.data();
   const Beam* const status = in.status.data();
   double* const __restrict values = values_.data();
@@ -96,7 +94,7 @@ bool ScanFilter::believe(const LaserScan& in) {
   return n == 0 || std::memchr(believed, 0, n) == nullptr;
 }
 
-/// Takes the belief from beams that are no finite number; without a finite range_max, from all.
+/// Invalidates beams whose value is not finite; without a finite range_max, all beams.
 void ScanFilter::disbelieve(double range_max) {
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const bool finite = std::isfinite(values_[i]);
@@ -105,7 +103,7 @@ void ScanFilter::disbelieve(double range_max) {
   }
 }
 
-/// The usual case: every beam is believed.
+/// The usual case: every beam is valid.
 void ScanFilter::filter_all(FilterKind kind, int half_width, LaserScan& out) {
   const std::span<double> ranges(out.ranges);
   switch (kind) {
@@ -144,7 +142,7 @@ void ScanFilter::filter_believed(FilterKind kind,
       lulu(values_, believed_, half_width, scratch_, filtered, out_believed_);
       break;
   }
-  // Nearly all are believed: first as if all were.
+  // Nearly all beams are valid: first treat all as valid.
   set_states(filtered, out);
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (out_believed_[i] != 0) continue;

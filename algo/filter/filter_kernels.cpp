@@ -1,5 +1,5 @@
-// algo/filter/filter_kernels.cpp: sliding minima and maxima as straight loops over the index, which
-// the compiler turns into vector code; queues do not vectorise and are slower at these sizes.
+// algo/filter/filter_kernels.cpp: sliding minima and maxima as simple loops over the index, which
+// the compiler vectorises. Queues do not vectorise and are slower at these sizes.
 //
 // Compiled with -O3 for finite numbers (algo/CMakeLists.txt): no infinity and no NaN in here.
 #include "algo/filter/filter_kernels.hpp"
@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <string>
 
-// Two versions of the passes, four or two numbers at a time, chosen when the program starts. Not
-// under a sanitizer: the choice is made before its run-time is ready.
+// Two versions of the passes, for four or two numbers at a time, chosen when the program starts.
+// Not under a sanitizer: the choice is made before its runtime is ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TAUTLINE_WIDE __attribute__((target_clones("avx2", "default")))
@@ -23,7 +23,7 @@
 namespace algo {
 namespace {
 
-// Stand for "no valid sample here": lose against everything in a minimum and in a maximum.
+// Stand for "no valid sample here": they never win a minimum or a maximum.
 constexpr double kNoneForMin = std::numeric_limits<double>::max();
 constexpr double kNoneForMax = -kNoneForMin;
 
@@ -56,8 +56,8 @@ TAUTLINE_WIDE void mean_of_two(const double* __restrict a,
   for (std::size_t i = 0; i < n; ++i) out[i] = (a[i] + b[i]) / 2;
 }
 
-// N = 1 and 2 in one pass, straight from the definition: the common settings, and too short for
-// separate passes to pay. p is padded by N on either side.
+// N = 1 and 2 in one pass, by the definition: these are the common settings, and separate passes do
+// not pay for so few samples. p is padded by N on either side.
 TAUTLINE_WIDE void pseudomedian_3(const double* __restrict p,
                                   double* __restrict out,
                                   std::size_t n) {
@@ -99,7 +99,7 @@ TAUTLINE_WIDE void median_3(const double* __restrict p, double* __restrict out, 
   }
 }
 
-// Neither the smallest of two minima nor the largest of two maxima can be the middle one of five.
+// Neither the smaller of two minima nor the larger of two maxima can be the middle one of five.
 TAUTLINE_WIDE void median_5(const double* __restrict p, double* __restrict out, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
     const double a = larger(smaller(p[i], p[i + 1]), smaller(p[i + 3], p[i + 4]));
@@ -110,12 +110,13 @@ TAUTLINE_WIDE void median_5(const double* __restrict p, double* __restrict out, 
   }
 }
 
-// Widest window the doubling passes are used for: up to there they are faster than any method whose
-// work does not grow with the width, since those do not vectorise.
+// Widest window for the doubling passes. Up to it they are faster than any method whose work does
+// not grow with the width, since such methods do not vectorise.
 constexpr std::size_t kDoublingLimit = 512;
 
-/// van Herk, Gil and Werman: three extremes per sample for any width. `a` has n samples, the
-/// result n - width + 1, in place; `suffix` holds each block's running extremes from the right.
+/// van Herk, Gil and Werman: three extremes per sample for any width. `a` has n samples; the n -
+/// width + 1 results replace them in place. `suffix` holds each block's running extremes from the
+/// right.
 template <typename Extreme>
 void slide_blocks(std::vector<double>& a,
                   std::vector<double>& suffix,
@@ -135,8 +136,8 @@ void slide_blocks(std::vector<double>& a,
   }
 }
 
-/// Doubling: extremes of 2, 4, 8 .. samples, then two overlapping ones make the width. At most
-/// nine straight passes up to kDoublingLimit. The result is in `a`.
+/// Doubling: extremes of 2, 4, 8 .. samples, then two overlapping ones make up the width. At most
+/// nine simple passes up to kDoublingLimit. The result is in `a`.
 template <typename Fold>
 void slide_doubling(std::vector<double>& a,
                     std::vector<double>& spare,
@@ -180,8 +181,8 @@ void replace(std::vector<double>& a, std::size_t n, double from, double to) {
   for (std::size_t i = 0; i < n; ++i) a[i] = a[i] == from ? to : a[i];
 }
 
-/// max of min of `width`; in place, 2 (width - 1) samples shorter. With `masked`, "none" comes in
-/// as kNoneForMin and goes out as kNoneForMax.
+/// max of min of `width`; in place, 2 (width - 1) samples shorter. With `masked`, the input marks
+/// "none" by kNoneForMin and the output by kNoneForMax.
 std::size_t opening(
     std::vector<double>& a, std::size_t n, std::size_t width, bool masked, FilterScratch& s) {
   n = slide_min(a, n, width, s);
@@ -189,7 +190,7 @@ std::size_t opening(
   return slide_max(a, n, width, s);
 }
 
-/// min of max, "none" the other way round.
+/// min of max, with the two "none" marks swapped.
 std::size_t closing(
     std::vector<double>& a, std::size_t n, std::size_t width, bool masked, FilterScratch& s) {
   n = slide_max(a, n, width, s);
@@ -222,7 +223,7 @@ void pad(std::span<const T> in, std::size_t margin, Border border, std::vector<T
   }
 }
 
-/// Throws when the call is unsound; true when there is nothing to filter and `out` is `in`.
+/// Throws if the call is invalid. True if there is nothing to filter; `out` is then `in`.
 bool trivial(std::span<const double> in, int half_width, std::span<double> out) {
   if (half_width < 0) {
     throw std::invalid_argument("a filter's half width must be 0 or above, not " +
@@ -237,8 +238,8 @@ bool trivial(std::span<const double> in, int half_width, std::span<double> out) 
   return true;
 }
 
-/// Window by window of `padded`, sorted once and then kept sorted: the sample that leaves gives its
-/// place to the one that comes.
+/// Slides over `padded`. Sorts the first window and then keeps it sorted: the new sample replaces
+/// the one that leaves.
 void slide_median(const std::vector<double>& padded,
                   std::size_t N,
                   std::vector<double>& sorted,
@@ -276,8 +277,7 @@ std::size_t find_zero(const std::uint8_t* marks, std::size_t from, std::size_t c
   return static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - marks);
 }
 
-/// Marks in s.trusted and `out_valid` which samples have a valid window, and counts them by a
-/// running sum.
+/// Marks in s.trusted and `out_valid` the samples with a valid window, which a running sum counts.
 void judge_windows(std::span<const std::uint8_t> valid,
                    std::size_t N,
                    FilterScratch& s,
@@ -292,7 +292,7 @@ void judge_windows(std::span<const std::uint8_t> valid,
   }
 }
 
-/// True when there is nothing to filter.
+/// True if there is nothing to filter.
 bool trivial(std::span<const double> in,
              std::span<const std::uint8_t> valid,
              int half_width,
@@ -307,8 +307,8 @@ bool trivial(std::span<const double> in,
   return true;
 }
 
-/// Pads `in` into s.mask, with kNoneForMin where not valid, after s.trusted was padded by
-/// judge_windows() for a margin N <= margin.
+/// Pads `in` into s.mask, with kNoneForMin where not valid. judge_windows() must have padded
+/// s.trusted for a margin N <= margin.
 void mask_samples(std::span<const double> in,
                   std::span<const std::uint8_t> valid,
                   std::size_t margin,
@@ -330,8 +330,8 @@ void keep_invalid(std::span<const double> in,
   }
 }
 
-/// The pseudomedian of the window of 2N+1 samples from `p`, by its definition. The middle one is
-/// trusted, so that no group is empty.
+/// The pseudomedian of the window of 2N+1 samples from `p`, by its definition. The middle sample
+/// must be trusted, so that no group is empty.
 double pseudomedian_of_trusted(const double* p, const std::uint8_t* trusted, std::size_t N) {
   double open = kNoneForMax;
   double close = kNoneForMin;
@@ -348,8 +348,8 @@ double pseudomedian_of_trusted(const double* p, const std::uint8_t* trusted, std
   return (open + close) / 2;
 }
 
-/// Where few samples are not valid: all are filtered in one pass as if they were, and then once
-/// more those whose window has one that is not.
+/// For few invalid samples: filters all in one pass as if valid, and then again those samples whose
+/// window holds an invalid one.
 void pseudomedian_mended(std::span<const double> in,
                          std::span<const std::uint8_t> valid,
                          std::size_t N,
@@ -362,7 +362,7 @@ void pseudomedian_mended(std::span<const double> in,
   const std::uint8_t* const trusted = s.trusted.data();
   pseudomedian_in_one_pass(padded, N, out);
   std::memset(out_valid.data(), 1, out_valid.size());
-  std::size_t mended = 0;  // windows before this one
+  std::size_t mended = 0;  // windows mended before this one
   const std::size_t samples = s.trusted.size();
   for (std::size_t bad = find_zero(trusted, 0, samples); bad < samples;
        bad = find_zero(trusted, bad + 1, samples)) {
@@ -418,7 +418,7 @@ void lulu(std::span<const double> in,
           std::span<double> out) {
   if (trivial(in, half_width, out)) return;
   const auto N = static_cast<std::size_t>(half_width);
-  // 2N border samples reach every value that two openings and closings in a row look at.
+  // 2N border samples cover all values that an opening and a closing in a row read.
   pad(in, 2 * N, border, scratch.padded);
   scratch.low = scratch.padded;
   scratch.high = scratch.padded;

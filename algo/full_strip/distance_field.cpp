@@ -1,5 +1,5 @@
-// algo/full_strip/distance_field.cpp: stamps for what becomes occupied, a distance transform of a
-// tile for what becomes free.
+// algo/full_strip/distance_field.cpp: stamps a kernel where a cell becomes occupied, and rebuilds a
+// tile by a distance transform where one becomes free.
 #include "algo/full_strip/distance_field.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto kFar = static_cast<std::int16_t>(DistanceField::kReach * 1000);  // [mm]
 constexpr std::size_t kTilesATick = 8;
-constexpr std::int16_t kNoSquare = 10'000;  // of a distance beyond kReach
+constexpr std::int16_t kNoSquare = 10'000;  // square of a distance beyond kReach
 
 }  // namespace
 
@@ -30,7 +30,7 @@ DistanceField::DistanceField()
     for (int x = -kRadius; x <= kRadius; ++x, ++cell) {
       const int square = x * x + y * y;
       kernel_[cell] = metric_[static_cast<std::size_t>(square)];
-      // Rows far from the middle are short: beyond kReach there is nothing to lower.
+      // Rows far from the middle are short: nothing beyond kReach is lowered.
       if (y >= 0 && kernel_[cell] < kFar) reaches_[static_cast<std::size_t>(y)] = x;
     }
   }
@@ -83,7 +83,7 @@ void DistanceField::rebuild(std::span<const std::uint8_t> hits, std::uint8_t occ
   tiles_.erase(tiles_.begin(), tiles_.begin() + static_cast<std::ptrdiff_t>(now));
 }
 
-/// The first half of a distance transform: along the columns, once upwards and once downwards.
+/// First half of a distance transform: along the columns, once upwards and once downwards.
 void DistanceField::measure_gaps(std::span<const std::uint8_t> hits,
                                  std::uint8_t occupied,
                                  int left,
@@ -115,7 +115,7 @@ void DistanceField::measure_gaps(std::span<const std::uint8_t> hits,
   }
 }
 
-/// The second half: along the rows, over all that may be nearest.
+/// Second half: along the rows, over all candidates for the nearest.
 void DistanceField::rebuild_tile(int left, int bottom) {
   for (int y = 0; y < kTile; ++y) {
     const auto& gaps = gaps_[static_cast<std::size_t>(y)];

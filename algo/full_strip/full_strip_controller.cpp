@@ -13,28 +13,28 @@ namespace algo {
 namespace {
 
 constexpr std::array<double, 3> kRoom{0.065, 0.035, 0.010};  // [m] beside the hull, level by level
-constexpr int kExpansions = 400;                             // of the planner a tick
-constexpr int kExpansionsNow = 1200;                         // when there is no strip to follow
-constexpr double kOtherShare = 0.9;   // of the present cost that another must stay below,
-constexpr double kNearer = 0.5;       // [m] unless it ends so much nearer to the goal,
-constexpr double kNearerTaken = 0.1;  // or so much where something stands on that,
-constexpr double kAtGoal = 1e-6;      // or at the goal itself where the present one does not
-constexpr int kSweepsNew = 15;        // of a strip just laid
-constexpr int kSweeps = 5;            // a tick
-constexpr double kAtEnd = 0.15;       // [m] from the end of a strip that leads beside its goal
+constexpr int kExpansions = 400;                             // of the planner in a tick
+constexpr int kExpansionsNow = 1200;                         // if there is no strip to follow
+constexpr double kOtherShare = 0.9;   // a new strip below this share of the old cost replaces it,
+constexpr double kNearer = 0.5;       // [m] or if it ends this much nearer to the goal,
+constexpr double kNearerTaken = 0.1;  // [m] or this much if an obstacle stands on the goal;
+constexpr double kAtGoal = 1e-6;      // [m] or if it ends at the goal and the old one does not
+constexpr int kSweepsNew = 15;        // of a new strip
+constexpr int kSweeps = 5;            // in a tick
+constexpr double kAtEnd = 0.15;       // [m] from the end of a strip that ends beside its goal
 constexpr double kStopShort = 0.35;   // [m] before the place where the strip is broken
-constexpr double kStuckTime = 2.5;    // [s] without way: the strip is dropped
+constexpr double kStuckTime = 2.5;    // [s] without progress: the strip is dropped
 constexpr double kStuckWay = 0.15;    // [m]
 constexpr double kBackTime = 1.0;     // [s]
-constexpr double kTrace = 0.25;       // [m] about something found moving, what it left in the map
-constexpr double kTryTight = 4.0;     // [s] a goal without room is tried for, once near
-constexpr double kPatience = 1.2;     // [s] without way until a manoeuvre is looked for
+constexpr double kTrace = 0.25;       // [m] around an obstacle found moving: its traces in the map
+constexpr double kTryTight = 4.0;     // [s] for which it tries for a near goal without room
+constexpr double kPatience = 1.2;     // [s] without progress until it looks for a manoeuvre
 constexpr double kSearchEvery = 1.0;  // [s] after a search that found nothing
-constexpr int kManeuverExpansions = 150;   // a tick
+constexpr int kManeuverExpansions = 150;   // in a tick
 constexpr double kManeuverMargin = 0.031;  // [m] of room on the way
-constexpr std::size_t kNearest = 4;        // nodes of the strip between which a manoeuvre may end,
+constexpr std::size_t kNearest = 4;        // nodes ahead: a manoeuvre ends from here to kFarthest;
 constexpr std::size_t kFarthest = 11;
-constexpr std::size_t kAim = 7;                    // and where it is looked for
+constexpr std::size_t kAim = 7;                    // its search aims here
 constexpr double kOnStrip = 0.10;                  // [m]
 constexpr double kAlongStrip = 0.35;               // [rad]
 constexpr double kLastLeg = 2 * LocalMap::kReach;  // [m] to the goal
@@ -68,7 +68,7 @@ constexpr auto kParameters = std::to_array<const ParameterInfo*>({&kRepulsionGai
                                                                   &kHeadingGain,
                                                                   &kGoalReach});
 
-/// Whether a return lies in the robot's very centre: what drives it there is past saving.
+/// True if a return lies at the robot's centre. No command can help then.
 bool stands_on_a_return(const Scene& scene) {
   return (scene.left && scene.left->distance <= 0) || (scene.right && scene.right->distance <= 0);
 }
@@ -96,7 +96,7 @@ void FullStripController::reset(const Pose2& start_W) {
   path_W_.clear();
 }
 
-/// All that is known of a way to the goal.
+/// Forgets everything about the way to the goal.
 void FullStripController::forget_way() {
   strip_.clear();
   planner_.reset();
@@ -126,7 +126,7 @@ void FullStripController::prepare(const ControlInput& in, const Parameters& para
   settings_.least_clearance = least_clearance() - break_room_;
 }
 
-/// Enters a new scan into the map, each beam from where the robot was when it was fired.
+/// Enters a new scan into the map, each beam from the pose at which it was fired.
 void FullStripController::sense(const ControlInput& in) {
   const Pose2& here = in.odometry.pose;
   points_.follow(here, in.stamp);
@@ -144,8 +144,8 @@ void FullStripController::sense(const ControlInput& in) {
   tracker_.predict(in.stamp);
 }
 
-/// Frees the map of what cannot stand there: on the way of something found moving, and inside the
-/// robot's own hull, which nothing looks at.
+/// Frees impossible obstacles from the map: on the way of an obstacle found moving, and inside the
+/// robot's own hull, which no sensor looks at.
 void FullStripController::forget_traces(const ControlInput& in) {
   for (const Track& track : tracker_.just_found()) {
     const Vec2 way_W = track.velocity_W * track.age;
@@ -163,19 +163,19 @@ void FullStripController::forget_traces(const ControlInput& in) {
   });
 }
 
-/// A goal nearer to something than the strip would keep tells how near one may come: on the last
-/// leg it keeps that, instead of swinging out only to swing in again.
+/// If the goal is nearer to an obstacle than the strip would keep, that distance is allowed: on the
+/// last leg the strip keeps it, instead of swinging out only to swing in again.
 void FullStripController::ease_last_leg(const Vec2& here_W) {
   if ((*goal_W_ - here_W).norm() > kLastLeg) return;
   const double room = std::max(map_.distance(*goal_W_) + kGives, least_clearance());
   settings_.rest_distance = std::min(settings_.rest_distance, room);
 }
 
-/// The deliberative layer: one piece of a search each tick, a new search every plan_period_.
+/// The deliberative layer: one portion of a search each tick, a new search every plan_period_.
 void FullStripController::plan(const ControlInput& in) {
   const Vec2 here = in.odometry.pose.position();
   if (planner_.state() != Planner::State::Searching && in.stamp >= next_plan_) {
-    // A goal with less room than one would like is not a goal that something stands on.
+    // Low clearance at the goal does not mean that an obstacle stands on it.
     while (level_ + 1 < kRoom.size() && map_.distance(*goal_W_) < least_clearance() &&
            map_.seen().seen(*goal_W_)) {
       ++level_;
@@ -205,7 +205,7 @@ void FullStripController::plan(const ControlInput& in) {
   }
 }
 
-/// A plan becomes the strip when there is none, or when it is clearly better than the one there is.
+/// Makes the plan the strip if there is none, or if it is clearly better than the present one.
 void FullStripController::take_plan(const ControlInput& in) {
   no_way_ = false;
   planner_.path(path_W_);
@@ -216,12 +216,12 @@ void FullStripController::take_plan(const ControlInput& in) {
   settings.least_clearance = least_clearance() - break_room_;
   candidate_.relax(map_, settings, kSweepsNew);
   if (candidate_.broken_at(map_, settings) >= 0) {
-    // Relaxed out of its way: take the plan as it is.
+    // Relaxing moved it off its way: take the plan as it is.
     candidate_.lay(path_W_);
     candidate_.follow(in.odometry.pose.position());
   }
-  // A strip that ends short of the goal, as that lay beyond the map or something stands on it, may
-  // well cost less than one that ends nearer.
+  // A strip may end short of the goal, if the goal lay beyond the map or an obstacle stands on it.
+  // It may well cost less than one that ends nearer.
   const bool was_taken = std::exchange(goal_taken_, planner_.goal_taken());
   const double nearer = goal_taken_ || was_taken ? kNearerTaken : kNearer;
   const bool better = strip_.empty() || broken_at_ >= 0 ||
@@ -235,19 +235,19 @@ void FullStripController::take_plan(const ControlInput& in) {
   level_ = 0;  // the next search begins with the widest again
 }
 
-/// [m] From the end of `strip` to the goal.
+/// [m] Distance from the end of `strip` to the goal.
 double FullStripController::left(const NodeStrip& strip) const {
   return (strip.end_W() - *goal_W_).norm();
 }
 
-/// Whether something stands on the goal and the robot comes no nearer, or must not try.
+/// True if an obstacle stands on the goal and the robot can come no nearer, or must not try.
 bool FullStripController::ends_here(const ControlInput& in, const Parameters& parameters) const {
   if (!goal_taken_ || strip_.empty() || left(strip_) < parameters[kGoalReach]) return false;
   if (parameters[kNearestGoal] == 0) return true;
   return (strip_.end_W() - in.odometry.pose.position()).norm() < kAtEnd;
 }
 
-/// The reactive layer: the strip follows the robot and what the map says.
+/// The reactive layer: fits the strip to the robot and the map.
 void FullStripController::stretch(const ControlInput& in) {
   if (strip_.empty()) return;
   strip_.follow(in.odometry.pose.position());
@@ -271,7 +271,7 @@ void FullStripController::remember(const Twist2& command) {
   under_way_.back() = command;
 }
 
-/// `patience` [s], or what three times the way that counts as progress takes a slow robot.
+/// `patience` [s], or three times what a slow robot needs for the distance that counts as progress.
 double FullStripController::time_for(double patience) const {
   return std::max(patience, 3 * kStuckWay / limits_.max_v);
 }
@@ -295,8 +295,8 @@ void FullStripController::watch_progress(const ControlInput& in) {
   back_until_ = in.stamp + kBackTime;
 }
 
-/// Among things that move, the beam search decides instead of the pursuit of the strip, which still
-/// tells the way to go.
+/// Among moving obstacles the beam search decides instead of the strip's pursuit. The strip still
+/// gives the direction.
 std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
                                                     const ControlInput& in) {
   SpaceTimeInput search;
@@ -308,7 +308,7 @@ std::optional<Twist2> FullStripController::give_way(const StageInput& stage,
   search.state = stage.state;
   search.limits = limits_;
   if (!SpaceTimeSearch::needed(search, strip_)) return std::nullopt;
-  // The farthest point of the strip that can be seen.
+  // The farthest visible point of the strip.
   search.carrot_W = in.goal->position_W;
   if (!strip_.empty()) {
     const Recycled<Node>& nodes = strip_.nodes();
@@ -338,7 +338,7 @@ Twist2 FullStripController::recover(const StageInput& stage, const ControlInput&
       return *twist;
     }
   }
-  // An escape is held to its end: begun and given up each tick it would lead nowhere.
+  // An escape runs to its end: starting and stopping it each tick would lead nowhere.
   if (in.stamp < escape_until_) {
     if (stage_.still_escapes(stage, escape_, escape_until_ - in.stamp, weighed_)) {
       state_ = kEscaping;
@@ -361,7 +361,7 @@ Twist2 FullStripController::recover(const StageInput& stage, const ControlInput&
   return {};
 }
 
-/// Searches, a piece a tick, for a way to a pose on the strip ahead that points along it.
+/// Searches, a portion each tick, for a way to a pose on the strip ahead that points along it.
 void FullStripController::look_for_maneuver(const ControlInput& in) {
   const Recycled<Node>& nodes = strip_.nodes();
   if (nodes.size() < 3) return;
@@ -391,7 +391,7 @@ void FullStripController::look_for_maneuver(const ControlInput& in) {
   }
 }
 
-/// The next command of the manoeuvre under way; nothing when it is over or no longer free.
+/// The next command of the present manoeuvre; nothing if it is over or no longer free.
 std::optional<Twist2> FullStripController::carry_on(const StageInput& stage,
                                                     const ControlInput& in) {
   const auto wanted = maneuver_.next(stage.state.pose_W, limits_);

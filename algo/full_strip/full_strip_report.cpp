@@ -1,4 +1,4 @@
-// algo/full_strip/full_strip_report.cpp: what a tick of the full strip shows and says.
+// algo/full_strip/full_strip_report.cpp: the layers and words of a tick of the full strip.
 #include "algo/common_layers.hpp"
 #include "algo/explain.hpp"
 #include "algo/full_strip/full_strip_controller.hpp"
@@ -7,8 +7,8 @@ namespace algo {
 namespace {
 
 constexpr std::uint32_t kDrawn = 240;  // cells along the drawn map's edge: 12 m
-constexpr double kOutOfSight = 0.2;    // [s] since it was seen
-constexpr std::size_t kFewMoving = 8;  // that room is kept for
+constexpr double kOutOfSight = 0.2;    // [s] since last seen
+constexpr std::size_t kFewMoving = 8;  // reserved capacity
 
 constexpr LayerInfo kMap{
     .name = "map", .label = "Map", .kind = LayerKind::Grid, .tone = Tone::External};
@@ -58,7 +58,7 @@ void FullStripController::show_strip(ControlOutput& out) const {
   for (const Node& node : strip_.nodes()) put(line, node.position_W);
   Layer& ahead = add_layer(out.layers, layers::kStripAhead, 4);
   if (strip_.empty()) return;
-  // It ends short of a goal beyond the map, or on which something stands.
+  // It ends short of a goal that lies beyond the map or under an obstacle.
   if (goal_W_ && strip_.end_W() != *goal_W_) put(ahead, strip_.end_W(), *goal_W_);
   out.measures.push_back({"strip.length", "m", strip_.length()});
 }

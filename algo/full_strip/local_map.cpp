@@ -1,4 +1,4 @@
-// algo/full_strip/local_map.cpp: hits, looks through, the distances between cells.
+// algo/full_strip/local_map.cpp: enters hits, clears cells that beams passed, and gives distances.
 #include "algo/full_strip/local_map.hpp"
 
 #include <algorithm>
@@ -10,17 +10,17 @@
 namespace algo {
 namespace {
 
-constexpr std::uint8_t kHit = 2;         // a hit counts this much,
-constexpr std::uint8_t kMost = 8;        // up to here;
-constexpr int kLook = 2;                 // a look through takes this much
-constexpr double kBeyond = 0.15;         // [m] a beam must go on behind a cell to have seen through
-constexpr double kClearRange = 8.0;      // [m] cells farther than this are left as they are
-constexpr std::uint32_t kAgeEvery = 64;  // scans between two looks at the cells' ages
-constexpr double kFaded = 0.15;  // [m] about a cell that has faded: what was there may still be
+constexpr std::uint8_t kHit = 2;         // added by a hit,
+constexpr std::uint8_t kMost = 8;        // up to this;
+constexpr int kLook = 2;                 // removed when a beam passes
+constexpr double kBeyond = 0.15;         // [m] a beam must go on this far behind a cell to clear it
+constexpr double kClearRange = 8.0;      // [m] cells farther than this are left unchanged
+constexpr std::uint32_t kAgeEvery = 64;  // scans between two checks of the cells' ages
+constexpr double kFaded = 0.15;          // [m] around a faded cell: its obstacle may still be there
 
 constexpr std::size_t kCells = std::size_t{LocalMap::kSize} * LocalMap::kSize;
-constexpr std::size_t kMostBeams = 4096;  // of a scan, for which there is room from the start
-constexpr double kMiddle = 4.0;           // [m] the robot may be from the window's middle
+constexpr std::size_t kMostBeams = 4096;  // of a scan; reserved from the start
+constexpr double kMiddle = 4.0;           // [m] the robot may be this far from the window's middle
 
 }  // namespace
 
@@ -60,7 +60,7 @@ bool LocalMap::follow(const Vec2& position_W) {
   return true;
 }
 
-/// Copies what stays inside; what leaves is forgotten, what comes in is free.
+/// Copies the cells that stay inside. Forgets those that leave; new ones are free.
 void LocalMap::shift(int tile_columns, int tile_rows) {
   const int columns = tile_columns * DistanceField::kTile;
   const int rows = tile_rows * DistanceField::kTile;
@@ -110,7 +110,7 @@ void LocalMap::hit(const Vec2& point_W) {
   if (before == 0) active_.push_back(static_cast<std::uint32_t>(cell));
   hits_[cell] = std::min<std::uint8_t>(kMost, before + kHit);
   seen_[cell] = static_cast<std::uint16_t>(scans_);
-  // A mean that forgets, so that it follows what drifts.
+  // A mean that forgets, so that it follows drift.
   const Vec2 off = point_W - centre_W(cell);
   Offset& mean = means_[cell];
   if (before == 0) mean = {};
@@ -122,7 +122,7 @@ void LocalMap::hit(const Vec2& point_W) {
   if (becomes_occupied && field_) field_->occupy(column, row);
 }
 
-/// Takes hits from a cell. False when it has none left.
+/// Removes hits from a cell. False if none are left.
 bool LocalMap::weaken(std::size_t cell, int by) {
   const std::uint8_t before = hits_[cell];
   hits_[cell] = static_cast<std::uint8_t>(std::max(0, before - by));
@@ -132,9 +132,9 @@ bool LocalMap::weaken(std::size_t cell, int by) {
   return hits_[cell] > 0;
 }
 
-/// Every second cell a scan: of those that the scanner looked beyond with three beams side by side.
-/// A scanner that looks back, and whose scans take turns with the other one's, counts for itself,
-/// or each would only ever look at one half of the cells.
+/// Checks every second cell per scan, and weakens those that three neighbouring beams look beyond.
+/// Scanners that look ahead and back alternate their scans, so each has its own counter; with a
+/// shared one each would only ever check one half of the cells.
 void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   if (scan.size() < 3) return;
   const Vec2 ahead = direction(sensor_W.heading);
@@ -162,7 +162,7 @@ void LocalMap::look_through(const LaserScan& scan, const Pose2& sensor_W) {
   }
 }
 
-/// Where something may stand has not been seen to be free.
+/// A place where an obstacle may stand does not count as seen.
 void LocalMap::doubt_suspects() {
   for (const std::uint32_t cell : suspects_) {
     if (hits_[cell] < kOccupied) space_.forget(centre_W(cell), kCell / 2);
@@ -175,7 +175,7 @@ void LocalMap::clear(std::size_t cell) {
   if (listed != active_.end()) drop_active(static_cast<std::size_t>(listed - active_.begin()));
 }
 
-/// Takes the `i`th out of the list: the last comes in its place.
+/// Removes the `i`th from the list; the last takes its place.
 void LocalMap::drop_active(std::size_t i) {
   active_[i] = active_.back();
   active_.pop_back();
@@ -195,7 +195,7 @@ void LocalMap::age() {
       ++i;
       continue;
     }
-    // From now on it is not occupied: so it must not be taken for seen and free either.
+    // It is no longer occupied, so it must not count as seen and free either.
     hits_[cell] = 0;
     space_.forget(mean_W(cell), kFaded);
     drop_active(i);
@@ -203,7 +203,7 @@ void LocalMap::age() {
 }
 
 double LocalMap::distance(const Vec2& p_W) const {
-  // Between the four cell centres around.
+  // Interpolates between the four cell centres around.
   const double x = (p_W.x() - corner_W_.x()) / kCell - 0.5;
   const double y = (p_W.y() - corner_W_.y()) / kCell - 0.5;
   if (!(x >= 0 && y >= 0 && x < kSize - 1 && y < kSize - 1)) return kReach;

@@ -1,4 +1,4 @@
-// algo/full_strip/maneuver.cpp: the lattice, and the driving of what it finds.
+// algo/full_strip/maneuver.cpp: the lattice search, and the driving of its result.
 #include "algo/full_strip/maneuver.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace algo {
 namespace {
 
-constexpr double kNotch = 2 * std::numbers::pi / 32;  // [rad] between two headings
+constexpr double kNotch = 2 * std::numbers::pi / 32;  // [rad] between neighbouring headings
 
 struct Action {
   double length = 0;  // [m]
@@ -29,14 +29,14 @@ constexpr std::array<Action, 12> kActions{{{kAhead, 0, 0.10F},
                                            {-kAhead, -2 * kNotch, 0.17F},
                                            {0, kNotch, 0.06F},
                                            {0, -kNotch, 0.06F}}};
-constexpr std::size_t kLongest = 256;  // pieces there is room for from the start
+constexpr std::size_t kLongest = 256;  // pieces reserved from the start
 constexpr float kShift = 0.10F;        // [m] cost of changing between forward, back and turning
 constexpr double kSpeed = 0.3;         // [m/s] of a piece
 constexpr double kTurnSpeed = 0.8;     // [rad/s]
 constexpr double kTurnSlowly = 0.4;    // [rad/s] near the end of a turn
-constexpr double kAim = 0.20;          // [m] ahead on the piece that the robot steers for
+constexpr double kAim = 0.20;          // [m] ahead on the piece, the point to steer for
 
-/// The pose after `share` of an arc.
+/// The pose after the fraction `share` of an arc.
 Pose2 along(const Pose2& from, double length, double turn, double share) {
   return integrate_arc(from, {length, turn}, share);
 }
@@ -164,7 +164,7 @@ std::optional<Twist2> ManeuverDrive::next(const Pose2& pose_W, const MotionLimit
     const Piece& piece = pieces_[next_];
     const int way = sign(piece.length);
     if (way == 0) {
-      // Turns that follow each other are one.
+      // Consecutive turns are merged.
       std::size_t last = next_;
       while (last + 1 < pieces_.size() && pieces_[last + 1].length == 0) ++last;
       const double error = wrap_angle(pieces_[last].end_W.heading - pose_W.heading);
@@ -178,7 +178,7 @@ std::optional<Twist2> ManeuverDrive::next(const Pose2& pose_W, const MotionLimit
     }
     const Vec2 ahead = direction(piece.end_W.heading) * way;
     if ((pose_W.position() - piece.end_W.position()).dot(ahead) > -0.02) continue;
-    // Steers for a point some way on among the pieces that go the same way.
+    // Steers for a point some way ahead on the pieces with the same direction.
     std::size_t aim = next_;
     while (aim + 1 < pieces_.size() && sign(pieces_[aim + 1].length) == way &&
            (pieces_[aim].end_W.position() - pose_W.position()).norm() < kAim) {

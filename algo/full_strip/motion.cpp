@@ -1,4 +1,4 @@
-// algo/full_strip/motion.cpp: roll-outs.
+// algo/full_strip/motion.cpp: roll-outs and checks of the hull.
 #include "algo/full_strip/motion.hpp"
 
 #include <algorithm>
@@ -10,14 +10,14 @@ namespace algo {
 namespace {
 
 constexpr double kBeside = 0.04;   // [m] outside the hull that must have been seen
-constexpr double kStill = 0.01;    // [m/s] of the outline: it moves nowhere
-constexpr double kRimApart = 0.8;  // of a cell between two places looked at
+constexpr double kStill = 0.01;    // [m/s] of the outline: below it counts as still
+constexpr double kRimApart = 0.8;  // of a cell, between two places to check
 
 }  // namespace
 
 HullCheck::HullCheck(const RobotSpec& spec)
     : disc_(spec.radius), radius_(spec.radius), half_width_(spec.radius) {
-  // Places along `length` [m] of outline; a big hull's lie farther apart.
+  // Places along `length` [m] of outline; a large hull's lie farther apart.
   const auto places = [](double length, std::size_t most) {
     const double count = std::ceil(length / (kRimApart * SeenSpace::kCell));
     return std::min(most, static_cast<std::size_t>(std::max(1.0, count)));
@@ -47,10 +47,10 @@ HullCheck::HullCheck(const RobotSpec& spec)
   }
   half_length_ = spec.half_length;
   half_width_ = spec.half_width;
-  // The more discs the closer they follow the long side; one more than twice its length is enough.
+  // More discs follow the long side more closely. One more than twice the ratio is enough.
   const double ratio = spec.half_length / spec.half_width;
   count_ = std::clamp<std::size_t>(static_cast<std::size_t>(std::lround(2 * ratio + 1)), 1, kMost);
-  const double piece = spec.half_length / static_cast<double>(count_);  // half of what one covers
+  const double piece = spec.half_length / static_cast<double>(count_);  // half of each disc's part
   disc_ = std::hypot(piece, spec.half_width);
   for (std::size_t i = 0; i < count_; ++i) {
     along_[i] = -spec.half_length + piece * (2 * static_cast<double>(i) + 1);
@@ -92,7 +92,7 @@ void HullCheck::stand_on(SeenSpace& seen, const Pose2& pose_W) const {
 
 void HullCheck::take_place(SeenSpace& seen, const Pose2& pose_W) const {
   stand_on(seen, pose_W);
-  if (half_length_ <= 0) return;  // a disc needs no room but its own
+  if (half_length_ <= 0) return;  // a disc needs no room to turn
   seen.mark(pose_W.position(), radius_ + kBeside + SeenSpace::kCell);
 }
 
@@ -107,7 +107,7 @@ double HullCheck::clearance(const LocalMap& map, const Pose2& pose_W) const {
   return coarse < kExact ? exact(map, pose_W) : coarse;
 }
 
-/// [m] From the hull with its nose along `ahead` to the point at `d` from its centre.
+/// [m] Distance from the hull with its nose along `ahead` to the point at `d` from its centre.
 double HullCheck::outside(const Vec2& d, const Vec2& ahead) const {
   if (half_length_ <= 0) return d.norm() - radius_;
   const double dx = std::abs(ahead.dot(d)) - half_length_;
@@ -121,7 +121,8 @@ double HullCheck::outside(const Vec2& d, const Vec2& ahead) const {
 double HullCheck::exact(const LocalMap& map, const Pose2& pose_W) const {
   const Vec2 ahead = direction(pose_W.heading);
   const Vec2 centre = pose_W.position();
-  // Beyond it nothing can be nearer than kExact, but for what its cell's middle and mean differ by.
+  // Beyond it nothing can be nearer than kExact, apart from the offset of a cell's mean from its
+  // middle.
   const double reach = radius_ + kExact + LocalMap::kCell;
   double least = kExact + LocalMap::kCell;
   map.each_near(centre, reach, [&](const Vec2& point_W) {

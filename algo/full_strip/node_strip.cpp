@@ -9,13 +9,12 @@
 namespace algo {
 namespace {
 
-constexpr double kShare = 0.15;  // of a force that one sweep moves a node by: at 0.5 it overshoots,
-                                 // and the robot sways with the strip
-constexpr double kMostPush = 0.06;  // [m] of one sweep
+constexpr double kShare = 0.15;  // share of a force per sweep: 0.5 overshoots, and the robot sways
+constexpr double kMostPush = 0.06;  // [m] in one sweep
 constexpr double kNearReach = 4.5;  // [m] of the strip that every sweep moves
-constexpr double kHit = 0.05;       // [m] a march ends this close to a surface
+constexpr double kHit = 0.05;       // [m] from a surface where a march ends
 
-/// [m] Free way from `p_W` along the unit vector `along`, up to `most`.
+/// [m] Free distance from `p_W` along the unit vector `along`, up to `most`.
 double march(const LocalMap& map, const Vec2& p_W, const Vec2& along, double most) {
   double way = 0;
   for (int k = 0; k < 12 && way < most; ++k) {
@@ -38,7 +37,7 @@ void NodeStrip::lay(const Recycled<Vec2>& path) {
   space_out();
 }
 
-/// Nodes every kSpacing along `line_`.
+/// Places nodes every kSpacing along `line_`.
 void NodeStrip::space_out() {
   nodes_.clear();
   if (line_.empty()) return;
@@ -66,7 +65,7 @@ void NodeStrip::space_out() {
 
 void NodeStrip::follow(const Vec2& robot_W) {
   if (empty()) return;
-  // The nearest piece among the first metres: the strip may come back past the robot later on.
+  // The nearest piece within the first metres: the strip may pass the robot again later on.
   std::size_t first = 1;
   double best = 1e18;
   double way = 0;
@@ -104,7 +103,7 @@ void NodeStrip::push(const LocalMap& map, const StripSettings& settings, std::si
     const double rest = settings.rest_distance;
     const double to_left = march(map, node.position_W, left, rest);
     const double to_right = march(map, node.position_W, -left, rest);
-    // K_r (d_o - d) of either side away from it, and half as much from the nearest of all.
+    // K_r (d_o - d) away from each side, and half as much away from the nearest obstacle of all.
     const double sides = to_left - to_right;
     const Vec2 nearest = map.gradient(node.position_W);
     const double gradient = 0.5 * (rest - d) * nearest.dot(left);
@@ -126,12 +125,12 @@ void NodeStrip::relax(const LocalMap& map, const StripSettings& settings, int sw
 }
 
 double NodeStrip::broken_at(const LocalMap& map, const StripSettings& settings) const {
-  constexpr std::size_t kStart = 2;  // the robot stands where it stands
+  constexpr std::size_t kStart = 2;  // the robot's own place is given
   for (std::size_t i = kStart; i < nodes_.size(); ++i) {
     if (map.distance(nodes_[i].position_W) < settings.least_clearance) {
       return static_cast<double>(i) * kSpacing;
     }
-    // Two neighbours torn apart: something pushed in between.
+    // Two neighbours are far apart: an obstacle pushed in between.
     if ((nodes_[i].position_W - nodes_[i - 1].position_W).norm() > 4 * kSpacing) {
       return static_cast<double>(i) * kSpacing;
     }

@@ -24,13 +24,13 @@ constexpr std::array<Move, 8> kMoves{{{1, 0, kStraight},
                                       {0, -1, kStraight},
                                       {1, -1, kDiagonal}}};
 constexpr std::uint8_t kRoot = 255;
-constexpr double kAtRobot = 0.3;        // [m] around the robot everything can be left
-constexpr double kLeaving = 8;          // [m per m] where there is too little room
+constexpr double kAtRobot = 0.3;        // [m] around the robot, where every point may be left
+constexpr double kLeaving = 8;          // [m per m] if there is too little room
 constexpr float kBucket = 0.02F;        // [m]
-constexpr std::size_t kBuckets = 8192;  // 160 m; what costs more shares the last
-constexpr double kComfort = 0.7;        // [m] clearance from which on more is not worth a detour
-constexpr double kBorder = 0.5;         // [m] of the map that is no goal
-constexpr int kSearchFree = 15;         // lattice steps: a replaced goal is at most so far away
+constexpr std::size_t kBuckets = 8192;  // 160 m; costlier points share the last
+constexpr double kComfort = 0.7;        // [m] clearance above which more is not worth a detour
+constexpr double kBorder = 0.5;         // [m] at the map's border, where no goal may lie
+constexpr int kSearchFree = 15;         // lattice steps: the largest distance of a replaced goal
 
 }  // namespace
 
@@ -63,7 +63,7 @@ Vec2 Planner::position_W(std::uint32_t point) const {
   return corner_W_ + Vec2((column + 0.5) * kStep, (row + 0.5) * kStep);
 }
 
-/// [m] At the corner that the lattice point's four cells share.
+/// [m] Clearance at the corner that the lattice point's four cells share.
 double Planner::clearance(const LocalMap& map, std::uint32_t point) const {
   const int column = static_cast<int>(point % kSize) * 2;
   const int row = static_cast<int>(point / kSize) * 2;
@@ -76,7 +76,7 @@ bool Planner::near_robot(std::uint32_t point) const {
   return (position_W(point) - robot_W_).squaredNorm() < kAtRobot * kAtRobot;
 }
 
-/// Octile distance to the robot: the least it can cost.
+/// Octile distance to the robot: a lower bound of the cost.
 float Planner::heuristic(std::uint32_t point) const {
   const int dx = std::abs(static_cast<int>(point % kSize) - static_cast<int>(robot_ % kSize));
   const int dy = std::abs(static_cast<int>(point / kSize) - static_cast<int>(robot_ / kSize));
@@ -95,7 +95,7 @@ void Planner::push(std::uint32_t point, float g, std::uint8_t towards) {
   buckets_[at] = static_cast<std::uint32_t>(entries_.size());
 }
 
-/// One of the cheapest points waiting.
+/// One of the cheapest waiting points.
 std::optional<std::uint32_t> Planner::pop() {
   while (bucket_ < kBuckets && buckets_[bucket_] == 0) ++bucket_;
   if (bucket_ == kBuckets) return std::nullopt;
@@ -104,7 +104,7 @@ std::optional<std::uint32_t> Planner::pop() {
   return entry.point;
 }
 
-/// Cost [m per m] of a step to `point`, negative where there is no way.
+/// Cost [m per m] of a step to `point`; negative if there is no way.
 float Planner::cost_of(const LocalMap& map, std::uint32_t point) {
   if (costed_[point] == round_) return cost_[point];
   const double d = clearance(map, point);
@@ -114,9 +114,8 @@ float Planner::cost_of(const LocalMap& map, std::uint32_t point) {
   return cost_[point] = static_cast<float>(cost);
 }
 
-/// The nearest point with room to stand: of those that have been seen, if there is one. What no
-/// beam went through may be the inside of the very thing that stands on the goal, and the robot
-/// would go all the way round it to find that out.
+/// The nearest point with room to stand, preferably a seen one. An unseen point may be the inside
+/// of the obstacle on the goal, and the robot would drive all around it to find out.
 std::uint32_t Planner::free_point(const LocalMap& map, std::uint32_t wanted) const {
   std::uint32_t best = wanted;
   bool best_seen = false;
@@ -149,7 +148,7 @@ void Planner::start(const LocalMap& map,
   robot_W_ = robot_W;
   robot_ = point_at(robot_W);
   goal_W_ = goal_W;
-  // A goal beyond the map: the place where the straight line to it leaves the map.
+  // For a goal beyond the map: the place where the straight line to it leaves the map.
   const Vec2 low = corner_W_ + Vec2(kBorder, kBorder);
   const Vec2 high = corner_W_ + Vec2(kSize * kStep - kBorder, kSize * kStep - kBorder);
   double share = 1;

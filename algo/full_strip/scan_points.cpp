@@ -1,4 +1,4 @@
-// algo/full_strip/scan_points.cpp: one frame a beam where the scanner turns, one a scan where not.
+// algo/full_strip/scan_points.cpp: one frame per beam for a sweeping scanner, else one per scan.
 #include "algo/full_strip/scan_points.hpp"
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 namespace algo {
 namespace {
 
-constexpr std::size_t kTrail = 64;  // places remembered
+constexpr std::size_t kTrail = 64;  // poses remembered
 
-/// A frame ready to map many points.
+/// A frame prepared to map many points.
 struct Frame {
   Vec2 origin{0, 0};
   Vec2 ahead{1, 0};
@@ -31,7 +31,7 @@ void ScanPoints::follow(const Pose2& pose_W, double stamp) {
   if (trail_.size() > kTrail) trail_.erase(trail_.begin());
 }
 
-/// Between the places around `stamp`.
+/// The pose interpolated at `stamp`.
 Pose2 ScanPoints::pose_at(double stamp) const {
   for (std::size_t i = trail_.size(); i-- > 1;) {
     const Place& a = trail_[i - 1];

@@ -1,4 +1,4 @@
-// algo/full_strip/seen_space.cpp: beams drawn into a rolling window.
+// algo/full_strip/seen_space.cpp: draws beams into a rolling window.
 #include "algo/full_strip/seen_space.hpp"
 
 #include <algorithm>
@@ -6,10 +6,10 @@
 namespace algo {
 namespace {
 
-constexpr double kLook = 2.0;    // [m] along a beam; beyond it nothing is asked soon
-constexpr double kBehind = 0.1;  // [m] of a surface that nobody reaches but through it
-// Cells added so that all are positive and a cast is their floor; index() does not see whole
-// windows.
+constexpr double kLook = 2.0;    // [m] along a beam; nothing beyond it is needed soon
+constexpr double kBehind = 0.1;  // [m] behind a surface, reachable only through it
+// Added to cells so that all are positive and a cast is their floor. It is a multiple of the
+// window, so index() is unchanged.
 constexpr double kPositive = 1 << 22;
 static_assert((1 << 22) % SeenSpace::kSize == 0);
 
@@ -29,7 +29,7 @@ void SeenSpace::follow(const Vec2& position_W) {
     reset(position_W);
     return;
   }
-  // What comes in on one side takes the cells of what leaves on the other.
+  // New cells on one side reuse the memory of those that leave on the other.
   for (; left_ != left; left_ += left > left_ ? 1 : -1) {
     const int column = left > left_ ? left_ : left_ - 1;
     for (int row = 0; row < kSize; ++row) seen_[index(column, row)] = 0;
@@ -44,10 +44,10 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
   const Vec2 middle_W = Vec2(left_ + kSize / 2, bottom_ + kSize / 2) * kCell;
   const bool near = (sensor_W.position() - middle_W).norm() < kSize * kCell / 2 - kLook - 2 * kCell;
   if (!near || !(scan.angle_increment > 0)) return;
-  // Beams so close that at kLook they pass no cell by; other ones each time.
+  // A stride so small that no cell is skipped at kLook. Each call starts at another beam.
   const double apart = kCell / (kLook * scan.angle_increment);
   const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
-  std::uint8_t* const seen = seen_.data();  // bytes might be any member: not read anew each time
+  std::uint8_t* const seen = seen_.data();  // a local copy: byte stores may alias members
   const Vec2 from = sensor_W.position() / kCell + Vec2(kPositive, kPositive);
   for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
     if (scan.status[i] == Beam::Invalid) continue;

@@ -1,4 +1,4 @@
-// algo/full_strip/space_time.cpp: levels, bins, the best few.
+// algo/full_strip/space_time.cpp: the levels, the bins, and the best few states.
 #include "algo/full_strip/space_time.hpp"
 
 #include <algorithm>
@@ -10,27 +10,27 @@
 namespace algo {
 namespace {
 
-constexpr std::size_t kBeam = 60;  // states kept a level
+constexpr std::size_t kBeam = 60;  // states kept per level
 constexpr std::array<double, 11> kLevels{0.2, 0.3, 0.3, 0.4, 0.4, 0.4, 0.4, 0.5, 0.5, 0.5, 0.5};
 constexpr double kSubstep = 0.1;                               // [s]
 constexpr std::array<double, 5> kSpeeds{1, 0.5, 0, -0.5, -1};  // of the top speed
 constexpr std::array<double, 5> kTurns{0, 0.4, -0.4, 1, -1};   // of the top turn rate
 constexpr std::size_t kCommands = kSpeeds.size() * kTurns.size();
-constexpr double kMargin = 0.08;           // [m] from what moves, now
-constexpr double kMarginPerSecond = 0.12;  // they may turn
-constexpr double kStaticMargin = 0.03;     // [m] from what stands,
-constexpr double kStaticFloor = 0.02;      // [m] and from where on only a way out counts
+constexpr double kMargin = 0.08;           // [m] from moving obstacles, at present
+constexpr double kMarginPerSecond = 0.12;  // since they may turn
+constexpr double kStaticMargin = 0.03;     // [m] from static obstacles,
+constexpr double kStaticFloor = 0.02;      // [m] below which only a way out counts
 constexpr double kTimePerMetre = 0.6;      // [s/m] to the goal
-constexpr double kRiskReach = 0.25;        // [m] room beyond the margin that is worth something,
-constexpr double kRiskTime = 0.5;          // [s] and what both drive in this time
-constexpr double kRisk = 1.5;              // [s/s] at no room at all
+constexpr double kRiskReach = 0.25;        // [m] room beyond the margin that lowers the risk,
+constexpr double kRiskTime = 0.5;          // [s] plus the distance that both drive in this time
+constexpr double kRisk = 1.5;              // [s/s] at zero room
 constexpr double kRiskFades = 2.5;         // [s] prediction time after which it counts 1/e
 constexpr double kReverse = 0.15;          // [s/s] for driving into where the scanner does not look
-constexpr double kReach = 6.0;    // [m] tracks farther than this from the motion do not count
-constexpr double kCloser = 0.3;   // of the margins, where nothing else is clear
-constexpr double kHeld = 1.5;     // [s] of the motions weighed when nothing is
-constexpr double kLater = 0.02;   // [m] that room counts more for every substep
-constexpr double kSlack = 0.002;  // [m] a position may be nearer to what stands than the one before
+constexpr double kReach = 6.0;    // [m] tracks farther than this from the motion are ignored
+constexpr double kCloser = 0.3;   // of the margins, if nothing else is clear
+constexpr double kHeld = 1.5;     // [s] of the candidate motions if none is clear
+constexpr double kLater = 0.02;   // [m] bonus in room for every later substep
+constexpr double kSlack = 0.002;  // [m] a position may be this much nearer to static obstacles
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
@@ -38,7 +38,7 @@ Twist2 command(std::size_t index, const MotionLimits& limits) {
           kTurns[index % kTurns.size()] * limits.max_omega};
 }
 
-/// [m] From `p` (in R) to the hull.
+/// [m] Distance from the hull to `p` (in R).
 double to_hull(const RobotSpec& spec, const Vec2& p) {
   if (spec.half_length <= 0) return p.norm() - spec.radius;
   const double dx = std::max(0.0, std::abs(p.x()) - spec.half_length);
@@ -60,8 +60,8 @@ SpaceTimeSearch::SpaceTimeSearch() : bins_(kBins), bin_round_(kBins) {
 bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
   constexpr double kStep = 0.25;    // [s]
   constexpr int kSteps = 16;        // 4 s
-  constexpr double kNear = 0.5;     // [m] room that is enough,
-  constexpr double kSpread = 0.15;  // [m/s] and more the farther ahead one looks
+  constexpr double kNear = 0.5;     // [m] sufficient room,
+  constexpr double kSpread = 0.15;  // [m/s] and more, the farther the prediction
   const Recycled<Node>& nodes = strip.nodes();
   for (const Track& track : *in.tracks) {
     for (int k = 0; k <= kSteps; ++k) {
@@ -70,7 +70,7 @@ bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
       const double reach = track.radius + in.spec->radius + kNear + kSpread * time;
       const auto near = [&](const Vec2& p_W) { return (p_W - at_W).squaredNorm() < reach * reach; };
       if (near(in.state.pose_W.position())) return true;
-      // Anywhere along the strip that the robot may have come to by then.
+      // Anywhere on the strip that the robot may have reached by then.
       const double way = in.limits.max_v * time + NodeStrip::kSpacing;
       const auto end = std::min(nodes.size(), static_cast<std::size_t>(way / NodeStrip::kSpacing));
       for (std::size_t i = 0; i < end; i += 2) {
@@ -81,8 +81,8 @@ bool SpaceTimeSearch::needed(const SpaceTimeInput& in, const NodeStrip& strip) {
   return false;
 }
 
-/// At `time` [s] after the start. What moves may turn towards the robot at any moment: the faster
-/// the two are, the more room there must be to see it and to give way.
+/// At `time` [s] after the start. Moving obstacles may turn towards the robot at any moment: the
+/// faster the two are, the more room the robot needs to see it and to give way.
 SpaceTimeSearch::Nearness SpaceTimeSearch::nearness(const SpaceTimeInput& in,
                                                     double time,
                                                     const MotionState& at) const {
@@ -104,7 +104,7 @@ SpaceTimeSearch::Nearness SpaceTimeSearch::nearness(const SpaceTimeInput& in,
   return out;
 }
 
-/// Drives `s` on for a level. False when something is hit.
+/// Drives `s` on for one level. False on a collision.
 bool SpaceTimeSearch::step(
     const SpaceTimeInput& in, double time, double length, const Twist2& command, State& s) const {
   const auto substeps = static_cast<int>(std::lround(length / kSubstep));
@@ -123,7 +123,7 @@ bool SpaceTimeSearch::step(
   return true;
 }
 
-/// The cheapest state of each bin of place, heading and speed; of these the best kBeam.
+/// Keeps the cheapest state of each bin of place, heading and speed; of these the best kBeam.
 void SpaceTimeSearch::keep_best() {
   order_.resize(next_.size());
   for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<std::uint32_t>(i);
@@ -161,7 +161,7 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, Weighing& out) {
     near_tracks_.push_back(track);
     near_speeds_.push_back(track.velocity_W.norm());
   }
-  // Too close to something that stands already: no closer.
+  // Already too close to a static obstacle: come no closer.
   const double standing = in.hull->clearance(*in.map, in.state.pose_W) - kSlack;
   static_margin_ = std::clamp(standing, kStaticFloor, kStaticMargin);
   const double room = std::min(kStaticFloor, standing);
@@ -191,7 +191,7 @@ Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, W
         if (!step(in, time, kLevels[level], command(c, in.limits), s)) continue;
         if (level == 0) alive[c] = true;
         const double left = (s.motion.pose_W.position() - in.carrot_W).norm() + in.beyond;
-        // What points away from the way to go has a turn before it.
+        // A heading away from the direction to go costs a turn first.
         const Vec2 to = in.carrot_W - s.motion.pose_W.position();
         const double error =
             std::abs(wrap_angle(std::atan2(to.y(), to.x()) - s.motion.pose_W.heading));
@@ -215,7 +215,7 @@ Twist2 SpaceTimeSearch::attempt(const SpaceTimeInput& in, double margin_share, W
   return best;
 }
 
-/// Whether `twist` for one step and a brake keep `room` [m] from what stands.
+/// True if `twist` for one step, then braking, keeps `room` [m] from static obstacles.
 bool SpaceTimeSearch::stops_clear(const SpaceTimeInput& in,
                                   const Twist2& twist,
                                   double room) const {
@@ -227,8 +227,8 @@ bool SpaceTimeSearch::stops_clear(const SpaceTimeInput& in,
   return rests_clear(*in.map, *in.hull, state, in.limits, kSubstep, room);
 }
 
-/// Held for a while, the command that keeps most room; but no guess of what moves is worth driving
-/// into what stands.
+/// The command that, held for a while, keeps the most room. Never drives into static obstacles for
+/// the sake of a predicted motion.
 Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
   Twist2 best{};
   double most = -std::numeric_limits<double>::infinity();
@@ -240,7 +240,7 @@ Twist2 SpaceTimeSearch::least_bad(const SpaceTimeInput& in) const {
     for (int k = 1; k * kSubstep <= kHeld; ++k) {
       state = advanced(state, twist, in.limits, kSubstep);
       const double standing = in.hull->clearance(*in.map, state.pose_W);
-      // What comes later may still be helped.
+      // Later approaches may still be avoided.
       least =
           std::min(least, std::min(standing, nearness(in, k * kSubstep, state).room) + kLater * k);
     }

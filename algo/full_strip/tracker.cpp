@@ -1,4 +1,4 @@
-// algo/full_strip/tracker.cpp: clusters, circles, filters.
+// algo/full_strip/tracker.cpp: clusters, circles and Kalman filters.
 #include "algo/full_strip/tracker.hpp"
 
 #include <algorithm>
@@ -13,40 +13,40 @@ namespace {
 
 constexpr std::size_t kMostFilters = 64;
 constexpr double kGap = 0.12;          // [m] between neighbours of one cluster, at range 0,
-constexpr double kGapPerMetre = 0.02;  // and more for every metre of range
-constexpr double kCuspArm = 0.15;      // [m] to both sides of a dent that parts two clusters
-constexpr double kCusp = 0.04;         // [m] its depth
+constexpr double kGapPerMetre = 0.02;  // and per metre of range
+constexpr double kCuspArm = 0.15;      // [m] on both sides of a dent that separates two clusters
+constexpr double kCusp = 0.04;         // [m] depth of the dent
 constexpr std::size_t kFewest = 4;     // beams of a cluster
 constexpr double kLongest = 1.6;       // [m] of a cluster's chord
-constexpr double kThinnest = 0.06, kThickest = 0.8;  // [m] radii
-constexpr double kRound = 0.035;                     // [m] residual of what passes for a circle
-constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] before anything is known
-constexpr double kTrackSpread = 0.05;                          // [m] of a radius that is known
+constexpr double kThinnest = 0.06, kThickest = 0.8;            // [m] radii
+constexpr double kRound = 0.035;                               // [m] largest residual of a circle
+constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] prior of a new track
+constexpr double kTrackSpread = 0.05;                          // [m] of a known radius
 constexpr double kNoise = 0.02;                                // [m] of a hit
-constexpr double kGate = 0.30;          // [m] a track may be off its prediction,
-constexpr double kGateSigmas = 3;       // and this much of its uncertainty
+constexpr double kGate = 0.30;          // [m] between a track and its prediction,
+constexpr double kGateSigmas = 3;       // plus this many sigmas
 constexpr double kCentreNoise = 0.025;  // [m] of a fitted centre
-constexpr double kAcceleration = 0.5;   // [m/s2] that a constant velocity does not explain
-constexpr double kSurprise = 9;         // normalised innovation squared that opens the velocity
+constexpr double kAcceleration = 0.5;   // [m/s2] process noise
+constexpr double kSurprise = 9;         // normalised innovation squared that widens the velocity
 constexpr double kFirstSpeed = 1.5;     // [m/s] standard deviation of a new track
 constexpr double kFound = 0.25;         // [s] a track is watched before it may count as moving
 constexpr double kMoves = 0.25;         // [m/s]
-constexpr double kGone = 0.12;          // [m] from where it was first seen
+constexpr double kGone = 0.12;          // [m] from the place of first sight
 constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it stands
 constexpr double kStandsFor = 1.0;      // [s]
-constexpr double kBody = 0.2;           // [m] radius of what may move before it has been seen to
-constexpr double kBodyBend = 0.04;      // [m] root mean square that its arc is off a straight line
-constexpr double kMemoryEvery = 0.09;   // [s] between two scans kept,
-constexpr double kMemoryLeast = 0.2;    // and how old one must be to compare with,
-constexpr double kMemoryMore = 0.5;     // and how much older than the track it may be
-constexpr double kBeyond = 0.2;         // [m] an earlier beam went on behind what stands there now
-constexpr double kSame = 0.1;           // [m] an earlier hit was at the same place
-constexpr std::size_t kSolid = 8;       // beams of a cluster that may be found moving
+constexpr double kBody = 0.2;       // [m] radius of a body that may move before it has been seen to
+constexpr double kBodyBend = 0.04;  // [m] root mean square distance of its arc from a straight line
+constexpr double kMemoryEvery = 0.09;  // [s] between two kept scans,
+constexpr double kMemoryLeast = 0.2;   // [s] least age of one to compare with,
+constexpr double kMemoryMore = 0.5;    // [s] and how much older than the track it may be
+constexpr double kBeyond = 0.2;        // [m] an earlier beam went on behind the present obstacle
+constexpr double kSame = 0.1;          // [m] within which an earlier hit is at the same place
+constexpr std::size_t kSolid = 8;      // beams of a cluster that may count as moving
 constexpr double kStout = 0.12;   // [m] and its radius: thinner things come and go in the filter
-constexpr double kAround = 0.15;  // [m] about a moving circle that its hits may lie in
-constexpr double kCoast = 3.0;    // [s] a moving track is believed unseen
-constexpr double kForget = 0.4;   // [s] any other
-constexpr int kEmpty = 3;         // scans that look through a track end it
+constexpr double kAround = 0.15;  // [m] around a moving circle: its hits lie within
+constexpr double kCoast = 3.0;    // [s] a moving track lasts unseen
+constexpr double kForget = 0.4;   // [s] any other track
+constexpr int kEmpty = 3;         // scans that look through a track before it ends
 
 /// [m] Root mean square distance of every `stride`th of the points from their own straight line.
 double bend(const std::vector<Vec2>& points_W,
@@ -68,13 +68,13 @@ double bend(const std::vector<Vec2>& points_W,
   return std::sqrt(std::max(0.0, least));
 }
 
-/// [m] Of a track's radius after `hits` scans.
+/// [m] Spread of a track's radius after `hits` scans.
 double radius_spread(int hits) {
   return std::max(kTrackSpread, kRadiusSpread / (hits + 1));
 }
 
-/// [s] Run-clock time at which the beams first..last were fired, in the middle: neighbours belong
-/// to the sweep's turns by turns.
+/// [s] Mean run-clock time at which the beams first..last were fired: neighbouring beams belong to
+/// the sweep's turns in rotation.
 double middle_time(const LaserScan& scan, std::size_t first, std::size_t last) {
   const auto turns = std::clamp<std::size_t>(scan.turns, 1, scan.size());
   const std::size_t from = std::min((first + last) / 2, scan.size() - turns);
@@ -83,7 +83,7 @@ double middle_time(const LaserScan& scan, std::size_t first, std::size_t last) {
   return sum / static_cast<double>(turns);
 }
 
-/// The beam of a scanner at `sensor_W` that looks at the point, from the scan's first.
+/// The index of the beam that looks at the point, for a scanner at `sensor_W`.
 double beam_at(const Pose2& sensor_W, const Vec2& point_W, double angle_min, double increment) {
   const Vec2 p = to_child(sensor_W, point_W);
   return (std::atan2(p.y(), p.x()) - angle_min) / increment;
@@ -128,7 +128,7 @@ void Tracker::reset() {
   for (Memory& memory : memories_) memory.stamp = -1;
 }
 
-/// Neighbouring hits that lie close together.
+/// Groups neighbouring hits that lie close together.
 void Tracker::cluster(const LaserScan& scan,
                       const Pose2& sensor_W,
                       const std::vector<Vec2>& points_W) {
@@ -149,7 +149,7 @@ void Tracker::cluster(const LaserScan& scan,
   if (first < scan.size()) close(first, scan.size() - 1, sensor_W, points_W);
 }
 
-/// Makes a cluster of the points first..last, or two where they show a dent: bodies side by side.
+/// Makes one cluster of the points first..last, or two if they show a dent: bodies side by side.
 void Tracker::close(std::size_t first,
                     std::size_t last,
                     const Pose2& sensor_W,
@@ -169,7 +169,7 @@ void Tracker::close(std::size_t first,
   clusters_.push_back(c);
 }
 
-/// Gauss-Newton on the centre and the radius, which a prior `radius` +- `spread` holds.
+/// Gauss-Newton on the centre and the radius, with the prior `radius` +- `spread`.
 void Tracker::fit(Cluster& c,
                   const Pose2& sensor_W,
                   const std::vector<Vec2>& points_W,
@@ -185,7 +185,7 @@ void Tracker::fit(Cluster& c,
   mean /= count;
   const Vec2 line = mean - sensor_W.position();
   c.radius = std::clamp(std::min(radius, 0.6 * c.chord + 0.03), kThinnest, kThickest);
-  if (spread < kRadiusSpread) c.radius = radius;  // of a track
+  if (spread < kRadiusSpread) c.radius = radius;  // of a known track
   const double prior = c.radius;
   c.centre_W = mean + line.normalized() * (0.7 * c.radius);
   for (int round = 0; round < 6; ++round) {
@@ -214,14 +214,13 @@ void Tracker::fit(Cluster& c,
     c.centre_W += bounded.head<2>();
     c.radius = std::clamp(c.radius + bounded(2), kThinnest, kThickest);
   }
-  // Its centre lies behind its surface, or it is a hollow.
+  // A body's centre lies behind its surface; otherwise it is a hollow.
   const bool bulges = (c.centre_W - sensor_W.position()).norm() > line.norm();
   c.round = bulges && c.residual < kRound && c.radius > kThinnest && c.radius < kThickest;
   c.body = c.round && c.radius > kBody && bend(points_W, c.first, c.last, stride) > kBodyBend;
 }
 
-/// Moves the filters on to the time of a scan. Never to the run clock: the next scan would be
-/// older.
+/// Moves the filters to the time of a scan. Never to the run clock: the next scan would be older.
 void Tracker::advance(double stamp) {
   const double dt = stamp - now_;
   if (!(dt > 0)) return;
@@ -236,7 +235,7 @@ void Tracker::advance(double stamp) {
 }
 
 void Tracker::correct(Filter& f, const Cluster& c) {
-  // What the beams met was where the filter takes it to have been when they were fired.
+  // Compares with the filter's position at the time when the beams were fired.
   const Vec2 off = c.centre_W + f.velocity_W * (now_ - c.stamp) - f.position_W;
   const double r = kCentreNoise * kCentreNoise;
   if (off.squaredNorm() / (2 * (f.pp + r)) > kSurprise) f.vv += 1;
@@ -253,7 +252,8 @@ void Tracker::correct(Filter& f, const Cluster& c) {
   f.empty = 0;
 }
 
-/// Clusters go to tracks, the nearest pair first: who lost its own does not take another's.
+/// Assigns clusters to tracks, nearest pair first: a track that lost its cluster does not take
+/// another's.
 void Tracker::associate(const Pose2& sensor_W, const std::vector<Vec2>& points_W, double stamp) {
   pairs_.clear();
   for (std::size_t f = 0; f < filters_.size(); ++f) {
@@ -317,7 +317,7 @@ void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stam
   }
 }
 
-/// Whether an earlier scan looked well beyond the point.
+/// True if an earlier scan looked well beyond the point.
 bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
   const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
@@ -329,7 +329,7 @@ bool Tracker::free_in(const Memory& memory, const Vec2& point_W) const {
   return true;
 }
 
-/// Whether an earlier scan hit something at the point.
+/// True if an earlier scan hit something at the point.
 bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
   const double beam = beam_at(memory.sensor_W, point_W, angle_min_, angle_increment_);
   if (!(beam >= 1 && beam < static_cast<double>(memory.ranges.size()) - 2)) return false;
@@ -338,12 +338,12 @@ bool Tracker::hit_in(const Memory& memory, const Vec2& point_W) const {
   return std::abs(range - (point_W - memory.sensor_W.position()).norm()) < kSame;
 }
 
-/// Whether something stands where an earlier scan saw nothing, or nothing where something stood. In
-/// a world at rest neither happens, however the robot's own motion uncovers and hides things.
+/// True if there is an obstacle where an earlier scan saw none, or none where it saw one. In a
+/// static world neither happens, whatever the robot's own motion uncovers and hides.
 bool Tracker::changed(const Filter& f, const Cluster& c, const std::vector<Vec2>& points_W) const {
   const Memory& now = memories_[newest_];
   for (std::size_t k = 1; k < kMemories; ++k) {
-    const Memory& then = memories_[(newest_ + k) % kMemories];  // the oldest first
+    const Memory& then = memories_[(newest_ + k) % kMemories];  // oldest first
     const double since = now_ - then.stamp;
     if (then.stamp < 0 || since < kMemoryLeast || since > now_ - f.born + kMemoryMore) continue;
     const std::size_t stride = std::max<std::size_t>(1, (c.last - c.first) / 16);
@@ -379,7 +379,7 @@ void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points
   }
 }
 
-/// Whether the beams at the track's place go well beyond it.
+/// True if the beams at the track's place go well beyond it.
 bool Tracker::looked_through(const Filter& f, const LaserScan& scan, const Pose2& sensor_W) const {
   const double far = (f.position_W - sensor_W.position()).norm();
   const double beam = beam_at(sensor_W, f.position_W, scan.angle_min, scan.angle_increment);
@@ -410,7 +410,7 @@ void Tracker::update(const LaserScan& scan,
     return f.empty >= kEmpty || stamp - f.seen > (f.of_map() ? kForget : kCoast);
   });
   publish(stamp);
-  // What two things standing together show is no circle: their places count all the same.
+  // Two obstacles close together do not fit a circle. All hits near a moving track count as moving.
   for (const Track& track : moving_) {
     const double reach = track.radius + kAround;
     for (std::size_t i = 0; i < scan.size(); ++i) {

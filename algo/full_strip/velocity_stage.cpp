@@ -8,23 +8,23 @@
 namespace algo {
 namespace {
 
-constexpr double kCreep = 0.35;        // [m/s] where the hull just fits
-constexpr double kCreepRoom = 0.055;   // [m] beside the hull there
-constexpr double kSpeedPerRoom = 3.0;  // [1/s] faster for every metre more
+constexpr double kCreep = 0.35;        // [m/s] where the hull barely fits
+constexpr double kCreepRoom = 0.055;   // [m] room beside the hull there
+constexpr double kSpeedPerRoom = 3.0;  // [1/s] more speed per metre more
 constexpr double kSlowest = 0.25;      // [m/s]
 constexpr double kLateral = 2.0;       // [m/s2] in curves
-constexpr double kTurnShare = 0.8;     // of the turn rate that the profile plans with
+constexpr double kTurnShare = 0.8;     // of the turn rate that the profile assumes
 constexpr double kBrakeShare = 0.7;    // of the deceleration
-constexpr double kTurnOnSpot = 1.2;    // [rad] heading error from which on the robot turns first
+constexpr double kTurnOnSpot = 1.2;    // [rad] heading error above which the robot turns first
 constexpr double kTurnGain = 2.5;      // [1/s]
-constexpr double kArc = 0.1;           // [rad] heading error that an arc takes away by itself,
-constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and the more the faster
+constexpr double kArc = 0.1;           // [rad] heading error that an arc removes by itself,
+constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and more with speed
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kFloor = 0.02;   // [m] nearer only an escape is tried: more than a scanner is off
-constexpr double kSlack = 0.002;  // [m] a position may be nearer than the one before
+constexpr double kFloor = 0.02;   // [m] below it only an escape is tried; above a scanner's error
+constexpr double kSlack = 0.002;  // [m] a position may be this much nearer than the last
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
-/// [m] Ahead of the robot that it aims at, at speed `v`.
+/// [m] Distance ahead of the robot of the point it steers for, at speed `v`.
 double lookahead(double v) {
   return std::clamp(0.3 + 0.4 * std::abs(v), 0.35, 1.0);
 }
@@ -36,8 +36,8 @@ Twist2 within(const Twist2& twist, const MotionLimits& limits) {
 
 }  // namespace
 
-/// The highest speed at each node: by room, curvature, turn rate; then so that the robot can brake
-/// for what comes.
+/// The highest speed at each node: by room, curvature and turn rate, then such that the robot can
+/// brake for the nodes ahead.
 void VelocityStage::profile(const StageInput& in) {
   const Recycled<Node>& nodes = in.strip->nodes();
   profiled_ = std::min(kProfile, nodes.size());
@@ -93,7 +93,7 @@ Twist2 VelocityStage::pursue(const StageInput& in,
   }
   double v = speed_at(s) * share;
   const double curvature = 2 * aim.y() / (length * length);
-  // A slow robot turns first what its arc would take metres to turn.
+  // A slow robot first turns by what its arc would take metres to turn.
   const double least = kTurnGain * (std::abs(error) - kArc - kArcPerSpeed * v);
   double omega = std::copysign(std::max(std::abs(curvature) * v, least), error);
   if (std::abs(omega) > w_max) {
@@ -109,9 +109,9 @@ bool VelocityStage::admissible(const StageInput& in,
                                Vec2& aim_W) const {
   MotionState state = in.state;
   double s = 0;
-  // How far the robot has come along the strip by the time its command acts.
+  // The robot's distance along the strip when its command begins to act.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
-  // Too close already: no step may lead closer until there is room again.
+  // Already too close: no step may lead closer until there is room again.
   double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
@@ -128,7 +128,7 @@ bool VelocityStage::admissible(const StageInput& in,
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
     margin = std::max(margin, std::min(kMargin, room - kSlack));
-    // The strip may look another way at the next tick, or somebody press Stop.
+    // The strip may change at the next tick, or a person may press Stop.
     if (k == 0 && !rests_clear(*in.map, hull_, state, in.limits, in.dt, margin)) return false;
     if (state.twist == Twist2{} && command == Twist2{}) return true;
   }
@@ -170,7 +170,8 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
   return wanted;
 }
 
-/// `twist` held for `horizon` and braked: `gain` [m] is how much more room there is at its end.
+/// True if `twist` may be held for `horizon` and braked. `gain` [m] is the increase of room at its
+/// end.
 bool VelocityStage::holds(const StageInput& in,
                           const Twist2& twist,
                           double horizon,
@@ -183,7 +184,7 @@ bool VelocityStage::holds(const StageInput& in,
     state = advanced(state, k < ticks ? twist : Twist2{}, in.limits, in.dt);
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
-    // Too close already: every step must lead away.
+    // Already too close: every step must lead away.
     const double floor = std::min(least, kMargin) - 1e-3;
     if (room < floor) return false;
     least = std::max(least, room);

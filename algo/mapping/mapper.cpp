@@ -1,4 +1,4 @@
-// algo/mapping/mapper.cpp: place, match, enter.
+// algo/mapping/mapper.cpp: places, matches and enters scans.
 #include "algo/mapping/mapper.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// algo/mapping/occupancy_map.cpp: beams into cells.
+// algo/mapping/occupancy_map.cpp: enters beams into cells.
 #include "algo/mapping/occupancy_map.hpp"
 
 #include <limits>
@@ -7,7 +7,7 @@ namespace algo {
 namespace {
 
 constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
-constexpr std::uint16_t kFresh = 64;  // hits after which a cell's mean goes on as a slow average
+constexpr std::uint16_t kFresh = 64;  // hits after which a cell's mean becomes a slow average
 
 }  // namespace
 
@@ -15,7 +15,7 @@ OccupancyMap::OccupancyMap(double cell, int side, const Vec2& centre_W) : cells_
   cells_.centre_on(centre_W);
 }
 
-/// All cells between the ends but the one the beam ends in.
+/// Counts a pass for all cells between the ends, except the cell in which the beam ends.
 void OccupancyMap::pass(const Vec2& from_W, const Vec2& to_W) {
   const Cell end = cells_.cell_of(to_W);
   const Vec2 way = to_W - from_W;

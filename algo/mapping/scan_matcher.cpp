@@ -1,4 +1,4 @@
-// algo/mapping/scan_matcher.cpp: lines through points, and a step of the pose.
+// algo/mapping/scan_matcher.cpp: fits lines to points, and computes a step of the pose.
 #include "algo/mapping/scan_matcher.hpp"
 
 #include <Eigen/Cholesky>
@@ -7,7 +7,7 @@ namespace algo {
 namespace {
 
 constexpr std::size_t kFewestOnLine = 3;
-constexpr double kRoundest = 0.15;  // lesser over greater variance of what still is a line
+constexpr double kRoundest = 0.15;  // largest ratio of smaller to larger variance of a line
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::optional<Surface> SurfaceFit::line() const {
   const double middle = (xx + yy) / 2;
   const double half = std::hypot((xx - yy) / 2, xy);
   if (!(half > 0) || middle - half > kRoundest * (middle + half)) return std::nullopt;
-  const double along = std::atan2(2 * xy, xx - yy) / 2;  // of the greater variance
+  const double along = std::atan2(2 * xy, xx - yy) / 2;  // of the larger variance
   return Surface{mean, {-std::sin(along), std::cos(along)}};
 }
 

@@ -1,5 +1,4 @@
-// algo/pipeline/controllers.cpp: the readings of the elastic strip, then what they
-// are compared with.
+// algo/pipeline/controllers.cpp: the variants of the elastic strip, then the baselines.
 #include "algo/pipeline/controllers.hpp"
 
 #include <algorithm>
@@ -34,8 +33,8 @@ std::unique_ptr<Controller> made() {
   return std::make_unique<Type>();
 }
 
-/// A via point that is kept follows pass' = end + F_ext + K_c (chord - pass): its error changes
-/// sign at each tick and shrinks by the factor K_c, with K_c = 1 never.
+/// A kept via point follows pass' = end + F_ext + K_c (chord - pass). Its error changes sign at
+/// each tick and shrinks by the factor K_c; with K_c = 1 it never shrinks.
 std::optional<std::string> via_kept_refusal(const Parameters& parameters) {
   if (parameters[kContractionGain] < 1) return std::nullopt;
   return "k_c must be below 1 with the controller via_kept: at 1 its via point swings from side to "

@@ -1,17 +1,17 @@
-// algo/pipeline/grid_thinning.cpp: periods, and which grid is another.
+// algo/pipeline/grid_thinning.cpp: the periods of grids, and the comparison of grids.
 #include "algo/pipeline/grid_thinning.hpp"
 
 namespace algo {
 namespace {
 
 constexpr double kPeriod = 0.5;   // [s] between two grids
-constexpr double kRefresh = 5.0;  // [s] after which an unchanged one comes again, for latecomers
+constexpr double kRefresh = 5.0;  // [s] after which an unchanged one comes again, for new viewers
 
 bool brings_grid(const Layer& layer) {
   return layer.kind == LayerKind::Grid && !layer.empty();
 }
 
-/// Written so that a stamp that is not a number has waited long enough.
+/// Written so that a NaN stamp counts as long enough.
 bool passed(const std::optional<double>& since, double now, double period) {
   return !since || !(now - *since < period);
 }

@@ -1,4 +1,4 @@
-// algo/pipeline/narrator.cpp: words are made twice a second, not forty times.
+// algo/pipeline/narrator.cpp: makes words twice a second, not forty times.
 #include "algo/pipeline/narrator.hpp"
 
 #include "algo/explain.hpp"
@@ -7,8 +7,8 @@ namespace algo {
 namespace {
 
 constexpr double kPeriod = 0.5;        // [s]
-constexpr double kLegendPeriod = 2.0;  // [s] a viewer who missed a frame waits so long at most
-// Room for the longest words, so that those which are longer than all before do not allocate.
+constexpr double kLegendPeriod = 2.0;  // [s] longest wait of a viewer who missed a frame
+// Room for the longest words, so that words longer than all before do not allocate.
 constexpr std::size_t kLongestWhat = 60;
 constexpr std::size_t kLongestWhy = 250;
 
@@ -33,7 +33,7 @@ void Narrator::tell(const Controller& controller, Telemetry& t) {
                  .limit = t.limit,
                  .behaviour = t.behaviour,
                  .state = t.output.state};
-  // Written so that a stamp that is not a number makes new ones.
+  // Written so that a NaN stamp makes new words.
   t.words_fresh = !said_ || !now.same_state(*said_) || !(now.stamp - said_->stamp < kPeriod);
   make_room(t.words);
   if (t.words_fresh) {

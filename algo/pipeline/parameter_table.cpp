@@ -1,4 +1,4 @@
-// algo/pipeline/parameter_table.cpp: the union of all lists, and what is refused.
+// algo/pipeline/parameter_table.cpp: the union of all lists, and the refusals.
 #include "algo/pipeline/parameter_table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// algo/pipeline/pipeline.cpp: what the robot does every period, in the order it does it.
+// algo/pipeline/pipeline.cpp: the steps of every period, in order.
 #include "algo/pipeline/pipeline.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace algo {
 namespace {
 
-/// [m] From a rectangular hull to the nearest return of all beams.
+/// [m] Distance from a rectangular hull to the nearest return of all beams.
 double rectangle_clearance(const LaserScan& scan, const RobotSpec& spec) {
   double least = scan.range_max - spec.radius;
   for (std::size_t i = 0; i < scan.size(); ++i) {
@@ -34,8 +34,8 @@ constexpr LayerInfo kNearest{.name = "scan.nearest",
                              .tone = Tone::External,
                              .style = LayerStyle::Dashed};
 
-/// [m] To the nearest return of all beams: what stands abeam, outside of both sides, is close too,
-/// though it exerts no force.
+/// [m] Distance to the nearest return of all beams. An obstacle abeam, outside both sides, counts
+/// too, though it exerts no force.
 double nearest_distance(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity();
   const auto take = [&least](const auto& found) {
@@ -129,7 +129,7 @@ void Pipeline::tick(Telemetry& t) {
   control(t);  // sequence the goal, let behaviours propose, pick one
   hold(t);     // the gate has the last word
   remember(t.command.base);
-  narrator_.tell(*avoiding_, t);  // what it does, and why, now and then
+  narrator_.tell(*avoiding_, t);  // explains the tick, now and then
 }
 
 void Pipeline::apply(const Request& request) {
@@ -150,7 +150,7 @@ void Pipeline::sense(Telemetry& t) {
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
   } else {
-    // The frame comes from a pool: what explains a stale scan must not be of another tick.
+    // The frame comes from a pool: a stale scan's data must not be from another tick.
     t.scene.scan.resize(scene_.scan.size());
     t.scene.scan.stamp = scene_.scan.stamp;
   }
@@ -168,7 +168,8 @@ void Pipeline::sense(Telemetry& t) {
   t.clearance = clearance_;
 }
 
-/// A controller that needs a scanner is held: only those that drive by sonar let its stamps count.
+/// Reads the sonar ring. Its stamps count only for controllers that drive by sonar: one that needs
+/// a scanner is held.
 void Pipeline::sense_sonar(Telemetry& t) {
   const Observation& observation = t.observation;
   const Vec2 p = observation.odometry.pose.position();
@@ -236,7 +237,7 @@ void Pipeline::hold(Telemetry& t) {
   if (t.mission == Mission::Driving || t.mission == Mission::Stuck) t.mission = Mission::Held;
 }
 
-/// A command acts after the robot's delay.
+/// Stores a command, which acts after the robot's delay.
 void Pipeline::remember(const Twist2& command) {
   if (under_way_.empty()) return;
   std::ranges::rotate(under_way_, under_way_.begin() + 1);

@@ -41,7 +41,7 @@ Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& o
   Decision decision;
   for (Slot& slot : slots_) {
     slot.age += resource.dt;
-    // Half a tick of slack, or rounding would make a period of n ticks last n + 1.
+    // Half a tick of slack: otherwise rounding could stretch a period of n ticks to n + 1.
     if (slot.age + resource.dt / 2 >= slot.behaviour->period()) {
       slot.held = slot.behaviour->propose(resource, output);
       slot.age = 0;
@@ -50,7 +50,7 @@ Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& o
     decision.winner = slot.behaviour->name();
     decision.twist = slot.held.twist;
   }
-  // A limit says how fast at most; it sets nobody in motion.
+  // A limit only bounds a motion; it never starts one.
   if (decision.winner == behaviours::kRest) return decision;
   TwistLimits common;
   for (const Slot& slot : slots_) {

@@ -1,4 +1,4 @@
-// algo/pipeline/rear_watch.cpp: beams and cones, sorted into the sectors behind the robot.
+// algo/pipeline/rear_watch.cpp: sorts beams and cones into the sectors behind the robot.
 #include "algo/pipeline/rear_watch.hpp"
 
 #include <algorithm>
@@ -14,12 +14,12 @@ namespace {
 constexpr double kHalfField = std::numbers::pi / 4;  // [rad] either side of straight back
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// [rad] From straight back to `bearing_R`.
+/// [rad] Angle from straight back to `bearing_R`.
 double from_back(double bearing_R) {
   return wrap_angle(bearing_R - std::numbers::pi);
 }
 
-/// Whether a beam of `scan` may look back: spares those that look ahead the look at each beam.
+/// True if a beam of `scan` may look back: saves checking each beam of scanners that look ahead.
 bool reaches_back(const LaserScan& scan) {
   const double half = scan.angle_increment * static_cast<double>(scan.size()) / 2;
   const double middle = scan.mount_R.heading + scan.angle_min + half;
@@ -32,8 +32,8 @@ void RearWatch::reset() {
   looked_at_.fill(kNever);
 }
 
-/// Marks the sectors whose middle lies between `from` and `to` [rad from straight back], or in
-/// which these lie.
+/// Marks the sectors whose middle lies between `from` and `to` [rad from straight back], and those
+/// that contain these two.
 void RearWatch::look(double from, double to, double stamp) {
   constexpr double kWidth = 2 * kHalfField / static_cast<double>(kSectors);
   for (std::size_t k = 0; k < kSectors; ++k) {

@@ -37,7 +37,7 @@ void StuckDetector::reset(double period) {
 bool StuckDetector::update(const Vec2& position_W, double v_max) {
   const auto wanted = static_cast<std::size_t>(std::lround(window(v_max) / period_));
   const std::size_t needed = std::min(wanted, ring_.size());
-  // Oldest first: a robot on its way fails at the first comparison.
+  // Oldest first: for a moving robot the first comparison fails.
   bool stuck = count_ >= needed;
   for (std::size_t back = std::min(needed, count_); stuck && back > 0; --back) {
     const Vec2& past = ring_[(next_ + ring_.size() - back) % ring_.size()];

@@ -1,5 +1,5 @@
-// algo/pipeline/stick_guard.cpp: what is known around the robot, and the proof that it can stop
-// before it.
+// algo/pipeline/stick_guard.cpp: the known obstacles around the robot, and the proof that it can
+// stop before them.
 #include "algo/pipeline/stick_guard.hpp"
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 namespace algo {
 namespace {
 
-constexpr double kIdleEvery = 0.25;  // [s] between two looks while nobody holds the stick
-constexpr double kStep = 0.02;       // [s] of a roll-out, at most
-constexpr double kActs = 4;  // ticks a command is taken to act: bases need up to two to hear of it
-constexpr double kRounding = 1e-9;       // [m]
-constexpr double kBack = 0.5;            // of the stick's way: so far back it insists,
-constexpr double kStraight = 0.2;        // and no farther aside
-constexpr double kNoMotion = 0.015;      // [m/s] so slowly it could back into the unseen unnoticed
+constexpr double kIdleEvery = 0.25;  // [s] between two scans mapped while nobody holds the stick
+constexpr double kStep = 0.02;       // [s] largest step of a roll-out
+constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
+constexpr double kRounding = 1e-9;   // [m]
+constexpr double kBack = 0.5;        // of the stick's travel: this far back, the driver insists,
+constexpr double kStraight = 0.2;    // and at most this far aside
+constexpr double kNoMotion = 0.015;  // [m/s] so slow that it could back into the unseen unnoticed
 constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
 constexpr std::size_t kMostBeside = 1024;
 
@@ -26,8 +26,8 @@ bool finite(const Observation& seen) {
   return std::isfinite(seen.stamp) && finite(seen.odometry.pose) && finite(seen.odometry.twist);
 }
 
-/// Shares of the stick's two parts, the ones that a driver would miss least first: slower along the
-/// way that was asked for, then slower all round, then turning alone.
+/// Shares of the stick's two components, in the order in which a driver would miss them least:
+/// slower in the wanted direction, then slower in both, then turning alone.
 struct Shares {
   double v = 1, omega = 1;
 };
@@ -53,11 +53,11 @@ void StickGuard::reset(const Pose2& start_W) {
 }
 
 void StickGuard::look(const Resource& in, const LaserScan& scan) {
-  // A number that is none has no place in a map.
+  // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
   const Pose2 sensor_W = points_.map(scan);
   map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
-  // Inside the hull nothing can stand.
+  // No obstacle can be inside the hull.
   const Pose2& here = in.observation->odometry.pose;
   map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
     return hull_.covers(here, point_W);
@@ -78,14 +78,14 @@ void StickGuard::sense(const Resource& in) {
   placed_ = true;
   hull_.stand_on(map_.seen(), here);
   const LaserScan* ahead = front_scan(seen);
-  if (ahead != nullptr) look(in, in.scene->scan);  // as filtered
+  if (ahead != nullptr) look(in, in.scene->scan);  // filtered
   for (const LaserScan& scan : seen.scans) {
     if (&scan != ahead) look(in, scan);
   }
   if (!seen.scans.empty()) next_look_ = seen.stamp + kIdleEvery;
 }
 
-/// A robot may stand where it can neither turn to look nor knows what is behind it.
+/// A robot may stand where it can neither turn to look nor has seen what is behind it.
 void StickGuard::watch_insistence(const Resource& in) {
   const double now = in.observation->stamp;
   const bool straight_back =
@@ -95,7 +95,7 @@ void StickGuard::watch_insistence(const Resource& in) {
   insists_ = straight_back && now - *straight_back_since_ >= kInsist;
 }
 
-/// [m] From the hull at `pose_W` to the nearest of all that is known.
+/// [m] Distance from the hull at `pose_W` to the nearest known obstacle.
 double StickGuard::room(const Pose2& pose_W) const {
   double least = hull_.clearance(map_, pose_W);
   for (const Vec2& point_W : beside_W_) least = std::min(least, hull_.distance(pose_W, point_W));
@@ -113,7 +113,7 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
   for (const Twist2& given : in.under_way) {
     for (int k = 0; k < pieces; ++k) state = on(state, given);
   }
-  // Too close already: no step may lead closer until there is room again.
+  // Already too close: no step may lead closer until there is room again.
   double margin = std::min(kMargin, room(state.pose_W));
   const auto free = [&](const MotionState& next) {
     if (!may_back_ && hull_.enters_unseen(map_.seen(), next.pose_W, next.twist)) return false;

@@ -32,8 +32,8 @@ constexpr LayerInfo kElastic{.name = "strip.elastic",
                              .kind = LayerKind::Arrows,
                              .tone = Tone::Elastic};
 
-constexpr double kNoticeable = 0.005;  // [m] a smaller force is not worth a sentence,
-constexpr double kVisible = 1e-4;      // and a smaller one no arrow: F_int is often a rounding
+constexpr double kNoticeable = 0.005;  // [m] a smaller force gets no sentence,
+constexpr double kVisible = 1e-4;      // [m] and one below this no arrow: F_int is often rounding
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void ElasticStripController::reset(const Pose2& /*start_W*/) {
   kept_via_W_.reset();
 }
 
-/// Side and kept via belong to one goal: with another the line to it is another.
+/// Side and kept via belong to one goal: another goal has another line to it.
 void ElasticStripController::follow_goal(const SetGoal& goal) {
   if (goal_ && goal_->position_W == goal.position_W) return;
   side_.reset();
@@ -69,8 +69,8 @@ ElasticStripController::Strip ElasticStripController::lay_strip(
   return strip;
 }
 
-/// The external force of each side, from the present pose. False when the robot stands on an
-/// obstacle point: then there is no direction away from it.
+/// The external force of each side, from the present pose. False if the robot stands on an obstacle
+/// point: no direction then leads away from it.
 bool ElasticStripController::push(const ControlInput& in, const ForceSettings& settings) {
   const Vec2 p = in.odometry.pose.position();
   const std::optional<Nearest>& left = in.scene->left;
@@ -79,7 +79,7 @@ bool ElasticStripController::push(const ControlInput& in, const ForceSettings& s
   const double d_left = left ? (p - left->point_W).norm() : 0;
   const double d_right = right ? (p - right->point_W).norm() : 0;
   if ((left && d_left == 0) || (right && d_right == 0)) return false;
-  // The lower beam of equals, which is on the right.
+  // Of equals, the lower beam, which is on the right.
   if (left && (both || !right || d_left < d_right)) {
     forces_.left_W = external_force(settings, p, left->point_W);
   }

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kForgetAfter = 2.0;   // [s] without a blocked lane
 constexpr double kLaneMargin = 0.1;    // [m] beyond the hull: 450 mm for the 350 mm robot
-constexpr double kChooseMargin = 0.1;  // [m] beyond the reach a side is already chosen
-constexpr double kClusterDepth = 0.8;  // [m] the ranges of one cluster may differ by so much
+constexpr double kChooseMargin = 0.1;  // [m] beyond the reach: a side is chosen this early
+constexpr double kClusterDepth = 0.8;  // [m] largest difference of the ranges in one cluster
 constexpr double kCosFull = std::numbers::sqrt2 * (std::numbers::sqrt3 + 1) / 4;  // cos 15 degrees
 constexpr double kCosNone = std::numbers::sqrt2 / 2;                              // cos 45 degrees
 
@@ -62,7 +62,7 @@ std::optional<std::size_t> SideChoice::blocking_beam(const SideInput& in) {
   const Vec2 u = direction(bearing_W - in.pose_W.heading);
   const Vec2 n = left_of(u);
   const Vec2 l = scan.mount_R.position();
-  // No return of a longer range can be in the lane.
+  // No return with a longer range can be in the lane.
   double nearest = std::hypot(lane_length, lane_half_width) + l.norm();
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < scan.size(); ++i) {

@@ -7,7 +7,7 @@
 namespace algo {
 namespace {
 
-// 500 mm, less a nanometre: an offset is a difference of metres and may fall short by rounding.
+// 500 mm less a nanometre: an offset is a difference of metres and may fall short by rounding.
 constexpr double kSpacing = 0.5 - 1e-9;  // [m]
 
 }  // namespace
