@@ -1,4 +1,4 @@
-// sim/beam_kernels.cpp: straight loops without branches, which g++ 12 vectorises at -O3.
+// sim/beam_kernels.cpp: simple loops without branches, which g++ 12 vectorises at -O3.
 #include "sim/beam_kernels.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Takes `value(i)` wherever it is nearer than what is there. A NaN is never taken.
+/// Takes `value(i)` if it is nearer than the stored value. Never takes NaN.
 template <typename Value>
 [[gnu::always_inline]] inline void take_nearer(const DepthBuffer& depth,
                                                double tag,
@@ -157,7 +157,7 @@ TAUTLINE_WIDE void follow(const MotionStep& step,
 
 TAUTLINE_WIDE void interlace(const double* in, std::size_t beams, std::size_t rows, double* out) {
   double* __restrict to = out;
-  if (rows == 2) {  // the usual mode, written so that it vectorises
+  if (rows == 2) {  // the usual mode, written to vectorise
     const double* odd = in + (beams + 1) / 2;
     for (std::size_t i = 0; i < beams / 2; ++i) {
       to[2 * i] = in[i];
@@ -212,7 +212,7 @@ TAUTLINE_WIDE void turn_directions(const double* ux,
   double* __restrict x = out_ux;
   double* __restrict y = out_uy;
   for (std::size_t i = 0; i < count; ++i) {
-    // The series of sine and cosine; the first terms left out are t^9 / 9! and t^8 / 8!.
+    // The series of sine and cosine; the first omitted terms are t^9 / 9! and t^8 / 8!.
     const double t = turn[i];
     const double t2 = t * t;
     const double sine = t * (1 - t2 * (1.0 / 6) * (1 - t2 * (1.0 / 20) * (1 - t2 * (1.0 / 42))));
@@ -226,8 +226,8 @@ TAUTLINE_WIDE void read_ranges(const double* ranges,
                                double* draws,
                                std::size_t count,
                                const Reading& reading) {
-  // Adding this number leaves no room for a fraction: rounds to the nearest, halves to even, and
-  // unlike nearbyint() is vectorised on every x86-64.
+  // Adding this number leaves no bits for a fraction: it rounds to the nearest, halves to even.
+  // Unlike nearbyint(), it vectorises on every x86-64.
   constexpr double kNoFraction = 0x1.8p52;
   const Reading r = reading;
   double* __restrict out = draws;

@@ -1,4 +1,4 @@
-// sim/beam_kernels.hpp: the inner loops of a cast, over plain arrays.
+// sim/beam_kernels.hpp: the inner loops of a range cast, over plain arrays.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@ namespace sim {
   return ax * by - ay * bx;
 }
 
-/// The depth buffer of a cast: for each ray the largest 1 / range met so far and, where wanted,
-/// what was met. The latter as a number of the same width, so that one loop carries both.
+/// The depth buffer of a cast: for each ray the largest 1 / range so far and, if wanted, a tag of
+/// the obstacle hit. The tag is a number of the same width, so that one loop carries both.
 struct DepthBuffer {
   double* inverse = nullptr;  // [1/m]
-  double* tag = nullptr;      // obstacle index, -1 for none; null when not wanted
+  double* tag = nullptr;      // obstacle index, -1 for none; null if not wanted
 };
 
 /// Origins and unit directions of rays.
@@ -41,9 +41,9 @@ void splat_line(const double* ux,
 
 /// Beams from the origin: a circle about (x, y), k its |c|^2 - R^2 > 0.
 ///
-/// Of the two roots r of r^2 - 2 m r + k = 0 with m = c.u the nearer has 1 / r =
-/// (m + sqrt(m^2 - k)) / k, because their product is k. A beam that misses gives a NaN, which no
-/// comparison takes.
+/// Of the two roots r of r^2 - 2 m r + k = 0 with m = c.u, the nearer has
+/// 1 / r = (m + sqrt(m^2 - k)) / k, because their product is k. A beam that misses gives NaN,
+/// which no comparison accepts.
 void splat_circle(const double* ux,
                   const double* uy,
                   double x,
@@ -53,8 +53,8 @@ void splat_circle(const double* ux,
                   double tag,
                   const DepthBuffer& depth);
 
-/// Rays of their own origin: the segment from p to q, seen counter-clockwise. From o its range is
-/// 1 / r = cross(p - q, u) / cross(p - o, q - o), if u lies between p and q.
+/// Rays with their own origins: the segment from p to q, seen counter-clockwise. From o its range
+/// is 1 / r = cross(p - q, u) / cross(p - o, q - o), if u lies between p and q.
 void trace_segment(const RayArrays& rays,
                    double px,
                    double py,
@@ -64,7 +64,7 @@ void trace_segment(const RayArrays& rays,
                    double tag,
                    const DepthBuffer& depth);
 
-/// Rays of their own origin: a circle; from inside it 1 / r is infinite.
+/// Rays with their own origins: a circle; from inside it 1 / r is infinite.
 void trace_circle(const RayArrays& rays,
                   double x,
                   double y,
@@ -73,27 +73,27 @@ void trace_circle(const RayArrays& rays,
                   double tag,
                   const DepthBuffer& depth);
 
-/// Depths to ranges; what is not nearer than `range_max` is exactly that.
+/// Converts depths to ranges. A range not nearer than `range_max` becomes exactly `range_max`.
 void write_ranges(const double* inverse, double range_max, std::span<double> ranges);
 
-/// Tags to obstacle indices; -1 becomes the largest number there is.
+/// Converts tags to obstacle indices; -1 becomes the largest index.
 void write_hits(const double* tag, std::span<std::uint32_t> hits);
 
-/// When something happens in steps since the first one, from when it does in seconds.
+/// Converts a time in seconds to steps since the first step.
 struct StepClock {
   double offset = 0;    // [steps]
   double per_step = 0;  // [steps/s]
   double at(double time) const { return offset + time * per_step; }
 };
 
-/// A straight stretch of a sensor's motion: at step `at` in [number, number + 1) it has come from
-/// the pose (x, y, heading) by that part of the way.
+/// A straight piece of a sensor's motion. At step `at` in [number, number + 1) the sensor has
+/// covered the fraction at - number of the way from the pose (x, y, heading).
 struct MotionStep {
   double number = 0;
-  double x = 0, y = 0, heading = 0;              // [m, m, rad] at its start
-  double way_x = 0, way_y = 0, way_heading = 0;  // to its end
+  double x = 0, y = 0, heading = 0;              // [m, m, rad] start
+  double way_x = 0, way_y = 0, way_heading = 0;  // to the end
 };
-/// Where the sensor is at `times` [s], all of which lie within the stretch.
+/// The sensor's poses at `times` [s], all of which lie within the piece.
 void follow(const MotionStep& step,
             const StepClock& clock,
             const double* times,
@@ -102,19 +102,19 @@ void follow(const MotionStep& step,
             double* y,
             double* heading);
 
-/// Deals rows out to the beams: the first row has beams 0, rows, 2 rows .., the next one beams 1,
-/// rows + 1 .., and so on. `in` has them end to end.
+/// Distributes rows to the beams: the first row holds beams 0, rows, 2 rows .., the next one beams
+/// 1, rows + 1 .., and so on. `in` holds the rows end to end.
 void interlace(const double* in, std::size_t beams, std::size_t rows, double* out);
 
-/// Sets flags[i] where beams i and i + 1 met different things farther apart than `jump` [m].
+/// Sets flags[i] if beams i and i + 1 hit different obstacles farther apart than `jump` [m].
 void flag_edges(const double* ranges,
                 const std::uint32_t* hits,
                 std::size_t beams,
                 double jump,
                 std::uint8_t* flags);
 
-/// Readings as a scan has them: `nearer` and its `state` 0 where below range_max, else range_max
-/// and 1, with `free_code`.
+/// Readings in the form of a scan: `nearer` with `state` 0 if below range_max, else range_max with
+/// state 1 and `free_code`.
 struct SplitReadings {
   double* ranges = nullptr;
   std::uint8_t* state = nullptr;
@@ -127,7 +127,7 @@ void split_readings(const double* readings,
                     const SplitReadings& out);
 
 /// Rays from poses interpolated between those of a moving sensor, and turned by small angles
-/// `turn` [rad] off the directions (ux, uy); of |turn| <= 0.5 good to 1e-8.
+/// `turn` [rad] off the directions (ux, uy); accurate to 1e-8 for |turn| <= 0.5.
 void turn_directions(const double* ux,
                      const double* uy,
                      const double* turn,
@@ -135,9 +135,9 @@ void turn_directions(const double* ux,
                      double* out_ux,
                      double* out_uy);
 
-/// What a scanner makes of true ranges [m]: bias, noise times `draws`, rounding to
-/// 1 / per_metre [m], nothing below 0 or above `most`. Where the true range is range_max, so is the
-/// result, in place of the draw.
+/// A scanner's conversion of true ranges [m] to readings: bias, noise times `draws`, rounding to
+/// 1 / per_metre [m], limited to 0 .. `most`. A true range of range_max stays range_max, without a
+/// draw.
 struct Reading {
   double bias = 0, noise = 0;  // [m]
   double per_metre = 1000;

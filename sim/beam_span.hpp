@@ -1,4 +1,4 @@
-// sim/beam_span.hpp: from an interval of bearings to whole beams.
+// sim/beam_span.hpp: converts an interval of bearings to whole beams.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace sim {
 
-/// Calls `take(begin, end)` for the beams within [from, to], counted in beams of which a full turn
-/// has `full_turn` and the pattern `beams`; twice when the interval runs across the seam.
+/// Calls `take(begin, end)` for the beams within [from, to], all counted in beams. A full turn has
+/// `full_turn` beams and the pattern has `beams`. Calls it twice if the interval crosses the seam.
 template <typename Take>
 inline void beam_spans(double from, double to, double full_turn, std::size_t beams, Take&& take) {
   const auto count = static_cast<double>(beams);
@@ -15,7 +15,7 @@ inline void beam_spans(double from, double to, double full_turn, std::size_t bea
     return static_cast<std::uint32_t>(value < 0 ? 0 : value > count ? count : value);
   };
   const auto piece = [&](double low, double high) {
-    const std::uint32_t begin = clip(low);  // truncated: a beam early costs nothing
+    const std::uint32_t begin = clip(low);  // truncated: one beam too early does no harm
     const std::uint32_t end = clip(high + 1);
     if (begin < end) take(begin, end);
   };

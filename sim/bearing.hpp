@@ -1,4 +1,4 @@
-// sim/bearing.hpp: a quick angle of a vector, good enough to choose the beams worth testing.
+// sim/bearing.hpp: a fast approximate angle of a vector, to choose the beams worth testing.
 #pragma once
 
 #include <cmath>
@@ -9,9 +9,9 @@ namespace sim {
 /// [rad] Largest error of quick_bearing().
 constexpr double kQuickBearingError = 2e-6;
 
-/// Angle of (x, y) in [-pi, pi], without a branch. atan on [0, 1] by the first six terms of its
-/// Chebyshev series, 2 sum (-1)^k (sqrt(2) - 1)^(2k+1) T_2k+1 / (2k + 1), written out as powers;
-/// the terms left out stay below 1.9e-6.
+/// Angle of (x, y) in [-pi, pi], without a branch. atan on [0, 1] is the first six terms of its
+/// Chebyshev series, 2 sum (-1)^k (sqrt(2) - 1)^(2k+1) T_2k+1 / (2k + 1), written as powers. The
+/// omitted terms stay below 1.9e-6.
 inline double quick_bearing(double x, double y) {
   const double ax = std::abs(x);
   const double ay = std::abs(y);

@@ -6,9 +6,8 @@
 
 namespace sim {
 
-/// Bullet's classes bring allocation operators of their own, of which clang's analyzer believes
-/// that they touch what they have freed. The global ones align as well (16 bytes) and keep it
-/// quiet.
+/// Bullet's classes have their own allocation operators. clang's analyzer believes that these
+/// access freed memory. The global ones align equally (16 bytes) and raise no warning.
 struct BulletDelete {
   template <typename T>
   void operator()(T* object) const {

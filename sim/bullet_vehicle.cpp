@@ -11,14 +11,14 @@ namespace sim {
 namespace {
 
 constexpr double kLoadLag = 0.010;    // [s] low-pass of the wheel loads
-constexpr double kStillSpeed = 0.05;  // [m/s] under which parking begins
+constexpr double kStillSpeed = 0.05;  // [m/s] below it parking begins
 constexpr double kStillTurn = 0.10;   // [rad/s]
 constexpr double kStillTime = 0.5;    // [s]
-constexpr double kSettleTime = 0.5;   // [s] for the wheels to find the floor
+constexpr double kSettleTime = 0.5;   // [s] for the wheels to settle on the floor
 constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
 constexpr int kHullPart = 0;
 
-/// Which wheel side a part of the chassis belongs to, by its sign.
+/// The wheel side of a part of the chassis, by sign.
 int side_of(const btCompoundShape& chassis, int part, std::size_t wheels) {
   if (part <= kHullPart || part > static_cast<int>(2 * wheels)) return 0;
   return chassis.getChildTransform(part).getOrigin().y() > 0 ? 1 : -1;
@@ -47,7 +47,7 @@ void BulletVehicle::build_chassis() {
   chassis_shape_ = make_bullet<btCompoundShape>();
   const auto add = [this](BulletPtr<btCollisionShape> part, double x, double y, double z) {
     btTransform at = btTransform::getIdentity();
-    at.setOrigin(btVector3(x, y, z - robot_.mass_height));  // the body's origin is its mass
+    at.setOrigin(btVector3(x, y, z - robot_.mass_height));  // the body's origin: centre of mass
     chassis_shape_->addChildShape(at, part.get());
     parts_.push_back(std::move(part));
   };
@@ -69,7 +69,7 @@ void BulletVehicle::build_chassis() {
     add(make_bullet<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
   }
 
-  // A solid box of the hull's size; the compound's own inertia means nothing.
+  // The inertia of a solid box of the hull's size; the compound's own inertia is meaningless.
   const double xx = p.hull_length * p.hull_length;
   const double yy = p.hull_width * p.hull_width;
   const double zz = 4 * hull_half * hull_half;
@@ -78,8 +78,8 @@ void BulletVehicle::build_chassis() {
   info.m_friction = 0;
   info.m_startWorldTransform.setOrigin(btVector3(0, 0, p.mass_height));
   chassis_ = make_bullet<btRigidBody>(info);
-  chassis_->setUserIndex(static_cast<int>(2 * p.wheels.size()));  // its last wheel; -1 on all else
-  chassis_->setActivationState(DISABLE_DEACTIVATION);             // parking is ours
+  chassis_->setUserIndex(static_cast<int>(2 * p.wheels.size()));  // its last wheel; others have -1
+  chassis_->setActivationState(DISABLE_DEACTIVATION);             // this class does the parking
   physics_.world().addRigidBody(chassis_.get());
 
   double axle_x = 0;
@@ -104,7 +104,7 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   normal_ = btVector3(0, 0, 1);
   settle();
 
-  // Settled at the origin with nothing around; now set down at the start as it stands.
+  // Settled at the origin with nothing around; now placed at the start in that posture.
   const btTransform settled = chassis_->getWorldTransform();
   const btMatrix3x3 turn(btQuaternion(btVector3(0, 0, 1), start.heading));
   btTransform at(turn * settled.getBasis());
@@ -161,8 +161,8 @@ void BulletVehicle::substep() {
   read_contacts();
 }
 
-/// Reads loads and touches from the impulses just solved. While the next step is being set up they
-/// would still be 0 at every new contact point, and a moving robot has new ones all the time.
+/// Reads loads and contacts from the impulses just solved. During the set-up of the next step they
+/// would be 0 at every new contact point, and a moving robot always has new ones.
 void BulletVehicle::read_contacts() {
   double left = 0;
   double right = 0;
@@ -212,7 +212,7 @@ void BulletVehicle::read_state() {
   state_.pitch = std::asin(std::clamp<double>(-basis[2][0], -1, 1));
 }
 
-/// Counts the time at rest and parks when there was enough of it.
+/// Counts the time at rest, and parks after enough of it.
 void BulletVehicle::update_parking() {
   const bool still = wanted_ == algo::Twist2{} && target_ == algo::Twist2{} &&
                      std::abs(state_.twist.v) < kStillSpeed &&

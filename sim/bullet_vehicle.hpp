@@ -13,11 +13,11 @@
 namespace sim {
 
 /// A rigid chassis on frictionless support balls; all traction comes from a DriveConstraint
-/// (physics.md 3). Commands pass through the acceleration limits. Standing still, it is parked: no
-/// step is computed and nothing moves, not by a bit.
+/// (physics.md 3). Commands pass through the acceleration limits. A standing vehicle is parked: no
+/// step is computed and its state stays the same bit for bit.
 class BulletVehicle final : public VehicleModel {
  public:
-  static constexpr double kNear = 1.0;  // [m] beyond the hull: obstacles the dynamics know
+  static constexpr double kNear = 1.0;  // [m] beyond the hull: obstacles in the dynamics
 
   BulletVehicle(const RobotModel& robot, double period);
   ~BulletVehicle() override;
@@ -54,7 +54,7 @@ class BulletVehicle final : public VehicleModel {
   BulletPtr<DriveConstraint> drive_{};
 
   algo::Twist2 wanted_{};
-  algo::Twist2 target_{};  // wanted_ behind the acceleration limits
+  algo::Twist2 target_{};  // wanted_ after the acceleration limits
   double left_load_ = 0;   // [N] low-passed
   double right_load_ = 0;
   btVector3 normal_{0, 0, 1};

@@ -1,4 +1,4 @@
-// sim/bumper_ring.cpp: where a contact is, by the obstacles' distances.
+// sim/bumper_ring.cpp: locates a contact by the distances of the obstacles.
 #include "sim/bumper_ring.hpp"
 
 #include <cmath>
@@ -7,7 +7,8 @@
 namespace sim {
 namespace {
 
-/// [rad] In R, of the surface nearest to the robot's centre: against the slope of the distance.
+/// [rad] Bearing in R of the surface nearest to the robot's centre: against the gradient of the
+/// distance.
 double contact_bearing(const algo::Pose2& pose_W, const ObstacleSet& obstacles) {
   constexpr double kStep = 1e-4;  // [m]
   const algo::Vec2 p_W = pose_W.position();

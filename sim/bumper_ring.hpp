@@ -1,4 +1,4 @@
-// sim/bumper_ring.hpp: bumpers evenly round the hull, from straight ahead.
+// sim/bumper_ring.hpp: bumpers spaced evenly around the hull, from straight ahead.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// A contact presses the bumper whose share of the hull it lies in.
+/// A contact presses the bumper whose sector it lies in.
 class BumperRing final : public Sensor {
  public:
   /// `count` at least 1, on a hull of `radius` [m].

@@ -12,10 +12,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr std::size_t kMostReadings = 4096;  // far above any scanner of these logs
+constexpr std::size_t kMostReadings = 4096;  // far above any scanner in these logs
 constexpr double kLargestReading = 1000;     // [m]
 
-/// Takes fields off the front of a line.
+/// Takes fields from the front of a line.
 class Fields {
  public:
   explicit Fields(std::string_view line) : rest_(line) {}
@@ -70,7 +70,7 @@ CarmenError error(std::string reason) {
 constexpr const char* kBadTrailer =
     "the time stamps at the end of the line are incomplete or followed by more";
 
-/// `timestamp host logger_timestamp` and nothing more; the first is the sensor's.
+/// `timestamp host logger_timestamp` and nothing after; the first is the sensor's.
 std::optional<double> trailer(Fields& fields) {
   const auto stamp = fields.number();
   const std::string_view host = fields.word();
@@ -92,7 +92,7 @@ std::optional<CarmenError> read_readings(Fields& fields, std::size_t n, CarmenSc
   return std::nullopt;
 }
 
-/// The end of a scan's line: `N` numbers, first both poses, and the trailer.
+/// The end of a scan's line: `N` numbers, which begin with both poses, and the trailer.
 template <std::size_t N>
 CarmenLine finish_scan(Fields& fields, CarmenScan& scan) {
   std::array<double, N> poses{};
@@ -105,7 +105,7 @@ CarmenLine finish_scan(Fields& fields, CarmenScan& scan) {
   return std::move(scan);
 }
 
-/// Readings of an even count end one step before +90 degrees, those of an odd count at it.
+/// Scans with an even number of readings end one step before +90 degrees, others exactly there.
 void spread_over_half_turn(CarmenScan& scan) {
   const std::size_t n = scan.readings.size();
   scan.angle_min = -pi / 2;
@@ -160,11 +160,11 @@ CarmenLine parse_odom(Fields& fields) {
 struct UnitRow {
   CarmenUnit unit{};
   std::uint32_t step_mm = 0;
-  std::uint32_t top = 0;         // largest raw value, no echo
-  std::uint32_t first_code = 0;  // raw values from here on are no distances
+  std::uint32_t top = 0;         // largest raw value: no echo
+  std::uint32_t first_code = 0;  // raw values from here on are not distances
 };
-// From the first code of the device reference (top - 8), for the two units that occur in known logs
-// from where those begin to be meaningless.
+// From the first code of the device reference (top - 8); for the two units in known logs, from the
+// value where their readings become meaningless.
 constexpr std::array<UnitRow, 4> kUnits{{{CarmenUnit::Centimetre, 10, 8191, 8180},
                                          {CarmenUnit::Millimetre8m, 1, 8191, 8183},
                                          {CarmenUnit::Millimetre16m, 1, 16383, 16375},
@@ -197,7 +197,7 @@ CarmenUnit CarmenUnitGuess::unit() const {
   for (const UnitRow& row : kUnits) {
     if (row.step_mm == 1 && largest_mm_ <= row.top) return row.unit;
   }
-  return CarmenUnit::Centimetre;  // averaged or converted by someone: only its codes are sure
+  return CarmenUnit::Centimetre;  // averaged or converted: only its codes are certain
 }
 
 double carmen_range_max(CarmenUnit unit) {
@@ -211,7 +211,7 @@ std::uint16_t pack_carmen(std::uint32_t reading_mm, CarmenUnit unit) {
   if (raw < row.first_code) {
     return static_cast<std::uint16_t>(std::min<std::uint32_t>(reading_mm, algo::kPackedMaxRange));
   }
-  // Codes end in 7, A, B, D, E or F; on anything else nothing is known.
+  // Codes end in 7, A, B, D, E or F; other values have no known code.
   const std::uint32_t digit = raw <= row.top && raw + 8 >= row.top ? raw & 0xFU : 0;
   switch (static_cast<algo::BeamCode>(digit)) {
     case algo::BeamCode::BeyondRange:

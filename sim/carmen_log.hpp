@@ -1,4 +1,4 @@
-// sim/carmen_log.hpp: lines of CARMEN logs to values, without any I/O.
+// sim/carmen_log.hpp: parses lines of CARMEN logs, without any I/O.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// Which scanner a line belongs to.
+/// The scanner of a line.
 enum class CarmenLaser : std::uint8_t { Front, Rear };
 
 /// FLASER, RLASER, ROBOTLASER1 or ROBOTLASER2.
@@ -20,30 +20,30 @@ struct CarmenScan {
   CarmenLaser laser = CarmenLaser::Front;
   double angle_min = 0;            // [rad] of the first reading, the right-most
   double angle_increment = 0;      // [rad]
-  std::vector<double> readings{};  // [m] as written, device codes and all
+  std::vector<double> readings{};  // [m] as written, including device codes
   algo::Pose2 laser_W{};
   algo::Pose2 robot_W{};
-  double stamp = 0;  // [s] of the recording's clock; 0 when the log has none
+  double stamp = 0;  // [s] on the recording's clock; 0 if the log has none
 };
 
-/// ODOM: pose and speeds from the wheels, which a scan brings too.
+/// ODOM: pose and speeds from the wheels; a scan contains them too.
 struct CarmenOdometry {};
 
-/// A comment, an empty line, or a message of no interest here.
+/// A comment, an empty line, or an unused message.
 struct CarmenOther {};
 
-/// A line that should have been a scan or an odometry and is not.
+/// A malformed scan or odometry line.
 struct CarmenError {
   std::string reason{};  // "the line ends after 12 of 360 readings"
 };
 
 using CarmenLine = std::variant<CarmenOther, CarmenScan, CarmenOdometry, CarmenError>;
 
-/// One line without its line end. Never throws on what the line holds.
+/// Parses one line without its line end. Never throws on any content.
 CarmenLine parse_carmen_line(std::string_view line);
 
-/// What the readings of a file are steps of: the device's unit and measuring range, told from the
-/// readings themselves, since no log says so.
+/// The unit of a file's readings: the device's resolution and measuring range. It is inferred from
+/// the readings, since no log states it.
 enum class CarmenUnit : std::uint8_t {
   Centimetre,     // 80 m in cm steps, codes from 81.80
   Millimetre8m,   // codes from 8.183
@@ -51,10 +51,10 @@ enum class CarmenUnit : std::uint8_t {
   Millimetre32m,  // codes from 32.755
 };
 
-/// Gathers readings until the unit can be told.
+/// Collects readings until the unit is certain.
 class CarmenUnitGuess {
  public:
-  /// `reading_mm` [mm] rounded.
+  /// `reading_mm` [mm], rounded.
   void see(std::uint32_t reading_mm);
   CarmenUnit unit() const;
 
@@ -63,12 +63,12 @@ class CarmenUnitGuess {
   std::uint32_t largest_mm_ = 0;
 };
 
-/// [m] Largest value the device can write in this unit, its no-echo code.
+/// [m] Largest value that the device can write in this unit: its no-echo code.
 double carmen_range_max(CarmenUnit unit);
 
-/// A reading [mm] as a packed beam (algo/laser_scan.hpp): a distance, free, or a code.
-/// The device's codes were scaled like distances when the log was written; the last hexadecimal
-/// digit of the raw value tells them apart.
+/// A reading [mm] as a packed beam (algo/laser_scan.hpp): a distance, free, or a code. The log's
+/// writer scaled the device's codes like distances; the last hexadecimal digit of the raw value
+/// identifies them.
 std::uint16_t pack_carmen(std::uint32_t reading_mm, CarmenUnit unit);
 
 }  // namespace sim

@@ -1,4 +1,4 @@
-// sim/drive_constraint.hpp: wheels as three velocity rows on a rigid chassis.
+// sim/drive_constraint.hpp: wheels as three velocity constraints on a rigid chassis.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>
@@ -7,18 +7,18 @@ namespace sim {
 
 static_assert(sizeof(btScalar) == 8, "Tautline needs Bullet built in double precision");
 
-/// Holds a chassis to the speeds of its left and right wheels and from sliding sideways, each as
-/// far as the load on the wheels allows (physics.md 3). All positions are relative to the centre of
-/// mass, in the body's frame.
+/// Holds a chassis to the speeds of its left and right wheels, and keeps it from sliding sideways,
+/// each as far as the load on the wheels allows (physics.md 3). All positions are relative to the
+/// centre of mass, in the body's frame.
 class DriveConstraint final : public btTypedConstraint {
  public:
   struct Layout {
     btScalar axle_x = 0;      // [m]
     btScalar half_track = 0;  // [m]
-    btScalar height = 0;      // [m] of the centre of mass over the contacts
+    btScalar height = 0;      // [m] of the centre of mass above the contacts
     btScalar friction = 0;
   };
-  /// What the next step is to reach, and with what.
+  /// The target of the next step, and the loads available.
   struct Drive {
     btScalar left = 0, right = 0;            // [m/s] wheel speeds over the ground
     btScalar left_load = 0, right_load = 0;  // [N] normal forces

@@ -1,4 +1,4 @@
-// sim/drive_errors.cpp: a ring of commands, and pose increments scaled and disturbed.
+// sim/drive_errors.cpp: a ring of commands, and pose increments with scale errors and noise.
 #include "sim/drive_errors.hpp"
 
 #include <array>
@@ -7,7 +7,7 @@
 namespace sim {
 namespace {
 
-enum class Purpose : std::uint64_t { Scale = 0x0d01, Noise };  // apart from the scanners'
+enum class Purpose : std::uint64_t { Scale = 0x0d01, Noise };  // distinct from the scanners'
 
 Random stream(std::uint64_t seed, Purpose purpose) {
   return Random(seed, static_cast<std::uint64_t>(purpose));
@@ -65,12 +65,12 @@ algo::Odometry DriveErrors::report(const algo::Odometry& sound) {
   if (!drifts) return sound;
   const algo::Pose2 step = algo::pose_step(sound_W_, sound.pose);
   algo::Vec2 way = step.position();
-  // The encoders count what slipped away on the floor like the rest.
+  // The encoders count slipped turns like all others.
   const double counted = 1 / (1 - config_.odometry_slip);
   double turn = step.heading * counted;
   std::array<double, 2> draws{};
   if (config_.odometry_noise > 0) noise_.fill_normal(draws);
-  // Noise of a random walk: its variance, not its deviation, grows with the way.
+  // Noise of a random walk: its variance, not its deviation, grows with the distance.
   const double length = way.norm();
   way *= distance_scale_;
   if (length > 0) way += way / length * std::sqrt(length) * config_.odometry_noise * draws[0];

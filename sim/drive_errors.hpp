@@ -1,5 +1,5 @@
-// sim/drive_errors.hpp: what lies between a command and the base, and between the base and what
-// its odometry reports.
+// sim/drive_errors.hpp: errors between a command and the base's motion, and between the motion and
+// the odometry.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@
 
 namespace sim {
 
-/// What is wrong with the configuration as a sentence part, or nothing.
+/// The defect of the configuration as part of a sentence, or nothing.
 std::optional<std::string> defect(const DriveConfig& config);
 
-/// Delay and slip of commands, drift of the odometry. Without errors both pass unchanged, bit for
-/// bit.
+/// Delay and slip of commands, and drift of the odometry. Without errors both pass unchanged, bit
+/// for bit.
 class DriveErrors {
  public:
   DriveErrors(const DriveConfig& config, std::uint64_t seed);
 
-  /// At rest at `start_W`; nothing is on its way.
+  /// At rest at `start_W`, without pending commands.
   void reset(const algo::Pose2& start_W);
-  /// What acts in this tick when `command` is given in it.
+  /// Takes the `command` given in this tick and returns the twist that acts in it.
   algo::Twist2 act(const algo::Twist2& command);
-  /// `sound` odometry as the drifting one reports it.
+  /// Adds the drift to the `sound` odometry.
   algo::Odometry report(const algo::Odometry& sound);
 
  private:
@@ -37,12 +37,12 @@ class DriveErrors {
   Random noise_;
   std::vector<algo::Twist2> under_way_{};  // a ring: commands that do not act yet
   std::size_t next_ = 0;
-  algo::Pose2 sound_W_{};     // the last pose it was given
-  algo::Pose2 reported_W_{};  // and what was made of it
+  algo::Pose2 sound_W_{};     // the last sound pose
+  algo::Pose2 reported_W_{};  // and the pose reported for it
 };
 
-/// `path_W` as the odometry of a base with these errors would have reported it, from the same first
-/// pose on. Delay, limits and what the base makes of commands say nothing here.
+/// `path_W` as the odometry of a base with these errors would report it, from the same first pose
+/// on. Delay, limits and command errors have no effect here.
 std::vector<algo::Pose2> reported_path(std::span<const algo::Pose2> path_W,
                                        const DriveConfig& config,
                                        std::uint64_t seed);

@@ -1,4 +1,4 @@
-// sim/fleet.cpp: a world a robot, and the two phases of a period.
+// sim/fleet.cpp: one World per robot, and the two phases of a period.
 #include "sim/fleet.hpp"
 
 #include <stdexcept>
@@ -16,7 +16,7 @@ std::uint32_t id_of(std::size_t k) {
   return kRobotIds + static_cast<std::uint32_t>(k) + 1;
 }
 
-/// Robot `k` where it starts, as others see it.
+/// Robot `k` at its start, as others perceive it.
 algo::Obstacle body_of(const Scenario& scenario, std::size_t k) {
   algo::Obstacle body;
   if (k == 0) {
@@ -29,7 +29,7 @@ algo::Obstacle body_of(const Scenario& scenario, std::size_t k) {
   return body;
 }
 
-/// The scenario as robot `k` of it has it.
+/// The scenario from the view of robot `k`.
 Scenario scenario_of(const Scenario& scenario, std::size_t k) {
   Scenario own = scenario;
   own.robots.clear();
@@ -40,7 +40,7 @@ Scenario scenario_of(const Scenario& scenario, std::size_t k) {
   return own;
 }
 
-/// Different robots draw unrelated noise.
+/// Different robots draw independent noise.
 std::uint64_t seed_of(std::uint64_t seed, std::size_t k) {
   return seed + 0x9e3779b97f4a7c15ULL * k;
 }
@@ -54,7 +54,7 @@ std::unique_ptr<World> world_of(const Scenario& scenario, std::uint64_t seed, st
   }
 }
 
-/// The robot that `request` would edit, by its number from 0.
+/// The robot that `request` would edit, by its index from 0.
 std::optional<std::size_t> robot_in(const algo::Request& request) {
   std::uint32_t id = 0;
   if (const auto* add = std::get_if<algo::AddObstacle>(&request)) id = add->obstacle.id;
@@ -109,7 +109,7 @@ void Fleet::advance() {
   meet();
 }
 
-/// Every robot learns where the others are.
+/// Passes every robot the poses of the others.
 void Fleet::meet() {
   for (std::size_t k = 0; k < size(); ++k) peers_[k].pose_W = worlds_[k]->pose_W();
   each([this](std::size_t k) { worlds_[k]->meet(peers_, k); });

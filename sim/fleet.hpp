@@ -15,47 +15,47 @@
 
 namespace sim {
 
-/// Calls `call` with each of 0 to count - 1, in any order and on any threads; returns when all
-/// calls have.
+/// Calls `call` with each of 0 to count - 1, in any order and on any threads. Returns after all
+/// calls.
 using ForEach =
     std::function<void(std::size_t count, const std::function<void(std::size_t)>& call)>;
 
 /// The robots of a scenario, the first and its `robots`, in one world.
 ///
-/// Each has a World of its own, with its own physics, sensors and noise, in which the others are
-/// obstacles at their poses of the tick. A robot meets another as a thing that does not yield:
-/// nobody is pushed. In a sweep of a scanner the others stand where the sweep's tick ends.
+/// Each has its own World with its own physics, sensors and noise. In it the others are obstacles
+/// at their poses of the tick. Robots do not yield to each other: none is pushed. During a
+/// scanner's sweep the others stand where they are at the end of the tick.
 ///
-/// A period has two phases: all robots drive among the others as they stood, then all are placed
-/// anew. Within a phase no robot reads a value that another one writes. The result is therefore the
-/// same bit for bit with any number of threads.
+/// A period has two phases. First all robots drive among the others' old poses, then all are placed
+/// anew. Within a phase no robot reads a value that another one writes, so the result is the same
+/// bit for bit with any number of threads.
 class Fleet {
  public:
-  /// Robot 0 has the noise that it would have alone. Throws std::invalid_argument with a sentence
-  /// when the scenario cannot be run.
+  /// Robot 0 has the same noise as it would have alone. Throws std::invalid_argument with a
+  /// sentence if the scenario cannot be run.
   Fleet(const Scenario& scenario, std::uint64_t seed, ForEach for_each = {});
 
   std::size_t size() const { return worlds_.size(); }
-  /// Robot `k`, from 0; for its spec and its truth.
+  /// Robot `k`, from 0; for its spec and its ground truth.
   World& robot(std::size_t k) { return *worlds_[k]; }
   const World& robot(std::size_t k) const { return *worlds_[k]; }
 
-  /// The scenario anew.
+  /// Restarts the scenario.
   void restart();
-  /// What robot `k` drives under in the next period.
+  /// Sets the command of robot `k` for the next period.
   void write(std::size_t k, const algo::Command& command) { worlds_[k]->write(command); }
-  /// One period of all robots.
+  /// Advances all robots by one period.
   void advance();
-  /// What robot `k` senses now. Once after each restart() and advance(); different robots on
-  /// different threads at will.
+  /// Reads the sensors of robot `k` now. Call once after each restart() and advance(); different
+  /// robots may be read on different threads.
   void read(std::size_t k, algo::Observation& observation) { worlds_[k]->read(observation); }
 
-  /// Edits the obstacles of all robots, or of none and says why as a sentence.
+  /// Edits the obstacles of all robots, or of none and returns the reason as a sentence.
   std::optional<std::string> edit(const algo::Request& request);
-  /// Obstacles that move by themselves, the robots but the first among them.
+  /// Lists the obstacles that move by themselves, and all robots but the first.
   void find_moved(algo::Recycled<algo::Moved>& moved) const;
 
-  /// Calls `call(k)` for all robots as the constructor was told to.
+  /// Calls `call(k)` for all robots, by the constructor's `for_each`.
   void each(const std::function<void(std::size_t)>& call) const;
 
  private:
@@ -64,12 +64,12 @@ class Fleet {
 
   ForEach for_each_{};
   std::vector<std::unique_ptr<World>> worlds_{};
-  std::vector<algo::Obstacle> bodies_{};  // one a robot, at its start
-  std::vector<Peer> peers_{};             // the same where they are
+  std::vector<algo::Obstacle> bodies_{};  // one per robot, at its start
+  std::vector<Peer> peers_{};             // the same at their present poses
 };
 
-/// The scenario's other robots as obstacles at their starts, as people see them. Throws
-/// std::invalid_argument on a robot that there is not.
+/// The scenario's other robots as obstacles at their starts, for display. Throws
+/// std::invalid_argument for an unknown robot.
 std::vector<algo::Obstacle> other_robots(const Scenario& scenario);
 
 }  // namespace sim

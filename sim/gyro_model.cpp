@@ -1,4 +1,4 @@
-// sim/gyro_model.cpp: a bias that wanders, and noise.
+// sim/gyro_model.cpp: a drifting bias, and noise.
 #include "sim/gyro_model.hpp"
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x4759524f;  // of its errors: no other sensor's
+constexpr std::uint64_t kPurpose = 0x4759524f;  // of its errors: unlike any other sensor's
 
 }  // namespace
 

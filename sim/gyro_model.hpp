@@ -1,4 +1,4 @@
-// sim/gyro_model.hpp: what a yaw gyro reads.
+// sim/gyro_model.hpp: the model of a yaw gyro.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace sim {
 
-/// What is wrong with the configuration as a sentence part, or nothing.
+/// The defect of the configuration as part of a sentence, or nothing.
 std::optional<std::string> defect(const GyroConfig& config);
 
 class GyroModel {
@@ -18,7 +18,7 @@ class GyroModel {
   /// Throws std::invalid_argument with the defect.
   GyroModel(const GyroConfig& config, std::uint64_t seed);
 
-  /// [rad/s] The reading at the true `rate` [rad/s], `dt` [s] after the one before.
+  /// [rad/s] The reading at the true `rate` [rad/s], `dt` [s] after the previous one.
   double read(double rate, double dt);
 
  private:

@@ -1,4 +1,4 @@
-// sim/infrared_model.cpp: a fan of beams, a scan at a time.
+// sim/infrared_model.cpp: a fan of beams, one scan at a time.
 #include "sim/infrared_model.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x4952;  // of its noise: no other sensor's
+constexpr std::uint64_t kPurpose = 0x4952;  // of its noise: unlike any other sensor's
 constexpr double kOnTime = 1e-9;            // [s] below any period, above rounding
 constexpr std::uint32_t kMostBeams = 361;
 

@@ -1,4 +1,4 @@
-// sim/infrared_model.hpp: what an infrared range scanner reports of a world.
+// sim/infrared_model.hpp: the model of an infrared range scanner.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace sim {
 
-/// What is wrong with the configuration as a sentence part, or nothing.
+/// The defect of the configuration as part of a sentence, or nothing.
 std::optional<std::string> defect(const InfraredConfig& config);
 
-/// Scan n is taken at (n + phase) x period [s, run clock], all beams at once; the phase is drawn
-/// once a run, so that two scanners do not fire together.
+/// Takes scan n at (n + phase) x period [s, run clock], all beams at once. The phase is drawn once
+/// per run, so that two scanners do not fire together.
 class InfraredModel final : public CastingSensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
@@ -26,8 +26,8 @@ class InfraredModel final : public CastingSensor {
   }
   double memory() const override { return config_.period; }
 
-  /// Appends the readings of the newest scan taken by `now` [s, run clock], unless it was reported
-  /// before.
+  /// Appends the readings of the newest scan taken by `now` [s, run clock], unless already
+  /// reported.
   void sense(double now, const PoseTrail& trail, algo::Recycled<algo::RangeReading>& readings);
 
  private:
@@ -35,7 +35,7 @@ class InfraredModel final : public CastingSensor {
   BeamPattern fan_{};
   Random noise_;
   double phase_ = 0;                     // [s]
-  std::int64_t scans_ = 0;               // reported, or passed over
+  std::int64_t scans_ = 0;               // reported or skipped
   std::vector<algo::Pose2> mounts_R_{};  // of the beams
   std::vector<double> ranges_{};
   std::vector<std::uint32_t> hits_{};

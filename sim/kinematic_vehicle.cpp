@@ -1,4 +1,4 @@
-// sim/kinematic_vehicle.cpp: exact arcs, one distance query a tick.
+// sim/kinematic_vehicle.cpp: exact arcs, one distance query per tick.
 #include "sim/kinematic_vehicle.hpp"
 
 #include "algo/diff_drive.hpp"
@@ -27,8 +27,8 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   algo::Twist2 twist = target_;
   algo::Pose2 to = algo::integrate_arc(from, twist, period_);
   state_.contact = false;
-  // A robot that overlaps something already may still leave it: a rectangle any way, since how deep
-  // it overlaps is not known.
+  // A robot that already overlaps an obstacle may leave it. A rectangle may leave in any direction,
+  // since the depth of its overlap is unknown.
   const double clearance = obstacles.clearance(hull_, to);
   const auto was_clear = [&] {
     return obstacles.clearance(hull_, from) > (robot_.round ? clearance : 0);

@@ -1,15 +1,15 @@
-// sim/kinematic_vehicle.hpp: a vehicle without dynamics, for the papers' conditions and speed.
+// sim/kinematic_vehicle.hpp: a vehicle without dynamics, for speed and for the papers' conditions.
 #pragma once
 
 #include "sim/vehicle.hpp"
 
 namespace sim {
 
-/// Drives the exact arc of its command. A move into an obstacle is refused: the robot turns where
-/// it stands.
+/// Drives the exact arc of its command. It refuses to move into an obstacle and turns in place
+/// instead.
 class KinematicVehicle final : public VehicleModel {
  public:
-  /// `with_ramps`: the acceleration limits act. The papers know none.
+  /// `with_ramps`: applies the acceleration limits, which the papers do not have.
   KinematicVehicle(const RobotModel& robot, double period, bool with_ramps = false);
 
   void reset(const algo::Pose2& start) override;

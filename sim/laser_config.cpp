@@ -48,8 +48,8 @@ std::optional<std::string> defect(const LaserConfig& config) {
   };
   const auto probability = [](double value) { return value >= 0 && value <= 1; };
   if (!finite_from(config.angle_increment, 1e-5)) return "angle_increment must be above 0";
-  // Half a turn is what the housing of an LMS200 leaves open, whose beams have each a time; half a
-  // degree more for rounding in a file.
+  // The housing of an LMS200 leaves half a turn open, and each of its beams has its own time. Half
+  // a degree more allows for rounding in a file.
   const double widest = config.rolling ? 180.5_deg : 360_deg;
   if (!finite_from(config.field_of_view, 0) || config.field_of_view > widest) {
     return config.rolling ? "field_of_view must be 0 to 180 degrees unless rolling is off"

@@ -1,4 +1,4 @@
-// sim/laser_model.cpp: when a sweep is over, where its beams come from, and what is reported.
+// sim/laser_model.cpp: when a sweep ends, the origins of its beams, and its readings.
 #include "sim/laser_model.hpp"
 
 #include <algorithm>
@@ -10,15 +10,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// Streams of one scanner's randomness.
+/// The random streams of one scanner.
 enum class Purpose : std::uint64_t { Bias = 1, Phase, Noise, Dropout, Salt, Pepper };
 
 Random stream(std::uint64_t seed, std::uint32_t index, Purpose purpose) {
   return Random(seed, (std::uint64_t{index} << 8) + static_cast<std::uint64_t>(purpose));
 }
 
-/// The scanner at `mount_R` when the robot is at `robot_W`; right over its centre no sine is
-/// needed.
+/// The scanner's pose when the robot is at `robot_W`. A scanner right over the centre needs no
+/// sine.
 algo::Pose2 scanner_W(const algo::Pose2& robot_W, const algo::Pose2& mount_R) {
   if (mount_R.x != 0 || mount_R.y != 0) return algo::compose(robot_W, mount_R);
   return {robot_W.x, robot_W.y, algo::wrap_angle(robot_W.heading + mount_R.heading)};
@@ -41,7 +41,7 @@ LaserModel::LaserModel(const LaserConfig& config, std::uint64_t seed, std::uint3
               .per_metre = config_.unit == LaserUnit::Centimetre ? 100.0 : 1000.0,
               .range_max = config_.range_max,
               .most = algo::kPackedMaxRange / 1000.0};
-  // Several scanners are not synchronised: each further one has a phase of its own.
+  // Several scanners are not synchronised: each further one has its own phase.
   if (index > 0) phase_ = stream(seed, index, Purpose::Phase).uniform(0, config_.mirror_period);
 
   const std::size_t beams = pattern_.beams;
@@ -135,20 +135,21 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
 }
 
 /// The rays of a sweep that ends at `end`: each from the scanner's pose at its own instant, in the
-/// frame of the scanner's pose at half the sweep.
+/// frame of the scanner's pose at half of the sweep.
 void LaserModel::aim(double end, const PoseTrail& trail) {
   const double sweep = config_.turns * config_.mirror_period;
   const double step = trail.step();
   reference_W_ = algo::compose(trail.at(end - sweep / 2), config_.mount_R);
   const double c = std::cos(reference_W_.heading);
   const double s = std::sin(reference_W_.heading);
-  // The scanner at the physics steps around the sweep, oldest first, as seen from the reference.
+  // The scanner's poses at the physics steps around the sweep, oldest first, in the reference
+  // frame.
   const double begin = end - sweep;
   const auto oldest = static_cast<std::size_t>(std::max(0.0, (trail.newest() - begin) / step)) + 1;
   const auto youngest = static_cast<std::size_t>(std::max(0.0, (trail.newest() - end) / step));
   motion_.clear();
   RaySpread spread;
-  double farthest = 0;  // [m^2] from the reference
+  double farthest = 0;  // [m^2] squared distance from the reference
   for (std::size_t age = oldest; age + 1 > youngest; --age) {
     const algo::Pose2 pose_W = scanner_W(trail.back(age), config_.mount_R);
     const double dx = pose_W.x - reference_W_.x;
@@ -161,7 +162,7 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
     if (age == 0) break;
   }
   spread.shift = std::sqrt(farthest);
-  motion_.push_back(motion_.back());  // the last instant has a successor to interpolate to
+  motion_.push_back(motion_.back());  // so that the last instant has a successor for interpolation
   spread_ = spread;
   allow_for_spot();
 
@@ -181,8 +182,8 @@ void LaserModel::aim(double end, const PoseTrail& trail) {
                   work_->rays.uy.data());
 }
 
-/// Where the scanner is when the beams from fired_[first] on leave, as many as lie within one
-/// physics step; fired_ ascends. @return the first beam after them
+/// The scanner's poses for the beams from fired_[first] on, as many as are fired within one physics
+/// step; fired_ ascends. @return the first beam after them
 std::size_t LaserModel::follow_motion(const StepClock& clock, std::size_t first) {
   const auto k = static_cast<std::size_t>(clock.at(fired_[first]));
   const auto number = static_cast<double>(k);
@@ -212,7 +213,7 @@ void LaserModel::aim_still() {
   allow_for_spot();
 }
 
-/// Bias, noise and rounding to the device's unit. What comes out is what a packed beam can hold
+/// Applies bias, noise and rounding to the device's unit. A packed beam can hold every result
 /// (algo::quantise() would change nothing).
 void LaserModel::report(algo::LaserScan& scan) {
   if (config_.noise > 0 && config_.noise_shape == NoiseShape::Gaussian) {
@@ -240,11 +241,11 @@ void LaserModel::report(algo::LaserScan& scan) {
   }
 }
 
-/// Beams lost or false, independent of what they met.
+/// Loses or falsifies beams, whatever they hit.
 void LaserModel::spoil(algo::LaserScan& scan) {
   pepper_.draw(scan.size(), [&](std::size_t i) {
     double near = pepper_.random().uniform(0, work_->ranges[i]);
-    double truth = 0;  // stands in for the range: only the rounding is wanted
+    double truth = 0;  // replaces the range: only the rounding is needed
     read_ranges(&truth, &near, 1, {0, 1, reading_.per_metre, config_.range_max, reading_.most});
     scan.set_ok(i, near);
   });

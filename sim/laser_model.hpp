@@ -1,5 +1,4 @@
-// sim/laser_model.hpp: what an LMS200 reports of a world: when its beams are fired and what goes
-// wrong with them.
+// sim/laser_model.hpp: the LMS200 model: when its beams are fired, and the errors of its readings.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +11,8 @@
 
 namespace sim {
 
-/// Numbers of one sweep, one entry a beam unless said otherwise. Nothing in it outlives the sweep:
-/// all scanners of a thread take turns with one, which so stays in the processor's cache.
+/// Workspace of one sweep, one entry per beam unless noted. Nothing in it outlives the sweep. All
+/// scanners of a thread share one, which thus stays in the processor's cache.
 struct LaserWorkspace {
   Rays way{};  // x and y, one mirror turn after another
   std::vector<double> way_turns{};
@@ -21,30 +20,30 @@ struct LaserWorkspace {
   std::vector<double> ranges{};
   std::vector<std::uint32_t> hits{};
   std::vector<double> draws{};
-  std::vector<double> turns{};             // [rad] of the scanner off the reference at a beam
+  std::vector<double> turns{};             // [rad] between scanner and reference at each beam
   std::vector<std::uint8_t> edge_flags{};  // between a beam and the next; the last stays 0
-  std::vector<std::uint32_t> edges{};      // beams whose spot may lie on an edge, in front
-  Rays more{};                             // further rays for each of them
-  std::vector<std::uint32_t> first{};      // of those rays, for each beam
+  std::vector<std::uint32_t> edges{};      // beams whose spot may lie on an edge, packed in front
+  Rays more{};                             // further rays of these beams
+  std::vector<std::uint32_t> first{};      // index of each beam's first such ray
   std::vector<double> more_ranges{};
   std::vector<std::uint32_t> more_hits{};
-  std::vector<double> spot_ranges{};  // rows as judge_spots() has them
+  std::vector<double> spot_ranges{};  // rows as in judge_spots()
   std::vector<std::uint32_t> spot_hits{};
 
   void resize(std::size_t beams);
 };
 
-/// What is wrong with the configuration as a sentence part, or nothing.
+/// The defect of the configuration as part of a sentence, or nothing.
 std::optional<std::string> defect(const LaserConfig& config);
 
-/// One simulated scanner and its own slice of the world.
+/// One simulated scanner with its own slice of the world.
 ///
-/// The mirror turns without pause from the start of the run. A beam leaves at its own time and from
-/// where the robot is then; a scan is delivered when its last turn is over, so that a tick without
-/// a new one is normal. With `rolling` off, every call brings a scan of that instant.
+/// The mirror turns continuously from the start of the run. Each beam is fired at its own time,
+/// from the robot's pose at that time. A scan is delivered after its last turn, so a tick without a
+/// new scan is normal. With `rolling` off, every call gives a scan of that instant.
 ///
 /// Order of effects: ray, surface (reflectivity), spot (mixed pixels), bias and noise, rounding;
-/// then pepper, salt and dropout, each from a generator of its own.
+/// then pepper, salt and dropout, each with its own generator.
 class LaserModel final : public CastingSensor {
  public:
   /// Scanner `index` of a run with `seed`. Throws std::invalid_argument with the defect.
@@ -58,12 +57,12 @@ class LaserModel final : public CastingSensor {
   void remove(std::uint32_t id) override;
   void sense(const Surroundings& around, algo::Observation& observation) override;
 
-  /// Fills `scan` with the newest sweep completed by `now` [s, run clock]. False when that one was
+  /// Fills `scan` with the newest sweep completed by `now` [s, run clock]. False if that sweep was
   /// delivered before; `scan` is then meaningless.
   bool sense(double now, const PoseTrail& trail, algo::LaserScan& scan);
 
  private:
-  /// Marks in `hits` a surface that sent too little light back.
+  /// Marks in `hits` a surface that returned too little light.
   static constexpr std::uint32_t kNoEcho = RangeCaster::kNothing - 1;
 
   void note_surfaces();
@@ -82,7 +81,7 @@ class LaserModel final : public CastingSensor {
 
   LaserConfig config_{};
   BeamPattern pattern_{};
-  bool plain_ = true;  // no surface in the world is too dark within range, none is specular
+  bool plain_ = true;  // no surface is specular, or too dark within range
 
   Random noise_;
   RareEvents dropout_;
@@ -94,12 +93,12 @@ class LaserModel final : public CastingSensor {
 
   std::size_t spots_ = 0;
 
-  // Tables, one entry a beam.
+  // Tables, one entry per beam.
   std::vector<double> fired_{};      // [s] after the sweep's start, one mirror turn after another
   std::vector<double> ux_{}, uy_{};  // directions in the scanner's frame
 
-  // Of the sweep at hand.
-  std::vector<algo::Pose2> motion_{};  // the scanner at the physics steps
+  // Of the present sweep.
+  std::vector<algo::Pose2> motion_{};  // the scanner's poses at the physics steps
   algo::Pose2 reference_W_{};
   RaySpread spread_{};
   LaserWorkspace* work_ = nullptr;  // the thread's

@@ -1,4 +1,4 @@
-// sim/laser_surfaces.cpp: what the surface and the width of the beam do to a reading.
+// sim/laser_surfaces.cpp: the effects of the surface and of the beam's width on a reading.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,25 +13,26 @@ namespace {
 
 using namespace algo::units;
 
-// The spot: 8 mm wide at the window, spreading by half a degree. Sub-rays lie evenly across it.
+// The spot: 8 mm wide at the window, widening by half a degree. Sub-rays are spaced evenly across
+// it.
 constexpr double kSpotHalfWidth = 4_mm;
 constexpr double kSpotHalfAngle = 0.25_deg;
 constexpr std::array<double, kSpotRays - 1> kSubRays{
     -1, -0.5, 0.5, 1};  // besides the one in the centre
 
 constexpr double kJump = 20_mm;          // between neighbours that may share an edge
-constexpr double kMixedGap = 1.2;        // [m] surfaces farther apart are not mixed
-constexpr double kNearShareToWin = 0.3;  // of the spot, for the nearer surface to be reported
-constexpr double kSpecularCone = 5_deg;  // about the normal, within which a mirror sends light back
+constexpr double kMixedGap = 1.2;        // [m] surfaces farther apart do not mix
+constexpr double kNearShareToWin = 0.3;  // least share of the spot for the nearer surface to win
+constexpr double kSpecularCone = 5_deg;  // about the normal, within which a mirror returns light
 
-/// [m] How far a diffuse surface is seen: 10 m at 10 % reflectivity, at most 80.
+/// [m] Visible range of a diffuse surface: 10 m at 10 % reflectivity, at most 80 m.
 double reach(double reflectivity) {
   return std::min(80.0, 10 * std::sqrt(reflectivity / 0.1));
 }
 
 }  // namespace
 
-/// The rays across a spot lie beside the beam itself.
+/// Widens the spread of the rays by those across a spot.
 void LaserModel::allow_for_spot() {
   if (!config_.mixed_pixels) return;
   spread_.shift += kSpotHalfWidth;
@@ -46,8 +47,8 @@ void LaserModel::note_surfaces() {
   }
 }
 
-/// Rays that meet a surface too dark for the distance give no echo; a specular surface looks like
-/// nothing at all unless it faces the scanner.
+/// Rays that hit a surface too dark for its distance give no echo. A specular surface is invisible
+/// unless it faces the scanner.
 void LaserModel::apply_surfaces(const Rays& rays,
                                 std::span<double> ranges,
                                 std::span<std::uint32_t> hits) const {
@@ -72,9 +73,9 @@ void LaserModel::apply_surfaces(const Rays& rays,
   }
 }
 
-/// Notes the beams at an edge: next to one that met something else at another distance. Two beams
-/// on one (convex) obstacle have no edge between them, however steeply it recedes. Every beam is
-/// written down and only those at an edge are counted, as which are is not predictable.
+/// Marks the beams at an edge: next to a beam that hit another obstacle at another distance. Two
+/// beams on one (convex) obstacle have no edge between them, however steeply it recedes. Writes
+/// every beam but counts only those at an edge, since they are unpredictable.
 void LaserModel::mark_edges() {
   flag_edges(work_->ranges.data(),
              work_->hits.data(),
@@ -97,7 +98,7 @@ void LaserModel::mark_edges() {
   spots_ = count;
 }
 
-/// Casts the sub-rays of the beams at edges and replaces their ranges by what the whole spot gives.
+/// Casts the sub-rays of the beams at edges and replaces the beams' ranges by those of whole spots.
 void LaserModel::mix_pixels() {
   if (spots_ == 0) return;
   work_->more.resize(spots_ * kSubRays.size());
@@ -127,7 +128,7 @@ void LaserModel::mix_pixels() {
   judge();
 }
 
-/// Replaces the ranges of the beams at edges by what their whole spots give.
+/// Replaces the ranges of the beams at edges by those of their whole spots.
 void LaserModel::judge() {
   const std::size_t spots = spots_;
   work_->spot_ranges.resize(spots * kSpotRays);

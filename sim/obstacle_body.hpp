@@ -8,11 +8,11 @@
 
 namespace sim {
 
-/// Shape of an obstacle about its own middle: cylinder, box, or for a polygon a convex hull, whose
-/// surface Bullet rounds off by `margin` [m]; good for contacts, not for ranges.
+/// The shape of an obstacle about its own centre: cylinder, box, or a convex hull for a polygon.
+/// Bullet rounds the hull's surface by `margin` [m]; good for contacts, not for ranges.
 BulletPtr<btCollisionShape> obstacle_shape(const algo::Obstacle& obstacle, double margin);
 
-/// Where its middle is: half its height over the floor.
+/// The pose of its centre: half its height above the floor.
 btTransform obstacle_transform(const algo::Obstacle& obstacle);
 
 }  // namespace sim

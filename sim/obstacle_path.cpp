@@ -1,4 +1,4 @@
-// sim/obstacle_path.cpp: where a moving obstacle is.
+// sim/obstacle_path.cpp: the position of a moving obstacle.
 #include <algorithm>
 #include <cmath>
 

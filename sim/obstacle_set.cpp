@@ -1,4 +1,4 @@
-// sim/obstacle_set.cpp: planar distances with a circle test first.
+// sim/obstacle_set.cpp: planar distances, after a test of the bounding circles.
 #include "sim/obstacle_set.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-/// Whether a side of the counter-clockwise convex `outline` has all of `points` outside it.
+/// True if a side of the counter-clockwise convex `outline` has all of `points` outside it.
 bool side_separates(std::span<const algo::Vec2> outline, std::span<const algo::Vec2> points) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const algo::Vec2& a = outline[i];
@@ -23,7 +23,7 @@ bool side_separates(std::span<const algo::Vec2> outline, std::span<const algo::V
   return false;
 }
 
-/// [m] Between two convex outlines; -1 where they overlap.
+/// [m] Distance between two convex outlines; -1 if they overlap.
 double between(std::span<const algo::Vec2> one, std::span<const algo::Vec2> other) {
   if (!side_separates(one, other) && !side_separates(other, one)) return -1;
   double nearest = std::numeric_limits<double>::infinity();  // squared
@@ -46,7 +46,7 @@ std::optional<std::size_t> ObstacleSet::find(std::uint32_t id) const {
   return std::nullopt;
 }
 
-/// Outline and circle of `item` where its obstacle is.
+/// Updates outline and circle of `item` to its obstacle's pose.
 void ObstacleSet::measure(Item& item) {
   item.centre_W = item.obstacle.pose_W.position();
   if (const auto* cylinder = std::get_if<algo::Cylinder>(&item.obstacle.shape)) {
@@ -106,7 +106,7 @@ double ObstacleSet::distance(const algo::Vec2& p_W) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
     if (items_[i].hidden) continue;
-    // Nothing of it can be nearer than its circle; inside one, every distance must be looked at.
+    // No point of it is nearer than its circle. Inside a circle, every distance must be computed.
     if (nearest > 0 && !may_reach(i, p_W, nearest)) continue;
     nearest = std::min(nearest, distance(i, p_W));
   }
@@ -138,7 +138,7 @@ double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const
   if (hull.is_disc()) return distance(pose_W.position()) - hull.radius;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
-    // Nothing of it can be nearer than its circle is to the circle about the rectangle.
+    // No point of it is nearer than its circle is to the rectangle's circle.
     if (!may_reach(i, pose_W.position(), std::max(nearest, 0.0) + hull.radius)) continue;
     nearest = std::min(nearest, clearance(items_[i], hull, pose_W));
   }

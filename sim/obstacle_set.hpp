@@ -14,8 +14,8 @@ namespace sim {
 
 using algo::Hull;
 
-/// Obstacles in the order they were added, each with its outline and a circle about it, so that a
-/// distance costs little with a thousand of them and allocates nothing.
+/// Obstacles in the order of addition, each with its outline and bounding circle. A distance costs
+/// little even with a thousand of them, and allocates nothing.
 class ObstacleSet {
  public:
   std::size_t size() const { return items_.size(); }
@@ -26,28 +26,29 @@ class ObstacleSet {
   void add(const algo::Obstacle& obstacle);
   void move(std::size_t index, const algo::Pose2& pose_W);
   void remove(std::size_t index);
-  /// No distance counts obstacle `index` until it is moved again.
+  /// Distances ignore obstacle `index` until it is moved again.
   void hide(std::size_t index) { items_[index].hidden = true; }
   void clear() { items_.clear(); }
 
-  /// [m] From `p_W` to the nearest surface, negative inside, infinite without obstacles. Equal to
-  /// the least algo::signed_distance().
+  /// [m] Distance from `p_W` to the nearest surface: negative inside, infinite without obstacles.
+  /// Equals the smallest algo::signed_distance().
   double distance(const algo::Vec2& p_W) const;
-  /// The same to the one obstacle `index`.
+  /// The same for obstacle `index` alone.
   double distance(std::size_t index, const algo::Vec2& p_W) const;
-  /// [m] From the outline of `hull` at `pose_W` to the nearest surface, infinite without obstacles.
-  /// Negative where they overlap: for a disc the depth, for a rectangle some negative number.
+  /// [m] Distance from the outline of `hull` at `pose_W` to the nearest surface, infinite without
+  /// obstacles. Negative if they overlap: for a disc the depth, for a rectangle any negative
+  /// number.
   double clearance(const Hull& hull, const algo::Pose2& pose_W) const;
-  /// The same to the one obstacle `index`.
+  /// The same for obstacle `index` alone.
   double clearance(std::size_t index, const Hull& hull, const algo::Pose2& pose_W) const;
-  /// True when the circle about obstacle `index` comes within `reach` [m] of `p_W`.
+  /// True if the bounding circle of obstacle `index` comes within `reach` [m] of `p_W`.
   bool may_reach(std::size_t index, const algo::Vec2& p_W, double reach) const;
 
  private:
   struct Item {
     algo::Obstacle obstacle{};
     algo::Vec2 centre_W{0, 0};
-    double bound = 0;                     // [m] radius of the circle about it
+    double bound = 0;                     // [m] radius of the bounding circle
     std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
     bool hidden = false;
   };

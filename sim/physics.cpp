@@ -1,4 +1,4 @@
-// sim/physics.cpp: Bullet's world, and which obstacles are in it.
+// sim/physics.cpp: Bullet's world, and the selection of obstacles in it.
 #include "sim/physics.hpp"
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace {
 constexpr int kPooledPairs = 64;
 constexpr double kGravity = 9.81;  // [m/s2]
 constexpr int kIterations = 10;    // enough on a flat floor
-constexpr double kRegather = 0.5;  // [m] driven before the near obstacles are chosen anew
-constexpr double kSideways = 0.1;  // z of a contact's normal below which it holds nothing up
+constexpr double kRegather = 0.5;  // [m] driven before the near obstacles are selected anew
+constexpr double kSideways = 0.1;  // z of a contact's normal below which it supports nothing
 constexpr int kHullPart = 0;
 
-/// Drops contacts at the sides of a wheel. A support ball replaces the wheel and reaches farther
-/// out than a wheel does; the hull alone touches obstacles beside the robot. The user index of a
-/// chassis is the number of its last wheel; every other body has -1.
+/// Drops contacts at the sides of a wheel. A support ball replaces the wheel and extends farther
+/// sideways than it; only the hull touches obstacles beside the robot. The user index of a chassis
+/// is the number of its last wheel; every other body has -1.
 void drop_wheel_sides(btBroadphasePair& pair,
                       btCollisionDispatcher& dispatcher,
                       const btDispatcherInfo& info) {
@@ -49,8 +49,8 @@ Physics::~Physics() {
 }
 
 void Physics::build() {
-  // Bullet's own choice is room for thousands of pairs in contact, seven megabytes a world; what
-  // goes beyond comes from the heap.
+  // Bullet's default reserves room for thousands of pairs in contact, seven megabytes per world.
+  // Pairs beyond the room come from the heap.
   btDefaultCollisionConstructionInfo room;
   room.m_defaultMaxPersistentManifoldPoolSize = kPooledPairs;
   room.m_defaultMaxCollisionAlgorithmPoolSize = kPooledPairs;

@@ -1,4 +1,4 @@
-// sim/physics.hpp: the floor and the obstacles near a robot, in a Bullet world.
+// sim/physics.hpp: the floor, and the obstacles near a robot, in a Bullet world.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 namespace sim {
 
 /// Owns Bullet's world, its floor at z = 0 and a body for each obstacle. A base adds its own bodies
-/// and constraints to world(), and takes them out before restart() and before its physics ends.
+/// and constraints to world(). It must remove them before restart() and before the Physics ends.
 ///
-/// Only obstacles near the robot are in the world, so that a step costs the same among twenty and
-/// among a thousand. Rays never go through Bullet.
+/// Only obstacles near the robot are in the world, so that a step costs as much with twenty
+/// obstacles as with a thousand. Rays never use Bullet.
 class Physics {
  public:
-  static constexpr double kMargin = 0.001;  // [m] the default of 0.04 rounds small edges away
+  static constexpr double kMargin = 0.001;  // [m] the default of 0.04 rounds small edges off
 
   Physics() { build(); }
   ~Physics();
@@ -29,21 +29,21 @@ class Physics {
   btDiscreteDynamicsWorld& world() { return *world_; }
   btRigidBody& floor() { return *floor_; }
 
-  /// An empty world of the same obstacles, which keeps nothing of the steps before.
+  /// Creates an empty world for the same obstacles, without any state of earlier steps.
   void restart();
   void step(double seconds) { world_->stepSimulation(seconds, 0); }
-  /// Drops what is known of touches of `body`, which was set somewhere else.
+  /// Drops the cached contacts of `body`, which was placed elsewhere.
   void set_down(btRigidBody& body);
 
-  /// The obstacles as they change; `index` is the one in the ObstacleSet.
+  /// Changes of the obstacles; `index` is the index in the ObstacleSet.
   void added(const algo::Obstacle& obstacle);
   void moved(std::size_t index, const algo::Obstacle& obstacle);
   void removed(std::size_t index);
-  /// Brings the obstacles within `reach` [m] of `here_W` into the world and takes the others out.
+  /// Adds the obstacles within `reach` [m] of `here_W` to the world and removes the others.
   void gather(const ObstacleSet& obstacles, const algo::Vec2& here_W, double reach);
 
  private:
-  /// An obstacle as Bullet sees it, whether or not it is in the world now.
+  /// An obstacle's Bullet body, in the world or not.
   struct Body {
     BulletPtr<btCollisionShape> shape{};
     BulletPtr<btCollisionObject> object{};
@@ -54,7 +54,7 @@ class Physics {
   void empty();
   void withdraw(Body& body);
 
-  // In the order of construction; torn down in reverse.
+  // In order of construction; destroyed in reverse.
   BulletPtr<btDefaultCollisionConfiguration> configuration_{};
   BulletPtr<btCollisionDispatcher> dispatcher_{};
   BulletPtr<btDbvtBroadphase> broadphase_{};
@@ -64,7 +64,7 @@ class Physics {
   BulletPtr<btRigidBody> floor_{};
   std::vector<Body> bodies_{};  // in the order of the ObstacleSet
 
-  algo::Vec2 gathered_at_{0, 0};  // where the near obstacles were last chosen
+  algo::Vec2 gathered_at_{0, 0};  // where the near obstacles were last selected
   bool gathered_ = false;
 };
 

@@ -9,7 +9,7 @@
 namespace sim {
 namespace {
 
-/// splitmix64 (Steele, Lea and Flood 2014): spreads a seed over a whole state.
+/// splitmix64 (Steele, Lea and Flood 2014): expands a seed to a whole state.
 std::uint64_t split_mix(std::uint64_t& x) {
   x += 0x9E3779B97F4A7C15ULL;
   std::uint64_t z = x;
@@ -22,13 +22,13 @@ double to_unit(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53;
 }
 
-/// In [-1, 1): 2 to_unit(bits) - 1 with a step less, exact to the bit.
+/// In [-1, 1): 2 to_unit(bits) - 1 with one step less, exact to the bit.
 double to_both_sides(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-52 - 1.0;
 }
 
-// Ziggurat for the normal density (Marsaglia and Tsang 2000) with 128 layers of equal area: layer i
-// reaches from 0 to edge[i]; a point left of edge[i + 1] lies under the curve for certain.
+// Ziggurat for the normal density (Marsaglia and Tsang 2000) with 128 layers of equal area. Layer i
+// reaches from 0 to edge[i]; a point left of edge[i + 1] is certainly under the curve.
 constexpr std::size_t kLayers = 128;
 constexpr double kTailStart = 3.442619855899;
 constexpr double kLayerArea = 9.91256303526217e-3;
@@ -83,7 +83,7 @@ double Random::uniform() {
   return to_unit(bits());
 }
 
-/// In place in fill_normal(), where the state stays in registers.
+/// Inlined into fill_normal(), where the state stays in registers.
 inline double Random::normal() {
   for (;;) {
     const std::uint64_t draw = bits();  // low 7 bits choose the layer, high 53 the place in it

@@ -10,10 +10,10 @@
 namespace sim {
 
 /// xoshiro256++ (Blackman and Vigna 2019). Each source of randomness owns one, so that switching a
-/// source off leaves what the others draw as it was.
+/// source off does not change the numbers of the others.
 class Random {
  public:
-  /// A generator for `purpose`; different purposes of one seed draw unrelated numbers.
+  /// A generator for `purpose`; different purposes of one seed give independent numbers.
   explicit Random(std::uint64_t seed = 0, std::uint64_t purpose = 0);
 
   std::uint64_t bits();
@@ -32,13 +32,13 @@ class Random {
   std::array<std::uint64_t, 4> state_{};
 };
 
-/// Picks each of an endless row of trials with the same small probability. It draws the gaps
-/// between picks (geometric) and so costs next to nothing per trial.
+/// Picks trials of an endless sequence with the same small probability. It draws the gaps between
+/// picks (geometric), so each trial costs almost nothing.
 class RareEvents {
  public:
   RareEvents(const Random& random, double probability);
 
-  /// Calls `pick(i)` for each picked trial among the next `trials`, i counting from 0.
+  /// Calls `pick(i)` for each picked trial among the next `trials`; i counts from 0.
   template <typename Pick>
   void draw(std::size_t trials, Pick&& pick) {
     std::size_t i = 0;
@@ -50,7 +50,7 @@ class RareEvents {
     }
     if (gap_ != kNever) gap_ -= trials - i;
   }
-  /// The generator behind it, for what a picked trial needs besides.
+  /// The underlying generator, for further numbers of a picked trial.
   Random& random() { return random_; }
 
  private:

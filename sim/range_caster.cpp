@@ -1,4 +1,4 @@
-// sim/range_caster.cpp: keeps the slice and casts scans from one pose.
+// sim/range_caster.cpp: maintains the slice and casts scans from one pose.
 #include "sim/range_caster.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The least whole number not below `value`, 0 for a negative one; a call of ceil() costs more.
+/// The smallest whole number not below `value`, 0 for a negative one; faster than ceil().
 std::uint32_t round_up(double value) {
   const auto whole = static_cast<std::uint32_t>(value < 0 ? 0 : value);
   return whole + (value > static_cast<double>(whole) ? 1 : 0);
@@ -111,7 +111,7 @@ algo::Vec2 RangeCaster::normal_W(std::uint32_t index, const algo::Vec2& p_W) con
     const double distance = (p_W - start - along * edge).norm();
     if (distance < nearest) {
       nearest = distance;
-      normal = algo::Vec2{edge.y(), -edge.x()}.normalized();  // the outline runs counter-clockwise
+      normal = algo::Vec2{edge.y(), -edge.x()}.normalized();  // the outline is counter-clockwise
     }
   }
   return normal;
@@ -132,13 +132,13 @@ void RangeCaster::use_pattern(const BeamPattern& pattern) {
   narrow_ = field <= std::numbers::pi + 1e-9;
 }
 
-/// Fills `near_` with the obstacles whose circle reaches into range and field of view.
+/// Fills `near_` with the obstacles whose circle overlaps range and field of view.
 void RangeCaster::gather(const algo::Pose2& sensor_W, double range_max, const RaySpread& spread) {
   sensor_W_ = sensor_W;
   cosine_ = std::cos(sensor_W.heading);
   sine_ = std::sin(sensor_W.heading);
-  // Outer beams in W; a half turn or less of view is what lies left of the first and right of the
-  // last. Without that, both tests always hold.
+  // Outer beams in W. A view of at most half a turn is the region left of the first beam and right
+  // of the last. For a wider view, both tests always hold.
   const double fx = narrow_ ? cosine_ * ux_.front() - sine_ * uy_.front() : 0;
   const double fy = narrow_ ? sine_ * ux_.front() + cosine_ * uy_.front() : 0;
   const double lx = narrow_ ? cosine_ * ux_.back() - sine_ * uy_.back() : 0;
@@ -151,7 +151,7 @@ void RangeCaster::gather(const algo::Pose2& sensor_W, double range_max, const Ra
     const double dy = centre_y_[k] - sensor_W.y;
     const double bound = bound_[k] + margin;
     const double reach = bound + range_max;
-    // Counted instead of branched on: which obstacles pass is not predictable.
+    // Counted instead of branched on: it is unpredictable which obstacles pass.
     const int in_reach = dx * dx + dy * dy < reach * reach ? 1 : 0;
     const int left_of_first = cross(fx, fy, dx, dy) > -bound ? 1 : 0;
     const int right_of_last = cross(dx, dy, lx, ly) > -bound ? 1 : 0;
@@ -194,7 +194,7 @@ double RangeCaster::bearing(Corner& corner) const {
   return corner.beam;
 }
 
-/// The first beam at or counter-clockwise of `corner`, decided exactly where it is close.
+/// The first beam at or counter-clockwise of `corner`; decided exactly if it is close.
 std::uint32_t RangeCaster::first_beam(const Corner& corner) const {
   auto i = round_up(corner.beam - slack_);
   const auto last = round_up(corner.beam + slack_);
@@ -204,7 +204,7 @@ std::uint32_t RangeCaster::first_beam(const Corner& corner) const {
 }
 
 void RangeCaster::start(std::size_t rays, double range_max, bool with_hits) {
-  // Of no use after a cast: all casters of a thread take turns with one.
+  // Workspace of one cast, shared by all casters of a thread.
   static thread_local std::vector<double> inverse;
   static thread_local std::vector<double> tags;
   inverse.assign(rays, 1 / range_max);
@@ -273,7 +273,7 @@ void RangeCaster::flat_outline(std::uint32_t index) {
     outside = true;
     const double from = bearing(p);
     const double to = bearing(q);
-    // The face spans less than half a turn. Nearly edge-on, rounding may swap its ends.
+    // The face spans less than half a turn. If it is nearly edge-on, rounding may swap its ends.
     if (from > to && from - to < full_turn_ / 2) continue;
     const double a = (q.y - p.y) / area;
     const double b = (p.x - q.x) / area;

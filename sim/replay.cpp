@@ -12,9 +12,9 @@
 namespace sim {
 namespace {
 
-constexpr double kShortestPause = 1e-3;  // [s] no scanner is faster: such a stamp says nothing
-constexpr double kLongestPause = 3600;   // [s] a longer one is a clock that was set
-constexpr double kFarthestMount = 1.0;   // [m] a laser farther off its robot is two separate poses
+constexpr double kShortestPause = 1e-3;  // [s] no scanner is faster: a shorter pause is invalid
+constexpr double kLongestPause = 3600;   // [s] a longer one means that the clock was set
+constexpr double kFarthestMount = 1.0;   // [m] a laser farther from its robot: unrelated poses
 
 std::ifstream open(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -24,8 +24,8 @@ std::ifstream open(const std::filesystem::path& file) {
   return stream;
 }
 
-/// The scanner on its robot, from both poses of a line. In files with a corrected path the two may
-/// be poses of different maps; then the scanner is taken to sit in the middle.
+/// The scanner's mount on its robot, from the two poses of a line. In files with a corrected path
+/// the two poses may be from different maps; the scanner is then assumed to be at the centre.
 algo::Pose2 mount_of(const CarmenScan& scan) {
   algo::Pose2 mount = algo::pose_step(scan.robot_W, scan.laser_W);
   if ((scan.laser_W.position() - scan.robot_W.position()).norm() > kFarthestMount) mount = {};
@@ -102,7 +102,7 @@ void Replay::keep(const CarmenScan& scan, std::vector<std::uint32_t>& readings_m
   }
 }
 
-/// Recorded stamps to run-clock times.
+/// Converts recorded stamps to run-clock times.
 void Replay::time_scans() {
   double recorded = scans_.front().stamp;
   double now = 0;
@@ -116,7 +116,7 @@ void Replay::time_scans() {
   }
 }
 
-/// The recording robot is unknown: it is taken for a Silvermate.
+/// The recording robot is unknown: assumes a Silvermate.
 void Replay::describe() {
   std::vector<double> periods;
   for (std::size_t i = 1; i < scans_.size(); ++i) {

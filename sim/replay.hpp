@@ -1,4 +1,4 @@
-// sim/replay.hpp: a recorded CARMEN log behind the robot port.
+// sim/replay.hpp: replays a recorded CARMEN log behind the robot port.
 #pragma once
 
 #include <cstddef>
@@ -13,26 +13,26 @@
 
 namespace sim {
 
-/// Lines that were skipped because they could not be read.
+/// Lines skipped as unreadable.
 struct SkippedLines {
   std::size_t count = 0;
   std::size_t first_line = 0;  // counted from 1
   std::string first_reason{};
 };
 
-/// Replays a log one scan a tick, timed by its stamps; where those are missing, repeated or run
-/// backwards, 0.2 s a scan. The run clock starts at 0 with the first scan.
+/// Replays a log one scan per tick, timed by its stamps. If stamps are missing, repeated or
+/// decreasing, a scan takes 0.2 s. The run clock starts at 0 with the first scan.
 ///
-/// The whole log is read when it is opened and kept as packed beams. Commands are ignored.
-/// Belongs to one thread.
+/// Reads the whole log when opened and keeps it as packed beams. Ignores commands. Use from one
+/// thread only.
 class Replay final : public algo::Robot {
  public:
-  /// [s] A tick where the log does not say.
+  /// [s] A tick without a usable stamp in the log.
   static constexpr double kFallbackPeriod = 0.2;
 
-  /// Throws std::runtime_error with a sentence when there is no such file or no scan in it.
+  /// Throws std::runtime_error with a sentence if there is no such file or no scan in it.
   explicit Replay(const std::filesystem::path& file);
-  /// The same from a stream; `name` stands for the file in messages.
+  /// The same from a stream; `name` names the file in messages.
   Replay(std::istream& log, const std::string& name);
 
   const algo::RobotSpec& spec() const override { return spec_; }
@@ -52,7 +52,7 @@ class Replay final : public algo::Robot {
     CarmenLaser laser = CarmenLaser::Front;
     double stamp = 0;  // [s] run clock
     algo::Pose2 pose_W{};
-    algo::Pose2 mount_R{};  // the same for all scans of a laser: that of its first
+    algo::Pose2 mount_R{};                      // constant for a laser: that of its first scan
     double angle_min = 0, angle_increment = 0;  // [rad]
     std::size_t first = 0, beams = 0;           // in wire_
   };

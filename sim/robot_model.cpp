@@ -1,4 +1,4 @@
-// sim/robot_model.cpp: outline, and whether the machine stands on its wheels.
+// sim/robot_model.cpp: the outline, and the check that the machine stands on its wheels.
 #include "sim/robot_model.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace sim {
 namespace {
 
-constexpr double kTouching = 0.005;  // [m] a caster raised by more does not carry
-constexpr double kFirmly = 0.01;     // [m] from the middle of the mass to the line of two supports
+constexpr double kTouching = 0.005;  // [m] a caster raised by more carries no load
+constexpr double kFirmly = 0.01;     // [m] from the centre of mass to the line of two supports
 constexpr int kDirections = 72;
 
-/// Whether the supports reach beyond R in every direction.
+/// True if the supports extend beyond R in every direction.
 bool stands(const RobotModel& robot) {
   std::vector<algo::Vec2> supports;
   for (const double x : robot.wheels) {
@@ -33,7 +33,8 @@ bool stands(const RobotModel& robot) {
   return true;
 }
 
-/// Bullet would stop the robot at what the ball meets, and the hull would not have touched it.
+/// True if the caster lies under the hull. Otherwise an obstacle could stop the ball in Bullet
+/// without touching the hull.
 bool under_hull(const RobotModel& robot, const Caster& caster) {
   if (robot.round) return std::hypot(caster.x, caster.y) + caster.radius <= robot.radius;
   return std::abs(caster.x) + caster.radius <= robot.hull_length / 2 &&

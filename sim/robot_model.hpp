@@ -1,4 +1,4 @@
-// sim/robot_model.hpp: one robot as numbers: hull, mass, wheels, limits, sensors.
+// sim/robot_model.hpp: the parameters of one robot: hull, mass, wheels, limits, sensors.
 #pragma once
 
 #include <optional>
@@ -11,27 +11,27 @@
 
 namespace sim {
 
-/// A ball under the chassis that rolls freely.
+/// A free-rolling ball under the chassis.
 struct Caster {
   double x = 0, y = 0;  // [m] in R
   double radius = 0;    // [m]
-  double raised = 0;    // [m] its lowest point over the floor
+  double raised = 0;    // [m] height of its lowest point above the floor
   bool operator==(const Caster&) const = default;
 };
 
-/// A base with two driven sides (physics.md 3). R lies on the floor under the middle of the hull,
-/// which is also that of the mass. The numbers here are the Silvermate's.
+/// A base with two driven sides (physics.md 3). R lies on the floor under the centre of the hull,
+/// which is also the centre of mass. The defaults are the Silvermate's.
 struct Machine {
   std::string name = "silvermate";  // [a-z0-9_-]+, at most 64
-  bool round = true;                // the hull is a cylinder of `radius`, otherwise a box
+  bool round = true;                // the hull is a cylinder of `radius`; otherwise a box
   double radius = 0.35;             // [m] of the circle about R that encloses the hull in the plane
-  double hull_length = 0.70, hull_width = 0.70;  // [m] of a round one: its diameter
-  double hull_low = 0.06, hull_high = 0.46;      // [m] over the floor
+  double hull_length = 0.70, hull_width = 0.70;  // [m] if round, the diameter
+  double hull_low = 0.06, hull_high = 0.46;      // [m] above the floor
   double mass = 60;                              // [kg]
   double mass_height = 0.25;                     // [m] of the centre of mass
   double half_track = 0.25;                      // [m]
   double wheel_radius = 0.10;                    // [m]
-  std::vector<double> wheels{0};                 // [m] x of the wheels of each side
+  std::vector<double> wheels{0};                 // [m] x of the wheels on each side
   std::vector<Caster> casters{{0.27, 0, 0.04, 0.001}, {-0.27, 0, 0.04, 0.001}};
   double max_v = 0.5;                   // [m/s]
   double max_omega = 1.0;               // [rad/s]
@@ -40,7 +40,7 @@ struct Machine {
   double friction = 0.8;                // of the drive wheels on the floor
   double counts_per_turn = 40000;       // of a wheel's encoder
 
-  /// A box; `radius` is that of the circle about its corners.
+  /// Makes the hull a box; `radius` becomes that of the circle through its corners.
   void set_box(double length, double width);
   void set_disc(double radius_m);
   bool operator==(const Machine&) const = default;
@@ -48,17 +48,17 @@ struct Machine {
 
 struct RobotModel : Machine {
   Sensors sensors{};
-  bool operator==(const RobotModel&) const = delete;  // sensors do not compare: compare machines
+  bool operator==(const RobotModel&) const = delete;  // sensors do not compare: use Machine
 };
 
-constexpr std::size_t kMostWheels = 8;  // of a side
+constexpr std::size_t kMostWheels = 8;  // per side
 constexpr std::size_t kMostCasters = 8;
 
-/// What is wrong with the numbers together, as "casters: without them the robot would tip over";
-/// begins with the field. Each number is within its own limits already.
+/// A defect of the combination of numbers, as in "casters: without them the robot would tip over";
+/// begins with the field. Each number must already be within its own limits.
 std::optional<std::string> defect(const RobotModel& robot);
 
-/// What the port says of it, in ticks of `period` [s]; one that does not drive.
+/// The port's spec of the robot, with ticks of `period` [s] and `drives` false.
 algo::RobotSpec spec_of(const RobotModel& robot, double period);
 
 /// The outline in the plane.

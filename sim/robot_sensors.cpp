@@ -1,4 +1,4 @@
-// sim/robot_sensors.cpp: the sensors of a robot model, made.
+// sim/robot_sensors.cpp: makes the sensors of a robot model.
 #include <utility>
 
 #include "sim/bumper_ring.hpp"
@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-/// Puts the readings of a channel's sensor into the observation.
+/// Enters the readings of a channel's sensor into the observation.
 class Channel final : public Sensor {
  public:
   Channel(std::uint8_t number, std::unique_ptr<ChannelSensor> sensor)

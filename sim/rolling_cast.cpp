@@ -1,7 +1,8 @@
-// sim/rolling_cast.cpp: the caster's form for beams fired one by one from a moving sensor.
+// sim/rolling_cast.cpp: the cast for beams fired one by one from a moving sensor.
 //
-// Seen from the reference pose, the interval of beams a primitive can meet is widened by what the
-// rays stray from the pattern; each ray in it is then tested exactly with its own origin.
+// The interval of beams that can hit a primitive, seen from the reference pose, is widened by the
+// deviation of the rays from the pattern. Each ray in it is then tested exactly, with its own
+// origin.
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +15,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// [rad] How far the bearing of a point `distance` away turns when the eye moves by `shift`; above
-/// asin(shift / distance), for which the quotient must stay under 1/4.
+/// [rad] Bound of the change in bearing of a point `distance` away when the eye moves by `shift`.
+/// It exceeds asin(shift / distance), for which the quotient must stay under 1/4.
 double parallax(double shift, double distance) {
   return 1.1 * shift / distance;
 }
@@ -91,7 +92,7 @@ void RangeCaster::rolling_outline(std::uint32_t index, const RaySpread& spread) 
     // Moving the eye by `shift` changes the area by at most this.
     const double doubt = spread.shift * (std::abs(q.x - p.x) + std::abs(q.y - p.y));
     outside = outside || area > doubt;
-    if (area + doubt <= 0) continue;  // turned away from every ray
+    if (area + doubt <= 0) continue;  // turned away from all rays
     const Primitive face{.px = p.x, .py = p.y, .qx = q.x, .qy = q.y, .obstacle = index};
     const double p_distance = std::sqrt(p.x * p.x + p.y * p.y);
     const double q_distance = std::sqrt(q.x * q.x + q.y * q.y);
@@ -104,7 +105,7 @@ void RangeCaster::rolling_outline(std::uint32_t index, const RaySpread& spread) 
     double width = bearing(q) - from;
     if (width > full_turn_ / 2) width -= full_turn_;
     if (width < -full_turn_ / 2) width += full_turn_;
-    if (width < 0) {  // edge-on: some rays see it, from the reference it is turned away
+    if (width < 0) {  // edge-on: visible to some rays, but not from the reference
       from += width;
       width = -width;
     }
@@ -116,8 +117,8 @@ void RangeCaster::rolling_outline(std::uint32_t index, const RaySpread& spread) 
   if (!outside) enclosing_.push_back(index);
 }
 
-/// Takes all primitives into the depth buffer of `rays`; `first` as in cast_more(), empty when
-/// there is one ray a beam.
+/// Enters all primitives into the depth buffer of `rays`. `first` is as in cast_more(), empty for
+/// one ray per beam.
 void RangeCaster::trace(const Rays& rays, std::span<const std::uint32_t> first) {
   const RayArrays arrays{rays.x.data(), rays.y.data(), rays.ux.data(), rays.uy.data()};
   for (const Primitive& p : primitives_) {
@@ -133,7 +134,7 @@ void RangeCaster::trace(const Rays& rays, std::span<const std::uint32_t> first) 
   trace_enclosing(rays);
 }
 
-/// Rays that start inside an outline read 0. Only a sensor at or in a wall comes here.
+/// Rays that start inside an outline read 0. Needed only for a sensor at or in a wall.
 void RangeCaster::trace_enclosing(const Rays& rays) {
   for (const std::uint32_t index : enclosing_) {
     enter_frame(index);

@@ -1,4 +1,4 @@
-// sim/scenario.hpp: a world to run in, as plain values: robot, start, goal, obstacles.
+// sim/scenario.hpp: a world for a run as plain values: robot, start, goal, obstacles.
 #pragma once
 
 #include <cstddef>
@@ -15,27 +15,28 @@
 
 namespace sim {
 
-/// Bullet moves the robot by forces and contacts; Kinematic as commanded, within its limits.
+/// Bullet moves the robot by forces and contacts; Kinematic moves it as commanded, within its
+/// limits.
 enum class PhysicsKind : std::uint8_t { Bullet, Kinematic };
 
-/// How a simulated base departs from the robot's table, from what it is told, and from what it
-/// reports. The odometry drifts by what a gyro and worn wheels leave over: equations.md I.
+/// Deviations of a simulated base from the robot's table, from its commands, and from its reports.
+/// The odometry's drift is the residual of gyro and worn wheels: equations.md I.
 struct DriveConfig {
   std::optional<double> max_v{};                     // [m/s] instead of the robot's own
   std::optional<double> max_omega{};                 // [rad/s]
   std::optional<double> max_acceleration{};          // [m/s2]
   std::optional<double> max_angular_acceleration{};  // [rad/s2]
-  bool ramps = false;             // the kinematic vehicle heeds its acceleration limits too
+  bool ramps = false;             // the kinematic vehicle obeys its acceleration limits too
   std::uint32_t delay_ticks = 0;  // until a command acts
-  double yaw_slip = 0;            // share of each turn that is lost on the floor
-  double odometry_scale = 0;  // error of distances and of angles, each of random sign: 0.02 = 2 %
+  double yaw_slip = 0;            // share of each turn lost to slip on the floor
+  double odometry_scale = 0;  // error of distances and of angles, each with random sign: 0.02 = 2 %
   double odometry_noise = 0;  // standard deviation of both per metre and per radian, relative
-  double odometry_slip = 0;   // share of each turn of the wheels that the floor did not follow
+  double odometry_slip = 0;   // share lost to slip of each turn that the wheels count
   bool operator==(const DriveConfig&) const = default;
 };
 
-/// The way of an obstacle that moves by itself: linear between keys, over and over; from the last
-/// key it jumps to the first.
+/// The path of an obstacle that moves by itself: linear between keys, repeated; jumps from the last
+/// key to the first.
 struct ObstaclePath {
   struct Key {
     double time = 0;  // [s] of the path, ascending
@@ -43,33 +44,33 @@ struct ObstaclePath {
   };
   std::uint32_t id = 0;  // of the obstacle
   double period = 0;     // [s] above 0
-  double phase = 0;      // [s] of the path when the run begins
+  double phase = 0;      // [s] of the path at the start of the run
   std::vector<Key> keys{};
 
-  /// Where its obstacle is at `stamp` [s, run clock].
+  /// The position of its obstacle at `stamp` [s, run clock].
   algo::Vec2 at(double stamp) const;
 };
 
-/// What the odometry is made of.
+/// The source of the odometry.
 enum class Localization : std::uint8_t {
   Encoders,  // the wheels alone
   Gyro,      // distances from the wheels, turns from the gyro (algo/local_localization.hpp)
 };
 
-/// Another robot in the world of a scenario, by its own pipeline on its way. It has the scenario's
-/// drive. What is absent is as the scenario's first robot has it.
+/// Another robot in a scenario's world, driven by its own pipeline. It has the scenario's drive.
+/// Absent fields are those of the scenario's first robot.
 struct OtherRobot {
   algo::Pose2 start{};
   std::optional<RobotModel> robot{};
-  /// Waypoints and goal, in order; empty: it stands where it is.
+  /// Waypoints and goal, in order; empty: it stands still.
   std::optional<std::vector<algo::SetGoal>> goals{};
   std::optional<std::string> controller{};
   std::optional<std::string> filter{};
-  std::vector<algo::Parameters::Setting> parameters{};  // in place of the scenario's
+  std::vector<algo::Parameters::Setting> parameters{};  // replace the scenario's
 };
 constexpr std::size_t kMostRobots = 200;  // in one world
-/// Ids of robots as obstacles: robot n, counted from 1, has kRobotIds + n. No obstacle that a
-/// person adds has one so high.
+/// Ids of robots as obstacles: robot n, counted from 1, has kRobotIds + n. Obstacles that people
+/// add have lower ids.
 constexpr std::uint32_t kRobotIds = 1'000'000'000;
 
 struct Scenario {
@@ -84,8 +85,8 @@ struct Scenario {
   std::vector<algo::SetGoal> waypoints{};  // on the way to the goal, in order
   DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
-  std::vector<ObstaclePath> paths{};  // of obstacles that move by themselves
-  std::vector<OtherRobot> robots{};   // besides the first, which all else here is about
+  std::vector<ObstaclePath> paths{};  // of self-moving obstacles
+  std::vector<OtherRobot> robots{};   // besides the first, which the other fields describe
   Localization localization = Localization::Encoders;
   std::string controller = "modified";
   std::string filter = "pseudomedian";

@@ -1,4 +1,4 @@
-// sim/sensor.cpp: configs against the table of sensors.
+// sim/sensor.cpp: checks configurations against the table of sensors.
 #include "sim/sensor.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::string known_kinds() {
   return known;
 }
 
-/// Trailing zeros are not written.
+/// Without trailing zeros.
 std::string text_of(double value) {
   std::string text = std::to_string(value);
   text.erase(text.find_last_not_of('0') + 1);
@@ -95,7 +95,7 @@ algo::ChannelInfo channel_of(const SensorConfig& config) {
 }
 
 bool Every::due(double stamp) {
-  constexpr double kSlack = 1e-9;  // [s] of sums of periods
+  constexpr double kSlack = 1e-9;  // [s] rounding of sums of periods
   if (stamp + kSlack < next_) return false;
   if (period_ > 0) next_ = (std::floor((stamp + kSlack) / period_) + 1) * period_;
   return true;

@@ -1,5 +1,5 @@
-// sim/sensor.hpp: what every sensor of a simulated robot is, and those that fill a channel, each a
-// file.
+// sim/sensor.hpp: the interface of all sensors of a simulated robot, and of channel sensors, which
+// have a file each.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +23,13 @@
 
 namespace sim {
 
-/// What a sensor may sense in one tick.
+/// The inputs of a sensor in one tick.
 struct Surroundings {
   double stamp = 0;  // [s] run clock
   const VehicleState& vehicle;
-  const PoseTrail& trail;  // where the robot was
+  const PoseTrail& trail;  // the robot's recent poses
   const ObstacleSet& obstacles;
-  bool contact = false;  // something touched the robot within the tick
+  bool contact = false;  // the robot was touched in this tick
 };
 
 class Sensor {
@@ -40,12 +40,12 @@ class Sensor {
   Sensor(Sensor&&) = default;
   Sensor& operator=(Sensor&&) = default;
 
-  // The obstacles as they change, for a sensor that keeps its own picture of them.
+  // Changes of the obstacles, for a sensor that keeps its own copy of them.
   virtual void add(const algo::Obstacle& /*obstacle*/) {}
   virtual void move(std::uint32_t /*id*/, const algo::Pose2& /*pose_W*/) {}
   virtual void remove(std::uint32_t /*id*/) {}
 
-  /// Appends to `observation` the readings that are new.
+  /// Appends the new readings to `observation`.
   virtual void sense(const Surroundings& around, algo::Observation& observation) = 0;
   /// [s] How far back along the trail a reading reaches at most.
   virtual double memory() const { return 0; }
@@ -54,7 +54,7 @@ class Sensor {
   Sensor() = default;
 };
 
-/// A sensor that casts rays at the obstacles, and keeps its own slice of the world for it.
+/// A sensor that casts rays at the obstacles, with its own slice of the world.
 class CastingSensor : public Sensor {
  public:
   void add(const algo::Obstacle& obstacle) override { caster_.add(obstacle); }
@@ -62,7 +62,7 @@ class CastingSensor : public Sensor {
   void remove(std::uint32_t id) override { caster_.remove(id); }
 
  protected:
-  /// `height` [m] over the floor.
+  /// `height` [m] above the floor.
   explicit CastingSensor(double height) : caster_(height) {}
 
   RangeCaster caster_;
@@ -72,7 +72,7 @@ inline bool within(double value, double low, double high) {
   return value >= low && value <= high;  // false for NaN
 }
 
-/// `config`; throws std::invalid_argument with its defect, as a sentence about `sensor`.
+/// Returns `config`; throws std::invalid_argument with its defect, as a sentence about `sensor`.
 template <typename Config>
 const Config& checked(const Config& config, const std::string& sensor) {
   if (const auto problem = defect(config)) {
@@ -81,44 +81,45 @@ const Config& checked(const Config& config, const std::string& sensor) {
   return config;
 }
 
-/// A reading of a sonar or infrared beam that met something at `range` [m], if that is in range.
+/// Sets the reading of a sonar or infrared beam that hit an obstacle at `range` [m], if that is in
+/// range.
 inline void measure(algo::RangeReading& reading, double range) {
   if (range >= reading.range_max) return;
   reading.range = range;
   reading.status = algo::Beam::Ok;
 }
 
-/// All sensors of `robot`, in the order of their readings; throws std::invalid_argument with a
-/// sentence.
+/// Makes all sensors of `robot`, in the order of their readings. Throws std::invalid_argument with
+/// a sentence.
 std::vector<std::unique_ptr<Sensor>> make_sensors(const RobotModel& robot, std::uint64_t seed);
 
-/// A sensor of one channel.
+/// A sensor with a channel of its own.
 class ChannelSensor {
  public:
   virtual ~ChannelSensor() = default;
-  /// Overwrites `values`; false, when there is no new reading in this tick.
+  /// Overwrites `values`; false if there is no new reading in this tick.
   virtual bool read(const Surroundings& around, std::vector<double>& values) = 0;
 };
 
-/// What a scenario may set, and within which limits.
+/// A setting that a scenario may set, and its limits.
 struct SettingInfo {
   std::string_view name{};
   std::string_view help{};
   double min = 0;
   double max = 0;
-  std::size_t most = 1;  // numbers; 1: a number, no list
+  std::size_t most = 1;  // numbers; 1: a single number, not a list
   bool required = false;
 };
 
 /// One file sim/sensors/NAME.cpp defines `SensorKind NAME()`.
 struct SensorKind {
-  std::string_view name{};  // of its file
+  std::string_view name{};  // name of its file
   std::string_view help{};
-  std::string_view kind{};  // as of a ChannelInfo
+  std::string_view kind{};  // as in ChannelInfo
   std::string_view unit{};
-  std::uint32_t values = 1;  // in a reading
+  std::uint32_t values = 1;  // per reading
   std::vector<SettingInfo> settings{};
-  /// Why settings do not go together, beside their own limits; may be empty.
+  /// Why settings do not go together, apart from their own limits; may be empty.
   std::function<std::optional<std::string>(const SensorConfig&)> defect{};
   std::function<std::unique_ptr<ChannelSensor>(const SensorConfig&, std::uint64_t seed)> make{};
 };
@@ -126,15 +127,15 @@ struct SensorKind {
 constexpr std::size_t kMostSensors = 16;
 constexpr std::size_t kMostSettingValues = 4096;
 
-/// By name.
+/// All sensor kinds, sorted by name.
 std::span<const SensorKind> sensor_table();
-/// What is wrong with `config`, as "times must ascend"; nothing when a sensor can be made of it.
+/// The defect of `config`, as in "times must ascend"; nothing if a sensor can be made from it.
 std::optional<std::string> defect(const SensorConfig& config);
-/// Of a config without defect.
+/// Makes a sensor; `config` must have no defect.
 std::unique_ptr<ChannelSensor> make_sensor(const SensorConfig& config, std::uint64_t seed);
 algo::ChannelInfo channel_of(const SensorConfig& config);
 
-/// Lets a sensor read once in a period: at the first tick, then at each whole multiple.
+/// Lets a sensor read once per period: at the first tick, then at each whole multiple.
 class Every {
  public:
   explicit Every(double period) : period_(period) {}

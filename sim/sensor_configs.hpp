@@ -22,75 +22,76 @@ struct LaserConfig {
   double field_of_view = 0;    // [rad] pi, or 100 deg at 0.25 deg on an LMS200
   double angle_increment = 0;  // [rad]
   std::uint32_t turns = 1;     // interlaced mirror turns in a sweep
-  bool rolling = true;         // beams fired one by one; false: all from one pose at the tick
+  bool rolling = true;         // beams fired one by one; false: all from the pose at the tick
   double mirror_period = 1.0 / 75.0;  // [s] one turn
   LaserUnit unit = LaserUnit::Millimetre;
   double range_max = 8.191;  // [m] 81.91 in centimetre mode
-  double bias = 0.015;       // [m] uniform in +-bias, drawn once a run
-  double noise = 0.005;      // [m] standard deviation, or half width when Uniform
+  double bias = 0.015;       // [m] uniform in +-bias, drawn once per run
+  double noise = 0.005;      // [m] standard deviation, or half width if Uniform
   NoiseShape noise_shape = NoiseShape::Gaussian;
   bool mixed_pixels = true;
-  bool reflectivity = true;  // range falls with the surface's reflectivity; specular surfaces
+  bool reflectivity = true;  // range drops with the surface's reflectivity; specular surfaces
   double dropout = 0.002;    // probability of a no-echo code per beam
   double salt = 0;           // probability of maximum range per beam
   double pepper = 0;         // probability of a false near reading per beam
 
-  /// 1, 0.5 or 0.25 degree; throws std::invalid_argument on another.
+  /// 1, 0.5 or 0.25 degree; throws std::invalid_argument for any other.
   static LaserConfig with_resolution(double degrees);
-  /// Flat-time, noise-free: every beam from the pose at the tick.
+  /// A scanner without scan time or noise: fires every beam from the pose at the tick.
   static LaserConfig ideal(double degrees);
-  /// A scanner of another make, flat-time: `beams` over `field_of_view` [rad], Gaussian noise only.
+  /// A scanner of another make, without scan time: `beams` over `field_of_view` [rad], Gaussian
+  /// noise only.
   static LaserConfig flat(double field_of_view, std::uint32_t beams, double range_max);
 };
 
-/// A ring of sonars (sensors.md 3), evenly over `field` on the hull, pinging in turn.
+/// A ring of sonars (sensors.md 3), spaced evenly over `field` on the hull; they ping in turn.
 struct SonarConfig {
   std::uint32_t count = 12;
-  double field = 2 * std::numbers::pi;      // [rad] that the axes are spread over
+  double field = 2 * std::numbers::pi;      // [rad] that the axes span
   double cone = std::numbers::pi / 6;       // [rad] whole beam
-  double ping = 0.04;                       // [s] from one sensor's ping to the next one's
-  double range_min = 0.15;                  // [m] nearer things read as that
-  double range_max = 5.0;                   // [m] nothing within it: Free
+  double ping = 0.04;                       // [s] between the pings of neighbouring sensors
+  double range_min = 0.15;                  // [m] nearer obstacles read as this
+  double range_max = 5.0;                   // [m] Free if nothing is within it
   double noise = 0.01;                      // [m] standard deviation
-  double incidence = std::numbers::pi / 3;  // [rad] a surface met more obliquely gives no echo
+  double incidence = std::numbers::pi / 3;  // [rad] more oblique surfaces give no echo
   double height = 0.30;                     // [m] of the ring
 };
 
-/// An infrared range scanner, by the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams,
-/// low on the hull, where it meets what lies under the laser's plane.
+/// An infrared range scanner with the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams
+/// low on the hull, for obstacles under the laser's plane.
 struct InfraredConfig {
   algo::Pose2 mount_R{};
   double height = 0.10;                         // [m] of the fan
   std::uint32_t beams = 121;                    // over the field
   double field = 212 * std::numbers::pi / 180;  // [rad] about the mount's heading
-  double period = 0.18;                         // [s] from one scan to the next
-  double range_min = 0.10;                      // [m] nearer things read as that
-  double range_max = 3.5;                       // [m] nothing within it: Free
+  double period = 0.18;                         // [s] between scans
+  double range_min = 0.10;                      // [m] nearer obstacles read as this
+  double range_max = 3.5;                       // [m] Free if nothing is within it
   double noise = 0.02;                          // [m] standard deviation
 };
 
-/// A yaw gyro (sensors.md 4): rate = true + bias + noise, the bias on a random walk.
+/// A yaw gyro (sensors.md 4): rate = true + bias + noise; the bias is a random walk.
 struct GyroConfig {
-  double bias = 0;       // [rad/s] standard deviation of the bias a run begins with
-  double bias_walk = 0;  // [rad/s] that it wanders off in a second, standard deviation
+  double bias = 0;       // [rad/s] standard deviation of the initial bias
+  double bias_walk = 0;  // [rad/s] standard deviation of its drift in one second
   double noise = 0;      // [rad/s] standard deviation of a reading
 };
 
-/// A number, or a list of them, that a sensor of a scenario is set up with.
+/// A sensor's setting in a scenario: a number or a list of numbers.
 struct Setting {
   std::string name{};
   std::vector<double> values{};
 };
 
-/// A sensor as a scenario has it.
+/// A sensor in a scenario.
 struct SensorConfig {
-  std::string sensor{};   // which kind: a file of sim/sensors
+  std::string sensor{};   // the kind: a file of sim/sensors
   std::string channel{};  // its name in frames and exports: "battery.voltage"
-  std::string unit{};     // of its values; empty: the kind's own
+  std::string unit{};     // of its values; empty: that of the kind
   std::vector<Setting> settings{};
 
   const std::vector<double>* find(std::string_view name) const;
-  /// The one number of a setting.
+  /// The value of a setting that is one number.
   double number(std::string_view name, double fallback) const;
 };
 
@@ -100,15 +101,15 @@ struct Sensors {
   std::optional<SonarConfig> sonar{};
   std::vector<InfraredConfig> infrared{};
   std::vector<SensorConfig> further{};  // each with a channel of its own
-  /// Absent: an ideal one with dynamics, none without.
+  /// Absent: an ideal gyro with dynamics, none without.
   std::optional<GyroConfig> gyro{};
   bool has_gyro = true;
-  std::uint32_t bumpers = 1;  // evenly round the hull from straight ahead, each its share of it
+  std::uint32_t bumpers = 1;  // evenly around the hull from straight ahead, with equal sectors
   bool encoders = true;
 
-  /// Whether a scanner looks ahead; with a sonar ring and none, the ring stands in for it.
+  /// True if a scanner looks ahead. If none does, a sonar ring replaces it.
   bool has_laser() const;
-  /// [m] over the floor, of the highest scanner, ring or fan.
+  /// [m] Height above the floor of the highest scanner, ring or fan.
   double height() const;
 };
 

@@ -9,13 +9,13 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x534f4e4152;  // of its noise: no scanner's
-constexpr std::size_t kRays = 31;                 // of a cone
-constexpr double kRounding = 1e-9;                // [rad] of degrees to radians and back
+constexpr std::uint64_t kPurpose = 0x534f4e4152;  // of its noise: unlike any scanner's
+constexpr std::size_t kRays = 31;                 // per cone
+constexpr double kRounding = 1e-9;                // [rad] error of degrees to radians and back
 constexpr double kOnTime = 1e-9;                  // [s] below any period, above rounding
 
-/// Axis of sensor `k` [rad]: evenly over the field, a whole turn without its end, from straight
-/// ahead leftwards; a part of a turn from its right to its left border.
+/// Axis of sensor `k` [rad], spaced evenly over the field. A whole turn: from straight ahead
+/// leftwards, without its end. Part of a turn: from its right to its left border.
 double axis(const SonarConfig& config, std::uint32_t k) {
   const double turn = 2 * std::numbers::pi;
   if (config.field >= turn - kRounding) return algo::wrap_angle(turn * k / config.count);
@@ -54,7 +54,7 @@ SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t s
   }
 }
 
-/// [m] Of the nearest surface in the cone that is not met more obliquely than config_.incidence.
+/// [m] Distance of the nearest surface in the cone that is not more oblique than config_.incidence.
 std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
   caster_.cast(sensor_W, cone_, config_.range_max, ranges_, hits_);
   const double least_cosine = std::cos(config_.incidence) - 1e-9;

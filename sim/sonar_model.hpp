@@ -1,5 +1,5 @@
-// sim/sonar_model.hpp: what a ring of sonars reports of a world: one ping after the other, each the
-// nearest echo of its cone.
+// sim/sonar_model.hpp: the model of a ring of sonars: one ping after the other, each the nearest
+// echo in its cone.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace sim {
 
-/// What is wrong with the configuration as a sentence part, or nothing.
+/// The defect of the configuration as part of a sentence, or nothing.
 std::optional<std::string> defect(const SonarConfig& config);
 
-/// Sensor k pings at (k + count n) x ping [s, run clock], n = 0, 1, ...: no two at once, so that no
-/// one hears another's echo. An echo comes from the nearest surface of the cone that is not met too
-/// obliquely; without one the reading is Free (sensors.md 3).
+/// Sensor k pings at (k + count n) x ping [s, run clock], n = 0, 1, ...: never two at once, so that
+/// none hears another's echo. An echo comes from the nearest surface in the cone that is not too
+/// oblique; without one the reading is Free (sensors.md 3).
 class SonarModel final : public CastingSensor {
  public:
   /// Mounted on a hull of `radius` [m]. Throws std::invalid_argument with the defect.
@@ -29,7 +29,7 @@ class SonarModel final : public CastingSensor {
   double memory() const override { return config_.ping; }
 
   /// Appends the readings of all pings up to `now` [s, run clock] that were not reported before,
-  /// the oldest first.
+  /// oldest first.
   void sense(double now, const PoseTrail& trail, algo::Recycled<algo::RangeReading>& readings);
 
  private:
@@ -39,7 +39,7 @@ class SonarModel final : public CastingSensor {
   BeamPattern cone_{};
   Random noise_;
   std::vector<algo::Pose2> mounts_R_{};
-  std::uint64_t pings_ = 0;  // reported
+  std::uint64_t pings_ = 0;  // number reported
   std::vector<double> ranges_{};
   std::vector<std::uint32_t> hits_{};
 };

@@ -1,4 +1,4 @@
-// sim/spot_kernel.cpp: without a branch, since which surface is where is not predictable.
+// sim/spot_kernel.cpp: without branches, since the order of the surfaces is unpredictable.
 #include "sim/spot_kernel.hpp"
 
 #include <array>
@@ -31,8 +31,8 @@ using Spot = std::array<double, kSpotRays>;
   order(s[2], s[3]);
 }
 
-/// Mean of the ranges from number `from` on and before number `to`. A spot may reach over a third
-/// surface still farther away; what is not below `limit` does not enter.
+/// Mean of the ranges from number `from` on and before number `to`. A spot may include a third
+/// surface still farther away; ranges not below `limit` are left out.
 [[gnu::always_inline]] inline double mean(const Spot& s, double from, double to, double limit) {
   double sum = 0;
   double count = 0;
@@ -75,7 +75,7 @@ TAUTLINE_WIDE void judge_spots(const SpotRule& rule,
     }
     std::uint32_t near_hit = out_hits[i];
     std::uint32_t far_hit = out_hits[i];
-    for (std::size_t k = kBeside; k-- > 0;) {  // of equals the first
+    for (std::size_t k = kBeside; k-- > 0;) {  // of equals, the first
       const double range = beside[k * spots + i];
       const std::uint32_t hit = beside_hits[k * spots + i];
       near_hit = range == s[0] ? hit : near_hit;

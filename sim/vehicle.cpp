@@ -1,4 +1,4 @@
-// sim/vehicle.cpp: the arithmetic that all vehicles share.
+// sim/vehicle.cpp: arithmetic shared by all vehicles.
 #include "sim/vehicle.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// sim/vehicle.hpp: the moving part of a simulated robot.
+// sim/vehicle.hpp: the base of a simulated robot.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace sim {
 
-/// What a vehicle does at the end of a tick.
+/// The state of a vehicle at the end of a tick.
 struct VehicleState {
   algo::Pose2 pose_W{};
   algo::Twist2 twist{};   // of R, true
-  double left_angle = 0;  // [rad] the wheels have turned since reset
+  double left_angle = 0;  // [rad] turned by the wheels since reset
   double right_angle = 0;
-  bool contact = false;  // the hull touched an obstacle within the tick
+  bool contact = false;  // the hull touched an obstacle in this tick
   double roll = 0;       // [rad] left side up positive
   double pitch = 0;      // [rad] nose down positive
 };
 
-/// How a tick is cut into equal physics steps: at 240 Hz or a little faster.
+/// Divides a tick into equal physics steps, at 240 Hz or slightly faster.
 struct Substeps {
   explicit Substeps(double period);
   std::size_t count = 1;
   double length = 0;  // [s]
 };
 
-/// `command` within the vehicle's limits: both parts scaled alike, so that the curvature is kept
-/// (equations.md I). What is not a number counts as 0.
+/// `command` within the vehicle's limits. Both components are scaled alike, which keeps the
+/// curvature (equations.md I). NaN counts as 0.
 algo::Twist2 within_limits(const algo::Twist2& command, const RobotModel& vehicle);
 
 /// `now` moved towards `wanted` as far as the acceleration limits allow in `dt` [s].
@@ -45,16 +45,16 @@ class VehicleModel {
   VehicleModel(const VehicleModel&) = delete;
   VehicleModel& operator=(const VehicleModel&) = delete;
 
-  /// At rest at `start`.
+  /// Places the vehicle at rest at `start`.
   virtual void reset(const algo::Pose2& start) = 0;
-  /// Drives for one tick under `command` and notes the pose after each physics step in `trail`.
+  /// Drives for one tick under `command` and records the pose after each physics step in `trail`.
   virtual void drive(const algo::Twist2& command,
                      const ObstacleSet& obstacles,
                      PoseTrail& trail) = 0;
   /// Stops driving at once, without the ramp.
   virtual void halt() noexcept = 0;
 
-  /// The obstacles as they change; `index` is the one in the ObstacleSet.
+  /// Changes of the obstacles; `index` is the index in the ObstacleSet.
   virtual void added(const algo::Obstacle& /*obstacle*/) {}
   virtual void moved(std::size_t /*index*/, const algo::Obstacle& /*obstacle*/) {}
   virtual void removed(std::size_t /*index*/) {}

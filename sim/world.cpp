@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kLongestPeriod = 1.0;    // [s]
 constexpr double kShortestPeriod = 1e-3;  // [s]
-constexpr double kGyroRest = 2.0;         // [s] at rest before a run, for the gyro's bias
+constexpr double kGyroRest = 2.0;         // [s] at rest before a run, to estimate the gyro's bias
 constexpr std::uint32_t kMostBumpers = 8;
 
-/// `robot` with the limits that `drive` gives instead of its own.
+/// `robot` with the limits of `drive` in place of its own.
 RobotModel limited(RobotModel robot, const DriveConfig& drive) {
   robot.max_v = drive.max_v.value_or(robot.max_v);
   robot.max_omega = drive.max_omega.value_or(robot.max_omega);
@@ -28,7 +28,7 @@ RobotModel limited(RobotModel robot, const DriveConfig& drive) {
   return robot;
 }
 
-/// Counts of an encoder after `angle` [rad] of its wheel, modulo 2^32.
+/// Encoder counts after `angle` [rad] of its wheel, modulo 2^32.
 std::uint32_t counts(double angle, double per_turn) {
   const double whole = std::floor(angle * per_turn / (2 * std::numbers::pi));
   return static_cast<std::uint32_t>(static_cast<std::int64_t>(whole));
@@ -53,7 +53,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
   start();
 }
 
-/// Refuses what no world can be made of; obstacles are looked at as they are added.
+/// Refuses scenarios that no world can be made from; obstacles are checked when added.
 void World::check() const {
   const double period = scenario_.period;
   if (!(period >= kShortestPeriod && period <= kLongestPeriod)) {
@@ -80,7 +80,7 @@ void World::check() const {
   }
 }
 
-/// Everything as the scenario says, at time 0.
+/// Sets everything to the scenario's state at time 0.
 void World::start() {
   obstacles_.clear();
   if (scenario_.physics == PhysicsKind::Bullet) {
@@ -120,7 +120,7 @@ void World::start() {
   used_ = false;
 }
 
-/// As a driver does it: the gyro's bias is taken before the run, while the robot is known to stand.
+/// Takes the gyro's bias before the run, while the robot is known to stand, as a driver does.
 void World::start_localization(const algo::Pose2& pose_W) {
   wheels_W_ = pose_W;
   sensed_W_ = pose_W;
@@ -155,11 +155,11 @@ void World::advance() {
   vehicle_->drive(errors_.act(command_.base), obstacles_, *trail_);
 }
 
-/// Obstacles that move by themselves go where they are at `now`, through robots too.
+/// Moves scripted obstacles to their positions at `now`, even through robots.
 void World::follow_paths(double now) {
   for (const ObstaclePath& path : scenario_.paths) {
     const auto index = obstacles_.find(path.id);
-    if (!index) continue;  // somebody removed it
+    if (!index) continue;  // removed by an edit
     const algo::Vec2 at_W = path.at(now);
     place(*index, {at_W.x(), at_W.y(), obstacles_[*index].pose_W.heading});
   }
@@ -184,8 +184,8 @@ void World::sense(algo::Observation& observation) {
   for (const auto& sensor : sensors_) sensor->sense(around, observation);
 }
 
-/// Odometry as a driver computes it from the counts of its encoders (equations.md I); without
-/// dynamics, as the papers have it, the true pose.
+/// Odometry as a driver computes it from its encoders' counts (equations.md I). Without dynamics it
+/// is the true pose, as in the papers.
 void World::sense_motion(algo::Observation& observation) {
   const double now = observation.stamp;
   const VehicleState& state = vehicle_->state();
@@ -213,8 +213,8 @@ void World::sense_motion(algo::Observation& observation) {
   sense_turn(observation);
 }
 
-/// The gyro, and the odometry made of it where the scenario has it so. A gyro of the scenario's own
-/// reads the mean rate since the tick before.
+/// The gyro, and the odometry with it if the scenario says so. A gyro that the scenario configures
+/// reads the mean rate since the previous tick.
 void World::sense_turn(algo::Observation& observation) {
   const VehicleState& state = vehicle_->state();
   const double turned = algo::wrap_angle(state.pose_W.heading - sensed_W_.heading);

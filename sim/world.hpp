@@ -1,4 +1,4 @@
-// sim/world.hpp: the simulated robot: a scenario and a seed in, observations out.
+// sim/world.hpp: the simulated robot: turns a scenario and a seed into observations.
 #pragma once
 
 #include <cstddef>
@@ -22,47 +22,48 @@
 
 namespace sim {
 
-/// One of several robots as the others meet it.
+/// One of several robots, as the others perceive it.
 struct Peer {
   algo::Pose2 pose_W{};
-  double radius = 0;                     // [m] of a circle about its middle
+  double radius = 0;                     // [m] of a circle about its centre
   const algo::Obstacle* body = nullptr;  // its shape
 };
 
-/// A robot in a world of obstacles, with dynamics or without (Scenario::vehicle).
+/// A robot in a world of obstacles, with or without dynamics (Scenario::vehicle).
 ///
 /// The same scenario, seed, commands and edits give the same observations bit for bit. reset()
-/// starts the scenario anew: obstacles, noise and time as at first. Belongs to one thread.
+/// restarts the scenario with the initial obstacles, noise and time. Use from one thread only.
 ///
-/// The scenario's other robots are not in it: a Fleet keeps a world for each robot and tells it
-/// where the others are.
+/// The scenario's other robots are not part of it: a Fleet keeps a World for each robot and passes
+/// it the poses of the others.
 class World final : public algo::Robot, public algo::Editing {
  public:
-  /// Throws std::invalid_argument with a sentence when the scenario cannot be run.
+  /// Throws std::invalid_argument with a sentence if the scenario cannot be run.
   World(const Scenario& scenario, std::uint64_t seed);
 
   const algo::RobotSpec& spec() const override { return spec_; }
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
 
-  // reset() and step() in parts, for a robot among others.
+  // The parts of reset() and step(), for a robot among others.
 
-  /// The scenario anew; nothing is sensed.
+  /// Restarts the scenario; senses nothing.
   void restart() {
     if (used_) start();
   }
-  /// What the next advance() drives under.
+  /// Sets the command for the next advance().
   void write(const algo::Command& command) { command_ = command; }
-  /// One period of driving; nothing is sensed.
+  /// Drives for one period; senses nothing.
   void advance();
-  /// What the robot senses now. Once after each restart() and advance().
+  /// Reads all sensors now. Call once after each restart() and advance().
   void read(algo::Observation& observation) { sense(observation); }
-  /// Places the others of `robots` where they are now; this one is `self` among them. Those too far
-  /// to be sensed or touched are left out. Between restart() or advance() and read().
+  /// Places the other robots of `robots` at their present poses; this one has the index `self`.
+  /// Leaves out robots too far away to be sensed or touched. Call between restart() or advance()
+  /// and read().
   void meet(std::span<const Peer> robots, std::size_t self);
-  /// Which of `robots` the newest contact is with.
+  /// The robot of `robots` in the newest contact.
   std::optional<std::size_t> touched() const { return touched_; }
-  /// Another robot drove against this one.
+  /// Records that another robot drove against this one.
   void touch() { bumped_ = true; }
   const algo::Pose2& pose_W() const { return vehicle_->state().pose_W; }
   const Hull& hull() const { return hull_; }
@@ -97,12 +98,12 @@ class World final : public algo::Robot, public algo::Editing {
   void sense_motion(algo::Observation& observation);
   void sense_turn(algo::Observation& observation);
 
-  /// An obstacle that stands for one of the robots near, whichever needs it.
+  /// An obstacle that represents a near robot; reused for any robot.
   struct Slot {
     std::uint32_t id = 0;   // of the obstacle
     std::size_t index = 0;  // in the ObstacleSet
     bool taken = false;
-    bool solid = false;  // so near that the vehicle knows it
+    bool solid = false;  // near enough for the vehicle to know it
   };
   static constexpr std::size_t kNoSlot = std::numeric_limits<std::size_t>::max();
 
@@ -119,23 +120,23 @@ class World final : public algo::Robot, public algo::Editing {
   algo::LocalLocalization localization_{};
   std::unique_ptr<PoseTrail> trail_{};
   DriveErrors errors_;
-  algo::Odometry odometry_{};  // without the drift
-  algo::Pose2 wheels_W_{};     // with it, by the wheels alone
-  algo::Pose2 sensed_W_{};     // the true pose at the tick before
+  algo::Odometry odometry_{};  // without drift
+  algo::Pose2 wheels_W_{};     // with drift, by the wheels alone
+  algo::Pose2 sensed_W_{};     // the true pose at the previous tick
   algo::Encoders encoders_{};
   std::uint64_t tick_ = 0;
   algo::Command command_{};
 
   double sight_ = 0;  // [m] from R to the farthest point that a sensor reaches
   std::vector<Slot> slots_{};
-  std::vector<std::size_t> slot_of_{};  // of each robot, or kNoSlot
+  std::vector<std::size_t> slot_of_{};  // by robot, or kNoSlot
   std::vector<std::size_t> close_{};    // robots whose slot is solid
   std::optional<std::size_t> touched_{};
-  bool bumped_ = false;  // by another robot, within the tick
-  bool used_ = false;    // something happened since start()
+  bool bumped_ = false;  // touched by another robot in this tick
+  bool used_ = false;    // changed since start()
 };
 
-/// `robot` as others see it: its hull, as high as its highest sensor where that is higher.
+/// `robot` as others perceive it: its hull, raised to its highest sensor if that is higher.
 algo::Obstacle robot_body(const RobotModel& robot, const algo::Pose2& pose_W);
 
 }  // namespace sim

@@ -1,4 +1,4 @@
-// sim/world_edits.cpp: obstacles that are added, moved and removed while the world runs.
+// sim/world_edits.cpp: adds, moves and removes obstacles while the world runs.
 #include <variant>
 
 #include <fmt/format.h>
@@ -47,7 +47,7 @@ std::optional<std::string> World::objection(const algo::Request& request) const 
   return std::nullopt;
 }
 
-/// Why `obstacle` cannot stand where it is.
+/// Why `obstacle` cannot stand at its pose.
 std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const {
   if (const auto problem = algo::defect(obstacle)) {
     return name_of(obstacle) + ": " + *problem + ".";

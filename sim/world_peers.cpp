@@ -1,4 +1,4 @@
-// sim/world_peers.cpp: the other robots as one robot meets them.
+// sim/world_peers.cpp: the other robots from one robot's view.
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +8,8 @@
 namespace sim {
 namespace {
 
-constexpr double kSolid = BulletVehicle::kNear + 0.01;  // [m] beyond hull, body and a tick's way
-constexpr double kAway = 1e7;                           // [m] where no sensor reaches
+constexpr double kSolid = BulletVehicle::kNear + 0.01;  // [m] beyond hull, body and a tick's travel
+constexpr double kAway = 1e7;                           // [m] out of reach of all sensors
 
 double size_of(const RobotModel& robot) {
   return std::max(robot.radius, std::hypot(robot.hull_length, robot.hull_width) / 2);
@@ -29,8 +29,8 @@ algo::Obstacle robot_body(const RobotModel& robot, const algo::Pose2& pose_W) {
   return body;
 }
 
-/// [m] From R to the farthest point that a sensor reaches within a tick, along the way that its
-/// sweep looks back over.
+/// [m] Distance from R to the farthest point that a sensor reaches within a tick, including the
+/// distance travelled during its sweep.
 double World::sight() const {
   double reach = 0;
   double memory = 0;  // [s]
@@ -69,7 +69,7 @@ void World::meet(std::span<const Peer> robots, std::size_t self) {
   feel_peers();
 }
 
-/// One that is not taken and has the shape of `robot`, made if there is none.
+/// A free slot with the shape of `robot`; made if there is none.
 std::size_t World::free_slot(const algo::Obstacle& robot) {
   const auto fits = [&](const Slot& slot) {
     const algo::Obstacle& there = obstacles_[slot.index];
@@ -87,8 +87,8 @@ std::size_t World::free_slot(const algo::Obstacle& robot) {
   return slots_.size() - 1;
 }
 
-/// The vehicle is told only of robots that it may touch within the next tick: to move a body costs
-/// it a look at all of them.
+/// The vehicle knows only robots that it may touch within the next tick: moving a body makes it
+/// check all of them.
 void World::place_peer(std::size_t number, const algo::Pose2& pose_W) {
   Slot& slot = slots_[number];
   obstacles_.move(slot.index, pose_W);
@@ -108,12 +108,12 @@ void World::hide_peer(std::size_t number) {
   slot.solid = false;
 }
 
-/// Obstacles have new indices since one was removed.
+/// Updates the indices of obstacles after one was removed.
 void World::find_slots() {
   for (Slot& slot : slots_) slot.index = *obstacles_.find(slot.id);
 }
 
-/// Whether a robot stands in this one, and which robot a contact is with: what is nearest.
+/// Checks whether another robot overlaps this one, and which robot a contact is with: the nearest.
 void World::feel_peers() {
   bumped_ = false;
   touched_.reset();

@@ -1,4 +1,4 @@
-// sim/sensors/compass.cpp: the heading against magnetic north, with noise.
+// sim/sensors/compass.cpp: the heading relative to magnetic north, with noise.
 #include <array>
 #include <numbers>
 
@@ -9,7 +9,7 @@
 namespace sim::sensors {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x434f4d50;  // of its noise: no other sensor's
+constexpr std::uint64_t kPurpose = 0x434f4d50;  // of its noise: unlike any other sensor's
 
 class Compass final : public ChannelSensor {
  public:

@@ -1,4 +1,4 @@
-// sim/sensors/scripted.cpp: a value that a scenario lays down over time, such as a battery's.
+// sim/sensors/scripted.cpp: a value that a scenario prescribes over time, such as a battery's.
 #include <algorithm>
 #include <cmath>
 
@@ -23,7 +23,7 @@ class Scripted final : public ChannelSensor {
   }
 
  private:
-  /// Linear between the times, the first before them and the last after them.
+  /// Linear between the times; constant before the first and after the last.
   double at(double stamp) const {
     const auto after = std::ranges::upper_bound(times_, stamp);
     if (after == times_.begin()) return values_.front();
