@@ -1,4 +1,4 @@
-// db/block_codec.cpp: packing frames into a block.
+// db/block_codec.cpp: packs frames into a block.
 #include "db/block_codec.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t kReferenceReach = 48;  // frames looked back for one laid out alike
+constexpr std::size_t kReferenceReach = 48;  // earlier frames searched for one with the same layout
 
 }  // namespace
 
@@ -103,7 +103,7 @@ void BlockEncoder::encode_frame(std::size_t i) {
   predict_rest(i);
 }
 
-/// Appends what is left of the rest of frame `i`, the newest, beside that of its reference.
+/// Appends the residuals of the newest frame `i` outside its windows, relative to its reference.
 void BlockEncoder::predict_rest(std::size_t i) {
   const std::size_t start = rest_starts_[i];
   rest_residuals_.insert(

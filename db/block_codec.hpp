@@ -17,8 +17,8 @@ class CodecError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A stretch of a frame that holds little-endian samples of 16 bits, neighbours alike: the ranges
-/// of a scan. A window never changes what is stored: a frame packed without windows, or with the
+/// A part of a frame that holds little-endian samples of 16 bits with similar neighbours: the
+/// ranges of a scan. A window never changes what is stored: a frame packed without windows, or with
 /// wrong ones, only takes more room.
 struct Window {
   std::uint32_t offset = 0;  // [bytes] from the start of the frame
@@ -33,7 +33,7 @@ constexpr std::size_t kMaxBlockBytes = std::size_t{16} << 20;  // [bytes] of all
 
 namespace detail {
 
-/// Frames laid end to end with their windows; its buffers survive clear().
+/// Frames end to end with their windows. Its buffers survive clear().
 struct FrameTable {
   struct Entry {
     std::size_t offset = 0;  // into bytes
@@ -46,7 +46,7 @@ struct FrameTable {
   std::vector<Entry> entries{};
 
   void clear();
-  /// A further frame of `size` bytes, which are to be filled in.
+  /// Adds a frame of `size` bytes, to be filled in by the caller.
   void append(std::size_t size, std::span<const Window> frame_windows);
   std::span<const std::byte> frame(std::size_t i) const {
     return std::span(bytes).subspan(entries[i].offset, entries[i].size);
@@ -59,12 +59,12 @@ struct FrameTable {
   }
 };
 
-/// The newest window at each place in a frame, by its ordinal: the next one there is predicted from
-/// it. Keeps its buffer.
+/// The newest window at each place in a frame, by ordinal, from which the next one there is
+/// predicted. Keeps its buffer.
 class NewestSamples {
  public:
   void clear() { found_.clear(); }
-  /// Empty when there is none of `bytes` [bytes].
+  /// Empty if there is none of `bytes` [bytes].
   std::span<const std::byte> get(const FrameTable& table,
                                  std::size_t ordinal,
                                  std::size_t bytes) const;
@@ -78,19 +78,19 @@ class NewestSamples {
   std::vector<Place> found_{};
 };
 
-/// The block's values sorted by kind, so that each compressor call sees one sort of number.
+/// The block's values sorted by kind, so that each compressor call gets one kind of number.
 constexpr std::size_t kLayout = 0;  // sizes, references, windows, choices
 constexpr std::size_t kLow = 1;     // low bytes of the sample residuals
 constexpr std::size_t kHigh = 2;    // their high bytes
-constexpr std::size_t kRest = 3;    // all outside the windows, in the order of RestOrder
+constexpr std::size_t kRest = 3;    // all bytes outside the windows, in the order of RestOrder
 constexpr std::size_t kStreams = 4;
 using Streams = std::array<std::vector<std::uint8_t>, kStreams>;
 
-/// In which order the bytes outside the windows are stored: frames of one length together, as they
-/// mostly hold the same fields; of those by position and then by frame. Keeps its buffer.
+/// The order of the bytes outside the windows. Frames of one length are stored together, as they
+/// mostly hold the same fields; within them by position and then by frame. Keeps its buffer.
 class RestOrder {
  public:
-  /// `starts` of each frame's bytes, and their end; they must outlive walk().
+  /// `starts` of each frame's bytes, and the end of the last; must outlive walk().
   void set(std::span<const std::size_t> starts);
   /// Calls `visit(frame, position)` for every byte.
   template <typename Visit>
@@ -118,25 +118,25 @@ class RestOrder {
 
 class Cursor;
 struct Compressor;    // a zstd context and its output buffer
-struct Decompressor;  // the same for unpacking
+struct Decompressor;  // likewise, for unpacking
 
 }  // namespace detail
 
 std::shared_ptr<detail::Compressor> make_compressor();
 
-/// Collects frames and packs them. Not thread-safe; allocates nothing once its buffers have grown.
+/// Collects frames and packs them. Not thread-safe. Allocates nothing once its buffers have grown.
 ///
-/// Samples are predicted from their left neighbour, or from that and the newest window of the same
-/// size at their place: of the two the way that leaves less. All else is predicted byte by byte
-/// from an earlier frame of the block laid out alike (its reference). The residuals go through zstd
-/// stream by stream, and are stored as they are where zstd does not pay.
+/// Samples are predicted in the better of two ways: from their left neighbour, or from it and the
+/// newest window of the same size at their place. All other bytes are predicted from an earlier
+/// frame of the block with the same layout (its reference). zstd compresses the residuals stream by
+/// stream; a stream that it does not shrink is stored as it is.
 class BlockEncoder {
  public:
-  /// `compressor`: shared by encoders of one thread, as it is large; null: one of its own.
+  /// `compressor`: shared by the encoders of one thread, since it is large; null: makes its own.
   explicit BlockEncoder(std::shared_ptr<detail::Compressor> compressor = {});
 
-  /// Appends a copy of the frame. Windows are in order of offset and do not overlap.
-  /// Throws CodecError when a window leaves the frame or the block is full (see fits()).
+  /// Appends a copy of the frame. Windows must be in order of offset and not overlap.
+  /// Throws CodecError when a window extends beyond the frame or the block is full (see fits()).
   void add(std::span<const std::byte> frame, std::span<const Window> windows);
   /// True when a frame of `bytes` still fits into this block.
   bool fits(std::size_t bytes) const;
@@ -145,9 +145,9 @@ class BlockEncoder {
   std::size_t bytes() const { return table_.bytes.size(); }  // unpacked
   void clear();
 
-  /// The packed block, valid until the next call. The frames stay: more may be added and the
-  /// longer block packed anew, for which these are not looked at again. Throws CodecError when
-  /// there is none.
+  /// The packed block, valid until the next call. Keeps the frames: more may be added and the
+  /// longer block packed anew, without processing the earlier frames again. Throws CodecError when
+  /// there are no frames.
   std::span<const std::byte> encode();
 
  private:
@@ -159,10 +159,10 @@ class BlockEncoder {
   detail::FrameTable table_{};
   detail::Streams streams_{};
   detail::NewestSamples newest_{};
-  std::vector<std::size_t> references_{};  // distance back to each frame's reference; 0 = none
+  std::vector<std::size_t> references_{};  // distance back to each frame's reference; 0: none
   std::vector<std::uint8_t> rest_{};       // the frames without their windows, end to end
   std::vector<std::uint8_t> rest_residuals_{};
-  std::vector<std::size_t> rest_starts_{0};  // of each frame, and the end
+  std::vector<std::size_t> rest_starts_{0};  // of each frame, and the end of the last
   detail::RestOrder rest_order_{};
   std::vector<std::byte> packed_{};
   std::shared_ptr<detail::Compressor> compressor_;
@@ -173,10 +173,9 @@ class BlockDecoder {
  public:
   BlockDecoder();
 
-  /// Unpacks `block`; its frames stay readable until the next call. Throws CodecError when the
-  /// bytes are not a block this program can read, whatever they are, and never gives out frames
-  /// that differ from those packed (a 64-bit check value guards them). Takes at most a small
-  /// multiple of kMaxBlockBytes of memory.
+  /// Unpacks `block`. Its frames are readable until the next call. Throws CodecError for any bytes
+  /// that are not a block this program can read. Never gives frames that differ from those packed
+  /// (a 64-bit check value guards them). Uses at most a small multiple of kMaxBlockBytes of memory.
   void decode(std::span<const std::byte> block);
 
   std::size_t frames() const { return table_.entries.size(); }
@@ -199,7 +198,7 @@ class BlockDecoder {
   std::vector<std::uint8_t> rest_{};
   std::vector<std::size_t> rest_starts_{};
   detail::RestOrder rest_order_{};
-  std::shared_ptr<detail::Decompressor> decompressor_;  // whose type need not be known here
+  std::shared_ptr<detail::Decompressor> decompressor_;  // shared_ptr, for an incomplete type
 };
 
 }  // namespace db

@@ -1,4 +1,4 @@
-// db/block_decoder.cpp: unpacking a block. Nothing read from it is believed before it is checked.
+// db/block_decoder.cpp: unpacks a block. Checks every value before it is used.
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -80,7 +80,7 @@ void BlockDecoder::read_frame_layout(Cursor& layout, std::size_t bytes_left) {
   table_.append(size, used);
 }
 
-/// How a window is predicted.
+/// Reads how a window is predicted.
 void BlockDecoder::read_choice(Cursor& layout) {
   const std::uint8_t choice = layout.byte();
   if (choice > static_cast<std::uint8_t>(Choice::Reference)) {
@@ -105,7 +105,7 @@ void BlockDecoder::read_rest() {
   std::uint8_t* const bytes = rest_.data();
   const std::size_t* const starts = rest_starts_.data();
   rest_order_.walk([&](std::size_t i, std::size_t k) { bytes[starts[i] + k] = *next++; });
-  // A reference is earlier, so it is complete when it is added.
+  // A reference is an earlier frame, so it is already complete.
   const auto bytes_of_frame = [&](std::size_t i) {
     return std::span(rest_).subspan(rest_starts_[i], rest_starts_[i + 1] - rest_starts_[i]);
   };

@@ -11,8 +11,8 @@ namespace db::detail {
 
 namespace {
 
-// The residuals are noise: level 1 packs them as well as level 9 (296 against 295 bytes a scan)
-// at a fifth of the time.
+// The residuals are noise: level 1 packs them as well as level 9 (296 against 295 bytes a scan) in
+// a fifth of the time.
 constexpr int kZstdLevel = 1;
 
 template <typename T>
@@ -68,7 +68,7 @@ void RestOrder::set(std::span<const std::size_t> starts) {
   frames_.resize(starts.size() - 1);
   for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i] = i;
   groups_.clear();
-  // By length, then by number: what a stable sort gives, but without its allocation.
+  // By length, then by number: equals a stable sort, but without its allocation.
   std::ranges::sort(frames_, [&](std::size_t a, std::size_t b) {
     return size(a) != size(b) ? size(a) < size(b) : a < b;
   });
@@ -152,7 +152,7 @@ void put_window(std::vector<std::uint8_t>& out, const Window& window) {
   put_varint(out, window.count);
 }
 
-// Not std::ranges::copy(), which g++ 12 makes a copy byte by byte of it.
+// Not std::ranges::copy(): g++ 12 turns it into a copy byte by byte.
 void copy_bytes(std::span<const std::byte> from, std::span<std::byte> to) {
   if (!from.empty()) std::memcpy(to.data(), from.data(), from.size());
 }
@@ -226,7 +226,7 @@ void read_stream(Cursor& cursor, const Decompressor& zstd, std::vector<std::uint
     append_bytes(out, bytes);
     return;
   }
-  // A forged size must not cost memory before zstd has said the same.
+  // A forged size must not cost memory before zstd confirms it.
   if (ZSTD_getFrameContentSize(bytes.data(), bytes.size()) != raw) {
     throw CodecError("a stream of the block is damaged");
   }

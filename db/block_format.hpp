@@ -1,8 +1,8 @@
-// db/block_format.hpp: the outer form of a packed block, shared by its two directions.
+// db/block_format.hpp: the outer format of a packed block, shared by encoder and decoder.
 //
-// Little-endian: "TB", version, 0; u32 frames; u32 bytes of all frames; u64 check; then the
-// streams in the order of detail::kLayout .., each u32 raw size, u32 stored size, bytes. Stored as
-// it is when both sizes are equal, else one zstd frame.
+// Little-endian: "TB", version, 0; u32 frames; u32 bytes of all frames; u64 check; then the streams
+// in the order of detail::kLayout .., each u32 raw size, u32 stored size, bytes. A stream is stored
+// as it is if both sizes are equal, else as one zstd frame.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +25,11 @@ struct Header {
   std::uint64_t check = 0;
 };
 
-/// Owns the compressor's state, so that packing block after block allocates nothing.
+/// Owns the compressor's state, so that packing many blocks allocates nothing.
 struct Compressor {
   Compressor();
 
-  /// Appends `stream` with its sizes, compressed where that makes it smaller.
+  /// Appends `stream` with its sizes, compressed if that makes it smaller.
   void append(std::vector<std::byte>& out, std::span<const std::uint8_t> stream);
 
   std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context{ZSTD_createCCtx(), ZSTD_freeCCtx};
@@ -42,20 +42,20 @@ struct Decompressor {
   std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context{ZSTD_createDCtx(), ZSTD_freeDCtx};
 };
 
-/// What is wrong with `windows` in a frame of `frame_bytes`, or nullptr.
+/// The defect of `windows` in a frame of `frame_bytes`, or nullptr.
 const char* window_defect(std::span<const Window> windows, std::size_t frame_bytes);
 
-/// 64-bit check value over the frames and where they begin.
+/// 64-bit check value over the frames and their offsets.
 std::uint64_t check_of(const FrameTable& table);
 
 void put_header(std::vector<std::byte>& out, const Header& header);
 void put_varint(std::vector<std::uint8_t>& out, std::size_t value);
 void put_window(std::vector<std::uint8_t>& out, const Window& window);
-/// Copies all of `from` into `to`, which is as long.
+/// Copies all of `from` to `to`, which has the same length.
 void copy_bytes(std::span<const std::byte> from, std::span<std::byte> to);
 void append_bytes(std::vector<std::uint8_t>& out, std::span<const std::byte> bytes);
 
-/// Reads what put_* wrote and throws CodecError instead of leaving its bytes.
+/// Reads the output of put_*. Throws CodecError instead of reading past the end.
 class Cursor {
  public:
   explicit Cursor(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -71,7 +71,7 @@ class Cursor {
   std::span<const std::byte> bytes_;
 };
 
-/// Throws CodecError when `cursor` is not at a block of our format or it is too large.
+/// Throws CodecError if `cursor` is not at a block of our format, or if the block is too large.
 Header read_header(Cursor& cursor);
 
 /// Reads the next stream into `out`, which never grows beyond kMaxBlockBytes.

@@ -1,4 +1,4 @@
-// db/file_lock.cpp: flock on the database file, and a list of those this process holds.
+// db/file_lock.cpp: flock on the database file, and a list of the files this process holds.
 #include "db/file_lock.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// db/records.cpp: the names of a run's states and gaps.
+// db/records.cpp: the names of run states and gap causes.
 #include "db/records.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ constexpr std::array<std::string_view, 6> kStatusNames = {
     "queued", "recording", "finished", "interrupted", "cancelled", "failed"};
 constexpr std::array<std::string_view, 5> kCauseNames = {
     "pause", "behind", "failed", "full", "dropped"};
-/// The enumerator of that name.
+/// The enumerator with that name.
 template <typename Enum, std::size_t N>
 std::optional<Enum> find(const std::array<std::string_view, N>& names, std::string_view name) {
   const auto* const found = std::ranges::find(names, name);

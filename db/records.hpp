@@ -1,4 +1,4 @@
-// db/records.hpp: what the run store takes and gives: numbers, bytes and text.
+// db/records.hpp: the inputs and outputs of the run store: numbers, bytes and text.
 #pragma once
 
 #include <atomic>
@@ -10,14 +10,14 @@
 
 namespace db {
 
-/// Row number of a run, from 1. Never given out twice in one database, not even after a deletion.
+/// Row number of a run, from 1. Never reused in one database, even after a deletion.
 using RunId = std::int64_t;
 
-/// Hands out run numbers, also before the rows that bear them are written. Any thread.
+/// Issues run numbers, even before their rows are written. Callable from any thread.
 class RunNumbers {
  public:
   RunId take() { return next_.fetch_add(1); }
-  /// Those up to `used` are taken.
+  /// Marks the numbers up to `used` as taken.
   void beyond(RunId used) {
     RunId next = next_.load();
     while (next <= used && !next_.compare_exchange_weak(next, used + 1)) {
@@ -32,16 +32,16 @@ enum class RunStatus : std::uint8_t {
   Queued,
   Recording,
   Finished,
-  Interrupted,  // the program ended before the run did
+  Interrupted,  // the program ended before the run
   Cancelled,
   Failed,
 };
 
-/// "queued", "recording", ...: as in the database and in REST.
+/// "queued", "recording", ..., as in the database and in REST.
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> find_status(std::string_view name);
 
-/// All that is known of a run before its first tick; enough to run it again.
+/// All data of a run before its first tick; enough to run it again.
 struct NewRun {
   std::string scenario{};  // its name
   std::string document{};  // the scenario as JSON text
@@ -58,22 +58,22 @@ struct RunEnd {
   RunStatus status = RunStatus::Finished;
   std::string outcome{};
   std::string reason{};   // a sentence
-  std::string metrics{};  // JSON text; empty when there are none
+  std::string metrics{};  // JSON text; empty if there are none
   std::uint64_t lost_ticks = 0;
 };
 
-/// Why ticks of a run are not in its record.
+/// Why the record of a run lacks ticks.
 enum class GapCause : std::uint8_t {
-  Pause,    // nothing happened, and so nothing was recorded
-  Behind,   // the store took them too slowly
-  Failed,   // the store could not be written
+  Pause,    // nothing happened, so nothing was recorded
+  Behind,   // the store was too slow
+  Failed,   // writing the store failed
   Full,     // the store was full of finished runs
-  Dropped,  // a live run gave its oldest ticks up for newer ones
+  Dropped,  // a live run dropped its oldest ticks for newer ones
 };
 std::string_view to_string(GapCause cause);
 std::optional<GapCause> find_cause(std::string_view name);
 
-/// A stretch of ticks that are not in the record, both ends included.
+/// A range of ticks missing from the record, both ends included.
 struct Gap {
   std::uint64_t first_tick = 0;
   std::uint64_t last_tick = 0;
@@ -87,13 +87,13 @@ struct RunRow {
   RunStatus status = RunStatus::Queued;
   std::string outcome = "running";
   std::string reason{};
-  NewRun what{};  // `document` is filled by RunReader::get only
+  NewRun what{};  // only RunReader::get fills `document`
   std::uint64_t ticks = 0;
   double time = 0;  // [s] run clock of the newest tick
   std::uint64_t lost_ticks = 0;
   std::uint64_t bytes = 0;  // of its packed frames
-  std::string metrics{};    // JSON text; empty when there are none
-  std::vector<Gap> gaps{};  // filled by RunReader::get only
+  std::string metrics{};    // JSON text; empty if there are none
+  std::vector<Gap> gaps{};  // filled only by RunReader::get
 };
 
 /// Unset fields match everything.
@@ -104,7 +104,7 @@ struct RunFilter {
   std::optional<RunStatus> status{};
 };
 
-/// A part of a list, and where to go on: the next page's cursor, absent on the last page.
+/// One page of a list, and the cursor of the next page, absent on the last.
 struct RunPage {
   std::vector<RunRow> runs{};
   std::optional<RunId> next{};

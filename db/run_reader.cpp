@@ -1,4 +1,4 @@
-// db/run_reader.cpp: reading runs while others record.
+// db/run_reader.cpp: reads runs while others record.
 #include "db/run_reader.hpp"
 
 #include <limits>
@@ -42,7 +42,7 @@ RunRow row_of(const Statement& found) {
   return row;
 }
 
-// Ticks and counts are kept in SQLite's signed integers; no run reaches the upper half.
+// SQLite's integers are signed; no tick or count reaches the upper half.
 std::int64_t signed_tick(std::uint64_t tick) {
   constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   return static_cast<std::int64_t>(std::min(tick, kLargest));
@@ -54,8 +54,8 @@ Connection open_for_reading(const std::string& path) {
     detail::require_readable(connection);
     return connection;
   } catch (const DatabaseError&) {
-    // In a folder that may not be written, SQLite cannot set up the memory it shares with a
-    // writer. When no log lies beside the file there is no writer and the file is all there is.
+    // In a read-only folder SQLite cannot set up the memory that it shares with a writer. Without a
+    // log beside the file there is no writer, and the file is complete.
     if (::access((path + "-wal").c_str(), F_OK) == 0 || ::access(path.c_str(), R_OK) != 0) throw;
     Connection immutable(path, Connection::Mode::ReadImmutable);
     detail::require_readable(immutable);
@@ -90,7 +90,7 @@ struct RunReader::Tables {
                                      ", (SELECT text FROM document WHERE run ="
                                      " coalesce(run.document, run.id))"
                                      " FROM run WHERE id = ? AND status <> 'deleted'");
-  // A deleted run is gone at once, though its blocks may take a while to be swept away.
+  // A deleted run disappears at once, though sweeping its blocks may take a while.
   Statement exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
   Statement block = connection.prepare(
       "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
@@ -99,14 +99,14 @@ struct RunReader::Tables {
   Statement gaps = connection.prepare(
       "SELECT first_tick, last_tick, cause, sentence FROM gap"
       " WHERE run = ? ORDER BY first_tick");
-  std::map<unsigned, Statement> listings{};  // by which filters are set
+  std::map<unsigned, Statement> listings{};  // by the set of filters used
 };
 
 RunReader::RunReader(const std::string& path) : path_(path) {
   tables();
 }
 
-/// Those of the file that is at the path now.
+/// The tables of the file that is at the path now.
 RunReader::Tables& RunReader::tables() {
   const auto there = identity_of(path_);
   if (!tables_ || there != opened_) {
@@ -132,7 +132,7 @@ RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optiona
   const ResetLater reset(found);
   found << cursor.value_or(std::numeric_limits<RunId>::max());
   bind_filter(found, filter);
-  found << signed_tick(limit == SIZE_MAX ? limit : limit + 1);  // one more: is there a next page?
+  found << signed_tick(limit == SIZE_MAX ? limit : limit + 1);  // one more, to detect a next page
   RunPage page{};
   while (found.step()) {
     if (page.runs.size() == limit) {
@@ -175,8 +175,8 @@ bool RunReader::exists(RunId run) {
   return found.step();
 }
 
-/// Unpacks the block that holds `tick`, or the first one after it, and returns the tick to begin
-/// with; nothing when there is none. Without `unpack` it only looks.
+/// Unpacks the block that holds `tick`, or the first one after it. Returns the tick to begin with;
+/// nothing if there is none. Without `unpack` it only searches.
 std::optional<std::uint64_t> RunReader::seek(RunId run, std::uint64_t tick, bool unpack) {
   Statement& block = tables().block.reset() << run << signed_tick(tick);
   const ResetLater reset(block);
@@ -202,7 +202,7 @@ std::optional<std::uint64_t> RunReader::frames(RunId run,
   std::uint64_t next = from;
   if (!exists(run)) return std::nullopt;
   for (std::size_t done = 0;;) {
-    // The block in hand serves the next page too; what it has grown by since is read anew.
+    // The block in hand also serves the next page; a block that has grown since is read anew.
     const bool in_hand =
         block_run_ == run && next >= block_first_ && next < block_first_ + decoder_.frames();
     if (!in_hand) {

@@ -1,4 +1,4 @@
-// db/run_store.cpp: the one writer of recorded runs.
+// db/run_store.cpp: the only writer of recorded runs.
 #include "db/run_store.hpp"
 
 #include <algorithm>
@@ -17,27 +17,27 @@ using detail::Statement;
 
 namespace {
 
-// A block row ends in a page of its own, half empty on average: of an hour's 57 MB of blocks 16 KiB
-// pages wasted 6.3 MB, 4 KiB pages 2.3 MB, at the same speed.
+// A block row ends in its own page, half empty on average. For an hour's 57 MB of blocks, 16 KiB
+// pages wasted 6.3 MB and 4 KiB pages 2.3 MB, at the same speed.
 constexpr int kPageBytes = 4096;
-// A block with so many frames is not rewritten with more at the next commit. Longer blocks pack
-// little better (402 bytes a frame at 128 against 414 at 64) and cost a seek more to unpack.
+// A block with this many frames is not rewritten with more at the next commit. Longer blocks pack
+// little better (402 bytes a frame at 128 against 414 at 64) and make a seek unpack more.
 constexpr std::size_t kSealFrames = 64;
-// Between two commits of a fast run.
+// Limit between two commits of a fast run.
 constexpr std::size_t kMaxPendingFrames = 2 * kSealFrames;
 
 Connection open_for_writing(const std::string& path, const StoreOptions& options) {
   Connection connection(path, Connection::Mode::Write);
-  // Of an existing file the page size stays as it is.
+  // An existing file keeps its page size.
   connection.execute("PRAGMA page_size = " + std::to_string(kPageBytes));
   connection.execute("PRAGMA journal_mode = WAL");
   connection.execute("PRAGMA synchronous = FULL");
   connection.execute("PRAGMA wal_autocheckpoint = " + std::to_string(options.log_pages));
-  // A log that a slow reader let grow shrinks again at its next beginning.
+  // A log that grew for a slow reader shrinks again when it restarts.
   connection.execute("PRAGMA journal_size_limit = " +
                      std::to_string(std::uint64_t{options.log_pages} * kPageBytes));
-  // [KiB] A writer that appends seldom comes back to a page: a larger cache would not help it, and
-  // fill up over the first half hour of a run.
+  // [KiB] A writer that appends seldom returns to a page. A larger cache would not help it, and
+  // would fill up over the first half hour of a run.
   connection.execute("PRAGMA cache_size = -1024");
   if (options.max_pages > 0) {
     connection.execute("PRAGMA max_page_count = " + std::to_string(options.max_pages));
@@ -74,7 +74,7 @@ void RunStore::open() {
   sql_.reset();
   connection_.reset();
   open_.clear();
-  // The lock is kept while the file is the same, so that nobody comes between.
+  // Keeps the lock while the file is the same, so that no other writer can take it in between.
   if (!in_place()) {
     lock_.reset();
     lock_ = std::make_unique<FileLock>(path_);
@@ -105,18 +105,18 @@ void RunStore::close() noexcept {
 std::string RunStore::set_aside(std::string_view why, std::string_view stamp) {
   namespace fs = std::filesystem;
   std::error_code error;
-  const fs::path file = fs::weakly_canonical(path_, error);  // where a symbolic link leads
+  const fs::path file = fs::weakly_canonical(path_, error);  // target of a symbolic link
   fs::path aside = file;
   aside.replace_extension('.' + std::string(why) + '-' + std::string(stamp) +
                           file.extension().string());
-  // Renamed under the lock, and before the connection closes, which would fold its log in.
+  // Rename under the lock, and before the connection closes: closing would fold its log in.
   fs::rename(file, aside, error);
   if (error) {
     throw DatabaseError("The run store " + path_ + " could not be set aside (" + error.message() +
                         ").");
   }
   for (const char* beside : {"-wal", "-shm"}) {
-    fs::rename(file.string() + beside, aside.string() + beside, error);  // there may be none
+    fs::rename(file.string() + beside, aside.string() + beside, error);  // it may not exist
   }
   close();
   known_.reset();
@@ -169,7 +169,7 @@ RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId
                            << what.filter << what.physics << what.seed << what.parameters
                            << what.version << what.started;
   sql_->insert_run.run();
-  // The runs of a batch, and resets, have the document of the run before.
+  // The runs of a batch, and resets, have the previous run's document.
   const ResetLater reset(sql_->same_document.reset() << sql_->newest_document << what.document);
   if (sql_->same_document.step()) {
     (sql_->share_document.reset() << sql_->newest_document << run).run();
@@ -257,7 +257,7 @@ void RunStore::append_tick(RunId run,
   }
   guarded([&] {
     begin();
-    // Ticks of a block follow each other without a gap, so that it need not store their numbers.
+    // The ticks of a block have no gaps, so that it need not store their numbers.
     const bool gap = recording.ticks > 0 && tick != recording.last_tick + 1;
     const bool full =
         recording.pending.frames() >= kMaxPendingFrames || !recording.pending.fits(frame.size());
@@ -353,7 +353,7 @@ void RunStore::commit() {
       write_block(run, *recording);
       write_progress(run, *recording);
       recording->dirty = false;
-      // A short block grows until it is worth its own row: frames pack better together.
+      // A short block grows until it deserves its own row: frames pack better together.
       if (recording->pending.frames() >= kSealFrames) recording->pending.clear();
     }
     sql_->commit.reset().run();

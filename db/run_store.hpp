@@ -1,4 +1,4 @@
-// db/run_store.hpp: the one writer of recorded runs.
+// db/run_store.hpp: the only writer of recorded runs.
 #pragma once
 
 #include <cstddef>
@@ -20,29 +20,29 @@
 namespace db {
 
 struct StoreOptions {
-  std::uint32_t max_pages = 0;     // the file may not grow beyond so many 4 KiB pages; 0: no limit
-  std::uint32_t log_pages = 1000;  // of the write-ahead log, before it is folded into the file
-  std::shared_ptr<RunNumbers> numbers{};  // null: the store's own
+  std::uint32_t max_pages = 0;     // largest file size in 4 KiB pages; 0: no limit
+  std::uint32_t log_pages = 1000;  // of the write-ahead log before it is folded into the file
+  std::shared_ptr<RunNumbers> numbers{};  // null: its own
 };
 
-/// Writes runs into one SQLite file (WAL, synchronous FULL).
+/// Writes runs to one SQLite file (WAL, synchronous FULL).
 ///
-/// One thread at a time owns it. One RunStore per file: a second one, also in another program or by
-/// another name of the file, is refused, because opening ends what the last owner left unfinished.
-/// Readers (RunReader) may come and go in any thread and any program.
+/// Used by one thread at a time. Each file has one RunStore: a second one is refused, also in
+/// another program or by another name of the file, because opening interrupts the unfinished runs
+/// of the last owner. Readers (RunReader) may come and go in any thread and any program.
 ///
-/// Everything since the last commit() is one transaction. When the database fails (DatabaseError)
-/// the transaction is undone, every run being recorded is dropped (recording() turns false) and
-/// keeps what its last commit stored; resume_run() goes on with it. A database that is merely Busy
-/// has lost nothing. Other StoreErrors refuse one call and change nothing. A store that is closed
-/// answers every call with a DatabaseError.
+/// All changes since the last commit() are one transaction. If the database fails (DatabaseError),
+/// the transaction is undone. Every run being recorded is then dropped (recording() turns false)
+/// and keeps what its last commit stored; resume_run() continues it. A database that is merely Busy
+/// has lost nothing. Other StoreErrors refuse one call and change nothing. A closed store answers
+/// every call with a DatabaseError.
 class RunStore {
  public:
-  /// Opens or makes `path`, brings it up to date, and marks every run left queued or recording as
+  /// Opens or creates `path`, brings it up to date, and marks every run left queued or recording as
   /// interrupted. Throws StoreError.
   explicit RunStore(const std::string& path, const StoreOptions& options = {});
   struct Closed {};
-  /// One that open() opens.
+  /// A closed store, to be opened by open().
   RunStore(const std::string& path, const StoreOptions& options, Closed /*tag*/);
   ~RunStore();
   RunStore(const RunStore&) = delete;
@@ -50,79 +50,78 @@ class RunStore {
 
   const std::string& path() const { return path_; }
   bool is_open() const { return connection_.has_value(); }
-  /// Opens what lies at the path now, anew when it is open. Unfinished runs become interrupted in a
-  /// file this store had not open before; in the same file they are still its own.
+  /// Opens the file that is at the path now; reopens an open store. In a file that this store has
+  /// not had open before, unfinished runs become interrupted. In the same file they remain its own.
   void open();
   void close() noexcept;
-  /// False when the open file was deleted, renamed or replaced.
+  /// False if the open file has been deleted, renamed or replaced.
   bool in_place() const { return lock_ != nullptr && lock_->still_at(path_); }
-  /// Closes the store and renames its files to NAME.WHY-STAMP.db and so on. Returns the new
-  /// name. Throws DatabaseError when they cannot be renamed.
+  /// Closes the store and renames its files to NAME.WHY-STAMP.db and so on. Returns the new name.
+  /// Throws DatabaseError if they cannot be renamed.
   std::string set_aside(std::string_view why, std::string_view stamp);
-  /// The error by which recordings were dropped since the last call, if any.
+  /// The error that dropped recordings since the last call, if any.
   std::optional<DatabaseError> take_failure() { return std::exchange(failure_, std::nullopt); }
 
-  /// The runs found unfinished and marked interrupted when the file was opened.
+  /// The unfinished runs that were marked interrupted when the file was opened.
   const std::vector<RunId>& interrupted() const { return interrupted_; }
 
-  /// A new run that is recording from now on; with the number `wanted` unless the file has one so.
+  /// Creates a run that is recording, with the number `wanted` unless the file already has it.
   RunId begin_run(const NewRun& what, std::optional<RunId> wanted = {});
-  /// A new run that start_run() sets going later.
+  /// Creates a run that start_run() starts later.
   RunId queue_run(const NewRun& what, std::optional<RunId> wanted = {});
-  /// Sets a queued run going. `started`: wall time, ISO 8601.
+  /// Starts a queued run. `started`: wall time, ISO 8601.
   void start_run(RunId run, std::string_view started);
 
-  /// Goes on with a run that was dropped. Returns the number after its last stored tick, or nothing
-  /// when the file has no such run unfinished.
+  /// Continues a dropped run. Returns the number after its last stored tick, or nothing if the file
+  /// has no such unfinished run.
   std::optional<std::uint64_t> resume_run(RunId run);
-  /// Puts an ended run back among the queued ones, to be run again from its start; clear_run()
-  /// takes its old ticks away first. False when it is not there or not interrupted, cancelled or
-  /// failed.
+  /// Queues an ended run again, to be run from its start. Remove its old ticks with clear_run()
+  /// before it starts. False if it does not exist or is not interrupted, cancelled or failed.
   bool requeue_run(RunId run);
-  /// Removes up to `blocks` blocks of a queued run and commits. True while there are more.
+  /// Removes up to `blocks` blocks of a queued run and commits. True if more remain.
   bool clear_run(RunId run, std::size_t blocks = kSweptBlocks);
   std::optional<RunStatus> status_of(RunId run);
 
-  /// Says why ticks of a run being recorded are missing. One stretch once.
+  /// Records why ticks of a run being recorded are missing. Call once per gap.
   void note_gap(RunId run, const Gap& gap);
 
-  /// Appends the frame of one tick. `time`: [s] run clock. Ticks grow; a gap is allowed. The first
-  /// frames of a run grow the buffers, after that nothing is allocated here but by SQLite.
+  /// Appends the frame of one tick. `time`: [s] run clock. Ticks must increase; gaps are allowed.
+  /// The first frames of a run grow the buffers; after that only SQLite allocates.
   void append_tick(RunId run,
                    std::uint64_t tick,
                    double time,
                    std::span<const std::byte> frame,
                    std::span<const Window> windows);
 
-  /// What is known of a run so far, also while it is recording. `metrics`: JSON text.
+  /// Sets the result of a run so far, also while it is recording. `metrics`: JSON text.
   void set_result(RunId run,
                   std::string_view outcome,
                   std::string_view reason,
                   std::string_view metrics);
-  /// Ends a queued or recording run; its last frames are written. A run that was dropped because
-  /// the database failed ends with what its last commit stored. Its lost ticks are at least those
-  /// of its gaps by fault.
+  /// Ends a queued or recording run and writes its last frames. A run that was dropped because the
+  /// database failed ends with what its last commit stored. Its lost ticks are at least those of
+  /// its gaps by fault.
   void end_run(RunId run, const RunEnd& end);
 
-  /// Begins the transaction that the next change would begin. Throws DatabaseError, with Busy when
-  /// another program holds the database; then nothing has happened.
+  /// Begins the transaction of the next change early. Throws DatabaseError; with Busy another
+  /// program holds the database and nothing has changed.
   void begin();
-  /// Makes everything so far durable.
+  /// Makes all changes so far durable.
   void commit();
 
   bool recording(RunId run) const { return open_.contains(run); }
 
   enum class Deletion : std::uint8_t { Deleted, NotFound, StillRecording };
-  /// Takes a run out of every list at once; sweep() gives its room back piece by piece.
+  /// Removes a run from every list at once; sweep() frees its room block by block.
   Deletion delete_run(RunId run);
 
-  /// Removes up to `blocks` blocks of deleted runs and commits. True while there is more.
-  /// A run that is too damaged for it is left as it is, with a StoreError that names it.
+  /// Removes up to `blocks` blocks of deleted runs and commits. True if more remain. A run too
+  /// damaged to remove stays, and a StoreError names it.
   bool sweep(std::size_t blocks = kSweptBlocks);
 
-  /// Gives up to `blocks` of the oldest blocks of a run being recorded up for newer ones, as far as
-  /// all their ticks are older than `before` [s]; the newest block stays. Commits. Returns how many
-  /// went. `sentence` is kept as the cause of the gap.
+  /// Removes up to `blocks` of the oldest blocks of a run being recorded, to make room for newer
+  /// ones. All their ticks must be older than `before` [s]; the newest block always stays. Commits.
+  /// Returns the number of removed blocks. `sentence` is stored as the cause of the gap.
   std::size_t drop_oldest(RunId run, double before, std::size_t blocks, std::string_view sentence);
   /// [s] run clock of the oldest and the newest tick kept of a run being recorded.
   struct Span {
@@ -131,8 +130,8 @@ class RunStore {
   };
   Span span(RunId run) const;
 
-  /// Deletes the oldest ended run when the store is larger than `limit` [bytes]. The file itself
-  /// does not shrink: its room is used again. Nothing while an earlier deletion is not swept yet.
+  /// Deletes the oldest ended run if the store is larger than `limit` [bytes]. The file itself does
+  /// not shrink: its room is reused. Does nothing while an earlier deletion is not swept yet.
   std::optional<RunRow> retire_oldest(std::uint64_t limit);
 
   /// [bytes] of the file in use, all runs and indexes together.
@@ -143,11 +142,11 @@ class RunStore {
   std::uint64_t log_limit() const;
   /// Folds the log into the file and empties it, as far as no reader needs it. Commits.
   void fold_log();
-  /// [bytes] of the file that deleted runs left and new ones will fill.
+  /// [bytes] of the file freed by deleted runs, for new ones.
   std::uint64_t spare_bytes();
 
  private:
-  static constexpr std::size_t kSweptBlocks = 128;  // some 10,000 ticks
+  static constexpr std::size_t kSweptBlocks = 128;  // about 10,000 ticks
 
   struct Recording;  // a run with its pending frames
   struct Statements;
@@ -165,9 +164,9 @@ class RunStore {
   std::optional<std::uint64_t> slice_end(RunId run, std::size_t blocks);
   void delete_before(RunId run, std::uint64_t tick);
   std::optional<RunId> first_deleted();
-  /// What is left of a recorded run while its oldest blocks go.
+  /// The rest of a recorded run while its oldest blocks are dropped.
   struct Remains {
-    std::uint64_t newest_block = 0;  // its first tick: what ends before it may go
+    std::uint64_t newest_block = 0;  // its first tick: older blocks may go
     std::uint64_t ticks = 0;
     std::uint64_t bytes = 0;
     double kept_from = 0;  // [s]
@@ -180,12 +179,12 @@ class RunStore {
   std::unique_ptr<FileLock> lock_{};  // outlives the connection
   std::optional<detail::Connection> connection_{};
   std::unique_ptr<Statements> sql_;
-  std::shared_ptr<detail::Compressor> compressor_ = make_compressor();  // of all recordings
+  std::shared_ptr<detail::Compressor> compressor_ = make_compressor();  // for all recordings
   std::map<RunId, std::unique_ptr<Recording>> open_;
   std::vector<RunId> interrupted_{};
-  std::optional<FileIdentity> known_{};  // the file whose unfinished runs are this store's own
+  std::optional<FileIdentity> known_{};  // the file whose unfinished runs belong to this store
   std::optional<DatabaseError> failure_{};
-  RunId unsweepable_ = 0;  // deleted runs up to it are left as they are
+  RunId unsweepable_ = 0;  // deleted runs up to it are not swept
 };
 
 }  // namespace db

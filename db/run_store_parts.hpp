@@ -1,4 +1,4 @@
-// db/run_store_parts.hpp: what the store's source files share: its statements and open runs.
+// db/run_store_parts.hpp: code shared by the store's source files: its statements and open runs.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ struct RunStore::Recording {
 
   BlockEncoder pending;            // frames of the newest block, which may still grow
   std::uint64_t first_tick = 0;    // of that block
-  std::size_t written_frames = 0;  // of pending, those already in the block row
+  std::size_t written_frames = 0;  // frames of pending that are in the block row already
   std::uint64_t sealed_bytes = 0;  // of the blocks before it
   std::uint64_t block_bytes = 0;   // of that block's row
   std::uint64_t ticks = 0;
@@ -22,7 +22,7 @@ struct RunStore::Recording {
   std::uint64_t last_tick = 0;
   double last_time = 0;  // [s]
   double kept_from = 0;  // [s] of the oldest tick
-  bool dirty = false;    // the run row does not show the newest tick
+  bool dirty = false;    // the run row lacks the newest tick
 };
 
 struct RunStore::Statements {
@@ -93,17 +93,17 @@ struct RunStore::Statements {
   detail::Statement page_count = c.prepare("PRAGMA page_count");
   detail::Statement free_pages = c.prepare("PRAGMA freelist_count");
   std::uint64_t page_bytes = static_cast<std::uint64_t>(c.query_integer("PRAGMA page_size"));
-  RunId newest_document = 0;  // the run it is stored with
+  RunId newest_document = 0;  // the run that it is stored with
 };
 
-/// Runs `action`; when the database fails under it, nothing since the last commit remains.
+/// Runs `action`. If the database fails in it, undoes everything since the last commit.
 template <typename Action>
 auto RunStore::guarded(const Action& action) {
   require_open();
   try {
     return action();
   } catch (const DatabaseError& error) {
-    // A transaction that could not begin has nothing to undo.
+    // A transaction that could not begin needs no undoing.
     if (error.trouble() == Trouble::Busy && !connection_->in_transaction()) throw;
     connection_->roll_back();
     open_.clear();
@@ -112,7 +112,7 @@ auto RunStore::guarded(const Action& action) {
   }
 }
 
-/// Runs `action` in a transaction of its own, so that what fails in it costs no recording.
+/// Runs `action` in its own transaction, so that its failure costs no recording.
 template <typename Action>
 auto RunStore::alone(const Action& action) {
   commit();

@@ -1,5 +1,4 @@
-// db/run_store_room.cpp: what makes room: deletions, the oldest ticks of live runs, and how much
-// there is.
+// db/run_store_room.cpp: frees room (deletions, the oldest ticks of live runs) and measures it.
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -31,7 +30,7 @@ RunStore::Deletion RunStore::delete_run(RunId run) {
   });
 }
 
-/// The first tick after the first `blocks` of a run; nothing when it has no more.
+/// The first tick after the first `blocks` blocks of a run; nothing if it has no more.
 std::optional<std::uint64_t> RunStore::slice_end(RunId run, std::size_t blocks) {
   Statement& found = sql_->slice_end.reset() << run << std::uint64_t{blocks};
   const ResetLater reset(found);
@@ -110,7 +109,7 @@ std::optional<RunRow> RunStore::retire_oldest(std::uint64_t limit) {
   });
 }
 
-/// Counts in `left` what goes, and takes it out of the run's row.
+/// Drops the oldest block and subtracts it from `left`; false if it must stay.
 bool RunStore::drop_block(RunId run, Remains& left, double before, std::string_view sentence) {
   Statement& oldest = sql_->oldest_blocks.reset() << run;
   const ResetLater reset(oldest);
@@ -119,7 +118,7 @@ bool RunStore::drop_block(RunId run, Remains& left, double before, std::string_v
   const std::uint64_t last = oldest.count(1);
   const std::uint64_t bytes = oldest.count(3);
   if (last >= left.newest_block) return false;
-  // The first tick that stays: it says how old the block before it is, to a tick.
+  // The first tick that stays gives the age of the block before it, to within a tick.
   if (!oldest.step() || oldest.number(2) > before) return false;
   const std::uint64_t kept = oldest.count(0);
   left.kept_from = oldest.number(2);

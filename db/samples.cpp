@@ -1,4 +1,4 @@
-// db/samples.cpp: predicting the ranges of a scan.
+// db/samples.cpp: predicts the ranges of a scan.
 #include "db/samples.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace db::detail {
 namespace {
 
-// Little-endian on every machine the program runs on; asserted rather than swapped.
+// The program's machines are all little-endian; asserted rather than swapped.
 static_assert(std::endian::native == std::endian::little);
 
 std::uint16_t load(std::span<const std::byte> window, std::size_t i) {
@@ -18,8 +18,8 @@ std::uint16_t load(std::span<const std::byte> window, std::size_t i) {
   return value;
 }
 
-/// A difference modulo 2^16 with its sign in the last bit, so that small ones of either sign are
-/// small numbers.
+/// Moves the sign of a difference modulo 2^16 to the last bit, so that small differences of either
+/// sign are small numbers.
 std::uint16_t fold(std::uint16_t difference) {
   const bool negative = (difference & 0x8000U) != 0;
   const auto doubled = static_cast<std::uint16_t>(difference << 1U);
@@ -30,8 +30,8 @@ std::uint16_t unfold(std::uint16_t folded) {
   return (folded & 1U) != 0 ? static_cast<std::uint16_t>(~half) : half;
 }
 
-/// Sample `i` should be as its left neighbour; or, where that and the reference see one surface,
-/// between the two: the mean of two readings is less noisy than either.
+/// Predicts sample `i`: without a reference by its left neighbour; if that and the reference see
+/// one surface, by their mean, which is less noisy than either; else by the reference.
 std::uint16_t expected_sample(std::uint16_t left,
                               std::span<const std::byte> reference,
                               std::size_t i) {
@@ -51,7 +51,7 @@ std::uint16_t residual(std::span<const std::byte> samples,
   return fold(static_cast<std::uint16_t>(load(samples, i) - expected));
 }
 
-/// Bits left of every fourth sample: enough to choose by.
+/// Residual bits of every fourth sample: enough to choose by.
 std::size_t cost(std::span<const std::byte> samples, std::span<const std::byte> reference) {
   const std::size_t count = samples.size() / sizeof(std::uint16_t);
   std::size_t bits = 0;
@@ -79,7 +79,7 @@ Choice write_samples(std::span<const std::byte> samples,
     high[i] = static_cast<std::uint8_t>(folded >> 8U);
   };
   if (count > 0) put(0, residual(samples, reference, 0));
-  // Many at a time, before they are parted: the compiler makes no vectors of both in one.
+  // Folds many before splitting their bytes: the compiler cannot vectorise both in one loop.
   std::array<std::uint16_t, 64> folded{};
   for (std::size_t first = 1; first < count; first += folded.size()) {
     const std::size_t some = std::min(folded.size(), count - first);

@@ -1,4 +1,4 @@
-// db/samples.hpp: the windows of samples, predicted from their neighbours, in both directions.
+// db/samples.hpp: predicts windows of samples from their neighbours, for encoder and decoder.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace db::detail {
 
-/// How a window was predicted.
+/// How a window is predicted.
 enum class Choice : std::uint8_t { Within, Reference };
 
 /// Appends the residuals of a window of samples to the streams.
@@ -19,8 +19,8 @@ Choice write_samples(std::span<const std::byte> samples,
                      std::span<const std::byte> reference,
                      Streams& streams);
 
-/// Fills a window with what write_samples() wrote from the residual `at` on, which moves on.
-/// @param reference as it was written; empty where that chose Choice::Within
+/// Fills a window from the output of write_samples(), from the residual `at` on, which advances.
+/// @param reference the one given to write_samples(); empty if that chose Choice::Within
 /// Throws CodecError when the streams are too short.
 void read_samples(std::span<std::byte> samples,
                   std::span<const std::byte> reference,

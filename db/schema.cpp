@@ -8,15 +8,15 @@ namespace db::detail {
 
 namespace {
 
-constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": tells our files from others
+constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": distinguishes our files
 
-// The version counts the forms of the tables and of the frames in their blocks; a file of another
-// one is not read. 8: layers in 16 bits.
+// The version counts the formats of the tables and of the frames in their blocks. A file of another
+// version is not read. 8: layers in 16 bits.
 constexpr std::int64_t kVersion = 8;
 
-// SI units throughout. A run with the same document as the one before it shares that one's, which
-// stays as long as a run has it: ten thousand repeats of a world would fill the store with copies.
-// It is kept apart because the run row is rewritten at every commit.
+// SI units throughout. A run with the same document as the previous one shares its row, which stays
+// as long as any run uses it: ten thousand repeats of a world would fill the store with copies.
+// Documents have their own table because the run row is rewritten at every commit.
 constexpr const char* kTables = R"(
     CREATE TABLE run (
       id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -73,7 +73,7 @@ void refuse_foreign(const Connection& connection) {
   }
 }
 
-/// Another version than ours, and no empty file.
+/// Refuses a file of another version, unless it is empty.
 void refuse_others(const Connection& connection) {
   const std::int64_t version = version_of(connection);
   if (version > kVersion) {
@@ -98,7 +98,7 @@ void set_up(Connection& connection) {
   if (version_of(connection) == kVersion) return;
   try {
     connection.execute("BEGIN IMMEDIATE");
-    // Again, now that no one else can set it up in between.
+    // Check again, now that no other program can set it up in between.
     refuse_others(connection);
     if (version_of(connection) != kVersion) {
       connection.execute(kTables);

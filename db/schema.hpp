@@ -1,16 +1,16 @@
-// db/schema.hpp: the tables of a run store, and which files are one of today's.
+// db/schema.hpp: the tables of a run store, and the check of its version.
 #pragma once
 
 #include "db/sqlite.hpp"
 
 namespace db::detail {
 
-/// Sets up an empty database, in one transaction. Throws DatabaseError of Trouble::Outdated for one
-/// that an older program wrote, StoreError for one of a newer or of another program: all stay as
-/// they are.
+/// Sets up an empty database, in one transaction. Throws DatabaseError with Trouble::Outdated for
+/// one that an older program wrote, and StoreError for one of a newer or of another program. These
+/// files stay unchanged.
 void set_up(Connection& connection);
 
-/// Throws the same for a database that this program cannot read as it is.
+/// Throws the same errors for a database that this program cannot read.
 void require_readable(const Connection& connection);
 
 }  // namespace db::detail

@@ -1,4 +1,4 @@
-// db/sqlite.cpp: SQLite with owners and sentences.
+// db/sqlite.cpp: SQLite with RAII, and errors as sentences.
 #include "db/sqlite.hpp"
 
 #include <limits>
@@ -9,7 +9,7 @@ namespace db::detail {
 
 namespace {
 
-// Short: the database thread has other things to do meanwhile, and the io thread reads.
+// Short: the database thread has other work meanwhile, and the io thread reads.
 constexpr int kBusyTimeoutMs = 100;
 
 [[noreturn]] void fail(int code, sqlite3* connection, const std::string& path) {
@@ -81,7 +81,7 @@ void Statement::check(int code) const {
 }
 
 Statement& Statement::reset() {
-  sqlite3_reset(statement_.get());  // repeats the last step's error, which was thrown then
+  sqlite3_reset(statement_.get());  // repeats the last step's error, already thrown
   bound_ = 0;
   return *this;
 }

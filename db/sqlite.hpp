@@ -1,4 +1,4 @@
-// db/sqlite.hpp: SQLite with owners and sentences: a connection, prepared statements, errors.
+// db/sqlite.hpp: SQLite with RAII: a connection, prepared statements, and errors as sentences.
 #pragma once
 
 #include <cstddef>
@@ -14,20 +14,20 @@ struct sqlite3_stmt;
 
 namespace db {
 
-/// The store cannot do what was asked; what() is a sentence a person can act on.
+/// The store cannot do the request; what() is a sentence a person can act on.
 class StoreError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What ails a database, as far as it decides what can be done about it.
+/// The kind of a database failure, as far as it matters for the remedy.
 enum class Trouble : std::uint8_t {
   Busy,      // another program holds it: nothing is lost, try again
-  Full,      // the disk is
-  Damaged,   // the file is, or it is no database
+  Full,      // the disk is full
+  Damaged,   // the file is damaged, or is not a database
   Outdated,  // an older program wrote it
   Refused,   // it may not be opened or written, or another server writes it
-  Failed,    // anything else, such as a disk that breaks
+  Failed,    // anything else, such as a failing disk
 };
 
 /// The database itself failed: disk full, not readable, locked by another program.
@@ -50,15 +50,15 @@ class Statement {
   Statement(sqlite3* connection, std::string path, std::string_view sql);
 
   Statement& reset();
-  /// Binds the next parameter, from the first after a reset().
+  /// Binds the next parameter, starting from the first after a reset().
   Statement& operator<<(std::int64_t value);
   Statement& operator<<(std::uint64_t value) { return *this << static_cast<std::int64_t>(value); }
   Statement& operator<<(double value);  // NaN, which SQLite does not keep, becomes NULL
   Statement& operator<<(std::string_view value);
   Statement& operator<<(std::span<const std::byte> value);
 
-  bool step();  // true: a row is there
-  void run();   // step() to the end and reset
+  bool step();  // true: a row is available
+  void run();   // step() to the end, then reset
 
   std::int64_t integer(int column) const;
   std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
@@ -78,7 +78,7 @@ class Statement {
   int bound_ = 0;
 };
 
-/// Resets a statement at the end of a scope: a reader must not hold its snapshot longer.
+/// Resets a statement at the end of a scope: a reader must not hold its snapshot any longer.
 class ResetLater {
  public:
   explicit ResetLater(Statement& statement) : statement_(statement) {}
@@ -94,7 +94,7 @@ class ResetLater {
 class Connection {
  public:
   enum class Mode : std::uint8_t { Write, Read, ReadImmutable };
-  /// Throws DatabaseError when the file cannot be opened; Write makes it where it is missing.
+  /// Throws DatabaseError if the file cannot be opened; Write creates a missing file.
   Connection(const std::string& path, Mode mode);
 
   const std::string& path() const { return path_; }
@@ -102,7 +102,7 @@ class Connection {
   void execute(const std::string& sql) const;
   std::int64_t query_integer(std::string_view sql) const;
   bool in_transaction() const;
-  void roll_back() const noexcept;  // nothing when none is open
+  void roll_back() const noexcept;  // no effect without a transaction
 
  private:
   struct Closer {
