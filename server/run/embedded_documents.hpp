@@ -1,4 +1,4 @@
-// server/run/embedded_documents.hpp: what sim/worlds and sim/robots hold, compiled in by
+// server/run/embedded_documents.hpp: the documents of sim/worlds and sim/robots, compiled in by
 // embed_documents.cmake.
 #pragma once
 
@@ -12,9 +12,9 @@ struct EmbeddedDocument {
   std::string_view json{};
 };
 
-/// Scenarios in order of name, the demo first.
+/// Scenarios sorted by name, except that the demo comes first.
 std::span<const EmbeddedDocument> embedded_worlds();
-/// Robot models in order of name.
+/// Robot models sorted by name.
 std::span<const EmbeddedDocument> embedded_robots();
 
 }  // namespace server

@@ -34,7 +34,7 @@ bool FleetRobot::step(const algo::Command& command, algo::Observation& observati
   return true;
 }
 
-/// All sense, and the others decide on it.
+/// Reads the sensors of all robots. The others also decide on their next command.
 void FleetRobot::look(algo::Observation& observation, bool anew) {
   fleet_.each([&](std::size_t k) {
     if (k == 0) return fleet_.read(0, observation);

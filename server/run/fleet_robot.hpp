@@ -1,4 +1,4 @@
-// server/run/fleet_robot.hpp: several robots as the one robot that a run drives.
+// server/run/fleet_robot.hpp: presents a fleet as the one robot that a run drives.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace server {
 
-/// How one robot decides, and what it is asked at first.
+/// The pipeline of one robot and its first requests.
 struct RobotPlan {
   algo::PipelineConfig pipeline{};
   std::vector<algo::Request> first{};
 };
 
-/// The port to the first robot of a fleet. Each step() drives the others too, every one by a
-/// pipeline of its own on what it senses itself; nobody can ask anything of them meanwhile.
+/// The port to the first robot of a fleet. Each step() also drives the other robots. Each of them
+/// has its own pipeline and its own sensors, and takes no requests during the run.
 ///
 /// The same scenario, seed, plans, commands and edits give the same observations bit for bit.
 /// Belongs to one thread.
 class FleetRobot final : public algo::Robot, public algo::Editing {
  public:
   /// `others`: a plan for each of the scenario's `robots`. Throws std::invalid_argument with a
-  /// sentence.
+  /// sentence for people.
   FleetRobot(const sim::Scenario& scenario,
              std::uint64_t seed,
              const std::vector<RobotPlan>& others,
@@ -36,7 +36,7 @@ class FleetRobot final : public algo::Robot, public algo::Editing {
   const algo::RobotSpec& spec() const override { return first().spec(); }
   void reset(algo::Observation& observation) override;
   bool step(const algo::Command& command, algo::Observation& observation) override;
-  /// The first robot alone.
+  /// Stops the first robot only.
   void stop() noexcept override { fleet_.robot(0).stop(); }
   algo::Editing* editing() override { return this; }
   std::optional<std::string> edit(const algo::Request& request) override;
@@ -44,7 +44,7 @@ class FleetRobot final : public algo::Robot, public algo::Editing {
   void find_moved(algo::Recycled<algo::Moved>& moved) const override { fleet_.find_moved(moved); }
 
   const sim::Fleet& fleet() const { return fleet_; }
-  /// The newest tick of robot `k`, from 1.
+  /// The newest tick of robot `k`, counted from 1.
   const algo::Telemetry& telemetry(std::size_t k) const { return others_[k - 1].t; }
 
  private:

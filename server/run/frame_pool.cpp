@@ -1,4 +1,4 @@
-// server/run/frame_pool.cpp: reference counts, and how many frames there are.
+// server/run/frame_pool.cpp: counts references and grows or shrinks the pool.
 #include "server/run/frame_pool.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ FramePool::~FramePool() {
   if (room_ && frames_.size() > own_) room_->give(frames_.size() - own_);
 }
 
-/// A thread that has taken a frame for free may count it before this one has: never below zero.
+/// Counts first: another thread may take the frame at once, and the count must not fall below zero.
 void FramePool::put(Frame* frame) {
   free_count_.fetch_add(1, std::memory_order_relaxed);
   free_.bounded_push(frame);

@@ -1,5 +1,5 @@
-// server/run/frame_pool.hpp: the frames of a run, used again and again, as many as those who listen
-// hold at once.
+// server/run/frame_pool.hpp: recycles the frames of a run. There are as many as all listeners hold
+// at once.
 #pragma once
 
 #include <atomic>
@@ -16,8 +16,8 @@ namespace server {
 
 class FramePool;
 
-/// One tick. Filled by the control thread, immutable and shared after that; the last reference
-/// gives it back to the pool. Who records or shows runs derives a kind of frame that can do more.
+/// One tick. The control thread fills it; afterwards it is shared and immutable. Dropping the last
+/// reference returns it to the pool. A recorder or viewer derives a frame type that can do more.
 class Frame {
  public:
   Frame() = default;
@@ -28,7 +28,7 @@ class Frame {
   algo::Telemetry telemetry{};
 
  protected:
-  /// The pool is about to hand it out again, to be filled anew.
+  /// Called before the pool hands the frame out again to be refilled.
   virtual void renew() {}
 
  private:
@@ -37,11 +37,11 @@ class Frame {
   friend void intrusive_ptr_release(Frame* frame);
 
   std::atomic<int> references_{0};
-  std::shared_ptr<FramePool> pool_{};  // while in somebody's hands: the record outlives the run
+  std::shared_ptr<FramePool> pool_{};  // set while the frame is in use: the record outlives the run
 };
 using FrameRef = boost::intrusive_ptr<Frame>;
 
-/// Frames that many pools may have between them beyond those each has of its own. Any thread.
+/// The number of frames that several pools may share beyond each pool's own. Any thread.
 class FrameRoom {
  public:
   explicit FrameRoom(std::size_t frames) : left_(static_cast<std::ptrdiff_t>(frames)) {}
@@ -52,18 +52,18 @@ class FrameRoom {
   std::atomic<std::ptrdiff_t> left_;
 };
 
-/// take() belongs to one thread, the run's; frames come back from any.
+/// Only the run's thread may call take(). Any thread may return a frame.
 class FramePool : public std::enable_shared_from_this<FramePool> {
  public:
-  /// So many frames of one kind, made at once: take() allocates nothing.
+  /// Makes all `frames` at once, so that take() allocates nothing.
   template <typename Kind = Frame>
   static std::shared_ptr<FramePool> make(std::size_t frames) {
     const std::shared_ptr<FramePool> pool(new FramePool(frames, frames, nullptr, &make_one<Kind>));
     while (pool->frames_.size() < frames) pool->add();
     return pool;
   }
-  /// Frames are made when they are needed: up to `own`, and up to `most` while `room` has some
-  /// left. Those that nobody has needed for a while go.
+  /// Makes frames on demand: up to `own`, and up to `most` while `room` has some left. Frees frames
+  /// that have been spare for a while.
   template <typename Kind>
   static std::shared_ptr<FramePool> growing(std::size_t own,
                                             std::size_t most,
@@ -74,14 +74,14 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
   FramePool(const FramePool&) = delete;
   FramePool& operator=(const FramePool&) = delete;
 
-  /// Null when no frame can be had just now. The frame keeps its old content.
+  /// Null when no frame is available now. The frame keeps its old content.
   FrameRef take();
-  /// How many there are. The run's thread.
+  /// The number of frames in the pool. Call it on the run's thread.
   std::size_t size() const { return frames_.size(); }
 
  private:
   using MakeOne = std::unique_ptr<Frame> (*)();
-  static constexpr std::size_t kLook = 256;  // frames taken between two looks at what is spare
+  static constexpr std::size_t kLook = 256;  // frames taken between two checks for spare frames
 
   friend void intrusive_ptr_release(Frame* frame);
   FramePool(std::size_t own, std::size_t most, std::shared_ptr<FrameRoom> room, MakeOne factory);
@@ -96,13 +96,13 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
 
   const std::size_t own_;
   const std::size_t most_;
-  std::shared_ptr<FrameRoom> room_{};  // null: it does not grow
+  std::shared_ptr<FrameRoom> room_{};  // null: the pool does not grow
   MakeOne make_one_;
   std::vector<std::unique_ptr<Frame>> frames_{};
   boost::lockfree::stack<Frame*> free_;
   std::atomic<std::size_t> free_count_{0};
-  std::size_t spare_ = 0;  // the least that were free since the last look
-  std::size_t taken_ = 0;  // since then
+  std::size_t spare_ = 0;  // least number of free frames since the last check
+  std::size_t taken_ = 0;  // frames taken since the last check
 };
 
 }  // namespace server

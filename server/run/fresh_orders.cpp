@@ -1,4 +1,4 @@
-// server/run/fresh_orders.cpp: what is refused, and what ends.
+// server/run/fresh_orders.cpp: which orders are refused and which are dropped.
 #include "server/run/fresh_orders.hpp"
 
 #include <utility>

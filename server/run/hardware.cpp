@@ -16,22 +16,22 @@ namespace {
 
 using nlohmann::json;
 
-/// `wanted` within what the parameter's table allows.
+/// `wanted` clamped to the parameter's limits.
 double allowed(const algo::ParameterInfo& parameter, double wanted) {
   return std::clamp(wanted, parameter.min, parameter.max);
 }
 
-/// [s] How old the newest scan may be, or the newest reading of a robot that has sonar alone. The
-/// robot halts by its scanner's own period as it is; this is the second wall behind that, wide
-/// enough for the rate to which a scanner may have to fall back.
+/// [s] Greatest age of the newest scan, or of the newest reading of a robot with sonar only. The
+/// robot already halts by its scanner's own period. This is a second safeguard, wide enough for the
+/// fallback rate of a scanner.
 double scan_timeout(const drivers::RobotFile& file) {
-  constexpr double kSonar = 0.5;  // [s] a ring of eight takes 0.32
+  constexpr double kSonar = 0.5;  // [s] a ring of eight takes 0.32 s
   if (!file.spec.has_laser) return kSonar;
   double longest = 0;
   for (const drivers::LaserEntry& laser : file.lasers) {
     const unsigned baud = std::min(laser.setup.baud, drivers::lms200::kFallbackRate);
     const double period = drivers::lms200::scan_period(laser.setup.variant, baud);
-    // From its stamp on: it is on the line for a good part of its period, and a tick may pass.
+    // Counted from the scan's stamp: the transfer takes much of its period, and a tick may pass.
     const double under_way =
         drivers::lms200::transfer_time(drivers::lms200::scan_bytes(laser.setup.variant), baud);
     longest = std::max(longest, drivers::blind_time(period) + under_way + file.spec.period);
@@ -50,7 +50,7 @@ json to_json(const algo::DeviceReport& device) {
           {"facts", std::move(facts)}};
 }
 
-/// One run of a robot that outlives it. Ends disarmed.
+/// One run of a robot that outlives the run. Disarms it at the end.
 class HardwareRun final : public algo::Robot {
  public:
   explicit HardwareRun(std::shared_ptr<algo::Robot> robot) : robot_(std::move(robot)) {}
@@ -77,7 +77,7 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
   sim::Scenario scenario;
   scenario.name = file.spec.name;
   scenario.title = "Real hardware";
-  // Its name alone: everybody who may look at the robot reads it.
+  // Without the folder: all viewers of the robot read this text.
   scenario.description = "Described in " + std::filesystem::path(file.path).filename().string();
   scenario.period = file.spec.period;
   scenario.controller = file.controller;
@@ -86,7 +86,7 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
     scenario.robot.sensors.lasers.clear();
     scenario.robot.sensors.sonar.emplace();
   }
-  // The robot's own limits hold in any case; controllers should plan by them too.
+  // The robot enforces its limits in any case. Controllers should plan with them too.
   scenario.parameters = {{&algo::kMaxSpeed, allowed(algo::kMaxSpeed, file.limits.speed)},
                          {&algo::kMaxTurnRate, allowed(algo::kMaxTurnRate, file.limits.turn)},
                          {&algo::kScanTimeout, allowed(algo::kScanTimeout, scan_timeout(file))}};

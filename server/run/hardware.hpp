@@ -1,4 +1,4 @@
-// server/run/hardware.hpp: a robot of real devices as the source of runs.
+// server/run/hardware.hpp: a robot of real devices as a source of runs.
 #pragma once
 
 #include <memory>
@@ -15,19 +15,20 @@ class SerialRobot;
 
 namespace server {
 
-/// Devices that stay open from run to run, and the empty world without a goal that describes them.
+/// Devices that stay open from run to run, and a scenario that describes them: an empty world
+/// without a goal.
 struct Hardware {
-  std::shared_ptr<algo::Robot> robot{};  // one with Arming
+  std::shared_ptr<algo::Robot> robot{};  // has algo::Arming
   sim::Scenario scenario{};
 };
 
-/// The scenario has the controller and the limits of the robot's file. Throws DocumentError.
+/// Takes the scenario's controller and limits from the robot's file. Throws DocumentError.
 std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> robot);
 
 /// The spec of runs on `hardware`. Throws DocumentError.
 RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrides& overrides);
 
-/// One run of it, which ends disarmed.
+/// One run of the hardware. It ends disarmed.
 std::unique_ptr<algo::Robot> make_run(const Hardware& hardware);
 
 /// As in docs/interfaces.md.

@@ -1,4 +1,4 @@
-// server/run/io_thread.hpp: the thread that carries Stop, and what must not run on it.
+// server/run/io_thread.hpp: marks the thread that carries Stop, to keep slow work off it.
 #pragma once
 
 namespace server::net {
@@ -12,8 +12,8 @@ class IoThreadMark {
   IoThreadMark& operator=(const IoThreadMark&) = delete;
 };
 
-/// Stands at the beginning of all work that reads a whole run, waits for a disk or another thread,
-/// or builds a world. Throws std::logic_error on the io thread.
+/// Call it at the start of any work that reads a whole run, waits for a disk or another thread, or
+/// builds a world. Throws std::logic_error on the io thread.
 void not_on_io_thread(const char* work);
 
 }  // namespace server::net

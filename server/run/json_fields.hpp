@@ -1,5 +1,4 @@
-// server/run/json_fields.hpp: the fields of a struct and of its document in one table, which reads
-// and writes.
+// server/run/json_fields.hpp: one table of fields reads and writes both a struct and its document.
 #pragma once
 
 #include <cmath>
@@ -13,7 +12,7 @@
 
 namespace server {
 
-/// One field of T. A field without a member is known, and read and written by hand.
+/// One field of T. A field without a member is an allowed key that other code reads and writes.
 template <typename T>
 struct Field {
   using Member = std::variant<std::monostate,
@@ -24,17 +23,17 @@ struct Field {
   const char* key = "";
   Member member{};
   NumberRange range{};
-  double unit = 1;  // of the document, in the member's: pi / 180 for degrees
+  double unit = 1;  // the document's unit in the member's unit: pi / 180 for degrees
   bool required = false;
 };
 
-/// The same, which a document must have.
+/// A field that the document must have.
 template <typename T>
 constexpr Field<T> required(const char* key, double T::*member, NumberRange range = {}) {
   return {key, member, range, 1, true};
 }
 
-/// Reads the fields that the document has; the others stay. Throws DocumentError.
+/// Reads the fields that the document has; the others keep their values. Throws DocumentError.
 template <typename T, std::size_t N>
 void read_fields(const JsonReader& in, const Field<T> (&table)[N], std::type_identity_t<T>& out) {
   for (const Field<T>& field : table) {
@@ -57,7 +56,7 @@ void read_fields(const JsonReader& in, const Field<T> (&table)[N], std::type_ide
   }
 }
 
-/// The same of a document that may have no other fields.
+/// As read_fields(), but the document may have no other fields.
 template <typename T, std::size_t N>
 void read_only_fields(const JsonReader& in,
                       const Field<T> (&table)[N],
@@ -68,7 +67,7 @@ void read_only_fields(const JsonReader& in,
   read_fields(in, table, out);
 }
 
-/// Writes every field that has a member and a value; those in another unit to a billionth of it.
+/// Writes every field that has a member and a value. Rounds a field in another unit to 1e-9 of it.
 template <typename T, std::size_t N>
 nlohmann::json written(const Field<T> (&table)[N], const std::type_identity_t<T>& value) {
   nlohmann::json out = nlohmann::json::object();

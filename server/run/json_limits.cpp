@@ -1,4 +1,4 @@
-// server/run/json_limits.cpp: a depth-limited builder on the library's event parser.
+// server/run/json_limits.cpp: a depth-limited builder on top of the library's event parser.
 #include "server/run/json_limits.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string place(std::string_view text, std::size_t offset) {
          std::to_string(std::max<std::size_t>(1, before.size() - start));
 }
 
-/// What is left of the library's message once its own prefixes are off.
+/// The library's message without its prefixes.
 std::string plain_reason(const std::string& message) {
   std::string reason = message;
   for (const std::string_view mark : {"syntax error ", "] "}) {

@@ -1,4 +1,4 @@
-// server/run/json_reader.cpp: field access with complaints a person can act on.
+// server/run/json_reader.cpp: field access whose errors a person can act on.
 #include "server/run/json_reader.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// server/run/json_reader.hpp: reads fields out of untrusted JSON; every complaint says where and
-// what.
+// server/run/json_reader.hpp: reads fields out of untrusted JSON; each error names the field and
+// the fault.
 #pragma once
 
 #include <initializer_list>
@@ -13,7 +13,7 @@
 
 namespace server {
 
-/// A document that does not say what it must. what() is "obstacles/2/radius: must be above 0".
+/// The document is invalid. what() is "obstacles/2/radius: must be above 0".
 class DocumentError : public std::runtime_error {
  public:
   DocumentError(const std::string& path, const std::string& complaint)
@@ -31,7 +31,7 @@ class JsonReader {
   /// Throws DocumentError when `value` is not an object.
   JsonReader(const nlohmann::json& value, std::string path);
 
-  /// Throws when a field is not among `known`: a misspelt field must not pass in silence.
+  /// Throws when a field is not among `known`: a misspelt field must not pass unnoticed.
   void only(std::initializer_list<std::string_view> known) const { only(std::span(known)); }
   void only(std::span<const std::string_view> known) const;
 

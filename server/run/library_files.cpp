@@ -1,4 +1,4 @@
-// server/run/library_files.cpp: the file system, whose errors become sentences.
+// server/run/library_files.cpp: file access; errors become sentences.
 #include "server/run/library_files.hpp"
 
 #include <algorithm>

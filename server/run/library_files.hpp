@@ -1,4 +1,5 @@
-// server/run/library_files.hpp: what libraries of named documents share: names, files, complaints.
+// server/run/library_files.hpp: names, files and errors that all libraries of named documents
+// share.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,7 @@
 
 namespace server {
 
-/// A document that is not there, may not be changed, or does not read. what() is a sentence.
+/// The document does not exist, may not be changed, or cannot be read. what() is a sentence.
 class LibraryError : public std::runtime_error {
  public:
   enum class Kind { NotFound, Builtin, BadName, Unreadable };
@@ -24,14 +25,14 @@ class LibraryError : public std::runtime_error {
 /// Whether `name` may name a document: [a-z0-9_-], 1 to 64 characters.
 bool valid_name(std::string_view name);
 
-/// Whether a person who typed `text` means a file: there is one, or it looks like a path.
+/// True if `text` names a file: such a file exists, or it looks like a path.
 bool names_file(const std::string& text);
 
-/// @param shown  the file as it is named to people: visitors need not know where it lies
-/// Throws LibraryError.
+/// @param shown the file's name in messages, without its folder: visitors need not know it. Throws
+/// LibraryError.
 std::string read_file(const std::filesystem::path& path, const std::string& shown);
 
-/// Files of `folder` whose stem is a valid name, in order; none where there is no folder.
+/// Visits files of `folder` whose stem is a valid name, sorted; none if the folder does not exist.
 void for_each_file(const std::filesystem::path& folder,
                    const char* extension,
                    const std::function<void(const std::filesystem::path&)>& visit);

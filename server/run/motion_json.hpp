@@ -1,5 +1,5 @@
-// server/run/motion_json.hpp: the parts of a scenario that say how things move: the base's drive
-// and the paths of obstacles.
+// server/run/motion_json.hpp: the moving parts of a scenario: the base's drive and the paths of
+// obstacles.
 #pragma once
 
 #include <nlohmann/json.hpp>

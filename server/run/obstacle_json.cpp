@@ -1,4 +1,4 @@
-// server/run/obstacle_json.cpp: one reader a shape.
+// server/run/obstacle_json.cpp: one reader per shape.
 #include "server/run/obstacle_json.hpp"
 
 #include <algorithm>
@@ -45,8 +45,8 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
   obstacle.shape = wall;
 }
 
-/// Points are given in W; the obstacle's frame is put at their mean, so that it moves by its
-/// middle.
+/// Points are given in W. The obstacle's frame is put at their mean, so that it moves by its
+/// centre.
 void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
   in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
   algo::Polygon polygon;
@@ -62,7 +62,7 @@ void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
     for (algo::Vec2& p : polygon.points) p -= middle;
     obstacle.pose_W = {middle.x(), middle.y(), 0};
   }
-  // A clockwise outline means the same shape: turn it round rather than turn it down.
+  // A clockwise outline means the same shape: reverse it instead of refusing it.
   double twice_area = 0;
   for (std::size_t i = 0; i < polygon.points.size(); ++i) {
     const algo::Vec2& a = polygon.points[i];

@@ -12,7 +12,7 @@
 namespace server {
 
 constexpr std::uint32_t kMaxObstacleId = 999'999'999;
-/// Of what can be named in an edit: robots, which refuse it, besides obstacles.
+/// Highest id that an edit may name. It covers robots too, which refuse edits.
 constexpr std::uint32_t kMaxStandingId = sim::kRobotIds + sim::kMostRobots;
 static_assert(kMaxObstacleId < sim::kRobotIds);
 

@@ -1,4 +1,4 @@
-// server/run/pacer.cpp: deadlines, and waiting for them, woken by a change of pace.
+// server/run/pacer.cpp: computes deadlines and waits for them; a change of pace wakes the wait.
 #include "server/run/pacer.hpp"
 
 #include <algorithm>

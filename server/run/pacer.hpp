@@ -1,4 +1,4 @@
-// server/run/pacer.hpp: how fast simulated or recorded time runs against the wall clock.
+// server/run/pacer.hpp: paces simulated or recorded time against the wall clock.
 #pragma once
 
 #include <chrono>
@@ -12,21 +12,21 @@
 
 namespace server {
 
-/// Absolute deadlines of successive periods; a pure value, the clock is an argument.
+/// Absolute deadlines of successive periods. A pure value: the clock is an argument.
 ///
-/// Each deadline follows from the one before, so that lateness of less than a period does not delay
-/// the next. Whole periods that went by are missed: they are counted and left out, never made good
-/// in a burst, and the row goes on in step with its old deadlines.
+/// Each deadline is computed from the previous one, so lateness of less than a period does not
+/// delay the next. Whole periods that went by are missed: they are counted and skipped, never made
+/// up in a burst. Later deadlines keep the phase of the earlier ones.
 class Deadlines {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// Forgets the row: the next deadline counts from `now`.
+  /// Forgets earlier deadlines: the next one counts from `now`.
   void restart() { running_ = false; }
-  /// The deadline `length` after the last one, or so many periods later that it lies less than one
-  /// before `now`.
+  /// The deadline `length` after the last one, plus as many whole periods as bring it to less than
+  /// one period before `now`.
   Clock::time_point next(Clock::time_point now, Clock::duration length);
-  /// Periods left out since the start; restart() keeps the count.
+  /// Periods skipped since the start; restart() keeps the count.
   std::uint64_t missed() const { return missed_; }
 
  private:
@@ -42,8 +42,8 @@ struct Pace {
   bool operator==(const Pace&) const = default;
 };
 
-/// The pace of a run of simulated or recorded time. All calls from any thread; due() and pass() are
-/// made by one at a time, the run's.
+/// The pace of a run of simulated or recorded time. Any thread may call it, but due() and pass()
+/// only the thread that advances the run.
 class Pacer {
  public:
   using Clock = Deadlines::Clock;
@@ -54,14 +54,14 @@ class Pacer {
   /// Single steps add up: two requests for one step each are two steps, however fast they come.
   void set(const Pace& pace);
   Pace pace() const;
-  /// The next period counts from the moment it is asked for.
+  /// The next period begins at the next call of due() or pass().
   void restart();
 
-  /// When the period of `seconds` of robot time that is under way ends; it begins when first asked
-  /// for. The least time there is when it may end at once; nothing while paused without a step
-  /// left.
+  /// Deadline of the current period of `seconds` of robot time; the period begins at the first
+  /// call. Returns the smallest time point when the period may end at once, and nothing while
+  /// paused without a step left.
   std::optional<Clock::time_point> due(double seconds, Clock::time_point now);
-  /// True, once, when that time has come: the next period is under way.
+  /// True, once, when that deadline has come; the next period then begins.
   bool pass(double seconds, Clock::time_point now);
 
   /// Blocks until pass() is true; false when `stop` came first.
@@ -71,7 +71,7 @@ class Pacer {
 
   /// Periods of wall time that went by unused because the caller came too late.
   std::uint64_t missed() const;
-  /// How late pass() was for its deadlines.
+  /// How late pass() was after its deadlines.
   algo::LatenessHistogram lateness() const;
 
  private:
@@ -79,10 +79,10 @@ class Pacer {
 
   mutable std::mutex mutex_{};
   std::condition_variable_any changed_{};
-  Pace pace_{};  // single_steps counts those left
+  Pace pace_{};  // single_steps counts the steps left
   std::uint64_t changes_ = 0;
   Deadlines deadlines_{};
-  std::optional<Clock::time_point> deadline_{};  // of the period under way
+  std::optional<Clock::time_point> deadline_{};  // of the current period
   algo::LatenessHistogram lateness_{};
 };
 

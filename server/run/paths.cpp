@@ -1,4 +1,4 @@
-// server/run/paths.cpp: the freedesktop.org rules for state, with a way out when HOME is unset.
+// server/run/paths.cpp: the freedesktop.org rules for state, with a fallback when HOME is unset.
 #include "server/run/paths.hpp"
 
 #include <cstdlib>

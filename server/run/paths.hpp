@@ -1,4 +1,4 @@
-// server/run/paths.hpp: where Tautline keeps things on this machine.
+// server/run/paths.hpp: the folders that Tautline uses on this machine.
 #pragma once
 
 #include <filesystem>
@@ -7,15 +7,15 @@
 
 namespace server {
 
-/// $XDG_STATE_HOME/tautline, else ~/.local/state/tautline, else a folder in the temporary folder
-/// when there is no home at all. Not created here.
+/// $XDG_STATE_HOME/tautline, else ~/.local/state/tautline, else, without a home, a folder in the
+/// temporary folder. Does not create it.
 std::filesystem::path state_folder();
 
-/// The built page: --web, else beside the program, else the source tree it was built from.
+/// Folder of the built page: --web, else beside the program, else in the source tree.
 std::filesystem::path web_folder();
 
-/// A sentence for visitors: of each absolute path its last name alone. What lies where on this
-/// machine is for its log. Devices (/dev) and addresses of the API stay whole.
+/// Shortens each absolute path in `sentence` to its last name, because visitors must not learn
+/// where files are; the log may say it. Devices (/dev) and addresses of the API stay whole.
 std::string without_folders(std::string_view sentence);
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/run/pose_json.hpp: points, poses and goals as JSON: metres and radians.
+// server/run/pose_json.hpp: points, poses and goals as JSON, in metres and radians.
 #pragma once
 
 #include <optional>
@@ -15,22 +15,22 @@ namespace server {
 
 constexpr NumberRange kCoordinate{-1e5, 1e5};  // [m]
 
-/// [x, y]. All of them throw DocumentError naming the field.
+/// [x, y]. Every reader here throws DocumentError naming the field.
 algo::Vec2 point_from_json(const nlohmann::json& value, const std::string& path);
 
-/// {"x","y","heading"?}; `heading` [rad] where none is given.
+/// {"x","y","heading"?}; `heading` [rad] is the default.
 algo::Pose2 pose_from_json(const JsonReader& in, double heading);
 nlohmann::json to_json(const algo::Pose2& pose);
 
-/// {"x","y","heading"?}: without a heading any will do.
+/// {"x","y","heading"?}; without a heading, any heading will do.
 algo::SetGoal goal_from_json(const JsonReader& in);
 
-/// The same, and nothing else in it.
+/// As goal_from_json(), but refuses any other field.
 algo::SetGoal strict_goal(const JsonReader& in);
-/// The field "waypoints" of `in`, which lead to its goal; empty without one.
+/// The field "waypoints" of `in`, the way to its goal; empty without the field.
 std::vector<algo::SetGoal> waypoints_from_json(const JsonReader& in);
-/// The field "start" of `in`, the origin without one. As in the paper, a start without a heading
-/// faces the `goal`.
+/// The field "start" of `in`; the origin without the field. As in the paper, a start without a
+/// heading faces the `goal`.
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal);
 nlohmann::json to_json(const algo::SetGoal& goal);
 

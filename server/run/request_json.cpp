@@ -1,4 +1,4 @@
-// server/run/request_json.cpp: one branch a kind.
+// server/run/request_json.cpp: one branch per kind of request.
 #include "server/run/request_json.hpp"
 
 #include <string>

@@ -1,4 +1,4 @@
-// server/run/request_json.hpp: what a client asks of a session, as JSON (docs/interfaces.md).
+// server/run/request_json.hpp: a client's requests to a session as JSON (docs/interfaces.md).
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace server {
 
-/// {"type":"set_goal","x":1,"y":2} and the like; throws DocumentError.
+/// Reads {"type":"set_goal","x":1,"y":2} and the like. Throws DocumentError.
 algo::Request request_from_json(const nlohmann::json& value);
 
 /// True for a Stop that engages, false for its release and for anything else.

@@ -50,11 +50,11 @@ void read_hull(const JsonReader& in, sim::RobotModel& robot) {
   robot.hull_high = in.number_or("high", robot.hull_high, kHeight);
 }
 
-/// One ahead and one behind, where the wheels lie in one line.
+/// The default casters, one ahead and one behind, if all wheels lie in one line.
 std::vector<sim::Caster> usual_casters(const sim::RobotModel& robot) {
   constexpr double kRadius = 0.04;   // [m] at most
-  constexpr double kOfHull = 0.2;    // of half its length
-  constexpr double kRaised = 0.001;  // [m] so that the drive wheels carry
+  constexpr double kOfHull = 0.2;    // of half the hull's length
+  constexpr double kRaised = 0.001;  // [m] so that the drive wheels carry the load
   constexpr double kShare = 0.77;    // of the way from R to the hull
   const double x = kShare * robot.hull_length / 2;
   const double radius = std::min(kRadius, kOfHull * robot.hull_length / 2);
@@ -82,7 +82,7 @@ void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
   robot.counts_per_turn = in.number_or("counts_per_turn", robot.counts_per_turn, {1, 1e7});
 }
 
-/// `problem` begins with the field that it is about.
+/// `problem` begins with the name of the wrong field.
 [[noreturn]] void refuse(const JsonReader& in, const std::string& problem) {
   const std::size_t colon = problem.find(": ");
   in.fail(problem.substr(0, colon), problem.substr(colon + 2));

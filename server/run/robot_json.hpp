@@ -8,12 +8,12 @@
 
 namespace server {
 
-/// Reads a whole model; what it leaves out is as the Silvermate's. Throws DocumentError saying
+/// Reads a whole model; a missing field takes the Silvermate's value. Throws DocumentError saying
 /// which field is wrong and how.
 sim::RobotModel robot_from_json(const JsonReader& in);
-/// All but the sensors.
+/// The model without its sensors.
 nlohmann::json to_json(const sim::RobotModel& robot);
-/// All of it, as robot_from_json() reads it.
+/// The whole model, as robot_from_json() reads it.
 nlohmann::json robot_document(const sim::RobotModel& robot);
 
 }  // namespace server

@@ -25,7 +25,7 @@ struct Read {
   sim::RobotModel robot{};
 };
 
-/// @param where  the file as it is named to people
+/// @param where the file's name in messages
 Read parse(const std::string& text, const std::string& where) {
   try {
     const json document = parse_json(text, kOwnDocument);
@@ -40,7 +40,7 @@ Read parse(const std::string& text, const std::string& where) {
   }
 }
 
-/// Parsed once: every scenario names one.
+/// Parsed once, because every scenario names a robot.
 const std::map<std::string, Read>& builtin() {
   static const auto kRobots = [] {
     std::map<std::string, Read> robots;
@@ -143,12 +143,12 @@ void choose_robot(sim::Scenario& scenario, const json& choice, const RobotLibrar
     scenario.robot = std::move(again);
   } catch (const LibraryError& e) {
     if (e.kind() != Kind::NotFound) throw DocumentError("robot", e.what());
-    // Written out in the scenario alone: there is no newer one.
+    // The robot exists only in the scenario: there is no newer version.
   }
 }
 
 json robot_reference(const sim::RobotModel& robot) {
-  // A name stands for the usual sensors too, of which a document says only what differs.
+  // A name implies the default sensors too. A document lists only the differences from them.
   const auto found = builtin().find(robot.name);
   if (found != builtin().end() && static_cast<const sim::Machine&>(robot) == found->second.robot &&
       same_sensors(found->second.robot.sensors, {})) {

@@ -20,9 +20,9 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr std::size_t kMostBodies = 40'000;  // a robot's world holds every obstacle: memory
+constexpr std::size_t kMostBodies = 40'000;  // memory: each robot's world has all obstacles
 
-/// Waypoints and goal in order; empty for a goal of null; nothing when neither is given.
+/// Waypoints and goal in order; empty if the goal is null; nothing if neither is given.
 std::optional<std::vector<algo::SetGoal>> goals_from_json(const JsonReader& in) {
   std::vector<algo::SetGoal> goals = waypoints_from_json(in);
   if (in.has("goal")) {
@@ -33,7 +33,7 @@ std::optional<std::vector<algo::SetGoal>> goals_from_json(const JsonReader& in) 
   return goals;
 }
 
-/// The first place that `robot` goes to.
+/// The first waypoint or goal of `robot`.
 std::optional<algo::SetGoal> first_goal(const sim::OtherRobot& robot,
                                         const sim::Scenario& scenario) {
   if (!robot.goals) return scenario.waypoints.empty() ? scenario.goal : scenario.waypoints.front();
@@ -41,7 +41,7 @@ std::optional<algo::SetGoal> first_goal(const sim::OtherRobot& robot,
   return robot.goals->front();
 }
 
-/// Whether the document of a robot says what sensors it has.
+/// Whether the document of a robot lists its sensors.
 bool brings_sensors(const json& robot) {
   constexpr std::array kSensors{
       "lasers", "sonar", "infrared", "sensors", "gyro", "bumpers", "encoders"};

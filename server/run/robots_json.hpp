@@ -10,11 +10,11 @@
 namespace server {
 
 /// [{"start","robot"?,"goal"?,"waypoints"?,"controller"?,"filter"?,"parameters"?}, ...] of the
-/// document `in`. All else of `scenario` has been read; its sensors are also those of a robot whose
-/// model is given by name, or without sensors. Throws DocumentError.
+/// document `in`. The rest of `scenario` must have been read: a robot given by name, or by a model
+/// without sensors, takes the scenario's sensors. Throws DocumentError.
 void read_robots(const JsonReader& in, const RobotLibrary& robots, sim::Scenario& scenario);
 
-/// The same field into `out`, where there are any.
+/// Writes the same field into `out` if there are other robots.
 void write_robots(const sim::Scenario& s, nlohmann::json& out);
 
 }  // namespace server

@@ -23,9 +23,9 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // what JSON numbers hold exactly
+constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
-/// @param at  of the fields in the document: "" or "robots/3/"
+/// @param at prefix of the fields in the document: "" or "robots/3/"
 void check_choices(const std::string& at,
                    const std::string& controller_name,
                    const std::string& filter,
@@ -62,7 +62,7 @@ void check_parameters(const std::string& at,
   if (complaint) throw DocumentError(at + "parameters", *complaint);
 }
 
-/// How `robot` drives in `scenario`, whose parameters are those of the run.
+/// The pipeline of `robot` in `scenario`, whose parameters are those of the run.
 algo::PipelineConfig pipeline_config(const sim::OtherRobot& robot, const sim::Scenario& scenario) {
   algo::PipelineConfig config{.controller = robot.controller.value_or(scenario.controller),
                               .filter = *algo::find_filter(robot.filter.value_or(scenario.filter)),
@@ -72,7 +72,7 @@ algo::PipelineConfig pipeline_config(const sim::OtherRobot& robot, const sim::Sc
   return config;
 }
 
-/// Throws DocumentError naming the field of the first robot that cannot be driven.
+/// Throws DocumentError naming the wrong field of the first robot that cannot run.
 void check_others(const sim::Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::string at = fmt::format("robots/{}/", i);
@@ -86,7 +86,7 @@ void check_others(const sim::Scenario& scenario) {
   }
 }
 
-/// As requests that are made in this order.
+/// The goals as requests, in this order.
 std::vector<algo::Request> requests_of(const std::vector<algo::SetGoal>& goals) {
   std::vector<algo::Request> requests;
   for (const algo::SetGoal& goal : goals) {
@@ -99,7 +99,7 @@ std::vector<algo::Request> requests_of(const std::vector<algo::SetGoal>& goals) 
   return requests;
 }
 
-/// The scenario's way: waypoints and goal.
+/// The scenario's waypoints and goal.
 std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
   if (!scenario.goal) return {};
   std::vector<algo::SetGoal> goals = scenario.waypoints;
@@ -152,7 +152,7 @@ RunSpec make_spec(sim::Scenario scenario,
   spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
   check_parameters("", scenario.controller, spec.parameters);
   spec.seed = overrides.seed.value_or(1);
-  // The document of the run must tell the whole story: parameters included.
+  // The run's document must be complete, parameters included.
   scenario.parameters = spec.parameters;
   check_others(scenario);
   spec.scenario = std::move(scenario);
@@ -207,7 +207,7 @@ double time_limit(const RunSpec& spec) {
 namespace {
 
 using Robot = algo::RobotSpec;
-/// Without limits: what a run was accepted with is read as it is.
+/// Without limits: values that a run was once accepted with are read unchanged.
 constexpr Field<Robot> kRobot[] = {
     {"name"},
     required("radius", &Robot::radius),
@@ -235,7 +235,7 @@ json to_json(const algo::ChannelInfo& channel) {
 }
 
 algo::ChannelInfo channel_from_json(const JsonReader& in) {
-  constexpr std::uint64_t kMostValues = 65536;  // of a reading
+  constexpr std::uint64_t kMostValues = 65536;  // values of a reading
   algo::ChannelInfo channel;
   channel.name = in.text("name");
   channel.kind = in.text_or("kind", "");

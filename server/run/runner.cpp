@@ -1,4 +1,4 @@
-// server/run/runner.cpp: one period after the other.
+// server/run/runner.cpp: the control loop.
 #include "server/run/runner.hpp"
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 
 using algo::Outcome;
 constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
-// What the noise of an encoder amounts to.
+// Speeds that encoder noise alone can cause.
 constexpr double kStandingSpeed = 0.01;  // [m/s]
 constexpr double kStandingTurn = 0.02;   // [rad/s]
-// Until a full ring or an empty pool is looked at again.
+// Delay before a full ring or an empty pool is tried again.
 constexpr std::chrono::microseconds kSoon{100};
 constexpr std::chrono::milliseconds kPausedWait{50};
 
-/// The sentence, and what was known of the robot last.
+/// The error's sentence and the last known state of the robot.
 std::string account_of(const algo::RobotError& error) {
   if (error.last.empty()) return error.what();
   const algo::Moment& last = error.last.back();
@@ -100,7 +100,7 @@ Run::Next Run::advance_phase() {
     if (const auto later = step()) return *later;
     tick();
   } else {
-    serve_requests();  // as long as the record makes time wait
+    serve_requests();  // while time waits for the record
   }
   phase_ = Phase::Keep;
   if (!keep()) return soon;
@@ -110,7 +110,7 @@ Run::Next Run::advance_phase() {
   return next_step();
 }
 
-/// When the period that begins now will be over.
+/// The end of the period that begins now.
 Run::Next Run::next_step() {
   if (arming_ != nullptr || links_.pacer == nullptr) return {};
   const Clock::time_point now = Clock::now();
@@ -120,8 +120,8 @@ Run::Next Run::next_step() {
   return {.when = Next::When::At, .time = *due};
 }
 
-/// Advances the robot; or says when to try again, as its time has not come or there is no frame.
-/// Simulated time waits for a frame; a real robot's pool has more than all rings hold.
+/// Advances the robot, or says when to try again if its time has not come or no frame is free.
+/// Simulated time waits for a frame; a real robot's pool has more frames than all rings hold.
 std::optional<Run::Next> Run::step() {
   FrameRef next = links_.pool->take();
   if (!next) return Next{.when = Next::When::At, .time = Clock::now() + kSoon};
@@ -131,7 +131,7 @@ std::optional<Run::Next> Run::step() {
     return next_step();
   }
   const algo::Telemetry& t = frame_->telemetry;
-  // A real base brakes harder than along the driving ramp to the zero that follows.
+  // A real base brakes harder than by the ramp down to the zero command that follows.
   if (t.hold && arming_ != nullptr) robot_.stop();
   if (!robot_.step(t.command, next->telemetry.observation)) {
     const std::string reason = fmt::format("The log ended after {} scans.", t.tick + 1);
@@ -143,7 +143,7 @@ std::optional<Run::Next> Run::step() {
   return std::nullopt;
 }
 
-/// Decides on the newest observation and shows what came of it.
+/// Runs the pipeline on the newest observation and publishes the frame.
 void Run::tick() {
   algo::Telemetry& t = frame_->telemetry;
   now_ = t.observation.stamp;
@@ -158,7 +158,7 @@ void Run::tick() {
   judge(t);
   waits_since_.reset();
   if (links_.rings == nullptr) return;
-  links_.rings->stream.push(frame_);  // full: one frame is not shown
+  links_.rings->stream.push(frame_);  // if full, the viewers miss one frame
   news();
 }
 
@@ -177,16 +177,16 @@ void Run::serve_requests() {
     if (!refusal) accept(submission.request);
     links_.rings->replies.push({submission.ticket, std::move(refusal)});
   });
-  if (stop) accept(algo::Stop{true});  // last: a release in the full ring was given before it
+  if (stop) accept(algo::Stop{true});  // last: it was given after any release in the full ring
   if (served > 0) news();
 }
 
-/// Asked before each request: it may have been disarmed and armed again since the last.
+/// Called before each request: the robot may have been disarmed and armed again since the last.
 void Run::notice_arming() {
   if (arming_ != nullptr && orders_.notice(arming_->epoch())) void_orders();
 }
 
-/// As requests of its own, so that the record has them and a replay does the same.
+/// Voids orders by requests of its own, so that the record has them and a replay repeats them.
 void Run::void_orders() {
   if (orders_.stick()) accept(algo::Joystick{});
   if (!orders_.goal()) return;
@@ -196,7 +196,7 @@ void Run::void_orders() {
   news();
 }
 
-/// Parameters are checked against those accepted before, which the pipeline may not have seen yet.
+/// Checks parameters against those accepted earlier, which the pipeline may not have seen yet.
 std::optional<std::string> Run::refusal_of(const algo::Request& request) {
   if (const auto* set = std::get_if<algo::SetParameter>(&request)) {
     return pipeline_.refusal(orders_.asked().parameters, *set);
@@ -206,7 +206,7 @@ std::optional<std::string> Run::refusal_of(const algo::Request& request) {
   return refusal;
 }
 
-/// Edits are the robot's to carry out, at once.
+/// The robot carries out edits at once.
 std::optional<std::string> Run::carry_out(const algo::Request& request) {
   if (!algo::is_edit(request)) return std::nullopt;
   if (editing_ != nullptr) return editing_->edit(request);
@@ -242,7 +242,7 @@ bool Run::keep() {
   return true;
 }
 
-/// False, with waits_since_ set: not yet; without it: the tick is lost.
+/// False with waits_since_ set: try again. False without it: the tick is lost.
 bool Run::try_to_keep() {
   if (links_.record->push(frame_)) {
     waits_since_.reset();
@@ -258,7 +258,7 @@ bool Run::try_to_keep() {
   return false;
 }
 
-/// Called every tick with the same words: a C string, so that nothing is allocated meanwhile.
+/// `reason` is a C string: this is called every tick, and must not allocate.
 void Run::set_outcome(Outcome outcome, const char* reason) {
   if (result_.outcome == outcome) return;
   result_.outcome = outcome;

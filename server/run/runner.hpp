@@ -1,4 +1,5 @@
-// server/run/runner.hpp: the loop: sense, decide, act, publish, once per period of one robot.
+// server/run/runner.hpp: the control loop of one robot: sense, decide, act and publish once per
+// period.
 #pragma once
 
 #include <atomic>
@@ -26,72 +27,72 @@ struct Submission {
   std::uint64_t ticket = 0;
   algo::Request request{};
 };
-/// Ticket of a reply that nobody asked for: a real robot was disarmed or stopped, and its goals are
-/// cleared.
+/// Ticket of a reply without a request: a real robot was disarmed or stopped, which cleared its
+/// goals.
 constexpr std::uint64_t kGoalsCleared = 0;
 struct Reply {
   std::uint64_t ticket = 0;
   std::optional<std::string> refusal{};  // none: accepted
 };
 
-/// What connects a live run to the io thread: one producer and one consumer each. Run-time
-/// capacities: Boost 1.74's compile-time form leaks what is still queued when it goes.
+/// Queues between a live run and the io thread, each with one producer and one consumer. Capacities
+/// are set at run time: Boost 1.74's compile-time form leaks elements still queued at destruction.
 struct Rings {
   boost::lockfree::spsc_queue<Submission> requests{256};
   boost::lockfree::spsc_queue<Reply> replies{1024};
   boost::lockfree::spsc_queue<FrameRef> stream{64};
-  std::atomic<bool> stop_now{false};  // a Stop after all in the ring, which was full
-  std::function<void()> news{};  // control thread: replies or stream have something; may be empty
+  std::atomic<bool> stop_now{false};  // a Stop that follows all in the full ring
+  std::function<void()> news{};       // control thread: replies or stream have data; may be empty
 };
 
-/// Where a run's frames are kept. Called on the control thread: must not block.
+/// Keeps a run's frames. Called on the control thread: must not block.
 class FrameSink {
  public:
   virtual ~FrameSink() = default;
-  /// False when full just now.
+  /// False when full now.
   virtual bool push(const FrameRef& frame) = 0;
-  /// Frames are left out on purpose until the next push.
+  /// Frames are omitted on purpose until the next push.
   virtual void pause() {}
-  /// What is pushed is not kept just now (disk full): a sentence.
+  /// Why pushed frames are not kept now (disk full), as a sentence.
   virtual std::optional<std::string> failure() const { return std::nullopt; }
 };
 
 struct RunPolicy {
   bool until_outcome = false;  // headless: ends when reached, stuck, collided or out of time
   double time_limit = 0;       // [s] run clock; 0 = none
-  /// What a tick waits at most for a record that cannot keep up; unset: as long as it takes. The
-  /// ticks after it are lost until the record takes one again. A real robot never waits.
+  /// Longest wait of a tick for a record that cannot keep up; unset: no limit. After it, ticks are
+  /// lost until the record accepts one again. A real robot never waits.
   std::optional<std::chrono::milliseconds> record_patience{};
-  double pause_record_after = 0;  // [s] run clock in which nothing happened; 0: never
-  bool require_record = false;    // a tick that is not kept ends the run
+  double pause_record_after = 0;  // [s] run clock without an event; 0: never
+  bool require_record = false;    // a tick that cannot be kept ends the run
 };
 
 struct RunResult {
   algo::Outcome outcome = algo::Outcome::Running;
   std::string reason{};  // one sentence where the outcome does not speak for itself
   algo::Metrics metrics{};
-  std::uint64_t lost_ticks = 0;      // not recorded because the record could not keep up
-  std::uint64_t missed_periods = 0;  // gone by unused because a tick took too long
+  std::uint64_t lost_ticks = 0;      // not recorded: the record could not keep up
+  std::uint64_t missed_periods = 0;  // skipped because a tick took too long
 };
 
-/// Called on the control thread after each tick, with the same immutable frame for all.
+/// Called on the control thread after each tick, with the same immutable frame for all listeners.
 using Listener = std::function<void(const Frame&)>;
 
 struct RunLinks {
   FramePool* pool = nullptr;          // never null
-  Rings* rings = nullptr;             // null: nobody watches or asks
+  Rings* rings = nullptr;             // null: no viewer and no requests
   FrameSink* record = nullptr;        // null: not recorded
   std::vector<Listener> listeners{};  // judges, tests, the command line
-  Pacer* pacer = nullptr;             // null: as fast as it goes; a real robot keeps its own time
-  /// Control thread, each time the outcome changes; with the figures so far.
+  Pacer* pacer = nullptr;             // null: as fast as possible; a real robot keeps its own time
+  /// Called on the control thread at each change of outcome, with the metrics so far.
   std::function<void(algo::Outcome, const algo::Metrics&)> on_outcome{};
 };
 
-/// How long nothing has happened: nobody asked for anything, and the robot neither drives nor
-/// moves nor is held for another reason than before.
+/// Measures how long nothing has happened: no request came, and the robot neither drives nor moves,
+/// and its hold reason is unchanged.
 class Stillness {
  public:
-  /// True when that has lasted longer than `span` [s] at `t`; never when `span` is 0.
+  /// True if nothing has happened for longer than `span` [s] at `t`; never if `span` is 0.
   bool lasts(const algo::Telemetry& t, double span);
 
  private:
@@ -100,35 +101,36 @@ class Stillness {
   algo::Hold hold_{};
 };
 
-/// One run in progress. It keeps no thread and waits for nothing but a real robot's deadline: who
-/// owns it calls advance() when it asked to be called, one thread at a time.
+/// One run in progress. It has no thread and waits only for a real robot's deadline. Its owner
+/// calls advance() at the times that advance() asked for, from one thread at a time.
 class Run {
  public:
   using Clock = Pacer::Clock;
   /// When advance() wants to be called again.
   struct Next {
     enum class When : std::uint8_t {
-      AtOnce,  // time runs as fast as it goes
+      AtOnce,  // time runs as fast as possible
       At,
-      Asked,  // it is paused: at `time`, or sooner when something was asked for
+      Asked,  // paused: at `time`, or sooner when a request comes
       Over,
     };
     When when = When::AtOnce;
-    Clock::time_point time{};  // but for AtOnce and Over
+    Clock::time_point time{};  // unused with AtOnce and Over
   };
 
-  /// `robot`, `pipeline` and what `links` points to must outlive it.
+  /// `robot`, `pipeline` and all that `links` points to must outlive the run.
   Run(algo::Robot& robot,
       algo::Pipeline& pipeline,
       const RunPolicy& policy,
       RunLinks links,
       std::stop_token stop);
 
-  /// `first` requests are applied before the first tick. Once, before all else.
+  /// Applies the requests `first` before the first tick. Call it once, before all else.
   void begin(const std::vector<algo::Request>& first);
-  /// At most one period. Called too early it serves what was asked for and says when again.
+  /// Advances at most one period. If called too early it serves requests and says when to call
+  /// again.
   Next advance();
-  /// Stops the robot. Once, after advance() said Over or instead of it.
+  /// Stops the robot. Call it once, after advance() returned Over or instead of advance().
   RunResult finish();
 
  private:
@@ -152,27 +154,27 @@ class Run {
   bool over() const;
 
   algo::Robot& robot_;
-  algo::Arming* arming_;    // of a real robot, which keeps its own time
-  algo::Editing* editing_;  // null: its obstacles cannot be edited
+  algo::Arming* arming_;    // set for a real robot, which keeps its own time
+  algo::Editing* editing_;  // null: obstacles cannot be edited
   algo::Pipeline& pipeline_;
   RunPolicy policy_;
   RunLinks links_;
   std::stop_token stop_;
   Phase phase_ = Phase::Reset;
   FrameRef frame_{};                         // of the newest tick
-  algo::Recycled<algo::Request> pending_{};  // accepted, for the next tick's record
+  algo::Recycled<algo::Request> pending_{};  // accepted; the next tick records them
   FreshOrders orders_{};
   double now_ = 0;  // [s] run clock, of the newest observation
   algo::MetricsRecorder metrics_{};
   RunResult result_{};
   Stillness stillness_{};
-  std::optional<Clock::time_point> waits_since_{};  // for the record, with the newest tick
-  bool impatient_ = false;  // the record kept a tick waiting too long and has taken none since
+  std::optional<Clock::time_point> waits_since_{};  // newest tick waits for the record
+  bool impatient_ = false;  // a tick waited too long for the record, which has taken none since
   bool broken_ = false;
 };
 
-/// Drives `robot` with `pipeline` until `stop` is requested, the robot ends, or the policy says so.
-/// The robot is stopped on every way out. `first` requests are applied before the first tick.
+/// Drives `robot` with `pipeline` until `stop` is requested, the robot ends the run, or the policy
+/// does. Stops the robot on every way out. Applies the requests `first` before the first tick.
 RunResult run(algo::Robot& robot,
               algo::Pipeline& pipeline,
               const std::vector<algo::Request>& first,

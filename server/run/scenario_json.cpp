@@ -1,4 +1,4 @@
-// server/run/scenario_json.cpp: one reader and one writer per document part.
+// server/run/scenario_json.cpp: one reader and one writer for each part of the document.
 #include "server/run/scenario_json.hpp"
 
 #include <set>
@@ -25,7 +25,7 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string path = fmt::format("obstacles/{}", i);
     json one = list[i];
-    if (one.is_object()) one.erase("path");  // not of the obstacle as such: of this world
+    if (one.is_object()) one.erase("path");  // a path belongs to the world, not to the obstacle
     algo::Obstacle obstacle = obstacle_from_json(one, path);
     if (obstacle.id != 0 && !ids.insert(obstacle.id).second) {
       throw DocumentError(path + "/id", fmt::format("{} is used twice", obstacle.id));

@@ -109,11 +109,11 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
   }
   net::not_on_io_thread("Saving a scenario");
   const std::string text = dump_json(to_json(scenario)) + '\n';
-  parse(text, scenario.name, robots_);  // what could not be loaded again is not kept
+  parse(text, scenario.name, robots_);  // refuse a scenario that could not be loaded again
   const std::lock_guard lock(writing);
   std::error_code error;
   fs::create_directories(own_, error);
-  // Written beside and renamed, so that a full disk cannot leave half a scenario behind.
+  // Write a draft beside it, then rename: a full disk cannot leave half a scenario behind.
   const fs::path target = own_ / (scenario.name + ".json");
   const fs::path draft = own_ / (scenario.name + ".json.new");
   std::ofstream out(draft, std::ios::binary);

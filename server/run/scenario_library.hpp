@@ -1,5 +1,5 @@
-// server/run/scenario_library.hpp: the scenarios a server knows: built in, the user's own, and
-// logs.
+// server/run/scenario_library.hpp: the scenarios a server offers: built-in ones, the user's own,
+// and logs.
 #pragma once
 
 #include <filesystem>
@@ -20,27 +20,28 @@ struct ScenarioEntry {
   bool is_log = false;  // a recorded log to replay instead of a world
 };
 
-/// Reads its folders anew on each call: people edit them. Any thread, but never the io thread.
+/// Reads its folders again on each call, because people edit them. Any thread, but never the io
+/// thread.
 class ScenarioLibrary {
  public:
-  /// `own`: folder for the user's *.json, made on the first save; `logs`: folder of CARMEN *.log
-  /// files. Either may be empty: none.
+  /// `own`: folder for the user's *.json files, created on the first save; `logs`: folder of CARMEN
+  /// *.log files. Either may be empty: none.
   ScenarioLibrary(std::filesystem::path own,
                   std::filesystem::path logs,
                   RobotLibrary robots = RobotLibrary());
 
-  /// Those that its scenarios may name.
+  /// The robots that the scenarios may name.
   const RobotLibrary& robots() const { return robots_; }
 
   std::vector<ScenarioEntry> list() const;
-  /// Throws LibraryError, or DocumentError when a file does not say what it must.
+  /// Throws LibraryError, or DocumentError when the file is invalid.
   sim::Scenario load(const std::string& name) const;
-  /// Writes the user's own; throws LibraryError on a built-in name or an unwritable folder.
+  /// Writes to the user's folder. Throws LibraryError on a built-in name or an unwritable folder.
   void save(const sim::Scenario& scenario) const;
   void remove(const std::string& name) const;
 
-  /// A scenario from a file of its own, or a log when it ends in .log (command line only: a name
-  /// from the network is never used as a path).
+  /// Reads a scenario file, or a log if `path` ends in .log. Command line only: a name from the
+  /// network is never used as a path.
   static sim::Scenario from_file(const std::filesystem::path& path,
                                  const RobotLibrary& robots = RobotLibrary());
 

@@ -62,7 +62,7 @@ algo::Pose2 mount_from_json(const JsonReader& in) {
           algo::wrap_angle(in.number_or("heading", 0, {-100, 100}))};
 }
 
-/// Throws DocumentError at `path` for what the model does not take.
+/// Throws DocumentError at `path` for settings that the model refuses.
 template <typename Config, std::size_t N>
 Config config_from_json(const JsonReader& in,
                         const std::string& path,
@@ -82,7 +82,7 @@ json to_json(const Infrared& scanner) {
   return out;
 }
 
-/// `false`: none; an object: one with those errors; absent: as the robot has it.
+/// `false`: no gyro; an object: a gyro with those errors; absent: the robot's own.
 void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
   if (!in.has("gyro")) return;
   if (in.raw()["gyro"].is_boolean()) {
@@ -93,7 +93,7 @@ void read_gyro(const JsonReader& in, sim::Sensors& sensors) {
   sensors.has_gyro = true;
 }
 
-/// Besides sensor, channel and unit every field is a setting: a number or a list of them.
+/// Every field except sensor, channel and unit is a setting: a number or a list of numbers.
 sim::SensorConfig sensor_from_json(const JsonReader& in, const std::string& path) {
   sim::SensorConfig config;
   config.sensor = in.text("sensor", algo::Name::kLongest);

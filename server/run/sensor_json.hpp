@@ -9,10 +9,11 @@
 namespace server {
 
 /// `lasers`, `sonar`, `infrared`, `sensors`, `gyro`, `bumpers` and `encoders` where the document
-/// `in` has them; the others stay. Throws DocumentError.
+/// `in` has them; the others keep their values. Throws DocumentError.
 void read_sensors(const JsonReader& in, sim::Sensors& sensors);
 
-/// The same fields into `out`; all but the lasers only where they are not as usual.
+/// Writes the same fields into `out`: the lasers always, the others only where they differ from the
+/// default.
 void write_sensors(const sim::Sensors& s, nlohmann::json& out);
 bool same_sensors(const sim::Sensors& a, const sim::Sensors& b);
 

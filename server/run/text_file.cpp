@@ -1,4 +1,4 @@
-// server/run/text_file.cpp: streams that are looked at until their end.
+// server/run/text_file.cpp: checks each stream for errors up to its end.
 #include "server/run/text_file.hpp"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// server/run/text_file.hpp: whole files, whose errors are sentences.
+// server/run/text_file.hpp: reads and writes whole files; errors are sentences.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 namespace server {
 
-/// All of these throw std::runtime_error with the path and what cannot be done.
+/// All of these throw std::runtime_error with the path and the action that failed.
 std::string read_text(const std::filesystem::path& file);
 void write_text(const std::filesystem::path& file, std::string_view text);
-/// Makes the folder, and those it lies in, where they are not there.
+/// Creates the folder and its missing parents.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace server
