@@ -1,4 +1,4 @@
-// server/record/disk_space.hpp: how much room a disk has.
+// server/record/disk_space.hpp: free and total space of a disk.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ struct DiskSpace {
   std::uint64_t free = UINT64_MAX;  // [bytes] for this user
   std::uint64_t total = 0;          // [bytes]
 
-  /// [bytes] the record leaves free, for its own log and for everybody else.
+  /// [bytes] the record leaves free for its own log and for other programs.
   std::uint64_t reserve() const { return std::min<std::uint64_t>(total / 8, 64u << 20); }
 };
 
-/// Of the disk that holds `file`. What cannot be found out counts as plenty.
+/// The space of the disk that holds `file`. If it cannot be read, it counts as plenty.
 inline DiskSpace disk_space(const std::string& file) {
   std::error_code error;
   const auto folder = std::filesystem::weakly_canonical(file, error).parent_path();

@@ -1,4 +1,4 @@
-// server/record/encoded_frame.cpp: the first who asks encodes.
+// server/record/encoded_frame.cpp: the first reader encodes.
 #include "server/record/encoded_frame.hpp"
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// server/record/encoded_frame.hpp: a frame in its wire form, encoded once for all who want it.
+// server/record/encoded_frame.hpp: a frame in its wire form, encoded once for all readers.
 #pragma once
 
 #include <atomic>
@@ -14,8 +14,8 @@ namespace server {
 
 class EncodedFrame final : public Frame, public RecordedFrame {
  public:
-  /// The wire form. The first caller encodes, on its own thread; others wait the few microseconds
-  /// and share the result. Never called by the control thread of a live robot.
+  /// The wire form. The first caller encodes on its own thread. Others wait a few microseconds and
+  /// share the result. Never called by the control thread of a live robot.
   std::span<const std::byte> bytes() const override;
   std::span<const db::Window> windows() const override;
   std::uint64_t tick() const override { return telemetry.tick; }
@@ -33,7 +33,7 @@ class EncodedFrame final : public Frame, public RecordedFrame {
   mutable std::span<const std::byte> bytes_{};
 };
 
-/// The same frame. Throws std::logic_error when its pool was made of another kind.
+/// The same frame. Throws std::logic_error if its pool makes another kind of frame.
 EncodedFrame& encoded(Frame& frame);
 inline const EncodedFrame& encoded(const Frame& frame) {
   return encoded(const_cast<Frame&>(frame));

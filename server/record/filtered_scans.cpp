@@ -30,7 +30,7 @@ void FilteredScans::take(std::span<const std::byte> frame) {
   next_ = t_.tick + 1;
 }
 
-/// Parameters and echoes are remembered from tick to tick.
+/// Reads every tick before `from`: parameters and echoes carry over from tick to tick.
 void FilteredScans::lead_up_to(db::RunReader& reader, std::uint64_t from) {
   if (from < next_) {
     parameters_ = initial_;

@@ -1,4 +1,4 @@
-// server/record/filtered_scans.hpp: the scans that the controller of a stored run saw.
+// server/record/filtered_scans.hpp: recomputes the scans that the controller of a stored run saw.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +14,23 @@
 
 namespace server {
 
-/// They are in neither frame nor record: algo's own filter and merge make them anew from the stored
-/// frames, with the parameters in force at each tick. Of a run whose first ticks are gone, so are
-/// the parameters that were set in them.
+/// Neither frames nor record hold these scans. algo's own filter and merge recompute them from the
+/// stored frames, with the parameters in force at each tick. If a run's first ticks are gone, the
+/// parameters set in them are lost too.
 class FilteredScans {
  public:
-  /// Throws std::runtime_error when the run used a filter or parameter that this program has not.
+  /// Throws std::runtime_error if this program lacks a filter or parameter of the run.
   explicit FilteredScans(const db::RunRow& row);
 
-  /// Whether it can go on with tick `from` of `row` without reading the run from its start.
+  /// True if reading tick `from` of `row` need not start from the run's first tick.
   bool stands_before(const db::RunRow& row, std::uint64_t from) const {
     return row.id == run_ && row.what.started == started_ && next_ <= from;
   }
 
-  /// A message of FrameEncoder::encode(scan) for each frame of up to `limit` from tick `from` on;
-  /// empty where the frame brought no scan that looks ahead. Returns the tick to go on with. Going
-  /// on from there costs nothing more; going back reads the run from its start again.
+  /// Calls `visit` for up to `limit` frames from tick `from` on, with the message of
+  /// FrameEncoder::encode(scan); empty if the frame brought no scan that looks ahead. Returns the
+  /// tick to continue with. Continuing there costs nothing extra; going back reads the run from its
+  /// start.
   using Visit = std::function<void(std::uint64_t tick, std::span<const std::byte> scan)>;
   std::optional<std::uint64_t> read(db::RunReader& reader,
                                     std::uint64_t from,
@@ -41,11 +42,11 @@ class FilteredScans {
   void take(std::span<const std::byte> frame);
 
   db::RunId run_ = 0;
-  std::string started_{};  // tells it from a run of that number in another file
+  std::string started_{};  // distinguishes it from a run of the same number in another file
   algo::Parameters initial_{};
   algo::Parameters parameters_{};
   algo::Sensing sensing_;
-  std::uint64_t next_ = 0;  // tick before which everything was taken
+  std::uint64_t next_ = 0;  // all ticks before it were taken
   bool fresh_ = false;      // the last frame brought a scan
   algo::Telemetry t_{};
   algo::LaserScan scan_{};

@@ -18,20 +18,21 @@ struct LaserScan;
 
 namespace server {
 
-/// Bytes that are not a frame, with what is wrong.
+/// The bytes are not a valid frame; what() says why.
 class WireError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps its buffers, so that encoding the next frame allocates nothing once they have grown.
+/// Keeps its buffers: once they have grown, encoding a frame allocates nothing.
 class FrameEncoder {
  public:
   /// The frame's bytes, valid until the next call.
   std::span<const std::byte> encode(const algo::Telemetry& t);
-  /// A scan on its own, as a message whose root is LaserScan; valid until the next call.
+  /// A single scan as a message whose root is LaserScan; valid until the next call.
   std::span<const std::byte> encode(const algo::LaserScan& scan);
-  /// Where the last encoded frame holds ranges, ascending: the record codes them as differences.
+  /// Places of the ranges in the last encoded frame, ascending: the record codes them as
+  /// differences.
   std::span<const db::Window> windows() const { return windows_; }
 
  private:
@@ -43,10 +44,10 @@ class FrameEncoder {
   std::vector<db::Window> windows_{};
 };
 
-/// Reads back what a pipeline needs to repeat a tick (observation, requests) and what it commanded
-/// (command, hold, limit, mission, behaviour). What only people look at (truth, what moved,
-/// clearance, goal, words) is read back at the frame's float precision; layers and measures, which
-/// only they read, not at all. Throws WireError.
+/// Reads back the inputs that a pipeline needs to repeat a tick (observation, requests) and its
+/// result (command, hold, limit, mission, behaviour). Fields for viewers only (truth, moved things,
+/// clearance, goal, words) come back at the frame's float precision. Layers and measures, also for
+/// viewers only, are not read. Throws WireError.
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t);
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/record/frame_decoder.cpp: what may have come from anywhere, read part by part.
+// server/record/frame_decoder.cpp: reads an untrusted frame part by part.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -31,8 +31,8 @@ algo::Twist2 from_wire(const fb::Twist2& t) {
   return {t.v(), t.omega()};
 }
 
-/// The library's verifier looks at the length of a vector of structs or doubles, not at where they
-/// lie.
+/// The library's verifier checks the length of a vector of structs or doubles, but not its
+/// alignment.
 template <typename Element>
 void check_alignment(const flatbuffers::Vector<Element>& list) {
   using T = std::remove_pointer_t<Element>;  // itself, or the struct
@@ -225,7 +225,7 @@ algo::Command read_command(const fb::Frame& f) {
   return command;
 }
 
-/// What a controller decided, without what it shows.
+/// Reads the controller's decision, without layers and measures.
 void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output.clear();
   t.output.waits = f.decision()->waits();
@@ -243,7 +243,7 @@ void read_output(const fb::Frame& f, algo::Telemetry& t) {
 }  // namespace
 
 void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
-  // FlatBuffers reads doubles in place; a frame from the middle of a message may lie anywhere.
+  // FlatBuffers reads doubles in place, but a frame inside a message may have any alignment.
   constexpr std::size_t kAlignment = alignof(double);
   if (reinterpret_cast<std::uintptr_t>(bytes.data()) % kAlignment != 0) {
     const std::vector<std::byte> aligned(bytes.begin(), bytes.end());

@@ -139,7 +139,7 @@ Offset<fb::LaserScan> write_scan(Builder& b, const algo::LaserScan& scan) {
 template <typename Wire, typename List>
 Offset<flatbuffers::Vector<const Wire*>> write_structs(Builder& b, const List& list) {
   if (list.empty()) return 0;
-  // Not CreateUninitializedVectorOfStructs(), which takes a struct's size for its alignment.
+  // Not CreateUninitializedVectorOfStructs(), which aligns a struct by its size.
   return b.CreateVectorOfStructs<Wire>(list.size(),
                                        [&](std::size_t i, Wire* out) { *out = to_wire(list[i]); });
 }
@@ -186,8 +186,8 @@ struct FrameWriter {
 
 // Structs live inside the table: the locals only have to outlive their add_ call.
 
-/// All that is aligned to eight bytes, together: between them and the rest no byte is lost. Of the
-/// stamps only those that are not the frame's own.
+/// Adds all fields aligned to eight bytes together, so that padding wastes no byte. Adds a stamp
+/// only if it differs from the frame's.
 void FrameWriter::doubles() {
   const algo::Observation& o = t.observation;
   const fb::Clock clock(t.tick, o.stamp);
@@ -244,8 +244,8 @@ void FrameWriter::decision() {
 
 }  // namespace
 
-/// FlatBuffers writes from the leaves to the root and from the end of the buffer to its front. What
-/// varies most from frame to frame comes first, so that all else keeps its place in the frame: the
+/// FlatBuffers writes from the leaves to the root and from the end of the buffer to its front. The
+/// parts whose size varies most come first, so that all others keep their place in the frame: the
 /// record compares frames byte by byte.
 std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   Builder& b = builder_;
@@ -253,7 +253,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const algo::Observation& o = t.observation;
   const auto news = layers_.write_news(b, t);
   const auto shown = layers_.write_shown(b, t);
-  b.Align(sizeof(double));  // so that their length moves nothing else
+  b.Align(sizeof(double));  // so that the size of these parts moves nothing else
   scans_.clear();
   for (const algo::LaserScan& scan : o.scans) scans_.push_back(write_scan(b, scan));
   const auto scans = scans_.empty() ? 0 : b.CreateVector(scans_);
@@ -273,7 +273,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   FrameWriter writer{fb::FrameBuilder(b), t};
   fb::FrameBuilder& frame = writer.frame;
   writer.doubles();
-  // Offset 0 is that of what there is not; no field comes of it.
+  // Offset 0 means absent: no field is written.
   frame.add_behaviour(behaviour);
   frame.add_news(news);
   frame.add_scans(scans);
@@ -318,7 +318,7 @@ void FrameEncoder::find_windows() {
     const auto& ranges = *scan->ranges();
     windows_.push_back({static_cast<std::uint32_t>(ranges.Data() - bytes), ranges.size()});
   }
-  std::ranges::reverse(windows_);  // a frame is written from its end
+  std::ranges::reverse(windows_);  // a frame is written back to front
 }
 
 }  // namespace server

@@ -12,7 +12,7 @@
 namespace server {
 namespace {
 
-/// The hash goes on over `bytes`, eight at a time: one at a time took 15 % of a kinematic run.
+/// Continues the hash over `bytes`, eight at a time: one at a time took 15 % of a kinematic run.
 std::uint64_t hash_on(std::uint64_t hash, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     std::uint64_t word = 0;
@@ -33,7 +33,7 @@ HeadlessResult run_headless(const RunSpec& spec,
                             const std::stop_token& stop) {
   HeadlessResult result;
   const bool encodes = options.record != nullptr || options.hash_frames;
-  constexpr std::size_t kNowAndNext = 2;  // frames in use where nobody keeps one
+  constexpr std::size_t kNowAndNext = 2;  // frames in use when none is kept
   const std::shared_ptr<FramePool> pool =
       encodes ? FramePool::growing<EncodedFrame>(
                     kPoolFrames, kPoolFrames, std::make_shared<FrameRoom>(0))
@@ -41,7 +41,7 @@ HeadlessResult run_headless(const RunSpec& spec,
   std::unique_ptr<RecordSink> sink;
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
   algo::PipelineConfig config = pipeline_config(spec);
-  config.by_hand = false;  // nobody is there
+  config.by_hand = false;  // no operator
   algo::Pipeline pipeline(config, robot.spec());
   Pacer pacer({.speed = options.pace});
   std::stop_source over;

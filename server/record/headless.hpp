@@ -1,5 +1,5 @@
-// server/record/headless.hpp: one run from start to outcome with nobody watching: command line,
-// REST.
+// server/record/headless.hpp: one run from start to outcome without viewers, for the command line
+// and REST.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +16,19 @@
 
 namespace server {
 
-/// The end of a run in the terms of the one who watches it.
+/// The end of a run, as judged by the watch function.
 struct Ending {
   algo::Outcome outcome = algo::Outcome::Running;
   std::string reason{};  // one sentence where the outcome does not speak for itself
 };
 
 struct HeadlessOptions {
-  double pace = 0;                       // times real time; 0 = as fast as it goes
-  bool hash_frames = false;              // needs every frame encoded: the record does that anyway
-  std::shared_ptr<RunChannel> record{};  // null: not kept
-  std::function<bool()> cancelled{};     // asked once at the end: the run is then `cancelled`
+  double pace = 0;                       // times real time; 0 = as fast as possible
+  bool hash_frames = false;              // needs every frame encoded, which the record does anyway
+  std::shared_ptr<RunChannel> record{};  // null: not recorded
+  std::function<bool()> cancelled{};     // asked once at the end; true marks the run `cancelled`
   std::function<void(double stamp, std::uint64_t ticks)> progress{};  // about ten times a second
-  /// Sees each tick, on the thread of the run. The ending that it gives ends the run.
+  /// Sees each tick on the run's thread. If it returns an ending, the run ends.
   std::function<std::optional<Ending>(const algo::Telemetry& t)> watch{};
   bool until_watch = false;  // neither the loop's own outcome nor the time limit ends the run
 };
@@ -38,9 +38,9 @@ struct HeadlessResult {
   std::uint64_t telemetry_hash = 0;  // over the bytes of all frames, in order
 };
 
-/// Runs `robot`, which make_robot(spec) made, until reached, stuck, collided, out of time, the end
-/// of the log, an ending that the watch gives, or `stop`, which interrupts it. The record channel
-/// is closed with the result. Throws nothing of its own: what breaks a run is in the result.
+/// Runs `robot`, made by make_robot(spec), until it has reached its goal, is stuck, has collided or
+/// is out of time, the log ends, the watch returns an ending, or `stop` interrupts it. Closes the
+/// record channel with the result. Throws nothing of its own: the result says why a run broke.
 HeadlessResult run_headless(const RunSpec& spec,
                             algo::Robot& robot,
                             const HeadlessOptions& options,

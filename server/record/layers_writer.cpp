@@ -1,4 +1,5 @@
-// server/record/layers_writer.cpp: values in each frame, the words for them now and then.
+// server/record/layers_writer.cpp: writes values into each frame, and their names only now and
+// then.
 #include "server/record/layers_writer.hpp"
 
 #include <algorithm>
@@ -14,12 +15,12 @@ namespace {
 
 namespace fb = tautline::wire;
 
-// Of a layer; a multiple of the numbers of any position, arrow or circle.
+// Most values of a layer; a multiple of the count per position, per arrow and per circle.
 constexpr std::size_t kMostValues = 65532;
 constexpr float kMostNarrow = 32767;
 constexpr std::uint32_t kNoNumber = 0x8000;  // -32768
-// A float this large has no fraction: whatever smaller is added to it is rounded to the next whole
-// number, the even one of two equally near, and stands in its last bits.
+// A float this large has no fraction. A smaller number added to it is rounded to the nearest whole
+// number, ties to even, and stands in its last bits.
 constexpr float kBase = 0x1.8p23F;
 
 template <typename Visit>
@@ -33,8 +34,7 @@ std::size_t count_of(const algo::Layer& layer) {
   return std::min(layer.values.size(), kMostValues);
 }
 
-/// Writes `count` values as 16 bits each.
-/// @return whether each of them fits
+/// Writes `count` values as 16 bits each. @return true if every value fits
 TAUTLINE_WIDE bool write_narrow(const float* values,
                                 std::size_t count,
                                 std::int16_t* __restrict out) {
@@ -44,7 +44,8 @@ TAUTLINE_WIDE bool write_narrow(const float* values,
     too_large |= std::abs(steps) > kMostNarrow ? 1U : 0U;
     const std::uint32_t whole =
         std::bit_cast<std::uint32_t>(steps + kBase) - std::bit_cast<std::uint32_t>(kBase);
-    out[i] = static_cast<std::int16_t>(steps == steps ? whole : kNoNumber);  // or not a number
+    out[i] =
+        static_cast<std::int16_t>(steps == steps ? whole : kNoNumber);  // kNoNumber if not a number
   }
   return too_large == 0;
 }
@@ -131,7 +132,7 @@ LayersWriter::Shown LayersWriter::write_shown(Builder& b, const algo::Telemetry&
   out.wide = b.CreateUninitializedVector(size, &wide);
   std::ranges::transform(scratch_, wide, rounded);
   each_layer(t, [&](const algo::Layer& layer) {
-    *wide *= kSteps;  // a number of values
+    *wide *= kSteps;  // a count of values, not metres
     wide += 1 + count_of(layer);
   });
   return out;

@@ -1,5 +1,5 @@
-// server/record/layers_writer.hpp: what is shown of a tick: its news, and the values of its layers
-// and measures.
+// server/record/layers_writer.hpp: writes the parts of a tick that viewers show: news, and the
+// values of layers and measures.
 #pragma once
 
 #include <cmath>
@@ -20,21 +20,21 @@ struct News;
 
 namespace server {
 
-/// Of one metre. Nobody sees less than a millimetre, and the record would keep it at twice the
-/// size.
+/// Steps in one metre. Nobody sees less than a millimetre, and finer steps would double the
+/// record's size.
 constexpr float kSteps = 1024;
 
-/// To the next step, the even one of two equally near, as nearbyint() gives it but many at once.
+/// Rounds to the nearest step, ties to even, as nearbyint() does, but vectorises.
 inline float rounded(float value) {
   constexpr float kWhole = 0x1p23F;  // from here on a float has no fraction
   const float steps = value * kSteps;
-  const float push = std::copysign(kWhole, steps);  // leaves the fraction no room
+  const float push = std::copysign(kWhole, steps);  // leaves no bits for the fraction
   const float whole = (steps + push) - push;
   return std::abs(steps) < kWhole ? whole / kSteps : value;
 }
 
-/// Layers of the pipeline come first, then the controller's, in every list. Keeps its buffers. What
-/// comes out does not depend on what was written before.
+/// Every list has the pipeline's layers first, then the controller's. Keeps its buffers. The output
+/// does not depend on earlier calls.
 class LayersWriter {
  public:
   template <typename T>
@@ -45,11 +45,11 @@ class LayersWriter {
 
   struct Shown {
     Offset<flatbuffers::Vector<std::int16_t>> narrow{};
-    Offset<flatbuffers::Vector<float>> wide{};  // where a value does not fit into the other
+    Offset<flatbuffers::Vector<float>> wide{};  // used if a value does not fit into `narrow`
     Tables<tautline::wire::LayerMore> more{};
   };
 
-  /// None when nothing is new.
+  /// Offset 0 when nothing is new.
   Offset<tautline::wire::News> write_news(Builder& b, const algo::Telemetry& t);
   Shown write_shown(Builder& b, const algo::Telemetry& t);
 
@@ -59,7 +59,7 @@ class LayersWriter {
 
   std::vector<Offset<tautline::wire::LayerInfo>> infos_{};
   std::vector<Offset<tautline::wire::LayerMore>> more_{};
-  std::string lines_{};  // workspace, as the next two
+  std::string lines_{};  // workspace, like the next two
   std::vector<float> scratch_{};
   std::vector<std::int16_t> narrow_{};
 };

@@ -1,4 +1,4 @@
-// server/record/record_sink.hpp: a record channel as the place where a run's frames go.
+// server/record/record_sink.hpp: sends a run's frames to a record channel.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@
 
 namespace server {
 
-/// More frames than all rings of a run can hold between them, so that the pool cannot run dry
-/// before a ring is full and says so.
+/// More frames than all rings of a run hold together, so that a ring is full, and reports it,
+/// before the pool is empty.
 constexpr std::size_t kRecordRing = 512;
 constexpr std::size_t kPoolFrames = kRecordRing + 64 + 128;
 
@@ -25,7 +25,7 @@ class RecordSink final : public FrameSink {
     EncodedFrame& recorded = encoded(*frame);
     intrusive_ptr_add_ref(&recorded);
     FrameHandle handle(&recorded);
-    return channel_->push(handle);  // a handle that was not taken gives its reference back
+    return channel_->push(handle);  // a handle that was not taken drops its reference
   }
   void pause() override { channel_->pause(); }
   std::optional<std::string> failure() const override {

@@ -11,26 +11,27 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// How long the database thread sleeps when nobody rings: short against the commit interval, and
-// long enough to cost nothing. A ring that fills faster rings at half.
+// The database thread's sleep without a ring of the bell: short against the commit interval, and
+// long enough to cost nothing. A frame ring that fills faster rings the bell when half full.
 constexpr milliseconds kNap{20};
-// What a stopping recorder waits for a store that is locked.
+// Longest wait of a stopping recorder for a locked store.
 constexpr milliseconds kLastPatience{2000};
-// Runs that began and ended while the store failed, and wait for it; older ones are then let go.
+// Most runs that began and ended while the store failed and still wait for it. Beyond that the
+// oldest are dropped.
 constexpr std::size_t kMostWaiting = 64;
-// [bytes] of frames, not packed yet, that never make a commit due before its time.
+// [bytes] of unpacked frames that never make a commit due early.
 constexpr std::uint64_t kLeastUncommitted = std::uint64_t{1} << 20;
-// What one commit interval may spend on jobs that waited for the store.
+// Time in one commit interval for jobs that waited for the store.
 constexpr milliseconds kLaterTime{100};
 
-/// [bytes] that may be kept, as far as anybody knows at the start.
+/// [bytes] that may be kept, as far as known at the start.
 std::uint64_t most_kept(const std::string& path, const RecorderOptions& options) {
   const std::uint64_t limit = options.retention_bytes > 0 ? options.retention_bytes : UINT64_MAX;
   const std::uint64_t disk = options.disk(path).total;
   return disk > 0 ? std::min(limit, disk) : limit;
 }
 
-/// The write-ahead log is to be a small part of that.
+/// Keeps the write-ahead log a small part of `most`.
 db::StoreOptions store_options(std::uint64_t most,
                                const RecorderOptions& options,
                                const std::shared_ptr<db::RunNumbers>& numbers) {
@@ -141,7 +142,7 @@ bool Recorder::flush(milliseconds patience) {
   }
 }
 
-/// Runs `action`; a failing database costs what was not committed, not the thread.
+/// Runs `action`. If the database fails, uncommitted data is lost, but the thread goes on.
 template <typename Action>
 void Recorder::guarded(const Action& action) {
   try {
@@ -160,7 +161,7 @@ void Recorder::work() {
       const std::lock_guard lock(mutex_);
       last = stopping_;
     }
-    // Nothing that goes wrong here may end the program: a robot may be on its way.
+    // No error here may end the program: a robot may be driving.
     try {
       work_once(last);
     } catch (const std::exception& error) {
@@ -198,16 +199,16 @@ void Recorder::run_jobs() {
       job(store_);
       store_.commit();
     });
-    // ask() passes the error on to its caller, and yet it may have cost a recording.
+    // ask() passes the error to its caller, but the error may also have ended a recording.
     if (const auto failure = store_.take_failure()) note_trouble(*failure);
-    // Many jobs must not make the frames that came meanwhile wait for their commit.
+    // Many jobs must not delay the commit of frames that came meanwhile.
     take_frames();
     if (Clock::now() >= commit_due_) commit();
   }
 }
 
-/// Many are committed together, and a slice at a time: ten thousand cancelled runs must not keep
-/// the frames waiting for as many commits. What fails is done again, all of the slice.
+/// Commits jobs together, one slice at a time: ten thousand cancelled runs must not delay the
+/// frames by as many commits. If a slice fails, all of it is done again.
 void Recorder::run_later() {
   const auto until = Clock::now() + kLaterTime;
   std::size_t done = 0;
@@ -221,7 +222,7 @@ void Recorder::run_later() {
   if (!ailment_) later_.erase(later_.begin(), later_.begin() + static_cast<std::ptrdiff_t>(done));
 }
 
-/// Live runs that began meanwhile: their rows are written, and at once.
+/// Writes the rows of live runs that began meanwhile, at once.
 void Recorder::take_arrivals() {
   std::vector<std::shared_ptr<RunChannel>> arrivals;
   {
@@ -246,26 +247,27 @@ void Recorder::take_frames(std::size_t most) {
   for (const auto& channel : channels_) take_frames(*channel, most);
 }
 
-/// A run to be kept whole that has ended: what its ring still holds is stored, room or not, so that
-/// it ends and can be deleted.
+/// True for a run to be kept whole that has ended. The rest of its ring is stored even without
+/// room, so that the run ends and can be deleted.
 bool Recorder::last_of_whole(const RunChannel& channel) const {
   return channel.keep_ == Keep::Whole && options_.wait_for_room &&
          channel.closed_.load(std::memory_order_acquire);
 }
 
-/// Whether the frames of a run stay in its ring for now.
+/// True if the frames of a run stay in its ring for now.
 bool Recorder::waits(const RunChannel& channel) const {
   if (ailment_) return ailment_->trouble == db::Trouble::Busy;
   return full_ && channel.keep_ == Keep::Whole && options_.wait_for_room && !last_of_whole(channel);
 }
 
 void Recorder::take_frames(RunChannel& channel, std::size_t most) {
-  // Only what is here now, so that one fast run does not keep the others and the commit waiting.
+  // Takes only frames already in the ring, so that one fast run does not delay the others and the
+  // commit.
   std::size_t left = std::min(channel.ring_.read_available(), most);
   if (left == 0 || waits(channel)) return;
   const bool stored = !full_ || last_of_whole(channel);
   if (!ailment_ && stored && !channel.broken_) guarded([&] { store_.begin(); });
-  if (waits(channel)) return;  // locked: nothing has left the ring
+  if (waits(channel)) return;  // locked: frames stay in the ring
   for (; left > 0; --left) {
     RunChannel::Pushed pushed{};
     if (!channel.ring_.pop(pushed)) return;
@@ -295,7 +297,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
     } catch (const db::DatabaseError&) {
       throw;
     } catch (const std::exception& error) {
-      // A frame that cannot be stored ends its own run and no other.
+      // A frame that cannot be stored ends the record of its own run only.
       channel.broken_ = true;
       channel.fail(error.what());
       report(error.what());
@@ -306,8 +308,7 @@ void Recorder::keep(RunChannel& channel, const RecordedFrame& frame, bool after_
   });
 }
 
-/// Goes on with a run that the store does not record: in its row, or in a new one where that is
-/// gone.
+/// Resumes a run that the store does not record now, in its row or, if that is gone, in a new one.
 void Recorder::resume(RunChannel& channel) {
   if (channel.broken_ || store_.recording(channel.run())) return;
   channel.unheard_ = false;
@@ -319,7 +320,7 @@ void Recorder::resume(RunChannel& channel) {
   channel.run_.store(store_.begin_run(channel.what_, channel.run()), std::memory_order_release);
 }
 
-/// Writes a run's end, after what is missing there. False when the store does not take it.
+/// Writes the gap before a run's end, then the end. False if the store does not take it.
 bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t ticks) {
   bool ended = channel.broken_;
   guarded([&] {
@@ -338,8 +339,8 @@ bool Recorder::end(RunChannel& channel, const db::RunEnd& end, std::uint64_t tic
 void Recorder::end_closed() {
   for (std::size_t i = 0; i < channels_.size();) {
     RunChannel& channel = *channels_[i];
-    // In this order: a run that closed and then let go is seen to have closed, and what was pushed
-    // before close() is seen in the ring.
+    // Read in this order: a run that closed and then dropped its handle is seen as closed, and
+    // frames pushed before close() are seen in the ring.
     const bool held = channels_[i].use_count() > 1;
     const bool closed = channel.closed_.load(std::memory_order_acquire);
     const auto take_rest = [&] {
@@ -356,7 +357,7 @@ void Recorder::end_closed() {
     }
     channels_.erase(channels_.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  // Nothing of these is in the store, so nothing there stays without its end.
+  // The store has nothing of these runs, so none is left in it without an end.
   const auto over = [](const auto& channel) {
     return channel->unheard_ && channel->closed_.load(std::memory_order_acquire);
   };
@@ -383,7 +384,7 @@ void Recorder::stop_all() {
     return ailment_ ? ailment_->trouble != db::Trouble::Busy : later_.empty();
   };
   while (!end_all() && Clock::now() < until) std::this_thread::sleep_for(kNap);
-  full_.reset();  // what is still in a ring is all there will be
+  full_.reset();  // no frames come after those still in the rings
   for (const auto& channel : channels_) {
     take_frames(*channel);
     end(*channel,

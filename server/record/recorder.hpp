@@ -1,5 +1,5 @@
-// server/record/recorder.hpp: the database thread: takes frames from control threads, writes them
-// once a second, and does whatever else needs the writing connection.
+// server/record/recorder.hpp: the database thread: takes frames from control threads, commits them
+// once a second, and does all other work on the writing connection.
 #pragma once
 
 #include <atomic>
@@ -30,14 +30,14 @@ namespace server {
 
 namespace detail {
 
-/// What a job returned or threw, on its way to another thread. A failure travels as its sentence:
-/// an exception object shared by two threads is more than this needs.
+/// The result or the error of a job, passed to another thread. An error is passed as its sentence,
+/// so that two threads need not share an exception object.
 template <typename Result>
 struct Answer {
   using Value = std::conditional_t<std::is_void_v<Result>, std::monostate, Result>;
   std::optional<Value> value{};
   std::string problem{};
-  std::optional<db::Trouble> trouble{};  // the database's
+  std::optional<db::Trouble> trouble{};  // set if the database failed
 
   Result take() {
     if (!value && trouble) throw db::DatabaseError(problem, *trouble);
@@ -72,42 +72,42 @@ Answer<Result> answer_of(F& job, db::RunStore& store) {
 
 struct RecorderOptions {
   db::StoreOptions store{};
-  std::uint64_t retention_bytes = std::uint64_t{2} << 30;  // 0: what the disk has
-  /// Delete the oldest finished runs when there is no room. Else finished runs are never deleted.
+  std::uint64_t retention_bytes = std::uint64_t{2} << 30;  // 0: as much as the disk holds
+  /// Deletes the oldest finished runs when there is no room. Otherwise finished runs are never
+  /// deleted.
   bool evict_oldest = false;
-  /// Without room a run to be kept whole waits until somebody makes some; else it goes on with a
+  /// Without room, a run to be kept whole waits until room is made. Otherwise it goes on with a
   /// gap.
   bool wait_for_room = true;
-  double live_span = 3600;  // [s] run clock that a live run keeps
-  double least_span = 60;   // [s] the least it keeps when there is no room for that
-  /// A little under the second that may be lost, because packing and a slow disk come on top.
+  double live_span = 3600;  // [s] run clock; the span kept of a live run
+  double least_span = 60;   // [s] the least span kept of it when there is no room
+  /// A little under the one second that may be lost: packing and a slow disk add to it.
   std::chrono::milliseconds commit_interval{900};
   std::chrono::milliseconds retry_interval{1000};  // how often a failed store is tried again
   std::size_t ring_frames = 1024;
   std::function<DiskSpace(const std::string&)> disk = disk_space;
-  /// Told in a sentence what was deleted for room and what went wrong. Database thread.
+  /// Gets a sentence about each deletion for room and each fault. Called on the database thread.
   std::function<void(const std::string&)> report{};
 };
 
-/// Owns the database thread and the writing connection; lives from the server's start to its end.
+/// Owns the database thread and the writing connection. Lives from the server's start to its end.
 ///
-/// Threads: all of it may be called from any thread but the database thread itself; open(), ask()
-/// and flush() wait for it. The control thread's steady state touches its RunChannel only. Jobs
+/// Threads: any thread except the database thread may call any member. open(), ask() and flush()
+/// wait for the database thread. In steady state a control thread touches only its RunChannel. Jobs
 /// and reports run on the database thread.
 ///
-/// All channels share one transaction, committed once per commit_interval, when a run opens or
-/// ends, and after a job. A store that is locked keeps the frames waiting in their rings. One that
-/// fails costs what was not committed; from then on frames are dropped, the store is tried again
-/// once per retry_interval, and the runs go on where it is well, in a new file when the old one was
-/// deleted or, being damaged or of an older program, had to be set aside.
+/// All channels share one transaction. It is committed once per commit_interval, when a run opens
+/// or ends, and after a job. While the store is locked, frames wait in their rings. If the store
+/// fails, uncommitted data is lost and further frames are dropped. The store is then tried again
+/// once per retry_interval, and the runs resume when it works. They resume in a new file if the old
+/// one was deleted, or was set aside because it was damaged or from an older program.
 class Recorder {
  public:
-  /// Opens the store, in which unfinished runs become interrupted. Throws db::StoreError when it
-  /// may not be written or is no run store. A store that is damaged, or that an older
-  /// program wrote, is set aside for a new one; one that is locked, or on a full disk, is opened
-  /// later.
+  /// Opens the store and marks its unfinished runs interrupted. Throws db::StoreError if the file
+  /// may not be written or is no run store. Sets aside a store that is damaged or that an older
+  /// program wrote, and begins a new one. Opens a store later if it is locked or its disk is full.
   explicit Recorder(const std::string& path, RecorderOptions options = {});
-  /// Writes what was pushed; runs that are still open end as interrupted.
+  /// Writes all pushed frames. Runs that are still open end as interrupted.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -115,28 +115,29 @@ class Recorder {
   /// The runs found unfinished when the store was opened.
   const std::vector<db::RunId>& interrupted() const { return interrupted_; }
 
-  /// Begins a live run, of which the newest hour is kept; waits for nothing. Its row is written as
-  /// soon as the store takes it.
+  /// Begins a live run, of which the newest hour is kept. Never waits: the row is written as soon
+  /// as the store takes it.
   std::shared_ptr<RunChannel> begin(const db::NewRun& what);
-  /// Begins a run to be kept whole and commits it. Throws db::StoreError with the reason, such as a
-  /// full disk.
+  /// Begins a run to be kept whole, and commits its row. Throws db::StoreError with the reason,
+  /// such as a full disk.
   std::shared_ptr<RunChannel> open(const db::NewRun& what);
-  /// The same for a queued run; `what.started` is when it starts. Begins it anew when its row went
-  /// with a store that was set aside.
+  /// As above, for a queued run; `what.started` is its start time. Writes a new row if the old one
+  /// was lost with a store that was set aside.
   std::shared_ptr<RunChannel> open(db::RunId queued, const db::NewRun& what);
 
   using Job = std::function<void(db::RunStore&)>;
-  /// Runs `job` on the database thread and commits. What it throws goes to `report`.
+  /// Runs `job` on the database thread and commits. Errors of `job` go to `report`.
   void post(Job job);
-  /// The same, again and again until the database takes it.
+  /// As post(), but retries until the database takes it.
   void post_when_well(Job job);
 
-  /// The same as post(), and gives back what `job` returns, after the commit. What it throws comes
-  /// back as a db::StoreError (db::DatabaseError stays one) with the same sentence.
+  /// As post(), but waits for the commit and returns the result of `job`. An error of `job` is
+  /// thrown here as a db::StoreError (a db::DatabaseError keeps its type) with the same sentence.
   template <typename F>
   auto ask(F job) -> std::invoke_result_t<F&, db::RunStore&> {
     using Result = std::invoke_result_t<F&, db::RunStore&>;
-    // The caller waits, so `job` stays; the promise must outlive the call that answers it.
+    // The caller waits, so a reference to `job` is safe. The promise must outlive the call that
+    // sets it.
     const auto promise = std::make_shared<std::promise<detail::Answer<Result>>>();
     auto answer = promise->get_future();
     post([promise, &job](db::RunStore& store) {
@@ -145,23 +146,23 @@ class Recorder {
     return answer.get().take();
   }
 
-  /// Returns when all that was pushed, closed and posted before is committed or the store has
-  /// failed. False when it is still locked, or without room, after about `patience`.
+  /// Waits until everything pushed, closed and posted before is committed, or the store has failed.
+  /// False if the store is still locked, or without room, after about `patience`.
   bool flush(std::chrono::milliseconds patience = std::chrono::seconds(2));
 
-  /// Whether a run that begins now would be recorded.
+  /// True if a run that begins now would be recorded.
   bool takes_more() const { return takes_more_.load(); }
 
-  /// How the newest live run's record is doing, as of the last commit.
+  /// State of the newest live run's record, as of the last commit.
   RecordStatus status() const;
-  /// Counts the changes of status() and of what news there is: cheap to look at.
+  /// Counts changes of status() and of the news. Cheap to poll.
   std::uint64_t revision() const { return revision_.load(); }
-  /// What was reported since the last call, without the folder of the store.
+  /// Reports since the last call, without the folder of the store.
   std::vector<std::string> take_news();
 
  private:
   using Clock = std::chrono::steady_clock;
-  /// What ails the store, as long as it does.
+  /// The current fault of the store.
   struct Ailment {
     db::Trouble trouble = db::Trouble::Failed;
     std::string sentence{};
@@ -211,25 +212,25 @@ class Recorder {
   std::int64_t room();
 
   RecorderOptions options_{};
-  /// [bytes] of frames, not packed, after which a commit does not wait for its time: a fast run
-  /// must not fill a small disk between two looks at the room.
+  /// [bytes] of unpacked frames that make a commit due at once: a fast run must not fill a small
+  /// disk between two checks of the room.
   std::uint64_t most_uncommitted_;
   std::shared_ptr<detail::Doorbell> bell_ = std::make_shared<detail::Doorbell>();
   std::shared_ptr<db::RunNumbers> numbers_ = std::make_shared<db::RunNumbers>();
-  db::RunStore store_;  // the database thread's, once it runs
+  db::RunStore store_;  // used by the database thread only, once that runs
   std::vector<db::RunId> interrupted_{};
 
-  // The database thread's.
+  // Used by the database thread only.
   std::vector<std::shared_ptr<RunChannel>> channels_{};
-  std::vector<Job> later_{};  // until the database takes them
+  std::vector<Job> later_{};  // waiting until the database takes them
   std::optional<Ailment> ailment_{};
   std::optional<std::string> full_{};  // why there is no room, as a sentence
   std::string evicted_{};              // what was deleted for room, as a sentence
-  std::string room_problem_{};         // why no room could be made, as it was last reported
+  std::string room_problem_{};         // why no room could be made; the last report of it
   std::uint64_t evicted_runs_ = 0;
   std::uint64_t used_ = 0;                                             // [bytes] at the last commit
-  std::int64_t room_left_ = std::numeric_limits<std::int64_t>::min();  // [bytes] at the last look
-  std::uint64_t uncommitted_ = 0;  // [bytes] of frames since then, not packed
+  std::int64_t room_left_ = std::numeric_limits<std::int64_t>::min();  // [bytes] at the last check
+  std::uint64_t uncommitted_ = 0;  // [bytes] of unpacked frames since the last commit
   Clock::time_point commit_due_{};
   Clock::time_point set_aside_{};
 

@@ -1,5 +1,4 @@
-// server/record/recorder_health.cpp: a store that fails, how it is mended, and what people are
-// told.
+// server/record/recorder_health.cpp: handles a failing store, its recovery, and reports to people.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -15,19 +14,20 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A store that is locked is looked at again so soon.
+// Delay before a locked store is tried again.
 constexpr milliseconds kBusyRetry{20};
-// Locked for longer than that is worth a word: a backup holds a store for moments.
+// A longer lock is reported: a backup locks a store only for moments.
 constexpr milliseconds kBusyNotable{1000};
-// A new store that is damaged too says that the disk is: it is not set aside, one after another.
+// If a new store is damaged within this time, the disk is faulty: do not set aside one store after
+// another.
 constexpr std::chrono::minutes kSetAsideAgain{1};
 constexpr std::size_t kMostNews = 100;
-// A store that has filled its disk is opened again when so many bytes are free.
+// [bytes] that must be free before a store that filled its disk is opened again.
 constexpr std::uint64_t kToWorkWith = std::uint64_t{4} << 20;
 constexpr std::uintmax_t kPage = 4096;
 
-/// Whether a file that is no database may have been one. A text that somebody gave for one by
-/// mistake is hardly ever a whole number of pages long.
+/// True if a file that is no database may have been one. A text file given by mistake is hardly
+/// ever a whole number of pages long.
 bool was_database(const std::string& path) {
   std::error_code error;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
@@ -47,7 +47,7 @@ void Recorder::open_store() {
   }
 }
 
-/// What was not committed is gone; from now on frames are dropped, or wait when it is only locked.
+/// Uncommitted data is lost. From now on frames are dropped, or wait if the store is only locked.
 void Recorder::note_trouble(const db::DatabaseError& error) {
   const auto now = Clock::now();
   const bool busy = error.trouble() == db::Trouble::Busy;
@@ -81,7 +81,8 @@ void Recorder::set_aside(std::string_view why) {
   }
 }
 
-/// A file that was deleted or replaced takes no more runs that anybody could read.
+/// Begins a new store if the file was deleted or replaced: nobody could read runs written to the
+/// old one.
 void Recorder::look_at_file() {
   if (!store_.is_open() || store_.in_place()) return;
   note_trouble(db::DatabaseError(
@@ -91,7 +92,7 @@ void Recorder::look_at_file() {
   recover();
 }
 
-/// Tries again whether the store is well, and goes on with every run if so.
+/// Tries the store again, and resumes every run if it works.
 void Recorder::recover() {
   if (!ailment_ || Clock::now() < ailment_->retry) return;
   const Ailment was = *ailment_;
@@ -99,7 +100,7 @@ void Recorder::recover() {
   try {
     if (was.trouble == db::Trouble::Full) {
       const DiskSpace disk = options_.disk(store_.path());
-      // Little is enough to delete runs with; whether there is room to record is judged after.
+      // Little space is enough to delete runs. The room to record is judged later.
       if (disk.free < std::min(disk.reserve(), kToWorkWith)) {
         ailment_->retry = Clock::now() + options_.retry_interval;
         return;
@@ -155,7 +156,7 @@ std::string Recorder::state_sentence(RecordKind kind, const RunChannel* live) co
                      std::max(1.0, minutes));
 }
 
-/// Of the run `live`, or of the store alone.
+/// The status of the run `live`, or of the store alone if null.
 RecordStatus Recorder::status_of(const RunChannel* live) const {
   RecordStatus now{.kind = RecordKind::Recording, .limit = options_.retention_bytes};
   const bool notable = ailment_ && (ailment_->trouble != db::Trouble::Busy ||
@@ -179,7 +180,7 @@ RecordStatus Recorder::status_of(const RunChannel* live) const {
   return now;
 }
 
-/// Brings up to date what status() gives, of the newest live run and of each.
+/// Updates the status of the newest live run, for status(), and of each run.
 void Recorder::publish() {
   bool news = false;
   for (const auto& channel : channels_) {
@@ -204,7 +205,7 @@ std::vector<std::string> Recorder::take_news() {
   return std::exchange(news_, {});
 }
 
-/// Sentences name the file by its path, which is the host's business alone.
+/// Removes the store's folder, which only the host may know.
 std::string Recorder::without_folder(std::string sentence) const {
   const std::filesystem::path path(store_.path());
   const std::string folder = path.parent_path().string() + "/";

@@ -1,7 +1,7 @@
-// server/record/recorder_room.cpp: what is kept when there is no room for everything.
+// server/record/recorder_room.cpp: decides what to keep when there is no room for everything.
 //
-// Finished runs are never deleted unless the host asked for it. A live run gives its own oldest
-// ticks up; when that is not enough, recording stops until somebody makes room.
+// Finished runs are never deleted unless the host asked for it. A live run drops its own oldest
+// ticks. If that is not enough, recording stops until room is made.
 #include <algorithm>
 #include <limits>
 
@@ -13,15 +13,15 @@ namespace server {
 
 namespace {
 
-// What one commit interval may spend on making room.
+// Time in one commit interval for making room.
 constexpr std::chrono::milliseconds kRoomTime{400};
-// Blocks of a live run that go in one transaction: some thousand ticks.
+// Blocks of a live run deleted in one transaction: about a thousand ticks.
 constexpr std::size_t kDropBlocks = 16;
-// Frames of a run that are stored between two steps of making room: more than come meanwhile in
-// real time, and far fewer than a step frees. A fast run has a whole ring of them waiting, and
-// would fill a small disk.
+// Frames of a run stored between two steps of making room: more than arrive meanwhile in real time,
+// and far fewer than a step frees. A fast run has a whole ring waiting, which could fill a small
+// disk.
 constexpr std::size_t kFewFrames = 64;
-// Recording that has stopped for want of room begins again when there is so much.
+// Limits of the [bytes] of room at which stopped recording resumes.
 constexpr std::int64_t kLeastRoom = 64 << 10;
 constexpr std::int64_t kMostRoom = 16 << 20;
 
@@ -29,7 +29,7 @@ constexpr double kMegabyte = 1024.0 * 1024.0;
 
 }  // namespace
 
-/// [bytes] that may still be written; negative: so many too many are.
+/// [bytes] that may still be written; negative: the excess already written.
 std::int64_t Recorder::room() {
   used_ = store_.used_bytes() + store_.log_bytes();
   const auto bytes = [](std::uint64_t value) {
@@ -37,7 +37,8 @@ std::int64_t Recorder::room() {
     return static_cast<std::int64_t>(std::min(value, kMost));
   };
   const DiskSpace disk = options_.disk(store_.path());
-  // While the log is folded into the file, its pages are in both; dropping ticks writes to it too.
+  // While the log is folded into the file, its pages are in both. Dropping ticks also writes to the
+  // log.
   const std::uint64_t for_log = 2 * store_.log_limit();
   const std::int64_t on_disk =
       bytes(disk.free) + bytes(store_.spare_bytes()) - bytes(disk.reserve()) - bytes(for_log);
@@ -45,8 +46,8 @@ std::int64_t Recorder::room() {
   return std::min(on_disk, bytes(options_.retention_bytes) - bytes(used_));
 }
 
-/// Gives the room of deleted runs back, slice by slice, each committed: the frames that come
-/// meanwhile are as safe as without it. One slice at least. True while there is more.
+/// Frees the room of deleted runs in slices, at least one. Commits each slice, so frames that come
+/// meanwhile are as safe as without the sweep. True while more is left.
 bool Recorder::sweep(Clock::time_point until) {
   bool more = true;
   for (bool first = true; more && !ailment_ && (first || Clock::now() < until); first = false) {
@@ -55,7 +56,7 @@ bool Recorder::sweep(Clock::time_point until) {
     } catch (const db::DatabaseError&) {
       throw;
     } catch (const db::StoreError& error) {
-      report(error.what());  // one run that is damaged: the next may be well
+      report(error.what());  // one damaged run: the next may be intact
     }
     take_frames(kFewFrames);
   }
@@ -79,7 +80,8 @@ bool Recorder::evict() {
   return true;
 }
 
-/// Drops some of the oldest ticks of live runs beyond their newest `span` [s]. True when some went.
+/// Drops some of the oldest ticks of live runs beyond their newest `span` [s]. True if any were
+/// dropped.
 bool Recorder::drop_live(double span) {
   bool dropped = false;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
@@ -98,20 +100,20 @@ bool Recorder::drop_live(double span) {
   return dropped;
 }
 
-/// Whether another step of making room is due: until there is some, or the time for it is over. On
-/// a slow machine it is over before what came since the last look is freed: then the frames wait,
-/// and time passes, until there is as much room as at that look.
+/// True if another step of making room is due: until there is room, or the time for it is over. On
+/// a slow machine that time may end before the room used since the last check is freed. Then the
+/// steps go on, and the frames wait, until there is as much room as at that check.
 bool Recorder::must_free(Clock::time_point until) {
   if (room() > 0) return false;
   if (Clock::now() < until) {
     take_frames(kFewFrames);
     return true;
   }
-  store_.fold_log();  // what was freed counts once it is out of the log
+  store_.fold_log();  // freed room counts only once the log is folded
   return room() < room_left_;
 }
 
-/// Stops recording when there is no room and none to come, and begins again when there is.
+/// Stops recording when there is no room and no more can be freed. Resumes it when there is room.
 void Recorder::judge_room(bool more_to_come) {
   const std::int64_t left = room();
   room_left_ = left;
@@ -121,7 +123,7 @@ void Recorder::judge_room(bool more_to_come) {
   if (full_ && left >= enough) {
     full_.reset();
     for (const auto& channel : channels_) channel->recover();
-    takes_more_ = true;  // told once it holds of every run
+    takes_more_ = true;  // set only once it is true for every run
     report("There is room again: the record goes on.");
   } else if (!full_ && left <= 0 && !more_to_come) {
     const bool by_limit = limit > 0 && used_ >= options_.retention_bytes;
@@ -145,7 +147,7 @@ void Recorder::make_room() {
   try {
     bool more = sweep(until);
     while (drop_live(options_.live_span) && Clock::now() < until) take_frames(kFewFrames);
-    // A log that nobody writes to any more would stay as long as it is.
+    // A log without further writes would keep its length.
     if (full_ || room() <= 0) store_.fold_log();
     while (!ailment_ && must_free(until)) {
       if (more) {
@@ -158,8 +160,8 @@ void Recorder::make_room() {
     }
     judge_room(more || Clock::now() >= until);
   } catch (const db::DatabaseError& error) {
-    // What fails here is old: it ends no run that is being recorded. Unless writing fails too,
-    // which the next commit says.
+    // A failure here concerns old runs and ends no current recording. If writing fails too, the
+    // next commit reports it.
     if (error.trouble() != db::Trouble::Busy && room_problem_ != error.what()) {
       room_problem_ = error.what();
       report(room_problem_);

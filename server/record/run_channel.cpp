@@ -51,7 +51,7 @@ bool RunChannel::push(FrameHandle& frame) {
   const bool after_pause = paused_.load(std::memory_order_relaxed);
   const bool taken = ring_.push({frame.get(), after_pause});
   if (taken) frame.detach();
-  // A gap that is partly a fault is one.
+  // A gap that is partly a fault counts as a fault.
   lost_ = !taken;
   if (after_pause) paused_.store(false, std::memory_order_relaxed);
   if (!taken || ring_.write_available() <= half_) bell_->nudge();
@@ -101,7 +101,7 @@ bool RunChannel::tell(RecordStatus status) {
   return true;
 }
 
-/// The stretch from the last tick stored to before `tick`.
+/// The gap after the last stored tick and before `tick`.
 db::Gap RunChannel::gap_until(std::uint64_t tick, bool paused) const {
   db::Gap gap{.cause = db::GapCause::Behind, .sentence = "The store took the ticks too slowly."};
   if (missing_) {

@@ -1,5 +1,4 @@
-// server/record/run_channel.hpp: what a control thread holds of the recorder: the ring its frames
-// go through.
+// server/record/run_channel.hpp: a control thread's end of the recorder: the ring for its frames.
 #pragma once
 
 #include <atomic>
@@ -22,16 +21,16 @@
 
 namespace server {
 
-/// One tick as the database needs it. The frame pool implements it; bytes() may encode on its
-/// first call, so that the control thread never does. Called on the database thread only, while
-/// others may read the same frame.
+/// One tick in the form for the database. The frame pool's frames implement it. bytes() may encode
+/// on its first call, so that the control thread never does. Called on the database thread only;
+/// other threads may read the same frame meanwhile.
 class RecordedFrame {
  public:
   virtual std::span<const std::byte> bytes() const = 0;
   virtual std::span<const db::Window> windows() const = 0;
   virtual std::uint64_t tick() const = 0;
   virtual double time() const = 0;  // [s] run clock
-  /// Gives up one reference; the last one returns the frame to its pool. Any thread.
+  /// Drops one reference; the last one returns the frame to its pool. Any thread.
   virtual void release() noexcept = 0;
 
  protected:
@@ -42,7 +41,7 @@ class RecordedFrame {
 class FrameHandle {
  public:
   FrameHandle() = default;
-  /// Takes over a reference the caller holds.
+  /// Takes over the caller's reference.
   explicit FrameHandle(RecordedFrame* frame) noexcept : frame_(frame) {}
   FrameHandle(FrameHandle&& other) noexcept : frame_(other.detach()) {}
   FrameHandle& operator=(FrameHandle&& other) noexcept {
@@ -73,12 +72,12 @@ namespace detail {
 /// Wakes the database thread.
 class Doorbell {
  public:
-  /// Ends the present or the next sleep.
+  /// Ends the current or the next sleep.
   void ring();
-  /// Ends the present sleep, if any: one atomic load while the other is awake, so the control
-  /// thread can afford it. A sleep that just begins may be missed; it is short.
+  /// Ends the current sleep, if any. Costs one atomic load while the database thread is awake, so
+  /// the control thread can afford it. It may miss a sleep that is just beginning, which is short.
   void nudge();
-  /// Sleeps until rung or `until`.
+  /// Sleeps until a ring or `until`.
   void wait_until(std::chrono::steady_clock::time_point until);
 
  private:
@@ -90,20 +89,21 @@ class Doorbell {
 
 }  // namespace detail
 
-/// How much of a run is kept.
+/// Which part of a run is kept.
 enum class Keep : std::uint8_t {
-  Whole,       // all of it, however long the store takes: experiments, runs of the command line
-  NewestHour,  // of a live run, which may go on for days; it never waits for the store
+  Whole,       // all ticks, however slow the store: experiments, command-line runs
+  NewestHour,  // for live runs, which may last days and never wait for the store
 };
 
-/// push(), pause() and close() belong to one thread, the run's; the others to any. Destroying the
-/// last handle without close() ends the run as failed.
+/// Only the run's thread may call push(), pause() and close(); any thread the others. Destroying
+/// the last handle without close() ends the run as failed.
 ///
-/// A store that fails ends no run: its frames are then taken and dropped, and recording goes on by
-/// itself when the store is well. The ticks between are a gap in the run's record.
+/// A failing store ends no run. Frames are then taken and dropped, and recording resumes by itself
+/// when the store works again. The ticks between are a gap in the run's record.
 class RunChannel {
  public:
-  /// `run`: its number, reserved or of a row that is there; `what`: enough to begin it anew.
+  /// `run`: the run's number, reserved or of an existing row; `what`: enough to write its row
+  /// again.
   RunChannel(db::RunId run,
              db::NewRun what,
              Keep keep,
@@ -113,24 +113,24 @@ class RunChannel {
   RunChannel(const RunChannel&) = delete;
   RunChannel& operator=(const RunChannel&) = delete;
 
-  /// The run's number. It changes once when another file took the store's place and has one so.
+  /// The run's number. It changes once if a new store file already uses that number.
   db::RunId run() const { return run_.load(std::memory_order_acquire); }
   Keep keep() const { return keep_; }
 
-  /// Hands a frame over and empties `frame`; false, with `frame` as it was, when the ring is full.
-  /// Never blocks on the disk and allocates nothing.
+  /// Hands the frame over and empties `frame`. False, with `frame` unchanged, when the ring is
+  /// full. Never blocks on the disk and allocates nothing.
   bool push(FrameHandle& frame);
 
-  /// Nothing happens: the ticks until the next push are left out on purpose.
+  /// Pauses the record: ticks until the next push are omitted on purpose.
   void pause();
 
-  /// The run is over, after `ticks` ticks in all; what was pushed so far comes first. Once only.
+  /// Ends the run after `ticks` ticks in all. Frames pushed so far are stored first. Call it once.
   void close(db::RunEnd end, std::uint64_t ticks = 0);
 
   /// True while frames are not recorded; problem() then says why, as a sentence.
   bool failed() const noexcept { return failed_.load(std::memory_order_acquire); }
   std::string problem() const;
-  /// How the record of this run is doing, as of the last commit; before it `kind` is Off.
+  /// State of this run's record as of the last commit; before the first one, `kind` is Off.
   RecordStatus status() const;
 
  private:
@@ -142,7 +142,7 @@ class RunChannel {
 
   void fail(const std::string& why);  // database thread
   void recover();                     // database thread
-  bool tell(RecordStatus status);     // database thread; true when it is another
+  bool tell(RecordStatus status);     // database thread; true if the status changed
   db::Gap gap_until(std::uint64_t tick, bool paused) const;
 
   std::atomic<db::RunId> run_;
@@ -153,15 +153,15 @@ class RunChannel {
   std::shared_ptr<detail::Doorbell> bell_{};
 
   // The run's thread.
-  bool lost_ = false;                // a frame, since the last one that was taken
+  bool lost_ = false;                // a frame was lost since the last one taken
   std::atomic<bool> paused_{false};  // read by others
 
   // The database thread.
-  std::uint64_t next_tick_ = 0;       // after the last one stored
-  std::optional<db::Gap> missing_{};  // why the ticks since then are not: cause and sentence
+  std::uint64_t next_tick_ = 0;       // follows the last tick stored
+  std::optional<db::Gap> missing_{};  // why later ticks are not stored: cause and sentence
   bool broken_ = false;               // a frame of it could not be stored
-  bool unheard_ = false;              // it began while the store took nothing
-  bool dropped_ = false;              // its oldest ticks went for newer ones
+  bool unheard_ = false;              // the run began while the store took nothing
+  bool dropped_ = false;              // its oldest ticks were dropped for newer ones
 
   db::RunEnd end_{};  // written before closed_
   std::uint64_t ticks_ = 0;
@@ -170,7 +170,7 @@ class RunChannel {
   std::string problem_{};  // guarded by mutex_
   RecordStatus status_{};  // guarded by mutex_
   std::atomic<bool> failed_ = false;
-  std::atomic<bool> over_ = false;  // nobody empties the ring any more
+  std::atomic<bool> over_ = false;  // the ring is no longer emptied
 };
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/record/run_csv.cpp: columns and channels from the frames.
+// server/record/run_csv.cpp: writes writes columns and channels from the frames.
 #include "server/record/run_csv.hpp"
 
 #include <array>
@@ -37,7 +37,7 @@ void put_columns(std::string& out, const algo::Telemetry& t) {
   }
 }
 
-/// ",1.5,,3" for channels of 1, 1 and 1 values of which the second has no reading.
+/// Appends ",1.5,,3" for three channels of one value each, of which the second has no reading.
 void put_channels(std::string& out,
                   const algo::Observation& observation,
                   const std::vector<algo::ChannelInfo>& channels) {

@@ -1,4 +1,5 @@
-// server/record/run_csv.hpp: a stored run as CSV: a line a tick, a column a value of each channel.
+// server/record/run_csv.hpp: a stored run as CSV: one line per tick, one column per value of each
+// channel.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +15,13 @@ namespace server {
 
 class RunCsv {
  public:
-  /// `run` with its document.
+  /// `run` must have its document.
   explicit RunCsv(const db::RunRow& run);
 
-  /// The first line, with its end. Channels come last, as "NAME" or "NAME[0]", "NAME[1]".
+  /// The first line, with its line end. Channels come last, as "NAME" or "NAME[0]", "NAME[1]".
   std::string header() const;
-  /// Appends up to `limit` lines from tick `from` on to `out`; every number in its shortest exact
-  /// form, and no cell where a tick has no reading. Returns the tick to go on with, or nothing
+  /// Appends up to `limit` lines from tick `from` on to `out`. Each number has its shortest exact
+  /// form; a missing reading leaves its cell empty. Returns the tick to continue with, or nothing
   /// after the last. Throws db::StoreError.
   std::optional<std::uint64_t> lines(db::RunReader& reader,
                                      std::uint64_t from,

@@ -84,7 +84,7 @@ db::RunEnd run_end(const RunResult& result, bool cut) {
 RecorderOptions recorder_options() {
   RecorderOptions options;
   options.ring_frames = kRecordRing;
-  // Only a server is told how much to keep, and has somebody who could make room.
+  // Only a server has a limit, and a person who could make room.
   options.retention_bytes = 0;
   options.wait_for_room = false;
   options.report = [](const std::string& sentence) { spdlog::warn(sentence); };
@@ -155,7 +155,7 @@ std::span<const TickColumn> tick_columns() {
       {"heading", [](const T& t) -> Value { return t.observation.odometry.pose.heading; }},
       {"v", [](const T& t) -> Value { return t.command.base.v; }},
       {"omega", [](const T& t) -> Value { return t.command.base.omega; }},
-      // A frame holds it as a float.
+      // The frame's clearance is a float.
       {"clearance", [](const T& t) -> Value { return std::round(t.clearance * 1e6) / 1e6; }},
       {"hold", [](const T& t) -> Value { return algo::name(t.hold); }},
       {"behaviour", [](const T& t) -> Value { return t.behaviour.view(); }},

@@ -42,7 +42,7 @@ class Comparison {
  public:
   explicit Comparison(const db::RunRow& row) : row_(row), pipeline_(pipeline_of(row)) {}
 
-  /// Up to `limit` ticks from `from` on. Returns the tick to go on with, or nothing.
+  /// Reads up to `limit` ticks from `from` on. Returns the tick to continue with, or nothing.
   std::optional<std::uint64_t> read(db::RunReader& reader, std::uint64_t from, std::size_t limit) {
     return reader.frames(
         row_.id, from, limit, [&](std::uint64_t, std::span<const std::byte> frame) {
@@ -56,7 +56,7 @@ class Comparison {
   void compare() {
     ++result_.ticks;
     if (result_.difference || result_.incomplete) return;
-    // What the pipeline knew at a tick that is missing cannot be had again.
+    // The pipeline's state after a missing tick cannot be recovered.
     if (t_.tick != result_.compared) {
       result_.incomplete = why_missing(result_.compared, t_.tick - 1);
       return;
