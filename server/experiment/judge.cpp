@@ -1,4 +1,4 @@
-// server/experiment/judge.cpp: judges and columns by their names.
+// server/experiment/judge.cpp: finds judges and columns by name.
 #include "server/experiment/judge.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// server/experiment/oracle.cpp: the motions tried with hindsight.
+// server/experiment/oracle.cpp: rolls out the motions tried with hindsight.
 #include "server/experiment/oracle.hpp"
 
 #include <algorithm>
@@ -10,14 +10,14 @@
 namespace server::experiment {
 namespace {
 
-constexpr double kBefore = 3;      // [s] before the contact the motions begin
-constexpr double kAfter = 1;       // [s] after it they must still be clear
+constexpr double kBefore = 3;      // [s] before the contact, when the motions begin
+constexpr double kAfter = 1;       // [s] after the contact, until which they must stay clear
 constexpr double kStep = 0.05;     // [s]
-constexpr double kJump = 1.0;      // [m] in one step: no motion but a jump
-constexpr double kTouch = 0.1;     // [m] from the hull: the obstacle that was met
+constexpr double kJump = 1.0;      // [m] in one step: a jump, not a motion
+constexpr double kTouch = 0.1;     // [m] from the hull: an obstacle this near was touched
 constexpr std::size_t kArcs = 10;  // turn rates, at full and at half speed
 
-/// The world's obstacles where they truly are at a time.
+/// The world's obstacles at their true positions at a given time.
 class Truth {
  public:
   explicit Truth(const sim::Scenario& scenario) : scenario_(scenario) {
@@ -40,7 +40,8 @@ sim::Hull hull_of(const algo::RobotSpec& spec) {
   return {spec.radius, spec.half_length, spec.half_width};
 }
 
-/// Whether what the robot met, or came near, has jumped while the motions would have run.
+/// True if an obstacle that the robot touched, or nearly touched, jumped in the time before the
+/// contact.
 bool jumped(const sim::Scenario& scenario, const algo::RobotSpec& spec, const Moment& contact) {
   return std::ranges::any_of(scenario.paths, [&](const sim::ObstaclePath& path) {
     const algo::Obstacle& obstacle = scenario.obstacles[path.id - 1];

@@ -1,5 +1,4 @@
-// server/experiment/oracle.hpp: whether a contact with something that moves could have been
-// avoided.
+// server/experiment/oracle.hpp: whether a contact with a moving obstacle could have been avoided.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +9,7 @@
 
 namespace server::experiment {
 
-/// The robot at one tick, as it truly was.
+/// The true state of the robot at one tick.
 struct Moment {
   double stamp = 0;  // [s] run clock
   algo::Pose2 pose_W{};
@@ -19,15 +18,15 @@ struct Moment {
 
 enum class Contact : std::uint8_t {
   None,         // nothing was touched
-  Avoidable,    // some motion begun in time would have stayed clear
-  Unavoidable,  // none of those tried would
-  Jumped,       // the obstacle came out of nowhere: its path began anew
+  Avoidable,    // a motion begun in time would have stayed clear
+  Unavoidable,  // no motion tried would have stayed clear
+  Jumped,       // the obstacle appeared suddenly: its path began again
 };
 
-/// With hindsight: from 3 s before the contact, the last moment of `trail`, rolls out standing
-/// still, driving back and 20 arcs, among obstacles that move as they truly did, until a second
-/// after it. The motions obey the vehicle's accelerations and begin at once, without the command's
-/// delay.
+/// Judges with hindsight. The contact is the last moment of `trail`. Rolls out standing still,
+/// driving back and 20 arcs from 3 s before the contact to 1 s after it, among obstacles that move
+/// as they truly did. The motions obey the vehicle's acceleration limits and begin at once, without
+/// the command's delay.
 Contact judge_contact(const sim::Scenario& scenario,
                       const algo::RobotSpec& spec,
                       const std::vector<Moment>& trail);

@@ -72,7 +72,7 @@ void for_each(std::size_t count,
   const std::size_t own = options.shard.share(count);
   if (own == 0) return;
   std::atomic<std::size_t> next{0};
-  std::mutex mutex;  // of progress
+  std::mutex mutex;  // guards `done` and options.progress
   std::size_t done = 0;
   const std::size_t threads = std::min<std::size_t>(one_a_core(options.threads), own);
   const auto source = [&](const std::stop_token& stop) -> Pool::Job {

@@ -1,4 +1,4 @@
-// server/experiment/series.cpp: how runs are summed up.
+// server/experiment/series.cpp: combines runs into figures.
 #include "server/experiment/series.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using algo::Outcome;
 
-/// In which a run of a study ends, in the order of the tables.
+/// The outcomes of a study's runs, in the order of the tables.
 constexpr std::array<Outcome, 4> kOutcomes{
     Outcome::Reached, Outcome::Stuck, Outcome::OutOfTime, Outcome::Collided};
 
@@ -58,7 +58,7 @@ std::vector<Series> run_series(const std::vector<SeriesPlan>& plans,
                                const std::vector<JudgeChoice>& judges,
                                const PoolOptions& options) {
   if (options.shard.count != 1) throw std::invalid_argument("a series is run as a whole");
-  std::vector<std::pair<const SeriesPlan*, std::size_t>> runs;  // and the seed within it
+  std::vector<std::pair<const SeriesPlan*, std::size_t>> runs;  // plan and index of the seed
   for (const SeriesPlan& plan : plans) {
     for (std::size_t seed = 0; seed < plan.seeds; ++seed) runs.emplace_back(&plan, seed);
   }

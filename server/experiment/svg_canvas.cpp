@@ -6,7 +6,7 @@
 namespace server::experiment {
 namespace {
 
-/// `text` with what XML reserves written as entities.
+/// `text` with XML's reserved characters as entities.
 std::string escaped(std::string_view text) {
   std::string out;
   for (const char c : text) {

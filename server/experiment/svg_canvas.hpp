@@ -9,8 +9,8 @@
 
 namespace server::experiment {
 
-/// Shapes in pixels, x to the right and y down, to a tenth. What is drawn later lies on top.
-/// `attributes` are written as they are: "fill=\"none\" stroke=\"#555\"", "class=\"grid\"".
+/// Shapes in pixels, rounded to a tenth, x to the right and y down. Later shapes lie on top.
+/// `attributes` are written unchanged: "fill=\"none\" stroke=\"#555\"", "class=\"grid\"".
 class SvgCanvas {
  public:
   /// `style_sheet`: CSS for the classes among the attributes.
@@ -21,11 +21,11 @@ class SvgCanvas {
   void line(const algo::Vec2& from, const algo::Vec2& to, std::string_view attributes);
   void polygon(std::span<const algo::Vec2> points, std::string_view attributes);
   void polyline(std::span<const algo::Vec2> points, std::string_view attributes);
-  /// `steps` in the language of the attribute d: "M0 0L5 5".
+  /// `steps` in the syntax of the attribute d: "M0 0L5 5".
   void path(std::string_view steps, std::string_view attributes);
   void text(const algo::Vec2& at, std::string_view words, std::string_view attributes = "");
 
-  /// The document; `title` is what a screen reader says.
+  /// The SVG document. A screen reader reads `title`.
   std::string document(std::string_view title) const;
 
  private:

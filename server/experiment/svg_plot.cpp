@@ -48,8 +48,8 @@ void SvgPlot::cells(const algo::Vec2& corner_W,
                     double cell,
                     std::span<const CellRun> runs,
                     std::string_view colour) {
-  // One path in whole numbers, each run from the end of the one before; half a cell up because a
-  // stroke lies on both sides of its line.
+  // One path in whole numbers; each run starts from the end of the last one. The path lies half a
+  // cell up because a stroke covers both sides of its line.
   const algo::Vec2 p = pixel(corner_W + algo::Vec2(0, cell / 2));
   std::string steps;
   int x = 0;

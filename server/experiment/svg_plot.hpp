@@ -11,18 +11,18 @@
 
 namespace server::experiment {
 
-/// Cells of a grid side by side in a row.
+/// Adjacent cells in one row of a grid.
 struct CellRun {
   int column = 0;
   int row = 0;
   int length = 0;
 };
 
-/// Shapes in metres of W, drawn with x to the right and y up. What is drawn later lies on top.
+/// Shapes in metres of W, drawn with x to the right and y up. Later shapes lie on top.
 class SvgPlot {
  public:
-  /// The part of W between the corners `low_W` and `high_W` in a picture `width` pixels wide, with
-  /// room for `legend_lines` lines of text below.
+  /// Shows the part of W between the corners `low_W` and `high_W` in a picture `width` pixels wide,
+  /// with room for `legend_lines` lines of text below it.
   SvgPlot(const algo::Vec2& low_W,
           const algo::Vec2& high_W,
           double width,
@@ -31,16 +31,16 @@ class SvgPlot {
   void circle(const algo::Vec2& centre_W, double radius, std::string_view style);
   void polygon(std::span<const algo::Vec2> points_W, std::string_view style);
   void polyline(std::span<const algo::Vec2> points_W, std::string_view style);
-  /// Runs of cells of edge `cell` [m], counted from `corner_W`, filled with `colour`.
+  /// Fills runs of cells with `colour`; cells have the edge `cell` [m] and count from `corner_W`.
   void cells(const algo::Vec2& corner_W,
              double cell,
              std::span<const CellRun> runs,
              std::string_view colour);
   void text(const algo::Vec2& at_W, std::string_view words);
-  /// The next line of the legend: a stroke in `style` and its meaning.
+  /// Adds a line to the legend: a stroke in `style` and its meaning.
   void legend(std::string_view style, std::string_view words);
 
-  /// The document; `title` is what a screen reader says.
+  /// The SVG document. A screen reader reads `title`.
   std::string document(std::string_view title) const { return canvas_.document(title); }
 
  private:
@@ -49,9 +49,9 @@ class SvgPlot {
 
   algo::Vec2 low_W_{0, 0};
   algo::Vec2 high_W_{0, 0};
-  double scale_ = 1;  // pixels a metre
+  double scale_ = 1;  // pixels per metre
   double plot_height_ = 0;
-  std::size_t legend_lines_ = 0;  // written
+  std::size_t legend_lines_ = 0;  // lines written so far
   SvgCanvas canvas_;
 };
 

@@ -1,4 +1,4 @@
-// server/experiment/table.cpp: one table in five forms.
+// server/experiment/table.cpp: one table in five formats.
 #include "server/experiment/table.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// server/experiment/table.hpp: rows and columns of text in the forms that people and programs read.
+// server/experiment/table.hpp: rows and columns of text, in formats for people and programs.
 #pragma once
 
 #include <string>
@@ -14,17 +14,17 @@ struct Row;
 struct Table {
   std::vector<std::string> header{};
   std::vector<std::vector<std::string>> rows{};  // each as long as the header
-  std::size_t words = 1;                         // leading columns set left; the others are numbers
+  std::size_t words = 1;  // leading columns of words, set left; the others hold numbers
 };
 
-/// A column of a table whose lines are items: its title, and what it says of one.
+/// A column of a table with one row per item: its title, and its cell for an item.
 template <typename Item>
 struct TitledCell {
   std::string title{};
   std::string (*cell)(const Item& item) = nullptr;
 };
 
-/// A line for each of `items`.
+/// A table with one row for each of `items`.
 template <typename Item, typename Items>
 Table tabulated(const Items& items,
                 std::size_t words,
@@ -38,26 +38,26 @@ Table tabulated(const Items& items,
   return table;
 }
 
-/// Columns two blanks apart, each line ended.
+/// Columns two blanks apart; every line ends with a line feed.
 std::string to_text(const Table& table);
-/// A pipe table, with the blank line that must follow it.
+/// A pipe table and the blank line that must follow it.
 std::string to_markdown(const Table& table);
 /// RFC 4180: commas, CRLF, quotes where a cell needs them.
 std::string to_csv(const Table& table);
-/// A tabular of its own, with what TeX reserves escaped.
+/// A complete tabular, with TeX's reserved characters escaped.
 std::string to_latex(const Table& table);
-/// A list of objects by the titles. A cell right of the words that is a number is one; an empty
-/// cell and what is not finite is null.
+/// A list of objects with the titles as keys. Right of the word columns, a numeric cell becomes a
+/// number; an empty or non-finite cell becomes null.
 nlohmann::json to_json(const Table& table);
 
-/// The table in the form that the ending of `path` names: .txt, .md, .csv, .tex, .json. Throws
-/// std::invalid_argument for another ending and std::runtime_error when it cannot be written.
+/// Writes the table in the format of the ending of `path`: .txt, .md, .csv, .tex, .json. Throws
+/// std::invalid_argument for another ending and std::runtime_error if it cannot write.
 void write_table(const Table& table, const std::string& path);
-/// Whether write_table() knows the ending.
+/// True if write_table() knows the ending.
 bool is_table_file(std::string_view path);
 
-/// Adds a run to a table whose rows are runs: `labels` under `titles`, outcome, reason, and every
-/// figure in full. The first run gives the header.
+/// Adds a run as a row: `labels` under `titles`, outcome, reason, and every figure in full. The
+/// first run also sets the header.
 void add_run(Table& table,
              const std::vector<std::string>& titles,
              std::vector<std::string> labels,

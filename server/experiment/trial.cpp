@@ -1,4 +1,4 @@
-// server/experiment/trial.cpp: the judges round one headless run.
+// server/experiment/trial.cpp: runs one headless run with its judges.
 #include "server/experiment/trial.hpp"
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 namespace server::experiment {
 namespace {
 
-/// [s] That this thread has had a core: what else runs on the machine does not count.
+/// [s] CPU time of this thread: other load on the machine does not count.
 double cpu_time() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The robot itself, with a clock: from each observation to the question for the truth, which the
-/// loop asks right after the control tick.
+/// Wraps a robot and times each control tick: from the observation to the call of ground_truth(),
+/// which the loop makes right after the tick.
 class TimedRobot final : public algo::Robot {
  public:
   TimedRobot(std::unique_ptr<algo::Robot> robot, std::vector<float>& tick_us)
@@ -50,7 +50,7 @@ class TimedRobot final : public algo::Robot {
   double begin_ = 0;  // [s]
 };
 
-/// The judges of one trial, each before its columns.
+/// The judges of one trial, each with its columns.
 class Bench {
  public:
   Bench(const Trial& trial, const algo::RobotSpec& robot) {

@@ -1,4 +1,4 @@
-// server/experiment/trial.hpp: a run description with the names of judges gives a row.
+// server/experiment/trial.hpp: one run, measured by the named judges, gives one row.
 #pragma once
 
 #include <cstddef>
@@ -23,50 +23,49 @@ struct JudgeChoice {
   Settings settings{};
 };
 
-/// Plain data: the same trial gives the same row, however many run beside it.
+/// Plain data. The same trial gives the same row, however many trials run in parallel.
 struct Trial {
   std::string name{};  // for people: "case1, modified, seed 3"
   RunSpec spec{};
   std::vector<JudgeChoice> judges{};
-  /// The judge among them whose ending is the run's; empty: the loop's own outcome and the
-  /// scenario's time limit end it.
+  /// The judge that ends the run; empty: the loop's own outcome or the scenario's time limit ends
+  /// it.
   std::string until{};
   bool keep_track = false;  // in the row
-  bool time_ticks = false;  // in the row; for nobody else the clock is read
+  bool time_ticks = false;  // in the row; otherwise the clock is not read
 };
 
-/// What came of one trial.
+/// The result of one trial.
 struct Row {
   using Figure = std::pair<std::string_view, double>;  // a judge's column and its value
 
   algo::Outcome outcome = algo::Outcome::Running;
   std::string reason{};           // one sentence where the outcome does not speak for itself
-  bool broken = false;            // Failed, and not because a judge calls it so
-  std::vector<Figure> figures{};  // of the judges, in their order; NaN: not known
+  bool broken = false;            // Failed, but not by a judge's ending
+  std::vector<Figure> figures{};  // in the order of the judges; NaN: not known
   std::vector<algo::Vec2> track_W{};
   std::vector<float> tick_us{};  // [us] CPU time of each control tick
 
-  /// The figure of that column. Throws std::out_of_range when no judge wrote it.
+  /// The figure of that column. Throws std::out_of_range if no judge wrote it.
   double operator[](std::string_view column) const;
 };
 
-/// How a trial is run, beside what it is.
+/// How to run a trial.
 struct TrialOptions {
   std::stop_token stop{};
-  double pace = 0;  // times real time; 0: as fast as it goes
-  /// Opens the record of the run, when it is to be kept.
+  double pace = 0;  // times real time; 0: as fast as possible
+  /// Opens the record of the run; empty: no record.
   std::function<std::shared_ptr<RunChannel>(const algo::RobotSpec& robot)> record{};
   std::function<bool()> cancelled{};  // as in HeadlessOptions
 };
 
-/// Throws std::exception with a sentence when the robot or a judge cannot be made, and whatever
-/// `record` throws. What breaks the run itself is in the row: Failed, with the reason.
+/// Throws std::exception with a sentence if the robot or a judge cannot be made, and any exception
+/// of `record`. If the run itself breaks, the row says Failed, with the reason.
 Row run_trial(const Trial& trial, const TrialOptions& options = {});
 
-/// The rows of the shard's trials among `count`, in their order, whatever the number of threads;
-/// trials that `stop` left out are Stopped. Trials are made on the workers, one after the other, so
-/// that a long list need not be in memory. A run that fails, unless its judge says so, throws
-/// std::runtime_error with the trial's name.
+/// The rows of the shard's trials among `count`, in their order for any number of threads; trials
+/// skipped after `stop` are Stopped. Workers make each trial when its turn comes, so a long list
+/// need not be in memory. A broken run throws std::runtime_error with the trial's name.
 std::vector<Row> run_trials(std::size_t count,
                             const std::function<Trial(std::size_t i)>& trial,
                             const PoolOptions& options);

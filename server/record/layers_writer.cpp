@@ -44,8 +44,7 @@ TAUTLINE_WIDE bool write_narrow(const float* values,
     too_large |= std::abs(steps) > kMostNarrow ? 1U : 0U;
     const std::uint32_t whole =
         std::bit_cast<std::uint32_t>(steps + kBase) - std::bit_cast<std::uint32_t>(kBase);
-    out[i] =
-        static_cast<std::int16_t>(steps == steps ? whole : kNoNumber);  // kNoNumber if not a number
+    out[i] = static_cast<std::int16_t>(steps == steps ? whole : kNoNumber);  // NaN: kNoNumber
   }
   return too_large == 0;
 }

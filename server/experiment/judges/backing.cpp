@@ -6,7 +6,7 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kSpell = 0.05;  // [m] backwards at a stretch that count as once
+constexpr double kSpell = 0.05;  // [m] backwards without a break, to count as one spell
 
 constexpr Column kColumns[] = {{"backing_m", Aggregate::Mean, 2},
                                {"backing_spells", Aggregate::Mean, 1}};
@@ -37,7 +37,7 @@ class Backing final : public Judge {
  private:
   std::optional<algo::Pose2> last_W_{};
   double length_ = 0;  // [m]
-  double spell_ = 0;   // [m] of the present stretch
+  double spell_ = 0;   // [m] of the current spell
   double spells_ = 0;  // count
 };
 

@@ -10,7 +10,7 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kMoved = 0.1;         // [m] from the start: the clock begins
+constexpr double kMoved = 0.1;         // [m] from the start, at which the clock begins
 constexpr double kTimeLimit = 100;     // [s] of that clock
 constexpr double kPatience = 60;       // [s] for a robot that never moves
 constexpr double kOptimalSpeed = 2.0;  // [m/s]
@@ -22,8 +22,8 @@ constexpr Column kColumns[] = {
 };
 constexpr std::string_view kSettings[] = {"goal_radius", "optimal_length"};
 
-/// Settings: `goal_radius` [m], else the benchmark's 1; `optimal_length` [m] of the best path
-/// known, else the straight line.
+/// Settings: `goal_radius` [m], default the benchmark's 1; `optimal_length` [m] of the best known
+/// path, default the straight line.
 class BarnScore final : public Judge {
  public:
   explicit BarnScore(const JudgedRun& run)

@@ -1,4 +1,4 @@
-// server/experiment/judges/contact.cpp: whether a contact with something that moves could have been
+// server/experiment/judges/contact.cpp: whether a contact with a moving obstacle could have been
 // avoided.
 #include <deque>
 
@@ -8,7 +8,7 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kTrail = 4;  // [s] remembered: what the oracle goes back, and some more
+constexpr double kTrail = 4;  // [s] kept: a little more than the oracle goes back
 
 constexpr Column kColumns[] = {{"contact", Aggregate::Largest, 0}};  // a Contact
 
@@ -35,7 +35,7 @@ class ContactJudge final : public Judge {
  private:
   const sim::Scenario& scenario_;
   algo::RobotSpec robot_;
-  bool moving_ = false;  // something in the world
+  bool moving_ = false;  // true if an obstacle in the world moves
   bool collided_ = false;
   std::deque<Moment> trail_{};
 };

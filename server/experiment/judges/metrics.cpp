@@ -1,4 +1,4 @@
-// server/experiment/judges/metrics.cpp: the figures that every run has (algo/metrics.hpp).
+// server/experiment/judges/metrics.cpp: the figures of every run (algo/metrics.hpp).
 #include "algo/metrics.hpp"
 
 #include "server/experiment/judge.hpp"
@@ -34,7 +34,7 @@ class Metrics final : public Judge {
   }
 
  private:
-  algo::Parameters parameters_;  // nobody changes them in a trial
+  algo::Parameters parameters_;  // constant during a trial
   algo::MetricsRecorder recorder_{};
 };
 

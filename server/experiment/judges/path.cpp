@@ -1,4 +1,4 @@
-// server/experiment/judges/path.cpp: what the papers measure of a path beyond algo/metrics.hpp.
+// server/experiment/judges/path.cpp: the papers' path measures beyond algo/metrics.hpp.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,10 +15,11 @@ constexpr double kResample = 0.050;  // [m] between kept positions, as for the t
 constexpr Column kColumns[] = {
     {"body_infringed_s", Aggregate::Largest, 1},  // an obstacle within d_safe of the hull
     {"body_depth_m", Aggregate::Largest, 3},      // how deep
-    // Sum of (change of direction)^2 / length of the later segment, of the path resampled at 50 mm.
+    // Sum of (change of direction)^2 / length of the later segment, of the path resampled at 50 mm
+    // steps.
     {"bending_rad2_per_m", Aggregate::Mean, 2},
-    // The share of the strip before its via point, |P^j - P^{j-1}| / (|P^j - P^{j-1}| +
-    // |P^{j+1} - P^j|), over the ticks with an external force: what K_c is said to keep.
+    // The share of the strip before its via point, |P^j - P^{j-1}| / (|P^j - P^{j-1}| + |P^{j+1} -
+    // P^j|), over the ticks with an external force. The papers say that K_c keeps it.
     {"strip_share", Aggregate::Mean, 3},
     {"strip_share_deviation", Aggregate::Mean, 3},  // standard deviation within a run
     {"internal_force_m", Aggregate::Largest, 3},    // the largest |F_int|
@@ -35,7 +36,7 @@ class Path final : public Judge {
     if (!t.ground_truth) return;
     const double clearance = t.ground_truth->obstacle_distance - radius_;
     body_depth_ = std::max(body_depth_, safety_distance_ - clearance);
-    // A tick is the time since the one before: at the start none has gone by.
+    // A tick counts the time since the last one; at the start there is none.
     if (kept_W_ && clearance < safety_distance_) body_infringed_ += period_;
     follow(t.ground_truth->pose.position());
     follow_strip(t.output);

@@ -1,4 +1,4 @@
-// server/experiment/judges/place.cpp: where a run ends, in truth.
+// server/experiment/judges/place.cpp: the true place where a run ends.
 #include <limits>
 
 #include "server/experiment/judge.hpp"

@@ -1,4 +1,4 @@
-// server/experiment/judges/silence.cpp: whether a robot that stands says why.
+// server/experiment/judges/silence.cpp: whether a robot that stands still gives a reason.
 #include <cmath>
 #include <optional>
 
@@ -9,7 +9,7 @@ namespace server::experiment::judges {
 namespace {
 
 constexpr double kTimeLimit = 300;  // [s]
-constexpr double kStands = 20;      // [s] without way or turn: it stands
+constexpr double kStands = 20;      // [s] without moving or turning: the robot stands
 constexpr double kWay = 0.05;       // [m]
 constexpr double kTurn = 0.2;       // [rad]
 
@@ -24,12 +24,12 @@ bool finite(const algo::Telemetry& t) {
          t.hold != algo::holds::kNotFinite;
 }
 
-/// What a robot may say while it stands. All else promises motion.
+/// True for a reason to stand still. Everything else promises motion.
 bool gives_reason(const algo::Telemetry& t) {
   return t.mission == algo::Mission::Stuck || t.mission == algo::Mission::Held || t.output.waits;
 }
 
-/// How long the robot has been where it is.
+/// How long the robot has stayed in its place.
 class Stand {
  public:
   double seconds(const algo::Pose2& pose, double stamp) {
@@ -47,8 +47,8 @@ class Stand {
   double since_ = -1;  // [s]
 };
 
-/// Ends a run when the robot arrives, collides, stands for 20 s or has driven for 300 s, with what
-/// it said last as the reason.
+/// Ends a run when the robot arrives, collides, stands for 20 s or has driven for 300 s. The reason
+/// is the robot's last sentence.
 class Silence final : public Judge {
  public:
   explicit Silence(const JudgedRun& /*run*/) {}
@@ -62,7 +62,8 @@ class Silence final : public Judge {
     if (t.ground_truth->collided) return end(algo::Outcome::Collided, t);
     if (t.mission == algo::Mission::Arrived) return end(algo::Outcome::Reached, t);
     if (stand_.seconds(t.ground_truth->pose, stamp) > kStands) {
-      // Said at some time while it stood: between two attempts it may speak of the attempt.
+      // A reason given at any time while it stood counts: between attempts it may announce the
+      // attempt instead.
       silent_ = stamp - reason_ >= kStands;
       return end(algo::Outcome::Stuck, t);
     }
@@ -82,7 +83,7 @@ class Silence final : public Judge {
   }
 
   Stand stand_{};
-  double reason_ = -kStands;  // [s] when it last gave one
+  double reason_ = -kStands;  // [s] when it last gave a reason
   bool silent_ = false;
   bool not_finite_ = false;
   std::optional<Ending> ending_{};

@@ -1,4 +1,4 @@
-// server/experiment/judges/standing.cpp: how long a robot stands still on its way.
+// server/experiment/judges/standing.cpp: how long a robot rests on its way.
 #include <cmath>
 #include <optional>
 
@@ -8,20 +8,20 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kSlow = 0.05;      // share of the top speed that still counts as rest
-constexpr double kPause = 0.1;      // [s] that make a pause of it
+constexpr double kSlow = 0.05;      // share of the top speed; slower counts as rest
+constexpr double kPause = 0.1;      // [s] of rest that make a pause
 constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
 
 constexpr Column kColumns[] = {
-    {"standing_s", Aggregate::Mean, 1},  // at rest, all of it
-    // Times it came to rest for 0.1 s or more and then drove on: the rest before the first motion
-    // and the rest in which a run ends are none.
+    {"standing_s", Aggregate::Mean, 1},  // all rest
+    // Times it rested for 0.1 s or more and then drove on. The rest before the first motion and the
+    // rest at the end of a run do not count.
     {"pauses", Aggregate::Mean, 1},
     {"pause_s", Aggregate::Mean, 2},  // at rest in pauses
 };
 
-/// At rest: by the true pose, slower than 5 % of the top speed and turning slower than 5 % of the
-/// top turn rate. A robot that turns on the spot does not rest.
+/// At rest means, by the true pose, slower than 5 % of the top speed and of the top turn rate. A
+/// robot that turns on the spot does not rest.
 class Standing final : public Judge {
  public:
   explicit Standing(const JudgedRun& run)
@@ -66,7 +66,7 @@ class Standing final : public Judge {
   double time_ = 0;        // [s]
   double pauses_ = 0;      // count
   double pause_time_ = 0;  // [s]
-  double spell_ = 0;       // [s] of the present rest
+  double spell_ = 0;       // [s] of the current rest
   bool moved_ = false;
 };
 
