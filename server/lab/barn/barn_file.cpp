@@ -1,4 +1,4 @@
-// server/lab/barn/barn_file.cpp: reads worlds, sets up the benchmark's robot.
+// server/lab/barn/barn_file.cpp: reads worlds and sets up the benchmark's robot.
 #include "server/lab/barn/barn_file.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ constexpr std::size_t kMaxKeys = 10'000;
 constexpr NumberRange kCoordinate{-1e4, 1e4};
 constexpr double kObstacleHeight = 1.0;  // [m]
 
-/// `count` numbers of the array `value`.
+/// The `count` numbers of the array `value`.
 std::vector<double> numbers(const json& value, const std::string& path, std::size_t count) {
   if (!value.is_array() || value.size() != count) {
     throw DocumentError(path, fmt::format("must be a list of {} numbers", count));
@@ -111,7 +111,7 @@ void equip(sim::Scenario& scenario, const Conditions& conditions) {
   if (conditions.scanner == Scanner::Lms200) {
     scenario.robot.sensors.lasers = {sim::LaserConfig::with_resolution(0.5)};
   }
-  // Low enough for every obstacle, and clear of the hull.
+  // Low enough to see every obstacle, and clear of the hull.
   scenario.robot.sensors.lasers.front().height = 0.30;
   if (conditions.robot) replace_robot(scenario, *conditions.robot);
 }

@@ -19,24 +19,24 @@ struct World {
   algo::Pose2 start{};
   algo::Vec2 goal{0, 0};
   double goal_radius = 1;     // [m]
-  double optimal_length = 0;  // [m] of the published path: for the score only
+  double optimal_length = 0;  // [m] of the published path; used only for the score
   std::vector<algo::Obstacle> obstacles{};
   std::vector<sim::ObstaclePath> paths{};
 };
 
-/// `Flat`, the benchmark's own: all beams at one instant. `Lms200`: the default model, whose beams
-/// are fired one by one while things move.
+/// `Flat`: the benchmark's scanner, which takes all beams at one instant. `Lms200`: the default
+/// model, which fires its beams one by one while things move.
 enum class Scanner : std::uint8_t { Flat, Lms200 };
 
-/// Under which a world is run: limits and faults of the base and its scanner.
+/// Conditions of a run: limits and faults of the base and its scanner.
 struct Conditions {
   bool stress = false;
   Scanner scanner = Scanner::Flat;
   sim::PhysicsKind physics = sim::PhysicsKind::Bullet;
-  /// Instead of the benchmark's Jackal: with its own scanners and limits.
+  /// Replaces the benchmark's Jackal; brings its own scanners and limits.
   std::optional<sim::RobotModel> robot{};
-  std::string controller{};  // empty: `strip`, or `strip_moving` where something moves
-  double phase = 0;          // [s] of the moving obstacles' paths when a run begins
+  std::string controller{};  // empty: `strip`, or `strip_moving` if obstacles move
+  double phase = 0;          // [s] into the obstacles' paths at the start of a run
 };
 
 /// Throws DocumentError naming the field, or std::runtime_error when the file cannot be read.

@@ -1,4 +1,4 @@
-// server/lab/barn/barn_run.cpp: worlds as trials, and what their rows come to.
+// server/lab/barn/barn_run.cpp: runs worlds as trials and summarises their rows.
 #include "server/lab/barn/barn_run.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// server/lab/barn/barn_run.hpp: worlds run and scored.
+// server/lab/barn/barn_run.hpp: runs the worlds and scores them.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace server::barn {
 
-/// One run: reached, collided or out of time in the benchmark's own terms; the figures of the
+/// One run: reached, collided or out of time by the benchmark's rules, with the figures of the
 /// judges `metrics`, `barn_score`, `contact` and `place`.
 struct Run {
   std::uint64_t world = 0;
   std::uint64_t seed = 0;
   experiment::Row row{};
 
-  /// With something that moves.
+  /// The contact with a moving obstacle.
   experiment::Contact contact() const;
 };
 
 struct Options {
   Conditions conditions{};
-  std::size_t repeats = 1;  // seeds a world
+  std::size_t repeats = 1;  // seeds per world
   std::uint64_t first_seed = 1;
   experiment::PoolOptions pool{};
 };
 
 struct Result {
   std::size_t worlds = 0;
-  std::vector<Run> runs{};  // by world, then by seed; those of the shard
+  std::vector<Run> runs{};  // the shard's runs, by world, then by seed
 };
 
 experiment::Trial trial_of(const World& world, const Conditions& conditions, std::uint64_t seed);
 
-/// Throws std::exception with a sentence when a world cannot be run.
+/// Throws std::exception with a sentence if a world cannot be run.
 Result run_worlds(const std::vector<World>& worlds, const Options& options);
 
 struct Summary {
@@ -49,9 +49,9 @@ struct Summary {
 };
 Summary summarise(const Result& result);
 
-/// A run a line: outcome, time, score, clearance, path.
+/// One row per run: outcome, time, score, clearance, path.
 experiment::Table runs_table(const Result& result);
-/// A run a line with every figure.
+/// One row per run, with every figure.
 experiment::Table rows_table(const Result& result);
 
 }  // namespace server::barn

@@ -18,7 +18,7 @@ struct Kind {
 };
 constexpr std::array<Kind, 3> kKinds{{{2, 0.6}, {3, 0.3}, {4, 0.3}}};
 
-/// On the random layouts: the full strip beside the readings of the one via point.
+/// Controllers on the random layouts: the full strip, and the readings with one via point.
 constexpr std::array<const char*, 5> kStrips{
     {"strip", "original", "original_side", "modified", "modified_published"}};
 

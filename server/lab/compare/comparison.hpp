@@ -1,5 +1,5 @@
-// server/lab/compare/comparison.hpp: the runs of `tautline compare`: every controller on the
-// papers' worlds, before bottlenecks, and the strips on random layouts.
+// server/lab/compare/comparison.hpp: the runs of `tautline compare`: every controller in the
+// papers' worlds and at bottlenecks, and the strips on random layouts.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@ namespace server::compare {
 using experiment::Series;
 
 struct Options {
-  std::size_t seeds = 3;  // runs of each row
+  std::size_t seeds = 3;  // runs per row
   std::uint64_t first_seed = 1;
-  std::size_t layouts = 150;        // random ones of each kind
-  std::size_t layout_seeds = 2;     // runs of each
+  std::size_t layouts = 150;        // random layouts of each kind
+  std::size_t layout_seeds = 2;     // runs per layout
   std::vector<std::string> only{};  // these controllers; empty: all
-  /// More judges of the worlds and the bottlenecks: their columns stand in the details.
+  /// Further judges for the worlds and the bottlenecks; the details show their columns.
   std::vector<std::string> judges{};
-  bool worlds = true;  // which parts are run
+  bool worlds = true;  // these three: parts to run
   bool bottlenecks = true;
   bool random_layouts = true;
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
   experiment::NamedProgress progress{};
 };
 
@@ -33,27 +33,29 @@ struct Options {
 struct LayoutSet {
   std::size_t obstacles = 0;
   double repulsion_gain = 0;
-  /// Paper conditions; a row a layout, for one controller after the other.
+  /// Paper conditions: one row per layout, controller after controller.
   std::vector<Series> paper{};
-  std::vector<Series> full{};  // `strip` alone in the full simulator
+  std::vector<Series> full{};  // only `strip`, in the full simulator
 };
 
 struct Comparison {
   Options options{};
   std::vector<std::string> labels{};  // of the contestants
-  std::vector<Series> worlds{};       // a world a row, for one contestant after the other
-  std::vector<Series> bottlenecks{};  // a gap a row, likewise
+  std::vector<Series> worlds{};       // one row per world, contestant after contestant
+  std::vector<Series> bottlenecks{};  // one row per gap, likewise
   std::vector<LayoutSet> layouts{};
-  std::vector<Finding> findings{};  // of the sources' claims, where their runs were made
+  std::vector<Finding> findings{};  // on the sources' claims whose runs were made
 };
 
-/// Same options, same comparison, however many threads. Throws std::exception with a sentence.
+/// The same options give the same comparison with any number of threads. Throws std::exception with
+/// a sentence.
 Comparison compare(const Options& options);
 
 /// The rows of one contestant, in the order of the scenes.
 std::vector<const Series*> rows_of(const std::vector<Series>& rows, const std::string& label);
 
-/// `strip` on all layouts under both conditions: at least 99 % of the runs reach, none collides.
+/// `strip` on all layouts under both conditions. Held if at least 99 % of the runs reach the goal
+/// and none collides.
 struct LayoutResult {
   std::size_t runs = 0, reached = 0, collided = 0;
   bool held() const { return collided == 0 && 100 * reached >= 99 * runs; }

@@ -1,4 +1,4 @@
-// server/lab/compare/document.cpp: the words round the tables, for the terminal and for Markdown.
+// server/lab/compare/document.cpp: the text around the tables, for the terminal and for Markdown.
 #include <fmt/format.h>
 
 #include "server/lab/compare/layouts.hpp"
@@ -9,7 +9,7 @@
 namespace server::compare {
 namespace {
 
-/// Where controllers.md takes the table of the worlds.
+/// Marks the table of the worlds in controllers.md.
 constexpr reproduce::Marks kWorlds{"<!-- worlds: made by tautline compare -->\n",
                                    "<!-- end of the worlds -->\n"};
 
@@ -154,7 +154,7 @@ std::string to_markdown(const Comparison& comparison) {
   }
   while (text.ends_with("\n\n")) text.pop_back();
   for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) {
-    text.erase(at, 1);  // a table brings its blank line, and so does the heading after it
+    text.erase(at, 1);  // a table ends with a blank line, and the next heading begins with one
   }
   return text;
 }

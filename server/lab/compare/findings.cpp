@@ -1,4 +1,4 @@
-// server/lab/compare/findings.cpp: one judgement a claim, with its rule in words.
+// server/lab/compare/findings.cpp: one judgement per claim, with its rule in words.
 #include "server/lab/compare/findings.hpp"
 
 #include <algorithm>
@@ -17,7 +17,8 @@ using experiment::find_series;
 using experiment::Row;
 using experiment::Series;
 
-/// What the thesis names, by each of its sensors. Edge detection has no reading by sonar here.
+/// A method that the thesis names, with each of its sensors. Edge detection has no sonar version
+/// here.
 struct Method {
   const char* words = "";
   std::vector<std::string> labels{};
@@ -35,7 +36,7 @@ bool is_trapped(const Row& run) {
   return run.outcome == Outcome::Stuck || run.outcome == Outcome::OutOfTime;
 }
 
-/// Time, pauses and the like of many runs.
+/// Sums of time, pauses and the like over many runs.
 struct Pausing {
   std::size_t runs = 0;
   std::size_t paused_runs = 0;
@@ -52,7 +53,7 @@ struct Pausing {
   }
 };
 
-/// Worlds where the straight way to the goal ends in an obstacle.
+/// Worlds in which the straight way to the goal hits an obstacle.
 std::vector<std::string> blocked_worlds(std::span<const Series> worlds) {
   std::vector<std::string> names;
   for (const Series& row : worlds) {

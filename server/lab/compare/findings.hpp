@@ -1,5 +1,5 @@
-// server/lab/compare/findings.hpp: what section 1.1 of the thesis says of the methods it names,
-// held against the runs.
+// server/lab/compare/findings.hpp: tests against the runs what section 1.1 of the thesis says about
+// its methods.
 #pragma once
 
 #include <cstdint>
@@ -23,18 +23,18 @@ struct Finding {
   std::string rule{};
 };
 
-/// The findings whose runs are there. `worlds` and `bottlenecks`: a row a scene and contestant, the
-/// bottlenecks of one contestant in rising order of their gaps.
+/// The findings whose runs exist. `worlds` and `bottlenecks`: one row per scene and contestant; the
+/// bottlenecks of one contestant by rising gap.
 std::vector<Finding> judge(std::span<const experiment::Series> worlds,
                            std::span<const experiment::Series> bottlenecks);
 
-/// What the rows of one contestant before the bottlenecks come to.
+/// Summary of one contestant's runs at the bottlenecks.
 struct Passage {
-  /// [m] The narrowest gap such that it and every wider one is passed in every run.
+  /// [m] The narrowest gap such that every run passes it and every wider gap.
   std::optional<double> smallest{};
   std::size_t runs = 0, passed = 0;
   std::size_t stuck = 0, out_of_time = 0, collided = 0;
-  std::vector<double> traps{};  // [m] gaps before which every run was trapped: stuck or out of time
+  std::vector<double> traps{};  // [m] gaps at which every run was trapped: stuck or out of time
   bool trapped_sometimes() const { return stuck + out_of_time > 0; }
 };
 Passage passage_of(std::span<const experiment::Series> bottlenecks, std::string_view contestant);

@@ -1,5 +1,4 @@
-// server/lab/compare/layouts.cpp: obstacles drawn one after the other, and drawn again where they
-// do not fit.
+// server/lab/compare/layouts.cpp: draws obstacles one by one, and redraws those that do not fit.
 #include "server/lab/compare/layouts.hpp"
 
 #include <algorithm>
@@ -18,12 +17,13 @@ namespace {
 
 using algo::Vec2;
 
-constexpr std::uint64_t kPurpose = 0x6c61796f75747300;  // "layouts": of the generator
-constexpr int kTries = 200;     // of one obstacle before the layout is begun anew
-constexpr double kAside = 2.0;  // [m] farthest centre from the line
+constexpr std::uint64_t kPurpose = 0x6c61796f75747300;  // "layouts": the generator's purpose
+constexpr int kTries = 200;     // for one obstacle before the layout starts again
+constexpr double kAside = 2.0;  // [m] farthest centre from the straight line
 const Vec2 kGoal{5.0, 4.0};     // [m] of case 3; the start is the origin
 
-/// A cylinder or a box at any heading, as likely; its centre anywhere beside the line.
+/// A cylinder or a box with equal probability, at any heading, its centre anywhere along and beside
+/// the line.
 algo::Obstacle draw(sim::Random& random, std::uint32_t id) {
   const Vec2 along = kGoal.normalized();
   const Vec2 across{-along.y(), along.x()};
@@ -42,7 +42,7 @@ algo::Obstacle draw(sim::Random& random, std::uint32_t id) {
   return obstacle;
 }
 
-/// Whether the robot would touch it on the straight line.
+/// True if the robot would touch the obstacle on the straight line.
 bool in_lane(const algo::Obstacle& obstacle) {
   const Vec2 along = kGoal.normalized();
   const auto aside = [&](const Vec2& p) { return along.x() * p.y() - along.y() * p.x(); };
@@ -66,7 +66,7 @@ bool fits(const algo::Obstacle& obstacle, const std::vector<algo::Obstacle>& oth
       others, [&](const auto& other) { return surface_gap(obstacle, other) >= kFreeGap; });
 }
 
-/// Nothing when an obstacle found no place.
+/// Empty if an obstacle found no place.
 std::vector<algo::Obstacle> draw_all(sim::Random& random, std::size_t count) {
   std::vector<algo::Obstacle> obstacles;
   for (int tries = 0; obstacles.size() < count && tries < kTries; ++tries) {
@@ -86,8 +86,8 @@ double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b) {
   const auto* const round_b = std::get_if<algo::Cylinder>(&b.shape);
   if (round_a != nullptr) return signed_distance(b, a.pose_W.position()) - round_a->radius;
   if (round_b != nullptr) return signed_distance(a, b.pose_W.position()) - round_b->radius;
-  // Two convex outlines apart are nearest at a vertex of one of them. Boxes laid crosswise may have
-  // no vertex in each other, but they have each other's centre.
+  // Two separate convex outlines are nearest at a vertex of one of them. Crossed boxes may contain
+  // no vertex of each other, but they contain each other's centre.
   double nearest =
       std::min(signed_distance(a, b.pose_W.position()), signed_distance(b, a.pose_W.position()));
   for (const Vec2& corner : outline_W(a)) nearest = std::min(nearest, signed_distance(b, corner));

@@ -1,8 +1,8 @@
-// server/lab/compare/layouts.hpp: random layouts of obstacles with free gaps of 1 m and more
-// between them, the same for the same number on every machine.
+// server/lab/compare/layouts.hpp: random layouts of obstacles with free gaps of at least 1 m
+// between them. The same index gives the same layout on every machine.
 //
-// The sources have no such layouts. How they are drawn is ours: start, goal and speed of the
-// paper's case 3, cylinders and boxes of its sizes, one at least in the robot's way.
+// The sources have no such layouts. The rules for drawing them are ours: start, goal and speed of
+// the paper's case 3, cylinders and boxes of its sizes, at least one of them in the robot's way.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,12 @@
 
 namespace server::compare {
 
-constexpr double kFreeGap = 1.0;    // [m] at least, between surfaces
-constexpr double kFreeRoom = 1.35;  // [m] from start and goal to a surface: the method's reach
-constexpr double kLaneHalf = 0.35;  // [m] the hull's radius: half the robot's way
+constexpr double kFreeGap = 1.0;  // [m] least gap between surfaces
+constexpr double kFreeRoom =
+    1.35;  // [m] from start and goal to a surface, at least: the method's reach
+constexpr double kLaneHalf = 0.35;  // [m] the hull's radius: half the width of the robot's lane
 
-/// [m] Between the surfaces of two obstacles that do not overlap; not above 0 when they do.
+/// [m] Gap between the surfaces of two obstacles; 0 or less if they overlap.
 double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b);
 
 /// Layout number `index` of `obstacles` (1 or more): K_c 0.6, `repulsion_gain` K_r, 100 mm/s.

@@ -115,7 +115,7 @@ Table details_table(const Comparison& comparison) {
                          "in pauses s"},
               .rows = {},
               .words = 3};
-  std::vector<experiment::Column> more;  // of the judges that were asked for
+  std::vector<experiment::Column> more;  // of the further judges
   for (const std::string& judge : comparison.options.judges) {
     const auto columns = experiment::find_judge(judge).columns;
     more.insert(more.end(), columns.begin(), columns.end());

@@ -11,26 +11,26 @@
 
 namespace server::compare {
 
-/// A contestant a line, a world a column: mean seconds / least clearance [m], or how it ended.
+/// One row per contestant, one column per world: mean time [s] / least clearance [m], or the
+/// outcomes.
 experiment::Table worlds_table(const Comparison& comparison);
-/// A world and a contestant a line, with all figures.
+/// One row per world and contestant, with all figures.
 experiment::Table details_table(const Comparison& comparison);
-/// A contestant a line, a gap a column.
+/// One row per contestant, one column per gap.
 experiment::Table bottlenecks_table(const Comparison& comparison);
-/// A controller a line; then how those that reach fare beside the original strip.
+/// One row per controller; and a comparison of those that reach with the original strip.
 experiment::Table layouts_table(const LayoutSet& set);
 experiment::Table beside_original_table(const LayoutSet& set);
 
-/// A run of the worlds and the bottlenecks a line, with every figure.
+/// One row per run in the worlds and at the bottlenecks, with every figure.
 experiment::Table rows_table(const Comparison& comparison);
 
 std::string to_text(const Comparison& comparison);
 nlohmann::json to_json(const Comparison& comparison);
-/// The whole document.
+/// The complete comparison.md.
 std::string to_markdown(const Comparison& comparison);
-/// Writes comparison.md into `folder`, and the table of the worlds into the controllers.md there,
-/// where that has a place for it. Throws std::runtime_error with the path that cannot be
-/// written.
+/// Writes comparison.md into `folder`, and the table of the worlds into controllers.md there, if it
+/// has the marks for it. Throws std::runtime_error with the path that cannot be written.
 void write_markdown(const Comparison& comparison, const std::filesystem::path& folder);
 
 }  // namespace server::compare

@@ -82,7 +82,7 @@ sim::Scenario bottleneck(double gap) {
   scene.name = bottleneck_name(gap);
   scene.title = fmt::format("A wall with a gap of {:.1f} m", gap);
   scene.goal = algo::SetGoal{{kWay, 0}, std::nullopt};
-  const double wing = kSide - gap / 2;  // of the parting wall, either side of the gap
+  const double wing = kSide - gap / 2;  // length of the dividing wall on either side of the gap
   const double length = kWay + 2 * kBehind;
   for (const int side : {1, -1}) {
     add_box(scene, {kWay / 2, side * (gap / 2 + wing / 2)}, {kWall, wing});

@@ -59,14 +59,14 @@ std::string head_of(const MapStudy& study) {
       errors.odometry_noise);
 }
 
-/// Milliseconds a scan, mean of all runs.
+/// Milliseconds per scan, mean over all runs.
 double scan_ms(const MapStudy& study) {
   double sum = 0;
   for (const MapRun& run : study.runs) sum += run.scan_time;
   return 1e3 * sum / static_cast<double>(study.runs.size());
 }
 
-/// Whose walls are thinner, ours or the log's: piece by piece, in the mean of the seeds.
+/// Compares the walls' thickness along our path and the log's, over all pieces and seeds.
 std::string sharpness_sentence(const MapStudy& study) {
   if (!study.options.match) return "";
   double ours = 0;
@@ -94,7 +94,7 @@ std::string time_sentence(const MapStudy& study) {
   return fmt::format("Matching a scan and adding it to the map took {:.1f} ms.\n", scan_ms(study));
 }
 
-/// The pictures of one log, named in `section` as it tells of them.
+/// Adds one log to `section` and writes its pictures.
 void add_log(const MapStudy& study, const std::filesystem::path& folder, std::string& section) {
   const std::string& name = study.log.name;
   section += fmt::format("### {}\n\n{}. {}{}\n{}",

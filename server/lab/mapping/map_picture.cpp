@@ -1,4 +1,4 @@
-// server/lab/mapping/map_picture.cpp: a map as SVG: what is free in grey, what stands in black.
+// server/lab/mapping/map_picture.cpp: a map as SVG: free cells in grey, walls in black.
 #include <algorithm>
 #include <vector>
 
@@ -13,12 +13,12 @@ using algo::Vec2;
 using experiment::CellRun;
 
 constexpr double kWidth = 900;        // [px]
-constexpr int kMostColumns = 800;     // of cells in the picture; a larger map is drawn coarser
-constexpr int kEdge = 6;              // cells of the map around what is known
-constexpr double kSpacing = 0.15;     // [m] between the points of the path that are drawn
-constexpr std::uint16_t kEnough = 3;  // passes that make a cell free for sure
+constexpr int kMostColumns = 800;     // in cells; a larger map is drawn coarser
+constexpr int kEdge = 6;              // cells of margin around the known part of the map
+constexpr double kSpacing = 0.15;     // [m] between the drawn points of the path
+constexpr std::uint16_t kEnough = 3;  // beams through a cell that make it surely free
 
-/// Cells first <= i < end of what is known.
+/// The known part of the map: cells with first <= i < end.
 struct Part {
   int left = 0, right = 0, bottom = 0, top = 0;
   int columns() const { return right - left; }
@@ -50,7 +50,8 @@ Part known_part(const OccupancyMap& map) {
           std::min(map.side(), part.top + kEdge)};
 }
 
-/// A block of the map as one cell of the picture: a wall when any of it is, else free when any is.
+/// The shade of a block of the map in the picture: wall if any cell is a wall, else free if any is
+/// free.
 Shade shade_of_block(const OccupancyMap& map, const Part& part, int block, int column, int row) {
   Shade most = Shade::Unknown;
   const int right = std::min(part.right, part.left + (column + 1) * block);

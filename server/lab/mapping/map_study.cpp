@@ -1,4 +1,4 @@
-// server/lab/mapping/map_study.cpp: recordings, spoilt paths, matched paths.
+// server/lab/mapping/map_study.cpp: recordings, paths with odometry errors, matched paths.
 #include "server/lab/mapping/map_study.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace server::mapping {
 namespace {
 
-constexpr double kMargin = 15;    // [m] of map about the path
+constexpr double kMargin = 15;    // [m] of map around the path
 constexpr double kLargest = 400;  // [m] edge of a map; a log that needs more has lost its poses
 
 double cpu_seconds() {

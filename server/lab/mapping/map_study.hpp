@@ -1,5 +1,5 @@
-// server/lab/mapping/map_study.hpp: a recorded log, its poses spoilt as odometry would be, and what
-// matching the scans makes good of it.
+// server/lab/mapping/map_study.hpp: a recorded log, its poses corrupted with odometry errors, and
+// how much of the error scan matching corrects.
 #pragma once
 
 #include <cstdint>
@@ -17,59 +17,59 @@
 
 namespace server::mapping {
 
-/// All scans of a CARMEN log, and where its robot was when they were taken.
+/// All scans of a CARMEN log, and the robot's pose at each scan.
 struct Recording {
   std::string name{};  // the file's, without folder and ending
   std::vector<algo::LaserScan> scans{};
-  std::vector<algo::Pose2> path_W{};  // as long
+  std::vector<algo::Pose2> path_W{};  // one pose per scan
 };
 
-/// Throws std::runtime_error with a sentence when there is no such file or no scan in it.
+/// Throws std::runtime_error with a sentence if the file does not exist or holds no scan.
 Recording read_recording(const std::filesystem::path& file);
 
 struct MapOptions {
-  sim::DriveConfig errors{};  // of the odometry: odometry_slip, odometry_scale, odometry_noise
+  sim::DriveConfig errors{};  // uses odometry_slip, odometry_scale, odometry_noise
   bool match = false;
   std::uint64_t first_seed = 1;
   std::size_t seeds = 1;
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
   experiment::Progress progress{};
 };
 
-/// One seed: the log's poses spoilt, and the path that was found from them.
+/// The run of one seed: the log's poses with odometry errors, and the path found from them.
 struct MapRun {
   std::uint64_t seed = 0;
   std::vector<algo::Pose2> odometry_W{};
-  std::vector<algo::Pose2> matched_W{};  // empty when matching was not asked for
+  std::vector<algo::Pose2> matched_W{};  // empty without matching
   PathError odometry{};
   PathError matched{};
-  std::vector<std::size_t> matched_cells{};  // see wall_cells(), as with the log's own
-  double scan_time = 0;                      // [s] CPU, mean of placing a scan and entering it
+  std::vector<std::size_t> matched_cells{};  // see wall_cells(); likewise log_cells
+  double scan_time = 0;                      // [s] CPU, mean to match and add a scan
 };
 
 struct MapStudy {
   Recording log{};
   MapOptions options{};
-  std::vector<MapRun> runs{};            // one a seed
-  std::vector<std::size_t> log_cells{};  // of the log's own poses; only with matching
+  std::vector<MapRun> runs{};            // one per seed
+  std::vector<std::size_t> log_cells{};  // along the log's own poses; only with matching
 };
 
-/// Throws std::invalid_argument when the errors make no sense.
+/// Throws std::invalid_argument if the errors are invalid.
 MapStudy study_map(Recording log, const MapOptions& options);
 
-/// The map of the scans as if `path_W` were true.
+/// The map of the scans, taking `path_W` as true.
 algo::OccupancyMap map_along(const Recording& log, const std::vector<algo::Pose2>& path_W);
 
 nlohmann::json to_json(const MapStudy& study);
 std::string to_text(const MapStudy& study);
 
-/// A picture of the map along `path_W`, with that path in it, as an SVG document.
+/// Draws the map along `path_W`, and that path, as an SVG document.
 std::string draw_map(const Recording& log,
                      const std::vector<algo::Pose2>& path_W,
                      const std::string& title);
 
-/// Writes tables and pictures of all `studies` into `file`, in the place of those an earlier call
-/// put there, and the pictures into pictures/mapping/ beside it. Throws std::runtime_error.
+/// Writes the tables of all `studies` into `file`, replacing those of an earlier call, and the
+/// pictures into pictures/mapping/ beside it. Throws std::runtime_error.
 void write_markdown(const std::vector<MapStudy>& studies, const std::filesystem::path& file);
 
 }  // namespace server::mapping

@@ -35,7 +35,7 @@ PathError path_error(std::span<const algo::Pose2> true_W, std::span<const algo::
   error.rms = std::sqrt(error.rms);
   double square = 0;
   double turn_square = 0;
-  double length = 0;  // of the true way from i to j
+  double length = 0;  // [m] of the true path from i to j
   std::size_t j = 0;
   for (std::size_t i = 0; i < true_W.size(); ++i) {
     while (length < kPiece && j + 1 < true_W.size()) {

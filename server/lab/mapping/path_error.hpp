@@ -1,4 +1,4 @@
-// server/lab/mapping/path_error.hpp: how far one path of a robot is off another.
+// server/lab/mapping/path_error.hpp: the error of one path against another.
 #pragma once
 
 #include <cstddef>
@@ -8,22 +8,22 @@
 
 namespace server::mapping {
 
-/// A path against the one held for true, both from the same first pose.
+/// The error of a path against the true one; both have the same first pose.
 struct PathError {
   double end = 0;       // [m] between the last positions
-  double rms = 0;       // [m] between the positions along the way, root mean square
+  double rms = 0;       // [m] between positions along the way, root mean square
   double rms_10m = 0;   // [m] relative error over pieces of 10 m, root mean square
-  double turn_10m = 0;  // [rad] the same of the heading
+  double turn_10m = 0;  // [rad] likewise for the heading
   std::size_t pieces = 0;
 };
 
-/// Relative error of a piece from pose i to the first pose j at least 10 m of the true way on: of
-/// the step from i to j, as the robot at i sees it, the estimate's less the truth's (Kuemmerle et
-/// al. 2009; one for each i that has such a j). Divided by the way in tens of metres, `rms` is an
-/// error per 10 m as well, which forgives what the truth's own headings are unsteady by.
+/// A piece goes from pose i to the first pose j at least 10 m farther along the true path; each i
+/// with such a j gives one piece. Its relative error is the step from i to j, seen from pose i: the
+/// estimate's minus the truth's (Kuemmerle et al. 2009). `rms` divided by the path length in tens
+/// of metres is also an error per 10 m, and it does not suffer from unsteady headings of the truth.
 PathError path_error(std::span<const algo::Pose2> true_W, std::span<const algo::Pose2> estimate_W);
 
-/// [m] Along the positions.
+/// [m] Length along the positions.
 double path_length(std::span<const algo::Pose2> path_W);
 
 }  // namespace server::mapping

@@ -1,4 +1,4 @@
-// server/lab/mapping/sharpness.cpp: scans of a piece, laid into cells.
+// server/lab/mapping/sharpness.cpp: counts the cells that the scans of a piece hit.
 #include "server/lab/mapping/sharpness.hpp"
 
 #include <cmath>

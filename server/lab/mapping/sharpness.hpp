@@ -1,5 +1,5 @@
-// server/lab/mapping/sharpness.hpp: how thin a path makes the walls it maps; says which of two
-// paths is nearer the truth without knowing it.
+// server/lab/mapping/sharpness.hpp: how thin the mapped walls are along a path; tells which of two
+// paths is nearer the truth without knowing the truth.
 #pragma once
 
 #include <cstddef>
@@ -11,9 +11,10 @@
 
 namespace server::mapping {
 
-/// Cells of 4 cm in which a beam of at most 15 m ended, when the scans are laid along `path_W`;
-/// one count for each piece of 10 m of `reference_W`, so that no coming back is judged. The
-/// truer the poses of a piece, the fewer cells its walls take. All as long as each other.
+/// Counts cells of 4 cm in which a beam of at most 15 m ended, with the scans placed along
+/// `path_W`. Gives one count per piece of 10 m of `reference_W`, so that returning to a place is
+/// not judged. The more accurate the poses of a piece, the fewer cells its walls take. All three
+/// arguments have the same length.
 std::vector<std::size_t> wall_cells(std::span<const algo::LaserScan> scans,
                                     std::span<const algo::Pose2> path_W,
                                     std::span<const algo::Pose2> reference_W);

@@ -8,7 +8,7 @@
 namespace server::reproduce {
 namespace {
 
-/// A figure as the papers' tables have it: lengths in millimetres.
+/// A figure in the unit of the papers' tables: lengths in millimetres.
 struct PaperUnit {
   std::string name{};
   double factor = 1;

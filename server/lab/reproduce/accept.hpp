@@ -1,4 +1,4 @@
-// server/lab/reproduce/accept.hpp: what the file asks for, held against the runs.
+// server/lab/reproduce/accept.hpp: checks the runs against the limits of the study file.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace server::reproduce {
 
 using experiment::Series;
 
-/// One limit and whether it held.
+/// One limit, and whether it held.
 struct Check {
   std::string scenario{};
   std::string subject{};  // "modified", "modified < original", "modified, noise-free"
@@ -21,8 +21,8 @@ struct Check {
   bool held = false;
 };
 
-/// Every limit of the file, over `paper` or, where it asks for that, over `noise_free`. A series
-/// that is not there fails its checks.
+/// Checks every limit of the file against `paper` or, if the limit says so, `noise_free`. A missing
+/// series fails its checks.
 std::vector<Check> evaluate(const StudyFile& file,
                             std::span<const Series> paper,
                             std::span<const Series> noise_free);

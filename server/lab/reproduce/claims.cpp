@@ -1,4 +1,4 @@
-// server/lab/reproduce/claims.cpp: one condition a sentence.
+// server/lab/reproduce/claims.cpp: one condition per claim.
 #include "server/lab/reproduce/claims.hpp"
 
 #include <array>
@@ -12,7 +12,7 @@ using algo::Outcome;
 using Condition = bool (*)(const Series& original, const Series& modified);
 
 struct Statement {
-  std::string_view scenarios{};  // names, each between blanks
+  std::string_view scenarios{};  // names, each with a blank before and after
   const char* text = "";
   Condition holds = nullptr;
 };

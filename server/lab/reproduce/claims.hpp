@@ -1,4 +1,4 @@
-// server/lab/reproduce/claims.hpp: what the sources say of their cases, held against the rows.
+// server/lab/reproduce/claims.hpp: tests the sources' claims about their cases against the rows.
 #pragma once
 
 #include <span>
@@ -25,8 +25,8 @@ struct Claim {
   std::vector<std::string> held_by{};  // readings of the modified strip
 };
 
-/// The claims on those scenarios of Nong 2008 that are among `rows`. A claim about the modified
-/// strip is tried with each reading of it.
+/// The claims of Nong 2008 about the scenarios in `rows`. A claim about the modified strip is
+/// tested with each reading of it.
 std::vector<Claim> judge_claims(std::span<const Series> rows);
 
 }  // namespace server::reproduce

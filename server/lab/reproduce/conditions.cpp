@@ -1,4 +1,4 @@
-// server/lab/reproduce/conditions.cpp: the conditions of the papers put on a scenario.
+// server/lab/reproduce/conditions.cpp: applies the papers' conditions to a scenario.
 #include "server/lab/reproduce/conditions.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace server::reproduce {
 namespace {
 
-/// Every beam from the pose at the tick; uniform noise on returns only, none on the others. Ranges
-/// come in whole millimetres, as from the device: the one thing the prototype had not.
+/// All beams start from the pose at the tick. Uniform noise on returns only. Ranges are in whole
+/// millimetres, as from the device; only this differs from the prototype.
 sim::LaserConfig paper_scanner(const PaperConditions& paper, bool noise) {
   sim::LaserConfig laser = sim::LaserConfig::ideal(0.5);
   laser.range_max = paper.range_max;

@@ -1,4 +1,4 @@
-// server/lab/reproduce/conditions.hpp: one scenario, one reading, one seed as a run.
+// server/lab/reproduce/conditions.hpp: makes a run from one scenario, one reading and one seed.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace server::reproduce {
 
-/// What of the full simulator is in place of the paper's conditions.
+/// Which of the paper's conditions the full simulator replaces.
 struct Conditions {
   bool noise = true;         // of the paper's scanner
   bool base = false;         // Bullet with its ramps and wheels, else exact arcs
@@ -21,15 +21,15 @@ constexpr Conditions kPaper{};
 constexpr Conditions kNoiseFree{.noise = false};
 constexpr Conditions kFullSimulator{.base = true, .scanner = true, .fast_period = true};
 
-/// Throws std::exception with a sentence when the scenario cannot be run so.
+/// Throws std::exception with a sentence if the scenario cannot run under the conditions.
 RunSpec make_run(const PaperConditions& paper,
                  const sim::Scenario& scenario,
                  std::string_view reading,
                  const Conditions& conditions,
                  std::uint64_t seed);
 
-/// Builds the world of every scenario once, so that what cannot be run is said before anything is.
-/// Throws std::runtime_error naming the scenario.
+/// Builds the world of every scenario once, to find an invalid scenario before any run. Throws
+/// std::runtime_error naming it.
 void check_scenarios(const StudyFile& file);
 
 }  // namespace server::reproduce

@@ -17,14 +17,14 @@ struct Change {
   const char* name = "";
   Conditions conditions{};
 };
-// Base and scanner need the short tick; it goes with them, and is tried alone first.
+// Base and scanner need the short tick, so they include it. It is first tried alone.
 constexpr std::array<Change, 3> kChanges{{
     {"the 26 ms tick", {.fast_period = true}},
     {"the base (Bullet: ramps, wheels, encoder odometry)", {.base = true, .fast_period = true}},
     {"the scanner (rolling LMS200 model)", {.scanner = true, .fast_period = true}},
 }};
 
-/// The outcome of most runs; the better one of equals.
+/// The most frequent outcome; of equally frequent ones, the better.
 Outcome usual(const Series& row) {
   Outcome best = Outcome::Reached;
   for (const Outcome outcome : {Outcome::Stuck, Outcome::OutOfTime, Outcome::Collided}) {
@@ -39,7 +39,7 @@ bool same_outcomes(const Series& a, const Series& b) {
          same(Outcome::Collided);
 }
 
-/// The runs that end otherwise than most of the paper's.
+/// The number of runs that do not end like most of the paper's.
 std::size_t ends_otherwise(const Series& row, const Series& paper) {
   return row.runs.size() - count(row, usual(paper));
 }
@@ -49,7 +49,7 @@ std::string capital(std::string sentence) {
   return sentence;
 }
 
-/// Which change alone is enough, seen in the runs of `tried` (under each of kChanges).
+/// Which change alone is enough, judged by `tried`: the row under each of kChanges.
 std::string cause(const Series& paper, std::span<const Series> tried) {
   if (ends_otherwise(tried[0], paper) > 0) {
     return capital(
@@ -72,7 +72,7 @@ double nearest_surface(const sim::Scenario& scenario, const algo::Vec2& p_W) {
   return nearest;
 }
 
-/// Where the stuck runs stand, on average.
+/// The average place of the stuck runs.
 std::string place(const PaperConditions& conditions,
                   const sim::Scenario& scenario,
                   const Series& row) {

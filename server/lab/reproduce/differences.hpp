@@ -1,5 +1,5 @@
-// server/lab/reproduce/differences.hpp: where the full simulator ends otherwise than the paper's
-// conditions, and which of their differences alone does it.
+// server/lab/reproduce/differences.hpp: runs that end differently in the full simulator than under
+// the paper's conditions, and which single change causes it.
 #pragma once
 
 #include <span>
@@ -21,9 +21,9 @@ struct Difference {
   std::string explanation{};
 };
 
-/// For every scenario and reading whose outcomes differ, the run is done again with one change at a
-/// time: the 26 ms tick, the base, the scanner. The explanation says which of them alone lead to
-/// the full simulator's outcomes; it is a statement about these runs, nothing more.
+/// Repeats the runs of every scenario and reading whose outcomes differ, with one change at a time:
+/// the 26 ms tick, the base, the scanner. The explanation says which of them alone lead to the full
+/// simulator's outcomes. It holds for these runs only.
 std::vector<Difference> explain_differences(const StudyFile& file,
                                             std::span<const Series> paper,
                                             std::span<const Series> full,

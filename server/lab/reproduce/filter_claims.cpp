@@ -1,4 +1,4 @@
-// server/lab/reproduce/filter_claims.cpp: each sentence of chapter 3, held against the figures by a
+// server/lab/reproduce/filter_claims.cpp: tests each claim of chapter 3 against the figures, by a
 // rule that is printed with the verdict.
 #include <algorithm>
 #include <stdexcept>
@@ -10,9 +10,9 @@
 namespace server {
 namespace {
 
-constexpr double kKept = 0.05;     // [beams] a smaller shift or blur leaves an edge in place
-constexpr double kBlocked = 0.05;  // of an amplitude: less is gone, and 1 - this is passed
-constexpr double kCheaper = 0.9;   // of the other's CPU time
+constexpr double kKept = 0.05;     // [beams] with less shift or blur an edge counts as kept
+constexpr double kBlocked = 0.05;  // of an amplitude: below it blocked, above 1 - kBlocked passed
+constexpr double kCheaper = 0.9;   // of the other filter's CPU time
 
 const FilterFigures& figures_of(const std::vector<FilterFigures>& figures,
                                 std::string_view filter) {
@@ -34,7 +34,7 @@ Verdict verdict(bool whole, bool part) {
   return part ? Verdict::InPart : Verdict::NotReproduced;
 }
 
-/// What both N of a filter make of a test signal.
+/// A filter's results on a test signal for N = 1 and N = 2.
 struct Pair {
   double n1 = 0, n2 = 0;
   double most() const { return std::max(n1, n2); }

@@ -1,4 +1,4 @@
-// server/lab/reproduce/filter_document.cpp: the study as tables: on the terminal and as Markdown.
+// server/lab/reproduce/filter_document.cpp: the study as tables, for the terminal and as Markdown.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -136,7 +136,7 @@ std::string about_recordings(const FilterStudy& study) {
                "other.";
 }
 
-/// Where the pseudomedian of the flat layout differs from its truth: "186: 850".
+/// The beams at which the pseudomedian of the flat layout differs from the truth: "186: 850".
 std::string flat_changes(const SceneResult& flat) {
   std::vector<std::string> out;
   const std::vector<double>& after = flat.after_mm.at(1);
@@ -146,7 +146,7 @@ std::string flat_changes(const SceneResult& flat) {
   return fmt::format("{}", fmt::join(out, ", "));
 }
 
-/// What the near spike of the first scene becomes.
+/// The filtered near spike of the first scene, as a sentence.
 std::string phantom(const SceneResult& first) {
   const auto near = std::ranges::min_element(first.scene.spikes, {}, &Spike::mm);
   return fmt::format(

@@ -1,4 +1,5 @@
-// server/lab/reproduce/filter_figures.cpp: the figures of the study, each a short walk over a scan.
+// server/lab/reproduce/filter_figures.cpp: the figures of the study, each from one pass over a
+// scan.
 #include "server/lab/reproduce/filter_figures.hpp"
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 namespace server {
 namespace {
 
-/// Sums while walking over many scans.
+/// Sums over many scans.
 struct Tally {
   double edge_shift = 0, edge_blur = 0;
   std::size_t edges = 0;
@@ -33,7 +34,7 @@ double bend(std::span<const double> x, std::size_t i) {
   return x[i - 1] - 2 * x[i] + x[i + 1];
 }
 
-/// Values that the filter made up, and those between two steps of the device.
+/// Counts values that are not in their window, and values between two steps of the device.
 void count_made_up(std::span<const double> before,
                    std::span<const double> after,
                    std::span<const std::uint8_t> valid,
@@ -54,7 +55,7 @@ void count_made_up(std::span<const double> before,
   }
 }
 
-/// The edge between `truth`'s samples i and i + 1, looked for within `reach` samples either side.
+/// Judges the edge between samples i and i + 1 of `truth`; searches `reach` samples on either side.
 void judge_edge(std::span<const double> truth,
                 std::span<const double> after,
                 std::size_t i,
@@ -65,7 +66,7 @@ void judge_edge(std::span<const double> truth,
   const bool rises = truth[i + 1] > truth[i];
   const std::size_t first = i + 1 >= reach ? i + 1 - reach : 0;
   const std::size_t last = std::min(truth.size() - 1, i + reach);
-  double shift = static_cast<double>(reach);  // when the edge is gone
+  double shift = static_cast<double>(reach);  // if the edge is lost
   for (std::size_t k = first; k <= last; ++k) {
     if (std::abs(after[k] - truth[k]) > kEdgeTolerance * jump) tally.edge_blur += 1;
     if (k == last || (after[k] >= half) == rises || (after[k + 1] >= half) != rises) continue;
@@ -76,7 +77,7 @@ void judge_edge(std::span<const double> truth,
   ++tally.edges;
 }
 
-/// Samples far enough from every edge and corner of the truth for a window not to reach one.
+/// Samples whose window reaches no edge or corner of the truth.
 std::vector<bool> smooth_samples(const FilterScene& scene, int half_width) {
   const std::vector<double>& truth = scene.truth_mm;
   std::vector<bool> smooth(truth.size(), true);
@@ -97,7 +98,7 @@ bool near_a_spike(const FilterScene& scene, std::size_t beam, int half_width) {
   });
 }
 
-/// Beams first .. first + count - 1 valid and each near the one before.
+/// True if beams first .. first + count - 1 are valid and each is near the one before.
 bool one_surface(const ScanValues& scan, std::size_t first, std::size_t count) {
   for (std::size_t k = first; k < first + count; ++k) {
     if (scan.valid[k] == 0) return false;
@@ -108,7 +109,7 @@ bool one_surface(const ScanValues& scan, std::size_t first, std::size_t count) {
 
 void judge_scan(const ScanValues& before, const ScanValues& after, int half_width, Tally& tally) {
   const std::size_t n = before.mm.size();
-  // A second difference of the result looks that far in the scan.
+  // A second difference of the filtered scan depends on samples this far away.
   const auto reach = static_cast<std::size_t>(half_width) + 1;
   for (std::size_t i = 2; i + 2 < n; ++i) {
     if (i >= reach && i + reach < n && one_surface(before, i - reach, 2 * reach + 1)) {
@@ -116,7 +117,7 @@ void judge_scan(const ScanValues& before, const ScanValues& after, int half_widt
       tally.wiggle_after += bend(after.mm, i) * bend(after.mm, i);
       ++tally.quiet;
     }
-    // Three beams on one surface, then three on another: an edge without an impulse at it.
+    // Three beams on one surface, then three on another: an edge without an impulse.
     if (i + 3 < n && std::abs(before.mm[i + 1] - before.mm[i]) > kLogEdge_mm &&
         one_surface(before, i - 2, 3) && one_surface(before, i + 1, 3)) {
       judge_edge(before.mm, after.mm, i, 3, tally);

@@ -1,4 +1,4 @@
-// server/lab/reproduce/filter_json.cpp: the study's figures for programs.
+// server/lab/reproduce/filter_json.cpp: the study's figures as JSON.
 #include "server/lab/reproduce/filter_study.hpp"
 
 namespace server {

@@ -1,4 +1,5 @@
-// server/lab/reproduce/filter_pictures.cpp: before and after as SVG, one small panel a filter.
+// server/lab/reproduce/filter_pictures.cpp: scans before and after filtering as SVG, one small
+// panel per filter.
 #include <algorithm>
 #include <cmath>
 
@@ -14,14 +15,14 @@ using experiment::SvgCanvas;
 
 constexpr double kPanelWidth = 440;
 constexpr double kPanelHeight = 190;
-constexpr double kLeft = 44;  // room for the numbers of an axis
+constexpr double kLeft = 44;  // [px] for the numbers of an axis
 constexpr double kTop = 30;
 constexpr double kBottom = 22;
 constexpr double kRight = 12;
 constexpr std::size_t kColumns = 2;
 constexpr double kHead = 34;
 
-/// One panel: values [mm] over beams, in the panel's own corner of the picture.
+/// One panel: values [mm] over beams, at the panel's own place in the picture.
 class Panel {
  public:
   Panel(std::size_t place, std::size_t beams, double top_mm)
@@ -51,7 +52,7 @@ class Panel {
     }
   }
 
-  /// A line with a gap wherever a value is not valid; `valid` empty: all are.
+  /// Draws a line with a gap at each invalid value; if `valid` is empty, all are valid.
   void line(const ScanValues& scan, std::string_view attributes, SvgCanvas& canvas) const {
     std::string steps;
     bool down = false;
@@ -85,7 +86,7 @@ std::string panel_title(std::string_view filter, int half_width) {
   return fmt::format("{}, N = {}", filter, half_width);
 }
 
-/// The axis' end: above the highest value, unless a few far ones would squash all others.
+/// The axis' end: above the highest value, unless a few outliers would squash all other values.
 double top_of(const ScanValues& scan) {
   std::vector<double> sorted{1000};
   for (std::size_t i = 0; i < scan.mm.size(); ++i) {

@@ -1,4 +1,5 @@
-// server/lab/reproduce/filter_references.cpp: written for plainness; only algo's kernels are tuned.
+// server/lab/reproduce/filter_references.cpp: reference filters, written for clarity; only algo's
+// kernels are tuned.
 #include "server/lab/reproduce/filter_references.hpp"
 
 #include <algorithm>
@@ -10,12 +11,12 @@
 namespace server {
 namespace {
 
-/// Sample i of `in`, the border one repeated beyond it.
+/// Sample i of `in`; the border sample repeats beyond the border.
 double repeated(std::span<const double> in, std::ptrdiff_t i) {
   return in[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(i, 0, std::ssize(in) - 1))];
 }
 
-/// Reduces the valid samples of each window; validity as the product's filters have it.
+/// Reduces the valid samples of each window; handles validity like the product's filters.
 template <double (*Reduce)(const std::vector<double>&)>
 void over_windows(std::span<const double> in,
                   std::span<const std::uint8_t> valid,

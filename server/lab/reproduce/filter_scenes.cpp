@@ -28,7 +28,7 @@ algo::Obstacle cylinder(std::uint32_t id, double x, double y, double radius) {
   return {.id = id, .pose_W = {x, y, 0}, .shape = algo::Cylinder{radius}};
 }
 
-/// A wall across the way ahead and one to either side.
+/// A wall across the way ahead and one on either side.
 std::vector<algo::Obstacle> room(double ahead, double aside) {
   const double up = std::numbers::pi / 2;
   return {{.id = 100, .pose_W = {ahead + 0.05, 0, up}, .shape = algo::Wall{20, 0.1}},
@@ -78,7 +78,7 @@ std::vector<Spike> first_spikes() {
 ScanValues values_of(const algo::LaserScan& scan) {
   ScanValues out;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    // Nothing within range counts as range_max, as for ScanFilter.
+    // A beam without a return counts as range_max, as in ScanFilter.
     const double range = scan.status[i] == algo::Beam::Ok ? scan.ranges[i] : scan.range_max;
     out.mm.push_back(std::nearbyint(range * 1000));
     out.valid.push_back(scan.status[i] == algo::Beam::Invalid ? 0 : 1);

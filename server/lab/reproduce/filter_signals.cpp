@@ -1,5 +1,5 @@
-// server/lab/reproduce/filter_signals.cpp: the filters on signals made for the purpose, and what
-// they cost.
+// server/lab/reproduce/filter_signals.cpp: runs the filters on test signals and measures their
+// cost.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -16,7 +16,7 @@ using Samples = std::vector<double>;
 
 constexpr std::size_t kLength = 60;
 constexpr std::size_t kMiddle = 30;
-/// The border is not the question here: samples nearer to it are not looked at.
+/// Samples nearer to the border than this are ignored.
 constexpr std::size_t kMargin = 12;
 
 Samples made(const std::function<double(std::size_t)>& value) {
@@ -33,7 +33,7 @@ double largest_difference(const Samples& a, const Samples& b) {
   return largest;
 }
 
-/// Half of what lies between the lowest and the highest value.
+/// Half of the difference between the highest and the lowest value.
 double amplitude(const Samples& x) {
   const auto [low, high] = std::minmax_element(x.begin() + kMargin, x.end() - kMargin);
   return (*high - *low) / 2;
@@ -71,7 +71,7 @@ Samples spoiled(const Samples& truth, double share, sim::Random& random) {
   return out;
 }
 
-/// [s] CPU time of one call, the fastest of a few rounds: noise of the machine only adds.
+/// [s] CPU time of one call, the fastest of a few rounds: other load can only add time.
 class Stopwatch {
  public:
   void round(const std::function<void()>& work) {

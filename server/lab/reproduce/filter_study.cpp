@@ -1,4 +1,4 @@
-// server/lab/reproduce/filter_study.cpp: the scenes and recordings through every filter.
+// server/lab/reproduce/filter_study.cpp: runs every filter on the scenes and recordings.
 #include "server/lab/reproduce/filter_study.hpp"
 
 #include <algorithm>

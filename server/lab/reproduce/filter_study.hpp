@@ -1,5 +1,5 @@
-// server/lab/reproduce/filter_study.hpp: chapter 3 of the thesis done again: what the pseudomedian
-// filter makes of a laser scan, beside other filters, and whether its sentences hold.
+// server/lab/reproduce/filter_study.hpp: reproduces chapter 3 of the thesis: the pseudomedian
+// filter on laser scans, beside other filters, and whether the chapter's claims hold.
 #pragma once
 
 #include <filesystem>
@@ -16,7 +16,7 @@
 namespace server {
 
 struct FilterStudyOptions {
-  /// Folder with CARMEN logs of a real scanner; without it a simulated recording stands in.
+  /// Folder with CARMEN logs of a real scanner. Without it a simulated recording is used.
   std::optional<std::filesystem::path> logs{};
 };
 
@@ -44,28 +44,30 @@ struct Example {
   std::vector<ScanValues> after{};  // one a filter, in the table's order
 };
 
-/// What one filter leaves of one test signal: 0 nothing, 1 all of it.
+/// The share of each test signal that one filter leaves: 0 nothing, 1 all of it.
 struct SignalResult {
   std::string filter{};
   int half_width = 1;
   double single = 0;    // of one impulse
   double adjacent = 0;  // of two impulses side by side
-  double apart = 0;     // of two with one sample between: the highest value anywhere
-  double step = 0;      // largest error at a step, of its height
-  double ramp = 0;      // largest error inside a ramp, of its rise per sample
-  double fastest = 0;   // of an oscillation from sample to sample, its amplitude
-  double slower = 0;    // of one with two samples up and two down
+  double apart = 0;     // of two impulses one sample apart: the highest value anywhere
+  double step = 0;      // largest error at a step, as a share of its height
+  double ramp = 0;      // largest error inside a ramp, as a share of its rise per sample
+  double fastest = 0;   // amplitude of an oscillation from sample to sample
+  double slower = 0;    // amplitude of one with two samples up and two down
 };
 
-/// Share of 360 values off by more than kImpulse_mm when a share of them is salt or pepper.
+/// `off`: share of 360 values wrong by more than kImpulse_mm after filtering, when the share
+/// `spoiled` was salt or pepper.
 struct NoiseResult {
-  double spoiled = 0;  // share that was meant to be
+  double spoiled = 0;  // nominal share
   std::string filter{};
   int half_width = 1;
   double off = 0;
 };
 
-/// CPU time of one pass over 360 values, pseudomedian / median, both measured by turns in this run.
+/// CPU time of one pass over 360 values, as the ratio pseudomedian / median. Both are measured in
+/// turn in the same process.
 struct CostResult {
   int half_width = 1;
   double product = 0;   // algo's kernels
@@ -79,7 +81,7 @@ std::string_view name(Verdict verdict);
 struct Claim {
   std::string source{};
   std::string sentence{};
-  std::string rule{};   // how the figures decide
+  std::string rule{};   // how the figures decide the verdict
   std::string found{};  // the figures
   Verdict verdict = Verdict::NotReproduced;
 };
@@ -87,7 +89,7 @@ struct Claim {
 struct FilterStudy {
   SceneResult flat{};
   std::vector<SceneResult> scenes{};
-  double as_printed_step = 0;  // largest error of Eq. 1 as printed at a step, N = 1, of its height
+  double as_printed_step = 0;  // of Eq. 1 as printed: largest error at a step, N = 1, of its height
   std::vector<SignalResult> signals{};
   std::vector<NoiseResult> noise{};
   std::vector<RecordingResult> recordings{};
@@ -96,8 +98,8 @@ struct FilterStudy {
   std::vector<Claim> claims{};
 };
 
-/// Everything but the cost is the same on each call. Throws std::runtime_error with a sentence when
-/// the logs cannot be read.
+/// Every result except the cost is the same on each call. Throws std::runtime_error with a sentence
+/// when the logs cannot be read.
 FilterStudy study_filters(const FilterStudyOptions& options);
 
 // ---- its parts ----
@@ -118,8 +120,8 @@ struct Picture {
 };
 std::vector<Picture> draw(const FilterStudy& study);
 
-/// Writes the pictures to pictures/reproduction beside `file`, and the section into `file`: in
-/// place of the one already there, else at its end. Throws std::runtime_error with a sentence.
+/// Writes the pictures to pictures/reproduction beside `file`, and the section into `file`:
+/// replaces the old section, or else appends it. Throws std::runtime_error with a sentence.
 void write_markdown(const FilterStudy& study, const std::filesystem::path& file);
 
 }  // namespace server

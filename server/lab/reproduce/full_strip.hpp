@@ -1,5 +1,5 @@
-// server/lab/reproduce/full_strip.hpp: our full strip beside every reading of the papers' one: is
-// it smoother, is it faster?
+// server/lab/reproduce/full_strip.hpp: compares our full strip with every reading of the papers'
+// strip: is it smoother, is it faster?
 #pragma once
 
 #include <map>
@@ -19,19 +19,19 @@ using experiment::Table;
 
 constexpr std::string_view kFullStrip = "strip";
 
-/// How deep [m] a run must come into the safety circle, by scenario, because of where it begins and
-/// ends: within the arrival radius of a goal that stands nearer to an obstacle than d_safe.
+/// Depth [m] to which a run must enter the safety circle, by scenario: start or goal may be nearer
+/// to an obstacle than d_safe. A run ends within the arrival radius of the goal.
 using Depths = std::map<std::string, double, std::less<>>;
 Depths least_depths(const StudyFile& file);
 
-/// The full strip against the rows of the readings that reach in every run.
+/// The full strip against the rows of the readings in which every run reaches the goal.
 struct StripBeside {
-  std::size_t rows = 0;  // such rows; the strip must reach, too
+  std::size_t rows = 0;  // such rows; the strip must also reach in every run
   /// "case2 original": the rows in which the strip is not better.
   std::vector<std::string> turns_less{};
   std::vector<std::string> bends_less{};
   std::vector<std::string> faster{};
-  std::vector<std::string> not_reached{};  // scenarios that the strip did not reach in every run
+  std::vector<std::string> not_reached{};  // scenarios in which a run of the strip did not reach
   // "exp1 by 159 mm (127 mm at least)": into the safety circle
   std::vector<std::string> entered{};
 };
@@ -39,10 +39,11 @@ StripBeside strip_beside(std::span<const Series> strip,
                          std::span<const Series> readings,
                          const Depths& least = {});
 
-/// A scenario a line, a controller a column: turning [rad] / bending [1e-3 rad2/mm] / time [s].
+/// One row per scenario, one column per controller: turning [rad] / bending [1e-3 rad2/mm] / time
+/// [s].
 Table strip_table(std::span<const Series> strip, std::span<const Series> readings);
 
-/// What the rows come to, in sentences.
+/// The result of the comparison, in sentences.
 std::string strip_sentences(const StripBeside& beside);
 
 }  // namespace server::reproduce

@@ -1,4 +1,4 @@
-// server/lab/reproduce/markdown.cpp: the words of docs/reproduction.md.
+// server/lab/reproduce/markdown.cpp: the text of docs/reproduction.md.
 #include "server/lab/reproduce/markdown.hpp"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// server/lab/reproduce/markdown.hpp: docs/reproduction.md as sections, each made apart.
+// server/lab/reproduce/markdown.hpp: docs/reproduction.md as separate sections.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace server::reproduce {
 
-/// A heading and what stands under it. A further study adds a section of its own to the list.
+/// A heading and its text. A further study adds its own section to the list.
 struct Section {
   std::string title{};
-  std::string body{};  // Markdown, ended by a new line
+  std::string body{};  // Markdown, ends with a line feed
 };
 
-/// Conditions, claims, both tables, the limits, the differences; the pictures are linked as
+/// The sections: conditions, claims, both tables, limits, differences. Pictures are linked as
 /// `pictures`/NAME.svg.
 std::vector<Section> study_sections(const StudyFile& file,
                                     const Study& study,
@@ -33,7 +33,7 @@ void write_reproduction(const std::string& path,
                         const Study& study,
                         std::span<const Section> sections);
 
-/// Where write_reproduction() puts the pictures, from the document's folder.
+/// The pictures' folder of write_reproduction(), relative to the document's folder.
 constexpr const char* kPictures = "pictures/reproduction";
 
 }  // namespace server::reproduce

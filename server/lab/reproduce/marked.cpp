@@ -1,4 +1,4 @@
-// server/lab/reproduce/marked.cpp: finding the marks.
+// server/lab/reproduce/marked.cpp: finds and replaces the marked part.
 #include "server/lab/reproduce/marked.hpp"
 
 #include <stdexcept>

@@ -1,4 +1,4 @@
-// server/lab/reproduce/marked.hpp: the part of a document that a program writes, between two marks.
+// server/lab/reproduce/marked.hpp: replaces the part of a document between two marks.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ struct Marks {
   std::string_view end{};
 };
 
-/// Puts `section`, which brings both marks itself, in the place of what lies between them, marks
-/// included. False when `text` does not have them.
+/// Replaces the text between two marks, and the marks, by `section`, which holds both marks itself.
+/// False if `text` lacks the marks.
 bool replace_marked(std::string& text, const Marks& marks, const std::string& section);
-/// The same in a file, which is made where it is not there; without the marks at its end. Throws
-/// std::runtime_error.
+/// As replace_marked(), in a file. Creates the file if needed; appends `section` if the marks are
+/// missing. Throws std::runtime_error.
 void put_marked(const std::filesystem::path& file, const Marks& marks, const std::string& section);
 
-/// Makes the folder `name` beside the document `file`, for its pictures. Throws std::runtime_error,
-/// also when `file` is a folder.
+/// Creates the folder `name` beside the document `file`, for its pictures. Throws
+/// std::runtime_error, also if `file` is a folder.
 std::filesystem::path folder_beside(const std::filesystem::path& file, std::string_view name);
 
 }  // namespace server::reproduce

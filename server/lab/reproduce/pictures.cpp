@@ -1,4 +1,4 @@
-// server/lab/reproduce/pictures.cpp: colours and what is drawn.
+// server/lab/reproduce/pictures.cpp: the layout and the paths in colours.
 #include "server/lab/reproduce/pictures.hpp"
 
 #include <array>
@@ -15,9 +15,9 @@ using algo::Vec2;
 using experiment::Series;
 using experiment::SvgPlot;
 constexpr double kWidth = 560;     // [px]
-constexpr double kEdge = 0.6;      // [m] of free plane about what is drawn
-constexpr double kSpacing = 0.03;  // [m] between the points of a path that are drawn
-// In the order of readings(); dashes as well, for those who see no colours.
+constexpr double kEdge = 0.6;      // [m] of margin around the drawing
+constexpr double kSpacing = 0.03;  // [m] between the drawn points of a path
+// In the order of readings(). Dashes as well, for colour-blind readers.
 constexpr std::array<const char*, 7> kStyles{
     "stroke=\"#d1495b\" stroke-width=\"2\"",
     "stroke=\"#8d6a9f\" stroke-width=\"2\" stroke-dasharray=\"8 3\"",
@@ -35,7 +35,7 @@ std::vector<Vec2> thinned(std::span<const Vec2> track_W) {
   return kept_W;
 }
 
-/// All that is drawn, and some free plane about it.
+/// Bounds of the drawing, with a margin.
 Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const Series> rows) {
   Eigen::AlignedBox2d bounds(scenario.start.position());
   bounds.extend(scenario.goal->position_W);

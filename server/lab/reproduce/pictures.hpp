@@ -1,4 +1,4 @@
-// server/lab/reproduce/pictures.hpp: a layout with the path of each reading.
+// server/lab/reproduce/pictures.hpp: draws a layout with the path of each reading.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace server::reproduce {
 
-/// An SVG document: the obstacles, start and goal of `scenario`, and of every row of it the path of
-/// its first run.
+/// An SVG document with the obstacles, start and goal of `scenario`, and the path of the first run
+/// of each of its rows.
 std::string draw_paths(const PaperConditions& paper,
                        const sim::Scenario& scenario,
                        std::span<const experiment::Series> rows);

@@ -12,11 +12,11 @@
 
 namespace server::reproduce {
 
-/// A scenario and a reading a line: outcomes, path, clearance, intrusion, turning, via points,
+/// One row per scenario and reading: outcomes, path, clearance, intrusion, turning, via points,
 /// time.
 Table rows_table(std::span<const Series> rows);
 Table checks_table(std::span<const Check> checks);
-/// Verdict and readings by table A, and by table B when it was made.
+/// Verdict and readings by table A, and by table B if it exists.
 Table claims_table(const Study& study);
 Table differences_table(std::span<const Difference> differences);
 
@@ -26,7 +26,7 @@ std::size_t runs(std::span<const Series> rows);
 /// "117 of 118 limits held."
 std::string checks_sentence(std::span<const Check> checks);
 
-/// What `tautline reproduce` prints, but for the last sentence.
+/// The output of `tautline reproduce`, without its last sentence.
 std::string to_text(const Study& study);
 /// Every metric of every row.
 nlohmann::json to_json(const Study& study);

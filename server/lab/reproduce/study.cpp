@@ -1,4 +1,4 @@
-// server/lab/reproduce/study.cpp: which runs are made.
+// server/lab/reproduce/study.cpp: chooses and makes the runs.
 #include "server/lab/reproduce/study.hpp"
 
 #include <algorithm>
@@ -36,7 +36,7 @@ Study run_study(const StudyFile& file, const StudyOptions& options) {
   Study study{.seeds = options.seeds, .first_seed = options.first_seed};
   study.paper =
       run(series_plans(file, kPaper, options.seeds, options.first_seed), "paper conditions");
-  StudyFile asked = file;  // without noise one run says all
+  StudyFile asked = file;  // one run is enough without noise
   std::erase_if(asked.scenarios, [&](const sim::Scenario& scenario) {
     return std::ranges::none_of(file.limits, [&](const Limit& limit) {
       return limit.noise_free && limit.scenario == scenario.name;

@@ -1,5 +1,5 @@
-// server/lab/reproduce/study.hpp: all of `tautline reproduce` but its words: runs and what they
-// show.
+// server/lab/reproduce/study.hpp: all of `tautline reproduce` except its text: the runs and their
+// results.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct StudyOptions {
   std::size_t seeds = 10;
   std::uint64_t first_seed = 1;
   bool full_simulator = true;
-  unsigned threads = 0;  // 0: one a core
+  unsigned threads = 0;  // 0: one per core
   experiment::NamedProgress progress{};
 };
 
@@ -27,21 +27,22 @@ struct Study {
   std::size_t seeds = 0;
   std::uint64_t first_seed = 0;
   std::vector<Series> paper{};       // table A: every scenario with every reading
-  std::vector<Series> noise_free{};  // one run each, where the file asks for it
+  std::vector<Series> noise_free{};  // one run each, where a limit of the file needs it
   std::vector<Series> full{};        // table B
   std::vector<Series> strip{};       // our full strip under the conditions of table A
   std::vector<Series> strip_full{};  // and of table B
   Depths least_depths{};
   std::vector<Check> checks{};
   std::vector<Claim> claims{};       // by table A
-  std::vector<Claim> full_claims{};  // the same by table B
+  std::vector<Claim> full_claims{};  // by table B
   std::vector<Difference> differences{};
 };
 
-/// Same file and seeds, same study, however many threads. Throws std::exception with a sentence.
+/// The same file and seeds give the same study with any number of threads. Throws std::exception
+/// with a sentence.
 Study run_study(const StudyFile& file, const StudyOptions& options);
 
-/// A series a scenario and controller. `seeds` runs each from `first_seed` on.
+/// One series per scenario and controller, with `seeds` runs each from `first_seed` on.
 std::vector<experiment::SeriesPlan> series_plans(
     const StudyFile& file,
     const Conditions& conditions,

@@ -1,4 +1,4 @@
-// server/lab/reproduce/study_file.cpp: every field of the document and its complaint.
+// server/lab/reproduce/study_file.cpp: reads every field of the document and refuses bad values.
 #include "server/lab/reproduce/study_file.hpp"
 
 #include <algorithm>

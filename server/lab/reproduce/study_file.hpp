@@ -1,5 +1,5 @@
 // server/lab/reproduce/study_file.hpp: the document of a study: conditions, scenarios, limits and
-// sweeps, in SI.
+// sweeps, in SI units.
 #pragma once
 
 #include <cstdint>
@@ -22,12 +22,12 @@ std::string_view embedded_study();
 
 namespace server::reproduce {
 
-/// [m] of the one robot that the papers have, and this program with it.
+/// [m] hull radius of the papers' robot, and of this program's.
 constexpr double kHullRadius = 0.35;
-/// In a metre: the papers' tables are in millimetres, and so are ours beside them.
+/// Millimetres in a metre: the papers' tables use millimetres, and so do ours.
 constexpr double kMillimetres = 1000;
 
-/// `conditions`: of every run, in place of the scenarios' own.
+/// `conditions` of every run; they replace the scenarios' own.
 struct PaperConditions {
   double safety_distance = 0;  // [m] d_safe
   double strip_step = 0;       // [m] S
@@ -47,17 +47,17 @@ struct PaperConditions {
   double time_limit_factor = 5;  // times straight line / v_max
 };
 
-/// One entry of `limits`: of a scenario and controller it asks one thing.
+/// One entry of `limits`: one requirement on one scenario and controller.
 struct Limit {
   std::string scenario{};
   std::string controller{};
-  bool noise_free = false;                    // asked of one run without noise
+  bool noise_free = false;                    // applies to one run without noise
   std::optional<algo::Outcome> outcome{};     // of every run
   std::optional<std::uint64_t> collisions{};  // in all runs
   std::string figure{};                       // a column of a judge, and its bound:
-  std::optional<double> at_least{};           // in the figure's own unit
+  std::optional<double> at_least{};           // in the figure's unit
   std::optional<double> at_most{};
-  std::string below{};  // a controller whose figure is higher
+  std::string below{};  // a controller whose figure must be higher
 };
 
 /// One entry of `sweeps`: one parameter over all scenarios.
@@ -74,14 +74,14 @@ struct StudyFile {
   std::vector<SweepPlan> sweeps{};
 };
 
-/// The readings of the strip in the order of the tables: the papers', then our others.
+/// The readings of the strip in the order of the tables: the papers' own, then ours.
 std::span<const std::string_view> readings();
 
-/// Throws DocumentError (json_reader.hpp) saying which field is unknown or malformed and how.
+/// Throws DocumentError (json_reader.hpp) saying which field is unknown or malformed, and why.
 StudyFile study_file_from_json(const nlohmann::json& document);
-/// From a file. Throws std::runtime_error with the path and the complaint.
+/// Reads a file. Throws std::runtime_error with the path and the fault.
 StudyFile read_study_file(const std::string& path);
-/// The copy within the program.
+/// The copy compiled into the program.
 StudyFile embedded_study_file();
 
 }  // namespace server::reproduce

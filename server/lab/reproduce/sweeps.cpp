@@ -18,7 +18,7 @@ namespace {
 
 using algo::Outcome;
 
-/// What the sources say of a parameter, and how a sweep of it is read.
+/// How a sweep of one parameter is shown and judged.
 struct Reading {
   const algo::ParameterInfo* parameter = nullptr;
   const char* name = "";
@@ -94,7 +94,7 @@ void judge_repulsion(Sweep& sweep, double tolerance_mm) {
   sweep.because = rising.text + ".";
 }
 
-/// The collided runs at each value; of those that are refused elsewhere, too.
+/// The collided runs at each value, and their sums over values accepted and refused elsewhere.
 struct Collisions {
   std::vector<std::size_t> at{};
   std::size_t accepted = 0;
@@ -141,7 +141,7 @@ void judge_safety_distance(Sweep& sweep, double tolerance_mm) {
       collided.accepted);
 }
 
-/// Whether F_int is ever more than rounding.
+/// True if F_int ever exceeds rounding.
 bool acts(const SweepLine& line) {
   constexpr double kRounding = 1e-9;  // [m]
   return std::ranges::any_of(
@@ -158,7 +158,7 @@ void judge_contraction(Sweep& sweep, double /*tolerance_mm*/) {
   std::size_t active = 0;
   std::size_t held = 0;
   std::size_t reached = 0;   // runs of the active lines at the largest K_c
-  std::size_t collided = 0;  // the same
+  std::size_t collided = 0;  // likewise
   for (const SweepLine& line : sweep.lines) {
     if (!acts(line)) continue;
     ++active;

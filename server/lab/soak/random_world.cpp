@@ -13,18 +13,18 @@
 namespace server::soak {
 namespace {
 
-constexpr double kHalf = 5.0;    // [m] of the room's edge
-constexpr double kMargin = 3.0;  // [m] around an open room that is searched too
+constexpr double kHalf = 5.0;    // [m] half of the room's edge
+constexpr double kMargin = 3.0;  // [m] around an open room; searched too
 constexpr double kCell = 0.05;   // [m]
-constexpr double kClear = 0.05;  // [m] from the robot's hull at the start
-constexpr double kHull = 0.35;   // [m] of the robot, the Silvermate
+constexpr double kClear = 0.05;  // [m] clearance of the hull at the start
+constexpr double kHull = 0.35;   // [m] hull radius of the Silvermate
 constexpr std::uint64_t kPurpose = 0x5041;
 
 std::size_t below(sim::Random& random, std::size_t count) {
   return static_cast<std::size_t>(random.uniform() * static_cast<double>(count));
 }
 
-/// Convex: points in order on an ellipse.
+/// A convex polygon: points in order on an ellipse.
 algo::Polygon polygon(sim::Random& random) {
   const std::size_t corners = 3 + below(random, 4);
   const double length = random.uniform(0.15, 0.8);

@@ -1,4 +1,4 @@
-// server/lab/soak/soak.cpp: random worlds as trials.
+// server/lab/soak/soak.cpp: runs random worlds as trials.
 #include "server/lab/soak/soak.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 using algo::Outcome;
 using experiment::Row;
 
-constexpr double kToSpare = 0.10;  // [m] of the way that surely exists
+constexpr double kToSpare = 0.10;  // [m] clearance along a way that surely exists
 
 constexpr std::string_view kSilent = "silent";
 constexpr std::string_view kCollision = "collision";

@@ -1,4 +1,4 @@
-// server/lab/soak/soak.hpp: many random worlds, and what must never happen in any.
+// server/lab/soak/soak.hpp: many random worlds, and the faults that must never happen in any.
 #pragma once
 
 #include <cstdint>
@@ -18,27 +18,28 @@ struct Options {
   experiment::PoolOptions pool{};
 };
 
-/// One world: until the goal, until the robot has stood for long, or 300 s. The figures are those
-/// of the judges `metrics`, `silence` and `place`; the reason is what the robot said last.
+/// One world, run until the goal, until the robot has stood still for long, or for 300 s. The
+/// figures are those of the judges `metrics`, `silence` and `place`; the reason is the robot's last
+/// sentence.
 struct World {
   std::uint64_t seed = 0;
-  bool has_way = false;  // in truth, with 10 cm to spare
+  bool has_way = false;  // in the true world, with 10 cm to spare
   experiment::Row row{};
 };
 
-/// How it ended, as the table counts it: "reached", "gave a reason", "out of time", and what must
-/// never be: "silent", "collision", "not finite".
+/// The ending as the table counts it: "reached", "gave a reason", "out of time", and the faults
+/// "silent", "collision", "not finite".
 std::string_view ending(const experiment::Row& row);
 bool is_fault(const experiment::Row& row);
 
 experiment::Trial trial_of(std::uint64_t seed, const std::string& controller);
 
-/// In the order of the seeds, whatever the threads; those of the shard.
+/// The worlds of the shard in order of seed, with any number of threads.
 std::vector<World> run_worlds(const Options& options);
 
-/// An ending a line, and in how many worlds it came.
+/// One row per ending, with its number of worlds.
 experiment::Table endings_table(const std::vector<World>& worlds);
-/// A world a line with every figure.
+/// One row per world, with every figure.
 experiment::Table rows_table(const std::vector<World>& worlds);
 
 }  // namespace server::soak
