@@ -34,7 +34,8 @@ std::size_t count_of(const algo::Layer& layer) {
   return std::min(layer.values.size(), kMostValues);
 }
 
-/// Writes `count` values as 16 bits each. @return true if every value fits
+/// Writes `count` values as 16 bits each.
+/// @return true if every value fits
 TAUTLINE_WIDE bool write_narrow(const float* values,
                                 std::size_t count,
                                 std::int16_t* __restrict out) {

@@ -28,8 +28,8 @@ bool valid_name(std::string_view name);
 /// True if `text` names a file: such a file exists, or it looks like a path.
 bool names_file(const std::string& text);
 
-/// @param shown the file's name in messages, without its folder: visitors need not know it. Throws
-/// LibraryError.
+/// @param shown  the file's name in messages, without its folder: visitors need not know that
+/// Throws LibraryError.
 std::string read_file(const std::filesystem::path& path, const std::string& shown);
 
 /// Visits files of `folder` whose stem is a valid name, sorted; none if the folder does not exist.

@@ -25,7 +25,7 @@ struct Read {
   sim::RobotModel robot{};
 };
 
-/// @param where the file's name in messages
+/// @param where  the file's name in messages
 Read parse(const std::string& text, const std::string& where) {
   try {
     const json document = parse_json(text, kOwnDocument);

@@ -25,7 +25,7 @@ namespace {
 using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
-/// @param at prefix of the fields in the document: "" or "robots/3/"
+/// @param at  prefix of the fields in the document: "" or "robots/3/"
 void check_choices(const std::string& at,
                    const std::string& controller_name,
                    const std::string& filter,

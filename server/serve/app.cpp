@@ -12,10 +12,10 @@
 namespace server {
 namespace {
 
-// How often is done what is due by the clock; frames and answers ring a bell.
+// Period of work that is due by the clock. Frames and answers ring a bell instead.
 constexpr std::chrono::milliseconds kTendPeriod{40};
 
-// Of all fast runs together: some 50 MB.
+// Shared by all fast runs: about 50 MB.
 constexpr std::size_t kSharedFrames = 1024;
 
 std::string prepared(const std::filesystem::path& database) {
@@ -36,7 +36,7 @@ RecorderOptions recorder_options_for(const AppOptions& options) {
 
 }  // namespace
 
-// Members go in the opposite order: the doors close first, the record last.
+// Members are destroyed in reverse order: the network closes first, the record last.
 struct App::Impl {
   explicit Impl(AppOptions options)
       : recorder(prepared(options.database), recorder_options_for(options)),
@@ -71,10 +71,10 @@ struct App::Impl {
     });
   }
   ~Impl() {
-    sessions.end_all();  // first: the robot stops, however long the others take
+    sessions.end_all();  // first: the robot stops, even if the other parts take long
     workers.stop();
     experiments.stop();
-    // What was posted may still answer through the server: while it is there.
+    // Posted jobs may still answer through the server, so wait while it exists.
     try {
       if (!recorder.flush()) spdlog::error("The last of the record could not be written.");
     } catch (const std::exception& e) {
@@ -94,7 +94,7 @@ struct App::Impl {
                   return load_from_json(context, session, body, std::move(done));
                 }};
   }
-  /// At once, but for sessions that were tended a moment ago.
+  /// At once, except for sessions that were tended a moment ago.
   void take_news() {
     if (!sessions.take_news(SessionRegistry::Clock::now()) || news_later) return;
     news_later = true;

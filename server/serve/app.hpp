@@ -1,4 +1,5 @@
-// server/serve/app.hpp: the serving program: the sessions, their record, and the doors to both.
+// server/serve/app.hpp: the serving program: the sessions, their record, and the network interfaces
+// to both.
 #pragma once
 
 #include <filesystem>
@@ -19,20 +20,20 @@ struct AppOptions {
   std::filesystem::path robots{};     // the user's own robot models
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
   std::uint64_t keep_bytes = std::uint64_t{2} << 30;
-  bool evict_oldest = false;    // finished runs may be deleted for room
+  bool evict_oldest = false;    // finished runs may be deleted to make room
   bool require_record = false;  // a tick that is not recorded ends the live run
-  RunSpec first{};              // of the session `main`, loaded at the start
+  RunSpec first{};              // first run of the session `main`
   SessionRules sessions{};
-  std::size_t threads = 0;        // that advance simulated runs; 0: one a processor
-  bool armed = false;             // hardware: its motors on as soon as its devices are well
-  bool unattended = false;        // hardware: drives on though nobody is there to stop it
-  std::function<bool()> ended{};  // asked some twenty times a second: true ends run()
+  std::size_t threads = 0;        // that advance simulated runs; 0: one per processor
+  bool armed = false;             // hardware: arm as soon as its devices are ready
+  bool unattended = false;        // hardware: drives on even without an operator
+  std::function<bool()> ended{};  // polled about 20 times a second; true ends run()
 };
 
 class App {
  public:
   /// Opens the database, binds the port and loads the first scenario. Throws std::exception with a
-  /// sentence.
+  /// sentence for people.
   explicit App(AppOptions options);
   ~App();
   App(const App&) = delete;

@@ -1,4 +1,4 @@
-// server/serve/bridge.cpp: what goes out on which channel, and what comes in on which topic.
+// server/serve/bridge.cpp: the outgoing channels and the incoming topics.
 #include "server/serve/bridge.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using foxglove::ClientId;
 using foxglove::ServiceReply;
 using nlohmann::json;
 constexpr std::chrono::milliseconds kPathPeriod{500};  // the whole path is sent each time
-constexpr int kStateShare = 9;  // times what publishing the state took, until the next
+constexpr int kStateShare = 9;  // next state after this many times its publishing time
 constexpr const char* kBusy = "More is waiting to be done than this robot can take. Try again.";
 
 std::shared_ptr<const std::string> shared(std::string text) {
@@ -42,7 +42,7 @@ double yaw_of(const JsonReader& q) {
   return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
 }
 
-/// The same limits as over REST.
+/// Applies the same limits as REST.
 algo::Request goal_at(const JsonReader& position, std::optional<double> heading) {
   json goal = {{"type", "set_goal"}, {"x", position.number("x")}, {"y", position.number("y")}};
   if (heading) goal["heading"] = *heading;
@@ -152,7 +152,7 @@ std::uint64_t Bridge::now_ns() const {
 }
 
 void Bridge::add_channels() {
-  // Encoded only while somebody subscribes: of each frame, and of the newest for who comes later.
+  // Encoded only while a client subscribes: each frame, and the newest one for a new subscriber.
   const auto drawn = [this](const char* topic,
                             const char* schema,
                             std::function<std::string(const algo::Telemetry&)> encode,
@@ -203,7 +203,7 @@ void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& 
 }
 
 void Bridge::add_services() {
-  // Each throws what is wrong with its request; the hub makes that the call's failure.
+  // Each throws on a bad request; the hub turns that into the call's failure.
   const auto add = [this](const char* name, std::function<void(const json&)> action) {
     hub_.add_service(
         name, [action = std::move(action)](ClientId, const json& body, const ServiceReply& reply) {
@@ -261,7 +261,7 @@ void Bridge::add_services() {
   });
 }
 
-/// A refusal found out later goes to the status line of the client that asked.
+/// A later refusal goes to the status line of the client that sent the request.
 std::string Bridge::hand_over(ClientId client, algo::Request request) {
   sign_of(client);
   if (const auto trouble = session_.trouble_with(request)) hub_.warn(client, *trouble);
@@ -273,7 +273,7 @@ std::string Bridge::hand_over(ClientId client, algo::Request request) {
   return given ? std::string() : std::string(kBusy);
 }
 
-/// A stick is published many times a second: once in a while is enough.
+/// A stick is published many times a second, so its refusals are reported only at intervals.
 void Bridge::say_refusal(ClientId client, bool stick, const std::string& refusal) {
   constexpr std::chrono::seconds kEvery{3};
   const auto now = std::chrono::steady_clock::now();
@@ -310,7 +310,7 @@ void Bridge::add_topics() {
   });
 }
 
-/// The frame with its news, which most frames leave out.
+/// The frame with its news, which most frames omit.
 std::shared_ptr<const std::string> Bridge::with_news(const Frame& frame) {
   algo::Telemetry t = frame.telemetry;
   t.words_fresh = true;
@@ -322,9 +322,9 @@ void Bridge::publish_frame(const FrameRef& frame) {
   const algo::Telemetry& t = frame->telemetry;
   const std::uint64_t time_ns = now_ns();
   const auto now = std::chrono::steady_clock::now();
-  hub_.broadcast_time(time_ns, now);  // first: it goes with the frame
+  hub_.broadcast_time(time_ns, now);  // first: it is sent with the frame
   if (hub_.wanted(telemetry_)) {
-    // News of frames that were passed over since the last one shown.
+    // True if frames skipped since the last one sent had news.
     const bool passed_over =
         (!t.words_fresh && t.words != told_words_) || (!t.legend_fresh && t.legend != told_legend_);
     hub_.publish(telemetry_,
@@ -357,9 +357,8 @@ void Bridge::state_changed() {
   flush();
 }
 
-/// The state of a world of two thousand obstacles takes milliseconds to write: changes that follow
-/// each other closely are told together, so that this takes a tenth of the io thread's time at
-/// most.
+/// The state of a world of two thousand obstacles takes milliseconds to write. Changes in quick
+/// succession are sent together, so that this takes at most a tenth of the io thread's time.
 void Bridge::flush() {
   const auto begin = std::chrono::steady_clock::now();
   if (!state_waits_ || begin < state_due_) return;

@@ -1,5 +1,5 @@
-// server/serve/bridge.hpp: a session on the Foxglove protocol: channels out; goals, edits, gains
-// in.
+// server/serve/bridge.hpp: connects a session to the Foxglove protocol: channels out; goals, edits
+// and gains in.
 #pragma once
 
 #include <chrono>
@@ -20,27 +20,27 @@ namespace server {
 
 class Bridge {
  public:
-  /// Carry out a `/load` document and a reset; either throws or tells `done` what went wrong.
+  /// Carry out a `/load` document and a reset. Errors are thrown or passed to `done`.
   using Done = std::function<void(std::exception_ptr)>;
   struct Loads {
-    std::function<bool(const nlohmann::json&, Done)> load{};  // false: too many wait
+    std::function<bool(const nlohmann::json&, Done)> load{};  // false: too many loads wait
     std::function<bool(Done)> reset{};
   };
   Bridge(Session& session, Loads loads);
 
   foxglove::Hub& hub() { return hub_; }
 
-  /// Publishes the state when it has changed and its turn has come; call it often.
+  /// Publishes the state if it has changed and is due. Call it often.
   void flush();
 
  private:
-  /// The session's tunables as protocol parameters.
+  /// The session's tunable parameters as protocol parameters.
   class Gains final : public foxglove::ParameterSource {
    public:
     explicit Gains(Bridge& bridge) : bridge_(bridge) {}
     std::vector<foxglove::Parameter> list() const override;
     std::string set(const std::string& name, const nlohmann::json& value) override;
-    /// Takes over what the session has now; values still on their way keep showing.
+    /// Copies the session's current values. A value still on its way to the run stays visible.
     void follow();
 
    private:
@@ -68,12 +68,12 @@ class Bridge {
   Loads loads_;
   foxglove::Hub hub_{};
   Gains gains_{*this};
-  FrameEncoder encoder_{};  // of what is sent besides the frames as they are
+  FrameEncoder encoder_{};  // encodes messages other than the frames themselves
   std::uint32_t told_legend_ = 0;
-  algo::Explanation told_words_{};  // that viewers of the telemetry have
+  algo::Explanation told_words_{};  // last words sent to viewers of the telemetry
   algo::Parameters told_parameters_{};
   bool state_waits_ = false;
-  std::chrono::steady_clock::time_point state_due_{};  // when it may be published again
+  std::chrono::steady_clock::time_point state_due_{};  // earliest time of the next publication
   std::size_t path_published_ = 0;
   std::map<foxglove::ClientId, std::chrono::steady_clock::time_point> stick_refused_{};
   std::chrono::steady_clock::time_point path_sent_{};

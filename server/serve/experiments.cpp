@@ -13,18 +13,18 @@
 namespace server {
 namespace {
 
-// Between two slices of a batch the database thread takes the frames of live runs.
+// Between two slices of a batch, the database thread takes the frames of live runs.
 constexpr std::chrono::milliseconds kSliceTime{10};
 constexpr std::size_t kSlice = 200;  // runs
-// How often the queue looks whether the store takes runs again.
+// Interval at which the queue checks if the store takes runs again.
 constexpr std::chrono::milliseconds kStoreRetry{200};
 
 }  // namespace
 
-/// Counts the world of a batch, given the size of its text. False when there is no room for it.
+/// Counts the memory of a batch's world, given the size of its text. False if there is no room.
 bool Experiments::Batch::hold(std::size_t document_bytes) {
   constexpr std::size_t kFixed = 4096;
-  constexpr std::size_t kTimes = 6;  // as measured: a world in memory against its text
+  constexpr std::size_t kTimes = 6;  // measured: size of a world in memory relative to its text
   bytes = kFixed + kTimes * document_bytes;
   return held.fetch_add(bytes) + bytes <= kMaxBytes;
 }
@@ -67,7 +67,8 @@ bool Experiments::start(Experiment experiment, Accepted accepted) {
   batch->experiment = std::move(experiment);
   batch->accepted = std::move(accepted);
   try {
-    // A world that cannot be built is refused now, not in the background; its spec goes in the row.
+    // Refuse a world that cannot be built now, not in the background. The row holds its robot's
+    // spec.
     const RunSpec& spec = batch->experiment.spec;
     batch->row = headless_run(spec, make_robot(spec)->spec(), batch->experiment.pace);
     if (!batch->hold(batch->row.document.size())) {
@@ -113,7 +114,7 @@ void Experiments::insert(db::RunStore& store, Batch& batch) {
     } while (batch.runs.size() < end && std::chrono::steady_clock::now() < until);
     store.commit();
   } catch (...) {
-    batch.runs.resize(before);  // the others are in the store
+    batch.runs.resize(before);  // keep the runs that are in the store
     throw;
   }
 }
@@ -125,21 +126,21 @@ void Experiments::queue(const std::shared_ptr<Batch>& batch) {
       queue_.push_back({batch, batch->experiment.spec.seed + i, batch->runs[i]});
     }
   }
-  batch->row = {};  // its document is in the store now
+  batch->row = {};  // the store has its document now
   batch->accepted(batch->runs, {});
   arrived(batch->experiment.repeats);
 }
 
-/// All or none: what is in the store already is cancelled, a slice at a time as it came.
+/// All or none: runs already in the store are cancelled, one slice at a time as they came.
 void Experiments::give_up(const Batch& batch, const std::string& why) {
   Recorder& recorder = recorder_;
   batch.accepted({}, why);
-  arrived(batch.experiment.repeats);  // stop() may return from here on, and this object go
+  arrived(batch.experiment.repeats);  // from here on stop() may return and this object be destroyed
   for (std::size_t begin = 0; begin < batch.runs.size(); begin += kSlice) {
     const auto from = batch.runs.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto left = static_cast<std::size_t>(batch.runs.end() - from);
     const auto to = from + static_cast<std::ptrdiff_t>(std::min(kSlice, left));
-    // Whatever ended the batch may keep the store from taking this too: nobody else would.
+    // The cause of the failure may also block this write, so retry it: nothing else would.
     recorder.post_when_well([runs = std::vector<db::RunId>(from, to), why](db::RunStore& store) {
       for (const db::RunId run : runs) {
         if (store.status_of(run) != db::RunStatus::Queued) continue;
@@ -198,7 +199,7 @@ bool Experiments::resume(db::RunId run,
   return true;
 }
 
-/// Why the run cannot be queued again; "" when it is.
+/// Queues the run again in the store; returns the reason if it cannot, else "".
 std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
   try {
     if (!store.requeue_run(run)) return "The run is neither interrupted nor cancelled nor failed.";
@@ -209,18 +210,18 @@ std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
   }
 }
 
-/// The next run of the queue as a job; waits for one, and for a store that takes it.
+/// The next run of the queue as a job. Waits for a run, and for a store that takes it.
 experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
   give_way();
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, stop, [this] { return !queue_.empty(); });
-    // Without a store that takes it, a run would be over and nobody could see how it went.
+    // If the store does not take it, a run would end and nobody could see its result.
     while (!stop.stop_requested() && !recorder_.takes_more()) {
       wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
     }
     if (stop.stop_requested()) return {};
-    if (queue_.empty()) continue;  // cancelled meanwhile
+    if (queue_.empty()) continue;  // its run was cancelled meanwhile
     Job job = std::move(queue_.front());
     queue_.pop_front();
     auto running = std::make_shared<Running>();
@@ -244,7 +245,7 @@ void Experiments::work_off(const Job& job, Running& running, const std::stop_tok
   wake_.wait_for(lock, stop, kStoreRetry, [] { return false; });
 }
 
-/// Ends a queued run as soon as the store takes it. Unless it went with a damaged store.
+/// Ends a queued run as soon as the store takes it, unless it was lost with a damaged store.
 void Experiments::end_later(db::RunId run, db::RunEnd end) {
   recorder_.post_when_well([run, end = std::move(end)](db::RunStore& store) {
     if (store.status_of(run) == db::RunStatus::Queued) store.end_run(run, end);
@@ -257,7 +258,7 @@ RunSpec Experiments::spec_of(const Job& job) {
   return spec;
 }
 
-/// False when the store does not take the run just now.
+/// False if the store does not take the run now.
 bool Experiments::execute(const Job& job, Running& running) {
   const auto failed = [](const std::exception& e) -> db::RunEnd {
     return {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()};
@@ -267,7 +268,7 @@ bool Experiments::execute(const Job& job, Running& running) {
            recorder_.ask([&](db::RunStore& store) { return store.clear_run(job.run); })) {
     }
   } catch (const db::DatabaseError& e) {
-    // What is damaged there concerns this run alone; the next ones must not wait for it.
+    // The damage concerns this run only; the next ones must not wait for it.
     if (e.trouble() != db::Trouble::Damaged) return false;
     end_later(job.run, failed(e));
     return true;

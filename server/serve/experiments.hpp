@@ -1,4 +1,4 @@
-// server/serve/experiments.hpp: headless runs in the background, one after another.
+// server/serve/experiments.hpp: runs headless experiments in the background, one after another.
 #pragma once
 
 #include <atomic>
@@ -22,43 +22,42 @@ namespace server {
 struct Experiment {
   RunSpec spec{};
   std::uint32_t repeats = 1;  // seeds spec.seed, spec.seed + 1, ...
-  double pace = 0;            // times real time; 0 = as fast as it goes
+  double pace = 0;            // times real time; 0 = as fast as possible
 };
 
-/// Queues runs in the database and works them off on a pool of its own, as trials without judges,
-/// so that neither the io thread nor a live robot waits. While the store takes no more runs the
-/// queue waits; runs of it can be cancelled all the same. A restart leaves them `interrupted`, to
-/// be taken up again by resume().
+/// Queues runs in the database and runs them on its own pool, as trials without judges, so that
+/// neither the io thread nor a live robot waits. The queue waits while the store accepts no runs;
+/// its runs can still be cancelled. A restart leaves them `interrupted`; resume() queues them
+/// again.
 class Experiments {
  public:
   using Accepted =
       std::function<void(const std::vector<db::RunId>& runs, const std::string& failure)>;
 
-  static constexpr std::size_t kMaxWaiting = 20'000;  // runs of all experiments together
-  /// [bytes] of the worlds that wait to be run, which repeats share.
+  static constexpr std::size_t kMaxWaiting = 20'000;  // queued runs of all experiments
+  /// [bytes] of all queued worlds; repeats share one world.
   static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
-  /// One thread as a rule: a core is then left to the io thread, which carries Stop, and to live
+  /// One thread by default, which leaves a core to the io thread, which carries Stop, and to live
   /// robots.
   explicit Experiments(Recorder& recorder, unsigned threads = 1);
-  ~Experiments();  // the runs at work are interrupted, queued ones stay behind
+  ~Experiments();  // interrupts current runs; queued runs stay in the database
 
-  /// Takes no more, and returns when nothing of it is under way on the db thread: batches that are
-  /// half queued are given up.
+  /// Accepts no more runs. Returns when the database thread does no more work for it: half-queued
+  /// batches are given up.
   void stop();
 
-  /// Gives the runs their numbers and queues them, a slice at a time between the frames of live
-  /// runs; `accepted` is called on the db thread, with either all numbers or why there are none.
-  /// False when too many runs or too large worlds wait already. Throws what is wrong with the
-  /// world.
+  /// Numbers and queues the runs in slices, between the frames of live runs. Calls `accepted` on
+  /// the database thread, with all numbers or the reason for a refusal. False if too many runs or
+  /// too large worlds wait already. Throws if the world is invalid.
   bool start(Experiment experiment, Accepted accepted);
 
-  /// Ends or unqueues a run. False when it is not among the queued and running.
+  /// Ends or unqueues a run. False if it is neither queued nor running.
   bool cancel(db::RunId run);
 
-  /// Queues a run that was cut, to be run again from its start under its own number. `resumed` is
-  /// called on the db thread with why not, or "". `spec`, `pace`: as it was begun;
-  /// `document_bytes`: the size of its world as text. False when too much waits already.
+  /// Queues an interrupted run again, from its start and under its own number. Calls `resumed` on
+  /// the database thread with the reason for a refusal, or "". `spec`, `pace`: as at its first
+  /// start; `document_bytes`: the size of its world as text. False if too much waits already.
   bool resume(db::RunId run,
               RunSpec spec,
               double pace,
@@ -66,7 +65,7 @@ class Experiments {
               std::function<void(const std::string& refusal)> resumed);
 
  private:
-  /// What all repeats have in common, kept once. It counts in `held` as long as it lives.
+  /// The data that all repeats share. It counts in `held` during its lifetime.
   struct Batch {
     explicit Batch(std::atomic<std::size_t>& all_bytes) : held(all_bytes) {}
     ~Batch() { held -= bytes; }
@@ -80,16 +79,16 @@ class Experiments {
     Experiment experiment{};
     db::NewRun row{};
     Accepted accepted{};
-    std::vector<db::RunId> runs{};  // the db thread's until they are queued
+    std::vector<db::RunId> runs{};  // used by the database thread until queued
   };
   struct Job {
     std::shared_ptr<const Batch> batch{};
     std::uint64_t seed = 0;
     db::RunId run = 0;
-    bool again = false;  // ticks of an earlier time are to be cleared away
+    bool again = false;  // ticks of an earlier start must be deleted
   };
 
-  /// A run at work.
+  /// A run in progress.
   struct Running {
     bool cancelled = false;
     std::stop_source stop{};
@@ -108,14 +107,14 @@ class Experiments {
   void end_later(db::RunId run, db::RunEnd end);
 
   Recorder& recorder_;
-  std::atomic<std::size_t> held_{0};  // [bytes] of all batches; declared first, as they count in it
+  std::atomic<std::size_t> held_{0};  // [bytes] of all batches; first, as batches refer to it
   std::mutex mutex_{};
   std::condition_variable_any wake_{};
   std::deque<Job> queue_{};
   std::size_t arriving_ = 0;  // accepted, but not yet in the queue
   bool stopping_ = false;
   std::map<db::RunId, std::shared_ptr<Running>> running_{};
-  experiment::Pool pool_;  // last: it works with all the others
+  experiment::Pool pool_;  // last: it uses all of the above
 };
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/serve/goal_check.cpp: the place itself, then the way there.
+// server/serve/goal_check.cpp: checks the goal itself, then the way there.
 #include "server/serve/goal_check.hpp"
 
 #include <algorithm>
@@ -17,17 +17,17 @@ namespace {
 
 using algo::Vec2;
 
-constexpr double kSlack = 0.01;           // [m] nobody sets a goal more exactly
-constexpr int kMostCells = 200;           // a side
+constexpr double kSlack = 0.01;           // [m] goals are not set more precisely than this
+constexpr int kMostCells = 200;           // per side
 constexpr double kLeastCell = 0.05;       // [m]
-constexpr double kMostLooks = 2'000'000;  // at cells by obstacles: some 20 ms
+constexpr double kMostLooks = 2'000'000;  // obstacle-cell checks: about 20 ms
 
-/// [m] What the robot needs about its middle, whichever way it looks.
+/// [m] Free radius that the robot needs at any heading.
 double least_room(const algo::RobotSpec& spec) {
   return spec.half_length > 0 ? std::min(spec.half_length, spec.half_width) : spec.radius;
 }
 
-/// Cells in which a disc of `room` cannot have its middle, whatever point of the cell that is.
+/// Grid that blocks a cell if a disc of radius `room` fits at no point of the cell.
 class Floor {
  public:
   Floor(const Eigen::AlignedBox2d& world, double room) : room_(room) {
@@ -46,7 +46,7 @@ class Floor {
     const Vec2 at = (p - low_) / cell_;
     return {static_cast<int>(at.x()), static_cast<int>(at.y())};
   }
-  /// The number of cells that had to be looked at.
+  /// Blocks cells near `obstacle`. Returns the number of cells checked.
   double block(const algo::Obstacle& obstacle) {
     const double reach = room_ - std::numbers::sqrt2 / 2 * cell_;
     const Eigen::AlignedBox2d box = bounds_W(obstacle);
@@ -77,7 +77,7 @@ class Floor {
   algo::CostGrid grid_{};
 };
 
-/// Whether obstacles shut the goal off; false also where that would take too long to find out.
+/// True if obstacles shut the goal off; false also if the check would take too long.
 bool shut_off(double room,
               const Vec2& from,
               const Vec2& to,

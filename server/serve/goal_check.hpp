@@ -1,4 +1,4 @@
-// server/serve/goal_check.hpp: what is known to be wrong with a goal before the robot sets off.
+// server/serve/goal_check.hpp: checks a goal before the robot sets off.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,17 @@
 
 namespace server {
 
-/// Whether a robot of `spec` at `pose_W` can stand at `goal` among `obstacles`, and get there: a
-/// sentence that says why not, nothing when it can. `obstacles` are those that stay where they are.
-/// Judged for a disc as wide as the robot's narrower side, on a grid: a
-/// goal said to be shut off is; of one behind a gap as wide as the robot nothing may be said.
+/// Checks if a robot of `spec` at `pose_W` can stand at `goal` among `obstacles`, and get there.
+/// Returns a sentence that says why not, or nothing if it can. `obstacles` are the static ones.
+/// Judges a disc as wide as the robot's narrower side on a grid. A goal reported as shut off really
+/// is; one behind a gap just as wide as the robot may go unreported.
 std::optional<std::string> goal_trouble(const algo::RobotSpec& spec,
                                         const algo::SetGoal& goal,
                                         const algo::Pose2& pose_W,
                                         std::span<const algo::Obstacle> obstacles);
 
-/// The same as far as the points of a scan tell: whether something was seen on the goal, or stands
-/// before it so that nothing is known of it. `seen` is the newest scan with its mount, taken at
-/// `pose_W`.
+/// The same check by the points of a scan: it reports a return on the goal, or one in front of it
+/// that hides it. `seen` is the newest scan with its mount, taken at `pose_W`.
 std::optional<std::string> goal_trouble(const algo::RobotSpec& spec,
                                         const algo::SetGoal& goal,
                                         const algo::Pose2& pose_W,

@@ -1,4 +1,4 @@
-// server/serve/layers_json.cpp: a function a kind, from the values of a layer to primitives.
+// server/serve/layers_json.cpp: one function per kind of layer turns its values into primitives.
 #include "server/serve/layers_json.hpp"
 
 #include <algorithm>
@@ -21,16 +21,16 @@ using namespace scene;
 using algo::Layer;
 using algo::LayerKind;
 
-constexpr double kHeight = 0.05;       // [m] above the ground, on which the viewer draws its grid
+constexpr double kHeight = 0.05;       // [m] above the ground, where the viewer draws its grid
 constexpr double kThickness = 0.03;    // [m] of a line
 constexpr double kThin = 0.01;         // [m]
 constexpr double kDot = 0.08;          // [m]
-constexpr double kShortest = 1e-3;     // [m] of an arrow
+constexpr double kShortest = 1e-3;     // [m] shortest arrow
 constexpr double kFaint = 0.35;        // opacity
-constexpr double kRing = 0.45;         // [m] from the robot to the foot of a polar's sector,
-constexpr double kTallest = 0.5;       // [m] and from there, at twice the level, its height
+constexpr double kRing = 0.45;         // [m] from the robot to the foot of a polar sector,
+constexpr double kTallest = 0.5;       // [m] its height from there at twice the level
 constexpr double kLifetime = 0.5;      // [s]
-constexpr double kGridLifetime = 6.0;  // [s] an unchanged one comes every five
+constexpr double kGridLifetime = 6.0;  // [s] an unchanged grid comes every 5 s
 constexpr int kCorners = 24;           // of a circle
 constexpr int kSteps = 8;              // of an arc
 constexpr std::uint8_t kEven = 127;
@@ -55,7 +55,7 @@ Colour colour_of(const Layer& layer) {
   return colour;
 }
 
-/// The values of a layer in records of one length.
+/// The values of a layer as records of equal length.
 class Records {
  public:
   Records(const Layer& layer, std::size_t more) : layer_(layer), length_(layer.axes + more) {}
@@ -143,7 +143,7 @@ void draw_arcs(const Layer& layer, const Point& /*robot*/, json& entity) {
   }
 }
 
-/// Cells that are more likely occupied than free, a rectangle for each run of them in a row.
+/// Draws cells that are more likely occupied than free: one rectangle per run of them in a row.
 void draw_grid(const Layer& layer, const Point& /*robot*/, json& entity) {
   if (layer.values.size() != 4 || !(layer.values[3] >= 1)) return;
   const double cell = layer.values[2];
@@ -199,7 +199,7 @@ void draw_text(const Layer& layer, const Point& /*robot*/, json& entity) {
   }
 }
 
-/// By the kind of the layer.
+/// Indexed by the kind of the layer.
 constexpr std::array kDraw{draw_points,
                            draw_polyline,
                            draw_arrows,

@@ -7,8 +7,8 @@
 
 namespace server {
 
-/// One entity a layer, whose id is the layer's name. An entity goes by itself when no further tick
-/// brings its layer: after half a second, a grid after six.
+/// One entity per layer, with the layer's name as id. An entity expires by itself if no further
+/// tick brings its layer: after half a second, a grid after six.
 std::string layers_json(const algo::Telemetry& t);
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/serve/live_run.cpp: who advances a run, and what becomes of it in the end.
+// server/serve/live_run.cpp: advances a run and concludes it.
 #include "server/serve/live_run.hpp"
 
 #include <chrono>
@@ -9,14 +9,14 @@
 namespace server {
 namespace {
 
-// What simulated time waits for a store that is slow.
+// Longest wait of simulated time for a slow store.
 constexpr std::chrono::milliseconds kRecordPatience{200};
-// [s] run clock: the record of a run in which nothing happens pauses after so long.
+// [s] run clock without an event, after which a run's record pauses.
 constexpr double kRecordPause = 5;
-// As many as a run at a few times real time needs; faster ones share the house's.
+// Enough for a run at a few times real time; faster runs share the server's frames.
 constexpr std::size_t kOwnFrames = 16;
 
-/// A log is played to its end, its standstills included.
+/// A log is recorded to its end, even while it stands still.
 RunPolicy live_policy(const RunSpec& spec, bool require_record) {
   return {.record_patience = kRecordPatience,
           .pause_record_after = spec.scenario.log.empty() ? kRecordPause : 0,
@@ -110,11 +110,11 @@ LiveRun::~LiveRun() {
   rings.stream.consume_all([](const FrameRef&) {});
 }
 
-/// On the thread that advanced it last.
+/// Called on the thread that advanced the run last.
 void LiveRun::conclude() {
   result_ = run_.finish();
   if (result_.outcome == algo::Outcome::Running) result_.outcome = algo::Outcome::Stopped;
-  // Nobody looks after it any more; the base's own thread brakes it and cuts its motors off.
+  // The run has ended. The base's own thread brakes the wheels and switches the motors off.
   if (arming_ != nullptr && arming_->epoch() != 0) {
     const std::string why = result_.reason.empty() ? "" : ": " + result_.reason;
     arming_->disarm("The motors are off, as the run ended" + (why.empty() ? "." : why));

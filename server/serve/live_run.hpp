@@ -1,5 +1,5 @@
-// server/serve/live_run.hpp: a run of a session at work: on the scheduler, or on a thread of its
-// own when it is hardware.
+// server/serve/live_run.hpp: a session's run in progress: on the scheduler, or on its own thread
+// for hardware.
 #pragma once
 
 #include <atomic>
@@ -21,51 +21,51 @@
 
 namespace server {
 
-/// What the runs of a server share.
+/// Services that all runs of a server share.
 struct RunHouse {
-  Recorder* recorder = nullptr;  // null: nothing is kept
+  Recorder* recorder = nullptr;  // null: nothing is recorded
   Scheduler& scheduler;
-  std::shared_ptr<FrameRoom> frames{};  // for runs that are fast, beyond what each has
-  bool tells_record_news = true;        // of the recorder, which says each piece once
-  bool require_record = false;          // a tick that is not recorded ends the run
+  std::shared_ptr<FrameRoom> frames{};  // shared by fast runs, beyond each run's own frames
+  bool tells_record_news = true;        // this session reports the recorder's news, which come once
+  bool require_record = false;          // a tick that cannot be recorded ends the run
 };
 
-/// One Run with its rings and frames. Made on any thread, begun by the io thread, and ended by
-/// a thread that may wait for it.
+/// One Run with its rings and frames. Any thread may construct it. The io thread begins it. A
+/// thread that may wait destroys it.
 class LiveRun final : private Scheduler::Task {
  public:
-  /// `news` is called on the thread that advances the run, when its rings have something.
+  /// `news` is called on the thread that advances the run, when the rings have data.
   LiveRun(RunSpec spec,
           std::unique_ptr<algo::Robot> robot,
           std::shared_ptr<RunChannel> channel,
           const RunHouse& house,
           OperatorWatch& watch,
           std::function<void()> news);
-  ~LiveRun() override;  // asks the loop to end and waits for it: at most one period of the robot
+  ~LiveRun() override;  // ends the loop and waits for it: at most one robot period
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
-  /// Begins, with these requests before the first tick. Once only.
+  /// Begins the run; applies `first` before the first tick. Call it once.
   void start(const std::vector<algo::Request>& first);
   /// Asks the loop to end, without waiting for it.
   void ask_to_end();
-  /// The run ends because the program does, not because somebody wants it to.
+  /// Marks that the run ends because the program does, not on a request.
   void cut() { cut_.store(true, std::memory_order_relaxed); }
   void set_pace(const Pace& pace);
-  /// Something waits in `rings.requests`.
+  /// `rings.requests` has data.
   void wake();
 
   Rings rings{};
   algo::Robot& robot() { return *robot_; }
   algo::Outcome outcome() const { return outcome_.load(std::memory_order_relaxed); }
-  /// The figures when the outcome last changed.
+  /// The metrics when the outcome last changed.
   algo::Metrics metrics() const;
-  /// How late its ticks were for their deadlines. Of hardware its own report tells.
+  /// Lateness of the ticks against their deadlines. Hardware gives it in its own report.
   algo::LatenessHistogram lateness() const { return pacer_.lateness(); }
   bool finished() const { return finished_.load(std::memory_order_acquire); }
   /// Only once finished() is true.
   const RunResult& result() const { return result_; }
-  /// Off when it is not recorded, or was not a moment ago.
+  /// Off if the run is not recorded, or its record has no status yet.
   RecordStatus record_status() const { return channel_ ? channel_->status() : RecordStatus{}; }
   db::RunId id() const { return channel_ ? channel_->run() : 0; }
 
@@ -77,7 +77,7 @@ class LiveRun final : private Scheduler::Task {
 
   RunSpec spec_;
   std::unique_ptr<algo::Robot> robot_;
-  algo::Arming* arming_;  // of hardware
+  algo::Arming* arming_;  // set for hardware
   algo::Pipeline pipeline_;
   std::shared_ptr<RunChannel> channel_;
   std::unique_ptr<RecordSink> sink_{};
@@ -91,10 +91,10 @@ class LiveRun final : private Scheduler::Task {
   RunResult result_{};
   std::atomic<bool> cut_{false};
   mutable std::mutex mutex_{};
-  algo::Metrics metrics_{};  // guarded by mutex_, which is taken only when the outcome changes
+  algo::Metrics metrics_{};  // guarded by mutex_; written when the outcome changes
   std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
   std::atomic<bool> finished_{false};
-  std::jthread thread_{};  // last: it uses all of the above. Of hardware only
+  std::jthread thread_{};  // last: it uses all of the above. Only for hardware
 };
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// server/serve/open_session.cpp: the parts of a session put together.
+// server/serve/open_session.cpp: connects the parts of a session.
 #include "server/serve/open_session.hpp"
 
 #include <utility>

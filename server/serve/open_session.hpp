@@ -1,5 +1,4 @@
-// server/serve/open_session.hpp: a session under its id, with what loads its runs and what speaks
-// to its viewers.
+// server/serve/open_session.hpp: a session with its id, its loader and its connection to viewers.
 #pragma once
 
 #include <atomic>
@@ -18,23 +17,24 @@ namespace server {
 
 class OpenSession;
 
-/// What all sessions of a server share.
+/// Services that all sessions of a server share.
 struct SessionHouse {
   RunHouse runs;
   Workers& workers;
   SessionLoader::Post to_io{};  // from any thread
-  /// From any thread, allocating nothing: a session has news for the io thread.
+  /// Tells the io thread that a session has news. From any thread; allocates nothing.
   std::function<void()> ring{};
-  /// Carries out a `/load` document for a session; false: too many wait. Throws DocumentError.
+  /// Carries out a `/load` document for a session. False if too many loads wait. Throws
+  /// DocumentError.
   std::function<bool(OpenSession&, const nlohmann::json&, SessionLoader::Done)> load{};
 };
 
-/// Io thread only, but for what it says of news. Nothing of one session is known to another.
+/// Io thread only, except has_news(). Sessions know nothing of each other.
 class OpenSession {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `most_runs`: how often it may load and reset; 0: as often as it likes.
+  /// `most_runs`: most loads and resets; 0: no limit.
   OpenSession(std::string id, SessionHouse house, std::size_t most_runs);
   OpenSession(const OpenSession&) = delete;
   OpenSession& operator=(const OpenSession&) = delete;
@@ -43,16 +43,16 @@ class OpenSession {
   Session& session() { return session_; }
   SessionLoader& loader() { return loader_; }
   Bridge& bridge() { return bridge_; }
-  /// What its WebSocket clients come through.
+  /// The endpoint of its WebSocket clients.
   const net::WsEndpoint& door() const { return door_; }
 
-  /// Something came from the control thread since the last tend().
+  /// True if data came from the control thread since the last tend().
   bool has_news() const { return news_.load(std::memory_order_acquire); }
-  /// Hands it over, and does what is due by the clock.
+  /// Handles that data and any work due by the clock.
   void tend(Clock::time_point now);
   Clock::time_point last_tended() const { return tended_; }
 
-  /// Somebody asked for it or looks at it.
+  /// A client requested it or watches it.
   void used(Clock::time_point now) { used_ = now; }
   Clock::time_point last_used() const { return used_; }
 

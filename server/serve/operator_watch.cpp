@@ -1,4 +1,4 @@
-// server/serve/operator_watch.cpp: signs of life, and how long the robot goes without.
+// server/serve/operator_watch.cpp: keeps signs of life and judges how old they may be.
 #include "server/serve/operator_watch.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ const char* OperatorWatch::why_disarm(std::uint32_t arming, bool moves, Time now
   arming_ = arming;
   if (arming == 0 || !needed_.load(std::memory_order_relaxed)) return nullptr;
   const Time seen{Clock::duration(newest_.load(std::memory_order_relaxed))};
-  // Compared, not subtracted: before the first sign `seen` is the least time there is.
+  // Compared, not subtracted: before the first sign, `seen` is the smallest time point.
   if (moves && seen < now - kPatience) return kGone;
   if (std::max(seen, rests_since_) < now - kRestPatience) return kLeft;
   return nullptr;

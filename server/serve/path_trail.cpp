@@ -1,4 +1,4 @@
-// server/serve/path_trail.cpp: adding, thinning, and the text that grows with it.
+// server/serve/path_trail.cpp: adds and thins poses, and keeps their text.
 #include "server/serve/path_trail.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace server {
 
 void PathTrail::add(const algo::Pose2& pose_W) {
-  const bool known = std::isfinite(pose_W.x + pose_W.y + pose_W.heading);  // JSON has no other
+  const bool known = std::isfinite(pose_W.x + pose_W.y + pose_W.heading);  // as JSON needs
   if (!known) return;
   if (!poses_.empty() && (pose_W.position() - poses_.back().position()).norm() <= spacing_) return;
   if (poses_.size() == kMost) thin();

@@ -1,4 +1,4 @@
-// server/serve/path_trail.hpp: where a robot has been, at a constant cost a tick and in bounded
+// server/serve/path_trail.hpp: the path of a robot, at constant cost per tick and in bounded
 // memory.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace server {
 
-/// Poses of R in W, evenly spaced along the way. When there are kMost, every second one goes and
+/// Poses of R in W, evenly spaced along the path. At kMost poses, every second one is dropped and
 /// the spacing doubles, so that a path of any length keeps its whole shape. The text of each pose
 /// is made once.
 class PathTrail {
@@ -18,12 +18,12 @@ class PathTrail {
   static constexpr std::size_t kMost = 2000;
   static constexpr double kSpacing = 0.02;  // [m] at first
 
-  /// The robot is at `pose` now. Keeps it when it is far enough from the last one kept.
+  /// Adds the robot's current pose if it is far enough from the last kept pose.
   void add(const algo::Pose2& pose_W);
   void clear() { *this = {}; }
 
   const std::vector<algo::Pose2>& poses_W() const { return poses_; }
-  /// How many poses were ever kept: a path with the same count is the same.
+  /// Number of poses ever kept: a path with the same count is unchanged.
   std::size_t changes() const { return changes_; }
   /// foxglove.PosesInFrame.
   std::string message(double stamp) const;
@@ -35,7 +35,7 @@ class PathTrail {
   std::vector<algo::Pose2> poses_{};
   double spacing_ = kSpacing;
   std::size_t changes_ = 0;
-  std::string text_{};  // of the poses, between commas
+  std::string text_{};  // the poses, separated by commas
 };
 
 }  // namespace server

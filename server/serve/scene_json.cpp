@@ -1,5 +1,4 @@
-// server/serve/scene_json.cpp: foxglove.* messages by their published schemas: every property
-// there.
+// server/serve/scene_json.cpp: foxglove.* messages with every property of the published schemas.
 #include "server/serve/scene_json.hpp"
 
 #include <cmath>
@@ -25,7 +24,7 @@ json transform_json(double stamp, const char* parent, const char* child, const a
           {"rotation", rotation_json(pose.heading)}};
 }
 
-/// A prism over a convex outline: fan for the top, two triangles for each side.
+/// A prism over a convex outline: a fan for the top, two triangles for each side.
 json prism_json(const std::vector<algo::Vec2>& outline, double height) {
   std::vector<Point> points;
   const auto add = [&](const algo::Vec2& p, double z) { points.push_back({p.x(), p.y(), z}); };

@@ -1,6 +1,6 @@
 // server/serve/scene_json.hpp: a tick as the published foxglove.* JSON messages, for any viewer.
 //
-// Further functions of the same Telemetry; called on the io thread, only while somebody subscribes.
+// Made from the same Telemetry. Called on the io thread, only while a client subscribes.
 #pragma once
 
 #include <span>
@@ -12,14 +12,14 @@
 
 namespace server {
 
-/// [m] Written for a beam without a reading: beyond every range the scanner has, since JSON knows
-/// no infinity.
+/// [m] Range of a beam without a reading: beyond the range of every scanner, since JSON has no
+/// infinity.
 constexpr double kNoReading = 100.0;
 
 std::string laser_scan_json(const algo::Telemetry& t);
 std::string transforms_json(const algo::Telemetry& t);
 std::string odometry_json(const algo::Telemetry& t);
-/// Replaces all obstacles a viewer has.
+/// Replaces all obstacles of a viewer.
 std::string obstacles_json(double stamp, std::span<const algo::Obstacle> obstacles);
 /// The goal's pose; the robot's own while it has no goal (the message cannot say "none").
 std::string goal_json(const algo::Telemetry& t);

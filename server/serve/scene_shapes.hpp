@@ -1,5 +1,5 @@
-// server/serve/scene_shapes.hpp: pieces that foxglove.* JSON messages are made of: every property
-// of the published schemas there.
+// server/serve/scene_shapes.hpp: building blocks of foxglove.* JSON messages, with every property
+// of the published schemas.
 #pragma once
 
 #include <span>
@@ -22,12 +22,12 @@ struct Point {
 };
 
 nlohmann::json to_json(const Colour& colour);
-/// {"sec","nsec"}; a negative `stamp` [s] is 0.
+/// {"sec","nsec"}; a negative `stamp` [s] counts as 0.
 nlohmann::json time_json(double stamp);
 nlohmann::json point_json(const algo::Vec2& p, double z = 0);
 nlohmann::json rotation_json(double heading);
 nlohmann::json pose_json(const algo::Pose2& pose, double z = 0);
-/// An entity without primitives in the frame `frame_id`; `lifetime` [s], 0 for ever.
+/// An entity without primitives in the frame `frame_id`; `lifetime` [s], 0: for ever.
 nlohmann::json entity_json(double stamp,
                            const std::string& id,
                            const char* frame_id,

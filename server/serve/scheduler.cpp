@@ -1,4 +1,4 @@
-// server/serve/scheduler.cpp: an ordered queue of deadlines, and a row of those without.
+// server/serve/scheduler.cpp: an ordered queue of deadlines, and a queue of runs without one.
 #include "server/serve/scheduler.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace server {
 namespace {
 
-constexpr int kFastNice = 5;     // before the experiments, behind all else
-constexpr int kTimedNice = -10;  // before viewers and the record, which may be a little late
+constexpr int kFastNice = 5;     // ahead of the experiments, behind all else
+constexpr int kTimedNice = -10;  // ahead of viewers and the record, which may be a little late
 
 }  // namespace
 
@@ -63,7 +63,7 @@ void Scheduler::work_timed(const std::stop_token& stop) {
     if (!timed_.empty() && timed_.begin()->first <= Clock::now()) {
       Task& task = *timed_.begin()->second;
       take_out(task);
-      // Who waits may wait for this task's deadline; there is another first one now.
+      // A thread may still wait for this task's deadline, but the first deadline is now another.
       if (idle_ > 0 && !timed_.empty()) wake_.notify_one();
       advance(task, false, lock);
       continue;
@@ -93,7 +93,7 @@ void Scheduler::work_fast(const std::stop_token& stop) {
   }
 }
 
-/// Called and left with the lock, which is open meanwhile.
+/// The caller holds the lock; it is released while the task runs.
 void Scheduler::advance(Task& task, bool fast, std::unique_lock<std::mutex>& lock) {
   task.place_ = Task::Place::Running;
   lock.unlock();

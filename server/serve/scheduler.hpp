@@ -1,5 +1,4 @@
-// server/serve/scheduler.hpp: a few threads that advance many simulated runs, each when its time
-// has come.
+// server/serve/scheduler.hpp: a few threads that advance many simulated runs, each at its due time.
 #pragma once
 
 #include <condition_variable>
@@ -17,14 +16,14 @@
 
 namespace server {
 
-/// Runs with a deadline come first, the earliest before the others, on threads that do nothing
-/// else. Those that go as fast as they can share what is left, a slice each in turn, on as many
-/// threads that the system lets run behind those and the io thread.
+/// Runs with a deadline come first, earliest deadline first, on their own threads. Runs without one
+/// go as fast as possible and share the remaining time in turn, one slice each. They have as many
+/// threads, at a lower priority than those and the io thread.
 ///
-/// All calls from any thread, but remove() not from one of its own.
+/// Any thread may make any call, except remove() from one of the scheduler's own threads.
 class Scheduler {
  public:
-  /// What is to be advanced. Never by two threads at once.
+  /// The work to advance. Never advanced by two threads at once.
   class Task {
    public:
     virtual ~Task() = default;
@@ -36,26 +35,26 @@ class Scheduler {
     Place place_ = Place::Out;
     Run::Clock::time_point due_{};  // while Timed
     bool woken_ = false;            // while Running: advance it again at once
-    bool leaving_ = false;          // while Running: take it out then
+    bool leaving_ = false;          // while Running: remove it afterwards
   };
 
-  /// `threads` of each kind: 0 means as many as the machine has processors.
+  /// `threads` of each kind; 0: one per processor.
   explicit Scheduler(std::size_t threads = 0);
   /// All tasks must have been removed.
   ~Scheduler();
   Scheduler(const Scheduler&) = delete;
   Scheduler& operator=(const Scheduler&) = delete;
 
-  /// It is advanced until it says that it is over, or until it is removed.
+  /// Advances the task until it returns Over or is removed.
   void add(Task& task);
-  /// Something was asked of it: it is advanced at once, whenever it wanted to be.
+  /// The task has requests: advances it at once, before its due time.
   void wake(Task& task);
-  /// When this returns no thread advances it, nor will one. A task that is not there is no error.
+  /// After this returns, no thread advances the task. An unknown task is no error.
   void remove(Task& task);
 
  private:
   using Clock = Run::Clock;
-  static constexpr std::chrono::milliseconds kSlice{2};  // of those without deadlines
+  static constexpr std::chrono::milliseconds kSlice{2};  // for runs without deadlines
 
   void work_timed(const std::stop_token& stop);
   void work_fast(const std::stop_token& stop);
@@ -65,13 +64,13 @@ class Scheduler {
   void queue(Task& task, Clock::time_point due);
   void take_out(Task& task);
 
-  std::mutex mutex_{};                   // guards what follows, and the private part of each task
-  std::condition_variable wake_{};       // there is another first deadline
-  std::condition_variable wake_fast_{};  // there is one without
-  std::condition_variable done_{};       // a task that was to leave has come back
+  std::mutex mutex_{};                   // guards the members below and each task's private part
+  std::condition_variable wake_{};       // the first deadline has changed
+  std::condition_variable wake_fast_{};  // a task without a deadline has come
+  std::condition_variable done_{};       // a leaving task has come back
   std::set<std::pair<Clock::time_point, Task*>> timed_{};
   std::deque<Task*> fast_{};
-  std::size_t idle_ = 0;                 // threads that wait for a deadline
+  std::size_t idle_ = 0;                 // threads waiting for a deadline
   std::vector<std::jthread> threads_{};  // last: they use all of the above
 };
 

@@ -17,7 +17,7 @@
 namespace server {
 namespace {
 
-constexpr std::size_t kMaxPending = 900;  // fewer than the ring of replies holds
+constexpr std::size_t kMaxPending = 900;  // fewer than the ring of replies can hold
 constexpr double kAtRest = 0.01;          // [m/s], [rad/s] below what odometry resolves
 constexpr std::chrono::milliseconds kFresh{500};
 
@@ -90,7 +90,7 @@ void Session::end(bool cut) {
   part().reset();
 }
 
-/// What the run did not get round to is answered here, so that nobody waits for ever.
+/// Answers the requests that the run left unanswered, so that no client waits for ever.
 void Session::answer_the_rest() {
   const std::map<std::uint64_t, Pending> rest = std::exchange(pending_, {});
   for (const auto& [ticket, pending] : rest) {
@@ -104,7 +104,7 @@ void Session::answer_the_rest() {
   }
 }
 
-/// One that neither an obstacle nor one on its way has. The ids of those removed come last.
+/// An id used by no obstacle, present or on its way. Ids of removed obstacles come last.
 std::uint32_t Session::free_obstacle_id() {
   const auto taken = [this](std::uint32_t id) {
     const auto on_its_way = [id](const auto& entry) {
@@ -144,7 +144,7 @@ std::optional<std::uint32_t> Session::submit(algo::Request request, Answer answe
     if (answer && !release) answer("The run is over. Reset or load a scenario first.");
     return id;
   }
-  // A Stop that found the ring full comes after all that is in it; nothing may come in between.
+  // A Stop that found the ring full follows all its requests; nothing may come in between.
   if (release && live_->rings.stop_now.load()) return std::nullopt;
   if (pending_.size() >= kMaxPending || !live_->rings.requests.push({ticket, request})) {
     return std::nullopt;
@@ -161,13 +161,13 @@ void Session::engage_stop(std::uint64_t ticket, const Answer& answer) {
   }
   if (live_) live_->wake();
   const bool news = !std::exchange(state_.asked.stop, true);
-  if (answer) answer(std::nullopt);  // before people are told of it: Stop waits for nothing
+  if (answer) answer(std::nullopt);  // before clients are told: Stop waits for nothing
   if (news) changed();
 }
 
 bool Session::standing() const {
   if (!newest_) return false;
-  // Of real devices an old tick proves nothing.
+  // For real devices an old tick proves nothing.
   const auto age = std::chrono::steady_clock::now() - newest_came_;
   if (state_.spec.hardware && age > kFresh) return false;
   const algo::Telemetry& t = newest_->telemetry;
@@ -232,7 +232,7 @@ void Session::poll() {
   watch_hardware();
 }
 
-/// How full the store is changes at every commit; people are told when that means something else.
+/// The store's fill level changes at every commit. Clients are told only of other changes.
 void Session::watch_record() {
   if (recorder_ == nullptr || recorder_->revision() == record_seen_) return;
   record_seen_ = recorder_->revision();
@@ -246,7 +246,7 @@ void Session::watch_record() {
   if (was.kind != now.kind || was.sentence != now.sentence || was.deleted != now.deleted) changed();
 }
 
-/// People are told at once of what moves or stops the robot, of the rest once a second.
+/// Tells clients at once of changes that move or stop the robot, and of others once a second.
 void Session::watch_hardware() {
   using std::chrono::milliseconds;
   const auto now = std::chrono::steady_clock::now();
@@ -288,7 +288,7 @@ void Session::drain_replies() {
     const Pending pending = std::move(it->second);
     pending_.erase(it);
     if (reply.refusal) {
-      // A stick is pushed many times a second; who pushes it is told.
+      // Stick requests come many times a second; only their sender is told.
       const bool stick = std::holds_alternative<algo::Joystick>(pending.request);
       if (!stick) log(LogLevel::Warning, "Refused: " + *reply.refusal);
     } else if (!std::holds_alternative<algo::Stop>(pending.request) ||
@@ -301,7 +301,7 @@ void Session::drain_replies() {
   if (different) changed();
 }
 
-/// Brings the mirror up to date with a request the control thread has accepted.
+/// Applies a request that the control thread has accepted to the mirror of its state.
 void Session::adopt(const algo::Request& request) {
   const bool had_goal = state_.asked.goal.has_value();
   state_.asked.apply(request);
@@ -309,7 +309,8 @@ void Session::adopt(const algo::Request& request) {
   if (stick && had_goal && !state_.asked.goal) changed();  // taking the stick cancels the goals
 }
 
-/// Moves on in the mirror when the robot has: a frame may be older than what was asked for since.
+/// Advances the mirror's goal when the robot has moved on. A frame may be older than the newest
+/// requests.
 void Session::follow_goal(const algo::Telemetry& t) {
   algo::Intent& asked = state_.asked;
   if (t.goal == asked.goal || std::ranges::count(asked.goals_ahead, t.goal) == 0) return;
@@ -335,7 +336,7 @@ void Session::drain_frames() {
   if (on_frame) on_frame(latest);
 }
 
-/// Says in the log what changed for the robot, once per change.
+/// Logs each change of hold and mission once.
 void Session::narrate(const algo::Telemetry& t) {
   if (t.hold == told_hold_ && t.mission == told_mission_) return;
   const bool held = t.hold && t.hold != told_hold_;
@@ -364,7 +365,7 @@ void Session::watch_run() {
   }
   if (ended || outcome != state_.outcome) {
     state_.outcome = outcome;
-    // The row says at once how a run that goes on has come out so far.
+    // The row gets the outcome so far at once, even if the run goes on.
     if (!ended && recorder_ != nullptr && live_->id() != 0) {
       recorder_->post(
           [run = live_->id(), outcome, metrics = live_->metrics()](db::RunStore& store) {
@@ -378,7 +379,7 @@ void Session::watch_run() {
 }
 
 std::optional<std::string> Session::trouble_with(const algo::Request& request) {
-  constexpr int kShare = 10;  // of this thread's time goes into looks at goals: a tenth
+  constexpr int kShare = 10;  // goal checks take a tenth of this thread's time
   const auto* add = std::get_if<algo::AddGoal>(&request);
   const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
   if (asked == nullptr || !may_look_at_goals()) return std::nullopt;

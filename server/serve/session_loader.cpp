@@ -35,7 +35,7 @@ void SessionLoader::begin_first() {
     } catch (...) {
       failure = std::current_exception();
     }
-    // Moved: the exception goes to the io thread, with nobody else who could let go of it.
+    // Moved: only the io thread may hold, and release, the exception.
     to_io_([this, next, failure = std::move(failure)] {
       if (failure) {
         finish(failure);
@@ -48,7 +48,7 @@ void SessionLoader::begin_first() {
 
 void SessionLoader::prepared(const std::shared_ptr<PreparedRun>& next) {
   std::shared_ptr<LiveRun> last = session_.part();
-  // Moved: letting go of it waits for its last tick, which the io thread must not.
+  // Moved: destroying the run waits for its last tick, which the io thread must not do.
   workers_.post([this, last = std::move(last), next](Worker&) mutable {
     last.reset();
     to_io_([this, next] {

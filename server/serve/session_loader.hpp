@@ -1,5 +1,4 @@
-// server/serve/session_loader.hpp: the next run of a session, made without making the io thread
-// wait.
+// server/serve/session_loader.hpp: prepares a session's next run without blocking the io thread.
 #pragma once
 
 #include <cstddef>
@@ -13,31 +12,31 @@
 
 namespace server {
 
-/// Loads and resets, one after another. What reads files, builds worlds or waits for the present
-/// run to end happens on a worker; the present run goes on until the next one is ready. Io thread
-/// only, but for what it says of Make.
+/// Does loads and resets one after another. A worker reads files, builds worlds and waits for the
+/// current run to end. The current run goes on until the next one is ready. Io thread only, except
+/// Make.
 class SessionLoader {
  public:
-  using Make = std::function<RunSpec()>;  // on a worker; throws what is wrong
-  /// Called when its turn has come, as it may depend on what was loaded before it.
+  using Make = std::function<RunSpec()>;  // on a worker; throws if the run cannot be made
+  /// Called when its turn has come, because it may depend on the load before it.
   using Plan = std::function<Make()>;
-  /// Null when the run has begun; else why the present run goes on.
+  /// Null if the run has begun; else the reason why the current run goes on.
   using Done = std::function<void(std::exception_ptr)>;
   using Post = std::function<void(std::function<void()>)>;
 
   static constexpr std::size_t kMaxWaiting = 8;
 
-  /// `to_io` runs a function on the io thread, from any. `most`: how many loads there may be in
-  /// all; 0: as many as anybody likes.
+  /// `to_io` runs a function on the io thread, from any thread. `most`: most loads in all; 0: no
+  /// limit.
   SessionLoader(Session& session, Workers& workers, Post to_io, std::size_t most = 0)
       : session_(session), workers_(workers), to_io_(std::move(to_io)), most_(most) {}
 
-  /// False when too many wait already: try again later. Throws net::HttpError when the session has
-  /// had all there may be.
+  /// False if too many loads wait already: try again later. Throws net::HttpError when the session
+  /// has used up its loads.
   bool load(Plan plan, Done done);
-  /// The same again from its beginning.
+  /// Loads the current run again from its start.
   bool reset(Done done);
-  /// Loads not yet done, the one under way included.
+  /// Unfinished loads, including the current one.
   std::size_t waiting() const { return loads_.size(); }
 
  private:
@@ -54,7 +53,7 @@ class SessionLoader {
   Post to_io_;
   std::size_t most_;
   std::size_t taken_ = 0;
-  std::deque<Load> loads_{};  // the first is under way
+  std::deque<Load> loads_{};  // the first is in progress
 };
 
 }  // namespace server

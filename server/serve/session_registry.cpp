@@ -1,4 +1,4 @@
-// server/serve/session_registry.cpp: opening, finding, and the several steps of an end.
+// server/serve/session_registry.cpp: opens and finds sessions, and ends them in several steps.
 #include "server/serve/session_registry.hpp"
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 namespace server {
 namespace {
 
-/// The recorder's news are the server's: `main` tells them.
+/// Only `main` reports the recorder's news, which concern the whole server.
 SessionHouse of_visitors(SessionHouse house) {
   house.runs.tells_record_news = false;
   return house;
 }
 
-/// A session on its way out. Its run goes before it does.
+/// An ending session. Its run is destroyed before it.
 struct Parting {
   std::shared_ptr<OpenSession> session{};
   std::unique_ptr<LiveRun> last{};
@@ -63,7 +63,7 @@ void SessionRegistry::loaded(const OpenSession* session,
   const std::shared_ptr<OpenSession> made = std::move(*it);
   opening_.erase(it);
   if (failure) {
-    ending_.push_back(made);  // its loader is not done with it yet
+    ending_.push_back(made);  // its loader still uses it
     done(nullptr, failure);
     return;
   }
@@ -85,7 +85,7 @@ bool SessionRegistry::end(std::string_view id) {
   return true;
 }
 
-/// Its viewers are told, and are no longer its own.
+/// Tells the session's viewers and detaches them.
 void SessionRegistry::see_off(const OpenSession& session) {
   for (auto it = clients_.begin(); it != clients_.end();) {
     if (it->second.session != &session) {
@@ -99,8 +99,8 @@ void SessionRegistry::see_off(const OpenSession& session) {
   }
 }
 
-/// A load that is under way has to come to its end first. Then the run gets the time that its last
-/// tick takes, on a worker, and the session goes on the io thread.
+/// A load in progress must end first. Then a worker waits for the run's last tick, and the io
+/// thread destroys the session.
 void SessionRegistry::bury() {
   for (const auto& session : ending_) {
     if (session->loader().waiting() > 0) continue;
@@ -115,7 +115,7 @@ void SessionRegistry::bury() {
 
 bool SessionRegistry::take_news(Clock::time_point now) {
   bool left = false;
-  in_turn_ = all_;  // one may open or end another
+  in_turn_ = all_;  // a session may open or end another meanwhile
   for (OpenSession* session : in_turn_) {
     if (!session->has_news()) continue;
     if (now - session->last_tended() < kLeast) {

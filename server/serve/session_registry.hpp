@@ -1,4 +1,4 @@
-// server/serve/session_registry.hpp: all sessions of a server by their ids: opened, found, ended.
+// server/serve/session_registry.hpp: opens, finds and ends the sessions of a server by their ids.
 #pragma once
 
 #include <chrono>
@@ -19,21 +19,21 @@ namespace server {
 
 struct SessionRules {
   std::size_t sessions = 256;      // at once, beside `main`
-  std::size_t runs = 200;          // that one may load and reset in its life; 0: no limit
-  std::chrono::seconds idle{900};  // after which one that nobody watches or asks ends
-  bool per_visitor = false;        // who connects without naming a session is to open one
+  std::size_t runs = 200;          // loads and resets per session; 0: no limit
+  std::chrono::seconds idle{900};  // an unused session ends after this time
+  bool per_visitor = false;        // a client that names no session must open one
 };
 
-/// Io thread only. The session `main` is there from the start to the end, has no limits, and is the
-/// only one that may have hardware. The others have ids that nobody can guess.
+/// Io thread only. The session `main` exists from start to end, has no limits, and is the only one
+/// that may have hardware. The others have ids that cannot be guessed.
 class SessionRegistry {
  public:
   using Clock = OpenSession::Clock;
   static constexpr std::string_view kMain = "main";
-  static constexpr std::uint16_t kGoneCode = 4404;  // closes the WebSocket of who asks for none
+  static constexpr std::uint16_t kGoneCode = 4404;  // for a session that does not exist
   static constexpr std::string_view kOwn =
       "Here each visitor has a session: open one with POST /api/v1/sessions.";
-  /// Told to a client that asks for a session that is not there.
+  /// Sent to a client that names a session that does not exist.
   static constexpr std::string_view kGone =
       "There is no such session: it has ended, or it never was. Open a new one.";
 
@@ -43,30 +43,30 @@ class SessionRegistry {
   SessionRegistry& operator=(const SessionRegistry&) = delete;
 
   OpenSession& main() { return *main_; }
-  /// Null when there is none. Counts as use of it.
+  /// Null if there is none. Counts as use of the session.
   OpenSession* find(std::string_view id);
-  /// Makes a session whose first run is as `make` says, on a worker. `done` gets it, or what went
-  /// wrong. Throws net::HttpError when there are as many as there may be.
+  /// Opens a session whose first run `make` describes, on a worker. `done` gets the session or the
+  /// error. Throws net::HttpError if there are too many sessions.
   using Opened = std::function<void(OpenSession*, std::exception_ptr)>;
   void open(SessionLoader::Make make, Opened done);
-  /// Ends it, and tells its viewers. False when there is none; `main` cannot be ended.
+  /// Ends a session and tells its viewers. False if there is none; `main` cannot be ended.
   bool end(std::string_view id);
 
-  /// Those that can be found, `main` first, then in the order of their opening.
+  /// All sessions that find() can find: `main` first, then in order of opening.
   const std::vector<OpenSession*>& all() const { return all_; }
   const SessionRules& rules() const { return rules_; }
 
-  /// Tends the sessions that have news, each `kLeast` after the last time. True when some are left
-  /// for later.
+  /// Tends sessions that have news, each at least `kLeast` after its last time. True if some are
+  /// left for later.
   bool take_news(Clock::time_point now);
   static constexpr std::chrono::milliseconds kLeast{4};
-  /// What is due by the clock: call it some twenty times a second.
+  /// Does work due by the clock. Call it about 20 times a second.
   void tend(Clock::time_point now);
 
-  /// All sessions at one address: `?session=` says which, `main` without.
+  /// One endpoint for all sessions: `?session=` names one; the default is `main`.
   net::WsEndpoint endpoint();
 
-  /// Ends all runs, because the program does.
+  /// Ends all runs, because the program ends.
   void end_all();
 
  private:
@@ -85,10 +85,10 @@ class SessionRegistry {
   SessionRules rules_;
   std::shared_ptr<OpenSession> main_;
   std::map<std::string, std::shared_ptr<OpenSession>, std::less<>> sessions_{};  // without main
-  std::vector<OpenSession*> all_{};  // main and those of sessions_: looked through for each frame
+  std::vector<OpenSession*> all_{};      // main and those of sessions_: scanned for each frame
   std::vector<OpenSession*> in_turn_{};  // workspace
   std::vector<std::shared_ptr<OpenSession>> opening_{};
-  std::vector<std::shared_ptr<OpenSession>> ending_{};  // their last load is still under way
+  std::vector<std::shared_ptr<OpenSession>> ending_{};  // their last load is still in progress
   std::map<std::uint32_t, Client> clients_{};           // by WsClient::id()
 };
 

@@ -1,4 +1,4 @@
-// server/serve/workers.cpp: a queue and its threads.
+// server/serve/workers.cpp: a job queue and its threads.
 #include "server/serve/workers.hpp"
 
 #include <utility>
@@ -63,7 +63,7 @@ void Workers::work(const std::stop_token& stop, const std::string& database) {
 }
 
 void give_way(int nice) {
-  // Of this thread alone: on Linux each has a nice value of its own.
+  // Affects this thread only: on Linux each thread has its own nice value.
   ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), nice);
 }
 

@@ -1,4 +1,4 @@
-// server/serve/workers.hpp: threads for work that may take long: whole runs, files, worlds.
+// server/serve/workers.hpp: threads for slow work: whole runs, files, worlds.
 #pragma once
 
 #include <condition_variable>
@@ -16,26 +16,26 @@
 
 namespace server {
 
-/// What a job finds on the thread it runs on.
+/// The worker thread as seen by a job.
 class Worker {
  public:
   explicit Worker(std::string database) : database_(std::move(database)) {}
 
-  /// A reader of the run store of this thread's own. Opened when first asked for, and again when
-  /// another file has taken the store's place. Throws db::StoreError.
+  /// This thread's own reader of the run store. Opens it at first use, and again when another file
+  /// has replaced the store. Throws db::StoreError.
   db::RunReader& runs();
 
  private:
   std::string database_;
   std::unique_ptr<db::RunReader> reader_{};
-  std::uint64_t device_ = 0;  // of the file that is open
+  std::uint64_t device_ = 0;  // of the open file
   std::uint64_t inode_ = 0;
 };
 
-/// Everything that reads a whole run, waits for a disk or builds a world runs here, so that the io
-/// thread, which carries Stop, answers only what takes microseconds. Jobs begin in the order
-/// posted. A long answer is made of many short jobs, one a slice, so that nobody waits for the
-/// whole of another's. The threads stand back behind everything that drives a robot.
+/// Everything that reads a whole run, waits for a disk or builds a world runs here. The io thread,
+/// which carries Stop, then only does work of microseconds. Jobs begin in the order posted. A long
+/// answer is made by many short jobs, one per slice, so that other answers need not wait for all of
+/// it. The threads have a lower priority than all that drive a robot.
 class Workers {
  public:
   using Job = std::function<void(Worker&)>;
@@ -49,7 +49,7 @@ class Workers {
 
   /// From any thread. A job must not throw.
   void post(Job job);
-  /// Ends the jobs at work, drops the others and takes no more.
+  /// Lets running jobs end, drops the others and accepts no more.
   void stop();
 
  private:
@@ -62,8 +62,8 @@ class Workers {
   std::vector<std::jthread> threads_{};
 };
 
-/// Lets the calling thread run when those that drive robots leave room. `nice`: the higher the
-/// farther behind.
+/// Lowers the priority of the calling thread below the threads that drive robots. `nice`: higher
+/// means lower priority.
 void give_way(int nice = 10);
 
 }  // namespace server

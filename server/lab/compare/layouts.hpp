@@ -13,9 +13,8 @@
 
 namespace server::compare {
 
-constexpr double kFreeGap = 1.0;  // [m] least gap between surfaces
-constexpr double kFreeRoom =
-    1.35;  // [m] from start and goal to a surface, at least: the method's reach
+constexpr double kFreeGap = 1.0;    // [m] least gap between surfaces
+constexpr double kFreeRoom = 1.35;  // [m] from start and goal to a surface: the method's reach
 constexpr double kLaneHalf = 0.35;  // [m] the hull's radius: half the width of the robot's lane
 
 /// [m] Gap between the surfaces of two obstacles; 0 or less if they overlap.

@@ -16,8 +16,8 @@
 
 namespace server {
 
-/// What the handlers work on. The sessions belong to the io thread; the others are safe from any
-/// thread.
+/// The objects that the handlers use. The sessions belong to the io thread; the others are safe
+/// from any thread.
 struct ApiContext {
   SessionRegistry& sessions;
   const ScenarioLibrary& library;
@@ -25,11 +25,11 @@ struct ApiContext {
   Recorder& recorder;
   Workers& workers;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
-  RunSpec first{};  // of a session that is opened without a word of what it is to be
+  RunSpec first{};                                          // default run of a new session
   PageRoom room{};
 };
 
-/// [bytes] of what is read on the io thread: what a person does, never a whole world.
+/// [bytes] of a body read on the io thread: small requests by people, never a whole world.
 constexpr std::size_t kRequestBytes = 256 << 10;
 
 /// Registers every route of the API. `context` must outlive the router.
@@ -42,20 +42,20 @@ void add_session_routes(net::Router& router, ApiContext& context);
 void add_sessions_routes(Routes& routes);
 void add_run_routes(Routes& routes);
 
-/// {"scenario"?, "controller"?, ...}: which scenario by its name, and what is to be otherwise.
+/// {"scenario"?, "controller"?, ...}: a scenario by name, and the choices that replace its own.
 struct LoadRequest {
   std::optional<std::string> scenario{};
   RunOverrides overrides{};
 };
 /// Throws DocumentError.
 LoadRequest load_request(const nlohmann::json& body);
-/// Saves one of the user's own, once its world has been built: what cannot be run is not kept.
-/// Throws LibraryError or what is wrong with the world.
+/// Saves a scenario of the user after building its world: a scenario that cannot run is not kept.
+/// Throws LibraryError, or the error from building the world.
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);
 
 /// Carries out a `/load`-like document: {"scenario", "controller"?, ...}. Throws DocumentError on
-/// a document that does not say what it must; `done` gets what goes wrong later, and the present
-/// run then goes on. False when too many loads wait.
+/// an invalid document. `done` gets a later error; the current run then goes on. False if too many
+/// loads wait.
 bool load_from_json(ApiContext& context,
                     OpenSession& session,
                     const nlohmann::json& body,

@@ -1,5 +1,4 @@
-// server/serve/api/catalog_routes.cpp: health, version, the API's own description, and what there
-// is.
+// server/serve/api/catalog_routes.cpp: health, version, the API's own description, and the catalog.
 #include "server/run/paths.hpp"
 #include "server/run/version.hpp"
 #include "server/serve/api/api.hpp"
@@ -31,7 +30,7 @@ void add_catalog_routes(Routes& routes) {
   });
   routes.at_once("GET", "/version", [](ApiContext&, const net::Request& request) {
     json body = {{"name", "tautline"}, {"version", kVersion}, {"api", 1}};
-    // So that the page knows whether there is a login to end.
+    // The page must know whether there is a login to end.
     body["signed_in"] = !request.cookie(net::Access::kCookie).empty();
     return json_response(200, body);
   });

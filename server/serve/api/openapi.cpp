@@ -1,5 +1,5 @@
-// server/serve/api/openapi.cpp: what every operation may answer, and what every session can do, is
-// written once and told of each.
+// server/serve/api/openapi.cpp: adds the answers common to all operations to each one, and the
+// operations common to all sessions.
 #include "server/serve/api/openapi.hpp"
 
 #include <utility>
@@ -13,7 +13,7 @@ namespace {
 using nlohmann::ordered_json;
 
 void add_responses(ordered_json& operation, const ordered_json& statuses) {
-  // Its own list of securities, empty: open to all.
+  // An empty list of securities of its own: open to all.
   const bool open = operation.contains("security") && operation["security"].empty();
   ordered_json& responses = operation["responses"];
   for (const std::string status : statuses) {
@@ -22,7 +22,7 @@ void add_responses(ordered_json& operation, const ordered_json& statuses) {
   }
 }
 
-/// The operations of `main` once more, for a session by its id.
+/// Repeats the operations of `main` for a session by its id.
 void add_sessions(ordered_json& paths) {
   const std::string of_main = "/api/v1/session";
   std::vector<std::pair<std::string, ordered_json>> copies;

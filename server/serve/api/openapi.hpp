@@ -1,4 +1,4 @@
-// server/serve/api/openapi.hpp: the description of the API, as it is served.
+// server/serve/api/openapi.hpp: the served description of the API.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace server {
 
-/// The OpenAPI 3.1 document: openapi.json, and with each operation the answers any request may get
-/// (`x-any-operation`) or any that changes something (`x-any-change`).
+/// The OpenAPI 3.1 document: openapi.json, with each operation extended by the answers that any
+/// request may get (`x-any-operation`), or any that changes something (`x-any-change`).
 const std::string& openapi_document();
 
 /// server/serve/api/openapi.json, compiled in.

@@ -1,4 +1,4 @@
-// server/serve/api/reply.cpp: JSON in, JSON out.
+// server/serve/api/reply.cpp: reads and writes JSON.
 #include "server/serve/api/reply.hpp"
 
 #include <new>
@@ -52,7 +52,7 @@ net::Response problem_of_current_exception() {
         503, "Out of memory", "The server has not enough memory for this. Ask for less.");
   } catch (const net::HttpError& e) {
     return net::problem(e.status(), e.what());
-  } catch (const std::invalid_argument& e) {  // a world that cannot be built
+  } catch (const std::invalid_argument& e) {  // an invalid world
     return net::problem(422, "Scenario not usable", without_folders(e.what()));
   } catch (const std::exception& e) {
     return net::problem(500, "Internal error", without_folders(e.what()));

@@ -1,4 +1,4 @@
-// server/serve/api/run_routes.cpp: experiments in, records out.
+// server/serve/api/run_routes.cpp: starts experiments and serves records.
 #include <algorithm>
 #include <deque>
 #include <mutex>
@@ -66,7 +66,7 @@ void append_item(std::string& list, const json& item) {
   list += dump_json(item);
 }
 
-/// {"items":[...],"next":...} and `more`, the fields after those.
+/// {"items":[...],"next":...}, followed by the fields `more`.
 net::Response page_response(std::string list, const json& next, const std::string& more = "") {
   return net::json_response(
       200, "{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
@@ -153,7 +153,7 @@ void delete_run(ApiContext& context, const net::Request& request, const net::Res
           break;
       }
     } catch (const db::DatabaseError&) {
-      // A disk that is full must not keep what somebody wants to be rid of.
+      // A full disk must not keep a run that somebody wants to delete.
       context.recorder.post_when_well([run](db::RunStore& later) { later.delete_run(run); });
       response = json_response(
           202, {{"ok", true}, {"detail", "It goes as soon as the store takes writes again."}});
@@ -164,7 +164,7 @@ void delete_run(ApiContext& context, const net::Request& request, const net::Res
   });
 }
 
-/// Runs a run that was cut again from its start, under its own number.
+/// Runs an interrupted run again from its start, under its own number.
 void resume_run(ApiContext& context,
                 const net::Request& request,
                 Worker& worker,
@@ -204,7 +204,7 @@ void resume_run(ApiContext& context,
 }
 
 net::Response list_ticks(ApiContext& context, const net::Request& request, Worker& worker) {
-  constexpr std::size_t kRows = 250;  // between two looks at the room
+  constexpr std::size_t kRows = 250;  // rows between two checks of the room
   const db::RunId run = run_id(request);
   db::RunReader& reader = worker.runs();
   if (!reader.get(run)) return no_such_run(run);
@@ -233,8 +233,8 @@ void append_message(std::string& body, std::span<const std::byte> message) {
   body.append(reinterpret_cast<const char*>(message.data()), message.size());
 }
 
-/// A page of messages, one a tick: `read(from, body)` appends one and returns the tick to go on
-/// with.
+/// A page of messages, one per tick: `read(from, body)` appends one and returns the tick to
+/// continue with.
 template <typename Read>
 net::Response messages_page(ApiContext& context, const net::Request& request, const Read& read) {
   std::string body;
@@ -262,7 +262,7 @@ net::Response list_frames(ApiContext& context, const net::Request& request, Work
   });
 }
 
-/// Readings of filtered scans that a next page may go on from.
+/// Keeps readers of filtered scans, from which a next page may continue.
 class FilteredPages {
  public:
   net::Response page(ApiContext& context, const net::Request& request, Worker& worker) {
@@ -304,7 +304,7 @@ class FilteredPages {
 };
 
 net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
-  constexpr std::size_t kLines = 1000;  // of a slice: some 100 kB
+  constexpr std::size_t kLines = 1000;  // lines of a slice: about 100 kB
   const db::RunId run = run_id(request);
   const auto row = worker.runs().get(run);
   if (!row) return no_such_run(run);

@@ -1,4 +1,4 @@
-// server/serve/api/scenario_routes.cpp: scenarios and robots by name; only one's own can be
+// server/serve/api/scenario_routes.cpp: scenarios and robots by name; only the user's own can be
 // changed.
 #include "server/run/json_reader.hpp"
 #include "server/run/robot_json.hpp"

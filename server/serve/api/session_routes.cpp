@@ -26,7 +26,7 @@ void busy(const net::Responder& respond) {
   respond(std::move(response));
 }
 
-/// The session as it is then, or why the present run goes on.
+/// Answers with the session after the load, or with the reason why the current run goes on.
 SessionLoader::Done answer_when_loaded(OpenSession& open, const net::Responder& respond) {
   return [&open, respond](const std::exception_ptr& failure) {
     if (failure) {
@@ -37,8 +37,8 @@ SessionLoader::Done answer_when_loaded(OpenSession& open, const net::Responder& 
   };
 }
 
-/// Submits and answers once the control thread has, a Stop at once: `status`, or 409 with the
-/// reason.
+/// Submits a request. Answers after the control thread has, or at once for a Stop: `status`, or 409
+/// with the reason.
 void submit_and_reply(Session& session,
                       algo::Request request,
                       const net::Responder& respond,
@@ -66,8 +66,8 @@ json obstacle_list(const Session& session) {
   return {{"items", std::move(items)}, {"next", nullptr}};
 }
 
-/// The values of `body` in an order in which each is allowed beside those before it; empty when
-/// there is none.
+/// The values of `body` in an order that keeps the parameters valid after each step; empty if there
+/// is no such order.
 std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters now) {
   std::vector<algo::SetParameter> left;
   for (const auto& [name, value] : body.items()) {
@@ -187,7 +187,7 @@ void save_scenario(ApiContext& context,
 using SessionHandler =
     std::function<void(OpenSession&, const net::Request&, const net::Responder&)>;
 
-/// A goal as the body, to be taken as a request of `type`.
+/// A route whose body is a goal, for a request of `type`.
 SessionHandler goal_route(const char* type) {
   return [type](OpenSession& open, const net::Request& request, const net::Responder& respond) {
     json body = body_json(request);
@@ -197,12 +197,13 @@ SessionHandler goal_route(const char* type) {
   };
 }
 
-/// Adds routes twice: of the session `main`, and of any by its id.
+/// Adds each route twice: for the session `main`, and for any session by its id.
 class SessionRoutes {
  public:
   SessionRoutes(net::Router& router, ApiContext& context) : router_(router), context_(context) {}
 
-  /// A script that looks on may be a cron job; one that asks for something is there.
+  /// A script that only reads may be a cron job; one that sends a request shows that an operator is
+  /// there.
   enum class Sign : std::uint8_t { OfLife, None };
 
   void add(const std::string& method,

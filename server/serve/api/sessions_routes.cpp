@@ -23,8 +23,8 @@ json summary(OpenSession& open) {
           {"lateness", to_json(open.session().lateness())}};
 }
 
-/// A client that knows an id may do all with its session. Where each visitor has one, nobody is
-/// told the others'.
+/// A client that knows an id has full control of its session. If each visitor has one, the ids of
+/// others stay hidden.
 json list(ApiContext& context) {
   json items = json::array();
   const std::vector<OpenSession*> all = context.sessions.all();
@@ -38,7 +38,7 @@ json list(ApiContext& context) {
           {"most", context.sessions.rules().sessions}};
 }
 
-/// The fields of `/load`; without a scenario, what the server began with.
+/// Reads the fields of `/load`; without a scenario, uses the run that the server began with.
 SessionLoader::Make make_from(ApiContext& context, const json& body) {
   LoadRequest asked = load_request(body);
   if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;

@@ -1,4 +1,5 @@
-// server/serve/api/worker_reply.cpp: from the io thread to a worker and back.
+// server/serve/api/worker_reply.cpp: passes work from the io thread to a worker, and the answer
+// back.
 #include "server/serve/api/worker_reply.hpp"
 
 #include <algorithm>
@@ -11,7 +12,8 @@ namespace server {
 
 namespace {
 
-/// Answers through the io thread, from any. Left unused on any thread, it answers 500 there too.
+/// A responder for any thread that answers through the io thread. If it is dropped unused, it
+/// answers 500 there too.
 net::Responder through_io(ApiContext& context, const net::Responder& respond) {
   return net::Responder([&context, respond](net::Response response) {
     context.post_to_io([respond, response = std::move(response)] { respond(response); });

@@ -1,4 +1,4 @@
-// server/serve/api/worker_reply.hpp: answers that are made on a worker, bounded in bytes.
+// server/serve/api/worker_reply.hpp: answers made on a worker, bounded in bytes.
 #pragma once
 
 #include <atomic>
@@ -27,11 +27,11 @@ class Routes {
   Routes(net::Router& router, ApiContext& context) : router_(router), context_(context) {}
 
   /// `answer` runs on a worker, where it may read, wait and build. It answers now or later, from
-  /// any thread; what it throws becomes a problem document.
+  /// any thread. Its exceptions become problem documents.
   void work(const char* method, const std::string& path, Answer answer);
-  /// The same for what answers before it returns.
+  /// As work(), for a function that returns its answer.
   void make(const char* method, const std::string& path, Make make);
-  /// On the io thread: for what answers now or later, and for what answers at once.
+  /// These run on the io thread. The first answers now or later, the second at once.
   void answer(const char* method,
               const std::string& path,
               std::function<void(ApiContext&, const net::Request&, const net::Responder&)> answer,
@@ -43,21 +43,21 @@ class Routes {
   ApiContext& context_;
 };
 
-/// Answers `respond` with what `make` makes on a worker.
+/// Runs `make` on a worker and sends its result through `respond`.
 void answer_from_worker(ApiContext& context,
                         const net::Responder& respond,
                         std::function<net::Response(Worker&)> make);
 
-/// What answers made on workers may hold in memory, all clients together, until they are sent. A
-/// page of runs, ticks or frames ends with the item that fills it and says where the next one
-/// begins; while many clients take their pages slowly, pages get shorter. Any thread.
+/// Limits the memory of answers made on workers, for all clients together, until they are sent. A
+/// page of runs, ticks or frames ends with the item that fills it, and says where the next page
+/// begins. While many clients read slowly, pages get shorter. Any thread.
 class PageRoom {
  public:
-  /// [bytes] after which a page of now ends.
+  /// [bytes] after which a page made now ends.
   std::size_t page() const;
-  /// The page as a body; it counts until it has been sent.
+  /// The page as a body. It counts until it has been sent.
   net::Payload hold(std::string page);
-  /// The answer, its body counted; 503 when it is large and there is no room for it.
+  /// The answer with its body counted; 503 if it is large and there is no room for it.
   net::Response admit(net::Response answer);
 
  private:
@@ -68,12 +68,12 @@ class PageRoom {
   std::shared_ptr<std::atomic<std::size_t>> held_ = std::make_shared<std::atomic<std::size_t>>(0);
 };
 
-/// A body whose slices are made on workers, each when the client has taken the one before.
+/// A body whose slices are made on workers, each after the client has taken the one before.
 class WorkerStream final : public net::BodyStream,
                            public std::enable_shared_from_this<WorkerStream> {
  public:
-  /// Makes the next slice, empty after the last; throws when the rest cannot be made. Calls never
-  /// overlap, but may come from different workers.
+  /// Makes the next slice; an empty one follows the last. Throws if the rest cannot be made. Calls
+  /// never overlap, but may come from different workers.
   using Make = std::function<std::string(Worker&)>;
 
   WorkerStream(ApiContext& context, Make make) : context_(context), make_(std::move(make)) {}

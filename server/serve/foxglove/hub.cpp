@@ -1,4 +1,4 @@
-// server/serve/foxglove/hub.cpp: setting up and sending. What clients ask for is in
+// server/serve/foxglove/hub.cpp: sets up the hub and sends. Client operations are in
 // hub_clients.cpp.
 #include "server/serve/foxglove/hub.hpp"
 
@@ -55,7 +55,7 @@ ChannelId Hub::add_channel(const ChannelSpec& spec) {
 }
 
 void Hub::add_service(std::string name, ServiceHandler handler) {
-  // What goes in and out is documented per service; the schema only says that both are objects.
+  // Requests and responses are documented per service; the schema only says that both are objects.
   static constexpr std::string_view kObject = R"({"type":"object"})";
   Service service;
   service.id = static_cast<std::uint32_t>(services_.size() + 1);
@@ -107,7 +107,7 @@ void Hub::publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload) 
     const MessageHeader header = message_header(subscriber.subscription_id, t_ns);
     Client& client = *subscriber.client;
     const bool kept = client.socket->send_latest(channel, header, payload, kEventRing);
-    // Once per episode: a client that is behind must not get one status per lost message.
+    // Once per episode: a slow client must not get one status per lost message.
     if (!kept && !client.dropping_events) {
       complain(client,
                StatusLevel::Warning,

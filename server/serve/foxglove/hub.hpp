@@ -30,14 +30,15 @@ using net::Payload;
 class ParameterSource {
  public:
   virtual ~ParameterSource() = default;
-  /// All parameters with the values clients should see, those just set included.
+  /// All parameters with the values that clients should see, including those just set.
   virtual std::vector<Parameter> list() const = 0;
-  /// Sets one. @return why it is refused, as a sentence; empty when it is taken
+  /// Sets a parameter. @return the refusal as a sentence; empty if it is accepted
   virtual std::string set(const std::string& name, const nlohmann::json& value) = 0;
 };
 
-/// Answers one service call, at once or later, io thread only. The first answer counts; a client
-/// that has gone is no error. When the last copy goes unused the call fails with a sentence.
+/// Answers one service call, at once or later, on the io thread only. The first answer counts; a
+/// client that has gone is no error. If the last copy is destroyed unused, the call fails with a
+/// sentence.
 class ServiceReply {
  public:
   ServiceReply(std::shared_ptr<net::WsClient> client,
@@ -51,12 +52,12 @@ class ServiceReply {
   std::shared_ptr<Call> call_;
 };
 
-/// A service handler: reads the request, answers now or keeps `reply` for later. An exception
-/// becomes a failure with its what().
+/// A service handler: reads the request, and answers now or keeps `reply` for later. An exception
+/// fails the call with its what().
 using ServiceHandler =
     std::function<void(ClientId, const nlohmann::json& request, const ServiceReply& reply)>;
 
-/// Takes what a client published. @return why it is refused, as a sentence; empty when it is taken
+/// Takes a message that a client published. @return the refusal as a sentence; empty if accepted
 using PublishHandler = std::function<std::string(ClientId, const nlohmann::json& message)>;
 
 /// A message with its time on the run clock.
@@ -65,18 +66,18 @@ struct Stamped {
   Payload payload{};
 };
 
-/// Every channel is latched: a newly subscribed client gets the newest message at once, so that it
-/// sees the scene of a robot at rest.
+/// Every channel is latched: a new subscriber gets the newest message at once, so that it sees the
+/// scene of a robot at rest.
 struct ChannelSpec {
   std::string topic{};
   std::string schema_name{};  // one of schemas.hpp
-  /// For a channel that is encoded only while somebody subscribes: makes the newest message for the
-  /// first subscriber, or nothing (a null payload). Without it the last one published is kept.
+  /// For a channel encoded only while a client subscribes: makes the newest message for the first
+  /// subscriber, or a null payload. Without it, the channel keeps its last published message.
   std::function<Stamped()> newest{};
 };
 
-/// Io thread only. Must live as long as the net::Server its endpoint was added to. What a client
-/// does wrong is answered by a status message and never ends its connection.
+/// Io thread only. Must outlive the net::Server that has its endpoint. A client's mistake gets a
+/// status message and never ends its connection.
 class Hub {
  public:
   Hub();
@@ -87,34 +88,34 @@ class Hub {
   net::WsEndpoint endpoint(std::string path);
 
   // ---- setting up, before the first client
-  /// Throws std::invalid_argument when the topic is there already, std::out_of_range on an unknown
-  /// schema. Encoding follows from the schema: JSON Schema "json", else "flatbuffer".
+  /// Throws std::invalid_argument if the topic exists already, std::out_of_range on an unknown
+  /// schema. The schema decides the encoding: JSON Schema "json", else "flatbuffer".
   ChannelId add_channel(const ChannelSpec& spec);
   void add_service(std::string name, ServiceHandler handler);
   void on_publish(std::string topic, PublishHandler handler);
   /// `source` must outlive the hub.
   void set_parameters(ParameterSource& source) { parameters_ = &source; }
-  /// A client withdrew what it publishes on `topic`, or went away.
+  /// Called when a client stops publishing on `topic`, or has gone.
   void on_publisher_gone(std::function<void(ClientId, const std::string& topic)> callback);
   void on_client_gone(std::function<void(ClientId)> callback);
 
   // ---- sending
-  /// True while somebody subscribes. A channel with ChannelSpec::newest is encoded only then.
+  /// True while a client subscribes. A channel with ChannelSpec::newest is encoded only then.
   bool wanted(ChannelId channel) const;
-  /// State-like data: each client gets the newest it can take. `t_ns` is the run clock.
+  /// State-like data: each client gets the newest message that it can take. `t_ns` is the run
+  /// clock.
   void publish(ChannelId channel, std::uint64_t t_ns, Payload payload);
-  /// Log-like data: a slow client gets the newest kEventRing of them and a status for the rest.
+  /// Log-like data: a slow client gets the newest kEventRing messages, and a status for the rest.
   void publish_event(ChannelId channel, std::uint64_t t_ns, Payload payload);
   static constexpr std::size_t kEventRing = 64;
-  /// Tells all clients the run clock, ten times a second at most by `now`: those that were sent
-  /// something since the last time together with the next message, so that it costs no write.
+  /// Sends the run clock to all clients, at most ten times a second by `now`. A client that was
+  /// sent something since the last time gets it with its next message, which saves a write.
   void broadcast_time(std::uint64_t t_ns, std::chrono::steady_clock::time_point now);
-  /// Sends the current values of `names` (empty: all) to the clients that asked for updates of
-  /// them.
+  /// Sends the current values of `names` (empty: all) to the clients that subscribed to them.
   void parameters_changed(std::span<const std::string> names = {});
-  /// A status message to one client, for instance a refusal found out later.
+  /// Sends a status message to one client, for instance a late refusal.
   void warn(ClientId client, std::string_view sentence);
-  /// A status message to everybody.
+  /// Sends a status message to all clients.
   void announce(StatusLevel level, std::string_view sentence);
 
   std::size_t clients() const { return clients_.size(); }
@@ -127,7 +128,7 @@ class Hub {
     bool all_parameters = false;
     std::set<std::string> parameters{};
     bool dropping_events = false;
-    bool served = false;  // sent something since it was told the time
+    bool served = false;  // was sent something since the last time message
   };
   struct Subscriber {
     Client* client = nullptr;
@@ -165,7 +166,7 @@ class Hub {
   static void send(Client& client, std::string message);
   static void complain(Client& client, StatusLevel level, std::string_view sentence);
 
-  std::string session_id_;              // viewers start afresh when it changes
+  std::string session_id_;              // viewers start again when it changes
   std::vector<Channel> channels_{};     // id = index + 1
   std::vector<ChannelState> states_{};  // same order
   std::vector<Service> services_{};     // id = index + 1
@@ -176,7 +177,7 @@ class Hub {
   std::function<void(ClientId)> client_gone_{};
   std::map<ClientId, Client> clients_{};
   std::optional<std::chrono::steady_clock::time_point> time_sent_{};
-  std::optional<std::uint64_t> time_ns_{};  // the run clock as last told
+  std::optional<std::uint64_t> time_ns_{};  // the run clock as last sent
 };
 
 }  // namespace server::foxglove

@@ -1,4 +1,4 @@
-// server/serve/foxglove/hub_clients.cpp: what clients ask of the hub: one handle() per operation.
+// server/serve/foxglove/hub_clients.cpp: client operations of the hub, with one handle() each.
 #include <algorithm>
 #include <exception>
 #include <utility>
@@ -26,7 +26,7 @@ struct ServiceReply::Call {
     try {
       answer(net::FrameKind::Text,
              service_call_failure(service_id, call_id, "the service did not answer"));
-    } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor has nobody left to tell
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor cannot report it
       client = nullptr;
     }
   }
@@ -73,7 +73,7 @@ void Hub::closed(ClientId id) {
     std::erase_if(channel.subscribers,
                   [&](const Subscriber& s) { return s.client == &found->second; });
   }
-  // Out of the map first: the callbacks may publish or look at the clients.
+  // Remove it from the map first: the callbacks may publish or read the clients.
   const Client client = std::move(found->second);
   clients_.erase(found);
   for (const auto& [channel_id, topic] : client.publishing) {
@@ -82,7 +82,7 @@ void Hub::closed(ClientId id) {
   if (client_gone_) client_gone_(id);
 }
 
-/// Handles what `parse` finds in a message of client `id`.
+/// Parses a message of client `id` with `parse` and handles it.
 template <typename Parse>
 void Hub::take(ClientId id, std::string_view message, Parse parse) {
   const auto found = clients_.find(id);
@@ -133,7 +133,7 @@ void Hub::subscribe(Client& client, const Subscription& subscription) {
   }
   client.subscriptions[subscription.id] = channel;
   ChannelState& to = states_[channel - 1];
-  // While nobody subscribed, what was last encoded grew old.
+  // The last encoded message is old if no client subscribed since.
   if (to.newest && to.subscribers.empty()) to.last = to.newest();
   to.subscribers.push_back({&client, subscription.id});
   if (to.last.payload) {
@@ -145,7 +145,7 @@ void Hub::subscribe(Client& client, const Subscription& subscription) {
 void Hub::remove_subscriber(const Client& client, ChannelId channel) {
   std::erase_if(states_[channel - 1].subscribers,
                 [&](const Subscriber& s) { return s.client == &client; });
-  client.socket->forget(channel);  // what still waits carries the old subscription id
+  client.socket->forget(channel);  // queued messages carry the old subscription id
 }
 
 void Hub::handle(Client& client, const Unsubscribe& op) {
@@ -246,7 +246,7 @@ void Hub::handle(Client& client, const SetParameters& op) {
     refused = true;
     complain(client, StatusLevel::Warning, parameter.name + ": " + refusal);
   }
-  // An asked-for answer, or the old values so that a slider jumps back.
+  // Send the requested answer, or after a refusal the old values, so that a slider jumps back.
   if (op.id || refused) {
     send(client, parameter_values(named.empty() ? std::vector<Parameter>{} : values(named), op.id));
   }
@@ -255,7 +255,7 @@ void Hub::handle(Client& client, const SetParameters& op) {
 
 void Hub::handle(Client& client, const SubscribeParameterUpdates& op) {
   if (op.names.empty()) client.all_parameters = true;
-  // Only names there are: a client cannot fill memory with others.
+  // Only existing names: a client cannot fill memory with others.
   for (const Parameter& parameter :
        op.names.empty() ? std::vector<Parameter>{} : values(op.names)) {
     client.parameters.insert(parameter.name);

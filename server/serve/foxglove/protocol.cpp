@@ -1,5 +1,4 @@
-// server/serve/foxglove/protocol.cpp: every field and every length of a client is checked before
-// use.
+// server/serve/foxglove/protocol.cpp: checks every field and length from a client before use.
 #include "server/serve/foxglove/protocol.hpp"
 
 #include <limits>
@@ -106,7 +105,8 @@ Parameter read_parameter(const json& value, const std::string& op) {
   return {name, value.value("value", json(nullptr)), optional_text(value, "type", op)};
 }
 
-/// What is valid v1 but not offered here: say so, rather than "unknown".
+/// True for an operation that is valid in v1 but not offered here: the error says so, not
+/// "unknown".
 bool is_known_but_unsupported(const std::string& op) {
   return op == "subscribeConnectionGraph" || op == "unsubscribeConnectionGraph" ||
          op == "fetchAsset";

@@ -1,5 +1,5 @@
-// server/serve/foxglove/protocol.hpp: Foxglove WebSocket protocol v1, bytes to values and back, no
-// I/O.
+// server/serve/foxglove/protocol.hpp: Foxglove WebSocket protocol v1, converts bytes to values and
+// back; no I/O.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ namespace server::foxglove {
 inline constexpr std::string_view kLegacySubprotocol = "foxglove.websocket.v1";
 inline constexpr std::string_view kSdkSubprotocol = "foxglove.sdk.v1";
 
-/// What a client sent makes no sense; what() is a sentence for its status message.
+/// A client's message is invalid; what() is a sentence for its status message.
 class ProtocolError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -122,7 +122,7 @@ std::string advertise(std::span<const Channel> channels);
 std::string status(StatusLevel level, std::string_view message);
 std::string parameter_values(std::span<const Parameter> parameters,
                              const std::optional<std::string>& id = std::nullopt);
-/// Request and response schemas in the newer and the older form, for viewers of both ages.
+/// Gives request and response schemas in the newer and the older form, for new and old viewers.
 std::string advertise_services(std::span<const Service> services);
 std::string service_call_failure(std::uint32_t service_id,
                                  std::uint32_t call_id,

@@ -1,4 +1,4 @@
-// server/serve/foxglove/schemas.cpp: looking one up; the texts are in a generated file.
+// server/serve/foxglove/schemas.cpp: looks up a schema; the texts are in a generated file.
 #include "server/serve/foxglove/schemas.hpp"
 
 #include <algorithm>

@@ -13,10 +13,10 @@ struct Schema {
   std::string_view text{};      // JSON Schema, or base64 of the binary FlatBuffers schema
 };
 
-/// All of them, by name.
+/// All schemas, sorted by name.
 std::span<const Schema> schemas();
 
-/// Throws std::out_of_range when none has that name.
+/// The schema of that name. Throws std::out_of_range if there is none.
 const Schema& schema(std::string_view name);
 
 }  // namespace server::foxglove

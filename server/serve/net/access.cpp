@@ -36,7 +36,7 @@ HostPort split_host(std::string_view text) {
   return {text.substr(0, colon), text.substr(colon + 1)};
 }
 
-/// A browser leaves the default port out of both Host and Origin, other clients may not.
+/// A browser omits the default port in both Host and Origin; other clients may not.
 std::string with_port(std::string_view authority, std::string_view default_port) {
   const HostPort parts = split_host(authority);
   const std::string_view port = parts.port.empty() ? default_port : parts.port;
@@ -56,10 +56,10 @@ Address address_of(const Request& request) {
   return Address::parse(request.peer).value_or(Address());
 }
 
-/// The browser sends it to this server alone, shows it to no script and, where the connection was
-/// encrypted, sends it over nothing else.
+/// The browser sends this cookie only to this server and shows it to no script. If the connection
+/// was encrypted, it sends the cookie only over encrypted ones.
 Header cookie_header(const Request& request, std::string_view id, std::chrono::seconds life) {
-  // An origin that was let in says it too: a proxy that encrypts need not be a trusted one.
+  // An accepted origin also shows encryption: an encrypting proxy need not be a trusted one.
   const std::string_view origin = request.header("Origin");
   const bool https = request.https || equal_no_case(origin.substr(0, kHttps.size()), kHttps);
   return {"Set-Cookie",
@@ -78,7 +78,7 @@ Response too_many_guesses(std::chrono::seconds wait) {
 
 bool is_loopback_name(std::string_view host) {
   if (equal_no_case(host, "localhost") || host == "::1") return true;
-  // Only the dotted form: "127.0.0.1.example" is somebody's domain.
+  // Only the dotted form: "127.0.0.1.example" may be a real domain.
   return host.substr(0, 4) == "127." && std::all_of(host.begin(), host.end(), [](char c) {
            return c == '.' || (c >= '0' && c <= '9');
          });
@@ -120,7 +120,7 @@ bool Access::origin_allowed(const Request& request, bool login, bool authorized)
                        with_port(request.header("Host"), port));
 }
 
-/// Names the option that is missing when a proxy encrypts for this server.
+/// Names the missing option if a proxy encrypts for this server.
 Response Access::foreign_origin(const Request& request) const {
   const std::string origin{request.header("Origin")};
   const bool encrypted = !request.https && equal_no_case(origin.substr(0, kHttps.size()), kHttps);
@@ -154,7 +154,7 @@ Access::Presented Access::look_at(std::string_view token,
   return {Credential::Wrong, verdict.wait};
 }
 
-/// A cookie is random and long: it is no guess, only old when it opens nothing.
+/// A cookie is random and long: an invalid one is old, not a guess.
 Access::Presented Access::look_at(const Request& request, Clock::time_point now) {
   if (!token_required() || !login_of(request, now).empty()) return {Credential::Right};
   const std::string_view token = bearer(request);

@@ -1,4 +1,4 @@
-// server/serve/net/access.hpp: who may talk to the server: Host, Origin, token and login cookie.
+// server/serve/net/access.hpp: access control by Host, Origin, token and login cookie.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@
 namespace server::net {
 
 struct AccessOptions {
-  std::string token{};                         // empty: none asked for
-  bool insecure = false;                       // beyond loopback without a token
+  std::string token{};                         // empty: no token required
+  bool insecure = false;                       // allows access beyond loopback without a token
   std::vector<std::string> allow_hosts{};      // "robot.lan" or "robot.lan:8081"
   std::vector<std::string> allow_origins{};    // "https://viewer.example"
   std::vector<std::string> trusted_proxies{};  // "127.0.0.1", "172.17.0.0/16"
@@ -23,65 +23,65 @@ struct AccessOptions {
   std::vector<std::string> open_paths{"/api/v1/healthz"};
 };
 
-/// Decides about one request from its head alone. The rules, in order of checking:
+/// Judges a request by its head alone. The rules, in order of checking:
 /// - Host names this server: a loopback name, the address the connection arrived at, or an
 ///   allowed host (421). A web page can point its own name at 127.0.0.1, but not change Host.
 /// - Origin, on upgrades and everything that is not GET, HEAD or OPTIONS: equal to the scheme the
 ///   client uses + "://" + Host, or listed; absent (not a browser) only from loopback, for a login,
-///   with the token, or when insecure (403).
-/// - Token, where one is set: Bearer or login cookie for /api and every upgrade (401; 429 for an
-///   address that has guessed too often). The page itself is served without, so that it can ask for
-///   the token.
+///   with the token, or if insecure (403).
+/// - Token, if one is set: Bearer or login cookie for /api and every upgrade (401; 429 for an
+///   address that has guessed too often). The page itself needs no token, so that it can ask for
+///   one.
 class Access {
  public:
   using Log = std::function<void(std::string_view)>;
 
   /// Throws std::invalid_argument on a token shorter than 16 characters or a proxy that is no
-  /// address. `log` is told of logins and of guesses.
+  /// address. `log` gets logins and guesses.
   explicit Access(AccessOptions options, Log log = {});
 
-  /// Fills in the request's peer, loopback and https: its sender's, seen from this connection.
+  /// Fills in the request's peer, loopback and https from its sender, as seen from this connection.
   void identify(Request& request, const Address& peer) const;
   bool is_proxy(const Address& peer) const { return proxies_.contains(peer); }
 
   /// @param local_address  address of this end of the connection
-  /// @param protected_path false for what anyone may read: static files
-  /// @return the refusal, or nothing when the request may pass
+  /// @param protected_path false for static files, which anyone may read
+  /// @return the refusal, or nothing if the request may pass
   std::optional<Response> refuse(const Request& request,
                                  std::string_view local_address,
                                  bool upgrade,
                                  bool protected_path,
                                  Clock::time_point now);
 
-  /// Whether a request that may pass is one of somebody who may drive, and does: not of a visitor
-  /// who looks, logs in or asks for the health.
+  /// True if a passing request comes from a client that may drive, and does: not from a visitor who
+  /// only watches, logs in or asks for the health.
   bool may_drive(const Request& request, bool upgrade, bool api) const;
 
   bool token_required() const { return !options_.token.empty(); }
 
-  /// The body of POST /api/v1/login: {"token":"..."}. Right: 204 and a cookie; wrong: 401, or 429
-  /// after too many.
+  /// The body of POST /api/v1/login: {"token":"..."}. A right token gives 204 and a cookie, a wrong
+  /// one 401, or 429 after too many.
   Response login(const Request& request, Clock::time_point now);
-  /// Ends the login of the request's cookie: 204 and the cookie taken back.
+  /// Ends the login of the request's cookie: 204, and the cookie is withdrawn.
   Response logout(const Request& request);
   static constexpr std::string_view kLoginPath = "/api/v1/login";
   static constexpr std::string_view kLogoutPath = "/api/v1/logout";
   static constexpr std::string_view kCookie = "tautline_session";
 
-  /// The login the request's cookie belongs to, counted as used; empty for none.
+  /// The login of the request's cookie, counted as used; empty for none.
   std::string login_of(const Request& request, Clock::time_point now);
-  /// Counts a login as used: something opened with it is still open.
+  /// Counts a login as used: a connection opened with it is still open.
   void keep_login(std::string_view id, Clock::time_point now) { logins_.keep(id, now); }
-  /// A header that lengthens the life of the request's cookie, where that is due.
+  /// A header that renews the request's cookie, if that is due.
   std::optional<Header> renewal(const Request& request, Clock::time_point now);
-  /// To be called now and then: tells the log of guesses it has not been told of.
+  /// Call it at intervals: logs guesses not logged yet.
   void sweep(Clock::time_point now);
 
  private:
   enum class Credential { None, Wrong, Right };
   struct Presented {
     Credential credential = Credential::None;
-    std::optional<std::chrono::seconds> wait{};  // of a wrong one, where it comes too often
+    std::optional<std::chrono::seconds> wait{};  // for a wrong token sent too often
   };
 
   bool needs_token(const Request& request) const;

@@ -1,4 +1,4 @@
-// server/serve/net/address.cpp: reading addresses with the system's own parser, which takes no
+// server/serve/net/address.cpp: parses addresses with the system's own parser, which accepts no
 // short forms.
 #include "server/serve/net/address.hpp"
 

@@ -1,5 +1,4 @@
-// server/serve/net/address.hpp: IP addresses as values: reading them, and which of them are one
-// visitor.
+// server/serve/net/address.hpp: IP addresses as values: parses them and groups them by visitor.
 #pragma once
 
 #include <array>
@@ -15,20 +14,20 @@ namespace server::net {
 /// socket equals itself on a v4 socket.
 class Address {
  public:
-  /// All zero: no client has it.
+  /// All zero: no client has this address.
   Address() = default;
 
   /// Reads "10.1.2.3", "10.1.2.3:80", "::1", "[::1]", "[::1]:80", "::ffff:10.1.2.3" and
-  /// "fe80::1%eth0" (the zone is left out), in double quotes or not. Names are no addresses.
+  /// "fe80::1%eth0" (the zone is left out), in double quotes or not. Refuses names.
   static std::optional<Address> parse(std::string_view text);
 
   bool is_v4() const;
   bool is_loopback() const;
   /// "10.1.2.3" or "2001:db8::1".
   std::string text() const;
-  /// The address with all but its first `bits` set to zero; of an IPv4 address `bits` is of 32.
+  /// The address with all but its first `bits` set to zero; an IPv4 address has 32 bits.
   Address prefix(int bits) const;
-  /// The visitor it stands for: an IPv4 address itself, of IPv6 the /64 one connection is given.
+  /// The visitor of the address: the IPv4 address itself, or the IPv6 /64 that one customer gets.
   Address visitor() const { return is_v4() ? *this : prefix(64); }
 
   auto operator<=>(const Address&) const = default;

@@ -1,4 +1,4 @@
-// server/serve/net/body_room.hpp: how much large request bodies may hold in memory, all clients
+// server/serve/net/body_room.hpp: limits the memory of large request bodies, for all clients
 // together.
 #pragma once
 
@@ -8,14 +8,14 @@
 
 namespace server::net {
 
-/// Counts the bytes of a large request body from its first byte to the answer. Small bodies always
-/// pass: a Stop is one. Io thread only; outlives its places.
+/// Counts the bytes of a large request body from its first byte to the answer. Small bodies, such
+/// as a Stop, always pass. Io thread only; must outlive its places.
 class BodyRoom {
  public:
   static constexpr std::size_t kSmall = std::size_t{16} << 10;  // [bytes]
   static constexpr std::size_t kAll = std::size_t{64} << 20;    // [bytes]
 
-  /// The bytes of one body, given back when it goes.
+  /// The bytes of one body, returned by the destructor.
   class Place {
    public:
     Place() = default;
@@ -40,7 +40,7 @@ class BodyRoom {
     std::size_t bytes_ = 0;
   };
 
-  /// Nothing when there is no room for `bytes` more.
+  /// Nothing if there is no room for `bytes` more.
   std::optional<Place> take(std::size_t bytes) {
     if (bytes <= kSmall) return Place();
     if (taken_ + bytes > kAll) return std::nullopt;

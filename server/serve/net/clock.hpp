@@ -1,5 +1,5 @@
-// server/serve/net/clock.hpp: the clock of timeouts, logins and limits; what judges by it takes the
-// time as an argument.
+// server/serve/net/clock.hpp: the clock of timeouts, logins and limits. Code that judges by it
+// takes the time as an argument.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// server/serve/net/connections.cpp: counting connections by visitor and making room among them.
+// server/serve/net/connections.cpp: counts connections by visitor and makes room among them.
 #include "server/serve/net/connections.hpp"
 
 #include <algorithm>
@@ -33,8 +33,8 @@ Connections::Count Connections::of(const Address& visitor) const {
 }
 
 /// Closes the longest idle connection of the visitor with the most, if that has `least` or more.
-/// @param only  of this visitor alone, if given
-/// @return whether there was one that could be closed
+/// @param only  if given, considers this visitor alone
+/// @return true if a connection was closed
 bool Connections::close_idlest(std::size_t least, const Address* only, Clock::time_point now) {
   auto idlest = entries_.end();
   std::pair<std::size_t, Clock::duration> most{};  // connections of its visitor, time idle
@@ -62,13 +62,13 @@ void Connections::note_crowding(const Address& visitor) {
   crowder_ = visitor;
 }
 
-/// On this machine, or has driven lately.
+/// True for this machine, and for an address that has driven lately.
 bool Connections::expected(const Address& from, Clock::time_point now) const {
   const auto known = known_.find(from.visitor());
   return from.is_loopback() || (known != known_.end() && now - known->second <= kKnownFor);
 }
 
-/// How many connections there may be for one more from `from`.
+/// Limit of all connections that applies to a further one from `from`.
 std::size_t Connections::places(const Address& from, Clock::time_point now) const {
   return limits_.total - (expected(from, now) ? 0 : std::min(limits_.kept, limits_.total / 2));
 }

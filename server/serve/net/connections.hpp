@@ -1,5 +1,4 @@
-// server/serve/net/connections.hpp: the open connections, and how many of them one visitor may
-// have.
+// server/serve/net/connections.hpp: the open connections, and their limits per visitor.
 #pragma once
 
 #include <chrono>
@@ -21,26 +20,26 @@ namespace server::net {
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// Called about once a second: closes the connection when its time is up.
+  /// Called about once a second: closes the connection if its time is up.
   virtual void check(Clock::time_point now) = 0;
-  /// The server stops: say goodbye if the protocol has a way to, then close.
+  /// The server stops: says goodbye if the protocol can, then closes.
   virtual void go_away() = 0;
   /// Ends the connection now; runs no operation afterwards and does not touch the core again.
   virtual void abort() noexcept = 0;
-  /// Since when it has only waited for the other end; nothing while it is of use to somebody, and
-  /// so must not be closed to make room.
+  /// Time since which it has only waited for the other end. Nothing while it is in use, and so must
+  /// not be closed to make room.
   virtual std::optional<Clock::time_point> idle_since(Clock::time_point now) const = 0;
-  /// The login it was opened with; empty for none, and for a connection that asks each time.
+  /// The login it was opened with; empty for none, and for a connection that checks the login per
+  /// request.
   virtual std::string_view login() const { return {}; }
-  /// That login has ended.
+  /// Called when that login has ended.
   virtual void logged_out() {}
 };
 
-/// Io thread only. Two rules keep one visitor from taking the place of others. Nobody has more than
-/// `per_address` connections: a further one takes the place of the visitor's longest idle one. When
-/// the server is full, a newcomer takes the place of the longest idle connection of the visitor
-/// with the most. Some room is kept for this machine (health checks) and for addresses that have
-/// driven.
+/// Io thread only. Two rules keep one visitor from displacing others. A visitor has at most
+/// `per_address` connections: a further one replaces the visitor's longest idle one. When the
+/// server is full, a new connection replaces the longest idle one of the visitor with the most.
+/// Some room is kept for this machine (health checks) and for addresses that have driven.
 class Connections {
  public:
   struct Limits {
@@ -55,28 +54,28 @@ class Connections {
 
   explicit Connections(const Limits& limits) : limits_(limits) {}
 
-  /// Room for a further connection. That of a trusted proxy counts for nobody until it carries a
-  /// request.
+  /// Makes room for a further connection. A trusted proxy's connection counts for no visitor until
+  /// it carries a request.
   Room make_room(const Address& from, bool proxy, Clock::time_point now);
   Number add(std::shared_ptr<Connection> connection, const Address& from, Kind kind, bool proxy);
-  /// A proxy's connection carries a request of `client` from now on, until release().
+  /// From now until release(), a proxy's connection carries a request of `client`.
   Room charge(Number number, const Address& client, Clock::time_point now);
   void release(Number number);
-  /// Whether `from` may have another WebSocket: one in eight places is left for requests.
+  /// True if `from` may have another WebSocket: one in eight places is left for requests.
   bool may_open_socket(const Address& from) const;
-  /// Forgets a connection that has ended.
+  /// Removes a connection that has ended.
   void remove(Number number);
 
-  /// `from` may drive, and does: it finds room for a while.
+  /// `from` may drive, and does: reserves room for it for a while.
   void welcome(const Address& from, Clock::time_point now);
 
   std::size_t size() const { return entries_.size(); }
   bool empty() const { return entries_.empty(); }
-  /// Ends every one of them.
+  /// Ends all connections.
   void abort_all() noexcept;
-  /// All of them, the oldest first; they may end while the list is walked.
+  /// All connections, oldest first. They may end during iteration over the list.
   std::vector<std::shared_ptr<Connection>> all() const;
-  /// What was closed and refused for want of room, once a minute at most; else empty.
+  /// A report of connections closed or refused for lack of room, at most once a minute; else empty.
   std::string report(Clock::time_point now);
 
  private:
@@ -88,7 +87,7 @@ class Connections {
   using Counts = std::map<Address, Count>;
   struct Entry {
     std::shared_ptr<Connection> connection{};
-    Counts::value_type* visitor = nullptr;  // whom it counts for; null: a proxy's without a request
+    Counts::value_type* visitor = nullptr;  // its visitor; null: a proxy's, without a request
     Kind kind = Kind::Request;
     bool proxy = false;  // was opened by a trusted proxy
   };
@@ -108,7 +107,7 @@ class Connections {
   std::map<Address, Clock::time_point> known_{};  // addresses that have driven, and when
   Number next_ = 1;
   std::size_t crowded_out_ = 0;  // closed or refused since the last report
-  Address crowder_{};            // the visitor it last happened to
+  Address crowder_{};            // the last such visitor
   std::optional<Clock::time_point> reported_{};
 };
 

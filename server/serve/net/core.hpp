@@ -1,5 +1,5 @@
-// server/serve/net/core.hpp: what the connections of one server share. Internal to server/net: the
-// only header here that shows Asio.
+// server/serve/net/core.hpp: state that all connections of a server share. Internal to server/net:
+// the only header here that exposes Asio.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@
 namespace server::net {
 
 namespace asio = boost::asio;
-// The concrete executor spares every operation a type-erased one.
+// The concrete executor avoids a type-erased one in every operation.
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<asio::ip::tcp, Executor>;
 
@@ -45,7 +45,7 @@ struct Core {
   bool stopping = false;
   asio::io_context context{1};
 
-  /// Forgets a connection that has ended. The last one of a stopping server ends run().
+  /// Removes a connection that has ended. The last one of a stopping server ends run().
   void remove(Connections::Number number) {
     connections.remove(number);
     if (stopping && connections.empty()) context.stop();
@@ -58,10 +58,10 @@ struct Core {
 /// The address of one end of a connection.
 Address address_of(const asio::ip::tcp::endpoint& endpoint);
 
-/// What a connection or a request is told for which there is no room.
+/// The answer for a connection or a request without room.
 Response no_room(Connections::Room why);
 
-/// One try without waiting, for what cannot be answered in the ordinary way.
+/// Tries once to write, without waiting, where the ordinary way is not possible.
 void write_at_once(Socket& socket, const Response& response);
 /// Serves HTTP on an accepted socket; hands over to start_websocket on an upgrade.
 void start_http(Core& core, Socket socket, const Address& peer);

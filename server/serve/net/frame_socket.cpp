@@ -12,7 +12,7 @@
 namespace server::net {
 namespace {
 
-constexpr std::size_t kKeptCapacity = 65536;  // [B] that a connection keeps after a large rest
+constexpr std::size_t kKeptCapacity = 65536;  // [bytes] kept by a connection after a large rest
 
 /// The head of an unmasked, final frame (RFC 6455, 5.2).
 struct FrameHead {

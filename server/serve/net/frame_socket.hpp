@@ -1,5 +1,5 @@
-// server/serve/net/frame_socket.hpp: the socket under Beast's WebSocket that also sends a whole
-// frame past it, in one system call. Internal to server/net.
+// server/serve/net/frame_socket.hpp: the socket under Beast's WebSocket, which can also send a
+// whole frame directly, in one system call. Internal to server/net.
 #pragma once
 
 #include <cstddef>
@@ -17,11 +17,10 @@
 
 namespace server::net {
 
-/// Beast reads and writes through it as through the socket itself; a server that streams to a
-/// thousand clients sends its messages directly, which spares Asio's preparations for a write that
-/// may have to wait. The two never cut into each other's frames: nothing is sent directly while
-/// Beast is writing, and what a full kernel buffer left of a direct frame goes first. Io thread
-/// only.
+/// Beast reads and writes through it as through the socket itself. Messages to clients go out
+/// directly, which saves Asio's setup of a write that may have to wait; this matters for a thousand
+/// clients. The two never interleave their frames: nothing is sent directly while Beast is writing,
+/// and the rest of a direct frame after a full kernel buffer goes first. Io thread only.
 class FrameSocket {
  public:
   using executor_type = Executor;
@@ -36,14 +35,14 @@ class FrameSocket {
   executor_type get_executor() { return state_->socket.get_executor(); }
   Socket& socket() { return state_->socket; }
 
-  /// One unmasked WebSocket frame of `header` + `payload`, whole or in part; never waits. Before it
-  /// a binary frame of the `rider`, where that is not empty: both are one write.
+  /// Sends one unmasked WebSocket frame of `header` + `payload`, whole or in part; never waits. A
+  /// non-empty `rider` goes before it as a binary frame, in the same write.
   Sent send(FrameKind kind,
             std::span<const std::byte> header,
             std::string_view payload,
             std::span<const std::byte> rider = {});
 
-  /// Completes with what has become of the rest that send() kept.
+  /// Sends the rest that send() kept; completes with the result.
   template <typename Handler>
   void flush(Handler&& handler) {
     async_write_some(
@@ -52,7 +51,7 @@ class FrameSocket {
                                                       std::size_t) { on_flushed(error); });
   }
 
-  // What Beast asks of a stream.
+  // Beast's requirements of a stream.
   template <typename Buffers, typename Handler>
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
     return state_->socket.async_read_some(buffers, std::forward<Handler>(handler));
@@ -65,14 +64,14 @@ class FrameSocket {
   }
 
  private:
-  /// Shared with the writes on their way, which may end after the connection.
+  /// Shared with pending writes, which may end after the connection.
   struct State {
     explicit State(Socket accepted) : socket(std::move(accepted)) {}
-    /// @return whether nothing is left of the last direct frame; sets `error` when none can be sent
+    /// @return true if nothing is left of the last direct frame; sets `error` if it cannot be sent
     bool send_rest(boost::system::error_code& error);
 
     Socket socket;
-    int writers = 0;           // writes of Beast's, or flushes, not yet ended
+    int writers = 0;           // pending writes of Beast and flushes
     std::vector<char> rest{};  // of a direct frame
   };
 
@@ -85,7 +84,7 @@ class FrameSocket {
     template <typename Self>
     void operator()(Self& self, boost::system::error_code error = {}, std::size_t bytes = 0) {
       if (!writing && !error) {
-        // Kept apart, as `self` moves away with this object.
+        // A copy, because moving `self` moves this object away.
         const std::shared_ptr<State> kept = state;
         writing = kept->send_rest(error);
         if (!writing && !error) {

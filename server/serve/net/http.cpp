@@ -1,4 +1,4 @@
-// server/serve/net/http.cpp: plain HTTP values: decoding targets, building problems and heads.
+// server/serve/net/http.cpp: plain HTTP values: decodes targets, builds problems and heads.
 #include "server/serve/net/http.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ int hex_digit(char c) {
   return l >= 'a' && l <= 'f' ? l - 'a' + 10 : -1;
 }
 
-// The text before and after the first mark; where there is none, the whole text and nothing.
+// The text before and after the first mark; without a mark, the whole text and an empty one.
 std::pair<std::string_view, std::string_view> cut_at(std::string_view text, char mark) {
   const std::size_t end = std::min(text.find(mark), text.size());
   return {text.substr(0, end), text.substr(std::min(end + 1, text.size()))};
@@ -51,7 +51,7 @@ bool equal_no_case(std::string_view a, std::string_view b) {
 }
 
 bool valid_utf8(std::string_view text) {
-  try {  // the writer of JSON checks it
+  try {  // the JSON writer checks it
     static_cast<void>(nlohmann::json(text).dump());
     return true;
   } catch (const nlohmann::json::type_error&) {
@@ -265,14 +265,14 @@ Responder::State::~State() {
   if (!send_) return;
   try {
     answer(problem(500, "the request was accepted but nothing answered it"));
-  } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor has nobody left to tell
+  } catch (...) {  // NOLINT(bugprone-empty-catch): a destructor cannot report it
     send_ = nullptr;
   }
 }
 
 void Responder::State::answer(Response response) {
   if (!send_) return;
-  // Moved out first: sending may run a further request that finds this answered.
+  // Move it out first: sending may run a further request, which must find this one answered.
   const std::function<void(Response)> send = std::exchange(send_, nullptr);
   send(std::move(response));
 }

@@ -1,5 +1,4 @@
-// server/serve/net/http.hpp: requests and responses as plain values; the code that answers REST
-// knows no socket.
+// server/serve/net/http.hpp: requests and responses as plain values; REST handlers know no socket.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +14,7 @@
 
 namespace server::net {
 
-/// Bytes shared by everyone they are sent to; never changed once built.
+/// Bytes shared by all their recipients; never changed once built.
 using Payload = std::shared_ptr<const std::string>;
 
 struct Header {
@@ -23,39 +22,40 @@ struct Header {
   std::string value{};
 };
 
-/// One HTTP request, complete with its body. Valid until the handler returns; copy what is kept.
+/// One HTTP request, complete with its body. Valid until the handler returns; copy anything to
+/// keep.
 struct Request {
   std::string method{};                         // upper case, as sent
   std::string target{};                         // as sent, undecoded
   std::string path{};                           // percent-decoded once, without the query
-  std::map<std::string, std::string> query{};   // decoded; the last of a repeated name
-  std::map<std::string, std::string> params{};  // what the router matched: "{id}" of the pattern
+  std::map<std::string, std::string> query{};   // decoded; the last value of a repeated name
+  std::map<std::string, std::string> params{};  // matches of the router: "{id}" of the pattern
   std::vector<Header> headers{};                // in order of arrival
   std::string body{};
-  std::string peer{};     // address of the client, behind a trusted proxy too
+  std::string peer{};     // address of the client, even behind a trusted proxy
   bool loopback = false;  // the client is on this machine
   bool https = false;     // a trusted proxy encrypts for it
 
-  /// Value of the first header of that name (case does not matter); empty when there is none.
+  /// Value of the first header of that name (case does not matter); empty if there is none.
   std::string_view header(std::string_view name) const;
-  /// How many headers have that name.
+  /// Number of headers of that name.
   std::size_t count(std::string_view name) const;
   /// The elements of a comma list that may be split over several headers of that name, in order.
   std::vector<std::string_view> elements(std::string_view name) const;
-  /// Value of the cookie `name`; empty when there is none.
+  /// Value of the cookie `name`; empty if there is none.
   std::string_view cookie(std::string_view name) const;
 };
 
-/// A body that is made while it is sent, so that neither its length nor a slow client decides how
-/// much memory it takes: one slice a client. Io thread only.
+/// A body made while it is sent, so that its memory is one slice per client, however long the body
+/// or slow the client. Io thread only.
 class BodyStream {
  public:
-  /// The next bytes; empty after the last ones; nothing when the rest cannot be made, and the
-  /// connection then breaks off so that the client does not take a part for the whole.
+  /// The next bytes; empty after the last ones; nothing if the rest cannot be made. The connection
+  /// then breaks off, so that the client does not take a part for the whole.
   using Slice = std::optional<std::string>;
 
   virtual ~BodyStream() = default;
-  /// Calls `give` once, now or later. Asked for the next slice when the last one has been written.
+  /// Calls `give` once, now or later. Called for the next slice when the last one has been written.
   virtual void next(std::function<void(Slice)> give) = 0;
 };
 
@@ -67,7 +67,7 @@ struct Response {
   std::shared_ptr<BodyStream> stream{};  // instead of `body`
 };
 
-/// Thrown by handlers: becomes a problem response of that status with what() as its detail.
+/// Thrown by handlers: becomes a problem response with that status and what() as its detail.
 class HttpError : public std::runtime_error {
  public:
   HttpError(int status, const std::string& detail) : std::runtime_error(detail), status_(status) {}
@@ -88,7 +88,7 @@ Response problem(int status, std::string_view title, std::string_view detail);
 Response problem(int status, std::string_view detail);
 
 /// Splits an origin-form target into path and query and percent-decodes both once.
-/// @return what is wrong, in words; nothing when it is fine
+/// @return the fault in words; nothing if the target is valid
 std::optional<std::string> parse_target(std::string_view target, Request& request);
 
 /// Decodes %XX once. @return nothing on a broken escape or an encoded NUL
@@ -98,7 +98,7 @@ bool equal_no_case(std::string_view a, std::string_view b);
 /// True when `text` is well-formed UTF-8 (no overlong forms, no surrogates).
 bool valid_utf8(std::string_view text);
 
-/// How the end of a body is told.
+/// How the client finds the end of a body.
 enum class Framing : std::uint8_t { Length, Chunked, Close };
 
 /// Status line and header block, ending in the empty line. Line breaks in a value become spaces, so
@@ -108,12 +108,13 @@ std::string response_head(const Response& response,
                           bool keep_alive,
                           Framing framing = Framing::Length);
 
-/// What is wrong with how a request's body is framed; nothing when it is well. Two readers of the
-/// same bytes, such as a proxy and this server, must not disagree on where the next request begins.
+/// The refusal of a badly framed request body; nothing if the framing is valid. Two readers of the
+/// same bytes, such as a proxy and this server, must agree on where the next request begins.
 std::optional<Response> framing_problem(const Request& request, bool http_1_0);
 
 /// Answers one request, at once or later. Io thread only. The first call sends, later ones do
-/// nothing; a client that has gone is no error. When the last copy goes unused the client gets 500.
+/// nothing; a client that has gone is no error. If the last copy is destroyed unused, the client
+/// gets 500.
 class Responder {
  public:
   explicit Responder(std::function<void(Response)> send)

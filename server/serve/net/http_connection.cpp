@@ -43,8 +43,8 @@ Response parse_problem(const error_code& error, const Limits& limits) {
   return problem(400, "this is not a well-formed HTTP request: " + error.message());
 }
 
-/// One request at a time: read header, check, read body, answer, again. Pipelined requests wait in
-/// the buffer, so answers keep their order and memory its bound.
+/// One request at a time: read header, check, read body, answer, repeat. Pipelined requests wait in
+/// the buffer, so answers stay in order and memory stays bounded.
 class HttpConnection final : public Connection,
                              public ResponseWriter::Host,
                              public std::enable_shared_from_this<HttpConnection> {
@@ -55,7 +55,7 @@ class HttpConnection final : public Connection,
   void start();
   void check(Clock::time_point now) override;
   void go_away() override {
-    // An answer on its way may still arrive in the time the server takes to stop.
+    // An answer in progress may still arrive while the server stops.
     if (phase_ != Phase::Writing && phase_ != Phase::Handler) finish();
   }
   void abort() noexcept override;
@@ -80,7 +80,7 @@ class HttpConnection final : public Connection,
   // ResponseWriter::Host
   void writing(std::size_t bytes) override {
     served_ = Clock::now();
-    // A slow but steady reader of a large file gets its time: 50 kB/s is enough.
+    // A slow but steady reader of a large file gets enough time: 50 kB/s suffices.
     set_phase(Phase::Writing, core_.options.timeouts.body + std::chrono::milliseconds(bytes / 50));
   }
   void waiting() override { phase_ = Phase::Handler; }
@@ -91,7 +91,7 @@ class HttpConnection final : public Connection,
   void draining() override { set_phase(Phase::Draining, core_.options.timeouts.closing); }
   void finish() override;
 
-  /// Calls `next` when the operation succeeds and closes when it does not.
+  /// Calls `next` if the operation succeeds; otherwise closes the connection.
   auto then(void (HttpConnection::*next)()) {
     return [self = shared_from_this(), next](const error_code& error, auto...) {
       if (self->ended_) return;
@@ -130,7 +130,7 @@ class HttpConnection final : public Connection,
 void HttpConnection::start() {
   error_code error;
   const asio::ip::tcp::endpoint local = socket_.local_endpoint(error);
-  if (error) return;  // gone before we looked
+  if (error) return;  // the client has gone already
   local_address_ = address_of(local).text();
   served_ = Clock::now();
   number_ = core_.connections.add(
@@ -143,7 +143,7 @@ void HttpConnection::check(Clock::time_point now) {
   if (ended_ || phase_ == Phase::Handler || now < deadline_) return;
   if (phase_ == Phase::Header || phase_ == Phase::Body) {
     if (buffer_.size() > 0 || phase_ == Phase::Body) {
-      // One try without waiting: the pending read cannot be answered in the ordinary way.
+      // Try once without waiting: the pending read cannot be answered in the ordinary way.
       write_at_once(socket_, problem(408, "the request did not arrive in time"));
     }
   }
@@ -158,8 +158,7 @@ void HttpConnection::abort() noexcept {
 }
 
 std::optional<Clock::time_point> HttpConnection::idle_since(Clock::time_point now) const {
-  // Half a request is no use to anybody yet, and a client that does not take its answer none any
-  // more.
+  // Half a request is not yet useful, and a client that does not take its answer no longer is.
   constexpr std::chrono::seconds kToTakeAnAnswer{10};
   if (phase_ == Phase::Handler) return std::nullopt;
   if (phase_ == Phase::Writing && now - served_ < kToTakeAnAnswer) return std::nullopt;
@@ -271,7 +270,7 @@ void HttpConnection::take_header() {
   }
 }
 
-/// Answers what may not pass.
+/// Answers a request that may not pass; false if so.
 bool HttpConnection::admitted(bool upgrading) {
   const Clock::time_point now = Clock::now();
   const Address client = Address::parse(request_.peer).value_or(peer_);
@@ -290,12 +289,12 @@ bool HttpConnection::admitted(bool upgrading) {
     respond(no_room(Connections::Room::AddressFull), false);
     return false;
   }
-  // Who may drive, and does, will be let in again.
+  // A client that may drive, and does, will be let in again.
   if (core_.access.may_drive(request_, upgrading, is_api())) core_.connections.welcome(client, now);
   return true;
 }
 
-/// The WebSocket at the request's path; null when there is none.
+/// The WebSocket endpoint at the request's path; null if there is none.
 const WsEndpoint* HttpConnection::endpoint() const {
   const auto found = std::ranges::find(core_.endpoints, request_.path, &WsEndpoint::path);
   return found == core_.endpoints.end() ? nullptr : &*found;
@@ -319,7 +318,7 @@ void HttpConnection::upgrade() {
             false);
     return;
   }
-  ended_ = true;  // the socket moves on, nothing here touches it any more
+  ended_ = true;  // the socket is moved away; do not touch it after this
   start_websocket(core_,
                   std::move(socket_),
                   parser_->get(),
@@ -383,7 +382,7 @@ void HttpConnection::dispatch() {
   const std::string method_and_path =
       request_.method + ' ' + request_.target;  // undecoded: one line
   const std::string failure = core_.router.dispatch(request_, responder);
-  std::string().swap(request_.body);  // the handler has taken a copy of what it keeps
+  std::string().swap(request_.body);  // the handler has copied what it keeps
   if (!failure.empty()) core_.log(method_and_path + " failed: " + failure);
 }
 

@@ -36,7 +36,7 @@ std::string LoginSessions::open(Clock::time_point now) {
 }
 
 LoginSessions::Sessions::iterator LoginSessions::find(std::string_view id, Clock::time_point now) {
-  // Every one is compared whole, so that the time tells nothing of how much of one was right.
+  // Compare every cookie in full, so that the time does not reveal how much of a guess was right.
   auto found = sessions_.end();
   for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
     if (equal_constant_time(it->first, id) && now - it->second.used <= kIdle) found = it;
@@ -87,7 +87,7 @@ std::chrono::seconds Bucket::wait(Clock::time_point now) const {
   return std::chrono::seconds(static_cast<std::int64_t>(std::ceil(seconds)));
 }
 
-/// An address that has all its guesses again is as one never seen.
+/// Removes addresses that have all their guesses again: they are like new ones.
 void GuessThrottle::forget_the_patient(Clock::time_point now) {
   std::erase_if(accounts_, [&](const auto& entry) { return entry.second.guesses.full(now); });
 }

@@ -26,7 +26,7 @@ Sender TrustedProxies::sender(const Address& peer, const Request& request) const
   for (auto element = chain.rbegin(); element != chain.rend(); ++element) {
     const std::optional<Address> address = Address::parse(*element);
     out.loopback = address && address->is_loopback();
-    if (!address) break;  // "unknown": all we know is the proxy that says so
+    if (!address) break;  // "unknown": only the proxy that says so is known
     out.address = *address;
     if (!contains(*address)) break;
   }

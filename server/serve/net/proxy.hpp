@@ -1,5 +1,5 @@
-// server/serve/net/proxy.hpp: who sent a request: the other end of the connection, or, when that is
-// a proxy the host trusts, the client it speaks for.
+// server/serve/net/proxy.hpp: finds the sender of a request: the other end of the connection or, if
+// that is a trusted proxy, the proxy's client.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace server::net {
 
 struct Sender {
   Address address{};
-  bool loopback = false;  // a client on this machine, not a proxy that speaks for another
+  bool loopback = false;  // a client on this machine, not a proxy for another client
   bool https = false;     // the client's own connection is encrypted
 };
 
@@ -23,10 +23,10 @@ class TrustedProxies {
 
   bool contains(const Address& address) const;
 
-  /// Of a trusted proxy X-Forwarded-For gives the client: the rightmost address that is not itself
-  /// a trusted proxy's, since a client may write whatever it likes to the left of that. The last
-  /// X-Forwarded-Proto gives the scheme. From anybody else both are ignored, but for one thing: a
-  /// program on this machine that forwards for others is not taken for somebody on this machine.
+  /// For a trusted proxy, X-Forwarded-For gives the client: the rightmost address that is not a
+  /// trusted proxy's, because a client can forge everything to the left of it. The last
+  /// X-Forwarded-Proto gives the scheme. Both are ignored from any other peer, with one exception:
+  /// a program on this machine that forwards for others does not count as a client on this machine.
   Sender sender(const Address& peer, const Request& request) const;
 
  private:

@@ -1,5 +1,5 @@
-// server/serve/net/response_writer.hpp: how an answer goes out on a socket: whole or slice by
-// slice, and the end after the last one. Internal to server/net.
+// server/serve/net/response_writer.hpp: writes an answer to a socket, whole or slice by slice, and
+// ends the connection after the last one. Internal to server/net.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ namespace server::net {
 /// Writes one answer after another. A slice is made when the client has taken the one before.
 class ResponseWriter {
  public:
-  /// The connection it writes for. Nothing more is told once the socket is closed.
+  /// The connection it writes for. Gets no calls after the socket is closed.
   class Host {
    public:
-    virtual void writing(std::size_t bytes) = 0;  // so many are on their way
-    virtual void waiting() = 0;                   // for the next slice to be made
+    virtual void writing(std::size_t bytes) = 0;  // this many bytes are being sent
+    virtual void waiting() = 0;                   // waits for the next slice
     virtual void written() = 0;                   // the next request may come
-    virtual void draining() = 0;                  // the last answer is out
-    virtual void finish() = 0;                    // to be closed
+    virtual void draining() = 0;                  // the last answer has been sent
+    virtual void finish() = 0;                    // close the connection
 
    protected:
     ~Host() = default;
@@ -34,7 +34,7 @@ class ResponseWriter {
 
   explicit ResponseWriter(Socket& socket) : socket_(socket) {}
 
-  /// `host` lives as long as something is on its way.
+  /// `host` is kept alive while a write is in progress.
   void write(std::shared_ptr<Host> host, Response response, const Manner& manner);
 
  private:

@@ -1,4 +1,4 @@
-// server/serve/net/router.cpp: matching segment by segment; there are some thirty routes.
+// server/serve/net/router.cpp: matches segment by segment; there are about thirty routes.
 #include "server/serve/net/router.hpp"
 
 #include <algorithm>

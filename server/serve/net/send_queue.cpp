@@ -46,7 +46,7 @@ bool SendQueue::push_latest(std::uint32_t key,
     throw std::invalid_argument("a message header has at most 16 bytes");
   }
   if (to.ring.size() < std::max<std::size_t>(1, keep)) {
-    // Grows once per slot: put the oldest first, then append room behind.
+    // Grows once per slot: put the oldest message first, then append room behind.
     std::rotate(
         to.ring.begin(), to.ring.begin() + static_cast<std::ptrdiff_t>(to.first), to.ring.end());
     to.first = 0;

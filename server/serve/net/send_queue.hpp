@@ -1,5 +1,5 @@
-// server/serve/net/send_queue.hpp: what waits to be written to one WebSocket client, and which is
-// next.
+// server/serve/net/send_queue.hpp: messages that wait to be written to one WebSocket client, and
+// their order.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace server::net {
 
-/// One message on its way: up to 16 bytes of its own before a shared payload.
+/// One message: a header of up to 16 bytes of its own, then a shared payload.
 struct Outgoing {
   FrameKind kind = FrameKind::Binary;
   std::array<std::byte, 16> header{};
@@ -23,9 +23,9 @@ struct Outgoing {
   std::size_t size() const { return header_size + (payload ? payload->size() : 0); }
 };
 
-/// Control messages first, in order; then the slots in turn, so that a busy channel cannot starve
-/// another. Memory is bounded by the control limits plus `keep` messages per slot; the steady state
-/// allocates nothing.
+/// Sends control messages first, in order, then the slots in turn, so that a busy channel cannot
+/// starve another. The control limits plus `keep` messages per slot bound the memory; the steady
+/// state allocates nothing.
 class SendQueue {
  public:
   struct Limits {
@@ -34,11 +34,11 @@ class SendQueue {
   };
   explicit SendQueue(const Limits& limits) : limits_(limits) {}
 
-  /// @return false when it would pass the limits; then nothing was queued
+  /// @return false if it would exceed the limits; then nothing is queued
   bool push_control(Outgoing message);
 
   /// Adds to the slot `key`, dropping its oldest messages beyond `keep` (at least 1).
-  /// @return false when one was dropped
+  /// @return false if a message was dropped
   bool push_latest(std::uint32_t key,
                    std::span<const std::byte> header,
                    const Payload& payload,
@@ -46,7 +46,7 @@ class SendQueue {
   void forget(std::uint32_t key);
   void clear();
 
-  /// Moves the next message to write into `out`. @return false when nothing waits
+  /// Moves the next message to write into `out`. @return false if none waits
   bool next(Outgoing& out);
 
   std::size_t messages() const { return control_.size() + slot_messages_; }
@@ -67,7 +67,7 @@ class SendQueue {
   Limits limits_;
   std::deque<Outgoing> control_{};
   std::size_t control_bytes_ = 0;
-  std::vector<Slot> slots_{};        // by first use; a client has a dozen
+  std::vector<Slot> slots_{};        // in order of first use; a client has about a dozen
   std::vector<std::size_t> turn_{};  // indices of slots with something to send, next first
   std::size_t slot_messages_ = 0;
   std::size_t slot_bytes_ = 0;

@@ -26,7 +26,7 @@ namespace {
 using Acceptor = asio::basic_socket_acceptor<asio::ip::tcp, Executor>;
 using Timer = asio::basic_waitable_timer<Clock, asio::wait_traits<Clock>, Executor>;
 
-constexpr std::size_t kLoginBytes = 4096;  // of the body of a login
+constexpr std::size_t kLoginBytes = 4096;  // of a login's body
 
 asio::ip::address parse_address(const std::string& text) {
   if (text == "localhost") return asio::ip::address_v4::loopback();
@@ -46,8 +46,8 @@ void require_protection(const asio::ip::address& address, const AccessOptions& a
                     "in who can reach the port");
 }
 
-/// Each connection is an open file. Allows as many as the system lets us, and leaves the rest of
-/// the program its share: the database, the devices, the page's files.
+/// Each connection is an open file. Allows as many as the system permits, less a share for the rest
+/// of the program: the database, the devices, the page's files.
 std::size_t affordable_connections(std::size_t wanted) {
   constexpr rlim_t kForTheRest = 128;
   rlimit files{};
@@ -120,11 +120,11 @@ struct Server::Impl {
   void guarded(const std::function<void()>& fn);
   void begin_stop();
 
-  Core core;  // first: it holds the io_context everything below refers to
+  Core core;  // first: everything below refers to its io_context
   Acceptor acceptor;
   Timer sweep_timer;
   Timer retry_timer;
-  Bucket accept_lines{10, 0.1, Clock::now()};  // of the log, while none can be accepted
+  Bucket accept_lines{10, 0.1, Clock::now()};  // log lines while accepting fails
   std::list<Periodic> timers{};
   std::list<Bell> bells{};
 };
@@ -177,7 +177,7 @@ void Server::Impl::welcome(Socket socket) {
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
   socket.non_blocking(true, ignored);
   const asio::ip::tcp::endpoint remote = socket.remote_endpoint(ignored);
-  if (ignored) return;  // gone before we looked
+  if (ignored) return;  // the client has gone already
   const Address peer = address_of(remote);
   const Connections::Room room =
       core.connections.make_room(peer, core.access.is_proxy(peer), Clock::now());
@@ -185,7 +185,7 @@ void Server::Impl::welcome(Socket socket) {
     start_http(core, std::move(socket), peer);
     return;
   }
-  write_at_once(socket, no_room(room));  // fresh: it fits, or the client is out of luck
+  write_at_once(socket, no_room(room));  // new socket: the answer fits its buffer, or is lost
 }
 
 void Server::Impl::sweep() {
@@ -207,7 +207,7 @@ void Server::Impl::sweep() {
   });
 }
 
-/// What was opened with the login ends with it.
+/// Ends the login and all connections opened with it.
 Response Server::Impl::logout(const Request& request) {
   const std::string login = core.access.login_of(request, Clock::now());
   for (const auto& connection : core.connections.all()) {

@@ -1,5 +1,5 @@
-// server/serve/net/static_files.cpp: path checks first, then the resolved file must lie inside the
-// root.
+// server/serve/net/static_files.cpp: checks the path first; then the resolved file must lie inside
+// the root.
 #include "server/serve/net/static_files.hpp"
 
 #include <algorithm>
@@ -100,7 +100,7 @@ Response StaticFiles::get(const Request& request) const {
 
   Response response;
   response.content_type = mime_type(file->extension().string());
-  // Always ask again, so that a new build shows at once; the tag keeps that cheap.
+  // The browser must always ask again, so that a new build shows at once. The tag keeps that cheap.
   response.headers = {{"ETag", *tag}, {"Cache-Control", "no-cache"}};
   if (request.header("If-None-Match") == *tag) {
     response.status = 304;

@@ -15,7 +15,7 @@ namespace server::net {
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
 
-/// Who connects, as the request that has passed every check says.
+/// The connecting client, from a request that has passed every check.
 struct WsVisitor {
   std::string subprotocol{};
   std::string peer{};
@@ -23,7 +23,7 @@ struct WsVisitor {
   std::string login{};
 };
 
-/// Answers the upgrade and serves the WebSocket from there on.
+/// Answers the upgrade and then serves the WebSocket.
 void start_websocket(Core& core,
                      Socket socket,
                      const UpgradeRequest& request,

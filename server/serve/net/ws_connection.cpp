@@ -26,9 +26,9 @@ using boost::system::error_code;
 using Stream = websocket::stream<FrameSocket, false>;  // false: no permessage-deflate, it costs and
                                                        // saves nothing
 
-/// A message goes straight to the kernel when nothing is in its way. Else there is one write in
-/// flight, never more, and what comes meanwhile waits in the bounded queue. Beast's own timers are
-/// off, check() does their work: they would take a client that reads slowly for dead.
+/// A message goes straight to the kernel if no write is in flight. Otherwise there is one write in
+/// flight, never more, and further messages wait in the bounded queue. Beast's own timers are off,
+/// because they would take a slow reader for dead; check() does their work.
 class WsConnection final : public Connection,
                            public WsClient,
                            public std::enable_shared_from_this<WsConnection> {
@@ -86,7 +86,7 @@ class WsConnection final : public Connection,
   std::uint32_t id_;
   Connections::Number number_ = 0;
   State state_ = State::Handshake;
-  bool announced_ = false;  // on_open was called, on_close is owed
+  bool announced_ = false;  // on_open was called, on_close must follow
   beast::flat_buffer input_{};
   SendQueue queue_;
   Outgoing current_{};
@@ -94,7 +94,7 @@ class WsConnection final : public Connection,
   std::size_t rider_size_ = 0;
   bool writing_ = false;
   bool pinging_ = false;
-  Clock::time_point deadline_{};  // of the handshake or the closing
+  Clock::time_point deadline_{};  // for the handshake or the closing
   Clock::time_point heard_{};     // last sign of life, with some grace
   Clock::time_point write_started_{};
   WsCounters counters_{};
@@ -108,8 +108,8 @@ WsConnection::WsConnection(Core& core, Socket socket, const WsEndpoint& endpoint
       id_(core.next_client++),
       queue_({core.options.limits.control_messages, core.options.limits.control_bytes}) {}
 
-/// The kernel takes megabytes for a client that does not read: frames that are old when they
-/// arrive. With this option it takes only so many unsent bytes and the newest frame waits here.
+/// The kernel buffers megabytes for a client that does not read; such frames are old when they
+/// arrive. With this option it buffers only so many unsent bytes, and the newest frame waits here.
 void WsConnection::limit_kernel_queue() {
   const int bytes = static_cast<int>(core_.options.limits.unsent_kernel_bytes);
   if (::setsockopt(stream_->next_layer().socket().native_handle(),
@@ -178,7 +178,7 @@ void WsConnection::on_read(const error_code& error) {
   if (state_ == State::Open) deliver();
   if (state_ == State::Ended) return;
   input_.clear();
-  // One large message must not keep its memory for the life of the connection.
+  // The memory of one large message must not be kept for the life of the connection.
   if (input_.capacity() > 65536) input_.shrink_to_fit();
   read();
 }
@@ -212,8 +212,8 @@ void WsConnection::send_control(FrameKind kind, Payload payload) {
   message.payload = std::move(payload);
   if (!queue_.push_control(std::move(message))) {
     core_.log("disconnecting " + visitor_.peer + ": it does not read its control messages");
-    // A closing frame would queue behind what it does not read. Not ended here and now, as the
-    // caller may be walking a list of clients: check() does it.
+    // A closing frame would queue behind unread messages. check() ends the connection, not this
+    // call: the caller may be iterating over the clients.
     state_ = State::Closing;
     deadline_ = Clock::now();
     queue_.clear();
@@ -241,7 +241,7 @@ void WsConnection::ride(std::span<const std::byte> message) {
   rider_size_ = message.size();
 }
 
-/// @return whether the message was taken; its rest, if any, is then on its way
+/// @return true if the message was taken; its rest, if any, is then being sent
 bool WsConnection::send_now(FrameKind kind,
                             std::span<const std::byte> header,
                             const Payload& payload) {
@@ -272,7 +272,7 @@ void WsConnection::pump() {
   if (!writing_) current_.payload = nullptr;
 }
 
-/// Through Beast, which waits for its own frames to end and for room in the kernel.
+/// Writes through Beast, which waits for its own frames to end and for room in the kernel.
 void WsConnection::write() {
   writing_ = true;
   write_started_ = Clock::now();
@@ -295,7 +295,8 @@ void WsConnection::on_written(const error_code& error, std::size_t bytes) {
     return;
   }
   count(bytes);
-  // A client that was stuck gets the full silence again to answer the ping it could not see.
+  // A client that was stuck gets the full silence limit again, to answer the ping that it could not
+  // see.
   heard_ = std::max(heard_, Clock::now() - core_.options.timeouts.ws_silence / 2);
   pump();
 }
@@ -319,7 +320,7 @@ void WsConnection::check(Clock::time_point now) {
     if (now >= deadline_) finish();
     return;
   }
-  // While frames go out as well: they reach the kernel long after the network is gone.
+  // Ping even while frames go out: the kernel accepts them long after the network is gone.
   const auto due = std::min(timeouts.ws_ping, timeouts.ws_silence / 2);
   if (now - counters_.heard > due && !pinging_) ping();
   if (writing_) {
@@ -355,8 +356,8 @@ void WsConnection::abort() noexcept {
   state_ = State::Ended;
   queue_.clear();
   beast_close_socket(stream_->next_layer());
-  // Destroying the stream lets a handle outlive the io_context; pending operations hold only weak
-  // references to it.
+  // Destroy the stream, so that a handle may outlive the io_context; pending operations hold only
+  // weak references to it.
   stream_.reset();
   if (!std::exchange(announced_, false) || !endpoint_.on_close) return;
   try {
