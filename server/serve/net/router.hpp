@@ -1,4 +1,5 @@
-// server/serve/net/router.hpp: method and path pattern to handler; 404 and 405 by itself.
+// server/serve/net/router.hpp: maps method and path pattern to a handler; answers 404 and 405
+// itself.
 #pragma once
 
 #include <cstddef>
@@ -22,30 +23,30 @@ class Router {
     std::string pattern{};  // "/api/v1/runs/{id}"; a {name} matches one non-empty segment
   };
 
-  /// Routes are tried in the order added. A body of more than `body_bytes` gets 413, and never more
-  /// than the server's own limit passes. Throws std::invalid_argument on a pattern that does not
-  /// start with '/' or on a route added twice.
+  /// Routes are tried in the order added. A body of more than `body_bytes`, or more than the
+  /// server's own limit, gets 413. Throws std::invalid_argument on a pattern that does not start
+  /// with '/' or on a route added twice.
   void add(std::string method,
            std::string pattern,
            Handler handler,
            std::size_t body_bytes = kAnyBody);
-  /// The same for a handler that answers at once.
+  /// Adds a route whose handler answers at once.
   void add(std::string method,
            std::string pattern,
            SyncHandler handler,
            std::size_t body_bytes = kAnyBody);
   static constexpr std::size_t kAnyBody = std::numeric_limits<std::size_t>::max();
 
-  /// True when a pattern, whatever its method, matches `path`.
+  /// True if a pattern of any method matches `path`.
   bool knows(std::string_view path) const;
-  /// What a body for this method and path may hold [bytes].
+  /// Largest body for this method and path [bytes].
   std::size_t body_limit(std::string_view method, std::string_view path) const;
-  /// Calls the handler with request.params filled; answers 404, or 405 with Allow, when there is
+  /// Calls the handler with request.params filled; answers 404, or 405 with Allow, if there is
   /// none. HEAD runs the handler of GET. An HttpError becomes its problem, any other exception 500.
   /// @return what() of an exception that became 500, else empty
   std::string dispatch(Request& request, const Responder& responder) const;
 
-  /// All routes in the order added, for the test that holds the OpenAPI file against them.
+  /// All routes in the order added, for the test that compares them with the OpenAPI file.
   const std::vector<Route>& routes() const { return routes_; }
 
  private:

@@ -1,4 +1,4 @@
-// server/serve/net/secret.hpp: names that nobody can guess.
+// server/serve/net/secret.hpp: random names that cannot be guessed.
 #pragma once
 
 #include <string>

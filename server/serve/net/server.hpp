@@ -1,5 +1,4 @@
-// server/serve/net/server.hpp: HTTP and WebSocket on one port and one thread, Beast kept out of
-// sight.
+// server/serve/net/server.hpp: HTTP and WebSocket on one port and one thread; hides Beast.
 #pragma once
 
 #include <chrono>
@@ -19,37 +18,37 @@
 namespace server::net {
 
 struct Limits {
-  std::size_t connections = 2048;             // fewer where the system allows fewer files
+  std::size_t connections = 2048;             // fewer if the system allows fewer files
   std::size_t connections_per_address = 256;  // an IPv6 /64 is one address
-  std::size_t connections_kept = 64;          // of all, for this machine and those who drive
+  std::size_t connections_kept = 64;          // of all, for this machine and for drivers
   std::size_t header_bytes = 8192;
   std::size_t body_bytes = 1u << 20;
   std::size_t frame_bytes = 1u << 20;       // of one WebSocket message
   std::size_t control_messages = 1024;      // unsent control messages of one client
   std::size_t control_bytes = 4u << 20;     // their bytes
-  std::size_t unsent_kernel_bytes = 32768;  // frames a slow client has in the kernel: stale ones
+  std::size_t unsent_kernel_bytes = 32768;  // stale frames of a slow client in the kernel
 };
 
 struct Timeouts {
   std::chrono::milliseconds header{10'000};       // from first byte (or connect) to complete header
   std::chrono::milliseconds body{30'000};         // complete body; also a response, plus its size
   std::chrono::milliseconds idle{60'000};         // between two requests
-  std::chrono::milliseconds ws_silence{30'000};   // WebSocket: without a sign of life, dropped
-  std::chrono::milliseconds ws_ping{15'000};      // pinged whenever nothing was heard for so long
-  std::chrono::milliseconds ws_stalled{300'000};  // one write that does not move, peer alive
+  std::chrono::milliseconds ws_silence{30'000};   // WebSocket: closed without a sign of life
+  std::chrono::milliseconds ws_ping{15'000};      // pinged after this time of silence
+  std::chrono::milliseconds ws_stalled{300'000};  // one write without progress, peer alive
   std::chrono::milliseconds closing{2'000};       // closing handshakes and lingering closes
 };
 
 struct ServerOptions {
   std::string address = "127.0.0.1";  // an IP address or "localhost"
-  std::uint16_t port = 8080;          // 0: any free one, see Server::port()
+  std::uint16_t port = 8080;          // 0: any free port, see Server::port()
   AccessOptions access{};
   std::filesystem::path web_root{};  // the built page; empty: none
   Limits limits{};
   Timeouts timeouts{};
-  /// Runs a job on another thread: files are read there. Empty: on the io thread.
+  /// Runs a job, such as reading a file, on another thread. Empty: on the io thread.
   std::function<void(std::function<void()>)> offload{};
-  /// Told of everything worth a log line, on the io thread. May be empty.
+  /// Called on the io thread with each log line. May be empty.
   std::function<void(std::string_view)> log{};
 };
 
@@ -63,8 +62,8 @@ class ServerError : public std::runtime_error {
 /// stop() may be called from other threads. Add routes and endpoints before run().
 class Server {
  public:
-  /// Opens the port, so that port() is known and clients may already connect; they are answered
-  /// from run() on. Throws ServerError: address not usable, port taken, or an address beyond
+  /// Opens the port, so that port() is known and clients may already connect. They are answered
+  /// once run() runs. Throws ServerError: address not usable, port taken, or an address beyond
   /// loopback without a token or insecure.
   explicit Server(ServerOptions options);
   ~Server();
@@ -78,8 +77,8 @@ class Server {
   /// "http://127.0.0.1:8080/", with the real port.
   std::string url() const;
 
-  /// Serves until stop(), then tells WebSocket clients (1001) and closes everything. Every
-  /// on_open has had its on_close when this returns.
+  /// Serves until stop(), then tells WebSocket clients (1001) and closes everything. When it
+  /// returns, on_close has been called for every on_open.
   void run();
   void stop();
   /// Runs `fn` on the io thread, soon.
@@ -91,8 +90,8 @@ class Server {
   /// Runs `fn` once on the io thread, `delay` from now. Call as every().
   void after(std::chrono::milliseconds delay, std::function<void()> fn);
   /// A function that any thread may call to have `fn` run on the io thread, soon. It allocates
-  /// nothing and never blocks; calls before `fn` runs count as one. Set up before run(); the server
-  /// must outlive its calls. Throws ServerError when the system has no more files.
+  /// nothing and never blocks; calls before `fn` runs count as one. Create it before run(); the
+  /// server must outlive its calls. Throws ServerError if the system has no more files.
   std::function<void()> bell(std::function<void()> fn);
 
   /// Open connections, HTTP and WebSocket. Io thread only.

@@ -1,5 +1,5 @@
-// server/serve/net/static_files.hpp: the built page from its folder, and nothing else from the
-// disk.
+// server/serve/net/static_files.hpp: serves the built page from its folder, and nothing else from
+// the disk.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,16 @@ class StaticFiles {
   /// `root` may be empty: then every path answers 404 and says that no page is served.
   explicit StaticFiles(std::filesystem::path root);
 
-  /// The file at request.path, "/" being index.html; 304 when If-None-Match names it already.
-  /// 404 for what is not there, for folders, hidden files and every path that would leave the
-  /// root, by "..", backslash or symbolic link; 405 for other methods than GET and HEAD.
+  /// The file at request.path, with "/" as index.html; 304 if If-None-Match names its tag. 404 for
+  /// missing files, folders, hidden files and every path that would leave the root by "..",
+  /// backslash or symbolic link. 405 for methods other than GET and HEAD.
   Response get(const Request& request) const;
 
  private:
   std::filesystem::path root_;  // canonical, or empty
 };
 
-/// Content type by file name extension; application/octet-stream when unknown.
+/// Content type by file name extension; application/octet-stream if unknown.
 std::string_view mime_type(std::string_view extension);
 
 }  // namespace server::net
