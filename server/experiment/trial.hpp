@@ -40,7 +40,7 @@ struct Row {
   using Figure = std::pair<std::string_view, double>;  // a judge's column and its value
 
   algo::Outcome outcome = algo::Outcome::Running;
-  std::string reason{};           // one sentence where the outcome does not speak for itself
+  std::string reason{};           // a sentence if the outcome needs a reason
   bool broken = false;            // Failed, but not by a judge's ending
   std::vector<Figure> figures{};  // in the order of the judges; NaN: not known
   std::vector<algo::Vec2> track_W{};

@@ -19,7 +19,7 @@ namespace server {
 /// The end of a run, as judged by the watch function.
 struct Ending {
   algo::Outcome outcome = algo::Outcome::Running;
-  std::string reason{};  // one sentence where the outcome does not speak for itself
+  std::string reason{};  // a sentence if the outcome needs a reason
 };
 
 struct HeadlessOptions {

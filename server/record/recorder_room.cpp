@@ -63,7 +63,7 @@ bool Recorder::sweep(Clock::time_point until) {
   return more;
 }
 
-/// Deletes the oldest finished run. False when there is none.
+/// Deletes the oldest finished run. False if there is none.
 bool Recorder::evict() {
   const auto run = store_.retire_oldest(0);
   if (!run) return false;

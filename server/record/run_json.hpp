@@ -39,7 +39,7 @@ algo::FilterKind stored_filter(const db::RunRow& row);
 /// Options that all recorders of this program share. Their reports go to the log.
 RecorderOptions recorder_options();
 
-/// A run as GET /api/v1/runs lists it; with its document when the row holds one.
+/// A run as GET /api/v1/runs lists it; with its document if the row holds one.
 nlohmann::json to_json(const db::RunRow& row);
 /// A single-valued column of a tick.
 struct TickColumn {

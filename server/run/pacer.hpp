@@ -37,7 +37,7 @@ class Deadlines {
 
 struct Pace {
   bool paused = false;
-  double speed = 1;                // times real time; 0 = as fast as it goes
+  double speed = 1;                // times real time; 0 = as fast as possible
   std::uint32_t single_steps = 0;  // periods to run while paused
   bool operator==(const Pace&) const = default;
 };
@@ -64,12 +64,12 @@ class Pacer {
   /// True, once, when that deadline has come; the next period then begins.
   bool pass(double seconds, Clock::time_point now);
 
-  /// Blocks until pass() is true; false when `stop` came first.
+  /// Blocks until pass() is true; false if `stop` came first.
   bool wait(double seconds, const std::stop_token& stop = {});
   /// Blocks until `time`, a change of pace, or `stop`, whichever comes first.
   void sleep_until(Clock::time_point time, const std::stop_token& stop);
 
-  /// Periods of wall time that went by unused because the caller came too late.
+  /// Periods skipped because the caller came too late.
   std::uint64_t missed() const;
   /// How late pass() was after its deadlines.
   algo::LatenessHistogram lateness() const;

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 constexpr NumberRange kLength{0.01, 20};      // [m]
-constexpr NumberRange kHeight{0, 5};          // [m] over the floor
+constexpr NumberRange kHeight{0, 5};          // [m] above the floor
 constexpr NumberRange kMassHeight{0.001, 5};  // [m]
 constexpr NumberRange kPlace{-10, 10};        // [m] in R
 constexpr NumberRange kMass{0.01, 1e5};       // [kg]

@@ -12,7 +12,7 @@ namespace server {
 namespace {
 
 using algo::Outcome;
-constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
+constexpr double kRounding = 1e-9;  // [s] by which a sum of periods may be less than their product
 // Speeds that encoder noise alone can cause.
 constexpr double kStandingSpeed = 0.01;  // [m/s]
 constexpr double kStandingTurn = 0.02;   // [rad/s]

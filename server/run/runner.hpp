@@ -22,7 +22,7 @@
 
 namespace server {
 
-/// A request on its way to the control thread, and the answer on its way back.
+/// A request for the control thread, and its answer.
 struct Submission {
   std::uint64_t ticket = 0;
   algo::Request request{};
@@ -69,7 +69,7 @@ struct RunPolicy {
 
 struct RunResult {
   algo::Outcome outcome = algo::Outcome::Running;
-  std::string reason{};  // one sentence where the outcome does not speak for itself
+  std::string reason{};  // a sentence if the outcome needs a reason
   algo::Metrics metrics{};
   std::uint64_t lost_ticks = 0;      // not recorded: the record could not keep up
   std::uint64_t missed_periods = 0;  // skipped because a tick took too long
@@ -96,7 +96,7 @@ class Stillness {
   bool lasts(const algo::Telemetry& t, double span);
 
  private:
-  double since_ = 0;  // [s] of the last event
+  double since_ = 0;  // [s] run clock of the last event
   algo::Mission mission_ = algo::Mission::Idle;
   algo::Hold hold_{};
 };
@@ -106,7 +106,7 @@ class Stillness {
 class Run {
  public:
   using Clock = Pacer::Clock;
-  /// When advance() wants to be called again.
+  /// When to call advance() again.
   struct Next {
     enum class When : std::uint8_t {
       AtOnce,  // time runs as fast as possible

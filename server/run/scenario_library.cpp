@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Kind = LibraryError::Kind;
 
-std::mutex writing;  // two savers must not share a draft
+std::mutex writing;  // two concurrent saves must not share a draft
 
 sim::Scenario parse(const std::string& text, const std::string& where, const RobotLibrary& robots) {
   try {

@@ -111,7 +111,7 @@ class Experiments {
   std::mutex mutex_{};
   std::condition_variable_any wake_{};
   std::deque<Job> queue_{};
-  std::size_t arriving_ = 0;  // accepted, but not yet in the queue
+  std::size_t arriving_ = 0;  // accepted runs not yet in the queue
   bool stopping_ = false;
   std::map<db::RunId, std::shared_ptr<Running>> running_{};
   experiment::Pool pool_;  // last: it uses all of the above

@@ -63,7 +63,7 @@ class LiveRun final : private Scheduler::Task {
   /// Lateness of the ticks against their deadlines. Hardware gives it in its own report.
   algo::LatenessHistogram lateness() const { return pacer_.lateness(); }
   bool finished() const { return finished_.load(std::memory_order_acquire); }
-  /// Only once finished() is true.
+  /// Valid only after finished() is true.
   const RunResult& result() const { return result_; }
   /// Off if the run is not recorded, or its record has no status yet.
   RecordStatus record_status() const { return channel_ ? channel_->status() : RecordStatus{}; }

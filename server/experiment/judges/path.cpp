@@ -14,7 +14,7 @@ constexpr double kResample = 0.050;  // [m] between kept positions, as for the t
 
 constexpr Column kColumns[] = {
     {"body_infringed_s", Aggregate::Largest, 1},  // an obstacle within d_safe of the hull
-    {"body_depth_m", Aggregate::Largest, 3},      // how deep
+    {"body_depth_m", Aggregate::Largest, 3},      // its greatest depth
     // Sum of (change of direction)^2 / length of the later segment, of the path resampled at 50 mm
     // steps.
     {"bending_rad2_per_m", Aggregate::Mean, 2},
@@ -91,7 +91,7 @@ class Path final : public Judge {
   std::optional<double> direction_{};  // [rad] of the last kept segment
   double shares_ = 0;                  // count
   double share_mean_ = 0;
-  double squares_ = 0;           // of the deviations (Welford)
+  double squares_ = 0;           // sum of squared deviations (Welford)
   double largest_internal_ = 0;  // [m]
 };
 

@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kSlow = 0.05;      // share of the top speed; slower counts as rest
 constexpr double kPause = 0.1;      // [s] of rest that make a pause
-constexpr double kRounding = 1e-9;  // [s] a sum of periods may fall short of their product
+constexpr double kRounding = 1e-9;  // [s] by which a sum of periods may be less than their product
 
 constexpr Column kColumns[] = {
     {"standing_s", Aggregate::Mean, 1},  // all rest
     // Times it rested for 0.1 s or more and then drove on. The rest before the first motion and the
     // rest at the end of a run do not count.
     {"pauses", Aggregate::Mean, 1},
-    {"pause_s", Aggregate::Mean, 2},  // at rest in pauses
+    {"pause_s", Aggregate::Mean, 2},  // rest in pauses
 };
 
 /// At rest means, by the true pose, slower than 5 % of the top speed and of the top turn rate. A

@@ -39,7 +39,7 @@ struct Conditions {
   double phase = 0;          // [s] into the obstacles' paths at the start of a run
 };
 
-/// Throws DocumentError naming the field, or std::runtime_error when the file cannot be read.
+/// Throws DocumentError naming the field, or std::runtime_error if the file cannot be read.
 std::vector<World> read_worlds(const std::string& file);
 std::vector<World> worlds_from_json(const nlohmann::json& document);
 

@@ -15,7 +15,7 @@ namespace server::mapping {
 namespace {
 
 constexpr double kMargin = 15;    // [m] of map around the path
-constexpr double kLargest = 400;  // [m] edge of a map; a log that needs more has lost its poses
+constexpr double kLargest = 400;  // [m] edge of a map; a log that needs more has bad poses
 
 double cpu_seconds() {
   std::timespec now{};

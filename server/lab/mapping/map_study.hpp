@@ -19,7 +19,7 @@ namespace server::mapping {
 
 /// All scans of a CARMEN log, and the robot's pose at each scan.
 struct Recording {
-  std::string name{};  // the file's, without folder and ending
+  std::string name{};  // of the file, without folder and ending
   std::vector<algo::LaserScan> scans{};
   std::vector<algo::Pose2> path_W{};  // one pose per scan
 };

@@ -142,7 +142,7 @@ FilterFigures judge_scene(const FilterScene& scene,
     if (smooth[i] && std::abs(off) > kImpulse_mm) out.impulses += 1;
     const bool inner = i > 0 && i + 1 < truth.size();
     if (inner && smooth[i] && !near_a_spike(scene, i, half_width)) {
-      // The bend of the truth itself is no oscillation.
+      // The truth's own second difference is no oscillation.
       const double b = bend(scene.before_mm, i) - bend(truth, i);
       const double a = bend(after_mm, i) - bend(truth, i);
       tally.wiggle_before += b * b;

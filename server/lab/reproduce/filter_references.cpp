@@ -106,7 +106,7 @@ std::vector<double> filtered(const StudyFilter& filter,
 std::vector<double> pseudomedian_as_printed(std::span<const double> in, int half_width) {
   std::vector<double> out(in.size());
   for (std::size_t i = 0; i < in.size(); ++i) {
-    // Window place p = 1..2N+1 lies p - (N+1) from the centre.
+    // Window index p = 1..2N+1 lies p - (N+1) from the centre.
     out[i] = pseudomedian_of(in, static_cast<std::ptrdiff_t>(i), half_width, [&](int k) {
       return std::pair(k - half_width, 0);
     });

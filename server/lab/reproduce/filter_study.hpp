@@ -102,13 +102,13 @@ struct FilterStudy {
 /// when the logs cannot be read.
 FilterStudy study_filters(const FilterStudyOptions& options);
 
-// ---- its parts ----
+// ---- the parts of the study ----
 std::vector<SignalResult> study_signals();
 std::vector<NoiseResult> study_noise();
 std::vector<CostResult> study_cost();
 std::vector<Claim> judge_claims(const FilterStudy& study);
 
-// ---- as a document ----
+// ---- the study as a document ----
 std::string to_text(const FilterStudy& study);
 nlohmann::json to_json(const FilterStudy& study);
 /// A section of Markdown that shows pictures from the folder `pictures` (relative to its file).

@@ -60,7 +60,7 @@ db::RunFilter filter_of(const net::Request& request) {
   return filter;
 }
 
-/// Appends `item` to a list in JSON.
+/// Appends `item` to a JSON list.
 void append_item(std::string& list, const json& item) {
   if (list.size() > 1) list += ',';
   list += dump_json(item);

@@ -16,7 +16,7 @@ constexpr std::byte kServiceResponse{0x03};
 constexpr char kClientMessage = 0x01;
 constexpr char kServiceRequest = 0x02;
 
-// ---- reading JSON fields; `where` names the place for the sentence
+// ---- reading JSON fields; `where` names the place for the error
 
 const json& field(const json& object, const char* name, const std::string& where) {
   if (!object.is_object()) throw ProtocolError(where + " must be an object");
@@ -49,7 +49,7 @@ std::string optional_text(const json& object, const char* name, const std::strin
   return as_text(*found, where + ": '" + name + "'");
 }
 
-/// The fields of one item of a list that the operation `op` carries.
+/// The fields of one item in a list of the operation `op`.
 struct Item {
   const json& object;
   const std::string& op;
@@ -61,7 +61,7 @@ struct Item {
   std::string label(const char* name) const { return op + ": '" + name + "'"; }
 };
 
-/// Each value of the list `name` of the operation, by `read(value, op)`.
+/// Reads each value of the operation's list `name` by `read(value, op)`.
 template <typename Read>
 auto list_of(const json& op, const char* name, const std::string& where, Read read) {
   std::vector<decltype(read(op, where))> out;

@@ -19,7 +19,7 @@ struct AccessOptions {
   std::vector<std::string> allow_hosts{};      // "robot.lan" or "robot.lan:8081"
   std::vector<std::string> allow_origins{};    // "https://viewer.example"
   std::vector<std::string> trusted_proxies{};  // "127.0.0.1", "172.17.0.0/16"
-  /// API paths that answer without the token, for health checks.
+  /// API paths that need no token, for health checks.
   std::vector<std::string> open_paths{"/api/v1/healthz"};
 };
 

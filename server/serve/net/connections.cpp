@@ -85,7 +85,7 @@ Connections::Room Connections::make_room(const Address& from, bool proxy, Clock:
     return refused(Room::AddressFull, visitor);
   }
   if (entries_.size() < (proxy ? limits_.total : places(from, now))) return Room::Yes;
-  // A stranger never displaces the only connection of a visitor.
+  // An unknown address never displaces the only connection of a visitor.
   const std::size_t least = expected(from, now) ? 1 : std::max<std::size_t>(has + 1, 2);
   const bool made = close_idlest(least, nullptr, now) || close_idlest(0, &visitor, now);
   return made ? Room::Yes : refused(Room::ServerFull, visitor);

@@ -149,7 +149,7 @@ Response json_response(int status, std::string text) {
 Response problem(int status, std::string_view title, std::string_view detail) {
   const nlohmann::ordered_json body = {
       {"type", "about:blank"}, {"title", title}, {"status", status}, {"detail", detail}};
-  // A sentence may quote what the client sent, so it may hold broken UTF-8: replace, never throw.
+  // A sentence may quote the client's text, which may be broken UTF-8: replace, never throw.
   return text_response(status,
                        "application/problem+json",
                        body.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));

@@ -117,7 +117,7 @@ class HttpConnection final : public Connection,
   bool ended_ = false;
   Phase phase_ = Phase::Idle;
   Clock::time_point deadline_{};
-  Clock::time_point served_{};  // when it was accepted, or its last answer or slice was begun
+  Clock::time_point served_{};  // time of accept, or start of the last answer or slice
   std::string local_address_{};
   beast::flat_buffer buffer_{};
   std::optional<http::request_parser<http::string_body>> parser_{};
@@ -380,7 +380,7 @@ void HttpConnection::dispatch() {
     if (self && !self->ended_) self->respond(std::move(response), keep_alive);
   });
   const std::string method_and_path =
-      request_.method + ' ' + request_.target;  // undecoded: one line
+      request_.method + ' ' + request_.target;  // undecoded, so that it stays on one line
   const std::string failure = core_.router.dispatch(request_, responder);
   std::string().swap(request_.body);  // the handler has copied what it keeps
   if (!failure.empty()) core_.log(method_and_path + " failed: " + failure);

@@ -41,8 +41,8 @@ void ResponseWriter::on_written(const std::shared_ptr<Host>& host, const error_c
   } else if (keep_alive_) {
     host->written();
   } else {
-    // Closing with unread input would reset the connection and may take the answer with it: stop
-    // sending, then read away what still comes.
+    // Closing with unread input would reset the connection and might lose the answer. Stop sending,
+    // then read and discard further input.
     error_code ignored;
     socket_.shutdown(Socket::shutdown_send, ignored);
     host->draining();
@@ -60,7 +60,7 @@ void ResponseWriter::next_slice(const std::shared_ptr<Host>& host) {
 
 void ResponseWriter::write_slice(const std::shared_ptr<Host>& host, BodyStream::Slice slice) {
   if (!slice) {
-    // Reset, as an ordinary end would complete a body without a length.
+    // Reset the connection: an ordinary close would complete a body without a length.
     error_code ignored;
     socket_.set_option(asio::socket_base::linger(true, 0), ignored);
     host->finish();

@@ -10,7 +10,7 @@
 
 namespace server::net {
 
-/// Writes one answer after another. A slice is made when the client has taken the one before.
+/// Writes one answer after another. Makes a slice when the client has taken the last one.
 class ResponseWriter {
  public:
   /// The connection it writes for. Gets no calls after the socket is closed.

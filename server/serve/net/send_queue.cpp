@@ -32,7 +32,7 @@ void SendQueue::pop(Slot& from, Outgoing& out) {
   slot_bytes_ -= message.size();
   --slot_messages_;
   std::swap(out, message);
-  message.payload = nullptr;  // what `out` held before
+  message.payload = nullptr;  // the old content of `out`
   from.first = (from.first + 1) % from.ring.size();
   --from.count;
 }
@@ -100,7 +100,7 @@ bool SendQueue::next(Outgoing& out) {
     turn_.erase(turn_.begin());
     Slot& from = slots_[index];
     from.waiting = false;
-    if (from.count == 0) continue;  // forgotten meanwhile
+    if (from.count == 0) continue;  // forget() emptied it meanwhile
     pop(from, out);
     if (from.count > 0) {
       from.waiting = true;

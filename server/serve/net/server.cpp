@@ -161,7 +161,7 @@ void Server::Impl::accept() {
       accept();
       return;
     }
-    // Mostly "too many open files": the next try would fail at once too, so wait a little.
+    // Usually "too many open files": the next try would also fail at once, so wait a little.
     if (accept_lines.take(Clock::now())) {
       core.log("cannot accept a connection: " + error.message());
     }
@@ -263,7 +263,7 @@ void Server::Impl::begin_stop() {
     core.context.stop();
     return;
   }
-  // A client that does not take the goodbye in time is cut off by run().
+  // run() cuts off a client that does not take the goodbye in time.
   sweep_timer.expires_after(std::chrono::milliseconds(300));
   sweep_timer.async_wait([this](boost::system::error_code) { core.context.stop(); });
 }

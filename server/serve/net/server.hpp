@@ -52,7 +52,7 @@ struct ServerOptions {
   std::function<void(std::string_view)> log{};
 };
 
-/// The server could not be set up; what() says why and what to do.
+/// The server cannot be set up; what() gives the reason and a remedy.
 class ServerError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
