@@ -54,7 +54,7 @@ void InfraredModel::sense(double now,
   scans_ = scans;
   const double stamp = phase_ + static_cast<double>(scans - 1) * config_.period;
   const algo::Pose2 sensor_W = algo::compose(trail.at(stamp), config_.mount_R);
-  caster_.cast(sensor_W, fan_, config_.range_max, ranges_, hits_);
+  caster().cast(sensor_W, fan_, config_.range_max, ranges_, hits_);
   noise_.fill_normal(errors_);
   for (std::size_t i = 0; i < fan_.beams; ++i) {
     algo::RangeReading& reading = readings.append();

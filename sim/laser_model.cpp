@@ -121,10 +121,10 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   const std::span<std::uint32_t> hits =
       with_hits ? std::span(work_->hits) : std::span<std::uint32_t>();
   if (config_.rolling || config_.mixed_pixels) {
-    caster_.cast_rolling(
+    caster().cast_rolling(
         reference_W_, pattern_, work_->rays, spread_, config_.range_max, work_->ranges, hits);
   } else {
-    caster_.cast(reference_W_, pattern_, config_.range_max, work_->ranges, hits);
+    caster().cast(reference_W_, pattern_, config_.range_max, work_->ranges, hits);
   }
   if (config_.mixed_pixels) mark_edges();
   if (surfaces) apply_surfaces(work_->rays, work_->ranges, hits);

@@ -41,8 +41,8 @@ void LaserModel::allow_for_spot() {
 
 void LaserModel::note_surfaces() {
   plain_ = true;
-  for (std::uint32_t k = 0; k < caster_.size(); ++k) {
-    const algo::Obstacle& obstacle = caster_.obstacle(k);
+  for (std::uint32_t k = 0; k < caster().size(); ++k) {
+    const algo::Obstacle& obstacle = caster().obstacle(k);
     plain_ = plain_ && !obstacle.specular && reach(obstacle.reflectivity) >= config_.range_max;
   }
 }
@@ -55,13 +55,13 @@ void LaserModel::apply_surfaces(const Rays& rays,
   const bool still = !config_.rolling && !config_.mixed_pixels;  // cast from the pattern itself
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (hits[i] >= kNoEcho) continue;
-    const algo::Obstacle& obstacle = caster_.obstacle(hits[i]);
+    const algo::Obstacle& obstacle = caster().obstacle(hits[i]);
     if (obstacle.specular) {
       const algo::Vec2 o = still ? algo::Vec2(0, 0) : algo::Vec2(rays.x[i], rays.y[i]);
       const algo::Vec2 u = still ? algo::Vec2(ux_[i], uy_[i]) : algo::Vec2(rays.ux[i], rays.uy[i]);
       const algo::Vec2 point_W = algo::to_parent(reference_W_, o + ranges[i] * u);
       const algo::Vec2 way_W = point_W - algo::to_parent(reference_W_, o);
-      const algo::Vec2 normal_W = caster_.normal_W(hits[i], point_W);
+      const algo::Vec2 normal_W = caster().normal_W(hits[i], point_W);
       if (-way_W.dot(normal_W) < std::cos(kSpecularCone) * way_W.norm()) {
         hits[i] = RangeCaster::kNothing;
         ranges[i] = config_.range_max;
@@ -121,7 +121,7 @@ void LaserModel::mix_pixels() {
     }
   }
 
-  caster_.cast_more(
+  caster().cast_more(
       work_->more, work_->first, config_.range_max, work_->more_ranges, work_->more_hits);
   if (config_.reflectivity && !plain_)
     apply_surfaces(work_->more, work_->more_ranges, work_->more_hits);

@@ -65,6 +65,10 @@ class CastingSensor : public Sensor {
   /// `height` [m] above the floor.
   explicit CastingSensor(double height) : caster_(height) {}
 
+  RangeCaster& caster() { return caster_; }
+  const RangeCaster& caster() const { return caster_; }
+
+ private:
   RangeCaster caster_;
 };
 

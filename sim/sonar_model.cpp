@@ -56,14 +56,14 @@ SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t s
 
 /// [m] Distance of the nearest surface in the cone that is not more oblique than config_.incidence.
 std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
-  caster_.cast(sensor_W, cone_, config_.range_max, ranges_, hits_);
+  caster().cast(sensor_W, cone_, config_.range_max, ranges_, hits_);
   const double least_cosine = std::cos(config_.incidence) - 1e-9;
   std::optional<double> nearest;
   for (std::size_t i = 0; i < kRays; ++i) {
     if (hits_[i] == RangeCaster::kNothing || (nearest && ranges_[i] >= *nearest)) continue;
     const double right = sensor_W.heading + cone_.angle_min;
     const algo::Vec2 ray = algo::direction(right + static_cast<double>(i) * cone_.angle_increment);
-    const algo::Vec2 normal = caster_.normal_W(hits_[i], sensor_W.position() + ranges_[i] * ray);
+    const algo::Vec2 normal = caster().normal_W(hits_[i], sensor_W.position() + ranges_[i] * ray);
     if (-ray.dot(normal) >= least_cosine) nearest = ranges_[i];
   }
   return nearest;

@@ -16,7 +16,7 @@ TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
 }  // namespace
 
 Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
-  ControlInput input = in;
+  ControlInput input = static_cast<const ControlInput&>(in);
   if (in.mission == Mission::Arrived) input.goal.reset();
   controller_->update(input, *in.parameters, output);
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
