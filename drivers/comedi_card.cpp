@@ -158,7 +158,7 @@ class ComediCard final : public AnalogCard {
     if (found.empty()) refuse("has no " + noun);
     if (!asked) return found.front();
     if (std::ranges::find(found, *asked) == found.end()) {
-      refuse(fmt::format("has no {} on subdevice {}", noun.c_str(), *asked));
+      refuse(fmt::format("has no {} on subdevice {}", noun, *asked));
     }
     return *asked;
   }

@@ -73,9 +73,8 @@ void RoboteqMachine::parameter_read(double now, const Reply& reply) {
   } else if (wanted.optional) {
     skip_parameter(now);
   } else {
-    refuse(fmt::format("The motor controller keeps ^%.*s at {} instead of {}.",
-                       static_cast<int>(wanted.name.size()),
-                       wanted.name.data(),
+    refuse(fmt::format("The motor controller keeps ^{} at {} instead of {}.",
+                       wanted.name,
                        reply.values[0],
                        wanted.value),
            now);
