@@ -14,7 +14,7 @@ namespace server::emulate {
 namespace fs = std::filesystem;
 
 fs::path emulated_comedi() {
-  const fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "libemulated_comedi.so";
+  fs::path path = fs::read_symlink("/proc/self/exe").parent_path() / "libemulated_comedi.so";
   if (!fs::exists(path)) throw std::runtime_error(path.string() + " is missing; build it first.");
   return path;
 }

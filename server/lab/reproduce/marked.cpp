@@ -29,7 +29,7 @@ std::filesystem::path folder_beside(const std::filesystem::path& file, std::stri
   if (std::filesystem::is_directory(file)) {
     throw std::runtime_error(file.string() + ": is a folder, not a file");
   }
-  const std::filesystem::path folder = file.parent_path() / name;
+  std::filesystem::path folder = file.parent_path() / name;
   make_folder(folder);
   return folder;
 }
