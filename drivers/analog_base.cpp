@@ -84,8 +84,8 @@ void AnalogBase::look_for_card(const std::stop_token& stop) {
       take(std::move(card));
     } else {
       trouble_ = std::move(trouble);
-      changed_.wait_for(lock, stop, kLookAgain, [] { return false; });
     }
+    if (!card_) changed_.wait_for(lock, stop, kLookAgain, [] { return false; });
   }
 }
 

@@ -222,6 +222,16 @@ TEST(AnalogBase, ALostCardIsReopenedWithMotorsOff) {
   EXPECT_EQ(bench.wiring.volts, kNone);
 }
 
+TEST(AnalogBase, ACardThatOpensAndFailsIsNotOpenedWithoutPause) {
+  Wiring wiring;
+  wiring.refuses_volts = true;
+  AnalogBase base("card", setup(), [&] { return std::make_unique<FakeCard>(wiring); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_LE(wiring.opened, 2U);
+  EXPECT_FALSE(base.state().running);
+  EXPECT_EQ(base.report().sentence, "The card accepts no voltage.");
+}
+
 TEST(AnalogBase, LeavesZeroVoltsBehind) {
   Wiring wiring;
   {

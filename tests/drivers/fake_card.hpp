@@ -19,6 +19,7 @@ struct Wiring {
   bool relay_line = false;
   bool enabled = false;
   std::atomic<bool> gone{false};
+  std::atomic<bool> refuses_volts{false};
   std::atomic<unsigned> opened{0};
 };
 
@@ -32,6 +33,7 @@ class FakeCard final : public AnalogCard {
 
   void write(const Volts& volts) override {
     check();
+    if (wiring_.refuses_volts) throw CardError("The card accepts no voltage.");
     wiring_.volts = volts;
   }
   CardInputs read() override {
