@@ -2,6 +2,7 @@
 #include <string>
 #include <variant>
 
+#include "tests/drivers/robot_error.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,14 +30,6 @@ speed_per_volt = 0.1
 
 RobotFile robot(const std::string& more) {
   return parse_robot(kHead + more, "my.toml");
-}
-std::string error_of(const std::string& text) {
-  try {
-    parse_robot(text, "my.toml");
-  } catch (const RobotFileError& error) {
-    return error.what();
-  }
-  return "";
 }
 std::string refusal(const std::string& more) {
   return error_of(kHead + more);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/drivers/robot_error.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -100,15 +101,6 @@ Written write(const Row& row, const std::string& value) {
   out.line = place + 1;
   for (const std::string& line : lines) out.text += line + "\n";
   return out;
-}
-
-std::string error_of(const std::string& text) {
-  try {
-    parse_robot(text, "my.toml");
-  } catch (const RobotFileError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 std::string number(double value) {

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <string>
 
+#include "tests/drivers/robot_error.hpp"
 #include "tests/folders.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,15 +31,6 @@ wheel_radius = 0.1
 gear = 20
 encoder_lines = 500
 )";
-
-std::string error_of(const std::string& text) {
-  try {
-    parse_robot(text, "my.toml");
-  } catch (const RobotFileError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 std::string with(const std::string& from, const std::string& to) {
   std::string text = kGood;
