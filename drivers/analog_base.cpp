@@ -94,6 +94,7 @@ void AnalogBase::take(std::unique_ptr<AnalogCard> card) {
   try {
     card->write({0, 0});
     inputs_ = card->read();
+    facts_ = card->facts();
   } catch (const CardError& error) {
     trouble_ = error.what();
     return;
@@ -246,7 +247,7 @@ algo::DeviceReport AnalogBase::report() {
     out.sentence = trouble_;
     return out;
   }
-  out.facts = card_->facts();
+  out.facts = facts_;
   if (inputs_.stop_button) {
     out.sentence = "Its stop button is pressed: release it, then arm.";
   } else if (inputs_.fault) {

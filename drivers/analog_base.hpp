@@ -10,6 +10,8 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "algo/diff_drive.hpp"
 #include "drivers/analog_card.hpp"
@@ -81,6 +83,7 @@ class AnalogBase final : public Base {
   std::condition_variable_any changed_{};
   std::unique_ptr<AnalogCard> card_{};  // nullptr while it is missing
   std::unique_ptr<AnalogCard> gone_{};  // lost: closed by the thread, which may block
+  std::vector<std::pair<std::string, std::string>> facts_{};  // of the card
   std::string trouble_ = "The card is being opened.";
   bool on_ = false;  // the relay should be closed
   bool relay_line_ = false;
