@@ -1,7 +1,10 @@
 // algo/controller.hpp: the interface that turns a scene and a goal into a twist.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <stop_token>
+#include <string>
 
 #include "algo/observation.hpp"
 #include "algo/parameters.hpp"
@@ -24,11 +27,20 @@ struct ControlInput {
   bool grids = false;
 };
 
+/// The run that a controller drives.
+struct RunFacts {
+  std::string scenario{};
+  std::uint64_t seed = 1;
+  std::stop_token stop{};  // ends the run, and the waits of its controller
+};
+
 /// The blocks "obstacle avoidance" and "determining velocity" of the thesis (Fig. 22).
 class Controller {
  public:
   virtual ~Controller() = default;
 
+  /// Called once, before the first reset(). Most controllers need not know their run.
+  virtual void begin(const RunFacts& /*run*/) {}
   /// Forgets the previous run.
   virtual void reset(const Pose2& start_W) = 0;
 

@@ -18,13 +18,42 @@ Overloaded(Ts...) -> Overloaded<Ts...>;
 
 bool Intent::set_goal(const std::optional<SetGoal>& to) {
   goal = to;
+  goals_behind.clear();
   goals_ahead.clear();
+  loop = false;
   return true;
 }
 
+bool Intent::set_goals(const SetGoals& to) {
+  const std::optional<SetGoal> before = goal;
+  set_goal(std::nullopt);
+  loop = to.loop;
+  if (to.goals.empty()) return true;
+  const auto at = to.goals.begin() + to.next;
+  goals_behind.assign(to.goals.begin(), at);
+  goal = *at;
+  goals_ahead.assign(at + 1, to.goals.end());
+  return goal != before;
+}
+
 void Intent::go_on() {
+  if (goals_behind.size() >= kMostGoalsAhead) goals_behind.erase(goals_behind.begin());
+  goals_behind.push_back(*goal);
+  if (goals_ahead.empty()) goals_ahead.swap(goals_behind);  // begins the loop again
   goal = goals_ahead.front();
   goals_ahead.erase(goals_ahead.begin());
+}
+
+std::vector<SetGoal> Intent::route() const {
+  std::vector<SetGoal> all = goals_behind;
+  if (goal) all.push_back(*goal);
+  all.insert(all.end(), goals_ahead.begin(), goals_ahead.end());
+  return all;
+}
+
+void Intent::reserve() {
+  goals_behind.reserve(kMostGoalsAhead + 1);
+  goals_ahead.reserve(kMostGoalsAhead + 1);
 }
 
 bool Intent::apply(const Request& request) {
@@ -35,6 +64,7 @@ bool Intent::apply(const Request& request) {
                    goals_ahead.push_back(add.goal);
                    return false;
                  },
+                 [&](const SetGoals& to) { return set_goals(to); },
                  [&](const ClearGoal&) { return set_goal(std::nullopt); },
                  [&](const Joystick& pushed) {
                    stick = pushed;
@@ -54,6 +84,11 @@ bool Intent::apply(const Request& request) {
                    obstacles.push_back(add.obstacle);
                    return false;
                  },
+                 [&](const ChangeObstacle& change) {
+                   const auto it = std::ranges::find(obstacles, change.obstacle.id, &Obstacle::id);
+                   if (it != obstacles.end()) *it = change.obstacle;
+                   return false;
+                 },
                  [&](const MoveObstacle& move) {
                    const auto it = std::ranges::find(obstacles, move.id, &Obstacle::id);
                    if (it != obstacles.end()) it->pose_W = move.pose_W;
@@ -68,6 +103,7 @@ bool Intent::apply(const Request& request) {
 
 bool is_edit(const Request& request) {
   return std::holds_alternative<AddObstacle>(request) ||
+         std::holds_alternative<ChangeObstacle>(request) ||
          std::holds_alternative<MoveObstacle>(request) ||
          std::holds_alternative<RemoveObstacle>(request);
 }

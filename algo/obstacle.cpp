@@ -167,6 +167,10 @@ double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (to_p - along * edge).squaredNorm();
 }
 
+bool any_moves(const std::vector<Obstacle>& obstacles) {
+  return std::ranges::any_of(obstacles, [](const Obstacle& o) { return o.path.has_value(); });
+}
+
 std::vector<Vec2> outline_W(const Obstacle& obstacle) {
   std::vector<Vec2> points = std::visit(OutlineInOwnFrame{}, obstacle.shape);
   for (Vec2& point : points) point = to_parent(obstacle.pose_W, point);
@@ -183,6 +187,9 @@ std::optional<std::string> defect(const Obstacle& obstacle) {
   const double reflectivity = obstacle.reflectivity;
   if (!(reflectivity >= kMinReflectivity && reflectivity <= kMaxReflectivity)) {
     return "reflectivity must be from 0.02 to 1";
+  }
+  if (obstacle.path && (!(obstacle.path->period > 0) || obstacle.path->keys.empty())) {
+    return "path must have a period above 0 and one key at least";
   }
   return std::visit(ShapeDefect{}, obstacle.shape);
 }

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "algo/obstacle_path.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -41,8 +42,12 @@ struct Obstacle {
   /// Diffuse reflectivity of the surface to the laser, 0.02 to 1.
   double reflectivity = 0.5;
   bool specular = false;
+  std::optional<ObstaclePath> path{};  // of its reference point, if it moves by itself
   bool operator==(const Obstacle&) const = default;
 };
+
+/// True if one of `obstacles` moves by itself.
+bool any_moves(const std::vector<Obstacle>& obstacles);
 
 /// Vertices in W, counter-clockwise; empty for a cylinder. B = 4 for a box or wall.
 std::vector<Vec2> outline_W(const Obstacle& obstacle);

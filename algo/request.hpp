@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include "algo/obstacle.hpp"
 #include "algo/parameters.hpp"
@@ -22,12 +23,24 @@ struct AddGoal {
   SetGoal goal{};
   bool operator==(const AddGoal&) const = default;
 };
+/// Replaces all goals. The robot goes to goals[next] and then on; no goals: it stays.
+struct SetGoals {
+  std::vector<SetGoal> goals{};
+  std::uint32_t next = 0;  // below goals.size(), or 0
+  bool loop = false;       // after the last goal, go on to the first
+  bool operator==(const SetGoals&) const = default;
+};
 struct ClearGoal {
   bool operator==(const ClearGoal&) const = default;
 };
 struct AddObstacle {
   Obstacle obstacle{};
   bool operator==(const AddObstacle&) const = default;
+};
+/// Replaces the obstacle with the id of this one.
+struct ChangeObstacle {
+  Obstacle obstacle{};
+  bool operator==(const ChangeObstacle&) const = default;
 };
 struct MoveObstacle {
   std::uint32_t id = 0;
@@ -63,6 +76,8 @@ using Request = std::variant<SetGoal,
                              Joystick,
                              Stop,
                              SetParameter,
-                             AddGoal>;
+                             AddGoal,
+                             SetGoals,
+                             ChangeObstacle>;
 
 }  // namespace algo

@@ -62,6 +62,7 @@ void ControlOutput::clear() {
   pass_W.reset();
   waits = false;
   state = 0;
+  answered = false;
   measures.clear();
   layers.clear();
 }

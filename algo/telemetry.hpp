@@ -56,6 +56,7 @@ struct ControlOutput {
   std::optional<Vec2> pass_W{};  // the point the base drives to
   bool waits = false;            // it may stand still now; its words give the reason
   std::uint8_t state = 0;        // the controller's own; a change prompts new words at once
+  bool answered = false;         // from outside the program: the record keeps the twist as an input
   Recycled<Measure> measures{};
   Recycled<Layer> layers{};
 

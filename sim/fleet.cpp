@@ -58,6 +58,7 @@ std::unique_ptr<World> world_of(const Scenario& scenario, std::uint64_t seed, st
 std::optional<std::size_t> robot_in(const algo::Request& request) {
   std::uint32_t id = 0;
   if (const auto* add = std::get_if<algo::AddObstacle>(&request)) id = add->obstacle.id;
+  if (const auto* change = std::get_if<algo::ChangeObstacle>(&request)) id = change->obstacle.id;
   if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) id = move->id;
   if (const auto* remove = std::get_if<algo::RemoveObstacle>(&request)) id = remove->id;
   if (id <= kRobotIds) return std::nullopt;

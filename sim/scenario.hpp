@@ -35,22 +35,6 @@ struct DriveConfig {
   bool operator==(const DriveConfig&) const = default;
 };
 
-/// The path of an obstacle that moves by itself: linear between keys, repeated; jumps from the last
-/// key to the first.
-struct ObstaclePath {
-  struct Key {
-    double time = 0;  // [s] of the path, ascending
-    algo::Vec2 position_W{0, 0};
-  };
-  std::uint32_t id = 0;  // of the obstacle
-  double period = 0;     // [s] above 0
-  double phase = 0;      // [s] of the path at the start of the run
-  std::vector<Key> keys{};
-
-  /// The position of its obstacle at `stamp` [s, run clock].
-  algo::Vec2 at(double stamp) const;
-};
-
 /// The source of the odometry.
 enum class Localization : std::uint8_t {
   Encoders,  // the wheels alone
@@ -83,10 +67,10 @@ struct Scenario {
   algo::Pose2 start{};
   std::optional<algo::SetGoal> goal{};
   std::vector<algo::SetGoal> waypoints{};  // on the way to the goal, in order
+  bool loop = false;  // a live robot drives the way without end; without waypoints, to and fro
   DriveConfig drive{};
   std::vector<algo::Obstacle> obstacles{};
-  std::vector<ObstaclePath> paths{};  // of self-moving obstacles
-  std::vector<OtherRobot> robots{};   // besides the first, which the other fields describe
+  std::vector<OtherRobot> robots{};  // besides the first, which the other fields describe
   Localization localization = Localization::Encoders;
   std::string controller = "modified";
   std::string filter = "pseudomedian";

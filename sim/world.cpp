@@ -83,6 +83,7 @@ void World::check() const {
 /// Sets everything to the scenario's state at time 0.
 void World::start() {
   obstacles_.clear();
+  movers_.clear();
   if (scenario_.physics == PhysicsKind::Bullet) {
     vehicle_ = std::make_unique<BulletVehicle>(robot_, scenario_.period);
   } else {
@@ -157,20 +158,18 @@ void World::advance() {
 
 /// Moves scripted obstacles to their positions at `now`, even through robots.
 void World::follow_paths(double now) {
-  for (const ObstaclePath& path : scenario_.paths) {
-    const auto index = obstacles_.find(path.id);
-    if (!index) continue;  // removed by an edit
-    const algo::Vec2 at_W = path.at(now);
-    place(*index, {at_W.x(), at_W.y(), obstacles_[*index].pose_W.heading});
+  for (const std::uint32_t id : movers_) {
+    const std::size_t index = *obstacles_.find(id);
+    const algo::Obstacle& obstacle = obstacles_[index];
+    const algo::Vec2 at_W = obstacle.path->at(now);
+    place(index, {at_W.x(), at_W.y(), obstacle.pose_W.heading});
   }
 }
 
 void World::find_moved(algo::Recycled<algo::Moved>& moved) const {
   moved.clear();
-  for (const ObstaclePath& path : scenario_.paths) {
-    if (const auto index = obstacles_.find(path.id)) {
-      moved.push_back({path.id, obstacles_[*index].pose_W});
-    }
+  for (const std::uint32_t id : movers_) {
+    moved.push_back({id, obstacles_[*obstacles_.find(id)].pose_W});
   }
 }
 

@@ -114,6 +114,7 @@ class World final : public algo::Robot, public algo::Editing {
   algo::RobotSpec spec_{};
 
   ObstacleSet obstacles_{};
+  std::vector<std::uint32_t> movers_{};  // ids of the obstacles that follow a path
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<std::unique_ptr<Sensor>> sensors_{};
   std::optional<GyroModel> gyro_{};

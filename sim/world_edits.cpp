@@ -27,6 +27,9 @@ std::optional<std::string> World::edit(const algo::Request& request) {
   if (auto problem = objection(request)) return problem;
   if (const auto* add = std::get_if<algo::AddObstacle>(&request)) {
     insert(add->obstacle);
+  } else if (const auto* change = std::get_if<algo::ChangeObstacle>(&request)) {
+    remove(change->obstacle.id);
+    insert(change->obstacle);
   } else if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) {
     place(*obstacles_.find(move->id), move->pose_W);
   } else if (const auto* remove_request = std::get_if<algo::RemoveObstacle>(&request)) {
@@ -40,6 +43,10 @@ std::optional<std::string> World::objection(const algo::Request& request) const 
     const std::uint32_t id = add->obstacle.id;
     if (obstacles_.find(id)) return "There is an obstacle " + std::to_string(id) + " already.";
     return refusal(add->obstacle);
+  }
+  if (const auto* change = std::get_if<algo::ChangeObstacle>(&request)) {
+    const std::uint32_t id = change->obstacle.id;
+    return obstacles_.find(id) ? refusal(change->obstacle) : there_is_none(id);
   }
   if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) return objection(*move);
   const auto* gone = std::get_if<algo::RemoveObstacle>(&request);
@@ -67,14 +74,13 @@ std::optional<std::string> World::objection(const algo::MoveObstacle& move) cons
   algo::Obstacle obstacle = obstacles_[*index];
   obstacle.pose_W = move.pose_W;
   if (auto problem = refusal(obstacle)) return problem;
-  for (const ObstaclePath& path : scenario_.paths) {
-    if (path.id == move.id) return name_of(obstacle) + " moves by itself.";
-  }
+  if (obstacle.path) return name_of(obstacle) + " moves by itself.";
   return std::nullopt;
 }
 
 void World::insert(const algo::Obstacle& obstacle) {
   obstacles_.add(obstacle);
+  if (obstacle.path) movers_.push_back(obstacle.id);
   vehicle_->added(obstacle);
   for (const auto& sensor : sensors_) sensor->add(obstacle);
 }
@@ -93,6 +99,7 @@ void World::show(std::uint32_t id, const algo::Pose2& pose_W) {
 void World::remove(std::uint32_t id) {
   const std::size_t index = *obstacles_.find(id);
   obstacles_.remove(index);
+  std::erase(movers_, id);
   vehicle_->removed(index);
   for (const auto& sensor : sensors_) sensor->remove(id);
   find_slots();

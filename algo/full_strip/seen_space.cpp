@@ -2,16 +2,21 @@
 #include "algo/full_strip/seen_space.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 namespace algo {
 namespace {
 
 constexpr double kLook = 2.0;    // [m] along a beam; nothing beyond it is needed soon
 constexpr double kBehind = 0.1;  // [m] behind a surface, reachable only through it
-// Added to cells so that all are positive and a cast is their floor. It is a multiple of the
-// window, so index() is unchanged.
-constexpr double kPositive = 1 << 22;
-static_assert((1 << 22) % SeenSpace::kSize == 0);
+
+/// Places along a beam, in cells with 32 bits behind the point: a sum of whole numbers is cheaper
+/// than a product and its floor.
+constexpr int kFraction = 32;
+std::int64_t fixed(double cells) {
+  return std::llround(std::ldexp(cells, kFraction));
+}
 
 }  // namespace
 
@@ -48,16 +53,20 @@ void SeenSpace::look(const LaserScan& scan, const Pose2& sensor_W) {
   const double apart = kCell / (kLook * scan.angle_increment);
   const auto stride = static_cast<std::size_t>(std::clamp(apart, 1.0, 64.0));
   std::uint8_t* const seen = seen_.data();  // a local copy: byte stores may alias members
-  const Vec2 from = sensor_W.position() / kCell + Vec2(kPositive, kPositive);
+  const std::int64_t from_x = fixed(sensor_W.x / kCell);
+  const std::int64_t from_y = fixed(sensor_W.y / kCell);
   for (std::size_t i = ++looks_ % stride; i < scan.size(); i += stride) {
     if (scan.status[i] == Beam::Invalid) continue;
     const bool hit = scan.status[i] == Beam::Ok;
     const double length = std::min(kLook, hit ? scan.ranges[i] + kBehind : scan.ranges[i]);
     const Vec2 way = direction(sensor_W.heading + scan.angle(i));
     const int steps = static_cast<int>(length / kCell);
-    for (int k = 0; k <= steps; ++k) {
-      const Vec2 p = from + k * way;
-      seen[index(static_cast<int>(p.x()), static_cast<int>(p.y()))] = 1;
+    const std::int64_t step_x = fixed(way.x());
+    const std::int64_t step_y = fixed(way.y());
+    std::int64_t x = from_x;
+    std::int64_t y = from_y;
+    for (int k = 0; k <= steps; ++k, x += step_x, y += step_y) {
+      seen[index(static_cast<int>(x >> kFraction), static_cast<int>(y >> kFraction))] = 1;
     }
   }
 }

@@ -81,7 +81,7 @@ std::vector<ControllerInfo> builtin() {
        .label = "Modified strip, via kept",
        .help = "As the modified strip, and the via point of the tick before is pulled onto the "
                "line by K_c: the only one in which K_c acts.",
-       .parameters = kStripParameters,
+       .parameters = kKeptViaParameters,
        .make = strip(ForceLaw::C1, Sides::Both, true, true),
        .refusal = via_kept_refusal},
       {.name = "strip",

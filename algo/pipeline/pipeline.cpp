@@ -64,6 +64,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
       sensing_(config.filter) {
   if (spec.drives && by_hand_) coordinator_.add(std::make_unique<ManualBehaviour>());
   auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
+  avoid->begin(config.run);
   avoiding_ = &avoid->controller();
   coordinator_.add(std::move(avoid));
   by_sonar_ = !spec.has_laser && controller_.by_sonar;
@@ -74,7 +75,7 @@ Pipeline::Pipeline(const PipelineConfig& config,
 
 void Pipeline::reset(const Pose2& start_W) {
   intent_ = {.parameters = initial_parameters_};
-  intent_.goals_ahead.reserve(kMostGoalsAhead);
+  intent_.reserve();
   coordinator_.reset(start_W);
   sequencer_.reset(spec_.period);
   scene_ = {};
@@ -97,17 +98,35 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
   if (add != nullptr && intent_.goals_ahead.size() >= kMostGoalsAhead) {
     return "There are " + std::to_string(kMostGoalsAhead) + " goals ahead; more are not kept.";
   }
-  if (const auto* goal = add != nullptr ? &add->goal : std::get_if<SetGoal>(&request)) {
-    const bool finite = goal->position_W.allFinite() && std::isfinite(goal->heading.value_or(0));
-    if (!finite) return "The goal must be finite numbers.";
-    if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
-  }
+  if (add != nullptr) return refusal_of(add->goal);
+  if (const auto* goal = std::get_if<SetGoal>(&request)) return refusal_of(*goal);
+  if (const auto* list = std::get_if<SetGoals>(&request)) return refusal_of(*list);
   if (const auto* stick = std::get_if<Joystick>(&request)) {
     if (!within_unit(stick->forward) || !within_unit(stick->turn)) {
       return "Joystick axes must lie between -1 and 1.";
     }
     if (!spec_.drives) return "This robot only replays a log; it cannot be driven.";
     if (!by_hand_) return "This robot drives by itself; it has no stick.";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Pipeline::refusal_of(const SetGoal& goal) const {
+  const bool finite = goal.position_W.allFinite() && std::isfinite(goal.heading.value_or(0));
+  if (!finite) return "The goal must be finite numbers.";
+  if (!spec_.drives) return "This robot only replays a log; it cannot be sent to a goal.";
+  return std::nullopt;
+}
+
+std::optional<std::string> Pipeline::refusal_of(const SetGoals& list) const {
+  if (list.goals.size() > kMostGoals) {
+    return "The list has more than " + std::to_string(kMostGoals) + " goals.";
+  }
+  if (list.next >= std::max<std::size_t>(1, list.goals.size())) {
+    return "The list of goals has no goal " + std::to_string(list.next) + ".";
+  }
+  for (const SetGoal& goal : list.goals) {
+    if (auto problem = refusal_of(goal)) return problem;
   }
   return std::nullopt;
 }
@@ -121,12 +140,21 @@ std::optional<std::string> Pipeline::refusal(const Parameters& now, const SetPar
 }
 
 void Pipeline::tick(Telemetry& t) {
+  look(t);
+  decide(t);
+}
+
+void Pipeline::look(Telemetry& t) {
   t.tick = tick_++;
   if (joystick_ticks_ > 0) --joystick_ticks_;
   for (const Request& request : t.requests) apply(request);
 
-  sense(t);    // filter the newest scan, find the nearest return of each side
-  control(t);  // sequence the goal, let behaviours propose, pick one
+  sense(t);     // filter the newest scan, find the nearest return of each side
+  sequence(t);  // take the next goal where one is reached
+}
+
+void Pipeline::decide(Telemetry& t) {
+  control(t);  // let behaviours propose, pick one
   hold(t);     // the gate has the last word
   remember(t.command.base);
   narrator_.tell(*avoiding_, t);  // explains the tick, now and then
@@ -194,12 +222,14 @@ void Pipeline::show_nearest(Telemetry& t) const {
   }
 }
 
-void Pipeline::control(Telemetry& t) {
+void Pipeline::sequence(Telemetry& t) {
   t.mission = sequencer_.update(t.observation.odometry.pose, intent_);
   t.goal = intent_.goal;
   t.goals_ahead.clear();
   for (const SetGoal& goal : intent_.goals_ahead) t.goals_ahead.push_back(goal);
+}
 
+void Pipeline::control(Telemetry& t) {
   Resource resource;
   resource.stamp = t.observation.stamp;
   resource.dt = spec_.period;

@@ -23,6 +23,7 @@ struct PipelineConfig {
   Parameters parameters{};
   /// A person may take the stick. If false, the pipeline keeps no map for that.
   bool by_hand = true;
+  RunFacts run{};
 };
 
 /// Turns observations and requests into commands for one robot. A fresh pipeline with the same
@@ -46,6 +47,11 @@ class Pipeline {
   /// Fills the rest of `t` from its observation and requests. Does not allocate once its buffers
   /// have grown.
   void tick(Telemetry& t);
+  /// The first half of tick(): all that comes before the behaviours propose. `t` then has the
+  /// scene, the goal and the mission.
+  void look(Telemetry& t);
+  /// The second half, for the same `t`.
+  void decide(Telemetry& t);
 
   /// Turns grids for display on or off, at most two a second. Never changes a command.
   void want_grids(bool wanted) { grids_wanted_ = wanted; }
@@ -55,9 +61,12 @@ class Pipeline {
   const Intent& intent() const { return intent_; }
 
  private:
+  std::optional<std::string> refusal_of(const SetGoal& goal) const;
+  std::optional<std::string> refusal_of(const SetGoals& list) const;
   void apply(const Request& request);
   void sense(Telemetry& t);
   void sense_sonar(Telemetry& t);
+  void sequence(Telemetry& t);
   void control(Telemetry& t);
   void hold(Telemetry& t);
   void remember(const Twist2& command);

@@ -62,6 +62,7 @@ class AvoidBehaviour final : public Behaviour {
   explicit AvoidBehaviour(std::unique_ptr<Controller> controller)
       : controller_(std::move(controller)) {}
   const Controller& controller() const { return *controller_; }
+  void begin(const RunFacts& run) { controller_->begin(run); }
   Name name() const override { return behaviours::kAvoid; }
   void reset(const Pose2& start_W) override { controller_->reset(start_W); }
   Proposal propose(const Resource& resource, ControlOutput& output) override;

@@ -66,10 +66,12 @@ void Sequencer::go_on(Intent& intent) {
 }
 
 Mission Sequencer::update(const Pose2& pose_W, Intent& intent) {
-  if (mission_ == Mission::Arrived && !intent.goals_ahead.empty()) go_on(intent);
+  if (mission_ == Mission::Arrived && intent.has_next()) go_on(intent);
   if (!intent.goal || mission_ == Mission::Arrived) return mission_;
+  // A loop of goals within reach of each other has no end.
+  std::size_t left = intent.goals_behind.size() + intent.goals_ahead.size();
   while (at_goal(*intent.goal, pose_W, intent.parameters[algo::kGoalReach])) {
-    if (intent.goals_ahead.empty()) return mission_ = Mission::Arrived;
+    if (!intent.has_next() || left-- == 0) return mission_ = Mission::Arrived;
     go_on(intent);
   }
 

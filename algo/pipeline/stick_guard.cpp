@@ -12,8 +12,11 @@
 namespace algo {
 namespace {
 
-constexpr double kIdleEvery = 0.25;  // [s] between two scans mapped while nobody holds the stick
-constexpr double kStep = 0.02;       // [s] largest step of a roll-out
+// [s] between two scans mapped while nobody holds the stick. The newest scan of the scanner ahead
+// is mapped when somebody takes the stick; another scanner's is gone by then.
+constexpr double kIdleEvery = 1.0;
+constexpr double kIdleBesideEvery = 0.25;
+constexpr double kStep = 0.02;  // [s] largest step of a roll-out
 constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
 constexpr double kRounding = 1e-9;   // [m]
 constexpr double kBack = 0.5;        // of the stick's travel: this far back, the driver insists,
@@ -49,6 +52,8 @@ void StickGuard::reset(const Pose2& start_W) {
   rear_.reset();
   placed_ = false;
   next_look_ = 0;
+  next_look_beside_ = 0;
+  mapped_.reset();
   straight_back_since_.reset();
 }
 
@@ -72,17 +77,27 @@ void StickGuard::sense(const Resource& in) {
   rear_.take(seen);
   points_.follow(here, seen.stamp);
   watch_insistence(in);
-  if (!in.manual && seen.stamp < next_look_) return;
+  const LaserScan* ahead = front_scan(seen);
+  const LaserScan& newest = in.scene->scan;  // of the scanner ahead, filtered
+  const bool others = seen.scans.size() > (ahead != nullptr ? 1U : 0U);
+  const bool looks = newest.size() > 0 && mapped_ != newest.stamp &&
+                     (in.manual || (ahead != nullptr && seen.stamp >= next_look_));
+  const bool looks_beside = others && (in.manual || seen.stamp >= next_look_beside_);
+  if (placed_ && !in.manual && !looks && !looks_beside) return;
   map_.follow(here.position());
   if (!placed_) hull_.take_place(map_.seen(), here);
   placed_ = true;
   hull_.stand_on(map_.seen(), here);
-  const LaserScan* ahead = front_scan(seen);
-  if (ahead != nullptr) look(in, in.scene->scan);  // filtered
+  if (looks) {
+    look(in, newest);
+    mapped_ = newest.stamp;
+    next_look_ = seen.stamp + kIdleEvery;
+  }
+  if (!looks_beside) return;
   for (const LaserScan& scan : seen.scans) {
     if (&scan != ahead) look(in, scan);
   }
-  if (!seen.scans.empty()) next_look_ = seen.stamp + kIdleEvery;
+  next_look_beside_ = seen.stamp + kIdleBesideEvery;
 }
 
 /// A robot may stand where it can neither turn to look nor has seen what is behind it.

@@ -50,6 +50,8 @@ class StickGuard {
   RearWatch rear_{};
   bool placed_ = false;                          // the start pose is entered into the map
   double next_look_ = 0;                         // [s] run clock, while nobody holds the stick
+  double next_look_beside_ = 0;                  // the same for the other scanners
+  std::optional<double> mapped_{};               // stamp of the newest scan ahead in the map
   std::optional<double> straight_back_since_{};  // [s] run clock
   bool insists_ = false;
   bool may_back_ = false;         // into unseen space, in this tick

@@ -46,15 +46,23 @@ inline constexpr ParameterInfo kStripStep{
         "safety distance, or the goal's pull can win over an obstacle's push.",
     .alias = "strip_step"};
 
-/// The parameters of the three-point strips.
+/// The parameters of the three-point strips. K_c has no effect on one that does not keep its via
+/// point (equations.md D).
 inline constexpr auto kStripParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
-                                                                              &kContractionGain,
                                                                               &kSafetyDistance,
                                                                               &kStripStep,
                                                                               &kMaxSpeed,
                                                                               &kMaxTurnRate,
                                                                               &kHeadingGain,
                                                                               &kGoalReach});
+inline constexpr auto kKeptViaParameters = std::to_array<const ParameterInfo*>({&kRepulsionGain,
+                                                                                &kContractionGain,
+                                                                                &kSafetyDistance,
+                                                                                &kStripStep,
+                                                                                &kMaxSpeed,
+                                                                                &kMaxTurnRate,
+                                                                                &kHeadingGain,
+                                                                                &kGoalReach});
 
 /// Why these values do not go together, as a sentence: with S >= K_r d_safe the strip can be pushed
 /// into an obstacle. Head-on it balances at a body clearance of d_safe - S / K_r (equations.md D,

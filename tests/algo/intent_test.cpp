@@ -29,6 +29,57 @@ TEST(Intent, GoalsQueueAndANewOneReplacesAll) {
   EXPECT_FALSE(intent.goal);
 }
 
+TEST(Intent, AListOfGoalsReplacesAllAndKeepsTheWayToThePresentOne) {
+  Intent intent;
+  EXPECT_TRUE(intent.apply(SetGoals{{goal(1), goal(2), goal(3)}}));
+  EXPECT_EQ(intent.goal, goal(1));
+  intent.go_on();
+  EXPECT_FALSE(intent.apply(SetGoals{{goal(3), goal(2), goal(1)}, 1}));  // in another order
+  EXPECT_EQ(intent.goal, goal(2));
+  EXPECT_EQ(intent.goals_behind, std::vector{goal(3)});
+  EXPECT_EQ(intent.goals_ahead, std::vector{goal(1)});
+  EXPECT_EQ(intent.route(), (std::vector{goal(3), goal(2), goal(1)}));
+  EXPECT_TRUE(intent.apply(SetGoals{}));
+  EXPECT_FALSE(intent.goal);
+  EXPECT_TRUE(intent.route().empty());
+}
+
+TEST(Intent, ALoopGoesOnFromTheLastGoalToTheFirst) {
+  Intent intent;
+  intent.apply(SetGoals{{goal(1), goal(2)}, 0, true});
+  for (const double x : {2, 1, 2, 1}) {
+    ASSERT_TRUE(intent.has_next());
+    intent.go_on();
+    EXPECT_EQ(intent.goal, goal(x));
+    EXPECT_EQ(intent.route(), (std::vector{goal(1), goal(2)}));
+  }
+  intent.apply(SetGoals{{goal(1)}, 0, true});
+  EXPECT_FALSE(intent.has_next());
+}
+
+TEST(Intent, RemembersABoundedNumberOfReachedGoals) {
+  Intent intent;
+  intent.reserve();
+  const auto room = intent.goals_behind.capacity();
+  for (int i = 0; i < 1000; ++i) {
+    intent.apply(AddGoal{goal(i)});
+    if (i > 0) intent.go_on();
+  }
+  EXPECT_EQ(intent.goals_behind.size(), kMostGoalsAhead);
+  EXPECT_EQ(intent.goals_behind.back(), goal(998));
+  EXPECT_EQ(intent.goals_behind.capacity(), room);
+}
+
+TEST(Intent, AChangedObstacleTakesThePlaceOfTheOldOne) {
+  Intent intent;
+  const Obstacle before{.id = 1, .pose_W = {1, 0, 0}, .shape = Cylinder{0.2}};
+  const Obstacle after{.id = 1, .pose_W = {2, 0, 0}, .shape = Box{1, 2}};
+  intent.apply(AddObstacle{before});
+  EXPECT_FALSE(intent.apply(ChangeObstacle{after}));
+  EXPECT_EQ(intent.obstacles, std::vector{after});
+  EXPECT_TRUE(is_edit(ChangeObstacle{after}));
+}
+
 TEST(Intent, TakingTheStickCancelsTheGoalsAndReleaseRestoresNone) {
   Intent intent;
   intent.apply(goal(1));

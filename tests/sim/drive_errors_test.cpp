@@ -66,18 +66,18 @@ TEST(DriveErrors, ConfigurationErrorsAreNamed) {
   EXPECT_FALSE(defect(DriveConfig{}));
 }
 
-ObstaclePath path() {
-  return {.id = 1, .period = 4, .keys = {{0, {2, 0}}, {1, {3, 0}}, {4, {3, 3}}}};
+algo::ObstaclePath path() {
+  return {.period = 4, .keys = {{0, {2, 0}}, {1, {3, 0}}, {4, {3, 3}}}};
 }
 
 TEST(ObstaclePath, IsLinearBetweenKeysAndJumpsBack) {
-  const ObstaclePath p = path();
+  const algo::ObstaclePath p = path();
   EXPECT_EQ(p.at(0), algo::Vec2(2, 0));
   EXPECT_EQ(p.at(0.5), algo::Vec2(2.5, 0));
   EXPECT_EQ(p.at(2.5), algo::Vec2(3, 1.5));
   EXPECT_EQ(p.at(4), algo::Vec2(2, 0));
   EXPECT_EQ(p.at(8.5), algo::Vec2(2.5, 0));
-  ObstaclePath later = path();
+  algo::ObstaclePath later = path();
   later.phase = 0.5;
   EXPECT_EQ(later.at(0), algo::Vec2(2.5, 0));
 }
@@ -86,8 +86,8 @@ Scenario moving_scenario(PhysicsKind physics) {
   Scenario scenario;
   scenario.physics = physics;
   scenario.period = 0.1;
-  scenario.obstacles = {{.id = 1, .pose_W = {2, 0, 0}, .shape = algo::Cylinder{0.3}}};
-  scenario.paths = {path()};
+  scenario.obstacles = {
+      {.id = 1, .pose_W = {2, 0, 0}, .shape = algo::Cylinder{0.3}, .path = path()}};
   return scenario;
 }
 
@@ -111,7 +111,7 @@ TEST(World, AnObstacleFollowsItsPathAndTheScannerSeesIt) {
 
 TEST(World, SomethingThatDrivesIntoTheRobotIsACollision) {
   Scenario scenario = moving_scenario(PhysicsKind::Kinematic);
-  scenario.paths[0].keys = {{0, {2, 0}}, {2, {0.2, 0}}};
+  scenario.obstacles[0].path->keys = {{0, {2, 0}}, {2, {0.2, 0}}};
   World world(scenario, 1);
   algo::Observation observation;
   world.reset(observation);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -74,6 +75,17 @@ TEST(ParameterTable, HasEveryParameterThatControllersRead) {
       EXPECT_EQ(algo::find_parameter(each->name), each) << controller.name;
     }
   }
+}
+
+TEST(ParameterTable, OffersTheContractionGainOnlyWhereItActs) {
+  std::vector<std::string> readers;
+  for (const algo::ControllerInfo& controller : algo::builtin_controllers().entries()) {
+    if (std::ranges::find(controller.parameters, &algo::kContractionGain) !=
+        controller.parameters.end()) {
+      readers.emplace_back(controller.name);
+    }
+  }
+  EXPECT_EQ(readers, (std::vector<std::string>{"via_kept", "strip", "strip_moving"}));
 }
 
 TEST(Parameters, StartAtTheirInitialValuesWhichAreSafe) {

@@ -53,6 +53,15 @@ TEST_F(SequencerTest, ArrivesWithinReachAndStaysArrived) {
   EXPECT_EQ(sequencer.update({0.91, 0, 0}, intent), Mission::Driving);
 }
 
+TEST_F(SequencerTest, ALoopNeverArrivesUnlessAllItsGoalsAreHere) {
+  ask(SetGoals{{{.position_W = {1, 0}}, {.position_W = {2, 0}}}, 0, true});
+  EXPECT_EQ(sequencer.update({1, 0, 0}, intent), Mission::Driving);
+  EXPECT_EQ(sequencer.update({2, 0, 0}, intent), Mission::Driving);
+  EXPECT_EQ(intent.goal->position_W.x(), 1);
+  ask(SetGoals{{{.position_W = {1, 0}}, {.position_W = {1.01, 0}}}, 0, true});
+  EXPECT_EQ(sequencer.update({1, 0, 0}, intent), Mission::Arrived);
+}
+
 TEST_F(SequencerTest, AWantedHeadingMustBeReachedToo) {
   ask(SetGoal{.position_W = {1, 0}, .heading = 1.0});
   EXPECT_EQ(sequencer.update({1, 0, 0.9}, intent), Mission::Driving);

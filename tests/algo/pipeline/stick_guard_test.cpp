@@ -54,7 +54,7 @@ struct ByHand {
     t.observation.clear_sensors();
     t.observation.stamp = stamp;
     t.observation.odometry = {stamp, pose, twist};
-    add_scan({});
+    if (scans) add_scan({});
     if (rear_scanner) add_scan({0, 0, std::numbers::pi});
     for (const double bearing : sonars) {
       const Pose2 mount{0.35 * std::cos(bearing), 0.35 * std::sin(bearing), bearing};
@@ -70,6 +70,17 @@ struct ByHand {
     scan.mount_R = mount;
     scan.stamp = stamp;
     worlds::scan_world(compose(pose, mount), world, 8, scan);
+  }
+
+  /// Nobody touches the stick.
+  void idle(double seconds) {
+    const double end = stamp + seconds;
+    while (stamp < end - 1e-9) {
+      sense();
+      t.requests.clear();
+      pipeline->tick(t);
+      stamp += spec.period;
+    }
   }
 
   void tick(const Joystick& stick) {
@@ -120,6 +131,7 @@ struct ByHand {
 
   algo::RobotSpec spec{};
   bool at_once = false;
+  bool scans = true;
   bool rear_scanner = false;
   std::vector<double> sonars{};  // [rad] axes of a ring on the hull
   std::vector<algo::Twist2> late{};
@@ -135,6 +147,24 @@ struct ByHand {
 
 std::vector<Vec2> box(const Vec2& low, const Vec2& high) {
   return {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+}
+
+TEST(StickGuard, KnowsTheNewestScanWhenSomebodyTakesTheStick) {
+  ByHand robot;
+  robot.start();
+  robot.idle(0.05);  // looks at an empty world
+  robot.world.polygons.push_back(box({0.42, -1}, {0.6, 1}));
+  robot.idle(0.1);      // too soon for a second look
+  robot.scans = false;  // nothing new comes after that
+  robot.hold({.forward = 1}, 0.5);
+  EXPECT_GE(robot.least, 0.05 - 1e-6);
+  EXPECT_LE(robot.pose.x, 0.02 + 1e-6);
+  ByHand ignorant;  // it would have gone on
+  ignorant.start();
+  ignorant.idle(0.15);
+  ignorant.scans = false;
+  ignorant.hold({.forward = 1}, 0.5);
+  EXPECT_GT(ignorant.pose.x, 0.02);
 }
 
 TEST(StickGuard, StopsAheadForAnyDelayAndBaseResponse) {

@@ -1,12 +1,12 @@
-// sim/obstacle_path.cpp: the position of a moving obstacle.
+// algo/obstacle_path.cpp: the position of a moving obstacle.
+#include "algo/obstacle_path.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "sim/scenario.hpp"
+namespace algo {
 
-namespace sim {
-
-algo::Vec2 ObstaclePath::at(double stamp) const {
+Vec2 ObstaclePath::at(double stamp) const {
   if (keys.empty()) return {0, 0};
   double time = std::fmod(stamp + phase, period);
   if (time < 0) time += period;
@@ -18,4 +18,4 @@ algo::Vec2 ObstaclePath::at(double stamp) const {
   return a.position_W + part * (after->position_W - a.position_W);
 }
 
-}  // namespace sim
+}  // namespace algo
