@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "db/network_disk.hpp"
 #include "db/sqlite.hpp"
 
 namespace db {
@@ -39,6 +40,8 @@ std::optional<FileIdentity> identity_of(const std::string& path) {
 }
 
 FileLock::FileLock(const std::string& path) {
+  if (const auto refusal = refusal_on_network(path))
+    throw DatabaseError(*refusal, Trouble::Refused);
   const std::lock_guard lock(g_mutex);
   if (held_here(identity_of(path))) refuse(path);
   descriptor_ = ::open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644);

@@ -26,7 +26,7 @@ std::optional<FileIdentity> identity_of(const std::string& path);
 /// the SQLite connections that write.
 class FileLock {
  public:
-  /// Creates the file if it is missing. Throws DatabaseError.
+  /// Creates the file if it is missing. Throws DatabaseError, also on a network file system.
   explicit FileLock(const std::string& path);
   ~FileLock();
   FileLock(const FileLock&) = delete;

@@ -1,4 +1,4 @@
-// db/records.cpp: the names of run states and gap causes.
+// db/records.cpp: the names of run states, run kinds and gap causes.
 #include "db/records.hpp"
 
 #include <algorithm>
@@ -11,6 +11,7 @@ constexpr std::array<std::string_view, 6> kStatusNames = {
     "queued", "recording", "finished", "interrupted", "cancelled", "failed"};
 constexpr std::array<std::string_view, 5> kCauseNames = {
     "pause", "behind", "failed", "full", "dropped"};
+constexpr std::array<std::string_view, 2> kKindNames = {"session", "background"};
 /// The enumerator with that name.
 template <typename Enum, std::size_t N>
 std::optional<Enum> find(const std::array<std::string_view, N>& names, std::string_view name) {
@@ -26,6 +27,14 @@ std::string_view to_string(RunStatus status) {
 
 std::optional<RunStatus> find_status(std::string_view name) {
   return find<RunStatus>(kStatusNames, name);
+}
+
+std::string_view to_string(RunKind kind) {
+  return kKindNames[static_cast<std::size_t>(kind)];
+}
+
+std::optional<RunKind> find_kind(std::string_view name) {
+  return find<RunKind>(kKindNames, name);
 }
 
 std::string_view to_string(GapCause cause) {

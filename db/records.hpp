@@ -3,7 +3,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +43,16 @@ enum class RunStatus : std::uint8_t {
 std::string_view to_string(RunStatus status);
 std::optional<RunStatus> find_status(std::string_view name);
 
+enum class RunKind : std::uint8_t {
+  Session,     // driven live
+  Background,  // headless, from its start to its end
+};
+std::string_view to_string(RunKind kind);
+std::optional<RunKind> find_kind(std::string_view name);
+
+/// NewRun::batch of the first run of a batch, whose number the batch gets.
+constexpr RunId kNewBatch = -1;
+
 /// All data of a run before its first tick; enough to run it again.
 struct NewRun {
   std::string scenario{};  // its name
@@ -52,6 +64,17 @@ struct NewRun {
   std::string parameters = "{}";  // JSON text
   std::string version{};          // of the program
   std::string started{};          // wall time, ISO 8601
+  RunKind kind = RunKind::Session;
+  RunId batch = 0;  // 0: not of a batch
+};
+
+/// The first outcome of a run, and its outcome now if the run has gone on since.
+struct RunVerdict {
+  std::string outcome{};
+  std::string reason{};        // a sentence
+  std::string metrics{};       // JSON text; empty if there are none
+  std::string last_outcome{};  // empty: the run has not gone on
+  std::string last_reason{};
 };
 
 struct RunEnd {
@@ -60,6 +83,15 @@ struct RunEnd {
   std::string reason{};   // a sentence
   std::string metrics{};  // JSON text; empty if there are none
   std::uint64_t lost_ticks = 0;
+  std::string last_outcome{};  // as in RunVerdict
+  std::string last_reason{};
+};
+
+/// What people write on a run. Unset fields stay as they are.
+struct RunRemarks {
+  std::optional<std::string> label{};
+  std::optional<std::string> note{};
+  std::optional<std::vector<std::string>> tags{};
 };
 
 /// Why the record of a run lacks ticks.
@@ -82,6 +114,14 @@ struct Gap {
   bool operator==(const Gap&) const = default;
 };
 
+/// The runs of one batch that a list shows as one line.
+struct RunGroup {
+  std::uint64_t runs = 0;
+  RunId first = 0;
+  RunId last = 0;
+  std::map<std::string, std::uint64_t> counts{};  // by RunRow::result
+};
+
 struct RunRow {
   RunId id = 0;
   RunStatus status = RunStatus::Queued;
@@ -89,25 +129,48 @@ struct RunRow {
   std::string reason{};
   NewRun what{};  // only RunReader::get fills `document`
   std::uint64_t ticks = 0;
-  double time = 0;  // [s] run clock of the newest tick
+  double time = 0;          // [s] run clock of the newest tick
+  double verdict_time = 0;  // [s] at which it reached its outcome; as `time` while it has none
   std::uint64_t lost_ticks = 0;
-  std::uint64_t bytes = 0;  // of its packed frames
-  std::string metrics{};    // JSON text; empty if there are none
-  std::vector<Gap> gaps{};  // filled only by RunReader::get
+  std::uint64_t bytes = 0;     // of its packed frames
+  std::string metrics{};       // JSON text, at its verdict; empty if there are none
+  std::string last_outcome{};  // of a run that went on after its verdict, else empty
+  std::string last_reason{};
+  std::string result{};  // its outcome, or its status while it has none
+  std::string label{};
+  std::string note{};
+  std::vector<std::string> tags{};
+  std::vector<Gap> gaps{};          // filled only by RunReader::get
+  std::optional<RunGroup> group{};  // set if this is the newest run of a line
 };
 
-/// Unset fields match everything.
+/// Which runs a list shows. Unset fields match everything.
 struct RunFilter {
   std::optional<std::string> scenario{};
   std::optional<std::string> controller{};
   std::optional<std::string> outcome{};
   std::optional<RunStatus> status{};
+  std::optional<std::string> result{};  // as in RunRow
+  std::optional<RunKind> kind{};
+  std::optional<std::uint64_t> seed{};
+  std::optional<std::string> tag{};
+  std::optional<RunId> batch{};
+  /// Each must occur in the label, scenario, controller, filter, note, tags or number. Lower case.
+  std::vector<std::string> words{};
 };
+
+struct RunOrder {
+  std::string by = "id";  // one of sort_names()
+  bool descending = true;
+  bool grouped = false;  // each batch is one line, which stands where its newest run stands
+};
+/// The names that a list can be sorted by.
+std::span<const std::string_view> sort_names();
 
 /// One page of a list, and the cursor of the next page, absent on the last.
 struct RunPage {
   std::vector<RunRow> runs{};
-  std::optional<RunId> next{};
+  std::optional<std::string> next{};
 };
 
 }  // namespace db

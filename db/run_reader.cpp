@@ -1,24 +1,31 @@
 // db/run_reader.cpp: reads runs while others record.
 #include "db/run_reader.hpp"
 
+#include <algorithm>
 #include <limits>
-#include <map>
 
 #include <unistd.h>
 
+#include "db/run_query.hpp"
 #include "db/schema.hpp"
+#include "db/tags.hpp"
 
 namespace db {
 
 using detail::Connection;
 using detail::ResetLater;
+using detail::RunQuery;
 using detail::Statement;
 
 namespace {
 
 constexpr std::string_view kRunColumns =
-    "id, status, outcome, reason, scenario, controller, filter, physics, seed, parameters,"
-    " version, started, ticks, time, lost_ticks, bytes, metrics";
+    "run.id, run.status, run.outcome, reason, run.scenario, run.controller, filter, physics,"
+    " run.seed, parameters, version, started, ticks, time, lost_ticks, bytes, metrics, run.kind,"
+    " run.batch, verdict_time, last_outcome, last_reason, result, run.label, note, run.tags";
+constexpr int kColumns = 26;
+// A deleted run disappears at once, though sweeping its blocks may take a while.
+constexpr std::string_view kOneRun = " FROM run JOIN listing USING (id) WHERE run.id = ?";
 
 RunRow row_of(const Statement& found) {
   RunRow row{};
@@ -39,7 +46,23 @@ RunRow row_of(const Statement& found) {
   row.lost_ticks = found.count(14);
   row.bytes = found.count(15);
   row.metrics = found.text(16);
+  row.what.kind = find_kind(found.text(17)).value_or(RunKind::Session);
+  row.what.batch = found.integer(18);
+  row.verdict_time = found.number(19);
+  row.last_outcome = found.text(20);
+  row.last_reason = found.text(21);
+  row.result = found.text(22);
+  row.label = found.text(23);
+  row.note = found.text(24);
+  row.tags = detail::tags_of(found.text(25));
   return row;
+}
+
+/// About the memory of a row without its document [bytes].
+std::size_t size_of(const RunRow& row) {
+  constexpr std::size_t kFixed = 1024;
+  return kFixed + row.metrics.size() + row.what.parameters.size() + row.reason.size() +
+         row.note.size() + row.last_reason.size();
 }
 
 // SQLite's integers are signed; no tick or count reaches the upper half.
@@ -68,30 +91,13 @@ Connection open_for_reading(const std::string& path) {
 struct RunReader::Tables {
   explicit Tables(const std::string& path) : connection(open_for_reading(path)) {}
 
-  Statement& listing(const RunFilter& filter, bool counting) {
-    const unsigned key = (filter.scenario ? 1U : 0U) | (filter.controller ? 2U : 0U) |
-                         (filter.outcome ? 4U : 0U) | (filter.status ? 8U : 0U) |
-                         (counting ? 16U : 0U);
-    if (!listings.contains(key)) {
-      std::string sql = "SELECT " + std::string(counting ? "count(*)" : kRunColumns) +
-                        " FROM run WHERE id < ? AND status <> 'deleted'";
-      if (filter.scenario) sql += " AND scenario = ?";
-      if (filter.controller) sql += " AND controller = ?";
-      if (filter.outcome) sql += " AND outcome = ?";
-      if (filter.status) sql += " AND status = ?";
-      if (!counting) sql += " ORDER BY id DESC LIMIT ?";
-      listings.emplace(key, connection.prepare(sql));
-    }
-    return listings.at(key).reset();
-  }
-
   Connection connection;
+  Statement row = connection.prepare("SELECT " + std::string(kRunColumns) + std::string(kOneRun));
   Statement get = connection.prepare("SELECT " + std::string(kRunColumns) +
-                                     ", (SELECT text FROM document WHERE run ="
-                                     " coalesce(run.document, run.id))"
-                                     " FROM run WHERE id = ? AND status <> 'deleted'");
-  // A deleted run disappears at once, though sweeping its blocks may take a while.
-  Statement exists = connection.prepare("SELECT 1 FROM run WHERE id = ? AND status <> 'deleted'");
+                                     ", (SELECT text FROM document WHERE document.run ="
+                                     " coalesce(run.document, run.id))" +
+                                     std::string(kOneRun));
+  Statement exists = connection.prepare("SELECT 1 FROM listing WHERE id = ?");
   Statement block = connection.prepare(
       "SELECT first_tick, frames FROM block WHERE run = ?1 AND last_tick >= ?2 AND first_tick >="
       " coalesce((SELECT max(first_tick) FROM block WHERE run = ?1 AND first_tick <= ?2), 0)"
@@ -99,7 +105,6 @@ struct RunReader::Tables {
   Statement gaps = connection.prepare(
       "SELECT first_tick, last_tick, cause, sentence FROM gap"
       " WHERE run = ? ORDER BY first_tick");
-  std::map<unsigned, Statement> listings{};  // by the set of filters used
 };
 
 RunReader::RunReader(const std::string& path) : path_(path) {
@@ -118,38 +123,64 @@ RunReader::Tables& RunReader::tables() {
   return *tables_;
 }
 
-namespace {
-void bind_filter(Statement& statement, const RunFilter& filter) {
-  if (filter.scenario) statement << std::string_view(*filter.scenario);
-  if (filter.controller) statement << std::string_view(*filter.controller);
-  if (filter.outcome) statement << std::string_view(*filter.outcome);
-  if (filter.status) statement << to_string(*filter.status);
-}
-}  // namespace
-
-RunPage RunReader::list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor) {
-  Statement& found = tables().listing(filter, false);
-  const ResetLater reset(found);
-  found << cursor.value_or(std::numeric_limits<RunId>::max());
-  bind_filter(found, filter);
-  found << signed_tick(limit == SIZE_MAX ? limit : limit + 1);  // one more, to detect a next page
+RunPage RunReader::list(const RunFilter& filter,
+                        std::size_t limit,
+                        const std::optional<std::string>& cursor,
+                        const RunOrder& order,
+                        std::size_t room) {
+  Tables& from = tables();
+  const std::uint64_t more = limit == SIZE_MAX ? limit : limit + 1;  // to detect a next page
+  const RunQuery query =
+      RunQuery::page(filter, order, cursor, static_cast<std::uint64_t>(signed_tick(more)));
+  Statement found = query.prepare(from.connection);
   RunPage page{};
+  std::string last = cursor.value_or("");
+  std::size_t size = 0;
   while (found.step()) {
-    if (page.runs.size() == limit) {
-      page.next = page.runs.empty() ? cursor : page.runs.back().id;
+    if (page.runs.size() == limit || size >= room) {
+      page.next = last;
       break;
     }
-    page.runs.push_back(row_of(found));
+    const ResetLater reset(from.row.reset() << found.integer(0));
+    if (!from.row.step()) continue;
+    page.runs.push_back(row_of(from.row));
+    RunRow& row = page.runs.back();
+    last = detail::cursor_after(order, row.id, found, 1);
+    if (order.grouped && row.what.batch > 0) row.group = group_of(filter, row.what.batch);
+    size += size_of(row);
   }
   return page;
 }
 
-std::uint64_t RunReader::count(const RunFilter& filter) {
-  Statement& found = tables().listing(filter, true);
-  const ResetLater reset(found);
-  found << std::numeric_limits<RunId>::max();
-  bind_filter(found, filter);
+/// The runs of a batch that the filter passes.
+RunGroup RunReader::group_of(const RunFilter& filter, RunId batch) {
+  const RunQuery query = RunQuery::results_of_batch(filter, batch);
+  Statement found = query.prepare(tables().connection);
+  RunGroup group;
+  while (found.step()) {
+    group.counts[found.text(0)] = found.count(1);
+    group.runs += found.count(1);
+    group.first = group.first == 0 ? found.integer(2) : std::min(group.first, found.integer(2));
+    group.last = std::max(group.last, found.integer(3));
+  }
+  return group;
+}
+
+std::uint64_t RunReader::count(const RunFilter& filter, bool grouped) {
+  const RunQuery query = RunQuery::count(filter, grouped);
+  Statement found = query.prepare(tables().connection);
   return found.step() ? found.count(0) : 0;
+}
+
+std::map<std::string, std::uint64_t> RunReader::results(RunFilter filter) {
+  filter.outcome.reset();
+  filter.status.reset();
+  filter.result.reset();
+  const RunQuery query = RunQuery::results(filter);
+  Statement found = query.prepare(tables().connection);
+  std::map<std::string, std::uint64_t> counts;
+  while (found.step()) counts[found.text(0)] = found.count(1);
+  return counts;
 }
 
 std::optional<RunRow> RunReader::get(RunId run) {
@@ -158,7 +189,7 @@ std::optional<RunRow> RunReader::get(RunId run) {
   const ResetLater reset(from.get);
   if (!from.get.step()) return std::nullopt;
   RunRow row = row_of(from.get);
-  row.what.document = from.get.text(17);
+  row.what.document = from.get.text(kColumns);
   const ResetLater reset_gaps(from.gaps.reset() << run);
   while (from.gaps.step()) {
     row.gaps.push_back({.first_tick = from.gaps.count(0),

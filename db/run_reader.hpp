@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,9 +30,18 @@ class RunReader {
   /// Opens the store at the first call that finds one.
   RunReader(std::string path, Later /*tag*/) : path_(std::move(path)) {}
 
-  /// Newest first: up to `limit` runs older than `cursor`, without their documents.
-  RunPage list(const RunFilter& filter, std::size_t limit, std::optional<RunId> cursor = {});
-  std::uint64_t count(const RunFilter& filter);
+  /// Up to `limit` runs after `cursor`, without their documents. The page also ends with the run
+  /// that fills `room` [bytes]. Throws std::invalid_argument for an unknown order, or a cursor of
+  /// another one. A run that begins, ends or goes between two pages shifts no other run.
+  RunPage list(const RunFilter& filter,
+               std::size_t limit,
+               const std::optional<std::string>& cursor = {},
+               const RunOrder& order = {},
+               std::size_t room = SIZE_MAX);
+  /// The number of lines of the list, on all pages.
+  std::uint64_t count(const RunFilter& filter, bool grouped = false);
+  /// The number of runs by RunRow::result, whatever outcome, status and result the filter asks for.
+  std::map<std::string, std::uint64_t> results(RunFilter filter);
   bool exists(RunId run);
   /// The run with its document and gaps; nothing if there is no such run.
   std::optional<RunRow> get(RunId run);
@@ -49,6 +59,7 @@ class RunReader {
   struct Tables;  // a connection and its statements
 
   Tables& tables();
+  RunGroup group_of(const RunFilter& filter, RunId batch);
   std::optional<std::uint64_t> seek(RunId run, std::uint64_t tick, bool unpack);
 
   std::string path_;

@@ -140,7 +140,8 @@ void RunStore::interrupt_unfinished() {
         "UPDATE run SET"
         " reason = iif(status = 'queued', 'The program stopped before this run began.',"
         "              'The program stopped in the middle of this run.'),"
-        " status = 'interrupted', outcome = iif(outcome = 'running', 'stopped', outcome)"
+        " status = 'interrupted', outcome = iif(outcome = 'running', 'stopped', outcome),"
+        " last_outcome = iif(last_outcome = 'running', 'stopped', last_outcome)"
         " WHERE status IN ('queued', 'recording') RETURNING id");
     while (found.step()) interrupted_.push_back(found.integer(0));
     found.reset();
@@ -167,7 +168,7 @@ RunId RunStore::insert(const NewRun& what, RunStatus status, std::optional<RunId
   while (run <= 0 || taken(run)) run = options_.numbers->take();
   sql_->insert_run.reset() << run << to_string(status) << what.scenario << what.controller
                            << what.filter << what.physics << what.seed << what.parameters
-                           << what.version << what.started;
+                           << what.version << what.started << to_string(what.kind) << what.batch;
   sql_->insert_run.run();
   // The runs of a batch, and resets, have the previous run's document.
   const ResetLater reset(sql_->same_document.reset() << sql_->newest_document << what.document);
@@ -301,13 +302,11 @@ void RunStore::write_progress(RunId run, const Recording& recording) {
       .run();
 }
 
-void RunStore::set_result(RunId run,
-                          std::string_view outcome,
-                          std::string_view reason,
-                          std::string_view metrics) {
+void RunStore::set_result(RunId run, const RunVerdict& verdict) {
   const bool found = guarded([&] {
     begin();
-    sql_->set_result.reset() << outcome << reason << metrics << run;
+    sql_->set_result.reset() << verdict.outcome << verdict.reason << verdict.metrics
+                             << verdict.last_outcome << verdict.last_reason << run;
     const ResetLater reset(sql_->set_result);
     return sql_->set_result.step();
   });
@@ -340,7 +339,7 @@ void RunStore::end_run(RunId run, const RunEnd& end) {
       if (sql_->lost_ticks.step()) lost = std::max(lost, sql_->lost_ticks.count(0));
     }
     (sql_->end_run.reset() << to_string(end.status) << end.outcome << end.reason << end.metrics
-                           << lost << run)
+                           << lost << end.last_outcome << end.last_reason << run)
         .run();
   });
 }

@@ -93,11 +93,8 @@ class RunStore {
                    std::span<const std::byte> frame,
                    std::span<const Window> windows);
 
-  /// Sets the result of a run so far, also while it is recording. `metrics`: JSON text.
-  void set_result(RunId run,
-                  std::string_view outcome,
-                  std::string_view reason,
-                  std::string_view metrics);
+  /// Sets the result of a run so far, also while it is recording.
+  void set_result(RunId run, const RunVerdict& verdict);
   /// Ends a queued or recording run and writes its last frames. A run that was dropped because the
   /// database failed ends with what its last commit stored. Its lost ticks are at least those of
   /// its gaps by fault.
@@ -111,7 +108,24 @@ class RunStore {
 
   bool recording(RunId run) const { return open_.contains(run); }
 
+  /// Changes what people wrote on a run. False if there is no such run.
+  bool remark(RunId run, const RunRemarks& remarks);
+  /// Adds and removes tags. False if there is no such run.
+  bool change_tags(RunId run,
+                   std::span<const std::string> added,
+                   std::span<const std::string> removed);
+  /// The runs of a batch, oldest first.
+  std::vector<RunId> runs_of_batch(RunId batch);
+
   enum class Deletion : std::uint8_t { Deleted, NotFound, StillRecording };
+  /// Removes a run from every list; restore() brings it back until empty_trash(). `now`: [s] since
+  /// 1970.
+  Deletion trash(RunId run, std::int64_t now);
+  /// False if the run is not in the trash any more.
+  bool restore(RunId run);
+  /// Deletes up to `runs` runs, the oldest first, that came into the trash at `until` [s since
+  /// 1970] or before. Returns how many.
+  std::size_t empty_trash(std::int64_t until, std::size_t runs);
   /// Removes a run from every list at once; sweep() frees its room block by block.
   Deletion delete_run(RunId run);
 
@@ -171,6 +185,7 @@ class RunStore {
     std::uint64_t bytes = 0;
     double kept_from = 0;  // [s]
   };
+  std::optional<std::string> written_tags(RunId run);
   bool drop_block(RunId run, Remains& left, double before, std::string_view sentence);
   std::uint64_t pages(detail::Statement& statement);
 

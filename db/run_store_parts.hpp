@@ -33,7 +33,8 @@ struct RunStore::Statements {
   detail::Statement commit = c.prepare("COMMIT");
   detail::Statement insert_run = c.prepare(
       "INSERT INTO run (id, status, scenario, controller, filter, physics, seed, parameters,"
-      " version, started) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      " version, started, kind, batch)"
+      " VALUES (?1, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, iif(?12 < 0, ?1, ?12))");
   detail::Statement insert_document = c.prepare("INSERT INTO document (run, text) VALUES (?, ?)");
   detail::Statement same_document = c.prepare("SELECT 1 FROM document WHERE run = ? AND text = ?");
   detail::Statement share_document = c.prepare("UPDATE run SET document = ? WHERE id = ?");
@@ -46,8 +47,9 @@ struct RunStore::Statements {
       " RETURNING ticks, time, bytes");
   detail::Statement requeue_run = c.prepare(
       "UPDATE run SET status = 'queued', outcome = 'running', reason = '', metrics = '',"
-      " ticks = 0, time = 0, lost_ticks = 0, bytes = 0"
-      " WHERE id = ? AND status IN ('interrupted', 'cancelled', 'failed') RETURNING id");
+      " last_outcome = '', last_reason = '', ticks = 0, time = 0, lost_ticks = 0, bytes = 0"
+      " WHERE id = ? AND status IN ('interrupted', 'cancelled', 'failed') AND trashed = 0"
+      " RETURNING id");
   detail::Statement write_block = c.prepare(
       "INSERT INTO block (run, first_tick, last_tick, first_time, frames)"
       " VALUES (?, ?, ?, ?, ?)"
@@ -60,13 +62,36 @@ struct RunStore::Statements {
   detail::Statement progress =
       c.prepare("UPDATE run SET ticks = ?, time = ?, bytes = ? WHERE id = ?");
   detail::Statement set_result = c.prepare(
-      "UPDATE run SET outcome = ?, reason = ?, metrics = ? WHERE id = ?"
-      " AND status <> 'deleted' RETURNING id");
+      "UPDATE run SET outcome = ?, reason = ?, metrics = ?, last_outcome = ?, last_reason = ?"
+      " WHERE id = ? AND status <> 'deleted' RETURNING id");
   detail::Statement end_run = c.prepare(
-      "UPDATE run SET status = ?, outcome = ?, reason = ?, metrics = ?, lost_ticks = ?"
-      " WHERE id = ?");
+      "UPDATE run SET status = ?, outcome = ?, reason = ?, metrics = ?, lost_ticks = ?,"
+      " last_outcome = ?, last_reason = ? WHERE id = ?");
   detail::Statement status = c.prepare("SELECT status FROM run WHERE id = ?");
-  detail::Statement mark_deleted = c.prepare("UPDATE run SET status = 'deleted' WHERE id = ?");
+  detail::Statement mark_deleted =
+      c.prepare("UPDATE run SET status = 'deleted', trashed = 0 WHERE id = ?");
+  detail::Statement trash = c.prepare(
+      "UPDATE run SET trashed = ? WHERE id = ? AND trashed = 0"
+      " AND status NOT IN ('queued', 'recording', 'deleted') RETURNING id");
+  detail::Statement restore = c.prepare(
+      "UPDATE run SET trashed = 0 WHERE id = ? AND trashed > 0 AND status <> 'deleted'"
+      " RETURNING id");
+  detail::Statement in_trash =
+      c.prepare("SELECT 1 FROM run WHERE trashed > 0 AND trashed <= ? LIMIT 1");
+  detail::Statement empty_trash = c.prepare(
+      "UPDATE run SET status = 'deleted', trashed = 0 WHERE id IN"
+      " (SELECT id FROM run WHERE trashed > 0 AND trashed <= ? ORDER BY trashed, id LIMIT ?)"
+      " RETURNING id");
+  detail::Statement is_there =
+      c.prepare("SELECT status FROM run WHERE id = ? AND trashed = 0 AND status <> 'deleted'");
+  detail::Statement remark = c.prepare(
+      "UPDATE run SET label = coalesce(?, label), note = coalesce(?, note),"
+      " tags = coalesce(?, tags) WHERE id = ? AND trashed = 0 AND status <> 'deleted'"
+      " RETURNING id");
+  detail::Statement tags = c.prepare("SELECT tags FROM run WHERE id = ?");
+  detail::Statement batch = c.prepare(
+      "SELECT id FROM run WHERE batch = ? AND batch > 0 AND trashed = 0 AND status <> 'deleted'"
+      " ORDER BY id");
   detail::Statement oldest_ended = c.prepare(
       "SELECT id, status, scenario, started, ticks, bytes FROM run"
       " WHERE status NOT IN ('queued', 'recording', 'deleted') ORDER BY id LIMIT 1");

@@ -11,8 +11,9 @@ namespace {
 constexpr std::int64_t kApplicationId = 0x5461754C;  // "TauL": distinguishes our files
 
 // The version counts the formats of the tables and of the frames in their blocks. A file of another
-// version is not read. 8: layers in 16 bits.
-constexpr std::int64_t kVersion = 8;
+// version is not read. 8: layers in 16 bits. 9: adds kAdded.
+constexpr std::int64_t kVersion = 9;
+constexpr std::int64_t kMended = 8;  // brought up to date
 
 // SI units throughout. A run with the same document as the previous one shares its row, which stays
 // as long as any run uses it: ten thousand repeats of a world would fill the store with copies.
@@ -38,7 +39,6 @@ constexpr const char* kTables = R"(
       metrics TEXT NOT NULL DEFAULT '',
       document INTEGER
     );
-    CREATE INDEX run_by_scenario ON run (scenario, id);
     CREATE INDEX run_by_status ON run (status, id);
     CREATE INDEX run_by_document ON run (document) WHERE document IS NOT NULL;
     CREATE TABLE document (run INTEGER PRIMARY KEY, text TEXT NOT NULL);
@@ -60,6 +60,58 @@ constexpr const char* kTables = R"(
     ) WITHOUT ROWID;
 )";
 
+// `listing` has what a list of runs filters and sorts by, in narrow rows: a search reads it alone.
+// Triggers keep it; a run that is deleted or in the trash is not in it. Tags are lines, each
+// between two line breaks.
+constexpr const char* kAdded = R"(
+    ALTER TABLE run ADD COLUMN kind TEXT NOT NULL DEFAULT 'session';
+    ALTER TABLE run ADD COLUMN batch INTEGER NOT NULL DEFAULT 0;
+    ALTER TABLE run ADD COLUMN last_outcome TEXT NOT NULL DEFAULT '';
+    ALTER TABLE run ADD COLUMN last_reason TEXT NOT NULL DEFAULT '';
+    ALTER TABLE run ADD COLUMN label TEXT NOT NULL DEFAULT '';
+    ALTER TABLE run ADD COLUMN note TEXT NOT NULL DEFAULT '';
+    ALTER TABLE run ADD COLUMN tags TEXT NOT NULL DEFAULT '';
+    ALTER TABLE run ADD COLUMN trashed INTEGER NOT NULL DEFAULT 0;
+    CREATE INDEX run_by_batch ON run (batch) WHERE batch > 0;
+    CREATE INDEX run_by_trash ON run (trashed) WHERE trashed > 0;
+    CREATE VIEW listed AS SELECT id, status, outcome, kind, batch, seed, scenario, controller, label,
+        tags,
+        iif(outcome IN ('running', 'stopped') AND status <> 'finished', status, outcome) AS result,
+        coalesce(json_extract(nullif(metrics, ''), '$.time'), time) AS verdict_time,
+        json_extract(nullif(metrics, ''), '$.path_length') AS path_length,
+        json_extract(nullif(metrics, ''), '$.min_clearance') AS min_clearance,
+        json_extract(nullif(metrics, ''), '$.intrusion') AS intrusion,
+        json_extract(nullif(metrics, ''), '$.turning') AS turning,
+        lower(id || ' ' || label || ' ' || scenario || ' ' || controller || ' ' || filter || ' ' ||
+          note || tags) AS words
+      FROM run WHERE trashed = 0 AND status <> 'deleted';
+    CREATE TABLE listing (id INTEGER PRIMARY KEY, status TEXT, outcome TEXT, kind TEXT,
+      batch INTEGER, seed INTEGER, scenario TEXT, controller TEXT, label TEXT, tags TEXT, result TEXT,
+      verdict_time REAL, path_length REAL, min_clearance REAL, intrusion REAL, turning REAL,
+      words TEXT);
+    CREATE TRIGGER run_begins AFTER INSERT ON run BEGIN
+      INSERT INTO listing SELECT * FROM listed WHERE id = new.id;
+    END;
+    CREATE TRIGGER run_changes AFTER UPDATE OF status, outcome, kind, batch, label, note, tags,
+        metrics, time, trashed ON run BEGIN
+      DELETE FROM listing WHERE id = new.id;
+      INSERT INTO listing SELECT * FROM listed WHERE id = new.id;
+    END;
+    CREATE TRIGGER run_goes AFTER DELETE ON run BEGIN
+      DELETE FROM listing WHERE id = old.id;
+    END;
+)";
+
+// Only a headless run's document has a pace.
+constexpr const char* kMend = R"(
+    DROP INDEX run_by_scenario;
+    UPDATE run SET kind = 'background' WHERE EXISTS
+      (SELECT 1 FROM document WHERE document.run = coalesce(run.document, run.id)
+        AND json_type(text, '$.pace') IS NOT NULL);
+    DELETE FROM listing;
+    INSERT INTO listing SELECT * FROM listed;
+)";
+
 std::int64_t version_of(const Connection& connection) {
   return connection.query_integer("PRAGMA user_version");
 }
@@ -73,15 +125,15 @@ void refuse_foreign(const Connection& connection) {
   }
 }
 
-/// Refuses a file of another version, unless it is empty.
-void refuse_others(const Connection& connection) {
+/// Refuses a file of a version before `oldest` or after this program's, unless it is empty.
+void refuse_others(const Connection& connection, std::int64_t oldest) {
   const std::int64_t version = version_of(connection);
   if (version > kVersion) {
     throw StoreError(
         "The run store " + connection.path() + " has version " + std::to_string(version) +
         ", written by a newer program; this one reads version " + std::to_string(kVersion) + ".");
   }
-  if (version > 0 && version < kVersion) {
+  if (version > 0 && version < oldest) {
     throw DatabaseError("The run store " + connection.path() + " has version " +
                             std::to_string(version) +
                             ", written by an older program; this one reads version " +
@@ -94,14 +146,17 @@ void refuse_others(const Connection& connection) {
 
 void set_up(Connection& connection) {
   refuse_foreign(connection);
-  refuse_others(connection);
+  refuse_others(connection, kMended);
   if (version_of(connection) == kVersion) return;
   try {
     connection.execute("BEGIN IMMEDIATE");
     // Check again, now that no other program can set it up in between.
-    refuse_others(connection);
+    refuse_others(connection, kMended);
     if (version_of(connection) != kVersion) {
-      connection.execute(kTables);
+      const bool older = version_of(connection) == kMended;
+      if (!older) connection.execute(kTables);
+      connection.execute(kAdded);
+      if (older) connection.execute(kMend);
       connection.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
       connection.execute("PRAGMA user_version = " + std::to_string(kVersion));
     }
@@ -114,7 +169,13 @@ void set_up(Connection& connection) {
 
 void require_readable(const Connection& connection) {
   refuse_foreign(connection);
-  refuse_others(connection);
+  if (version_of(connection) == kMended) {
+    throw DatabaseError("The run store " + connection.path() +
+                            " was written by an older program; start the server on it once, which "
+                            "brings it up to date.",
+                        Trouble::Outdated);
+  }
+  refuse_others(connection, kVersion);
   if (version_of(connection) != kVersion) {
     throw StoreError("The run store " + connection.path() +
                      " is empty; start the server on it once.");

@@ -1,6 +1,8 @@
 // db/sqlite.cpp: SQLite with RAII, and errors as sentences.
 #include "db/sqlite.hpp"
 
+#include <array>
+#include <charconv>
 #include <limits>
 
 #include <sqlite3.h>
@@ -104,6 +106,10 @@ Statement& Statement::operator<<(std::span<const std::byte> value) {
   check(sqlite3_bind_blob64(statement_.get(), ++bound_, value.data(), value.size(), SQLITE_STATIC));
   return *this;
 }
+Statement& Statement::skip() {
+  check(sqlite3_bind_null(statement_.get(), ++bound_));
+  return *this;
+}
 
 bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
@@ -137,6 +143,12 @@ double Statement::number(int column) const {
 std::string Statement::text(int column) const {
   const auto bytes = blob(column);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+std::string Statement::exact_text(int column) const {
+  if (sqlite3_column_type(statement_.get(), column) != SQLITE_FLOAT) return text(column);
+  std::array<char, 32> digits{};
+  const auto written = std::to_chars(digits.begin(), digits.end(), number(column));
+  return {digits.begin(), written.ptr};
 }
 std::span<const std::byte> Statement::blob(int column) const {
   const void* data = sqlite3_column_blob(statement_.get(), column);

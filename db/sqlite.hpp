@@ -56,6 +56,8 @@ class Statement {
   Statement& operator<<(double value);  // NaN, which SQLite does not keep, becomes NULL
   Statement& operator<<(std::string_view value);
   Statement& operator<<(std::span<const std::byte> value);
+  /// Binds NULL to the next parameter.
+  Statement& skip();
 
   bool step();  // true: a row is available
   void run();   // step() to the end, then reset
@@ -64,6 +66,8 @@ class Statement {
   std::uint64_t count(int column) const { return static_cast<std::uint64_t>(integer(column)); }
   double number(int column) const;  // NULL is NaN
   std::string text(int column) const;
+  /// The value as text that reads back as the same value; NULL is empty.
+  std::string exact_text(int column) const;
   std::span<const std::byte> blob(int column) const;  // until the next step or reset
 
  private:

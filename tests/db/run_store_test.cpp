@@ -127,7 +127,7 @@ TEST_F(RunStoreTest, RefusesWhatMakesNoSense) {
   EXPECT_THAT(refusal([&] { store.end_run(run + 1, {}); }), HasSubstr("missing"));
   EXPECT_THAT(refusal([&] { store.end_run(run, {.status = RunStatus::Queued}); }),
               HasSubstr("queued"));
-  EXPECT_THAT(refusal([&] { store.set_result(99, "", "", ""); }), HasSubstr("no run 99"));
+  EXPECT_THAT(refusal([&] { store.set_result(99, {}); }), HasSubstr("no run 99"));
   // None of them harmed the run.
   append(store, run, 6, made[0]);
   store.end_run(run, {});
@@ -146,7 +146,7 @@ TEST_F(RunStoreTest, QueuedRunsStartLaterOrAreCancelled) {
   EXPECT_EQ(get(reader, first).status, RunStatus::Queued);
   store.start_run(first, "2026-11-21T11:00:00Z");
   append(store, first, 0, frames(1)[0]);
-  store.set_result(first, "running", "", R"({"path_length":0.1})");
+  store.set_result(first, {.outcome = "running", .metrics = R"({"path_length":0.1})"});
   store.end_run(second, {.status = RunStatus::Cancelled, .outcome = "stopped"});
   store.commit();
   EXPECT_EQ(get(reader, first).status, RunStatus::Recording);

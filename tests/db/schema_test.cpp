@@ -69,10 +69,48 @@ TEST_F(SchemaTest, ADatabaseOfTheVersionBeforeLayersIsRefusedToo) {
   EXPECT_EQ(ask("SELECT sum(ticks) FROM run"), 3);
 }
 
+// Takes away what version 9 added.
+constexpr const char* kBackToVersion8 = R"(
+  DROP TRIGGER run_begins; DROP TRIGGER run_changes; DROP TRIGGER run_goes;
+  DROP VIEW listed; DROP TABLE listing; DROP INDEX run_by_batch; DROP INDEX run_by_trash;
+  ALTER TABLE run DROP COLUMN trashed; ALTER TABLE run DROP COLUMN tags;
+  ALTER TABLE run DROP COLUMN note; ALTER TABLE run DROP COLUMN label;
+  ALTER TABLE run DROP COLUMN last_reason; ALTER TABLE run DROP COLUMN last_outcome;
+  ALTER TABLE run DROP COLUMN batch; ALTER TABLE run DROP COLUMN kind;
+  CREATE INDEX run_by_scenario ON run (scenario, id);
+  PRAGMA user_version = 8;
+)";
+
+TEST_F(SchemaTest, ADatabaseOfTheVersionBeforeIsBroughtUpToDate) {
+  db::RunId live = 0;
+  db::RunId headless = 0;
+  {
+    RunStore store(path);
+    live = record(store, 3);
+    db::NewRun second = what();
+    second.document = R"({"pace":0})";
+    headless = store.begin_run(second);
+    store.end_run(headless, {.outcome = "stuck", .metrics = R"({"time":7.5})"});
+    store.commit();
+  }
+  Connection(path, Connection::Mode::Write).execute(kBackToVersion8);
+  EXPECT_THAT(refusal([&] { const RunReader reader(path); }), HasSubstr("brings it up to date"));
+  EXPECT_EQ(ask("PRAGMA user_version"), 8);
+  { const RunStore store(path); }
+  EXPECT_EQ(ask("PRAGMA user_version"), 9);
+  EXPECT_EQ(integrity(path), "ok");
+  RunReader reader(path);
+  EXPECT_EQ(get(reader, live).what.kind, db::RunKind::Session);
+  EXPECT_EQ(read_frames(reader, live).size(), 3U);
+  EXPECT_EQ(get(reader, headless).what.kind, db::RunKind::Background);
+  EXPECT_EQ(get(reader, headless).verdict_time, 7.5);
+  EXPECT_EQ(reader.list({.words = {"case1"}}, 9).runs.size(), 2U);
+}
+
 TEST_F(SchemaTest, AnEmptyFileIsSetUp) {
   { const RunStore store(path); }
-  EXPECT_EQ(ask("PRAGMA user_version"), 8);
-  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'run_by_scenario'"), 1);
+  EXPECT_EQ(ask("PRAGMA user_version"), 9);
+  EXPECT_EQ(ask("SELECT count(*) FROM sqlite_master WHERE name = 'listing'"), 1);
   Connection((folder / "empty.db").string(), Connection::Mode::Write);
   EXPECT_THAT(refusal([&] { const RunReader reader((folder / "empty.db").string()); }),
               HasSubstr("is empty"));
