@@ -206,6 +206,30 @@ void check(const Section& top, const RobotFile& robot) {
   }
 }
 
+/// A file that says `emulated` must not be one of real devices by mistake: a copy with other ports.
+/// The emulators are on pseudo-terminals, or behind their own library; a serial port is not.
+void check_emulated(const RobotFile& robot) {
+  const auto refuse = [&](const std::string& port, const char* missing) {
+    throw RobotFileError(
+        robot.path + ": 'emulated' is set, but " + port + " " + missing +
+        ": start `tautline emulate` first, or leave the key out for real devices.");
+  };
+  const auto pseudo_terminal = [&](const std::string& port) {
+    std::error_code error;
+    const std::string device = std::filesystem::canonical(port, error).string();
+    if (error || !device.starts_with("/dev/pts/")) refuse(port, "is no pseudo-terminal");
+  };
+  for (const LaserEntry& laser : robot.lasers) pseudo_terminal(laser.port);
+  if (const auto* analog = std::get_if<AnalogEntry>(&robot.base.setup)) {
+    const std::filesystem::path library = analog->card.library;
+    if (library.filename() != "libemulated_comedi.so") {
+      refuse(robot.base.port, "is not behind the emulated library");
+    }
+  } else {
+    pseudo_terminal(robot.base.port);
+  }
+}
+
 RobotFile read(const toml::table& table, const std::string& name) {
   RobotFile robot;
   robot.path = name;
@@ -221,6 +245,7 @@ RobotFile read(const toml::table& table, const std::string& name) {
   spec.period = top.number_or("period", 0.05, {0.01, 0.2});
   robot.controller = top.text_or("controller", robot.controller);
   check_known(top, "controller", robot.controller, algo::builtin_controllers().entries());
+  robot.external_controller = top.text_or("external_controller", "");
   robot.filter = top.text_or("filter", robot.filter);
   check_known(top, "filter", robot.filter, algo::filter_table());
   read_hull(top.table("hull"), spec);
@@ -231,6 +256,7 @@ RobotFile read(const toml::table& table, const std::string& name) {
   Section base = top.table("base");
   read_base(base, robot);
   judge_watchdog(base, robot);
+  robot.emulated = top.flag_or("emulated", false);
   top.done();
   check(top, robot);
 
@@ -265,7 +291,9 @@ RobotFile read_robot_file(const std::filesystem::path& path) {
   if (!stream) throw RobotFileError(path.string() + " cannot be read.");
   std::ostringstream text;
   text << stream.rdbuf();
-  return parse_robot(text.str(), path.string());
+  RobotFile robot = parse_robot(text.str(), path.string());
+  if (robot.emulated) check_emulated(robot);
+  return robot;
 }
 
 }  // namespace drivers

@@ -46,9 +46,12 @@ struct BaseEntry {
 
 struct RobotFile {
   std::string path{};
+  bool emulated = false;  // devices of `tautline emulate`; read_robot_file() checks the ports
   algo::RobotSpec spec{};
   BaseLimits limits{};
   std::string controller = "modified";
+  /// The controller outside the program that may drive this robot; empty: none.
+  std::string external_controller{};
   std::string filter = "pseudomedian";
   std::vector<LaserEntry> lasers{};
   BaseEntry base{};

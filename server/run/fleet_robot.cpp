@@ -17,7 +17,9 @@ FleetRobot::FleetRobot(const sim::Scenario& scenario,
   others_.reserve(others.size());
   for (std::size_t k = 1; k < fleet_.size(); ++k) {
     const RobotPlan& plan = others[k - 1];
-    others_.push_back({plan, algo::Pipeline(plan.pipeline, fleet_.robot(k).spec())});
+    const algo::ControllerCatalogue& controllers =
+        plan.controllers ? *plan.controllers : algo::builtin_controllers();
+    others_.push_back({plan, algo::Pipeline(plan.pipeline, fleet_.robot(k).spec(), controllers)});
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,8 @@ namespace server {
 struct RobotPlan {
   algo::PipelineConfig pipeline{};
   std::vector<algo::Request> first{};
+  /// As in RunSpec.
+  std::shared_ptr<const algo::ControllerCatalogue> controllers{};
 };
 
 /// The port to the first robot of a fleet. Each step() also drives the other robots. Each of them

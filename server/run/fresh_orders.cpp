@@ -8,8 +8,10 @@ namespace server {
 namespace {
 
 bool is_goal(const algo::Request& request) {
+  const auto* list = std::get_if<algo::SetGoals>(&request);
   return std::holds_alternative<algo::SetGoal>(request) ||
-         std::holds_alternative<algo::AddGoal>(request);
+         std::holds_alternative<algo::AddGoal>(request) ||
+         (list != nullptr && !list->goals.empty());
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "algo/driving.hpp"
 #include "algo/gate.hpp"
 #include "drivers/lms200_scan.hpp"
@@ -76,7 +78,7 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
   const drivers::RobotFile& file = robot->file();
   sim::Scenario scenario;
   scenario.name = file.spec.name;
-  scenario.title = "Real hardware";
+  scenario.title = file.emulated ? "Emulated devices" : "Real hardware";
   // Without the folder: all viewers of the robot read this text.
   scenario.description = "Described in " + std::filesystem::path(file.path).filename().string();
   scenario.period = file.spec.period;
@@ -90,8 +92,11 @@ std::shared_ptr<const Hardware> describe(std::shared_ptr<drivers::SerialRobot> r
   scenario.parameters = {{&algo::kMaxSpeed, allowed(algo::kMaxSpeed, file.limits.speed)},
                          {&algo::kMaxTurnRate, allowed(algo::kMaxTurnRate, file.limits.turn)},
                          {&algo::kScanTimeout, allowed(algo::kScanTimeout, scan_timeout(file))}};
-  return std::make_shared<const Hardware>(
-      Hardware{.robot = std::move(robot), .scenario = std::move(scenario)});
+  Hardware hardware{.scenario = std::move(scenario),
+                    .emulated = file.emulated,
+                    .external_controller = file.external_controller};
+  hardware.robot = std::move(robot);
+  return std::make_shared<const Hardware>(std::move(hardware));
 }
 
 RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrides& overrides) {
@@ -99,6 +104,13 @@ RunSpec hardware_spec(std::shared_ptr<const Hardware> hardware, const RunOverrid
     throw DocumentError("robot", "cannot be chosen: this is real hardware");
   }
   RunSpec spec = make_spec(hardware->scenario, overrides);
+  const std::string& controller = spec.scenario.controller;
+  if (drives_from_outside(spec) && controller != hardware->external_controller) {
+    throw DocumentError("controller",
+                        fmt::format("'{0}' runs outside the program; to drive real hardware, the "
+                                    "robot's file must have external_controller = \"{0}\"",
+                                    controller));
+  }
   spec.hardware = std::move(hardware);
   return spec;
 }

@@ -20,6 +20,8 @@ namespace server {
 struct Hardware {
   std::shared_ptr<algo::Robot> robot{};  // has algo::Arming
   sim::Scenario scenario{};
+  bool emulated = false;              // its devices are those of `tautline emulate`
+  std::string external_controller{};  // outside the program, and yet allowed; empty: none
 };
 
 /// Takes the scenario's controller and limits from the robot's file. Throws DocumentError.

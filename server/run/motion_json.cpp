@@ -38,10 +38,9 @@ json to_json(const sim::DriveConfig& drive) {
   return written(kDrive, drive);
 }
 
-sim::ObstaclePath path_from_json(const JsonReader& in, std::uint32_t id) {
+algo::ObstaclePath path_from_json(const JsonReader& in) {
   in.only({"period", "phase", "keys"});
-  sim::ObstaclePath path;
-  path.id = id;
+  algo::ObstaclePath path;
   path.period = in.number("period", {0.1, kMaxTime});
   path.phase = in.number_or("phase", 0, {-kMaxTime, kMaxTime});
   double last = -1;
@@ -60,7 +59,7 @@ sim::ObstaclePath path_from_json(const JsonReader& in, std::uint32_t id) {
   return path;
 }
 
-json to_json(const sim::ObstaclePath& path) {
+json to_json(const algo::ObstaclePath& path) {
   json keys = json::array();
   for (const auto& key : path.keys) {
     keys.push_back({key.time, key.position_W.x(), key.position_W.y()});

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "algo/obstacle_path.hpp"
 #include "server/run/json_reader.hpp"
 #include "sim/scenario.hpp"
 
@@ -14,7 +15,7 @@ sim::DriveConfig drive_from_json(const JsonReader& in);
 nlohmann::json to_json(const sim::DriveConfig& drive);
 
 /// The path of obstacle `id`: {"period","phase"?,"keys":[[t,x,y],...]}, times ascending from 0.
-sim::ObstaclePath path_from_json(const JsonReader& in, std::uint32_t id);
-nlohmann::json to_json(const sim::ObstaclePath& path);
+algo::ObstaclePath path_from_json(const JsonReader& in);
+nlohmann::json to_json(const algo::ObstaclePath& path);
 
 }  // namespace server

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "server/run/json_reader.hpp"
+#include "server/run/motion_json.hpp"
 #include "server/run/pose_json.hpp"
 
 namespace server {
@@ -30,7 +31,8 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
            "thickness",
            "height",
            "reflectivity",
-           "specular"});
+           "specular",
+           "path"});
   algo::Wall wall{in.number_or("length", 0), in.number_or("thickness", 0.1)};
   if (in.has("from") || in.has("to")) {
     const algo::Vec2 from = point_from_json(in.array("from", 2), in.at("from"));
@@ -48,7 +50,8 @@ void read_wall(const JsonReader& in, algo::Obstacle& obstacle) {
 /// Points are given in W. The obstacle's frame is put at their mean, so that it moves by its
 /// centre.
 void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
-  in.only({"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular"});
+  in.only(
+      {"id", "type", "points", "x", "y", "heading", "height", "reflectivity", "specular", "path"});
   algo::Polygon polygon;
   algo::Vec2 sum{0, 0};
   in.each("points", kMaxPolygonPoints, [&](const json& point, const std::string& at) {
@@ -81,7 +84,16 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
   obstacle.id = static_cast<std::uint32_t>(in.whole_or("id", 0, kMaxObstacleId));
   const std::string type = in.text("type");
   if (type == "cylinder") {
-    in.only({"id", "type", "x", "y", "heading", "radius", "height", "reflectivity", "specular"});
+    in.only({"id",
+             "type",
+             "x",
+             "y",
+             "heading",
+             "radius",
+             "height",
+             "reflectivity",
+             "specular",
+             "path"});
     obstacle.pose_W = pose_from_json(in, 0);
     obstacle.shape = algo::Cylinder{in.number("radius")};
   } else if (type == "box") {
@@ -94,7 +106,8 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
              "width",
              "height",
              "reflectivity",
-             "specular"});
+             "specular",
+             "path"});
     obstacle.pose_W = pose_from_json(in, 0);
     obstacle.shape = algo::Box{in.number("length"), in.number("width")};
   } else if (type == "polygon") {
@@ -107,6 +120,7 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
   obstacle.height = in.number_or("height", obstacle.height);
   obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
   obstacle.specular = in.flag_or("specular", false);
+  if (in.has("path")) obstacle.path = path_from_json(in.object("path"));
   if (const auto complaint = algo::defect(obstacle)) throw DocumentError(path, *complaint);
   return obstacle;
 }
@@ -140,6 +154,7 @@ json to_json(const algo::Obstacle& o) {
         }
       },
       o.shape);
+  if (o.path) out["path"] = to_json(*o.path);
   return out;
 }
 

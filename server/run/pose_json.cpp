@@ -52,6 +52,17 @@ std::vector<algo::SetGoal> waypoints_from_json(const JsonReader& in) {
   return waypoints;
 }
 
+algo::SetGoals goals_from_json(const JsonReader& in) {
+  algo::SetGoals list;
+  in.each("goals", algo::kMostGoals, [&](const json& value, const std::string& at) {
+    list.goals.push_back(strict_goal({value, at}));
+  });
+  const std::size_t last = list.goals.empty() ? 0 : list.goals.size() - 1;
+  list.next = static_cast<std::uint32_t>(in.whole_or("next", 0, last));
+  list.loop = in.flag_or("loop", false);
+  return list;
+}
+
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal) {
   algo::Pose2 start;
   bool heading_given = false;

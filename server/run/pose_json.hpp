@@ -29,6 +29,8 @@ algo::SetGoal goal_from_json(const JsonReader& in);
 algo::SetGoal strict_goal(const JsonReader& in);
 /// The field "waypoints" of `in`, the way to its goal; empty without the field.
 std::vector<algo::SetGoal> waypoints_from_json(const JsonReader& in);
+/// {"goals":[...],"next"?,"loop"?}: a whole list.
+algo::SetGoals goals_from_json(const JsonReader& in);
 /// The field "start" of `in`; the origin without the field. As in the paper, a start without a
 /// heading faces the `goal`.
 algo::Pose2 start_from_json(const JsonReader& in, const std::optional<algo::SetGoal>& goal);

@@ -24,6 +24,10 @@ algo::Request request_from_json(const nlohmann::json& value) {
     in.only({"type", "x", "y", "heading"});
     return algo::AddGoal{goal_from_json(in)};
   }
+  if (type == "set_goals") {
+    in.only({"type", "goals", "next", "loop"});
+    return goals_from_json(in);
+  }
   if (type == "clear_goal") {
     in.only({"type"});
     return algo::ClearGoal{};
@@ -31,6 +35,12 @@ algo::Request request_from_json(const nlohmann::json& value) {
   if (type == "add_obstacle") {
     in.only({"type", "obstacle"});
     return algo::AddObstacle{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
+  }
+  if (type == "change_obstacle") {
+    in.only({"type", "obstacle"});
+    algo::ChangeObstacle change{obstacle_from_json(in.object("obstacle").raw(), "obstacle")};
+    if (change.obstacle.id == 0) in.fail("obstacle", "must have the id of the one to change");
+    return change;
   }
   if (type == "move_obstacle") {
     in.only({"type", "id", "x", "y", "heading"});
@@ -57,8 +67,9 @@ algo::Request request_from_json(const nlohmann::json& value) {
     return algo::SetParameter{parameter, in.number("value")};
   }
   in.fail("type",
-          fmt::format("'{}' is unknown; known are set_goal, add_goal, clear_goal, "
-                      "add_obstacle, move_obstacle, remove_obstacle, joystick, stop, set_parameter",
+          fmt::format("'{}' is unknown; known are set_goal, add_goal, set_goals, clear_goal, "
+                      "add_obstacle, change_obstacle, move_obstacle, remove_obstacle, joystick, "
+                      "stop, set_parameter",
                       type));
 }
 

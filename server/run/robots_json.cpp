@@ -9,8 +9,8 @@
 
 #include "algo/filter/filter.hpp"
 #include "algo/intent.hpp"
-#include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/run/library_files.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/run/robot_json.hpp"
 #include "server/run/scenario_json.hpp"
@@ -23,7 +23,7 @@ using nlohmann::json;
 constexpr std::size_t kMostBodies = 40'000;  // memory: each robot's world has all obstacles
 
 /// Waypoints and goal in order; empty if the goal is null; nothing if neither is given.
-std::optional<std::vector<algo::SetGoal>> goals_from_json(const JsonReader& in) {
+std::optional<std::vector<algo::SetGoal>> own_goals(const JsonReader& in) {
   std::vector<algo::SetGoal> goals = waypoints_from_json(in);
   if (in.has("goal")) {
     goals.push_back(strict_goal(in.object("goal")));
@@ -55,7 +55,7 @@ sim::OtherRobot other_from_json(const JsonReader& in,
   in.only({"start", "robot", "goal", "waypoints", "controller", "filter", "parameters"});
   sim::OtherRobot robot;
   if (!in.has("start")) in.fail("start", "is missing");
-  robot.goals = goals_from_json(in);
+  robot.goals = own_goals(in);
   robot.start = start_from_json(in, first_goal(robot, scenario));
   if (in.has("robot")) {
     robot.robot = read_robot(in, robots);
@@ -63,7 +63,7 @@ sim::OtherRobot other_from_json(const JsonReader& in,
   }
   if (in.has("controller")) {
     robot.controller = in.text("controller", 64);
-    if (algo::builtin_controllers().find(*robot.controller) == nullptr) {
+    if (!valid_name(*robot.controller)) {
       in.fail("controller", fmt::format("'{}' is unknown", *robot.controller));
     }
   }

@@ -26,11 +26,11 @@ using nlohmann::json;
 constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
 /// @param at  prefix of the fields in the document: "" or "robots/3/"
-void check_choices(const std::string& at,
+void check_choices(const algo::ControllerCatalogue& catalogue,
+                   const std::string& at,
                    const std::string& controller_name,
                    const std::string& filter,
                    bool has_laser) {
-  const algo::ControllerCatalogue& catalogue = algo::builtin_controllers();
   const algo::ControllerInfo* const controller = catalogue.find(controller_name);
   if (controller == nullptr) {
     std::string known;
@@ -53,11 +53,12 @@ void check_choices(const std::string& at,
   }
 }
 
-void check_parameters(const std::string& at,
+void check_parameters(const algo::ControllerCatalogue& catalogue,
+                      const std::string& at,
                       const std::string& controller,
                       const algo::Parameters& parameters) {
   auto complaint = algo::refusal(parameters);
-  const auto& refusal = algo::builtin_controllers().at(controller).refusal;
+  const auto& refusal = catalogue.at(controller).refusal;
   if (!complaint && refusal) complaint = refusal(parameters);
   if (complaint) throw DocumentError(at + "parameters", *complaint);
 }
@@ -73,16 +74,17 @@ algo::PipelineConfig pipeline_config(const sim::OtherRobot& robot, const sim::Sc
 }
 
 /// Throws DocumentError naming the wrong field of the first robot that cannot run.
-void check_others(const sim::Scenario& scenario) {
+void check_others(const algo::ControllerCatalogue& catalogue, const sim::Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
     const std::string at = fmt::format("robots/{}/", i);
     const sim::OtherRobot& robot = scenario.robots[i];
-    check_choices(at,
+    check_choices(catalogue,
+                  at,
                   robot.controller.value_or(scenario.controller),
                   robot.filter.value_or(scenario.filter),
                   (robot.robot ? *robot.robot : scenario.robot).sensors.has_laser());
     const algo::PipelineConfig config = pipeline_config(robot, scenario);
-    check_parameters(at, config.controller, config.parameters);
+    check_parameters(catalogue, at, config.controller, config.parameters);
   }
 }
 
@@ -99,7 +101,20 @@ std::vector<algo::Request> requests_of(const std::vector<algo::SetGoal>& goals) 
   return requests;
 }
 
-/// The scenario's waypoints and goal.
+std::vector<RobotPlan> plans_of_others(const RunSpec& spec) {
+  const sim::Scenario& scenario = spec.scenario;
+  std::vector<RobotPlan> plans;
+  plans.reserve(scenario.robots.size());
+  for (const sim::OtherRobot& robot : scenario.robots) {
+    plans.push_back({.pipeline = pipeline_config(robot, scenario),
+                     .first = requests_of(robot.goals ? *robot.goals : way_of(scenario)),
+                     .controllers = spec.controllers});
+  }
+  return plans;
+}
+
+}  // namespace
+
 std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
   if (!scenario.goal) return {};
   std::vector<algo::SetGoal> goals = scenario.waypoints;
@@ -107,17 +122,11 @@ std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario) {
   return goals;
 }
 
-std::vector<RobotPlan> plans_of_others(const sim::Scenario& scenario) {
-  std::vector<RobotPlan> plans;
-  plans.reserve(scenario.robots.size());
-  for (const sim::OtherRobot& robot : scenario.robots) {
-    plans.push_back({.pipeline = pipeline_config(robot, scenario),
-                     .first = requests_of(robot.goals ? *robot.goals : way_of(scenario))});
-  }
-  return plans;
+algo::SetGoals route_of(const sim::Scenario& scenario) {
+  std::vector<algo::SetGoal> way = way_of(scenario);
+  if (scenario.loop && way.size() == 1) way.push_back({scenario.start.position()});
+  return {std::move(way), 0, scenario.loop};
 }
-
-}  // namespace
 
 RunOverrides overrides_from_json(const json& body) {
   const JsonReader in(body, "");
@@ -147,14 +156,17 @@ RunSpec make_spec(sim::Scenario scenario,
   if (overrides.controller) scenario.controller = *overrides.controller;
   if (overrides.filter) scenario.filter = *overrides.filter;
   if (overrides.physics) scenario.physics = *overrides.physics;
-  check_choices("", scenario.controller, scenario.filter, scenario.robot.sensors.has_laser());
   RunSpec spec;
+  spec.controllers = overrides.controllers;
+  const algo::ControllerCatalogue& catalogue = controllers_of(spec);
+  check_choices(
+      catalogue, "", scenario.controller, scenario.filter, scenario.robot.sensors.has_laser());
   spec.parameters = parameters_from_json(overrides.parameters, "parameters", scenario.parameters);
-  check_parameters("", scenario.controller, spec.parameters);
+  check_parameters(catalogue, "", scenario.controller, spec.parameters);
   spec.seed = overrides.seed.value_or(1);
   // The run's document must be complete, parameters included.
   scenario.parameters = spec.parameters;
-  check_others(scenario);
+  check_others(catalogue, scenario);
   spec.scenario = std::move(scenario);
   return spec;
 }
@@ -177,13 +189,22 @@ std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec) {
   if (spec.scenario.robots.empty()) {
     return std::make_unique<sim::World>(spec.scenario, spec.seed);
   }
-  return std::make_unique<FleetRobot>(spec.scenario, spec.seed, plans_of_others(spec.scenario));
+  return std::make_unique<FleetRobot>(spec.scenario, spec.seed, plans_of_others(spec));
 }
 
 algo::PipelineConfig pipeline_config(const RunSpec& spec) {
   return {.controller = spec.scenario.controller,
           .filter = *algo::find_filter(spec.scenario.filter),
-          .parameters = spec.parameters};
+          .parameters = spec.parameters,
+          .run = {.scenario = spec.scenario.name, .seed = spec.seed}};
+}
+
+const algo::ControllerCatalogue& controllers_of(const RunSpec& spec) {
+  return spec.controllers ? *spec.controllers : algo::builtin_controllers();
+}
+
+bool drives_from_outside(const RunSpec& spec) {
+  return controllers_of(spec).at(spec.scenario.controller).outside;
 }
 
 std::vector<algo::Request> first_requests(const RunSpec& spec) {
@@ -271,6 +292,7 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
 json run_document(const RunSpec& spec, const algo::RobotSpec& robot) {
   json out = {
       {"scenario", to_json(spec.scenario)}, {"source", source_of(spec)}, {"robot", to_json(robot)}};
+  if (drives_from_outside(spec)) out["answers"] = "recorded";
   for (const algo::Obstacle& other : sim::other_robots(spec.scenario)) {
     out["others"].push_back(to_json(other));
   }

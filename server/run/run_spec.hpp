@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct RunSpec {
   sim::Scenario scenario{};
   algo::Parameters parameters{};
   std::uint64_t seed = 1;
+  /// Where the robot begins this run instead of at the scenario's start.
+  std::optional<algo::Pose2> begin_W{};
+  /// The controllers that the run may choose from; null: the built-in ones.
+  std::shared_ptr<const algo::ControllerCatalogue> controllers{};
   /// Real devices to run on instead of a world. They outlive the run.
   std::shared_ptr<const Hardware> hardware{};
 };
@@ -42,6 +47,8 @@ struct RunOverrides {
   nlohmann::json robot{};
   std::optional<std::uint64_t> seed{};
   nlohmann::json parameters = nlohmann::json::object();
+  /// As in RunSpec. Comes from the program's own command line, never from a document.
+  std::shared_ptr<const algo::ControllerCatalogue> controllers{};
 };
 /// Reads the optional fields controller, filter, physics, robot, seed, parameters. Throws
 /// DocumentError.
@@ -59,8 +66,16 @@ RunSpec make_spec(sim::Scenario scenario,
 /// sentence for people.
 std::unique_ptr<algo::Robot> make_robot(const RunSpec& spec);
 algo::PipelineConfig pipeline_config(const RunSpec& spec);
+const algo::ControllerCatalogue& controllers_of(const RunSpec& spec);
+/// True if a controller outside the program drives the run.
+bool drives_from_outside(const RunSpec& spec);
 
-/// The scenario's goal as the request that starts the run; empty without one.
+/// The scenario's waypoints and goal, in order.
+std::vector<algo::SetGoal> way_of(const sim::Scenario& scenario);
+/// The goals of a live robot. A loop without waypoints goes back to the start.
+algo::SetGoals route_of(const sim::Scenario& scenario);
+/// The scenario's goals as the requests that start the run; empty without one. A loop is driven
+/// once: a run needs an end.
 std::vector<algo::Request> first_requests(const RunSpec& spec);
 
 /// [s] after which a headless run gives up: the scenario's limit, or 5 x straight line / v_max. A
@@ -69,7 +84,8 @@ double time_limit(const RunSpec& spec);
 
 /// The document in the run's database row: the scenario as run, and the robot's spec, from which
 /// replay rebuilds the pipeline without a world. `others`, if any, are the scenario's other robots
-/// as obstacles at their starts.
+/// as obstacles at their starts. `answers`: the frames hold the answers of a
+/// controller outside the program.
 nlohmann::json run_document(const RunSpec& spec, const algo::RobotSpec& robot);
 nlohmann::json to_json(const algo::RobotSpec& robot);
 algo::RobotSpec robot_spec_from_json(const nlohmann::json& value);

@@ -81,7 +81,8 @@ Run::Next Run::advance() {
     set_outcome(Outcome::Failed, account_of(e).c_str());
   } catch (const std::exception& e) {
     robot_.stop();
-    set_outcome(Outcome::Failed, e.what());
+    // A controller gives up its wait when the run is to end.
+    if (!stop_.stop_requested()) set_outcome(Outcome::Failed, e.what());
   }
   if (next.when == Next::When::Over) phase_ = Phase::Over;
   return next;
@@ -127,6 +128,7 @@ std::optional<Run::Next> Run::step() {
   if (!next) return Next{.when = Next::When::At, .time = Clock::now() + kSoon};
   if (arming_ == nullptr && links_.pacer != nullptr &&
       !links_.pacer->pass(robot_.next_period(), Clock::now())) {
+    if (!shown_) show();
     serve_requests();
     return next_step();
   }
@@ -158,7 +160,12 @@ void Run::tick() {
   judge(t);
   waits_since_.reset();
   if (links_.rings == nullptr) return;
-  links_.rings->stream.push(frame_);  // if full, the viewers miss one frame
+  show();
+}
+
+/// Where the ring is full, viewers miss a frame, but never the newest one at rest.
+void Run::show() {
+  shown_ = links_.rings->stream.push(frame_);
   news();
 }
 
@@ -263,7 +270,7 @@ void Run::set_outcome(Outcome outcome, const char* reason) {
   if (result_.outcome == outcome) return;
   result_.outcome = outcome;
   result_.reason = reason;
-  if (links_.on_outcome) links_.on_outcome(outcome, metrics_.metrics());
+  if (links_.on_outcome) links_.on_outcome(outcome, reason, metrics_.metrics());
 }
 
 void Run::judge(const algo::Telemetry& t) {

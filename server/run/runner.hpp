@@ -84,8 +84,9 @@ struct RunLinks {
   FrameSink* record = nullptr;        // null: not recorded
   std::vector<Listener> listeners{};  // judges, tests, the command line
   Pacer* pacer = nullptr;             // null: as fast as possible; a real robot keeps its own time
-  /// Called on the control thread at each change of outcome, with the metrics so far.
-  std::function<void(algo::Outcome, const algo::Metrics&)> on_outcome{};
+  /// Called on the control thread at each change of outcome, with its reason and the metrics so
+  /// far.
+  std::function<void(algo::Outcome, const char* reason, const algo::Metrics&)> on_outcome{};
 };
 
 /// Measures how long nothing has happened: no request came, and the robot neither drives nor moves,
@@ -150,6 +151,7 @@ class Run {
   bool try_to_keep();
   void judge(const algo::Telemetry& t);
   void set_outcome(algo::Outcome outcome, const char* reason = "");
+  void show();
   void news() const;
   bool over() const;
 
@@ -162,6 +164,7 @@ class Run {
   std::stop_token stop_;
   Phase phase_ = Phase::Reset;
   FrameRef frame_{};                         // of the newest tick
+  bool shown_ = true;                        // the newest frame is in the ring
   algo::Recycled<algo::Request> pending_{};  // accepted; the next tick records them
   FreshOrders orders_{};
   double now_ = 0;  // [s] run clock, of the newest observation

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "algo/filter/filter.hpp"
-#include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/run/library_files.hpp"
 #include "server/run/motion_json.hpp"
@@ -24,9 +23,7 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
   std::set<std::uint32_t> ids;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const std::string path = fmt::format("obstacles/{}", i);
-    json one = list[i];
-    if (one.is_object()) one.erase("path");  // a path belongs to the world, not to the obstacle
-    algo::Obstacle obstacle = obstacle_from_json(one, path);
+    algo::Obstacle obstacle = obstacle_from_json(list[i], path);
     if (obstacle.id != 0 && !ids.insert(obstacle.id).second) {
       throw DocumentError(path + "/id", fmt::format("{} is used twice", obstacle.id));
     }
@@ -39,17 +36,13 @@ void read_obstacles(const JsonReader& in, sim::Scenario& scenario) {
     ids.insert(next);
     obstacle.id = next;
   }
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const JsonReader one(list[i], fmt::format("obstacles/{}", i));
-    if (!one.has("path")) continue;
-    scenario.paths.push_back(path_from_json(one.object("path"), scenario.obstacles[i].id));
-  }
 }
 
 void read_choices(const JsonReader& in, sim::Scenario& scenario) {
   if (const auto physics = physics_from_json(in)) scenario.physics = *physics;
   scenario.controller = in.text_or("controller", scenario.controller);
-  if (algo::builtin_controllers().find(scenario.controller) == nullptr) {
+  // make_spec() knows the controllers, some of which the command line may have added.
+  if (!valid_name(scenario.controller)) {
     in.fail("controller", fmt::format("'{}' is unknown", scenario.controller));
   }
   scenario.filter = in.text_or("filter", scenario.filter);
@@ -102,11 +95,11 @@ std::optional<sim::PhysicsKind> physics_from_json(const JsonReader& in) {
 
 sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robots) {
   const JsonReader in(document, "");
-  in.only({"name",       "title",      "description",  "robot",      "physics",
-           "period",     "start",      "goal",         "drive",      "obstacles",
-           "lasers",     "sonar",      "infrared",     "sensors",    "gyro",
-           "bumpers",    "encoders",   "localization", "controller", "filter",
-           "parameters", "time_limit", "waypoints",    "robots",     "vehicle"});
+  in.only({"name",       "title",   "description", "robot",      "physics",   "period",
+           "start",      "goal",    "drive",       "obstacles",  "lasers",    "sonar",
+           "infrared",   "sensors", "gyro",        "bumpers",    "encoders",  "localization",
+           "controller", "filter",  "parameters",  "time_limit", "waypoints", "loop",
+           "robots",     "vehicle"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_name(s.name)) {
@@ -118,6 +111,7 @@ sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robot
   s.period = in.number_or("period", s.period, {0.002, 1.0});
   if (in.has("goal")) s.goal = strict_goal(in.object("goal"));
   s.waypoints = waypoints_from_json(in);
+  s.loop = in.flag_or("loop", false);
   s.start = start_from_json(in, s.waypoints.empty() ? s.goal : s.waypoints.front());
   if (in.has("drive")) s.drive = drive_from_json(in.object("drive"));
   if (in.has("obstacles")) read_obstacles(in, s);
@@ -151,14 +145,10 @@ json to_json(const sim::Scenario& s) {
   for (const auto& [parameter, value] : s.parameters.settings()) {
     if (value != parameter->initial) out["parameters"][std::string(parameter->key())] = value;
   }
+  if (s.loop) out["loop"] = true;
   write_sensors(s.robot.sensors, out);
   if (s.localization == sim::Localization::Gyro) out["localization"] = "gyro";
   for (const algo::Obstacle& obstacle : s.obstacles) out["obstacles"].push_back(to_json(obstacle));
-  for (const sim::ObstaclePath& path : s.paths) {
-    for (json& one : out["obstacles"]) {
-      if (one["id"] == path.id) one["path"] = to_json(path);
-    }
-  }
   if (s.drive != sim::DriveConfig{}) out["drive"] = to_json(s.drive);
   write_robots(s, out);
   return out;

@@ -1,7 +1,6 @@
 // server/run/scenario_library.cpp: built-in worlds come from sim/worlds, embedded at build time.
 #include "server/run/scenario_library.hpp"
 
-#include <fstream>
 #include <mutex>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include "server/run/io_thread.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
 
 namespace server {
 namespace {
@@ -74,6 +74,12 @@ std::vector<ScenarioEntry> ScenarioLibrary::list() const {
   return entries;
 }
 
+bool ScenarioLibrary::has(const std::string& name) const {
+  std::error_code error;
+  return find_embedded(name) != nullptr ||
+         (valid_name(name) && !own_.empty() && fs::is_regular_file(own_ / (name + ".json"), error));
+}
+
 sim::Scenario ScenarioLibrary::load(const std::string& name) const {
   net::not_on_io_thread("Reading a scenario");
   if (const EmbeddedDocument* world = find_embedded(name)) {
@@ -113,14 +119,10 @@ void ScenarioLibrary::save(const sim::Scenario& scenario) const {
   const std::lock_guard lock(writing);
   std::error_code error;
   fs::create_directories(own_, error);
-  // Write a draft beside it, then rename: a full disk cannot leave half a scenario behind.
   const fs::path target = own_ / (scenario.name + ".json");
-  const fs::path draft = own_ / (scenario.name + ".json.new");
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (out) fs::rename(draft, target, error);
-  if (!out || error) {
+  try {
+    replace_text(target, text);
+  } catch (const std::exception&) {
     throw LibraryError(Kind::Unreadable,
                        fmt::format("Cannot write {}.", target.filename().string()));
   }

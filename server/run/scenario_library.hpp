@@ -34,6 +34,8 @@ class ScenarioLibrary {
   const RobotLibrary& robots() const { return robots_; }
 
   std::vector<ScenarioEntry> list() const;
+  /// Whether there is a world of this name.
+  bool has(const std::string& name) const;
   /// Throws LibraryError, or DocumentError when the file is invalid.
   sim::Scenario load(const std::string& name) const;
   /// Writes to the user's folder. Throws LibraryError on a built-in name or an unwritable folder.

@@ -21,6 +21,15 @@ void write_text(const std::filesystem::path& file, std::string_view text) {
   if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
+void replace_text(const std::filesystem::path& file, std::string_view text) {
+  std::filesystem::path draft = file;
+  draft += ".new";
+  write_text(draft, text);
+  std::error_code error;
+  std::filesystem::rename(draft, file, error);
+  if (error) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -1,6 +1,8 @@
 // tests/drivers/robot_file_test.cpp: valid robot files, and the sentences about mistakes.
 #include "drivers/robot_file.hpp"
 
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 
@@ -67,6 +69,18 @@ TEST(RobotFile, MistakesAreNamedWithTheirLine) {
   EXPECT_THAT(error_of(with("/dev/lms-front", "/dev/roboteq")), HasSubstr("used by two devices"));
   EXPECT_THAT(error_of("name = \"x\"\n"), HasSubstr("there is no [hull]"));
   EXPECT_THAT(error_of(with("silvermate", "Silver Mate")), HasSubstr("must be of a-z"));
+}
+
+TEST(RobotFile, EmulatedDevicesAreOnPseudoTerminals) {
+  EXPECT_TRUE(parse_robot("emulated = true\n" + kGood, "my.toml").emulated);
+  const auto path = std::filesystem::path(::testing::TempDir()) / "emulated.toml";
+  std::ofstream(path) << "emulated = true\n" + kGood;  // a copy with the ports of real devices
+  try {
+    read_robot_file(path);
+    FAIL() << "it was read";
+  } catch (const RobotFileError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/dev/lms-front is no pseudo-terminal"));
+  }
 }
 
 TEST(RobotFile, AMissingFileIsASentence) {
@@ -160,6 +174,12 @@ TEST(RobotFile, LimitsBeyondTheBaseAreRefused) {
   EXPECT_THAT(error_of("name = \"a\"\nhull = { radius = 0.3 }\nlimits = { turn = 0.015 }\n[base]\n"
                        "type = \"pioneer\"\nport = \"/dev/p\"\ntrack = 0.3\n"),
               HasSubstr("my.toml:5: [base] type is pioneer, which turns by whole degrees"));
+}
+
+TEST(RobotFile, NamesTheControllerOutsideTheProgramThatMayDrive) {
+  EXPECT_EQ(parse_robot(kGood, "my.toml").external_controller, "");
+  EXPECT_EQ(parse_robot("external_controller = \"mine\"\n" + kGood, "my.toml").external_controller,
+            "mine");
 }
 
 TEST(RobotFile, InvalidNamesAndPortsAreRefused) {

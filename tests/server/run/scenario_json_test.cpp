@@ -155,7 +155,7 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
       {R"({"name":"a","physics":"car"})", "physics: is 'car', must be bullet or kinematic"},
       {R"({"name":"a","physics":"bullet","vehicle":"bullet"})",
        "vehicle: cannot stand beside physics, its new name"},
-      {R"({"name":"a","controller":"x"})", "controller: 'x' is unknown"},
+      {R"({"name":"a","controller":"not one"})", "controller: 'not one' is unknown"},
       {R"({"name":"a","filter":"x"})", "filter: 'x' is unknown"},
       {R"({"name":"a","parameters":{"x":1}})", "parameters/x: there is no such parameter"},
       {R"({"name":"a","parameters":{"strip_step":0.6,"k_r":0.3}})", "parameters: strip_step"},
@@ -205,7 +205,7 @@ TEST(ScenarioJson, SaysWhereAndWhat) {
 
 TEST(ScenarioJson, RequestsSayWhereAndWhat) {
   const std::vector<std::pair<std::string, std::string>> cases{
-      {R"({"type":"fly"})", "type: 'fly' is unknown; known are set_goal, add_goal, clear_goal"},
+      {R"({"type":"fly"})", "type: 'fly' is unknown; known are set_goal, add_goal, set_goals"},
       {R"({"type":"set_goal","x":1})", "y: is missing"},
       {R"({"type":"joystick","forward":2,"turn":0})", "forward: is 2, must lie in -1 to 1"},
       {R"({"type":"remove_obstacle","id":1.5})", "id: must be a whole number of at least 0"},
