@@ -35,9 +35,21 @@ algo::Twist2 from_wire(const fb::Twist2& t) {
 /// alignment.
 template <typename Element>
 void check_alignment(const flatbuffers::Vector<Element>& list) {
-  using T = std::remove_pointer_t<Element>;  // itself, or the struct
-  if (reinterpret_cast<std::uintptr_t>(list.Data()) % alignof(T) == 0) return;
+  using Value = std::remove_pointer_t<Element>;  // itself, or the struct
+  if (reinterpret_cast<std::uintptr_t>(list.Data()) % alignof(Value) == 0) return;
   throw WireError("A list in the frame does not lie where its elements can be read.");
+}
+
+algo::ObstaclePath read_path(const fb::ObstaclePath& path) {
+  algo::ObstaclePath out{path.period(), path.phase(), {}};
+  if (path.keys() == nullptr || path.keys()->size() % 3 != 0 || !(path.period() > 0)) {
+    throw WireError("The path of an obstacle in the frame is not complete.");
+  }
+  check_alignment(*path.keys());
+  for (unsigned i = 0; i < path.keys()->size(); i += 3) {
+    out.keys.push_back({path.keys()->Get(i), {path.keys()->Get(i + 1), path.keys()->Get(i + 2)}});
+  }
+  return out;
 }
 
 algo::Obstacle read_obstacle(const fb::Obstacle* o) {
@@ -50,6 +62,7 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
   out.height = o->height();
   out.reflectivity = o->reflectivity();
   out.specular = o->specular();
+  if (o->path() != nullptr) out.path = read_path(*o->path());
   const double a = o->size()->x();
   const double c = o->size()->y();
   switch (o->kind()) {
@@ -102,10 +115,23 @@ algo::Request read_request(const fb::RequestBox& box) {
       if (add->goal() == nullptr) throw WireError("A further goal in the frame is empty.");
       return algo::AddGoal{read_goal(*add->goal())};
     }
+    case fb::Request_SetGoals: {
+      const auto* list = box.request_as_SetGoals();
+      algo::SetGoals out{{}, list->next(), list->loop()};
+      if (list->goals() != nullptr) {
+        for (const fb::SetGoal* goal : *list->goals()) out.goals.push_back(read_goal(*goal));
+      }
+      if (out.next >= std::max<std::size_t>(1, out.goals.size())) {
+        throw WireError("A list of goals in the frame begins behind its end.");
+      }
+      return out;
+    }
     case fb::Request_ClearGoal:
       return algo::ClearGoal{};
     case fb::Request_AddObstacle:
       return algo::AddObstacle{read_obstacle(box.request_as_AddObstacle()->obstacle())};
+    case fb::Request_ChangeObstacle:
+      return algo::ChangeObstacle{read_obstacle(box.request_as_ChangeObstacle()->obstacle())};
     case fb::Request_MoveObstacle: {
       const auto* move = box.request_as_MoveObstacle();
       if (move->pose() == nullptr) throw WireError("A move in the frame lacks its pose.");
@@ -230,6 +256,8 @@ void read_output(const fb::Frame& f, algo::Telemetry& t) {
   t.output.clear();
   t.output.waits = f.decision()->waits();
   t.output.state = f.decision()->state();
+  t.output.answered = f.answer() != nullptr;
+  if (t.output.answered) t.output.twist = from_wire(*f.answer());
   t.layers.clear();
   const fb::News* news = f.news();
   t.words_fresh = news != nullptr && news->what() != nullptr && news->why() != nullptr;

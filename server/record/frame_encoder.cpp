@@ -48,6 +48,14 @@ fb::Moved to_wire(const algo::Moved& m) {
   return {rounded(pose.x()), rounded(pose.y()), rounded(pose.heading()), m.id};
 }
 
+Offset<fb::ObstaclePath> write_path(Builder& b, const algo::ObstaclePath& path) {
+  std::vector<double> keys;
+  for (const auto& key : path.keys) {
+    keys.insert(keys.end(), {key.time, key.position_W.x(), key.position_W.y()});
+  }
+  return fb::CreateObstaclePathDirect(b, path.period, path.phase, &keys);
+}
+
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
   fb::ShapeKind kind{};
   fb::Vec2 size{};
@@ -72,9 +80,10 @@ Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
       o.shape);
   const auto point_vector =
       points.empty() ? 0 : b.CreateVectorOfStructs(points.data(), points.size());
+  const auto path = o.path ? write_path(b, *o.path) : 0;
   const fb::Pose2 pose = to_wire(o.pose_W);
   return fb::CreateObstacle(
-      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular);
+      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular, path);
 }
 
 Offset<fb::SetGoal> write_goal(Builder& b, const algo::SetGoal& goal) {
@@ -92,12 +101,22 @@ struct RequestWriter {
   Written operator()(const algo::AddGoal& r) const {
     return {fb::Request_AddGoal, fb::CreateAddGoal(b, write_goal(b, r.goal)).Union()};
   }
+  Written operator()(const algo::SetGoals& r) const {
+    std::vector<Offset<fb::SetGoal>> goals;
+    goals.reserve(r.goals.size());
+    for (const algo::SetGoal& goal : r.goals) goals.push_back(write_goal(b, goal));
+    return {fb::Request_SetGoals, fb::CreateSetGoalsDirect(b, &goals, r.next, r.loop).Union()};
+  }
   Written operator()(const algo::ClearGoal&) const {
     return {fb::Request_ClearGoal, fb::CreateClearGoal(b).Union()};
   }
   Written operator()(const algo::AddObstacle& r) const {
     return {fb::Request_AddObstacle,
             fb::CreateAddObstacle(b, write_obstacle(b, r.obstacle)).Union()};
+  }
+  Written operator()(const algo::ChangeObstacle& r) const {
+    return {fb::Request_ChangeObstacle,
+            fb::CreateChangeObstacle(b, write_obstacle(b, r.obstacle)).Union()};
   }
   Written operator()(const algo::MoveObstacle& r) const {
     const fb::Pose2 pose = to_wire(r.pose_W);
@@ -211,6 +230,8 @@ void FrameWriter::doubles() {
   }
   const fb::Twist2 command = to_wire(t.command.base);
   frame.add_command(&command);
+  const fb::Twist2 answer = to_wire(t.output.twist);
+  if (t.output.answered) frame.add_answer(&answer);
 }
 
 void FrameWriter::truth() {

@@ -40,11 +40,12 @@ HeadlessResult run_headless(const RunSpec& spec,
               : FramePool::make(kNowAndNext);
   std::unique_ptr<RecordSink> sink;
   if (options.record) sink = std::make_unique<RecordSink>(options.record);
+  std::stop_source over;
   algo::PipelineConfig config = pipeline_config(spec);
   config.by_hand = false;  // no operator
-  algo::Pipeline pipeline(config, robot.spec());
+  config.run.stop = over.get_token();
+  algo::Pipeline pipeline(config, robot.spec(), controllers_of(spec));
   Pacer pacer({.speed = options.pace});
-  std::stop_source over;
   const std::stop_callback wake(stop, [&] { over.request_stop(); });
 
   auto next_progress = std::chrono::steady_clock::now();

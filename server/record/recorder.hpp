@@ -79,6 +79,8 @@ struct RecorderOptions {
   /// Without room, a run to be kept whole waits until room is made. Otherwise it goes on with a
   /// gap.
   bool wait_for_room = true;
+  /// How long a deleted run can be restored, if there is room.
+  std::chrono::seconds trash_time = std::chrono::minutes(10);
   double live_span = 3600;  // [s] run clock; the span kept of a live run
   double least_span = 60;   // [s] the least span kept of it when there is no room
   /// A little under the one second that may be lost: packing and a slow disk add to it.
@@ -205,6 +207,7 @@ class Recorder {
   // recorder_room.cpp
   void make_room();
   bool sweep(Clock::time_point until);
+  bool empty_trash(std::chrono::system_clock::time_point until);
   bool evict();
   bool drop_live(double span);
   bool must_free(Clock::time_point until);

@@ -1,7 +1,8 @@
 // server/record/recorder_room.cpp: decides what to keep when there is no room for everything.
 //
-// Finished runs are never deleted unless the host asked for it. A live run drops its own oldest
-// ticks. If that is not enough, recording stops until room is made.
+// Finished runs are never deleted unless the host or a person asked for it. Runs that a person
+// deleted wait in the trash for some minutes, as long as there is room. A live run drops its own
+// oldest ticks. If that is not enough, recording stops until room is made.
 #include <algorithm>
 #include <limits>
 
@@ -24,6 +25,9 @@ constexpr std::size_t kFewFrames = 64;
 // Limits of the [bytes] of room at which stopped recording resumes.
 constexpr std::int64_t kLeastRoom = 64 << 10;
 constexpr std::int64_t kMostRoom = 16 << 20;
+
+// Runs deleted from the trash in one transaction.
+constexpr std::size_t kTrashSlice = 200;
 
 constexpr double kMegabyte = 1024.0 * 1024.0;
 
@@ -61,6 +65,15 @@ bool Recorder::sweep(Clock::time_point until) {
     take_frames(kFewFrames);
   }
   return more;
+}
+
+/// Deletes some runs that came into the trash at `until` or before. True if there were any.
+bool Recorder::empty_trash(std::chrono::system_clock::time_point until) {
+  const std::int64_t seconds =
+      std::chrono::duration_cast<std::chrono::seconds>(until.time_since_epoch()).count();
+  const bool some = store_.empty_trash(seconds, kTrashSlice) > 0;
+  store_.commit();
+  return some;
 }
 
 /// Deletes the oldest finished run. False if there is none.
@@ -145,6 +158,8 @@ void Recorder::make_room() {
   if (ailment_) return;
   const auto until = Clock::now() + kRoomTime;
   try {
+    const auto now = std::chrono::system_clock::now();
+    empty_trash(now - options_.trash_time);
     bool more = sweep(until);
     while (drop_live(options_.live_span) && Clock::now() < until) take_frames(kFewFrames);
     // A log without further writes would keep its length.
@@ -152,7 +167,7 @@ void Recorder::make_room() {
     while (!ailment_ && must_free(until)) {
       if (more) {
         more = sweep(until);
-      } else if (options_.evict_oldest && evict()) {
+      } else if (empty_trash(now) || (options_.evict_oldest && evict())) {
         more = true;
       } else if (!drop_live(options_.least_span)) {
         break;

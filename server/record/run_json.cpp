@@ -58,27 +58,48 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot) {
 
 db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace) {
   db::NewRun row = new_run(spec, robot);
+  row.kind = db::RunKind::Background;
   json document = run_document(spec, robot);
   document["pace"] = pace;
   row.document = dump_json(document);
   return row;
 }
 
-db::RunEnd run_end(const RunResult& result, bool cut) {
+namespace {
+std::string metrics_text(algo::Outcome outcome, const algo::Metrics& metrics) {
+  json out = to_json(metrics);
+  out["outcome"] = algo::name(outcome);
+  return out.dump();
+}
+}  // namespace
+
+db::RunEnd run_end(const RunResult& result, bool cut, const std::optional<Verdict>& verdict) {
+  const bool interrupted = cut && result.outcome == algo::Outcome::Stopped;
+  const bool failed = result.outcome == algo::Outcome::Failed;
   db::RunEnd end;
-  end.status =
-      result.outcome == algo::Outcome::Failed ? db::RunStatus::Failed : db::RunStatus::Finished;
-  end.outcome = algo::name(result.outcome);
-  end.reason = result.reason;
-  json metrics = to_json(result.metrics);
-  metrics["outcome"] = algo::name(result.outcome);
-  end.metrics = metrics.dump();
+  end.status = interrupted ? db::RunStatus::Interrupted
+               : failed    ? db::RunStatus::Failed
+                           : db::RunStatus::Finished;
+  const std::string reason =
+      interrupted ? "The program was stopped in the middle of this run." : result.reason;
+  const db::RunVerdict row = run_verdict(verdict, result.outcome);
+  end.outcome = verdict ? row.outcome : std::string(algo::name(result.outcome));
+  end.reason = verdict ? row.reason : reason;
+  end.metrics = verdict ? row.metrics : metrics_text(result.outcome, result.metrics);
+  end.last_outcome = row.last_outcome;
+  if (!end.last_outcome.empty()) end.last_reason = reason;
   end.lost_ticks = result.lost_ticks;
-  if (cut && result.outcome == algo::Outcome::Stopped) {
-    end.status = db::RunStatus::Interrupted;
-    end.reason = "The program was stopped in the middle of this run.";
-  }
   return end;
+}
+
+db::RunVerdict run_verdict(const std::optional<Verdict>& verdict, algo::Outcome now) {
+  db::RunVerdict row;
+  row.outcome = algo::name(verdict ? verdict->outcome : now);
+  if (!verdict) return row;
+  row.reason = verdict->reason;
+  row.metrics = metrics_text(verdict->outcome, verdict->metrics);
+  if (now != verdict->outcome) row.last_outcome = algo::name(now);
+  return row;
 }
 
 RecorderOptions recorder_options() {
@@ -90,6 +111,18 @@ RecorderOptions recorder_options() {
   options.report = [](const std::string& sentence) { spdlog::warn(sentence); };
   return options;
 }
+
+namespace {
+/// How a live run went on after its verdict; null if it did not.
+json later_of(const db::RunRow& row) {
+  constexpr double kOn = 1;  // [s] in which a run comes to its end
+  if (row.metrics.empty() || row.what.kind != db::RunKind::Session) return nullptr;
+  if (row.last_outcome.empty() && row.time - row.verdict_time < kOn) return nullptr;
+  return {{"outcome", row.last_outcome.empty() ? row.outcome : row.last_outcome},
+          {"reason", without_folders(row.last_reason)},
+          {"time", row.time}};
+}
+}  // namespace
 
 json to_json(const db::RunRow& row) {
   const auto parsed = [](const std::string& text) {
@@ -108,11 +141,25 @@ json to_json(const db::RunRow& row) {
               {"parameters", parsed(row.what.parameters)},
               {"version", row.what.version},
               {"started", row.what.started},
+              {"kind", db::to_string(row.what.kind)},
+              {"batch", row.what.batch > 0 ? json(row.what.batch) : json(nullptr)},
+              {"label", row.label},
+              {"note", row.note},
+              {"tags", row.tags},
+              {"result", row.result},
               {"ticks", row.ticks},
-              {"time", row.time},
+              {"time", row.verdict_time},
+              {"end_time", row.time},
+              {"later", later_of(row)},
               {"lost_ticks", row.lost_ticks},
               {"bytes", row.bytes},
               {"metrics", parsed(row.metrics)}};
+  if (row.group) {
+    out["group"] = {{"runs", row.group->runs},
+                    {"first", row.group->first},
+                    {"last", row.group->last},
+                    {"results", row.group->counts}};
+  }
   if (!row.gaps.empty()) out["gaps"] = json::array();
   for (const db::Gap& gap : row.gaps) {
     out["gaps"].push_back({{"first_tick", gap.first_tick},
@@ -148,17 +195,17 @@ std::span<const TickColumn> tick_columns() {
   using T = algo::Telemetry;
   using Value = decltype(TickColumn{}.value(T{}));
   static constexpr auto kColumns = std::to_array<TickColumn>({
-      {"tick", [](const T& t) -> Value { return t.tick; }},
-      {"t", [](const T& t) -> Value { return t.observation.stamp; }},
-      {"x", [](const T& t) -> Value { return t.observation.odometry.pose.x; }},
-      {"y", [](const T& t) -> Value { return t.observation.odometry.pose.y; }},
-      {"heading", [](const T& t) -> Value { return t.observation.odometry.pose.heading; }},
-      {"v", [](const T& t) -> Value { return t.command.base.v; }},
-      {"omega", [](const T& t) -> Value { return t.command.base.omega; }},
+      {"tick", "", [](const T& t) -> Value { return t.tick; }},
+      {"t", "s", [](const T& t) -> Value { return t.observation.stamp; }},
+      {"x", "m", [](const T& t) -> Value { return t.observation.odometry.pose.x; }},
+      {"y", "m", [](const T& t) -> Value { return t.observation.odometry.pose.y; }},
+      {"heading", "rad", [](const T& t) -> Value { return t.observation.odometry.pose.heading; }},
+      {"v", "m/s", [](const T& t) -> Value { return t.command.base.v; }},
+      {"omega", "rad/s", [](const T& t) -> Value { return t.command.base.omega; }},
       // The frame's clearance is a float.
-      {"clearance", [](const T& t) -> Value { return std::round(t.clearance * 1e6) / 1e6; }},
-      {"hold", [](const T& t) -> Value { return algo::name(t.hold); }},
-      {"behaviour", [](const T& t) -> Value { return t.behaviour.view(); }},
+      {"clearance", "m", [](const T& t) -> Value { return std::round(t.clearance * 1e6) / 1e6; }},
+      {"hold", "", [](const T& t) -> Value { return algo::name(t.hold); }},
+      {"behaviour", "", [](const T& t) -> Value { return t.behaviour.view(); }},
   });
   return kColumns;
 }

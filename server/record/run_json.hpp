@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,9 +28,20 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
 /// As new_run(), for a headless run. The document also has the `pace`, to run it again from its
 /// start.
 db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace);
+/// The first outcome of a live run, which may drive on to further goals.
+struct Verdict {
+  algo::Outcome outcome = algo::Outcome::Running;
+  std::string reason{};
+  algo::Metrics metrics{};  // at that time
+};
 /// The end of the row. A run that a person ended is finished, with the outcome `stopped`. A run
-/// `cut` by the program's end before it had an outcome is interrupted.
-db::RunEnd run_end(const RunResult& result, bool cut = false);
+/// `cut` by the program's end before it had an outcome is interrupted. With a `verdict`, the row
+/// keeps that, and the result is how the run went on.
+db::RunEnd run_end(const RunResult& result,
+                   bool cut = false,
+                   const std::optional<Verdict>& verdict = {});
+/// The row of a live run that has the `verdict` and now the outcome `now`.
+db::RunVerdict run_verdict(const std::optional<Verdict>& verdict, algo::Outcome now);
 
 /// The run's initial parameters, unchanged, even values that this program would refuse today.
 /// Throws std::runtime_error for a parameter, or a filter, that this program does not have.
@@ -44,6 +56,7 @@ nlohmann::json to_json(const db::RunRow& row);
 /// A single-valued column of a tick.
 struct TickColumn {
   std::string_view name{};
+  std::string_view unit{};
   std::variant<std::uint64_t, double, std::string_view> (*value)(const algo::Telemetry& t) =
       nullptr;
 };

@@ -1,6 +1,7 @@
 // server/record/verify.cpp: replay of the record.
 #include "server/record/verify.hpp"
 
+#include <memory>
 #include <span>
 #include <stdexcept>
 
@@ -27,6 +28,29 @@ Decided decided(const algo::Telemetry& t) {
   return {t.command, t.hold, t.mission};
 }
 
+/// Gives the answers of a controller outside the program again, as decode_frame() left them.
+class RecordedController final : public algo::Controller {
+ public:
+  void reset(const algo::Pose2& /*start_W*/) override {}
+  void update(const algo::ControlInput& in,
+              const algo::Parameters& /*parameters*/,
+              algo::ControlOutput& out) override {
+    if (!out.answered) {
+      throw std::runtime_error(
+          fmt::format("The record has no answer of the controller at {:.3f} s.", in.stamp));
+    }
+  }
+  void explain(const algo::Telemetry& /*t*/, algo::Explanation& words) const override {
+    words = {};
+  }
+};
+
+algo::ControllerCatalogue recorded(const std::string& controller) {
+  return algo::ControllerCatalogue({{.name = controller, .outside = true, .make = [] {
+                                       return std::make_unique<RecordedController>();
+                                     }}});
+}
+
 algo::Pipeline pipeline_of(const db::RunRow& row) {
   const nlohmann::json document = parse_json(row.what.document, kOwnDocument);
   const algo::RobotSpec spec = robot_spec_from_json(document.at("robot"));
@@ -34,6 +58,9 @@ algo::Pipeline pipeline_of(const db::RunRow& row) {
   config.controller = row.what.controller;
   config.filter = stored_filter(row);
   config.parameters = stored_parameters(row);
+  if (document.contains("answers")) {
+    return {config, spec, recorded(config.controller)};
+  }
   return {config, spec};
 }
 

@@ -37,12 +37,12 @@ TEST_F(ChannelsRun, AScriptedSensorReachesRecordAndCsv) {
   const Verification verification = verify_run(reader, run);
   EXPECT_EQ(verification.difference, std::nullopt);
   EXPECT_EQ(verification.incomplete, std::nullopt);
-  const RunCsv csv(*reader.get(run));
-  EXPECT_THAT(csv.header(), testing::EndsWith("behaviour,battery.voltage\n"));
+  const RunCsv csv(reader, *reader.get(run));
+  EXPECT_THAT(csv.header(), testing::HasSubstr(",behaviour,battery.voltage,odometry.stamp,"));
   std::string lines;
   csv.lines(reader, 0, 1000, lines);
-  EXPECT_THAT(lines, testing::HasSubstr(",avoid,25\n1,"));
-  EXPECT_THAT(lines, testing::HasSubstr(",none,avoid,\n3,"));
+  EXPECT_THAT(lines, testing::HasSubstr(",avoid,25,0,"));
+  EXPECT_THAT(lines, testing::HasSubstr(",none,avoid,,"));
   EXPECT_THAT(lines, testing::HasSubstr(",none,avoid,24.74"));
 }
 

@@ -62,6 +62,8 @@ algo::Telemetry full_telemetry() {
   t.requests.push_back(algo::SetGoal{{3.5, 5.0}, 0.25});
   t.requests.push_back(algo::SetGoal{{0, 0}, std::nullopt});
   t.requests.push_back(algo::AddGoal{{{1, 2}, -0.5}});
+  t.requests.push_back(algo::SetGoals{{{{1, 2}, 0.5}, {{3, 4}, std::nullopt}}, 1, true});
+  t.requests.push_back(algo::SetGoals{});
   t.requests.push_back(algo::ClearGoal{});
   for (const algo::Shape& shape : {algo::Shape{algo::Cylinder{0.3}},
                                    algo::Shape{algo::Box{0.5, 0.25}},
@@ -69,6 +71,9 @@ algo::Telemetry full_telemetry() {
                                    algo::Shape{algo::Wall{4, 0.1}}}) {
     t.requests.push_back(algo::AddObstacle{{7, {1, 2, 3}, shape, 0.9, 0.4, true}});
   }
+  algo::Obstacle walker{7, {1, 2, 3}, algo::Cylinder{0.25}};
+  walker.path = {.period = 12.5, .phase = 0.1, .keys = {{0, {1, 2}}, {3.3, {1.7, 2.1}}}};
+  t.requests.push_back(algo::ChangeObstacle{walker});
   t.requests.push_back(algo::MoveObstacle{7, {1.5, 2.5, 0.5}});
   t.requests.push_back(algo::RemoveObstacle{7});
   t.requests.push_back(algo::Joystick{0.5, -0.25});
