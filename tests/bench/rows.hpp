@@ -15,5 +15,6 @@ void storage(Pass& pass);    // P19 P20 P21
 void headless(Pass& pass);   // P9
 void streaming(Pass& pass);  // P14 P16 P17
 void timers(Pass& pass);     // P22
+void external(Pass& pass);   // P23
 
 }  // namespace bench

@@ -15,6 +15,7 @@ class SilentClient final : public server::net::WsClient {
   std::uint32_t id() const override { return 1; }
   const std::string& subprotocol() const override { return peer_; }
   const std::map<std::string, std::string>& query() const override { return query_; }
+  const server::net::Visitor& who() const override { return who_; }
   bool open() const override { return true; }
   void send_control(server::net::FrameKind, server::net::Payload) override {}
   bool send_latest(std::uint32_t,
@@ -33,6 +34,7 @@ class SilentClient final : public server::net::WsClient {
 
  private:
   std::string peer_{"fuzz"};
+  server::net::Visitor who_{.role = server::net::Role::Admin};
   std::map<std::string, std::string> query_{};
 };
 
