@@ -24,9 +24,11 @@ class Truth {
     for (const algo::Obstacle& obstacle : scenario.obstacles) set_.add(obstacle);
   }
   const sim::ObstacleSet& at(double stamp) {
-    for (const sim::ObstaclePath& path : scenario_.paths) {
-      const algo::Vec2 p_W = path.at(stamp);
-      set_.move(path.id - 1, {p_W.x(), p_W.y(), 0});
+    for (std::size_t i = 0; i < scenario_.obstacles.size(); ++i) {
+      const algo::Obstacle& obstacle = scenario_.obstacles[i];
+      if (!obstacle.path) continue;
+      const algo::Vec2 p_W = obstacle.path->at(stamp);
+      set_.move(i, {p_W.x(), p_W.y(), 0});
     }
     return set_;
   }
@@ -43,8 +45,9 @@ sim::Hull hull_of(const algo::RobotSpec& spec) {
 /// True if an obstacle that the robot touched, or nearly touched, jumped in the time before the
 /// contact.
 bool jumped(const sim::Scenario& scenario, const algo::RobotSpec& spec, const Moment& contact) {
-  return std::ranges::any_of(scenario.paths, [&](const sim::ObstaclePath& path) {
-    const algo::Obstacle& obstacle = scenario.obstacles[path.id - 1];
+  return std::ranges::any_of(scenario.obstacles, [&](const algo::Obstacle& obstacle) {
+    if (!obstacle.path) return false;
+    const algo::ObstaclePath& path = *obstacle.path;
     const double far = (path.at(contact.stamp) - contact.pose_W.position()).norm();
     const auto* const cylinder = std::get_if<algo::Cylinder>(&obstacle.shape);
     const double radius = cylinder != nullptr ? cylinder->radius : 0;

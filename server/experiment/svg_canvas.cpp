@@ -6,8 +6,17 @@
 namespace server::experiment {
 namespace {
 
-/// `text` with XML's reserved characters as entities.
-std::string escaped(std::string_view text) {
+std::string listed(std::span<const algo::Vec2> points) {
+  std::string out;
+  for (const algo::Vec2& p : points) {
+    out += fmt::format("{}{:.1f},{:.1f}", out.empty() ? "" : " ", p.x(), p.y());
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string xml_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
     switch (c) {
@@ -29,16 +38,6 @@ std::string escaped(std::string_view text) {
   }
   return out;
 }
-
-std::string listed(std::span<const algo::Vec2> points) {
-  std::string out;
-  for (const algo::Vec2& p : points) {
-    out += fmt::format("{}{:.1f},{:.1f}", out.empty() ? "" : " ", p.x(), p.y());
-  }
-  return out;
-}
-
-}  // namespace
 
 void SvgCanvas::circle(const algo::Vec2& centre, double radius, std::string_view attributes) {
   body_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}/>\n",
@@ -75,7 +74,7 @@ void SvgCanvas::text(const algo::Vec2& at, std::string_view words, std::string_v
                        at.y(),
                        attributes.empty() ? "" : " ",
                        attributes,
-                       escaped(words));
+                       xml_text(words));
 }
 
 std::string SvgCanvas::document(std::string_view title) const {
@@ -88,7 +87,7 @@ std::string SvgCanvas::document(std::string_view title) const {
       "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{4}</svg>\n",
       width_,
       height_,
-      escaped(title),
+      xml_text(title),
       style,
       body_);
 }

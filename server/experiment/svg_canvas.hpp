@@ -9,6 +9,9 @@
 
 namespace server::experiment {
 
+/// `text` with the reserved characters of XML and HTML as entities.
+std::string xml_text(std::string_view text);
+
 /// Shapes in pixels, rounded to a tenth, x to the right and y down. Later shapes lie on top.
 /// `attributes` are written unchanged: "fill=\"none\" stroke=\"#555\"", "class=\"grid\"".
 class SvgCanvas {

@@ -1,4 +1,4 @@
-// server/experiment/table.cpp: one table in five formats.
+// server/experiment/table.cpp: one table in six formats.
 #include "server/experiment/table.hpp"
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "server/experiment/svg_canvas.hpp"
 #include "server/experiment/trial.hpp"
 #include "server/run/text_file.hpp"
 
@@ -34,21 +35,6 @@ std::string csv_cell(const std::string& text) {
     out += c;
   }
   return out + '"';
-}
-
-std::string latex_cell(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '\\') {
-      out += "\\textbackslash{}";
-    } else if (c == '~' || c == '^') {
-      out += fmt::format("\\{}{{}}", c);
-    } else {
-      if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
-      out += c;
-    }
-  }
-  return out;
 }
 
 std::optional<double> number(const std::string& text) {
@@ -120,6 +106,21 @@ std::string to_markdown(const Table& table) {
   return text + "\n";
 }
 
+std::string to_html(const Table& table) {
+  std::string text = "<table>\n";
+  each_line(table, [&](const Cells& row) {
+    const bool head = &row == &table.header;
+    const char* const cell = head ? "th" : "td";
+    text += head ? "<thead><tr>" : "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const char* const numeric = i < table.words ? "" : " class=\"n\"";
+      text += fmt::format("<{0}{1}>{2}</{0}>", cell, numeric, xml_text(row[i]));
+    }
+    text += head ? "</tr></thead>\n<tbody>\n" : "</tr>\n";
+  });
+  return text + "</tbody></table>\n";
+}
+
 std::string to_csv(const Table& table) {
   std::string text;
   each_line(table, [&](const Cells& row) {
@@ -131,13 +132,28 @@ std::string to_csv(const Table& table) {
   return text;
 }
 
+std::string latex_text(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else if (c == '~' || c == '^') {
+      out += fmt::format("\\{}{{}}", c);
+    } else {
+      if (std::string_view("#$%&_{}").find(c) != std::string_view::npos) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
 std::string to_latex(const Table& table) {
   std::string columns;
   for (std::size_t i = 0; i < table.header.size(); ++i) columns += i < table.words ? 'l' : 'r';
   std::string text = fmt::format("\\begin{{tabular}}{{{}}}\n\\hline\n", columns);
   each_line(table, [&](const Cells& row) {
     for (std::size_t i = 0; i < row.size(); ++i) {
-      text += (i > 0 ? " & " : "") + latex_cell(row[i]);
+      text += (i > 0 ? " & " : "") + latex_text(row[i]);
     }
     text += &row == &table.header ? " \\\\\n\\hline\n" : " \\\\\n";
   });

@@ -46,6 +46,10 @@ std::string to_markdown(const Table& table);
 std::string to_csv(const Table& table);
 /// A complete tabular, with TeX's reserved characters escaped.
 std::string to_latex(const Table& table);
+/// An element <table>, in light HTML: th and td, "n" the class of numeric cells.
+std::string to_html(const Table& table);
+/// `text` with TeX's reserved characters escaped.
+std::string latex_text(const std::string& text);
 /// A list of objects with the titles as keys. Right of the word columns, a numeric cell becomes a
 /// number; an empty or non-finite cell becomes null.
 nlohmann::json to_json(const Table& table);

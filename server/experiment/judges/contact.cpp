@@ -15,7 +15,9 @@ constexpr Column kColumns[] = {{"contact", Aggregate::Largest, 0}};  // a Contac
 class ContactJudge final : public Judge {
  public:
   explicit ContactJudge(const JudgedRun& run)
-      : scenario_(run.spec.scenario), robot_(run.robot), moving_(!scenario_.paths.empty()) {}
+      : scenario_(run.spec.scenario),
+        robot_(run.robot),
+        moving_(algo::any_moves(scenario_.obstacles)) {}
 
   void see(const algo::Telemetry& t) override {
     if (!moving_ || !t.ground_truth || collided_) return;

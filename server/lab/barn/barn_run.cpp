@@ -25,16 +25,17 @@ Contact Run::contact() const {
 }
 
 experiment::Trial trial_of(const World& world, const Conditions& conditions, std::uint64_t seed) {
-  experiment::Trial trial{.name = fmt::format("world {}, seed {}", world.id, seed),
-                          .spec = make_spec(scenario_of(world, conditions), {}),
-                          .judges = {{.name = "metrics"},
-                                     {.name = "barn_score",
-                                      .settings = {{"goal_radius", world.goal_radius},
-                                                   {"optimal_length", world.optimal_length}}},
-                                     {.name = "contact"},
-                                     {.name = "place"}},
-                          .until = "barn_score",
-                          .time_ticks = true};
+  experiment::Trial trial{
+      .name = fmt::format("world {}, seed {}", world.id, seed),
+      .spec = make_spec(scenario_of(world, conditions), {.controllers = conditions.controllers}),
+      .judges = {{.name = "metrics"},
+                 {.name = "barn_score",
+                  .settings = {{"goal_radius", world.goal_radius},
+                               {"optimal_length", world.optimal_length}}},
+                 {.name = "contact"},
+                 {.name = "place"}},
+      .until = "barn_score",
+      .time_ticks = true};
   trial.spec.seed = seed;
   return trial;
 }

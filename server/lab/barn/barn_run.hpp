@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "server/experiment/barn_file.hpp"
 #include "server/experiment/oracle.hpp"
 #include "server/experiment/table.hpp"
 #include "server/experiment/trial.hpp"
-#include "server/lab/barn/barn_file.hpp"
 
 namespace server::barn {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "server/lab/compare/layouts.hpp"
+#include "server/experiment/layouts.hpp"
 #include "server/lab/reproduce/conditions.hpp"
 
 namespace server::compare {
@@ -55,7 +55,8 @@ LayoutSet run_layouts(const Kind& kind, const Options& options) {
   for (const char* const name : kStrips) {
     const std::string controller(name);
     for (std::size_t i = 1; i <= options.layouts; ++i) {
-      const sim::Scenario layout = random_layout(kind.obstacles, kind.repulsion_gain, i);
+      const sim::Scenario layout =
+          experiment::random_layout(kind.obstacles, kind.repulsion_gain, i);
       const auto plan = [&](const reproduce::Conditions& under) -> SeriesPlan {
         return {layout.name,
                 controller,

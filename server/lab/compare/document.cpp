@@ -1,7 +1,7 @@
 // server/lab/compare/document.cpp: the text around the tables, for the terminal and for Markdown.
 #include <fmt/format.h>
 
-#include "server/lab/compare/layouts.hpp"
+#include "server/experiment/layouts.hpp"
 #include "server/lab/compare/report.hpp"
 #include "server/lab/reproduce/marked.hpp"
 #include "server/run/text_file.hpp"
@@ -50,8 +50,8 @@ std::string layouts_text(const Options& options) {
       "0.8 m at any heading, equally likely, with centres up to 2 m from the line; at least one "
       "stands in the robot's straight path. Paper conditions as in the reproduction; `strip` also "
       "in the full simulator.",
-      kFreeGap,
-      kFreeRoom,
+      experiment::kFreeGap,
+      experiment::kFreeRoom,
       options.layouts,
       seeds_text(options, options.layout_seeds));
 }

@@ -176,6 +176,38 @@ TEST(MetricsJudge, MeasuresAgainstTheSafetyDistanceOfTheRun) {
   EXPECT_NEAR(metrics["min_clearance_m"], 0.45, 1e-12);
 }
 
+TEST(MotionJudge, MeasuresTheWayAgainstTheStraightLine) {
+  // 3 m east and 4 m north, 5 m in a straight line; hull clearances 0.65 and twice 0.05.
+  Watched motion("motion");
+  motion.spec.scenario.goal = algo::SetGoal{.position_W = {3, 4}};
+  motion.at({0, 0, 0}, 1.0), motion.at({3, 0, 0}, 0.4), motion.at({3, 4, 0}, 0.4);
+  EXPECT_NEAR(motion["path_ratio"], 1.4, 1e-12);
+  EXPECT_NEAR(motion["mean_clearance_m"], 0.25, 1e-12);
+}
+
+TEST(MotionJudge, JerkIsTheSecondDifferenceOfTheSpeed) {
+  // Steps of 0, 0.01, 0.03, 0.01 m in 0.1 s: speeds 0, 0.1, 0.3, -0.1 m/s (the last backwards).
+  // Second differences 0.1 and -0.6, over 0.01 s^2: 10 and -60 m/s^3; RMS sqrt((100 + 3600) / 2).
+  Watched motion("motion");
+  for (const double x : {0.0, 0.0, 0.01, 0.04, 0.03}) motion.at({x, 0, 0}, 5);
+  EXPECT_NEAR(motion["jerk_rms_m_s3"], std::sqrt(1850), 1e-6);
+  Watched still("motion");
+  still.at({0, 0, 0}, 5);
+  EXPECT_TRUE(std::isnan(still["jerk_rms_m_s3"]));
+}
+
+TEST(MotionJudge, EffortAndFlipsAreOfTheCommand) {
+  Watched motion("motion");
+  const auto command = [&](double v, double omega) {
+    algo::Telemetry t;
+    t.command.base = {v, omega};
+    motion.see(t);
+  };
+  command(0, 0.2), command(0.2, 0.01), command(0.1, -0.3), command(0.1, -0.2), command(0.1, 0.4);
+  EXPECT_NEAR(motion["effort_m2_s3"], (0.04 + 0.01) / 0.1, 1e-12);
+  EXPECT_EQ(motion["turn_flips"], 2);  // 0.2 to -0.3, past a command too slow to be a turn; to 0.4
+}
+
 TEST(PlaceJudge, IsTheLastTruePoseOrUnknown) {
   Watched place("place");
   place.see({});
@@ -235,12 +267,8 @@ TEST(ContactJudge, CountsOnlyMovingObstacles) {
                      .max_angular_acceleration = 4};
     algo::Obstacle cylinder{.id = 1, .shape = algo::Cylinder{.radius = 0.5}};
     cylinder.pose_W = {10, 0, 0};
+    if (moves) cylinder.path = {.period = 20, .keys = {{0, {10, 0}}, {20, {-10, 0}}}};
     contact.spec.scenario.obstacles.push_back(cylinder);
-    sim::ObstaclePath path;
-    path.id = 1;
-    path.period = 20;
-    path.keys = {{0, {10, 0}}, {20, {-10, 0}}};
-    if (moves) contact.spec.scenario.paths.push_back(path);
     for (int k = 0; k <= 183; ++k) contact.at({0, 0, 1.57}, 5, k == 183);  // it arrives at 9.15 s
     EXPECT_EQ(contact["contact"], static_cast<double>(moves ? Contact::Avoidable : Contact::None));
   }

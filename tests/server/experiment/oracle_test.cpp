@@ -11,12 +11,8 @@ sim::Scenario oncoming() {
   sim::Scenario scenario;
   algo::Obstacle cylinder{.id = 1, .shape = algo::Cylinder{.radius = 0.5}};
   cylinder.pose_W = {10, 0, 0};
+  cylinder.path = {.period = 20, .keys = {{0, {10, 0}}, {20, {-10, 0}}}};
   scenario.obstacles.push_back(cylinder);
-  sim::ObstaclePath path;
-  path.id = 1;
-  path.period = 20;
-  path.keys = {{0, {10, 0}}, {20, {-10, 0}}};
-  scenario.paths.push_back(path);
   return scenario;
 }
 

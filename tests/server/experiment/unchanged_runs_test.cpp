@@ -25,6 +25,7 @@
 #include "algo/driving.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/telemetry.hpp"
+#include "server/experiment/arithmetic.hpp"
 #include "server/experiment/pool.hpp"
 #include "server/run/run_spec.hpp"
 #include "server/run/runner.hpp"
@@ -205,27 +206,6 @@ std::uint64_t hash_of(const server::RunSpec& spec) {
   return hash.value();
 }
 
-/// A fingerprint of this machine's mathematical library: the last bit of a sine differs between
-/// processors, and after ten seconds of driving so does the pose.
-std::string arithmetic() {
-  Hash hash;
-  for (int i = 1; i < 20'000; ++i) {
-    const double x = 0.001 * i;
-    for (const double y : {std::sin(x),
-                           std::cos(x),
-                           std::exp(-x),
-                           std::log(x),
-                           std::atan2(x, 3.0),
-                           std::hypot(x, 2.0),
-                           std::pow(x, 1.7),
-                           std::tan(x),
-                           std::acos(x / 20)}) {
-      hash.add(y);
-    }
-  }
-  return fmt::format("{:016x}", hash.value());
-}
-
 std::string golden_file() {
   return (tests::folder() / "golden" / "run_hashes.json").string();
 }
@@ -264,7 +244,7 @@ TEST(UnchangedRuns, SenseAskCommandAndHoldWhatTheyDid) {
     const std::lock_guard lock(mutex);
     found[job.scenario][job.controller] = text;
   });
-  found["arithmetic"] = arithmetic();
+  found["arithmetic"] = server::experiment::arithmetic();
   if (std::getenv("TAUTLINE_WRITE_HASHES") != nullptr) {
     std::ofstream(golden_file()) << found.dump(1) << '\n';
     return;

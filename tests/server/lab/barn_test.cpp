@@ -49,10 +49,12 @@ TEST(BarnFile, ReadsPostsAndMovingCylinders) {
   const World still = worlds_from_json(lane()).at(0);
   EXPECT_EQ(still.id, 7U);
   EXPECT_EQ(still.obstacles.size(), 2U);
-  EXPECT_TRUE(still.paths.empty());
+  EXPECT_FALSE(algo::any_moves(still.obstacles));
   const World moving = worlds_from_json(crossing()).at(0);
-  ASSERT_EQ(moving.paths.size(), 1U);
-  EXPECT_EQ(moving.paths[0].at(5), algo::Vec2(4, 0));
+  const auto mover =
+      std::ranges::find_if(moving.obstacles, [](const auto& o) { return o.path.has_value(); });
+  ASSERT_NE(mover, moving.obstacles.end());
+  EXPECT_EQ(mover->path->at(5), algo::Vec2(4, 0));
 }
 
 TEST(BarnFile, NamesTheErrorAndItsPlace) {

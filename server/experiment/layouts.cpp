@@ -1,5 +1,5 @@
-// server/lab/compare/layouts.cpp: draws obstacles one by one, and redraws those that do not fit.
-#include "server/lab/compare/layouts.hpp"
+// server/experiment/layouts.cpp: draws obstacles one by one, and redraws those that do not fit.
+#include "server/experiment/layouts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,12 +12,12 @@
 #include "algo/strip/strip_law.hpp"
 #include "sim/random.hpp"
 
-namespace server::compare {
+namespace server::experiment {
 namespace {
 
 using algo::Vec2;
 
-constexpr std::uint64_t kPurpose = 0x6c61796f75747300;  // "layouts": the generator's purpose
+constexpr std::uint64_t kLayoutsPurpose = 0x6c61796f75747300;  // "layouts": the generator's purpose
 constexpr int kTries = 200;     // for one obstacle before the layout starts again
 constexpr double kAside = 2.0;  // [m] farthest centre from the straight line
 const Vec2 kGoal{5.0, 4.0};     // [m] of case 3; the start is the origin
@@ -104,11 +104,11 @@ sim::Scenario random_layout(std::size_t obstacles, double repulsion_gain, std::s
   layout.parameters = {{&algo::kContractionGain, 0.6},
                        {&algo::kRepulsionGain, repulsion_gain},
                        {&algo::kMaxSpeed, 0.1}};
-  sim::Random random(index, kPurpose + obstacles);
+  sim::Random random(index, kLayoutsPurpose + obstacles);
   while (layout.obstacles.empty() || std::ranges::none_of(layout.obstacles, in_lane)) {
     layout.obstacles = draw_all(random, obstacles);
   }
   return layout;
 }
 
-}  // namespace server::compare
+}  // namespace server::experiment

@@ -1,4 +1,4 @@
-// server/lab/compare/layouts.hpp: random layouts of obstacles with free gaps of at least 1 m
+// server/experiment/layouts.hpp: random layouts of obstacles with free gaps of at least 1 m
 // between them. The same index gives the same layout on every machine.
 //
 // The sources have no such layouts. The rules for drawing them are ours: start, goal and speed of
@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "algo/obstacle.hpp"
-#include "server/lab/reproduce/study_file.hpp"
+#include "sim/scenario.hpp"
 
-namespace server::compare {
+namespace server::experiment {
 
 constexpr double kFreeGap = 1.0;    // [m] least gap between surfaces
 constexpr double kFreeRoom = 1.35;  // [m] from start and goal to a surface: the method's reach
@@ -23,4 +23,4 @@ double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b);
 /// Layout number `index` of `obstacles` (1 or more): K_c 0.6, `repulsion_gain` K_r, 100 mm/s.
 sim::Scenario random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index);
 
-}  // namespace server::compare
+}  // namespace server::experiment

@@ -1,5 +1,5 @@
-// server/lab/barn/barn_file.cpp: reads worlds and sets up the benchmark's robot.
-#include "server/lab/barn/barn_file.hpp"
+// server/experiment/barn_file.cpp: reads worlds and sets up the benchmark's robot.
+#include "server/experiment/barn_file.hpp"
 
 #include <fmt/format.h>
 
@@ -44,7 +44,7 @@ void add_cylinder(World& world, double x, double y, double radius) {
 }
 
 void add_moving(World& world, const JsonReader& in) {
-  sim::ObstaclePath path;
+  algo::ObstaclePath path;
   path.period = in.number("period", {0.1, 1e5});
   in.each("keys", kMaxKeys, [&](const json& value, const std::string& at) {
     const std::vector<double> key = numbers(value, at, 3);
@@ -58,8 +58,7 @@ void add_moving(World& world, const JsonReader& in) {
                path.keys.front().position_W.x(),
                path.keys.front().position_W.y(),
                in.number("radius", {0.01, 10}));
-  path.id = world.obstacles.back().id;
-  world.paths.push_back(std::move(path));
+  world.obstacles.back().path = std::move(path);
 }
 
 World world_from_json(const JsonReader& in) {
@@ -141,7 +140,7 @@ std::vector<World> read_worlds(const std::string& file) {
 
 sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
   sim::Scenario scenario;
-  const bool moving = !world.paths.empty();
+  const bool moving = algo::any_moves(world.obstacles);
   scenario.name = fmt::format("{}-{}", moving ? "dynabarn" : "barn", world.id);
   scenario.title = fmt::format("{} world {}", moving ? "DynaBARN" : "BARN", world.id);
   scenario.robot = builtin_robot("jackal");
@@ -150,11 +149,10 @@ sim::Scenario scenario_of(const World& world, const Conditions& conditions) {
   scenario.start = world.start;
   scenario.goal = algo::SetGoal{world.goal, std::nullopt};
   scenario.obstacles = world.obstacles;
-  scenario.paths = world.paths;
-  for (sim::ObstaclePath& path : scenario.paths) path.phase = conditions.phase;
-  for (const sim::ObstaclePath& path : scenario.paths) {
-    algo::Obstacle& obstacle = scenario.obstacles[path.id - 1];
-    const algo::Vec2 at_W = path.at(0);
+  for (algo::Obstacle& obstacle : scenario.obstacles) {
+    if (!obstacle.path) continue;
+    obstacle.path->phase = conditions.phase;
+    const algo::Vec2 at_W = obstacle.path->at(0);
     obstacle.pose_W = {at_W.x(), at_W.y(), 0};
   }
   equip(scenario, conditions);

@@ -1,15 +1,17 @@
-// server/lab/barn/barn_file.hpp: the worlds of the BARN and DynaBARN benchmarks as scenarios.
+// server/experiment/barn_file.hpp: the worlds of the BARN and DynaBARN benchmarks as scenarios.
 //
 // Perille, Truong, Xiao, Stone: Benchmarking Metric Ground Navigation, SSRR 2020; Nair et al.:
 // DynaBARN, SSRR 2022. The score is that of The BARN Challenge.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "algo/pipeline/controllers.hpp"
 #include "sim/scenario.hpp"
 
 namespace server::barn {
@@ -21,7 +23,6 @@ struct World {
   double goal_radius = 1;     // [m]
   double optimal_length = 0;  // [m] of the published path; used only for the score
   std::vector<algo::Obstacle> obstacles{};
-  std::vector<sim::ObstaclePath> paths{};
 };
 
 /// `Flat`: the benchmark's scanner, which takes all beams at one instant. `Lms200`: the default
@@ -37,6 +38,7 @@ struct Conditions {
   std::optional<sim::RobotModel> robot{};
   std::string controller{};  // empty: `strip`, or `strip_moving` if obstacles move
   double phase = 0;          // [s] into the obstacles' paths at the start of a run
+  std::shared_ptr<const algo::ControllerCatalogue> controllers{};  // as in RunSpec
 };
 
 /// Throws DocumentError naming the field, or std::runtime_error if the file cannot be read.

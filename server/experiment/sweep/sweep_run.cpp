@@ -1,0 +1,131 @@
+// server/experiment/sweep/sweep_run.cpp: the runs on the pool.
+#include "server/experiment/sweep/sweep_run.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <exception>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "server/run/json_limits.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/run/text_file.hpp"
+
+namespace server::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using experiment::Row;
+
+constexpr double kMeasured = 5;       // [s] of the run clock
+constexpr double kCsvPerLogLine = 1;  // a run has about as many bytes in runs.csv as in the log
+
+/// [s] of CPU per second of the run clock, and the bytes of a run's line.
+struct Cost {
+  double cpu_time = 0;
+  double bytes = 0;
+};
+
+Cost measured(experiment::Trial trial) {
+  double& limit = trial.spec.scenario.time_limit;
+  limit = std::min(time_limit(trial.spec), kMeasured);
+  const std::clock_t begin = std::clock();
+  const Row row = run_trial(trial);
+  const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  return {spent / std::max(row["time_s"], trial.spec.scenario.period),
+          static_cast<double>(dump_json(row_json(0, row)).size() + 1)};
+}
+
+}  // namespace
+
+void write_scenarios(const Document& document, const fs::path& folder) {
+  make_folder(folder / "scenarios");
+  for (const sim::Scenario& scenario : document.scenarios) {
+    write_text(folder / scenario_file(scenario), to_json(scenario).dump(1) + "\n");
+  }
+}
+
+std::unique_ptr<RunLog> open_log(const Plan& plan, const fs::path& folder) {
+  return std::make_unique<RunLog>(folder / "runs.jsonl", identity_of(plan.document()), plan.size());
+}
+
+std::vector<std::size_t> runs_to_make(const Rows& rows,
+                                      Wanted wanted,
+                                      const std::set<std::size_t>& lost,
+                                      const experiment::Shard& shard) {
+  std::vector<std::size_t> runs;
+  for (std::size_t i = shard.index; i < rows.size(); i += shard.count) {
+    bool chosen = !rows.has(i) || (rows.broken(i) && !rows.killed_twice(i));
+    if (wanted == Wanted::Failed) chosen = rows.has(i) && rows.broken(i);
+    if (wanted == Wanted::Lost) chosen = lost.contains(i);
+    if (chosen) runs.push_back(i);
+  }
+  return runs;
+}
+
+Row run_one(const Plan& plan, std::size_t i, const std::stop_token& stop) {
+  try {
+    return run_trial(plan.trial(i), {.stop = stop});
+  } catch (const std::exception& e) {
+    return {.outcome = algo::Outcome::Failed, .reason = e.what(), .broken = true};
+  }
+}
+
+Rows run_sweep(const Plan& plan,
+               const fs::path& folder,
+               const experiment::PoolOptions& options,
+               Wanted wanted,
+               const std::function<void(const std::string&)>& warn) {
+  make_folder(folder);
+  const std::unique_ptr<RunLog> log = open_log(plan, folder);
+  write_scenarios(plan.document(), folder);
+  Rows rows = log->found();
+  const std::string other = log->other_arithmetic();
+  if (warn && !other.empty()) warn(other);
+  const std::set<std::size_t> lost = log->lost();
+  std::vector<std::size_t> runs = runs_to_make(rows, wanted, lost, options.shard);
+  const auto others = std::ranges::stable_partition(
+      runs, [&](std::size_t i) { return lost.contains(i) || rows.killed_twice(i); });
+  const std::size_t alone = runs.size() - others.size();
+  for (const std::size_t i : runs) rows.erase(i);
+  const bool finish = options.shard.count > 1;  // a shard finishes the runs under way after a stop
+  const auto make = [&](std::size_t first, std::size_t count, unsigned threads) {
+    experiment::PoolOptions pool{.threads = threads, .stop = options.stop};
+    pool.progress = [&](std::size_t done, std::size_t) {
+      if (options.progress) options.progress(first + done, runs.size());
+    };
+    for_each(count, pool, [&](std::size_t k, const std::stop_token& stop) {
+      const std::size_t i = runs[first + k];
+      log->begin(i);
+      const Row row = run_one(plan, i, finish ? std::stop_token() : stop);
+      if (row.outcome == algo::Outcome::Stopped) return log->leave(i);
+      log->append(i, row);
+      rows.set(i, row);
+    });
+  };
+  make(0, alone, 1);
+  if (!options.stop.stop_requested()) make(alone, others.size(), options.threads);
+  return rows;
+}
+
+Estimate estimate(const Plan& plan) {
+  Estimate sum;
+  std::map<std::size_t, Cost> costs;  // by controller
+  const double repeats = static_cast<double>(plan.document().repeats);
+  for (std::size_t i = 0; i < plan.size(); i += plan.document().repeats) {
+    const experiment::Trial trial = plan.trial(i);
+    const std::size_t controller = plan.arms()[plan.place(i).arm].controller;
+    const auto known = costs.find(controller);
+    const Cost cost = known != costs.end() ? known->second : measured(trial);
+    costs.emplace(controller, cost);
+    sum.cpu_time += repeats * cost.cpu_time * time_limit(trial.spec);
+    sum.bytes += repeats * cost.bytes * (1 + kCsvPerLogLine);
+  }
+  for (const sim::Scenario& scenario : plan.document().scenarios) {
+    sum.bytes += static_cast<double>(to_json(scenario).dump(1).size());
+  }
+  return sum;
+}
+
+}  // namespace server::sweep

@@ -1,0 +1,61 @@
+// server/experiment/sweep/sweep_run.hpp: runs an experiment, or the part of it that is missing, and
+// estimates its cost.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <set>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "server/experiment/pool.hpp"
+#include "server/experiment/sweep/run_log.hpp"
+#include "server/experiment/sweep/sweep_plan.hpp"
+
+namespace server::sweep {
+
+/// Writes each scenario to `folder`, so that `tautline run` can repeat a run. Throws
+/// std::runtime_error with a sentence.
+void write_scenarios(const Document& document, const std::filesystem::path& folder);
+/// The finished runs of `plan` in `folder`. Throws as RunLog's constructor.
+std::unique_ptr<RunLog> open_log(const Plan& plan, const std::filesystem::path& folder);
+/// Which runs a sweep makes.
+enum class Wanted : std::uint8_t {
+  Missing,  // and those that broke, but not those that killed the program twice
+  Failed,   // only those that broke, and those that killed the program twice
+  Lost,     // only those that were under way when the program died the last time
+};
+/// The numbers of the runs of `shard` to be made, those that `wanted` names. `lost`: as RunLog has
+/// them.
+std::vector<std::size_t> runs_to_make(const Rows& rows,
+                                      Wanted wanted = Wanted::Missing,
+                                      const std::set<std::size_t>& lost = {},
+                                      const experiment::Shard& shard = {});
+/// The row of a run: Failed with the reason if it breaks, Stopped after a stop.
+experiment::Row run_one(const Plan& plan, std::size_t i, const std::stop_token& stop);
+
+/// Writes the scenarios to `folder`, then makes the runs that are `wanted`: first, one by one,
+/// those that may have killed the program, then the others. Returns all runs by number; after a
+/// stop, some are missing. A run that breaks is kept as failed with its reason and the others go
+/// on. The result does not depend on the number of threads. `options.progress` counts the runs to
+/// be made. A shard makes only its own runs, and after a stop it finishes those under way. `warn`
+/// gets a sentence if the log has runs of another machine that may differ from this one's. Throws
+/// std::runtime_error with a sentence.
+Rows run_sweep(const Plan& plan,
+               const std::filesystem::path& folder,
+               const experiment::PoolOptions& options,
+               Wanted wanted = Wanted::Missing,
+               const std::function<void(const std::string&)>& warn = {});
+
+struct Estimate {
+  double cpu_time = 0;  // [s] if every run lasts until its time limit
+  double bytes = 0;     // of the files
+};
+/// Measured by the first seconds of one run of each controller, in the first scenario.
+Estimate estimate(const Plan& plan);
+
+}  // namespace server::sweep

@@ -1,0 +1,281 @@
+// tests/server/experiment/sweep_run_test.cpp: an experiment gives the same files for any number of
+// workers and interruptions, and never mixes two documents.
+#include "server/experiment/sweep/sweep_run.hpp"
+
+#include <string>
+#include <utility>
+
+#include "tests/temporary_folder.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "server/experiment/sweep/sweep_report.hpp"
+#include "server/experiment/sweep/sweep_tables.hpp"
+#include "server/run/text_file.hpp"
+
+namespace server::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+using ::testing::ThrowsMessage;
+
+constexpr const char* kFiles[] = {
+    "results.json", "runs.csv", "report.md", "report.tex", "report.html", "pictures/success.svg"};
+
+/// 1 m to the goal past a post: some hundredths of a second a run.
+json document() {
+  return {{"name", "short"},
+          {"scenarios",
+           {{{"name", "post"},
+             {"goal", {{"x", 1}, {"y", 0}}},
+             {"obstacles", {{{"type", "cylinder"}, {"x", 0.5}, {"y", 0.9}, {"radius", 0.1}}}}},
+            {{"name", "free"}, {"goal", {{"x", 1}, {"y", 0.2}}}}}},
+          {"controllers", {"original", "go_to_goal"}},
+          {"sweep", {{"grid", {{"v_max", {0.3, 0.5}}}}}},
+          {"repeats", 3},
+          {"physics", "kinematic"},
+          {"comparisons", {{"baseline", "go_to_goal"}}}};
+}
+
+Plan plan_of(const json& source) {
+  return Plan(document_from_json(source, ScenarioLibrary("", "")));
+}
+
+Results run_and_write(const Plan& plan, const fs::path& folder, unsigned threads = 1) {
+  const Rows rows = run_sweep(plan, folder, {.threads = threads});
+  Results results = results_of(plan, rows);
+  write_report(plan, rows, results, folder);
+  return results;
+}
+
+std::string files_of(const fs::path& folder) {
+  std::string all;
+  for (const char* const file : kFiles) all += read_text(folder / file);
+  return all;
+}
+
+/// Keeps `lines` whole lines of the log and `more` bytes of the next.
+void cut_log(const fs::path& folder, std::size_t lines, std::size_t more) {
+  const std::string text = read_text(folder / "runs.jsonl");
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
+  write_text(folder / "runs.jsonl", text.substr(0, at + more));
+}
+
+class SweepRun : public testing::Test {
+ protected:
+  fs::path folder(const char* name) const { return root_.path() / name; }
+  const Plan plan = plan_of(document());
+
+ private:
+  tests::TemporaryFolder root_{};
+};
+
+TEST_F(SweepRun, GivesTheSameFilesForAnyNumberOfWorkers) {
+  EXPECT_TRUE(run_and_write(plan, folder("one"), 1).complete());
+  EXPECT_TRUE(run_and_write(plan, folder("four"), 4).complete());
+  EXPECT_EQ(files_of(folder("one")), files_of(folder("four")));
+}
+
+std::size_t ended_in(const fs::path& folder) {
+  const std::string text = read_text(folder / "runs.jsonl");
+  std::size_t count = 0;
+  for (std::size_t at = text.find("{\"broken\""); at != std::string::npos; ++count) {
+    const std::size_t end = text.find('\n', at);
+    if (end == std::string::npos) break;  // torn
+    at = text.find("{\"broken\"", end);
+  }
+  return count;
+}
+
+TEST_F(SweepRun, GoesOnAfterATornFile) {
+  run_and_write(plan, folder("whole"));
+  run_and_write(plan, folder("torn"));
+  const std::string one_by_one = read_text(folder("torn") / "runs.jsonl");
+  for (const auto& [lines, more] : {std::pair{8, 40}, {1, 1}, {1, 0}, {0, 30}, {0, 0}, {12, 0}}) {
+    write_text(folder("torn") / "runs.jsonl", one_by_one);
+    cut_log(folder("torn"), static_cast<std::size_t>(lines), static_cast<std::size_t>(more));
+    const std::size_t ended = ended_in(folder("torn"));
+    EXPECT_EQ(ended, static_cast<std::size_t>(lines > 0 ? (lines - 1) / 2 : 0));  // begun, ended
+    std::size_t made = 0;
+    run_sweep(plan, folder("torn"), {.threads = 2, .progress = [&](std::size_t, std::size_t all) {
+                                       made = all;
+                                     }});
+    EXPECT_EQ(made, plan.size() - ended);
+    run_and_write(plan, folder("torn"));
+    EXPECT_EQ(files_of(folder("whole")), files_of(folder("torn"))) << lines << ' ' << more;
+  }
+}
+
+TEST_F(SweepRun, SaysWhichLineOfItsLogIsDamaged) {
+  run_and_write(plan, folder("out"));
+  std::string text = read_text(folder("out") / "runs.jsonl");
+  text.replace(text.find('\n') + 1, 5, "#####");
+  write_text(folder("out") / "runs.jsonl", text);
+  EXPECT_THAT([&] { run_sweep(plan, folder("out"), {}); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("line 2 is damaged")));
+}
+
+TEST_F(SweepRun, RefusesTheFolderOfAnotherDocumentAndSaysHowItDiffers) {
+  run_and_write(plan, folder("out"));
+  const auto refusal = [&](const char* patch) {
+    json other = document();
+    other.merge_patch(json::parse(patch));
+    try {
+      run_sweep(plan_of(other), folder("out"), {});
+    } catch (const std::runtime_error& e) {
+      return std::string(e.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refusal(R"({"repeats": 4})"), HasSubstr("repeats is 3 there and 4 here"));
+  EXPECT_THAT(refusal(R"({"seed": 9})"), HasSubstr("seed is 9 here and not there"));
+  EXPECT_THAT(refusal(R"({"physics": null})"), HasSubstr("physics is \"kinematic\" there"));
+  EXPECT_THAT(refusal(R"({"sweep": {"grid": {"v_max": [0.3, 0.4]}}})"),
+              HasSubstr("sweep/grid/v_max/1 is 0.5 there and 0.4 here"));
+  EXPECT_TRUE(run_and_write(plan, folder("out")).complete());
+}
+
+TEST_F(SweepRun, ANamedScenarioThatHasChangedIsAnotherExperiment) {
+  const json before = identity_of(plan.document());
+  Document changed = plan.document();
+  changed.scenarios[1].obstacles.push_back({.id = 7, .shape = algo::Cylinder{.radius = 0.2}});
+  EXPECT_EQ(difference(before, identity_of(changed)), "the scenario 'free' is another");
+}
+
+TEST_F(SweepRun, AnotherVersionIsAnotherExperiment) {
+  const json ours = identity_of(plan.document());
+  json theirs = ours;
+  theirs["tautline"] = "0.0.9";
+  EXPECT_THAT(difference(theirs, ours),
+              StartsWith("tautline (the version) is \"0.0.9\" there and "));
+}
+
+TEST_F(SweepRun, LeavesAForeignFileAlone) {
+  make_folder(folder("out"));
+  for (const char* const text : {"my notes", "my notes\n", "{}\n", "[1]\n{\n"}) {
+    write_text(folder("out") / "runs.jsonl", text);
+    EXPECT_THAT([&] { run_sweep(plan, folder("out"), {}); },
+                ThrowsMessage<std::runtime_error>(HasSubstr("is no file of finished runs")));
+    EXPECT_EQ(read_text(folder("out") / "runs.jsonl"), text);
+  }
+}
+
+TEST_F(SweepRun, IsRefusedWhileAnotherOneWritesThere) {
+  make_folder(folder("out"));
+  const RunLog other(folder("out") / "runs.jsonl", identity_of(plan.document()), plan.size());
+  EXPECT_THAT([&] { run_sweep(plan, folder("out"), {}); },
+              ThrowsMessage<std::runtime_error>(HasSubstr("another sweep writes there")));
+}
+
+TEST_F(SweepRun, MissingRunsHeadTheReport) {
+  std::stop_source stop;
+  const Rows rows = run_sweep(plan,
+                              folder("out"),
+                              {.threads = 1,
+                               .progress =
+                                   [&](std::size_t done, std::size_t) {
+                                     if (done == 5) stop.request_stop();
+                                   },
+                               .stop = stop.get_token()});
+  const Results results = results_of(plan, rows);
+  EXPECT_EQ(results.missing, plan.size() - 5);
+  write_report(plan, rows, results, folder("out"));
+  EXPECT_THAT(read_text(folder("out") / "report.md"),
+              StartsWith("**INCOMPLETE: of 24 runs, 19 are missing and 0 failed.**"));
+  EXPECT_THAT(read_text(folder("out") / "report.tex"), HasSubstr("INCOMPLETE"));
+  EXPECT_THAT(read_text(folder("out") / "runs.csv"), HasSubstr(",missing,"));
+}
+
+TEST_F(SweepRun, AFailedRunStaysInTheDenominatorAndIsMadeAgain) {
+  Rows rows = run_sweep(plan, folder("out"), {});
+  const experiment::Row broken{
+      .outcome = algo::Outcome::Failed, .reason = "The link was lost.", .broken = true};
+  {
+    RunLog log(folder("out") / "runs.jsonl", identity_of(plan.document()), plan.size());
+    log.append(0, broken);
+  }
+  rows.set(0, broken);
+  const Results results = results_of(plan, rows);
+  EXPECT_EQ(results.failed, 1U);
+  EXPECT_FALSE(results.complete());
+  EXPECT_EQ(results.arms[0].rates[0].runs, 6U);
+  EXPECT_EQ(results.arms[0].rates[0].count, 5U);
+  write_report(plan, rows, results, folder("out"));
+  EXPECT_THAT(read_text(folder("out") / "runs.csv"), HasSubstr("failed,The link was lost.,,,"));
+  std::size_t made = 0;
+  run_sweep(plan, folder("out"), {.progress = [&](std::size_t, std::size_t all) { made = all; }});
+  EXPECT_EQ(made, 1U);
+  EXPECT_TRUE(run_and_write(plan, folder("out")).complete());
+}
+
+TEST_F(SweepRun, AnyRunRepeatsFromItsScenarioFileAlone) {
+  const Rows rows = run_sweep(plan, folder("out"), {});
+  const std::size_t run = 8;  // not of the first arm
+  const experiment::Trial trial = plan.trial(run);
+  EXPECT_EQ(plan.command(run),
+            "tautline run scenarios/post.json --controller go_to_goal --seed 3 --set v_max=0.3");
+  RunOverrides overrides{.controller = "go_to_goal", .seed = 3};
+  overrides.parameters = {{"v_max", 0.3}};
+  experiment::Trial again = trial;
+  again.spec =
+      make_spec(ScenarioLibrary::from_file(folder("out") / "scenarios/post.json"), overrides);
+  EXPECT_EQ(run_trial(again).figures, rows.row(run).figures);
+}
+
+TEST_F(SweepRun, PairsRunsOfTheSameScenarioSeedAndSetting) {
+  const Results results = run_and_write(plan, folder("out"));
+  ASSERT_EQ(results.pairings.size(), 2U);  // a setting each
+  EXPECT_EQ(plan.arms()[results.pairings[1].arm].label, "original, v_max=0.5");
+  EXPECT_EQ(plan.arms()[results.pairings[1].baseline].label, "go_to_goal, v_max=0.5");
+  EXPECT_EQ(results.pairings[0].reached.pairs, 6U);
+  EXPECT_EQ(results.pairings[0].time.pairs, 6U);
+  EXPECT_EQ(results.pairings[0].time.signed_rank.pairs, 2U);  // scenarios
+  EXPECT_GE(results.pairings[0].time.p_holm, results.pairings[0].time.p());
+}
+
+TEST_F(SweepRun, TheReportOfManyScenariosHasNoTableByScenario) {
+  json source = document();
+  source["scenarios"] = {{{"random_layouts", {{"count", 150}}}}};
+  const auto report = [](const Plan& each) {
+    return to_markdown(each, results_of(each, Rows(each.size())));
+  };
+  EXPECT_THAT(report(plan_of(source)), Not(HasSubstr("## By scenario")));
+  EXPECT_THAT(report(plan), HasSubstr("## By scenario"));
+}
+
+TEST_F(SweepRun, TheRunsAreWrittenInBlocksAsOneTable) {
+  json source = document();
+  source["repeats"] = 300;  // 2400 runs
+  const Plan many = plan_of(source);
+  Rows rows(many.size());
+  for (std::size_t i = 0; i < rows.size(); i += 2) {
+    rows.set(i, experiment::Row{.outcome = algo::Outcome::Failed, .reason = "No, \"it\" broke."});
+  }
+  make_folder(folder("out"));
+  write_report(many, rows, results_of(many, rows), folder("out"));
+  EXPECT_EQ(read_text(folder("out") / "runs.csv"), to_csv(runs_table(many, rows)));
+}
+
+TEST_F(SweepRun, SaysWhichControllerAndScenarioDoNotGoTogether) {
+  json source = document();
+  source["scenarios"][0]["obstacles"][0]["x"] = 0;
+  source["scenarios"][0]["obstacles"][0]["y"] = 0;
+  EXPECT_THAT([&] { plan_of(source).check(); },
+              ThrowsMessage<DocumentError>(StartsWith("scenarios: 'post': ")));
+  EXPECT_NO_THROW(plan.check());
+}
+
+TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
+  const Estimate cost = estimate(plan);
+  EXPECT_GT(cost.cpu_time, 0);
+  EXPECT_GT(cost.bytes, 24 * 500.0);
+  EXPECT_LT(cost.bytes, 24 * 5000.0);
+}
+
+}  // namespace
+}  // namespace server::sweep
