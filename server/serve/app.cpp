@@ -26,6 +26,10 @@ std::string prepared(const std::filesystem::path& database) {
   return database.string();
 }
 
+std::filesystem::path beside(std::filesystem::path database) {
+  return database.replace_extension(".experiments");
+}
+
 RecorderOptions recorder_options_for(const AppOptions& options) {
   RecorderOptions out = recorder_options();
   out.retention_bytes = options.keep_bytes;
@@ -43,20 +47,30 @@ struct App::Impl {
         library(options.scenarios, options.logs, RobotLibrary(options.robots)),
         scheduler(options.threads),
         workers(options.database.string()),
-        experiments(recorder),
+        experiments({.folder = beside(options.database),
+                     .workers = options.workers,
+                     .controllers = options.first.controllers},
+                    library),
+        queue(recorder),
         sessions(house(options.require_record), options.sessions),
-        context{
-            .sessions = sessions,
-            .library = library,
-            .experiments = experiments,
-            .recorder = recorder,
-            .workers = workers,
-            .first = options.first.hardware ? make_spec(library.load("demo"), {}) : options.first} {
+        context{.sessions = sessions,
+                .library = library,
+                .experiments = experiments,
+                .queue = queue,
+                .recorder = recorder,
+                .workers = workers,
+                .first = options.first.hardware
+                             ? make_spec(library.load("demo"),
+                                         {.controllers = options.first.controllers})
+                             : options.first} {
     options.net.limits.frame_bytes = kRequestBytes;
     options.net.offload = [this](std::function<void()> job) {
       workers.post([job = std::move(job)](Worker&) { job(); });
     };
     server = std::make_unique<net::Server>(options.net);
+    context.started = wall_time();
+    context.server = server.get();
+    context.log_tail = std::move(options.log_tail);
     bell = server->bell([this] { take_news(); });
     add_api(server->router(), context);
     server->add(sessions.endpoint());
@@ -73,7 +87,7 @@ struct App::Impl {
   ~Impl() {
     sessions.end_all();  // first: the robot stops, even if the other parts take long
     workers.stop();
-    experiments.stop();
+    queue.stop();
     // Posted jobs may still answer through the server, so wait while it exists.
     try {
       if (!recorder.flush()) spdlog::error("The last of the record could not be written.");
@@ -109,9 +123,10 @@ struct App::Impl {
   Recorder recorder;
   ScenarioLibrary library;
   Scheduler scheduler;
-  std::unique_ptr<net::Server> server{};  // outlives workers and experiments, which post to it
+  std::unique_ptr<net::Server> server{};  // outlives the workers and the queue, which post to it
   Workers workers;
   Experiments experiments;
+  RunQueue queue;
   SessionRegistry sessions;
   ApiContext context;
   std::function<void()> bell{};

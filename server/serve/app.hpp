@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "server/run/run_spec.hpp"
 #include "server/serve/net/server.hpp"
@@ -15,7 +16,7 @@ namespace server {
 
 struct AppOptions {
   net::ServerOptions net{};
-  std::filesystem::path database{};
+  std::filesystem::path database{};   // experiments stand beside it: runs.sqlite, runs.experiments
   std::filesystem::path scenarios{};  // the user's own
   std::filesystem::path robots{};     // the user's own robot models
   std::filesystem::path logs{};       // CARMEN logs offered as scenarios
@@ -24,7 +25,9 @@ struct AppOptions {
   bool require_record = false;  // a tick that is not recorded ends the live run
   RunSpec first{};              // first run of the session `main`
   SessionRules sessions{};
+  std::function<std::vector<std::string>()> log_tail{};  // the newest log lines, oldest first
   std::size_t threads = 0;        // that advance simulated runs; 0: one per processor
+  unsigned workers = 0;           // of the experiments; 0: one per processor but one
   bool armed = false;             // hardware: arm as soon as its devices are ready
   bool unattended = false;        // hardware: drives on even without an operator
   std::function<bool()> ended{};  // polled about 20 times a second; true ends run()

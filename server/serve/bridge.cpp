@@ -13,6 +13,7 @@
 #include "server/run/json_reader.hpp"
 #include "server/run/paths.hpp"
 #include "server/run/request_json.hpp"
+#include "server/run/scenario_json.hpp"
 #include "server/serve/layers_json.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/scene_json.hpp"
@@ -193,28 +194,37 @@ void Bridge::sign_of(ClientId client) {
 }
 
 void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& reply) {
-  sign_of(client);
+  const net::Visitor& who = hub_.who(client);
+  if (who.role < needed_for(request)) {
+    throw std::runtime_error(net::role_refusal(who.role, needed_for(request)));
+  }
+  if (who.role >= net::Role::Operator) sign_of(client);
   const bool taken = server::submit(
       session_,
       std::move(request),
       [reply](const json& body) { reply.success(body); },
-      [reply](const std::string& refusal) { reply.failure(refusal); });
+      [reply](const std::string& refusal) { reply.failure(refusal); },
+      who.label());
   if (!taken) reply.failure(kBusy);
 }
 
 void Bridge::add_services() {
   // Each throws on a bad request; the hub turns that into the call's failure.
-  const auto add = [this](const char* name, std::function<void(const json&)> action) {
-    hub_.add_service(
-        name, [action = std::move(action)](ClientId, const json& body, const ServiceReply& reply) {
-          action(body);
-          reply.success({{"ok", true}});
-        });
+  using Action = std::function<void(const json&, const std::string& who)>;
+  const auto add = [this](const char* name, Action action) {
+    hub_.add_service(name,
+                     [this, action = std::move(action)](
+                         ClientId client, const json& body, const ServiceReply& reply) {
+                       action(body, hub_.who(client).label());
+                       reply.success({{"ok", true}});
+                     });
   };
-  hub_.add_service("/request",
-                   [this](ClientId client, const json& body, const ServiceReply& reply) {
-                     submit(client, request_from_json(body), reply);
-                   });
+  hub_.add_service(
+      "/request",
+      [this](ClientId client, const json& body, const ServiceReply& reply) {
+        submit(client, request_from_json(body), reply);
+      },
+      net::Role::Viewer);
   hub_.add_service("/watch", [this](ClientId client, const json& body, const ServiceReply& reply) {
     JsonReader(body, "").only({});
     sign_of(client);
@@ -227,34 +237,46 @@ void Bridge::add_services() {
     }
     reply.success(goal_check_json(session_, body));
   });
-  hub_.add_service("/load", [this](ClientId, const json& body, const ServiceReply& reply) {
-    if (!loads_.load(body, answer_when_loaded(reply))) reply.failure(kBusy);
+  hub_.add_service("/load", [this](ClientId client, const json& body, const ServiceReply& reply) {
+    if (!loads_.load(body, answer_when_loaded(reply))) return reply.failure(kBusy);
+    tell_deed(session_, hub_.who(client).label(), "loads another run");
   });
-  hub_.add_service("/reset", [this](ClientId, const json&, const ServiceReply& reply) {
-    if (!loads_.reset(answer_when_loaded(reply))) reply.failure(kBusy);
+  hub_.add_service("/reset", [this](ClientId client, const json&, const ServiceReply& reply) {
+    if (!loads_.reset(answer_when_loaded(reply))) return reply.failure(kBusy);
+    tell_deed(session_, hub_.who(client).label(), "resets the run");
   });
   const auto heed_pace = [this] {
     if (const auto refusal = session_.pace_refusal()) throw std::runtime_error(*refusal);
   };
-  add("/pause", [this, heed_pace](const json&) {
+  add("/pause", [this, heed_pace](const json&, const std::string& who) {
     heed_pace();
-    session_.pause(true);
+    pause(session_, true, who);
   });
-  add("/play", [this](const json&) { session_.pause(false); });
-  add("/arm", [this](const json& body) {
+  hub_.add_service(
+      "/world",
+      [this](ClientId, const json&, const ServiceReply& reply) {
+        reply.success({{"ok", true}, {"scenario", to_json(session_.as_scenario())}});
+      },
+      net::Role::Viewer);
+  add("/start", [this](const json& body, const std::string&) {
+    if (const auto refusal = set_start(session_, body)) throw std::runtime_error(*refusal);
+  });
+  add("/play", [this](const json&, const std::string& who) { pause(session_, false, who); });
+  add("/arm", [this](const json& body, const std::string& who) {
     const JsonReader in(body, "");
     in.only({"armed"});
     if (!in.has("armed")) in.fail("armed", "must be true or false");
-    if (const auto refusal = session_.arm(in.flag_or("armed", false))) {
+    if (const auto refusal = session_.arm(in.flag_or("armed", false), who)) {
       throw std::runtime_error(*refusal);
     }
   });
-  add("/step", [this, heed_pace](const json& body) {
+  add("/step", [this, heed_pace](const json& body, const std::string& who) {
     heed_pace();
     const JsonReader in(body, "");
+    if (!session_.state().pace.paused) session_.credits.pause = who;
     session_.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   });
-  add("/speed", [this, heed_pace](const json& body) {
+  add("/speed", [this, heed_pace](const json& body, const std::string&) {
     heed_pace();
     JsonReader(body, "").number("speed");
     session_.set_speed(pace_from_json(body, "speed", 1));
@@ -264,13 +286,16 @@ void Bridge::add_services() {
 /// A later refusal goes to the status line of the client that sent the request.
 std::string Bridge::hand_over(ClientId client, algo::Request request) {
   sign_of(client);
-  if (const auto trouble = session_.trouble_with(request)) hub_.warn(client, *trouble);
   const bool stick = std::holds_alternative<algo::Joystick>(request);
-  const auto given = session_.submit(
-      std::move(request), [this, client, stick](const std::optional<std::string>& refusal) {
-        if (refusal) say_refusal(client, stick, *refusal);
-      });
-  return given ? std::string() : std::string(kBusy);
+  const bool taken = server::submit(
+      session_,
+      std::move(request),
+      [this, client](const json& answer) {
+        if (answer.contains("warning")) hub_.warn(client, answer["warning"].get<std::string>());
+      },
+      [this, client, stick](const std::string& refusal) { say_refusal(client, stick, refusal); },
+      hub_.who(client).label());
+  return taken ? std::string() : std::string(kBusy);
 }
 
 /// A stick is published many times a second, so its refusals are reported only at intervals.
@@ -304,6 +329,7 @@ void Bridge::add_topics() {
     session_.watch().page_gone(client);
     stick_refused_.erase(client);
   });
+  hub_.on_clients([this] { session_.count_viewers(hub_.clients()); });
   hub_.on_publisher_gone([this](ClientId, const std::string& topic) {
     // A driver who leaves lets go of the stick.
     if (topic == "/cmd_vel") session_.submit(algo::Joystick{}, {});

@@ -32,7 +32,7 @@ constexpr double kTallest = 0.5;       // [m] its height from there at twice the
 constexpr double kLifetime = 0.5;      // [s]
 constexpr double kGridLifetime = 6.0;  // [s] an unchanged grid comes every 5 s
 constexpr int kCorners = 24;           // of a circle
-constexpr int kSteps = 8;              // of an arc
+constexpr int kArcSteps = 8;           // of an arc
 constexpr std::uint8_t kEven = 127;
 
 /// The page's own palette (design tokens of the light theme).
@@ -135,8 +135,8 @@ void draw_arcs(const Layer& layer, const Point& /*robot*/, json& entity) {
   for (std::size_t k = 0; k + 1 < layer.values.size(); k += 2) {
     const algo::Twist2 twist{layer.values[k], layer.values[k + 1]};
     std::vector<Point> points;
-    for (int i = 0; i <= kSteps; ++i) {
-      const algo::Pose2 at = algo::integrate_arc({}, twist, static_cast<double>(i) / kSteps);
+    for (int i = 0; i <= kArcSteps; ++i) {
+      const algo::Pose2 at = algo::integrate_arc({}, twist, static_cast<double>(i) / kArcSteps);
       points.push_back({at.x, at.y, kHeight});
     }
     entity["lines"].push_back(line_json(LineKind::Strip, points, colour_of(layer), kThin));

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "server/record/run_json.hpp"
-
 namespace server {
 namespace {
 
@@ -21,6 +19,12 @@ RunPolicy live_policy(const RunSpec& spec, bool require_record) {
   return {.record_patience = kRecordPatience,
           .pause_record_after = spec.scenario.log.empty() ? kRecordPause : 0,
           .require_record = require_record};
+}
+
+algo::PipelineConfig live_config(const RunSpec& spec, const std::stop_source& stop) {
+  algo::PipelineConfig config = pipeline_config(spec);
+  config.run.stop = stop.get_token();
+  return config;
 }
 
 /// A real robot's loop allocates nothing and never waits for a frame.
@@ -40,7 +44,8 @@ LiveRun::LiveRun(RunSpec spec,
     : spec_(std::move(spec)),
       robot_(std::move(robot)),
       arming_(robot_->arming()),
-      pipeline_(pipeline_config(spec_), robot_->spec()),
+      own_thread_(arming_ != nullptr || drives_from_outside(spec_)),
+      pipeline_(live_config(spec_, stop_), robot_->spec(), controllers_of(spec_)),
       channel_(std::move(channel)),
       sink_(channel_ ? std::make_unique<RecordSink>(channel_) : nullptr),
       scheduler_(house.scheduler),
@@ -59,10 +64,10 @@ RunLinks LiveRun::links() {
   if (arming_ != nullptr) {
     out.listeners.emplace_back([this](const Frame& frame) { look_for_operator(frame.telemetry); });
   }
-  out.on_outcome = [this](algo::Outcome outcome, const algo::Metrics& metrics) {
+  out.on_outcome = [this](algo::Outcome outcome, const char* reason, const algo::Metrics& metrics) {
     {
       const std::lock_guard lock(mutex_);
-      metrics_ = metrics;
+      if (!verdict_ && outcome != algo::Outcome::Running) verdict_ = {outcome, reason, metrics};
     }
     outcome_.store(outcome, std::memory_order_relaxed);
   };
@@ -72,12 +77,15 @@ RunLinks LiveRun::links() {
 void LiveRun::start(const std::vector<algo::Request>& first) {
   started_ = true;
   run_.begin(first);
-  if (arming_ == nullptr) {
+  if (!own_thread_) {
     scheduler_.add(*this);
     return;
   }
   thread_ = std::jthread([this] {
-    while (LiveRun::advance().when != Run::Next::When::Over) {
+    Run::Next next = LiveRun::advance();
+    while (next.when != Run::Next::When::Over) {
+      if (next.when != Run::Next::When::AtOnce) pacer_.sleep_until(next.time, stop_.get_token());
+      next = LiveRun::advance();
     }
   });
 }
@@ -94,7 +102,7 @@ void LiveRun::ask_to_end() {
 }
 
 void LiveRun::wake() {
-  if (arming_ == nullptr) scheduler_.wake(*this);
+  if (!own_thread_) scheduler_.wake(*this);
 }
 
 void LiveRun::set_pace(const Pace& pace) {
@@ -104,7 +112,7 @@ void LiveRun::set_pace(const Pace& pace) {
 
 LiveRun::~LiveRun() {
   ask_to_end();
-  if (arming_ == nullptr) scheduler_.remove(*this);
+  if (!own_thread_) scheduler_.remove(*this);
   if (thread_.joinable()) thread_.join();
   if (started_ && !finished()) conclude();
   rings.stream.consume_all([](const FrameRef&) {});
@@ -121,7 +129,8 @@ void LiveRun::conclude() {
   }
   outcome_.store(result_.outcome, std::memory_order_relaxed);
   if (channel_) {
-    channel_->close(run_end(result_, cut_.load(std::memory_order_relaxed)), result_.metrics.ticks);
+    channel_->close(run_end(result_, cut_.load(std::memory_order_relaxed), verdict()),
+                    result_.metrics.ticks);
   }
   finished_.store(true, std::memory_order_release);
   if (rings.news) rings.news();
@@ -132,9 +141,9 @@ void LiveRun::look_for_operator(const algo::Telemetry& t) {
   if (why != nullptr) arming_->disarm(why);
 }
 
-algo::Metrics LiveRun::metrics() const {
+std::optional<Verdict> LiveRun::verdict() const {
   const std::lock_guard lock(mutex_);
-  return metrics_;
+  return verdict_;
 }
 
 }  // namespace server

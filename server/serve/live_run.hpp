@@ -1,11 +1,12 @@
 // server/serve/live_run.hpp: a session's run in progress: on the scheduler, or on its own thread
-// for hardware.
+// for hardware and for a controller outside the program, which may take its time.
 #pragma once
 
 #include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "algo/metrics.hpp"
 #include "server/record/record_sink.hpp"
 #include "server/record/recorder.hpp"
+#include "server/record/run_json.hpp"
 #include "server/run/frame_pool.hpp"
 #include "server/run/run_spec.hpp"
 #include "server/run/runner.hpp"
@@ -41,7 +43,8 @@ class LiveRun final : private Scheduler::Task {
           const RunHouse& house,
           OperatorWatch& watch,
           std::function<void()> news);
-  ~LiveRun() override;  // ends the loop and waits for it: at most one robot period
+  /// Ends the loop and waits for it: at most one robot period, or 0.1 s of another's controller.
+  ~LiveRun() override;
   LiveRun(const LiveRun&) = delete;
   LiveRun& operator=(const LiveRun&) = delete;
 
@@ -58,8 +61,8 @@ class LiveRun final : private Scheduler::Task {
   Rings rings{};
   algo::Robot& robot() { return *robot_; }
   algo::Outcome outcome() const { return outcome_.load(std::memory_order_relaxed); }
-  /// The metrics when the outcome last changed.
-  algo::Metrics metrics() const;
+  /// The first outcome of the run, with the metrics then: later goals do not change it.
+  std::optional<Verdict> verdict() const;
   /// Lateness of the ticks against their deadlines. Hardware gives it in its own report.
   algo::LatenessHistogram lateness() const { return pacer_.lateness(); }
   bool finished() const { return finished_.load(std::memory_order_acquire); }
@@ -78,6 +81,8 @@ class LiveRun final : private Scheduler::Task {
   RunSpec spec_;
   std::unique_ptr<algo::Robot> robot_;
   algo::Arming* arming_;  // set for hardware
+  const bool own_thread_;
+  std::stop_source stop_{};
   algo::Pipeline pipeline_;
   std::shared_ptr<RunChannel> channel_;
   std::unique_ptr<RecordSink> sink_{};
@@ -85,16 +90,15 @@ class LiveRun final : private Scheduler::Task {
   OperatorWatch& watch_;
   std::shared_ptr<FramePool> pool_;
   Pacer pacer_{};
-  std::stop_source stop_{};
   Run run_;
   bool started_ = false;
   RunResult result_{};
   std::atomic<bool> cut_{false};
   mutable std::mutex mutex_{};
-  algo::Metrics metrics_{};  // guarded by mutex_; written when the outcome changes
+  std::optional<Verdict> verdict_{};  // guarded by mutex_
   std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
   std::atomic<bool> finished_{false};
-  std::jthread thread_{};  // last: it uses all of the above. Only for hardware
+  std::jthread thread_{};  // last: it uses all of the above. Only with own_thread_
 };
 
 }  // namespace server

@@ -21,6 +21,14 @@ constexpr std::size_t kMaxPending = 900;  // fewer than the ring of replies can 
 constexpr double kAtRest = 0.01;          // [m/s], [rad/s] below what odometry resolves
 constexpr std::chrono::milliseconds kFresh{500};
 
+/// Whether people set or clear goals with it; the stick clears them too, but sets none.
+bool is_goal(const algo::Request& request) {
+  return std::holds_alternative<algo::SetGoal>(request) ||
+         std::holds_alternative<algo::AddGoal>(request) ||
+         std::holds_alternative<algo::SetGoals>(request) ||
+         std::holds_alternative<algo::ClearGoal>(request);
+}
+
 }  // namespace
 
 Session::Session(const RunHouse& house, std::function<void()> news)
@@ -30,11 +38,15 @@ Session::Session(const RunHouse& house, std::function<void()> news)
 }
 
 PreparedRun Session::prepare(RunSpec spec) {
-  std::unique_ptr<algo::Robot> robot = make_robot(spec);
+  RunSpec first = spec;
+  if (const auto begin_W = std::exchange(spec.begin_W, std::nullopt)) {
+    first.scenario.start = *begin_W;
+  }
+  std::unique_ptr<algo::Robot> robot = make_robot(first);
   std::shared_ptr<RunChannel> channel;
-  if (recorder_ != nullptr) channel = recorder_->begin(new_run(spec, robot->spec()));
-  auto live =
-      std::make_unique<LiveRun>(spec, std::move(robot), std::move(channel), house_, watch_, news_);
+  if (recorder_ != nullptr) channel = recorder_->begin(new_run(first, robot->spec()));
+  auto live = std::make_unique<LiveRun>(
+      std::move(first), std::move(robot), std::move(channel), house_, watch_, news_);
   return {std::move(spec), std::move(live)};
 }
 
@@ -63,11 +75,16 @@ void Session::begin(PreparedRun next) {
   told_mission_ = algo::Mission::Idle;
   told_hold_ = {};
   next_obstacle_ = 1;
+  credits.goal.clear();  // the scenario's own
 
   std::vector<algo::Request> first = first_requests(spec);
+  if (spec.scenario.loop) first = {route_of(spec.scenario)};
   if (stopped) first.emplace_back(algo::Stop{true});
   for (const algo::Request& request : first) state_.asked.apply(request);
+  state_.route = {state_.asked.route(), 0, state_.asked.loop};
   state_.spec = spec;
+  if (saved_.name != spec.scenario.name) saved_ = spec.scenario;
+  note_edits();
   live_ = std::move(next.live);
   live_->set_pace(state_.pace);
   live_->start(first);
@@ -182,20 +199,24 @@ void Session::apply_pace() {
   changed();
 }
 
-std::optional<std::string> Session::arm(bool on) {
+std::optional<std::string> Session::arm(bool on, const std::string& who) {
   if (!state_.spec.hardware) return "This robot is simulated: it has no motors to switch on.";
   algo::Arming& motors = *state_.spec.hardware->robot->arming();
   std::optional<std::string> refusal;
   if (!on) {
     arm_when_ready_ = false;
-    motors.disarm("Somebody has disarmed it.");
+    motors.disarm(who + " has disarmed it.");
   } else if (!state_.running) {
     refusal = "The run is over. Reset first.";
   } else {
     refusal = motors.arm();
   }
-  if (!refusal) log(LogLevel::Warning, on ? "The motors are armed." : "The motors are disarmed.");
+  if (!refusal) {
+    credits.arming = who;
+    log(LogLevel::Warning, who + (on ? " has armed the motors." : " has disarmed the motors."));
+  }
   state_.hardware = motors.health();
+  note_arming(state_.hardware->armed, who + " has disarmed it.");
   changed();
   return refusal;
 }
@@ -253,9 +274,10 @@ void Session::watch_hardware() {
   if (!state_.spec.hardware || now - hardware_seen_ < milliseconds(100)) return;
   hardware_seen_ = now;
   algo::HealthReport report = state_.spec.hardware->robot->arming()->health();
+  note_arming(report.armed, report.trouble);
   if (arm_when_ready_ && report.halt == algo::Halt::Disarmed) {
     arm_when_ready_ = false;
-    if (const auto refusal = arm(true)) log(LogLevel::Warning, *refusal);
+    if (const auto refusal = arm(true, "The option --armed")) log(LogLevel::Warning, *refusal);
     return;
   }
   const bool news = !state_.hardware || state_.hardware->armed != report.armed ||
@@ -264,6 +286,20 @@ void Session::watch_hardware() {
   if (!news && now - hardware_told_ < milliseconds(1000)) return;
   hardware_told_ = now;
   state_.hardware = std::move(report);
+  changed();
+}
+
+/// Keeps the sentence of a disarming: the trouble may be over, or another, when somebody comes.
+void Session::note_arming(bool armed, const std::string& why) {
+  if (armed) state_.disarming.reset();
+  // Without a sentence the tick that explains it is still to come.
+  const bool disarmed = was_armed_ && !armed && !why.empty();
+  if (disarmed) state_.disarming = {why, wall_time()};
+  was_armed_ = armed || (was_armed_ && !disarmed);
+}
+
+void Session::count_viewers(std::size_t viewers) {
+  state_.viewers = viewers;
   changed();
 }
 
@@ -305,6 +341,8 @@ void Session::drain_replies() {
 void Session::adopt(const algo::Request& request) {
   const bool had_goal = state_.asked.goal.has_value();
   state_.asked.apply(request);
+  if (is_goal(request)) state_.route = {state_.asked.route(), 0, state_.asked.loop};
+  if (is_goal(request) || algo::is_edit(request)) note_edits();
   const bool stick = std::holds_alternative<algo::Joystick>(request);
   if (stick && had_goal && !state_.asked.goal) changed();  // taking the stick cancels the goals
 }
@@ -313,7 +351,11 @@ void Session::adopt(const algo::Request& request) {
 /// requests.
 void Session::follow_goal(const algo::Telemetry& t) {
   algo::Intent& asked = state_.asked;
-  if (t.goal == asked.goal || std::ranges::count(asked.goals_ahead, t.goal) == 0) return;
+  if (!t.goal || t.goal == asked.goal) return;
+  if (std::ranges::count(asked.goals_ahead, *t.goal) == 0 &&
+      (!asked.loop || std::ranges::count(asked.goals_behind, *t.goal) == 0)) {
+    return;
+  }
   while (asked.goal != t.goal) asked.go_on();
   log(LogLevel::Info, "A waypoint is reached; the next goal is set.");
   changed();
@@ -368,10 +410,8 @@ void Session::watch_run() {
     // The row gets the outcome so far at once, even if the run goes on.
     if (!ended && recorder_ != nullptr && live_->id() != 0) {
       recorder_->post(
-          [run = live_->id(), outcome, metrics = live_->metrics()](db::RunStore& store) {
-            if (!store.recording(run)) return;
-            const bool over = outcome != algo::Outcome::Running;
-            store.set_result(run, algo::name(outcome), "", over ? to_json(metrics).dump() : "");
+          [run = live_->id(), row = run_verdict(live_->verdict(), outcome)](db::RunStore& store) {
+            if (store.recording(run)) store.set_result(run, row);
           });
     }
     changed();
@@ -382,6 +422,9 @@ std::optional<std::string> Session::trouble_with(const algo::Request& request) {
   constexpr int kShare = 10;  // goal checks take a tenth of this thread's time
   const auto* add = std::get_if<algo::AddGoal>(&request);
   const auto* asked = add != nullptr ? &add->goal : std::get_if<algo::SetGoal>(&request);
+  if (const auto* list = std::get_if<algo::SetGoals>(&request)) {
+    if (!list->goals.empty()) asked = &list->goals[list->next];
+  }
   if (asked == nullptr || !may_look_at_goals()) return std::nullopt;
   const auto began = std::chrono::steady_clock::now();
   std::optional<std::string> trouble = trouble_with_goal(*asked);
@@ -397,12 +440,10 @@ std::optional<std::string> Session::trouble_with_goal(const algo::SetGoal& goal)
     return goal_trouble(state_.robot, goal, t.observation.odometry.pose, t.scene.scan);
   }
   if (!newest_) return std::nullopt;
-  const std::vector<sim::ObstaclePath>& paths = state_.spec.scenario.paths;
   std::vector<algo::Obstacle> standing;
-  std::ranges::copy_if(
-      state_.asked.obstacles, std::back_inserter(standing), [&](const algo::Obstacle& obstacle) {
-        return std::ranges::none_of(paths, [&](const auto& p) { return p.id == obstacle.id; });
-      });
+  std::ranges::copy_if(state_.asked.obstacles,
+                       std::back_inserter(standing),
+                       [](const algo::Obstacle& obstacle) { return !obstacle.path; });
   const algo::Telemetry& t = newest_->telemetry;
   const algo::Pose2& pose = t.ground_truth ? t.ground_truth->pose : t.observation.odometry.pose;
   return goal_trouble(state_.robot, goal, pose, standing);
@@ -412,23 +453,6 @@ std::vector<algo::Obstacle> Session::obstacles() const {
   std::vector<algo::Obstacle> all = state_.asked.obstacles;
   all.insert(all.end(), state_.others.begin(), state_.others.end());
   return all;
-}
-
-sim::Scenario Session::as_scenario(const std::string& name, const std::string& title) const {
-  sim::Scenario out = state_.spec.scenario;
-  out.name = name;
-  out.title = title;
-  out.goal = state_.asked.goal;
-  out.waypoints.clear();
-  if (!state_.asked.goals_ahead.empty()) {
-    out.waypoints.push_back(*state_.asked.goal);
-    out.waypoints.insert(
-        out.waypoints.end(), state_.asked.goals_ahead.begin(), state_.asked.goals_ahead.end() - 1);
-    out.goal = state_.asked.goals_ahead.back();
-  }
-  out.obstacles = state_.asked.obstacles;
-  out.parameters = state_.asked.parameters;
-  return out;
 }
 
 algo::LatenessHistogram Session::lateness() const {

@@ -17,12 +17,19 @@
 #include "server/record/recorder.hpp"
 #include "server/run/frame_pool.hpp"
 #include "server/run/run_spec.hpp"
+#include "server/serve/credits.hpp"
 #include "server/serve/live_run.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/path_trail.hpp"
 #include "server/serve/scene_json.hpp"
 
 namespace server {
+
+/// Why and when real hardware was disarmed last.
+struct Disarming {
+  std::string why{};  // a sentence
+  std::string at{};   // ISO 8601, UTC
+};
 
 /// The state of a session that clients see, besides its frames. Io thread only.
 struct SessionState {
@@ -31,6 +38,8 @@ struct SessionState {
   bool editable = false;  // obstacles can be added, moved and removed
   Pace pace{};
   algo::Intent asked{};                  // the sum of all accepted requests
+  algo::SetGoals route{};                // the goals as last set; driving by hand does not clear it
+  bool edited = false;                   // the world differs from the scenario as loaded or saved
   std::vector<algo::Obstacle> others{};  // the scenario's other robots, at their starts
   algo::Outcome outcome = algo::Outcome::Running;
   bool running = false;  // the run is in progress
@@ -39,7 +48,9 @@ struct SessionState {
   std::optional<std::string> problem{};
   RecordStatus record{};
   std::optional<algo::HealthReport> hardware{};  // as last reported to clients
+  std::optional<Disarming> disarming{};          // nothing while armed, and before it ever was
   Watchers watchers{};
+  std::size_t viewers = 0;  // WebSocket clients
 };
 
 /// The next run, built but not begun.
@@ -83,13 +94,14 @@ class Session {
   /// True if the newest tick shows a robot at rest with a command to stay at rest.
   bool standing() const;
 
-  /// Switches the motors of real hardware on or off. Returns the reason for a refusal, as a
-  /// sentence.
-  std::optional<std::string> arm(bool on);
+  /// Switches the motors of real hardware on or off, for `who`. Returns the reason for a refusal,
+  /// as a sentence.
+  std::optional<std::string> arm(bool on, const std::string& who = "Somebody");
   /// Arms the robot as soon as its devices are ready for the first time.
   void arm_when_ready() { arm_when_ready_ = true; }
   /// Signs of life of the operators who could stop the robot.
   OperatorWatch& watch() { return watch_; }
+  void count_viewers(std::size_t viewers);
 
   /// Why this robot's time cannot be paused, stepped or sped up (real hardware), as a sentence.
   std::optional<std::string> pace_refusal() const;
@@ -117,8 +129,17 @@ class Session {
   const PathTrail& path() const { return path_; }
   /// Lateness of the run's ticks against their deadlines, except for hardware.
   algo::LatenessHistogram lateness() const;
-  /// The current world as a scenario.
-  sim::Scenario as_scenario(const std::string& name, const std::string& title) const;
+  /// The world as it stands, as a scenario: also with the edits, goals and gains of people.
+  sim::Scenario as_scenario() const;
+  /// The run to begin on a reset, and on a load that names no scenario: the same world.
+  RunSpec again() const;
+  /// Moves the start, at which the robot stands after the next reset. Returns the reason for a
+  /// refusal, as a sentence.
+  std::optional<std::string> set_start(const algo::Pose2& start_W);
+  /// The world has been saved as `scenario`, which is the session's scenario from now on.
+  void saved(const sim::Scenario& scenario);
+
+  Credits credits{};  // set by credit() and by callers that change the pace
 
   std::function<void()> on_change{};                // state() has changed
   std::function<void(const FrameRef&)> on_frame{};  // the newest frame of each poll
@@ -132,6 +153,7 @@ class Session {
 
   void engage_stop(std::uint64_t ticket, const Answer& answer);
   void adopt(const algo::Request& request);
+  void note_edits();
   std::uint32_t free_obstacle_id();
   void drain_replies();
   void drain_frames();
@@ -140,6 +162,7 @@ class Session {
   std::optional<std::string> trouble_with_goal(const algo::SetGoal& goal) const;
   void watch_record();
   void watch_hardware();
+  void note_arming(bool armed, const std::string& why);
   void count_watchers();
   void narrate(const algo::Telemetry& t);
   void follow_goal(const algo::Telemetry& t);
@@ -148,6 +171,7 @@ class Session {
   void log(LogLevel level, const std::string& text) const;
 
   RunHouse house_;
+  sim::Scenario saved_{};  // as loaded or last saved
   Recorder* recorder_;
   std::function<void()> news_;
   OperatorWatch watch_{};  // outlives the runs
@@ -164,6 +188,7 @@ class Session {
   algo::Mission told_mission_ = algo::Mission::Idle;
   algo::Hold told_hold_{};
   bool arm_when_ready_ = false;
+  bool was_armed_ = false;
   std::uint64_t record_seen_ = 0;                          // last seen revision of the recorder
   std::chrono::steady_clock::time_point hardware_seen_{};  // when hardware was last checked
   std::chrono::steady_clock::time_point hardware_told_{};  // when clients were last told of it

@@ -36,6 +36,9 @@ json state_json(const Session& session) {
       {"stop", s.asked.stop},
       {"goal", nullptr},
       {"goals_ahead", json::array()},
+      {"goals_behind", json::array()},
+      {"loop", s.asked.loop},
+      {"edited", s.edited},
       {"obstacles", std::move(obstacles)},
       {"parameters", to_json(s.asked.parameters)},
       {"lost_ticks", s.lost_ticks},
@@ -45,13 +48,26 @@ json state_json(const Session& session) {
       {"hardware", nullptr},
       {"watchers", s.watchers.pages + (s.watchers.scripts ? 1U : 0U)},
       {"watched_by_script", s.watchers.scripts},
+      {"viewers", s.viewers},
+      {"by", by_json(session)},
+      {"emulated", s.spec.hardware && s.spec.hardware->emulated},
   };
   if (s.asked.goal) out["goal"] = to_json(*s.asked.goal);
   for (const algo::SetGoal& goal : s.asked.goals_ahead) out["goals_ahead"].push_back(to_json(goal));
+  for (const algo::SetGoal& goal : s.asked.goals_behind) {
+    out["goals_behind"].push_back(to_json(goal));
+  }
   out["robot"]["editable"] = s.editable;
   out["robot"]["paceable"] = !s.spec.hardware;
   if (s.problem) out["problem"] = without_folders(*s.problem);
-  if (s.hardware) out["hardware"] = to_json(*s.hardware);
+  if (s.hardware) {
+    out["hardware"] = to_json(*s.hardware);
+    out["hardware"]["disarmed"] = nullptr;
+    if (s.disarming) {
+      out["hardware"]["disarmed"] = {{"why", without_folders(s.disarming->why)},
+                                     {"at", s.disarming->at}};
+    }
+  }
   return out;
 }
 
@@ -73,6 +89,16 @@ json session_json(const Session& session) {
   return out;
 }
 
+net::Role needed_for(const algo::Request& request) {
+  return is_stop(request) ? net::Role::Viewer : net::Role::Operator;
+}
+
+void pause(Session& session, bool paused, const std::string& who) {
+  session.credits.pause = who;  // first: pause() tells the clients
+  session.pause(paused);
+  tell_deed(session, who, paused ? "paused the world" : "lets the world go on");
+}
+
 json goal_check_json(Session& session, const json& goal) {
   const JsonReader in(goal, "");
   in.only({"x", "y", "heading"});
@@ -81,19 +107,31 @@ json goal_check_json(Session& session, const json& goal) {
   return out;
 }
 
+std::optional<std::string> set_start(Session& session, const json& start) {
+  const JsonReader in(start, "");
+  in.only({"x", "y", "heading"});
+  return session.set_start(pose_from_json(in, session.state().spec.scenario.start.heading));
+}
+
 bool submit(Session& session,
             algo::Request request,
             std::function<void(const json&)> accepted,
-            std::function<void(const std::string&)> refused) {
+            std::function<void(const std::string&)> refused,
+            const std::string& who) {
   const auto id = std::make_shared<std::uint32_t>(0);
   const bool stop = is_stop(request);
+  const bool again = stop && session.state().asked.stop;  // a Stop of somebody holds already
   const auto answer = [&session,
                        id,
                        stop,
+                       again,
+                       who,
+                       request,
                        trouble = session.trouble_with(request),
                        accepted = std::move(accepted),
                        refused = std::move(refused)](const std::optional<std::string>& refusal) {
     if (refusal) return refused(*refusal);
+    if (!again) credit(session, request, who);
     json body = {{"ok", true}};
     if (stop) body["stop"] = session.standing() ? "standing" : "commanded";
     if (*id != 0) body["id"] = *id;
@@ -105,17 +143,18 @@ bool submit(Session& session,
   return given.has_value();
 }
 
-json catalog_json() {
+json catalog_json(const algo::ControllerCatalogue& catalogue) {
   const auto keys = [](algo::ParameterList list) {
     json names = json::array();
     for (const algo::ParameterInfo* p : list) names.push_back(p->key());
     return names;
   };
   json controllers = json::array();
-  for (const algo::ControllerInfo& c : algo::builtin_controllers().entries()) {
+  for (const algo::ControllerInfo& c : catalogue.entries()) {
     controllers.push_back({{"name", c.name},
                            {"label", c.label},
                            {"help", c.help},
+                           {"outside", c.outside},
                            {"parameters", keys(c.parameters)}});
   }
   json filters = json::array();

@@ -23,7 +23,7 @@ bool SessionLoader::load(Plan plan, Done done) {
 }
 
 bool SessionLoader::reset(Done done) {
-  return load([this] { return [spec = session_.state().spec] { return spec; }; }, std::move(done));
+  return load([this] { return [spec = session_.again()] { return spec; }; }, std::move(done));
 }
 
 void SessionLoader::begin_first() {

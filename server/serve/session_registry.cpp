@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "server/record/run_json.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/net/secret.hpp"
 
@@ -171,8 +172,17 @@ void SessionRegistry::opened(const std::shared_ptr<net::WsClient>& socket) {
     socket->close(kGoneCode, kGone);
     return;
   }
-  clients_[socket->id()] = {socket, session};
+  clients_[socket->id()] = {socket, session, wall_time()};
   session->door().on_open(socket);
+}
+
+std::vector<SessionClient> SessionRegistry::clients() const {
+  std::vector<SessionClient> out;
+  out.reserve(clients_.size());
+  for (const auto& [id, client] : clients_) {
+    out.push_back({client.socket, client.session->id(), client.since});
+  }
+  return out;
 }
 
 void SessionRegistry::closed(net::WsClient& socket) {

@@ -24,6 +24,13 @@ struct SessionRules {
   bool per_visitor = false;        // a client that names no session must open one
 };
 
+/// A WebSocket client of a session.
+struct SessionClient {
+  std::shared_ptr<net::WsClient> socket{};
+  std::string session{};  // its id
+  std::string since{};    // ISO 8601, UTC
+};
+
 /// Io thread only. The session `main` exists from start to end, has no limits, and is the only one
 /// that may have hardware. The others have ids that cannot be guessed.
 class SessionRegistry {
@@ -55,6 +62,8 @@ class SessionRegistry {
   /// All sessions that find() can find: `main` first, then in order of opening.
   const std::vector<OpenSession*>& all() const { return all_; }
   const SessionRules& rules() const { return rules_; }
+  /// Of all sessions, in order of their coming.
+  std::vector<SessionClient> clients() const;
 
   /// Tends sessions that have news, each at least `kLeast` after its last time. True if some are
   /// left for later.
@@ -73,6 +82,7 @@ class SessionRegistry {
   struct Client {
     std::shared_ptr<net::WsClient> socket{};
     OpenSession* session = nullptr;
+    std::string since{};
   };
 
   void opened(const std::shared_ptr<net::WsClient>& socket);

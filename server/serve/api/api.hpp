@@ -1,16 +1,19 @@
-// server/serve/api/api.hpp: REST /api/v1 over the sessions, the scenarios, the experiments and the
-// record.
+// server/serve/api/api.hpp: REST /api/v1 over the sessions, the scenarios, the experiments and
+// the record.
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "server/record/recorder.hpp"
 #include "server/run/scenario_library.hpp"
 #include "server/serve/api/worker_reply.hpp"
-#include "server/serve/experiments.hpp"
-#include "server/serve/net/router.hpp"
+#include "server/serve/experiments/experiments.hpp"
+#include "server/serve/net/server.hpp"
+#include "server/serve/run_queue.hpp"
 #include "server/serve/session_registry.hpp"
 #include "server/serve/workers.hpp"
 
@@ -22,10 +25,14 @@ struct ApiContext {
   SessionRegistry& sessions;
   const ScenarioLibrary& library;
   Experiments& experiments;
+  RunQueue& queue;
   Recorder& recorder;
   Workers& workers;
   std::function<void(std::function<void()>)> post_to_io{};  // from any thread
   RunSpec first{};                                          // default run of a new session
+  std::string started{};                                    // ISO 8601, UTC
+  net::Server* server = nullptr;                            // io thread only
+  std::function<std::vector<std::string>()> log_tail{};     // the newest log lines, oldest first
   PageRoom room{};
 };
 
@@ -41,14 +48,27 @@ void add_scenario_routes(Routes& routes);
 void add_session_routes(net::Router& router, ApiContext& context);
 void add_sessions_routes(Routes& routes);
 void add_run_routes(Routes& routes);
+void add_run_list_routes(Routes& routes);
+void add_run_edit_routes(Routes& routes);
+void add_experiment_routes(Routes& routes);
+void add_system_routes(Routes& routes);
 
-/// {"scenario"?, "controller"?, ...}: a scenario by name, and the choices that replace its own.
+/// Queues the runs and answers 202 with their numbers, or 503.
+void queue_runs(ApiContext& context, RepeatedRun asked, const net::Responder& respond);
+
+/// {"scenario"?, "controller"?, ...}: a scenario by name or as a document, the choices that replace
+/// its own, and where the robot begins. Without a scenario: the world as it stands.
 struct LoadRequest {
-  std::optional<std::string> scenario{};
+  std::optional<std::string> name{};
+  std::optional<nlohmann::json> document{};
   RunOverrides overrides{};
+  std::optional<algo::Pose2> begin_W{};
 };
 /// Throws DocumentError.
 LoadRequest load_request(const nlohmann::json& body);
+/// The run that `asked` describes; `now` is the run to keep the world of. Throws DocumentError or
+/// LibraryError. Not on the io thread.
+RunSpec spec_to_load(const ScenarioLibrary& library, LoadRequest asked, const RunSpec& now);
 /// Saves a scenario of the user after building its world: a scenario that cannot run is not kept.
 /// Throws LibraryError, or the error from building the world.
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario);

@@ -18,6 +18,18 @@ void add_api(net::Router& router, ApiContext& context) {
   add_session_routes(router, context);
   add_sessions_routes(routes);
   add_run_routes(routes);
+  add_run_list_routes(routes);
+  add_run_edit_routes(routes);
+  add_experiment_routes(routes);
+  add_system_routes(routes);
+  take_described_queries(router);
+  // The record and the scenarios know no owners: deleting what others have made is for admins.
+  for (const char* path : {"/runs/{id}", "/scenarios/{name}", "/sessions/{session}"}) {
+    router.need("DELETE", std::string("/api/v1") + path, net::Role::Admin);
+  }
+  router.need("POST", "/api/v1/runs/delete", net::Role::Admin);
+  router.need("POST", "/api/v1/runs/restore", net::Role::Admin);
+  router.need("GET", "/api/v1/view_link", net::Role::Operator);
 }
 
 void add_catalog_routes(Routes& routes) {
@@ -37,8 +49,8 @@ void add_catalog_routes(Routes& routes) {
   routes.at_once("GET", "/openapi.json", [](ApiContext&, const net::Request&) {
     return net::json_response(200, openapi_document());
   });
-  routes.at_once("GET", "/catalog", [](ApiContext&, const net::Request&) {
-    return json_response(200, catalog_json());
+  routes.at_once("GET", "/catalog", [](ApiContext& context, const net::Request&) {
+    return json_response(200, catalog_json(controllers_of(context.first)));
   });
 }
 

@@ -2,6 +2,8 @@
 // operations common to all sessions.
 #include "server/serve/api/openapi.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 #include <vector>
 
@@ -66,6 +68,21 @@ std::string whole_document() {
 }
 
 }  // namespace
+
+void take_described_queries(net::Router& router) {
+  const ordered_json document = ordered_json::parse(openapi_document());
+  for (const auto& [path, methods] : document.at("paths").items()) {
+    for (const auto& [method, operation] : methods.items()) {
+      std::vector<std::string> names;
+      for (const ordered_json& parameter : operation.value("parameters", ordered_json::array())) {
+        if (parameter.value("in", "") == "query") names.push_back(parameter.at("name"));
+      }
+      std::string upper = method;
+      std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
+      router.take_queries(upper, path, std::move(names));
+    }
+  }
+}
 
 const std::string& openapi_document() {
   static const std::string document = whole_document();

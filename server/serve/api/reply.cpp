@@ -67,6 +67,10 @@ net::Response problem_of(const std::exception_ptr& failure) {
   }
 }
 
+void require(const net::Request& request, net::Role needed) {
+  if (request.role < needed) throw net::HttpError(403, net::role_refusal(request.role, needed));
+}
+
 nlohmann::json body_json(const net::Request& request) {
   if (request.body.empty()) throw JsonError("the body is empty: send a JSON object");
   return parse_json(request.body);

@@ -21,6 +21,9 @@ net::Response problem_of_current_exception();
 
 net::Response problem_of(const std::exception_ptr& failure);
 
+/// Throws the 403 that names the role, if the request's is lower than `needed`.
+void require(const net::Request& request, net::Role needed);
+
 /// The body as JSON; an empty body gives an empty object. Throws on malformed JSON.
 nlohmann::json body_json(const net::Request& request);
 

@@ -1,5 +1,6 @@
-// server/serve/api/run_routes.cpp: starts experiments and serves records.
+// server/serve/api/run_routes.cpp: starts runs and serves records.
 #include <algorithm>
+#include <cctype>
 #include <deque>
 #include <mutex>
 
@@ -15,6 +16,7 @@
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"
+#include "server/serve/api/run_reply.hpp"
 
 namespace server {
 namespace {
@@ -22,78 +24,12 @@ namespace {
 using nlohmann::json;
 constexpr std::uint64_t kMaxRepeats = 10'000;
 
-db::RunId run_id(const net::Request& request) {
-  const std::string& text = request.params.at("id");
-  const auto number = whole_number(text);
-  if (!number) throw DocumentError("id", fmt::format("'{}' is not a run's number", text));
-  return static_cast<db::RunId>(*number);
-}
-
 net::Response too_many() {
   return net::problem(
       503, "Busy", "Too many runs, or too large worlds, are queued already. Try again later.");
 }
 
-net::Response no_such_run(db::RunId run) {
-  return net::problem(404, "Not found", fmt::format("There is no run {}.", run));
-}
-
-db::RunFilter filter_of(const net::Request& request) {
-  db::RunFilter filter;
-  const auto get = [&](const char* key) -> std::optional<std::string> {
-    const auto it = request.query.find(key);
-    if (it == request.query.end() || it->second.empty()) return std::nullopt;
-    return it->second;
-  };
-  filter.scenario = get("scenario");
-  filter.controller = get("controller");
-  filter.outcome = get("outcome");
-  if (const auto status = get("status")) {
-    filter.status = db::find_status(*status);
-    if (!filter.status) {
-      throw DocumentError("status",
-                          fmt::format("'{}' is unknown; known are queued, recording, finished, "
-                                      "interrupted, cancelled, failed",
-                                      *status));
-    }
-  }
-  return filter;
-}
-
-/// Appends `item` to a JSON list.
-void append_item(std::string& list, const json& item) {
-  if (list.size() > 1) list += ',';
-  list += dump_json(item);
-}
-
-/// {"items":[...],"next":...}, followed by the fields `more`.
-net::Response page_response(std::string list, const json& next, const std::string& more = "") {
-  return net::json_response(
-      200, "{\"items\":" + std::move(list) + "],\"next\":" + next.dump() + more + '}');
-}
-
-net::Response list_runs(ApiContext& context, const net::Request& request, Worker& worker) {
-  std::optional<db::RunId> cursor;
-  if (request.query.contains("cursor")) {
-    cursor = static_cast<db::RunId>(number_of(request, "cursor", 0));
-  }
-  const bool first_page = !cursor;
-  const db::RunFilter filter = filter_of(request);
-  db::RunReader& reader = worker.runs();
-  const std::size_t room = context.room.page();
-  std::string list = "[";
-  for (std::size_t left = limit_of(request, 50, 500); left > 0 && list.size() < room; --left) {
-    const db::RunPage page = reader.list(filter, 1, cursor);
-    cursor = page.next;
-    for (const db::RunRow& row : page.runs) append_item(list, to_json(row));
-    if (!cursor) break;
-  }
-  return page_response(std::move(list),
-                       cursor ? json(std::to_string(*cursor)) : json(nullptr),
-                       first_page ? fmt::format(",\"total\":{}", reader.count(filter)) : "");
-}
-
-Experiment experiment_from_json(const ApiContext& context, const json& body) {
+RepeatedRun repeated_run_from_json(const ApiContext& context, const json& body) {
   const JsonReader in(body, "");
   in.only({"scenario",
            "controller",
@@ -108,31 +44,21 @@ Experiment experiment_from_json(const ApiContext& context, const json& body) {
   sim::Scenario scenario = body.contains("scenario") && body["scenario"].is_object()
                                ? scenario_from_json(body["scenario"], context.library.robots())
                                : context.library.load(in.text("scenario", 64));
-  Experiment experiment;
-  experiment.spec =
-      make_spec(std::move(scenario), overrides_from_json(body), context.library.robots());
-  experiment.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
-  if (experiment.repeats == 0) in.fail("repeats", "must be at least 1");
-  experiment.pace = pace_from_json(body, "pace", 0);
-  return experiment;
+  RunOverrides overrides = overrides_from_json(body);
+  overrides.controllers = context.first.controllers;
+  RepeatedRun asked;
+  asked.spec = make_spec(std::move(scenario), overrides, context.library.robots());
+  asked.repeats = static_cast<std::uint32_t>(in.whole_or("repeats", 1, kMaxRepeats));
+  if (asked.repeats == 0) in.fail("repeats", "must be at least 1");
+  asked.pace = pace_from_json(body, "pace", 0);
+  return asked;
 }
 
 void start_runs(ApiContext& context,
                 const net::Request& request,
                 Worker&,
                 const net::Responder& respond) {
-  const auto accepted = [respond](const std::vector<db::RunId>& runs, const std::string& failure) {
-    if (runs.empty()) {
-      respond(net::problem(503, "The record is not available", without_folders(failure)));
-      return;
-    }
-    net::Response response = json_response(202, {{"runs", runs}});
-    response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
-    respond(std::move(response));
-  };
-  if (!context.experiments.start(experiment_from_json(context, body_json(request)), accepted)) {
-    respond(too_many());
-  }
+  queue_runs(context, repeated_run_from_json(context, body_json(request)), respond);
 }
 
 void delete_run(ApiContext& context, const net::Request& request, const net::Responder& respond) {
@@ -185,19 +111,20 @@ void resume_run(ApiContext& context,
   }
   RunOverrides overrides;
   overrides.seed = row->what.seed;
+  overrides.controllers = context.first.controllers;
   RunSpec spec = make_spec(document.value("source", "") == "replay"
                                ? context.library.load(row->what.scenario)
                                : scenario_from_json(document.at("scenario")),
                            overrides);
-  const bool taken = context.experiments.resume(
-      run,
-      std::move(spec),
-      document.at("pace").get<double>(),
-      row->what.document.size(),
-      [run, respond](const std::string& refusal) {
-        respond(refusal.empty() ? json_response(202, {{"runs", {run}}})
-                                : net::problem(409, "Not resumed", refusal));
-      });
+  const bool taken =
+      context.queue.resume(run,
+                           std::move(spec),
+                           document.at("pace").get<double>(),
+                           row->what.document.size(),
+                           [run, respond](const std::string& refusal) {
+                             respond(refusal.empty() ? json_response(202, {{"runs", {run}}})
+                                                     : net::problem(409, "Not resumed", refusal));
+                           });
   if (!taken) {
     respond(too_many());
   }
@@ -233,6 +160,14 @@ void append_message(std::string& body, std::span<const std::byte> message) {
   body.append(reinterpret_cast<const char*>(message.data()), message.size());
 }
 
+net::Response messages_response(std::string body, std::optional<std::uint64_t> next) {
+  net::Response response;
+  response.content_type = "application/octet-stream";
+  if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
+  response.body = std::make_shared<const std::string>(std::move(body));
+  return response;
+}
+
 /// A page of messages, one per tick: `read(from, body)` appends one and returns the tick to
 /// continue with.
 template <typename Read>
@@ -244,11 +179,7 @@ net::Response messages_page(ApiContext& context, const net::Request& request, co
     next = read(*next, body);
     if (!next) break;
   }
-  net::Response response;
-  response.content_type = "application/octet-stream";
-  if (next) response.headers.push_back({"X-Next-Tick", std::to_string(*next)});
-  response.body = std::make_shared<const std::string>(std::move(body));
-  return response;
+  return messages_response(std::move(body), next);
 }
 
 net::Response list_frames(ApiContext& context, const net::Request& request, Worker& worker) {
@@ -260,6 +191,48 @@ net::Response list_frames(ApiContext& context, const net::Request& request, Work
       append_message(body, frame);
     });
   });
+}
+
+/// What a viewer marks in the time of a run.
+struct Standing {
+  algo::Mission mission{};
+  algo::Halt halt{};
+  algo::Hold hold{};
+  bool collided = false;
+  friend bool operator==(const Standing&, const Standing&) = default;
+};
+
+bool requests_an_edit(const algo::Telemetry& t) {
+  return std::ranges::any_of(t.requests, [](const algo::Request& request) {
+    return !std::holds_alternative<algo::Joystick>(request);
+  });
+}
+
+/// The frames among the next `limit` ticks in which something happens: a request, or a change of
+/// mission, hold, halt or contact. The first tick always counts.
+net::Response list_events(ApiContext& context, const net::Request& request, Worker& worker) {
+  constexpr std::size_t kRows = 250;  // rows between two checks of the room
+  const db::RunId run = run_id(request);
+  db::RunReader& reader = worker.runs();
+  if (!reader.get(run)) return no_such_run(run);
+  std::optional<std::uint64_t> next = number_of(request, "from", 0);
+  std::size_t left = limit_of(request, 5000, 20'000);
+  const std::size_t room = context.room.page();
+  std::string body;
+  algo::Telemetry t;
+  std::optional<Standing> before;
+  while (next && left > 0 && body.size() < room) {
+    const std::size_t rows = std::min(left, kRows);
+    next = reader.frames(run, *next, rows, [&](std::uint64_t, std::span<const std::byte> frame) {
+      decode_frame(frame, t);
+      const Standing now{
+          t.mission, t.observation.halt, t.hold, t.ground_truth && t.ground_truth->collided};
+      if (now != before || requests_an_edit(t)) append_message(body, frame);
+      before = now;
+    });
+    left -= rows;
+  }
+  return messages_response(std::move(body), next);
 }
 
 /// Keeps readers of filtered scans, from which a next page may continue.
@@ -303,33 +276,53 @@ class FilteredPages {
   std::deque<FilteredScans> kept_{};
 };
 
+/// `?KEY=1` or `?KEY=0`, which is also the default; throws DocumentError.
+bool flag_of(const net::Request& request, const std::string& key) {
+  const std::uint64_t value = number_of(request, key, 0);
+  if (value > 1) throw DocumentError("?" + key, fmt::format("is {}, must be 0 or 1", value));
+  return value == 1;
+}
+
+/// "run-12-case1.csv"; letters that a header or a file system may refuse become dashes.
+std::string csv_name(const db::RunRow& row) {
+  std::string name = fmt::format("run-{}-{}", row.id, row.what.scenario);
+  for (char& c : name) {
+    const bool good = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+    if (!good) c = '-';
+  }
+  return name + ".csv";
+}
+
 net::Response export_csv(ApiContext& context, const net::Request& request, Worker& worker) {
-  constexpr std::size_t kLines = 1000;  // lines of a slice: about 100 kB
+  constexpr std::size_t kLines = 300;  // lines of a slice: about 100 kB
   const db::RunId run = run_id(request);
   const auto row = worker.runs().get(run);
   if (!row) return no_such_run(run);
   const auto next = std::make_shared<std::optional<std::uint64_t>>(0);
-  const auto make = [csv = RunCsv(*row), next](Worker& at_work) {
+  const CsvOptions options{.units = flag_of(request, "units"),
+                           .arrays = flag_of(request, "arrays")};
+  const auto csv = std::make_shared<const RunCsv>(worker.runs(), *row, options);
+  const auto make = [csv, next](Worker& at_work) {
     std::string slice;
     if (!*next) return slice;
     const std::uint64_t from = **next;
-    if (from == 0) slice = csv.header();
+    if (from == 0) slice = csv->header();
     const std::size_t before = slice.size();
-    *next = csv.lines(at_work.runs(), from, kLines, slice);
+    *next = csv->lines(at_work.runs(), from, kLines, slice);
     if (from > 0 && slice.size() == before) throw db::StoreError("The run was deleted meanwhile.");
     return slice;
   };
   net::Response response;
   response.content_type = "text/csv; charset=utf-8";
   response.headers.push_back(
-      {"Content-Disposition", fmt::format("attachment; filename=\"run-{}.csv\"", run)});
+      {"Content-Disposition", fmt::format("attachment; filename=\"{}\"", csv_name(*row))});
   response.stream = std::make_shared<WorkerStream>(context, make);
   return response;
 }
 
 net::Response cancel_run(ApiContext& context, const net::Request& request, Worker& worker) {
   const db::RunId run = run_id(request);
-  if (context.experiments.cancel(run)) return json_response(202, {{"ok", true}});
+  if (context.queue.cancel(run)) return json_response(202, {{"ok", true}});
   if (!worker.runs().get(run)) return no_such_run(run);
   return net::problem(409, "Not running", "The run is neither queued nor running.");
 }
@@ -350,9 +343,21 @@ net::Response get_metrics(ApiContext&, const net::Request& request, Worker& work
 
 }  // namespace
 
+void queue_runs(ApiContext& context, RepeatedRun asked, const net::Responder& respond) {
+  const auto accepted = [respond](const std::vector<db::RunId>& runs, const std::string& failure) {
+    if (runs.empty()) {
+      respond(net::problem(503, "The record is not available", without_folders(failure)));
+      return;
+    }
+    net::Response response = json_response(202, {{"runs", runs}});
+    response.headers.push_back({"Location", fmt::format("/api/v1/runs/{}", runs.front())});
+    respond(std::move(response));
+  };
+  if (!context.queue.start(std::move(asked), accepted)) respond(too_many());
+}
+
 void add_run_routes(Routes& routes) {
   routes.work("POST", "/runs", start_runs);
-  routes.make("GET", "/runs", list_runs);
   routes.make("GET", "/runs/{id}", get_run);
   routes.answer("DELETE", "/runs/{id}", delete_run);
   routes.make("POST", "/runs/{id}/cancel", cancel_run);
@@ -360,6 +365,7 @@ void add_run_routes(Routes& routes) {
   routes.make("GET", "/runs/{id}/metrics", get_metrics);
   routes.make("GET", "/runs/{id}/ticks", list_ticks);
   routes.make("GET", "/runs/{id}/frames", list_frames);
+  routes.make("GET", "/runs/{id}/events", list_events);
   const auto filtered = std::make_shared<FilteredPages>();
   routes.make("GET",
               "/runs/{id}/filtered",

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-json to_json(const ScenarioEntry& entry) {
+json entry_json(const ScenarioEntry& entry) {
   return {{"name", entry.name},
           {"title", entry.title},
           {"description", entry.description},
@@ -35,7 +35,7 @@ json robots_json(const RobotLibrary& robots) {
 }  // namespace
 
 void keep_scenario(const ApiContext& context, const sim::Scenario& scenario) {
-  make_robot(make_spec(scenario, {}));
+  make_robot(make_spec(scenario, {.controllers = context.first.controllers}));
   context.library.save(scenario);
 }
 
@@ -45,7 +45,7 @@ void add_scenario_routes(Routes& routes) {
   });
   routes.make("GET", "/scenarios", [](ApiContext& context, const net::Request&, Worker&) {
     json items = json::array();
-    for (const ScenarioEntry& entry : context.library.list()) items.push_back(to_json(entry));
+    for (const ScenarioEntry& entry : context.library.list()) items.push_back(entry_json(entry));
     return json_response(200, {{"items", std::move(items)}, {"next", nullptr}});
   });
   routes.make(

@@ -1,12 +1,12 @@
 // server/serve/api/session_routes.cpp: a session: goal, obstacles, parameters, control.
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "algo/pipeline/parameter_table.hpp"
-#include "server/run/hardware.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/obstacle_json.hpp"
 #include "server/run/request_json.hpp"
@@ -41,13 +41,16 @@ SessionLoader::Done answer_when_loaded(OpenSession& open, const net::Responder& 
 /// with the reason.
 void submit_and_reply(Session& session,
                       algo::Request request,
+                      const net::Request& from,
                       const net::Responder& respond,
                       int status = 200) {
+  require(from, needed_for(request));
   const bool taken = submit(
       session,
       std::move(request),
       [respond, status](const json& body) { respond(json_response(status, body)); },
-      [respond](const std::string& refusal) { respond(net::problem(409, "Refused", refusal)); });
+      [respond](const std::string& refusal) { respond(net::problem(409, "Refused", refusal)); },
+      from.visitor().label());
   if (!taken) busy(respond);
 }
 
@@ -115,10 +118,13 @@ void patch_parameters(Session& session, const json& body, const net::Responder& 
 
 void control(ApiContext& context,
              OpenSession& open,
-             const json& body,
+             const net::Request& from,
              const net::Responder& respond) {
+  const json body = body_json(from);
   const JsonReader in(body, "");
   const std::string action = in.text("action", 32);
+  const std::string who = from.visitor().label();
+  require(from, action == "stop" ? net::Role::Viewer : net::Role::Operator);
   Session& session = open.session();
   if (action == "pause" || action == "step" || action == "speed") {
     if (const auto refusal = session.pace_refusal()) {
@@ -129,10 +135,14 @@ void control(ApiContext& context,
   if (action == "load") {
     json load = body;
     load.erase("action");
-    if (!load_from_json(context, open, load, answer_when_loaded(open, respond))) busy(respond);
+    if (!load_from_json(context, open, load, answer_when_loaded(open, respond))) {
+      return busy(respond);
+    }
+    tell_deed(session, who, "loads another run");
     return;
   } else if (action == "step") {
     in.only({"action", "ticks"});
+    if (!session.state().pace.paused) session.credits.pause = who;
     session.single_step(static_cast<std::uint32_t>(in.whole_or("ticks", 1, 1'000'000)));
   } else if (action == "speed") {
     in.only({"action", "speed"});
@@ -140,20 +150,21 @@ void control(ApiContext& context,
     session.set_speed(pace_from_json(body, "speed", 1));
   } else if (action == "stop" || action == "release") {
     in.only({"action"});
-    submit_and_reply(session, algo::Stop{action == "stop"}, respond);
+    submit_and_reply(session, algo::Stop{action == "stop"}, from, respond);
     return;
   } else if (action == "arm" || action == "disarm") {
     in.only({"action"});
-    if (const auto refusal = session.arm(action == "arm")) {
+    if (const auto refusal = session.arm(action == "arm", who)) {
       respond(net::problem(409, "Refused", *refusal));
       return;
     }
   } else if (action == "play" || action == "pause") {
     in.only({"action"});
-    session.pause(action == "pause");
+    pause(session, action == "pause", who);
   } else if (action == "reset") {
     in.only({"action"});
-    if (!open.loader().reset(answer_when_loaded(open, respond))) busy(respond);
+    if (!open.loader().reset(answer_when_loaded(open, respond))) return busy(respond);
+    tell_deed(session, who, "resets the run");
     return;
   } else {
     in.fail("action",
@@ -165,9 +176,10 @@ void control(ApiContext& context,
 }
 
 void save_scenario(ApiContext& context,
-                   const Session& session,
+                   OpenSession& open,
                    const json& body,
                    const net::Responder& respond) {
+  const Session& session = open.session();
   const JsonReader in(body, "");
   in.only({"name", "title"});
   const std::string name = in.text("name", 64);
@@ -175,13 +187,30 @@ void save_scenario(ApiContext& context,
     respond(net::problem(409, "Refused", "A recorded log is playing: there is no world to save."));
     return;
   }
-  const sim::Scenario scenario = session.as_scenario(name, in.text_or("title", name));
-  answer_from_worker(context, respond, [&context, scenario](Worker&) {
+  sim::Scenario scenario = session.as_scenario();
+  scenario.name = name;
+  scenario.title = in.text_or("title", name);
+  answer_from_worker(context, respond, [&context, scenario, id = open.id()](Worker&) {
     keep_scenario(context, scenario);
+    context.post_to_io([&context, scenario, id] {
+      if (OpenSession* const still = context.sessions.find(id)) still->session().saved(scenario);
+    });
     net::Response response = json_response(201, to_json(scenario));
     response.headers.push_back({"Location", "/api/v1/scenarios/" + scenario.name});
     return response;
   });
+}
+
+/// A pose moves obstacle `id`; a whole obstacle replaces it.
+algo::Request edit_of(json body, std::uint32_t id) {
+  if (body.is_object() && body.contains("type")) {
+    body["id"] = id;
+    return request_from_json({{"type", "change_obstacle"}, {"obstacle", std::move(body)}});
+  }
+  JsonReader(body, "").only({"x", "y", "heading"});
+  body["type"] = "move_obstacle";
+  body["id"] = id;
+  return request_from_json(body);
 }
 
 using SessionHandler =
@@ -193,7 +222,7 @@ SessionHandler goal_route(const char* type) {
     json body = body_json(request);
     JsonReader(body, "").only({"x", "y", "heading"});
     body["type"] = type;
-    submit_and_reply(open.session(), request_from_json(body), respond);
+    submit_and_reply(open.session(), request_from_json(body), request, respond);
   };
 }
 
@@ -210,19 +239,22 @@ class SessionRoutes {
            const std::string& path,
            const SessionHandler& handler,
            Sign sign = Sign::OfLife) {
-    for (const char* prefix : {"/api/v1/session", "/api/v1/sessions/{session}"}) {
+    for (const char* prefix : kPrefixes) {
       router_.add(method,
                   prefix + path,
                   guarded([&context = context_, handler, sign](const net::Request& request,
                                                                const net::Responder& respond) {
                     OpenSession& open = asked_for(context, request);
-                    if (sign == Sign::OfLife) {
+                    if (sign == Sign::OfLife && request.role >= net::Role::Operator) {
                       open.session().watch().script_sign(OperatorWatch::Clock::now());
                     }
                     handler(open, request, respond);
                   }),
                   kRequestBytes);
     }
+  }
+  void need(const std::string& method, const std::string& path, net::Role role) {
+    for (const char* prefix : kPrefixes) router_.need(method, prefix + path, role);
   }
   void get(const std::string& path, json (*document)(const Session&)) {
     add(
@@ -235,6 +267,9 @@ class SessionRoutes {
   }
 
  private:
+  static constexpr std::array<const char*, 2> kPrefixes{"/api/v1/session",
+                                                        "/api/v1/sessions/{session}"};
+
   static OpenSession& asked_for(ApiContext& context, const net::Request& request) {
     const auto id = request.params.find("session");
     if (id == request.params.end()) return context.sessions.main();
@@ -247,47 +282,15 @@ class SessionRoutes {
   ApiContext& context_;
 };
 
+json scenario_document(const Session& session) {
+  return to_json(session.as_scenario());
+}
+
 json parameters_document(const Session& session) {
   return to_json(session.state().asked.parameters);
 }
 
 }  // namespace
-
-LoadRequest load_request(const json& body) {
-  const JsonReader in(body, "");
-  in.only(
-      {"scenario", "controller", "filter", "physics", "vehicle", "robot", "seed", "parameters"});
-  LoadRequest out{.overrides = overrides_from_json(body)};
-  if (in.has("scenario")) out.scenario = in.text("scenario", 64);
-  return out;
-}
-
-bool load_from_json(ApiContext& context,
-                    OpenSession& session,
-                    const json& body,
-                    SessionLoader::Done done) {
-  const auto [name, overrides] = load_request(body);
-  if (const auto& hardware = session.session().state().spec.hardware) {
-    if (name && *name != hardware->scenario.name) {
-      throw DocumentError(
-          "scenario",
-          "cannot be loaded: this session drives real hardware. Open another for simulation");
-    }
-    const auto plan = [hardware, overrides = overrides] {
-      return [hardware, overrides] { return hardware_spec(hardware, overrides); };
-    };
-    return session.loader().load(plan, std::move(done));
-  }
-  const auto plan =
-      [&context, &session, name = name, overrides = overrides]() -> SessionLoader::Make {
-    sim::Scenario now;
-    if (!name) now = session.session().state().spec.scenario;
-    return [&library = context.library, name, now, overrides] {
-      return make_spec(name ? library.load(*name) : now, overrides, library.robots());
-    };
-  };
-  return session.loader().load(plan, std::move(done));
-}
 
 void add_session_routes(net::Router& router, ApiContext& context) {
   using Sign = SessionRoutes::Sign;
@@ -297,6 +300,7 @@ void add_session_routes(net::Router& router, ApiContext& context) {
   routes.get("", session_json);
   routes.get("/obstacles", obstacle_list);
   routes.get("/parameters", parameters_document);
+  routes.get("/scenario", scenario_document);
   routes.add("POST", "/watch", [](OpenSession&, const Request& request, const Responder& respond) {
     if (!request.body.empty()) JsonReader(body_json(request), "").only({});
     respond(json_response(200, {{"ok", true}}));
@@ -314,33 +318,48 @@ void add_session_routes(net::Router& router, ApiContext& context) {
       Sign::None);
   routes.add(
       "POST", "/requests", [](OpenSession& open, const Request& request, const Responder& respond) {
-        submit_and_reply(open.session(), request_from_json(body_json(request)), respond);
+        submit_and_reply(open.session(), request_from_json(body_json(request)), request, respond);
       });
   routes.add("PUT", "/goal", goal_route("set_goal"));
   routes.add("POST", "/goal", goal_route("add_goal"));
-  routes.add("DELETE", "/goal", [](OpenSession& open, const Request&, const Responder& respond) {
-    submit_and_reply(open.session(), algo::ClearGoal{}, respond);
-  });
+  routes.add(
+      "DELETE", "/goal", [](OpenSession& open, const Request& request, const Responder& respond) {
+        submit_and_reply(open.session(), algo::ClearGoal{}, request, respond);
+      });
   routes.add("POST",
              "/obstacles",
              [](OpenSession& open, const Request& request, const Responder& respond) {
                algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
-               submit_and_reply(open.session(), std::move(add), respond, 201);
+               submit_and_reply(open.session(), std::move(add), request, respond, 201);
              });
-  routes.add("PUT",
-             "/obstacles/{id}",
-             [](OpenSession& open, const Request& request, const Responder& respond) {
-               json body = body_json(request);
-               JsonReader(body, "").only({"x", "y", "heading"});
-               body["type"] = "move_obstacle";
-               body["id"] = obstacle_id(request);
-               submit_and_reply(open.session(), request_from_json(body), respond);
-             });
+  routes.add(
+      "PUT",
+      "/obstacles/{id}",
+      [](OpenSession& open, const Request& request, const Responder& respond) {
+        json body = body_json(request);
+        submit_and_reply(
+            open.session(), edit_of(std::move(body), obstacle_id(request)), request, respond);
+      });
+  routes.add(
+      "PUT", "/goals", [](OpenSession& open, const Request& request, const Responder& respond) {
+        json body = body_json(request);
+        JsonReader(body, "").only({"goals", "next", "loop"});
+        body["type"] = "set_goals";
+        submit_and_reply(open.session(), request_from_json(body), request, respond);
+      });
+  routes.add(
+      "PUT", "/start", [](OpenSession& open, const Request& request, const Responder& respond) {
+        if (const auto refusal = set_start(open.session(), body_json(request))) {
+          respond(net::problem(409, "Refused", *refusal));
+        } else {
+          respond(json_response(200, {{"ok", true}}));
+        }
+      });
   routes.add("DELETE",
              "/obstacles/{id}",
              [](OpenSession& open, const Request& request, const Responder& respond) {
                const algo::RemoveObstacle remove{obstacle_id(request)};
-               submit_and_reply(open.session(), remove, respond);
+               submit_and_reply(open.session(), remove, request, respond);
              });
   routes.add("PATCH",
              "/parameters",
@@ -350,12 +369,14 @@ void add_session_routes(net::Router& router, ApiContext& context) {
   routes.add("POST",
              "/control",
              [&context](OpenSession& open, const Request& request, const Responder& respond) {
-               control(context, open, body_json(request), respond);
+               control(context, open, request, respond);
              });
+  routes.need("POST", "/control", net::Role::Viewer);  // for Stop; the handlers look closer
+  routes.need("POST", "/requests", net::Role::Viewer);
   routes.add("POST",
              "/scenario",
              [&context](OpenSession& open, const Request& request, const Responder& respond) {
-               save_scenario(context, open.session(), body_json(request), respond);
+               save_scenario(context, open, body_json(request), respond);
              });
 }
 

@@ -43,10 +43,7 @@ SessionLoader::Make make_from(ApiContext& context, const json& body) {
   LoadRequest asked = load_request(body);
   if (!asked.overrides.seed) asked.overrides.seed = context.first.seed;
   return [&context, asked = std::move(asked)] {
-    return make_spec(
-        asked.scenario ? context.library.load(*asked.scenario) : context.first.scenario,
-        asked.overrides,
-        context.library.robots());
+    return spec_to_load(context.library, asked, context.first);
   };
 }
 

@@ -54,7 +54,7 @@ ChannelId Hub::add_channel(const ChannelSpec& spec) {
   return channels_.back().id;
 }
 
-void Hub::add_service(std::string name, ServiceHandler handler) {
+void Hub::add_service(std::string name, ServiceHandler handler, net::Role needed) {
   // Requests and responses are documented per service; the schema only says that both are objects.
   static constexpr std::string_view kObject = R"({"type":"object"})";
   Service service;
@@ -65,7 +65,7 @@ void Hub::add_service(std::string name, ServiceHandler handler) {
   service.request_schema = kObject;
   service.response_schema = kObject;
   services_.push_back(std::move(service));
-  service_handlers_.push_back(std::move(handler));
+  service_handlers_.push_back({std::move(handler), needed});
 }
 
 void Hub::on_publish(std::string topic, PublishHandler handler) {

@@ -91,13 +91,19 @@ class Hub {
   /// Throws std::invalid_argument if the topic exists already, std::out_of_range on an unknown
   /// schema. The schema decides the encoding: JSON Schema "json", else "flatbuffer".
   ChannelId add_channel(const ChannelSpec& spec);
-  void add_service(std::string name, ServiceHandler handler);
+  /// A client of a lower role than `needed` gets a failure that says so.
+  void add_service(std::string name,
+                   ServiceHandler handler,
+                   net::Role needed = net::Role::Operator);
+  /// Publishing, like setting parameters, is for operators.
   void on_publish(std::string topic, PublishHandler handler);
   /// `source` must outlive the hub.
   void set_parameters(ParameterSource& source) { parameters_ = &source; }
   /// Called when a client stops publishing on `topic`, or has gone.
   void on_publisher_gone(std::function<void(ClientId, const std::string& topic)> callback);
   void on_client_gone(std::function<void(ClientId)> callback);
+  /// Called when a client has come or gone.
+  void on_clients(std::function<void()> callback) { clients_changed_ = std::move(callback); }
 
   // ---- sending
   /// True while a client subscribes. A channel with ChannelSpec::newest is encoded only then.
@@ -119,6 +125,8 @@ class Hub {
   void announce(StatusLevel level, std::string_view sentence);
 
   std::size_t clients() const { return clients_.size(); }
+  /// Of a client that is connected.
+  const net::Visitor& who(ClientId client) const { return clients_.at(client).socket->who(); }
 
  private:
   struct Client {
@@ -170,11 +178,16 @@ class Hub {
   std::vector<Channel> channels_{};     // id = index + 1
   std::vector<ChannelState> states_{};  // same order
   std::vector<Service> services_{};     // id = index + 1
-  std::vector<ServiceHandler> service_handlers_{};
+  struct Handling {
+    ServiceHandler handler{};
+    net::Role needed = net::Role::Operator;
+  };
+  std::vector<Handling> service_handlers_{};
   std::map<std::string, PublishHandler> publish_handlers_{};
   ParameterSource* parameters_ = nullptr;
   std::function<void(ClientId, const std::string&)> publisher_gone_{};
   std::function<void(ClientId)> client_gone_{};
+  std::function<void()> clients_changed_{};
   std::map<ClientId, Client> clients_{};
   std::optional<std::chrono::steady_clock::time_point> time_sent_{};
   std::optional<std::uint64_t> time_ns_{};  // the run clock as last sent

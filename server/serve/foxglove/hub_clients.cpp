@@ -13,6 +13,12 @@ namespace {
 
 constexpr std::size_t kMaxPublishing = 64;  // channels one client may advertise
 
+/// Why `client` may not do what is for operators; empty if it may.
+std::string refusal_of(const net::WsClient& client) {
+  const net::Role has = client.who().role;
+  return has >= net::Role::Operator ? "" : net::role_refusal(has, net::Role::Operator);
+}
+
 }  // namespace
 
 // ---- service replies
@@ -64,6 +70,7 @@ void Hub::opened(const std::shared_ptr<net::WsClient>& socket) {
   send(client, advertise(channels_));
   if (!services_.empty()) send(client, advertise_services(services_));
   if (time_ns_) socket->send_latest(kTimeKey, time_message(*time_ns_), nullptr);
+  if (clients_changed_) clients_changed_();
 }
 
 void Hub::closed(ClientId id) {
@@ -80,6 +87,7 @@ void Hub::closed(ClientId id) {
     if (publisher_gone_) publisher_gone_(id, topic);
   }
   if (client_gone_) client_gone_(id);
+  if (clients_changed_) clients_changed_();
 }
 
 /// Parses a message of client `id` with `parse` and handles it.
@@ -166,8 +174,10 @@ void Hub::handle(Client& client, const Unsubscribe& op) {
 
 void Hub::handle(Client& client, const ClientAdvertise& op) {
   for (const ClientChannel& channel : op.channels) {
-    std::string wrong;
-    if (publish_handlers_.count(channel.topic) == 0) {
+    std::string wrong = refusal_of(*client.socket);
+    if (!wrong.empty()) {
+      // said below
+    } else if (publish_handlers_.count(channel.topic) == 0) {
       wrong = "nothing here listens to the topic '" + channel.topic + "'; there are:";
       for (const auto& [topic, handler] : publish_handlers_) wrong += ' ' + topic;
     } else if (channel.encoding != "json") {
@@ -229,9 +239,12 @@ void Hub::handle(Client& client, const SetParameters& op) {
   bool refused = false;
   for (const Parameter& parameter : op.parameters) {
     named.push_back(parameter.name);
+    const std::string not_allowed = refusal_of(*client.socket);
     std::string refusal = "there are no parameters here";
     try {
-      if (parameters_ != nullptr && parameter.value.is_null()) {
+      if (!not_allowed.empty()) {
+        refusal = not_allowed;
+      } else if (parameters_ != nullptr && parameter.value.is_null()) {
         refusal = "a parameter cannot be unset";
       } else if (parameters_ != nullptr) {
         refusal = parameters_->set(parameter.name, parameter.value);
@@ -283,10 +296,15 @@ void Hub::handle(Client& client, const ServiceRequest& request) {
                   std::string(request.encoding.substr(0, 100)) + "'");
     return;
   }
+  const Handling& handling = service_handlers_[request.service_id - 1];
+  if (const net::Role has = client.socket->who().role; has < handling.needed) {
+    reply.failure(net::role_refusal(has, handling.needed));
+    return;
+  }
   try {
     const nlohmann::json body =
         request.payload.empty() ? nlohmann::json::object() : parse_json(request.payload);
-    service_handlers_[request.service_id - 1](client.socket->id(), body, reply);
+    handling.handler(client.socket->id(), body, reply);
   } catch (const std::exception& error) {
     reply.failure(without_folders(error.what()));
   }

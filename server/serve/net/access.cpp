@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "server/run/json_limits.hpp"
+#include "server/serve/net/secret.hpp"
 
 namespace server::net {
 namespace {
@@ -86,10 +88,37 @@ bool is_loopback_name(std::string_view host) {
 
 Access::Access(AccessOptions options, Log log)
     : options_(std::move(options)), log_(std::move(log)), proxies_(options_.trusted_proxies) {
-  if (!options_.token.empty() && options_.token.size() < kMinToken) {
-    throw std::invalid_argument("the token has " + std::to_string(options_.token.size()) +
+  check_tokens();
+  if (token_required() && options_.viewer_token.empty()) options_.viewer_token = secret();
+}
+
+void Access::check_tokens() const {
+  const auto& [token, operators, viewers] =
+      std::tie(options_.token, options_.operator_token, options_.viewer_token);
+  for (const std::string* given : {&token, &operators, &viewers}) {
+    if (given->empty() || given->size() >= kMinToken) continue;
+    throw std::invalid_argument("the token has " + std::to_string(given->size()) +
                                 " characters; give it at least " + std::to_string(kMinToken));
   }
+  if (token.empty() && !(operators.empty() && viewers.empty())) {
+    throw std::invalid_argument(
+        "a token of viewers or operators needs one of admins as well: give --token");
+  }
+  const bool equal = (!operators.empty() && (operators == token || operators == viewers)) ||
+                     (!viewers.empty() && viewers == token);
+  if (equal) throw std::invalid_argument("two roles have the same token; give each its own");
+}
+
+/// Compares with every token, so that the time does not tell which one was nearly right.
+Role Access::role_of(std::string_view token) const {
+  Role role = Role::Nobody;
+  const auto compare = [&](const std::string& with, Role gives) {
+    if (!with.empty() && equal_constant_time(token, with)) role = gives;
+  };
+  compare(options_.viewer_token, Role::Viewer);
+  compare(options_.operator_token, Role::Operator);
+  compare(options_.token, Role::Admin);
+  return role;
 }
 
 bool Access::host_allowed(std::string_view host, std::string_view local_address) const {
@@ -137,6 +166,8 @@ void Access::identify(Request& request, const Address& peer) const {
   request.peer = sender.address.text();
   request.loopback = sender.loopback;
   request.https = sender.https;
+  const auto name = percent_decode(request.header(kNameHeader), false);
+  request.person = clean_name(name.value_or(""));
 }
 
 void Access::log(const std::string& line) const {
@@ -146,18 +177,20 @@ void Access::log(const std::string& line) const {
 Access::Presented Access::look_at(std::string_view token,
                                   const Address& from,
                                   Clock::time_point now) {
-  if (guesses_.may_look(from, now) && equal_constant_time(token, options_.token)) {
-    return {Credential::Right};
-  }
+  const Role role = guesses_.may_look(from, now) ? role_of(token) : Role::Nobody;
+  if (role != Role::Nobody) return {role};
   const GuessThrottle::Verdict verdict = guesses_.wrong(from, now);
   log(verdict.line);
-  return {Credential::Wrong, verdict.wait};
+  return {Role::Nobody, verdict.wait};
 }
 
 /// A cookie is random and long: an invalid one is old, not a guess.
 Access::Presented Access::look_at(const Request& request, Clock::time_point now) {
-  if (!token_required() || !login_of(request, now).empty()) return {Credential::Right};
+  if (!token_required()) return {Role::Admin};
   const std::string_view token = bearer(request);
+  if (const auto role = logins_.use(request.cookie(kCookie), now); role && token.empty()) {
+    return {*role};
+  }
   if (token.empty()) return {};
   return look_at(token, address_of(request), now);
 }
@@ -172,7 +205,7 @@ bool Access::may_drive(const Request& request, bool upgrade, bool api) const {
   return (upgrade || (api && !reads(request))) && needs_token(request);
 }
 
-std::optional<Response> Access::refuse(const Request& request,
+std::optional<Response> Access::refuse(Request& request,
                                        std::string_view local_address,
                                        bool upgrade,
                                        bool protected_path,
@@ -189,7 +222,8 @@ std::optional<Response> Access::refuse(const Request& request,
   const bool login = request.path == kLoginPath || request.path == kLogoutPath;
   const bool asks = (protected_path || upgrade) && needs_token(request);
   const Presented presented = asks ? look_at(request, now) : Presented{};
-  const bool authorized = presented.credential == Credential::Right;
+  const bool authorized = presented.role != Role::Nobody;
+  request.role = presented.role;
   if (presented.wait) return too_many_guesses(*presented.wait);
   const bool browser = request.count("Origin") > 0;
   if ((upgrade || !reads(request)) && (browser || !token_required() || !asks || authorized) &&
@@ -220,10 +254,11 @@ Response Access::login(const Request& request, Clock::time_point now) {
   const Address from = address_of(request);
   const Presented presented = look_at(token, from, now);
   if (presented.wait) return too_many_guesses(*presented.wait);
-  if (presented.credential != Credential::Right) return problem(401, "that is not the token");
-  log(guesses_.right(from, now));
+  if (presented.role == Role::Nobody) return problem(401, "that is not the token");
+  log(guesses_.right(from, presented.role, now));
   Response response = text_response(204, "", "");
-  response.headers.push_back(cookie_header(request, logins_.open(now), LoginSessions::kCookieLife));
+  response.headers.push_back(
+      cookie_header(request, logins_.open(presented.role, now), LoginSessions::kCookieLife));
   return response;
 }
 

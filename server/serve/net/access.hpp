@@ -14,7 +14,9 @@
 namespace server::net {
 
 struct AccessOptions {
-  std::string token{};                         // empty: no token required
+  std::string token{};                         // of admins; empty: no token required
+  std::string operator_token{};                // empty: operators need the one above
+  std::string viewer_token{};                  // empty: made at the start, for view-only links
   bool insecure = false;                       // allows access beyond loopback without a token
   std::vector<std::string> allow_hosts{};      // "robot.lan" or "robot.lan:8081"
   std::vector<std::string> allow_origins{};    // "https://viewer.example"
@@ -36,18 +38,19 @@ class Access {
  public:
   using Log = std::function<void(std::string_view)>;
 
-  /// Throws std::invalid_argument on a token shorter than 16 characters or a proxy that is no
-  /// address. `log` gets logins and guesses.
+  /// Throws std::invalid_argument on tokens that are too short, equal or without an admin's, or a
+  /// proxy that is no address. `log` gets logins and guesses.
   explicit Access(AccessOptions options, Log log = {});
 
-  /// Fills in the request's peer, loopback and https from its sender, as seen from this connection.
+  /// Fills in the request's peer, loopback and https from its sender, as seen from this connection,
+  /// and the name that the person gave.
   void identify(Request& request, const Address& peer) const;
   bool is_proxy(const Address& peer) const { return proxies_.contains(peer); }
 
   /// @param local_address  address of this end of the connection
   /// @param protected_path false for static files, which anyone may read
-  /// @return the refusal, or nothing if the request may pass
-  std::optional<Response> refuse(const Request& request,
+  /// @return the refusal, or nothing if the request may pass: then its role is filled in
+  std::optional<Response> refuse(Request& request,
                                  std::string_view local_address,
                                  bool upgrade,
                                  bool protected_path,
@@ -58,6 +61,8 @@ class Access {
   bool may_drive(const Request& request, bool upgrade, bool api) const;
 
   bool token_required() const { return !options_.token.empty(); }
+  /// The token that signs a person in as a viewer; empty if no token is required.
+  const std::string& viewer_token() const { return options_.viewer_token; }
 
   /// The body of POST /api/v1/login: {"token":"..."}. A right token gives 204 and a cookie, a wrong
   /// one 401, or 429 after too many.
@@ -67,6 +72,8 @@ class Access {
   static constexpr std::string_view kLoginPath = "/api/v1/login";
   static constexpr std::string_view kLogoutPath = "/api/v1/logout";
   static constexpr std::string_view kCookie = "tautline_session";
+  /// The header with a person's name, percent-encoded; an upgrade has it in its query, as `name`.
+  static constexpr std::string_view kNameHeader = "X-Tautline-Name";
 
   /// The login of the request's cookie, counted as used; empty for none.
   std::string login_of(const Request& request, Clock::time_point now);
@@ -78,12 +85,13 @@ class Access {
   void sweep(Clock::time_point now);
 
  private:
-  enum class Credential { None, Wrong, Right };
   struct Presented {
-    Credential credential = Credential::None;
+    Role role = Role::Nobody;
     std::optional<std::chrono::seconds> wait{};  // for a wrong token sent too often
   };
 
+  void check_tokens() const;
+  Role role_of(std::string_view token) const;
   bool needs_token(const Request& request) const;
   bool host_allowed(std::string_view host, std::string_view local_address) const;
   bool origin_allowed(const Request& request, bool login, bool authorized) const;

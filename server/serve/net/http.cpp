@@ -226,12 +226,16 @@ std::string response_head(const Response& response,
   }
   append_header(head, "X-Content-Type-Options", "nosniff");
   append_header(head, "Referrer-Policy", "no-referrer");
-  append_header(head,
-                "Content-Security-Policy",
-                "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
-                "blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; manifest-src "
-                "'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors "
-                "'none'");
+  // The policy binds documents. A script or a style has that of its page.
+  const std::string_view type = response.content_type;
+  if (!type.starts_with("text/javascript") && !type.starts_with("text/css")) {
+    append_header(head,
+                  "Content-Security-Policy",
+                  "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
+                  "blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; manifest-src "
+                  "'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors "
+                  "'none'");
+  }
   for (const Header& h : response.headers) append_header(head, h.name, h.value);
   append_header(head, "Connection", keep_alive ? "keep-alive" : "close");
   head.append("\r\n");

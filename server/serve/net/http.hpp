@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/serve/net/visitor.hpp"
+
 namespace server::net {
 
 /// Bytes shared by all their recipients; never changed once built.
@@ -35,6 +37,8 @@ struct Request {
   std::string peer{};     // address of the client, even behind a trusted proxy
   bool loopback = false;  // the client is on this machine
   bool https = false;     // a trusted proxy encrypts for it
+  Role role = Role::Nobody;
+  std::string person{};  // the name that the person gave, cleaned; may be empty
 
   /// Value of the first header of that name (case does not matter); empty if there is none.
   std::string_view header(std::string_view name) const;
@@ -44,6 +48,7 @@ struct Request {
   std::vector<std::string_view> elements(std::string_view name) const;
   /// Value of the cookie `name`; empty if there is none.
   std::string_view cookie(std::string_view name) const;
+  Visitor visitor() const { return {role, peer, person}; }
 };
 
 /// A body made while it is sent, so that its memory is one slice per client, however long the body

@@ -15,6 +15,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <fmt/format.h>
 
+#include "server/serve/net/compression.hpp"
 #include "server/serve/net/core.hpp"
 #include "server/serve/net/response_writer.hpp"
 #include "server/serve/net/upgrade.hpp"
@@ -290,7 +291,9 @@ bool HttpConnection::admitted(bool upgrading) {
     return false;
   }
   // A client that may drive, and does, will be let in again.
-  if (core_.access.may_drive(request_, upgrading, is_api())) core_.connections.welcome(client, now);
+  if (request_.role >= Role::Operator && core_.access.may_drive(request_, upgrading, is_api())) {
+    core_.connections.welcome(client, now);
+  }
   return true;
 }
 
@@ -318,13 +321,16 @@ void HttpConnection::upgrade() {
             false);
     return;
   }
+  if (const auto name = request_.query.find("name"); name != request_.query.end()) {
+    request_.person = clean_name(name->second);
+  }
   ended_ = true;  // the socket is moved away; do not touch it after this
   start_websocket(core_,
                   std::move(socket_),
                   parser_->get(),
                   *asked,
                   {.subprotocol = std::move(subprotocol),
-                   .peer = request_.peer,
+                   .who = request_.visitor(),
                    .query = request_.query,
                    .login = core_.access.login_of(request_, Clock::now())});
   core_.remove(number_);
@@ -403,6 +409,7 @@ void HttpConnection::send_file(bool keep_alive) {
 void HttpConnection::respond(Response response, bool keep_alive) {
   body_place_ = BodyRoom::Place();
   served_ = Clock::now();
+  compress_json(request_, response);
   if (auto cookie = core_.access.renewal(request_, served_)) {
     response.headers.push_back(std::move(*cookie));
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,16 +23,16 @@ bool equal_constant_time(std::string_view a, std::string_view b) {
   return difference == 0;
 }
 
-std::string LoginSessions::open(Clock::time_point now) {
+std::string LoginSessions::open(Role role, Clock::time_point now) {
   std::erase_if(sessions_, [&](const auto& entry) { return now - entry.second.used > kIdle; });
   if (sessions_.size() >= kMost) {
     sessions_.erase(
         std::min_element(sessions_.begin(), sessions_.end(), [](const auto& a, const auto& b) {
-          return a.second.used < b.second.used;
+          return std::tie(a.second.role, a.second.used) < std::tie(b.second.role, b.second.used);
         }));
   }
   std::string id = secret();
-  sessions_[id] = {now, now};
+  sessions_[id] = {role, now, now};
   return id;
 }
 
@@ -44,12 +45,12 @@ LoginSessions::Sessions::iterator LoginSessions::find(std::string_view id, Clock
   return found;
 }
 
-bool LoginSessions::use(std::string_view id, Clock::time_point now) {
-  if (id.empty()) return false;
+std::optional<Role> LoginSessions::use(std::string_view id, Clock::time_point now) {
+  if (id.empty()) return std::nullopt;
   const auto session = find(id, now);
-  if (session == sessions_.end()) return false;
+  if (session == sessions_.end()) return std::nullopt;
   session->second.used = now;
-  return true;
+  return session->second.role;
 }
 
 void LoginSessions::keep(std::string_view id, Clock::time_point now) {
@@ -139,9 +140,9 @@ std::string GuessThrottle::overdue(Clock::time_point now) {
   return {};
 }
 
-std::string GuessThrottle::right(const Address& from, Clock::time_point now) {
+std::string GuessThrottle::right(const Address& from, Role role, Clock::time_point now) {
   if (!lines_.take(now)) return {};
-  return fmt::format("Somebody at {} has logged in.", from.text());
+  return fmt::format("Somebody at {} has logged in as {}.", from.text(), name(role));
 }
 
 }  // namespace server::net

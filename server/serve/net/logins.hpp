@@ -11,6 +11,7 @@
 
 #include "server/serve/net/address.hpp"
 #include "server/serve/net/clock.hpp"
+#include "server/serve/net/visitor.hpp"
 
 namespace server::net {
 
@@ -26,10 +27,11 @@ class LoginSessions {
   static constexpr std::chrono::hours kCookieLife{7 * 24};
   static constexpr std::chrono::hours kRenewal{24};
 
-  /// Issues a new cookie. At kMost cookies, drops the least recently used one.
-  std::string open(Clock::time_point now);
-  /// True if `id` is a valid cookie; counts as use.
-  bool use(std::string_view id, Clock::time_point now);
+  /// Issues a new cookie. At kMost cookies, drops the least recently used one of the lowest role:
+  /// any number of viewers leaves the operators logged in.
+  std::string open(Role role, Clock::time_point now);
+  /// The role of a valid cookie; counts as use.
+  std::optional<Role> use(std::string_view id, Clock::time_point now);
   /// Counts a valid cookie as used: a connection opened with it is still open.
   void keep(std::string_view id, Clock::time_point now);
   /// True, once, when the browser must get this cookie with a new lifetime.
@@ -38,8 +40,9 @@ class LoginSessions {
   std::size_t size() const { return sessions_.size(); }
 
  private:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMost = 256;
   struct Session {
+    Role role = Role::Viewer;
     Clock::time_point used{};
     Clock::time_point given{};
   };
@@ -91,7 +94,7 @@ class GuessThrottle {
   /// Counts a wrong or unchecked token from `from`.
   Verdict wrong(const Address& from, Clock::time_point now);
   /// The log line for a successful login.
-  std::string right(const Address& from, Clock::time_point now);
+  std::string right(const Address& from, Role role, Clock::time_point now);
   /// A log line for guesses not yet logged, for when guessing has stopped; empty if there are none.
   std::string overdue(Clock::time_point now);
   std::size_t addresses() const { return accounts_.size(); }

@@ -36,6 +36,21 @@ bool matches(const std::vector<std::string>& pattern, const std::vector<std::str
                     });
 }
 
+/// The refusal of the first query that is not among `known`.
+std::optional<std::string> unknown_query(const Request& request,
+                                         const std::optional<std::vector<std::string>>& known) {
+  if (!known) return std::nullopt;
+  for (const auto& [name, value] : request.query) {
+    if (std::ranges::count(*known, name) > 0) continue;
+    return fmt::format("{} {} does not know the query '{}'; it takes {}",
+                       request.method,
+                       request.path,
+                       name,
+                       known->empty() ? "none" : fmt::format("{}", fmt::join(*known, ", ")));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void Router::add(std::string method, std::string pattern, Handler handler, std::size_t body_bytes) {
@@ -47,7 +62,8 @@ void Router::add(std::string method, std::string pattern, Handler handler, std::
       throw std::invalid_argument(fmt::format("route {} {} is there already", method, pattern));
     }
   }
-  entries_.push_back({split(pattern), std::move(handler), body_bytes});
+  const Role needed = method == "GET" ? Role::Nobody : Role::Operator;
+  entries_.push_back({split(pattern), std::move(handler), body_bytes, needed});
   routes_.push_back({std::move(method), std::move(pattern)});
 }
 
@@ -61,6 +77,26 @@ void Router::add(std::string method,
         responder(answer(request));
       }),
       body_bytes);
+}
+
+void Router::take_queries(std::string_view method,
+                          std::string_view pattern,
+                          std::vector<std::string> names) {
+  for (std::size_t i = 0; i < routes_.size(); ++i) {
+    if (routes_[i].method == method && routes_[i].pattern == pattern) {
+      entries_[i].queries = std::move(names);
+      return;
+    }
+  }
+}
+
+void Router::need(std::string_view method, std::string_view pattern, Role role) {
+  for (std::size_t i = 0; i < routes_.size(); ++i) {
+    if (routes_[i].method != method || routes_[i].pattern != pattern) continue;
+    entries_[i].needed = role;
+    return;
+  }
+  throw std::invalid_argument(fmt::format("there is no route {} {}", method, pattern));
 }
 
 bool Router::knows(std::string_view path) const {
@@ -83,9 +119,11 @@ std::size_t Router::body_limit(std::string_view method, std::string_view path) c
 const Router::Entry* Router::find(Request& request, std::string& allow) const {
   const std::vector<std::string> segments = split(request.path);
   const std::string& method = request.method == "HEAD" ? "GET" : request.method;
+  // A path that is itself a pattern matches no parameter: /runs/delete is not the run "delete".
+  const bool literal = std::ranges::count(entries_, segments, &Entry::segments) > 0;
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry& entry = entries_[i];
-    if (!matches(entry.segments, segments)) continue;
+    if (literal ? entry.segments != segments : !matches(entry.segments, segments)) continue;
     if (routes_[i].method != method) {
       allow.append(allow.empty() ? "" : ", ").append(routes_[i].method);
       if (routes_[i].method == "GET") allow += ", HEAD";
@@ -112,6 +150,14 @@ std::string Router::dispatch(Request& request, const Responder& responder) const
         problem(405, request.path + " does not take " + request.method + ", only " + allow);
     response.headers.push_back({"Allow", allow});
     responder(std::move(response));
+    return {};
+  }
+  if (request.role < entry->needed) {
+    responder(problem(403, role_refusal(request.role, entry->needed)));
+    return {};
+  }
+  if (const auto stranger = unknown_query(request, entry->queries)) {
+    responder(problem(400, *stranger));
     return {};
   }
   try {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,14 +36,23 @@ class Router {
            std::string pattern,
            SyncHandler handler,
            std::size_t body_bytes = kAnyBody);
+  /// From now on a request of this route that names another query than `names` gets 400. No effect
+  /// on a route that does not exist.
+  void take_queries(std::string_view method,
+                    std::string_view pattern,
+                    std::vector<std::string> names);
   static constexpr std::size_t kAnyBody = std::numeric_limits<std::size_t>::max();
+  /// Sets who may use a route; without this, everybody who is let in may read (GET) and operators
+  /// may do the rest. Throws std::invalid_argument if there is no such route.
+  void need(std::string_view method, std::string_view pattern, Role role);
 
   /// True if a pattern of any method matches `path`.
   bool knows(std::string_view path) const;
   /// Largest body for this method and path [bytes].
   std::size_t body_limit(std::string_view method, std::string_view path) const;
   /// Calls the handler with request.params filled; answers 404, or 405 with Allow, if there is
-  /// none. HEAD runs the handler of GET. An HttpError becomes its problem, any other exception 500.
+  /// none, 403 if the request's role may not. HEAD runs the handler of GET. An HttpError becomes
+  /// its problem, any other exception 500.
   /// @return what() of an exception that became 500, else empty
   std::string dispatch(Request& request, const Responder& responder) const;
 
@@ -54,6 +64,8 @@ class Router {
     std::vector<std::string> segments{};
     Handler handler{};
     std::size_t body_bytes = kAnyBody;
+    Role needed = Role::Nobody;
+    std::optional<std::vector<std::string>> queries{};  // unset: any
   };
   const Entry* find(Request& request, std::string& allow) const;
 

@@ -281,6 +281,8 @@ Server::Server(ServerOptions options) : impl_(std::make_unique<Impl>(std::move(o
       std::string(Access::kLogoutPath),
       SyncHandler([impl = impl_.get()](const Request& request) { return impl->logout(request); }),
       kLoginBytes);
+  impl_->core.router.need("POST", Access::kLoginPath, Role::Nobody);
+  impl_->core.router.need("POST", Access::kLogoutPath, Role::Nobody);
 }
 
 Server::~Server() {
@@ -355,6 +357,14 @@ std::function<void()> Server::bell(std::function<void()> fn) {
 
 std::size_t Server::connections() const {
   return impl_->core.connections.size();
+}
+
+std::size_t Server::most_connections() const {
+  return impl_->core.options.limits.connections;
+}
+
+const Access& Server::access() const {
+  return impl_->core.access;
 }
 
 }  // namespace server::net

@@ -96,6 +96,9 @@ class Server {
 
   /// Open connections, HTTP and WebSocket. Io thread only.
   std::size_t connections() const;
+  /// Their limit, which the system may have lowered.
+  std::size_t most_connections() const;
+  const Access& access() const;
 
  private:
   struct Impl;

@@ -13,6 +13,8 @@
 
 #include <sys/stat.h>
 
+#include "server/serve/net/compression.hpp"
+
 namespace server::net {
 namespace {
 
@@ -40,12 +42,44 @@ std::optional<fs::path> resolve(const fs::path& root, std::string_view path) {
   return file;
 }
 
-/// Changes whenever the file is rewritten: size and modification time in nanoseconds.
-std::optional<std::string> entity_tag(const fs::path& file) {
+struct Coding {
+  std::string_view name{};       // in Accept-Encoding and Content-Encoding
+  std::string_view extension{};  // of the compressed file beside the plain one
+};
+constexpr std::array<Coding, 2> kCodings{{{"br", ".br"}, {"gzip", ".gz"}}};  // the smaller first
+
+/// True for a name such as "app-NLYKNPYS.js": the build puts a hash of the content into it.
+bool named_by_content(const fs::path& file) {
+  constexpr std::size_t kHash = 8;
+  const std::string stem = file.stem().string();
+  if (stem.size() < kHash + 1 || stem[stem.size() - kHash - 1] != '-') return false;
+  return std::all_of(stem.end() - kHash, stem.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '2' && c <= '7');
+  });
+}
+
+/// The file to send: a compressed one that the build has put beside `plain`, if the client takes
+/// it.
+std::pair<fs::path, std::string_view> best_form(const fs::path& root,
+                                                const fs::path& plain,
+                                                const Request& request) {
+  for (const Coding& coding : kCodings) {
+    if (!accepts_coding(request, coding.name)) continue;
+    const std::string path = '/' + plain.lexically_relative(root).string();
+    if (const auto found = resolve(root, path + std::string(coding.extension))) {
+      return {*found, coding.name};
+    }
+  }
+  return {plain, {}};
+}
+
+/// Changes whenever the file is rewritten: size and modification time in nanoseconds. Each coding
+/// has its own.
+std::optional<std::string> entity_tag(const fs::path& file, std::string_view coding) {
   struct stat info {};
   if (::stat(file.c_str(), &info) != 0) return std::nullopt;
   return '"' + std::to_string(info.st_size) + '-' + std::to_string(info.st_mtim.tv_sec) + '.' +
-         std::to_string(info.st_mtim.tv_nsec) + '"';
+         std::to_string(info.st_mtim.tv_nsec) + std::string(coding) + '"';
 }
 
 }  // namespace
@@ -94,16 +128,24 @@ Response StaticFiles::get(const Request& request) const {
   const std::optional<fs::path> file =
       resolve(root_, request.path == "/" ? "/index.html" : request.path);
   if (!file) return missing;
-  const std::optional<std::string> tag = entity_tag(*file);
-  std::ifstream in(*file, std::ios::binary);
+  const auto [form, coding] = best_form(root_, *file, request);
+  const std::optional<std::string> tag = entity_tag(form, coding);
+  std::ifstream in(form, std::ios::binary);
   if (!tag || !in) return missing;
 
   Response response;
   response.content_type = mime_type(file->extension().string());
-  // The browser must always ask again, so that a new build shows at once. The tag keeps that cheap.
-  response.headers = {{"ETag", *tag}, {"Cache-Control", "no-cache"}};
+  // A new build shows at once: the browser must always ask again, except for a part whose name
+  // changes with its content. The tag keeps that cheap.
+  response.headers = {
+      {"ETag", *tag},
+      {"Cache-Control",
+       named_by_content(*file) ? "public, max-age=31536000, immutable" : "no-cache"},
+      {"Vary", "Accept-Encoding"}};
+  if (!coding.empty()) response.headers.push_back({"Content-Encoding", std::string(coding)});
   if (request.header("If-None-Match") == *tag) {
     response.status = 304;
+    std::erase_if(response.headers, [](const Header& h) { return h.name == "Content-Encoding"; });
     return response;
   }
   response.body = std::make_shared<const std::string>(std::istreambuf_iterator<char>(in),

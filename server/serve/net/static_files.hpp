@@ -14,7 +14,9 @@ class StaticFiles {
   /// `root` may be empty: then every path answers 404 and says that no page is served.
   explicit StaticFiles(std::filesystem::path root);
 
-  /// The file at request.path, with "/" as index.html; 304 if If-None-Match names its tag. 404 for
+  /// The file at request.path, with "/" as index.html, in the best coding that the client accepts
+  /// and the build has put beside it (NAME.br, NAME.gz). A file named by its content may be kept
+  /// for ever; every other one must be asked for again. 304 if If-None-Match names its tag. 404 for
   /// missing files, folders, hidden files and every path that would leave the root by "..",
   /// backslash or symbolic link. 405 for methods other than GET and HEAD.
   Response get(const Request& request) const;

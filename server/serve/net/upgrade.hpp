@@ -18,7 +18,7 @@ using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_bo
 /// The connecting client, from a request that has passed every check.
 struct WsVisitor {
   std::string subprotocol{};
-  std::string peer{};
+  Visitor who{};
   std::map<std::string, std::string> query{};
   std::string login{};
 };

@@ -38,6 +38,7 @@ class WsClient {
   virtual const std::map<std::string, std::string>& query() const = 0;
   /// The negotiated subprotocol.
   virtual const std::string& subprotocol() const = 0;
+  virtual const Visitor& who() const = 0;
   virtual bool open() const = 0;
 
   /// Queues a message that must arrive, in order. Disconnects a client if more of them pile up than

@@ -50,6 +50,7 @@ class WsConnection final : public Connection,
   std::uint32_t id() const override { return id_; }
   const std::map<std::string, std::string>& query() const override { return visitor_.query; }
   const std::string& subprotocol() const override { return visitor_.subprotocol; }
+  const Visitor& who() const override { return visitor_.who; }
   bool open() const override { return state_ == State::Open; }
   void send_control(FrameKind kind, Payload payload) override;
   bool send_latest(std::uint32_t key,
@@ -117,12 +118,12 @@ void WsConnection::limit_kernel_queue() {
                    TCP_NOTSENT_LOWAT,
                    &bytes,
                    sizeof bytes) != 0) {
-    core_.log("cannot limit the kernel's send queue of " + visitor_.peer);
+    core_.log("cannot limit the kernel's send queue of " + visitor_.who.address);
   }
 }
 
 void WsConnection::start(const UpgradeRequest& request) {
-  const Address client = Address::parse(visitor_.peer).value_or(Address());
+  const Address client = Address::parse(visitor_.who.address).value_or(Address());
   number_ = core_.connections.add(shared_from_this(), client, Connections::Kind::WebSocket, false);
   heard_ = counters_.heard = Clock::now();
   deadline_ = heard_ + core_.options.timeouts.header;
@@ -211,7 +212,7 @@ void WsConnection::send_control(FrameKind kind, Payload payload) {
   message.kind = kind;
   message.payload = std::move(payload);
   if (!queue_.push_control(std::move(message))) {
-    core_.log("disconnecting " + visitor_.peer + ": it does not read its control messages");
+    core_.log("disconnecting " + visitor_.who.address + ": it does not read its control messages");
     // A closing frame would queue behind unread messages. check() ends the connection, not this
     // call: the caller may be iterating over the clients.
     state_ = State::Closing;

@@ -25,7 +25,9 @@ using nlohmann::json;
 class AppTest : public ::testing::Test {
  protected:
   AppTest() : AppTest(kinematic_case1()) {}
-  explicit AppTest(RunSpec first, const std::string& token = "", const SessionRules& rules = {}) {
+  explicit AppTest(RunSpec first, const std::string& token = "", const SessionRules& rules = {})
+      : AppTest(std::move(first), net::AccessOptions{.token = token}, rules) {}
+  AppTest(RunSpec first, const net::AccessOptions& access, const SessionRules& rules = {}) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     folder_ = std::filesystem::temp_directory_path() /
               ("tautline_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
@@ -33,7 +35,7 @@ class AppTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     AppOptions options;
     options.net.port = 0;
-    options.net.access.token = token;
+    options.net.access = access;
     options.database = folder_ / "runs.db";
     options.scenarios = folder_ / "scenarios";
     options.first = std::move(first);
@@ -43,7 +45,7 @@ class AppTest : public ::testing::Test {
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
     thread_ = std::thread([this] { app_->run(); });
     const std::string authorization =
-        token.empty() ? "" : "Authorization: Bearer " + token + "\r\n";
+        access.token.empty() ? "" : "Authorization: Bearer " + access.token + "\r\n";
     EXPECT_TRUE(net::test::eventually([&] {
       return ask("GET", "/session", "", authorization).body.find("\"pose\"") != std::string::npos;
     }));

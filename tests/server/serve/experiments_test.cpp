@@ -1,149 +1,279 @@
-// tests/server/serve/experiments_test.cpp: queued runs at the end of the program and with a full
-// store.
-#include "server/serve/experiments.hpp"
+// tests/server/serve/experiments_test.cpp: experiments of the server: the same numbers as from the
+// command line, after any interruption; their turns and their ends.
+#include "server/serve/experiments/experiments.hpp"
 
-#include <atomic>
-#include <future>
-#include <optional>
+#include <chrono>
+#include <functional>
+#include <thread>
 
-#include "tests/server/record/recorder_fixture.hpp"
+#include "tests/temporary_folder.hpp"
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "server/record/record_sink.hpp"
-#include "server/record/run_json.hpp"
-#include "server/record/verify.hpp"
-#include "server/run/scenario_library.hpp"
+#include "server/experiment/sweep/sweep_report.hpp"
+#include "server/experiment/sweep/sweep_results.hpp"
+#include "server/experiment/sweep/sweep_run.hpp"
+#include "server/run/text_file.hpp"
+#include "server/serve/net/http.hpp"
 
 namespace server {
 namespace {
 
-using db::RunReader;
-using db::RunStatus;
-using testing::HasSubstr;
+namespace fs = std::filesystem;
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
-RunSpec case1() {
-  RunOverrides kinematic;
-  kinematic.physics = sim::PhysicsKind::Kinematic;
-  return make_spec(ScenarioLibrary({}, {}).load("case1"), kinematic);
+/// 1 m to the goal: some hundredths of a second a run.
+json document(const char* name, int repeats, double goal_x = 1) {
+  return {{"name", name},
+          {"scenarios", {{{"name", "free"}, {"goal", {{"x", goal_x}, {"y", 0.2}}}}}},
+          {"controllers", {"original", "go_to_goal"}},
+          {"repeats", repeats},
+          {"physics", "kinematic"},
+          {"comparisons", {{"baseline", "go_to_goal"}}}};
 }
 
-class ExperimentsTest : public test::RecorderFiles {
+/// Hours of CPU, so that it is running for as long as a test lasts.
+json endless(const char* name) {
+  json long_one = document(name, 1000, 500);
+  long_one["time_limit"] = 3000;
+  return long_one;
+}
+
+bool comes(const std::function<bool()>& holds) {
+  for (int i = 0; i < 2000; ++i) {
+    if (holds()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+bool comes_to(const Experiment& experiment, ExperimentState state) {
+  return comes([&] { return experiment.info().state == state; });
+}
+
+class ExperimentsTest : public testing::Test {
  protected:
-  static std::vector<db::RunId> start(Experiments& experiments, const Experiment& experiment) {
-    std::promise<std::vector<db::RunId>> runs;
-    experiments.start(experiment, [&](std::vector<db::RunId> given, const std::string& failure) {
-      EXPECT_EQ(failure, "");
-      runs.set_value(std::move(given));
-    });
-    return runs.get_future().get();
-  }
-  static std::string refused(Experiments& experiments, const Experiment& experiment) {
-    std::promise<std::string> why;
-    experiments.start(experiment, [&](const std::vector<db::RunId>&, const std::string& failure) {
-      why.set_value(failure);
-    });
-    return why.get_future().get();
-  }
-  static std::string resume(Experiments& experiments, db::RunId run) {
-    std::promise<std::string> refusal;
-    experiments.resume(
-        run, case1(), 0, 1000, [&](const std::string& why) { refusal.set_value(why); });
-    return refusal.get_future().get();
-  }
-  bool comes_to(db::RunId run, RunStatus status) {
-    RunReader reader(path);
-    return comes([&] { return get(reader, run).status == status; });
-  }
+  fs::path folder() const { return root_.path() / "experiments"; }
+  ExperimentRules rules() const { return {.folder = folder(), .workers = 2}; }
+  const ScenarioLibrary library{"", ""};
+
+ private:
+  tests::TemporaryFolder root_{};
 };
 
-TEST_F(ExperimentsTest, InterruptedRunsRunAgainUnderTheirNumbers) {
-  std::vector<db::RunId> runs;
+std::string results_in(const fs::path& folder) {
+  std::string all;
+  for (const char* const file : {"results.json", "runs.csv", "report.md", "report.tex"}) {
+    all += read_text(folder / file);
+  }
+  return all;
+}
+
+/// The files that `tautline sweep` would write.
+std::string expected(const json& source, const ScenarioLibrary& library, const fs::path& folder) {
+  const sweep::Plan plan(sweep::document_from_json(source, library));
+  const sweep::Rows rows = run_sweep(plan, folder, {.threads = 1});
+  write_report(plan, rows, results_of(plan, rows), folder);
+  return results_in(folder);
+}
+
+TEST_F(ExperimentsTest, GivesTheFilesOfTheCommandLine) {
+  Experiments experiments(rules(), library);
+  const auto posted = experiments.post(document("short", 4), "", "Ann");
+  EXPECT_TRUE(posted.created);
+  EXPECT_EQ(posted.experiment->info().by, "Ann");
+  EXPECT_EQ(posted.experiment->info().runs, 8U);
+  ASSERT_TRUE(comes_to(*posted.experiment, ExperimentState::Finished));
+  EXPECT_EQ(posted.experiment->info().done, 8U);
+  posted.experiment->write_report();
+  EXPECT_EQ(results_in(posted.experiment->folder()),
+            expected(document("short", 4), library, folder().parent_path() / "alone"));
+  // The same document is the same experiment, which has nothing left to do.
+  const auto again = experiments.post(document("short", 4), "", "Bob");
+  EXPECT_FALSE(again.created);
+  EXPECT_EQ(again.experiment, posted.experiment);
+  EXPECT_EQ(again.experiment->info().state, ExperimentState::Finished);
+}
+
+TEST_F(ExperimentsTest, GoesOnAfterTheEndOfTheServer) {
+  const json source = document("cut", 30);
+  std::string id;
   {
-    Recorder recorder(path, recorder_options());
-    Experiments experiments(recorder);
-    runs = start(experiments, {.spec = case1(), .repeats = 2, .pace = 0.5});
-    ASSERT_EQ(runs.size(), 2u);
-    ASSERT_TRUE(comes_to(runs[0], RunStatus::Recording));
-    RunReader reader(path);
-    ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
+    Experiments experiments(rules(), library);
+    const auto posted = experiments.post(source, "", "");
+    id = posted.experiment->info().id;
+    ASSERT_TRUE(comes([&] { return posted.experiment->info().done >= 5; }));
   }
-  Recorder recorder(path, recorder_options());
-  Experiments experiments(recorder);
-  RunReader reader(path);
-  for (const db::RunId run : runs) {
-    EXPECT_EQ(get(reader, run).status, RunStatus::Interrupted);
-    EXPECT_THAT(get(reader, run).reason, HasSubstr("stopped"));
-    EXPECT_EQ(resume(experiments, run), "");
+  Experiments experiments(rules(), library);
+  const std::shared_ptr<Experiment> experiment = experiments.find(id);
+  EXPECT_EQ(experiment->info().state, ExperimentState::Interrupted);
+  EXPECT_EQ(experiment->info().name, "cut");
+  experiments.resume(id);
+  EXPECT_GE(experiment->info().done, 5U);
+  ASSERT_TRUE(comes_to(*experiment, ExperimentState::Finished));
+  experiment->write_report();
+  EXPECT_EQ(results_in(experiment->folder()),
+            expected(source, library, folder().parent_path() / "alone"));
+}
+
+TEST_F(ExperimentsTest, ARunUnderWayAtTwoDeathsOfTheServerFailsAndTheOthersFinish) {
+  std::string id;
+  {
+    Experiments experiments(rules(), library);
+    id = experiments.post(document("deadly", 4), "", "").experiment->info().id;
+    ASSERT_TRUE(comes_to(*experiments.find(id), ExperimentState::Finished));
   }
-  for (const db::RunId run : runs) {
-    ASSERT_TRUE(comes_to(run, RunStatus::Finished));
-    EXPECT_EQ(get(reader, run).outcome, "reached");
-    const Verification verification = verify_run(reader, run);
-    EXPECT_EQ(verification.difference, std::nullopt);
-    EXPECT_EQ(verification.incomplete, std::nullopt);
-    EXPECT_EQ(verification.ticks, get(reader, run).ticks);
-    EXPECT_THAT(resume(experiments, run), HasSubstr("neither interrupted"));
+  // As if it had died twice, with the runs 2 and 5, and then with the run 5 alone.
+  const fs::path log = folder() / id / "runs.jsonl";
+  const std::string text = read_text(log);
+  write_text(log,
+             text.substr(0, text.find('\n') + 1) + "{\"begun\":2}\n{\"begun\":5}\n{\"begun\":5}\n");
+  Experiments experiments(rules(), library);
+  const std::shared_ptr<Experiment> experiment = experiments.find(id);
+  experiments.resume(id);
+  ASSERT_TRUE(comes_to(*experiment, ExperimentState::Finished));
+  EXPECT_EQ(experiment->info().done, 8U);
+  EXPECT_EQ(experiment->info().failed, 1U);
+  EXPECT_THAT(experiment->rows().reason(5), HasSubstr("killed the program twice"));
+  EXPECT_FALSE(experiment->rows().broken(2));
+  experiments.resume(id);  // has nothing to make
+  EXPECT_EQ(experiment->info().failed, 1U);
+}
+
+TEST_F(ExperimentsTest, ARunThatMayHaveKilledTheServerWaitsUntilItIsAlone) {
+  const sweep::Plan plan(sweep::document_from_json(document("alone", 1), library));
+  ExperimentInfo info{.id = "alone", .name = "alone"};
+  const fs::path own = folder() / "alone";
+  make_folder(own);
+  sweep::open_log(plan, own);
+  write_text(own / "runs.jsonl", read_text(own / "runs.jsonl") + "{\"begun\":1}\n");
+  Experiment experiment(own, plan, info);
+  EXPECT_TRUE(experiment.next_is_alone());
+  const auto first = experiment.next();
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->run, 1U);
+  EXPECT_TRUE(first->alone);
+  EXPECT_FALSE(experiment.next_is_alone());
+  experiment.put_back(1);  // stopped: it still may be the cause
+  EXPECT_TRUE(experiment.next_is_alone());
+  const auto again = experiment.next();
+  experiment.take(again->run, run_one(*again->plan, again->run, {}));
+  EXPECT_FALSE(experiment.next_is_alone());
+  EXPECT_FALSE(experiment.next()->alone);
+  experiment.put_back(0);
+}
+
+TEST_F(ExperimentsTest, PausesAndReportsTheRunsSoFar) {
+  Experiments experiments(rules(), library);
+  const auto posted = experiments.post(document("some", 1000), "", "");
+  const std::shared_ptr<Experiment>& experiment = posted.experiment;
+  const std::string id = experiment->info().id;
+  ASSERT_TRUE(comes([&] { return experiment->info().done >= 3; }));
+  experiments.pause(id);
+  EXPECT_THROW(experiments.pause(id), net::HttpError);
+  ASSERT_TRUE(comes([&] { return !experiment->at_work(); }));
+  const std::size_t done = experiment->info().done;
+  ASSERT_LT(done, 2000U);
+  experiment->write_report();
+  EXPECT_THAT(read_text(experiment->folder() / "report.md"), HasSubstr("INCOMPLETE: of 2000 runs"));
+  EXPECT_EQ(experiment->info().done, done);
+  experiments.cancel(id);
+  EXPECT_EQ(experiment->info().state, ExperimentState::Cancelled);
+  EXPECT_THROW(experiments.cancel(id), net::HttpError);
+  experiments.resume(id);
+  EXPECT_TRUE(comes([&] { return experiment->info().done > done; }));
+}
+
+TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
+  Experiments experiments(rules(), library);
+  const auto posted = experiments.post(document("read", 2), "", "");
+  Experiment& experiment = *posted.experiment;
+  ASSERT_TRUE(comes_to(experiment, ExperimentState::Finished));
+  ASSERT_TRUE(comes([&] { return !experiment.at_work(); }));
+  const std::jthread giver([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) experiment.unload();
+  });
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_EQ(experiment.plan()->size(), 4U);
+    EXPECT_EQ(experiment.rows().size(), 4U);
+    EXPECT_EQ(experiment.write_report()->at("runs"), 4);
   }
 }
 
-TEST_F(ExperimentsTest, RunsWaitForRoomAndCanBeCancelledAndDeletedMeanwhile) {
-  std::atomic<std::uint64_t> free = 100 << 20;
-  RecorderOptions options = recorder_options();
-  options.wait_for_room = true;
-  options.commit_interval = std::chrono::milliseconds(5);
-  options.disk = [&](const std::string&) { return DiskSpace{.free = free, .total = 160 << 20}; };
-  Recorder recorder(path, std::move(options));
-  Experiments experiments(recorder);
-  const auto runs = start(experiments, {.spec = case1(), .repeats = 3, .pace = 16});
-  RunReader reader(path);
-  ASSERT_TRUE(comes([&] { return get(reader, runs[0]).ticks > 0; }));
-  free = 0;
-  ASSERT_TRUE(comes([&] { return !recorder.takes_more(); }));
-  EXPECT_THAT(refused(experiments, {.spec = case1()}), HasSubstr("almost full"));
-  // The active run has ticks that wait for room: it ends anyway.
-  for (const db::RunId run : {runs[0], runs[1]}) {
-    EXPECT_TRUE(experiments.cancel(run));
-    EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
-    EXPECT_EQ(recorder.ask([&](db::RunStore& store) { return store.delete_run(run); }),
-              db::RunStore::Deletion::Deleted);
-  }
-  EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
-  free = 100 << 20;
-  EXPECT_TRUE(comes_to(runs[2], RunStatus::Finished));
-  EXPECT_EQ(verify_run(reader, runs[2]).incomplete, std::nullopt);
+TEST_F(ExperimentsTest, AShortOneNeedNotWaitForALongOne) {
+  Experiments experiments({.folder = folder(), .workers = 1}, library);
+  json many = document("many", 10'000, 2);
+  const auto first = experiments.post(many, "", "");
+  const auto second = experiments.post(document("few", 3), "", "");
+  ASSERT_TRUE(comes_to(*second.experiment, ExperimentState::Finished));
+  EXPECT_EQ(first.experiment->info().state, ExperimentState::Running);
+  EXPECT_LT(first.experiment->info().done, 20'000U);
 }
 
-TEST_F(ExperimentsTest, SeveralThreadsWorkOffOneQueue) {
-  Recorder recorder(path, recorder_options());
-  Experiments experiments(recorder, 2);
-  const auto runs = start(experiments, {.spec = case1(), .repeats = 4, .pace = 0.5});
-  ASSERT_TRUE(comes_to(runs[0], RunStatus::Recording));
-  ASSERT_TRUE(comes_to(runs[1], RunStatus::Recording));
-  RunReader reader(path);
-  EXPECT_EQ(get(reader, runs[2]).status, RunStatus::Queued);
-  // Each is cancelled separately, and the next takes its place.
-  EXPECT_TRUE(experiments.cancel(runs[1]));
-  EXPECT_TRUE(comes_to(runs[1], RunStatus::Cancelled));
-  EXPECT_TRUE(comes_to(runs[2], RunStatus::Recording));
-  EXPECT_EQ(get(reader, runs[0]).status, RunStatus::Recording);
-  for (const db::RunId run : {runs[0], runs[2], runs[3]}) EXPECT_TRUE(experiments.cancel(run));
-  for (const db::RunId run : runs) EXPECT_TRUE(comes_to(run, RunStatus::Cancelled)) << run;
+TEST_F(ExperimentsTest, ADeletedOneTakesItsFilesWithItWhenItsRunsHaveEnded) {
+  std::string id;
+  {
+    Experiments experiments(rules(), library);
+    id = experiments.post(endless("endless"), "", "").experiment->info().id;
+    ASSERT_TRUE(comes([&] { return experiments.find(id)->at_work(); }));
+    experiments.remove(id);
+    EXPECT_THROW(experiments.find(id), net::HttpError);
+    EXPECT_TRUE(experiments.list().empty());
+  }
+  EXPECT_FALSE(fs::exists(folder() / id));
 }
 
-TEST_F(ExperimentsTest, WaitingWorldsAreLimitedInBytes) {
-  Recorder recorder(path, recorder_options());
-  Experiments experiments(recorder);
-  Experiment large{.spec = case1(), .pace = 0.1};
-  for (std::uint32_t id = 100; id < 1900; ++id) {
-    algo::Obstacle thing{.id = id, .shape = algo::Cylinder{.radius = 0.1}};
-    thing.pose_W = {20.0 + id, 0, 0};
-    large.spec.scenario.obstacles.push_back(thing);
+TEST_F(ExperimentsTest, AKeyBelongsToOneDocument) {
+  Experiments experiments(rules(), library);
+  const auto posted = experiments.post(document("a", 1), "key", "");
+  EXPECT_EQ(experiments.post(document("a", 1), "key", "").experiment, posted.experiment);
+  EXPECT_THAT([&] { experiments.post(document("b", 1), "key", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("another document has this key")));
+}
+
+TEST_F(ExperimentsTest, ADocumentMayNotNameAFileOfTheServer) {
+  Experiments experiments(rules(), library);
+  json source = document("files", 1);
+  source["scenarios"] = {{{"barn", {{"worlds", "/etc/passwd"}}}}};
+  EXPECT_THAT([&] { experiments.post(source, "", ""); },
+              ThrowsMessage<DocumentError>(
+                  testing::StartsWith("scenarios/0/barn/worlds: is a file, which only")));
+  EXPECT_TRUE(experiments.list().empty());
+}
+
+TEST_F(ExperimentsTest, AsManyRunAsMayAndAsManyAreKept) {
+  ExperimentRules few = rules();
+  few.most_running = 1;
+  few.most_kept = 2;
+  Experiments experiments(few, library);
+  const auto first = experiments.post(endless("first"), "", "");
+  EXPECT_THAT([&] { experiments.post(document("second", 1), "", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("1 experiments are running")));
+  experiments.pause(first.experiment->info().id);
+  const auto second = experiments.post(document("second", 1), "", "");
+  ASSERT_TRUE(comes_to(*second.experiment, ExperimentState::Finished));
+  EXPECT_THAT([&] { experiments.post(document("third", 1), "", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("Delete one")));
+}
+
+TEST_F(ExperimentsTest, FilesThatCannotBeReadAreNamedAndLeftAlone) {
+  std::string id;
+  {
+    Experiments experiments(rules(), library);
+    const auto posted = experiments.post(document("torn", 2), "", "");
+    id = posted.experiment->info().id;
+    ASSERT_TRUE(comes_to(*posted.experiment, ExperimentState::Finished));
   }
-  std::size_t taken = 0;
-  while (taken < 2000 && experiments.start(large, [](const auto&, const auto&) {})) ++taken;
-  EXPECT_GT(taken, 20U);
-  EXPECT_LT(taken, 1000U);
-  EXPECT_TRUE(experiments.start({.spec = case1()}, [](const auto&, const auto&) {}));
+  write_text(folder() / id / "runs.jsonl", "nonsense\n");
+  fs::create_directory(folder() / "empty");
+  Experiments experiments(rules(), library);
+  ASSERT_EQ(experiments.list().size(), 1U);
+  EXPECT_EQ(experiments.list()[0].done, 4U);
+  EXPECT_THAT([&] { experiments.find(id)->plan(); },
+              ThrowsMessage<net::HttpError>(HasSubstr("runs.jsonl")));
+  EXPECT_EQ(read_text(folder() / id / "runs.jsonl"), "nonsense\n");
 }
 
 }  // namespace

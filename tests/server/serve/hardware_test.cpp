@@ -99,6 +99,7 @@ class HardwareAppTest : public AppTest {
   HardwareAppTest() : HardwareAppTest(std::make_shared<std::atomic<bool>>(false)) {}
 
   json hardware() const { return get("/session").at("hardware"); }
+  std::string disarmed_why() const { return hardware().at("disarmed").at("why"); }
   bool comes_to_halt(const std::string& halt) const {
     return eventually([&] {
       const json h = hardware();
@@ -162,6 +163,8 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   const json state = get("/session");
   EXPECT_EQ(state.at("source"), "hardware");
   EXPECT_EQ(state.at("vehicle"), "hardware");
+  EXPECT_EQ(state.at("emulated"), false);
+  EXPECT_EQ(state.at("hardware").at("disarmed"), nullptr) << "it has not been armed yet";
   EXPECT_FALSE(state.at("robot").at("paceable"));
   ASSERT_TRUE(comes_to_halt("disarmed"));
   EXPECT_EQ(get("/session").at("hold"), "halted");
@@ -178,10 +181,16 @@ TEST_F(HardwareAppTest, DrivesOnceItIsArmedAndStopsForAPerson) {
   expect_problem(control("arm"), 409, "stop button");
   *button_ = false;
   ASSERT_TRUE(comes_to_halt("disarmed"));
+  // The cause is still named when it is over.
+  EXPECT_NE(disarmed_why().find("stop button"), std::string::npos) << disarmed_why();
   ASSERT_EQ(control("arm").status, 200);
   ASSERT_TRUE(comes_to_halt("none"));
+  EXPECT_EQ(hardware().at("disarmed"), nullptr);
+  EXPECT_EQ(get("/session").at("by").at("arming"), "127.0.0.1");
   EXPECT_EQ(control("disarm").status, 200);
   EXPECT_FALSE(hardware().at("armed"));
+  EXPECT_EQ(disarmed_why(), "127.0.0.1 has disarmed it.");
+  EXPECT_EQ(hardware().at("disarmed").at("at").get<std::string>().back(), 'Z');
 }
 
 TEST_F(HardwareAppTest, AGoalIsRefusedWithASentenceUntilTheRobotIsArmed) {

@@ -23,7 +23,7 @@ Request request_of(const std::string& method, std::vector<Header> headers, bool 
 }
 
 /// Status of the refusal, 0 for an accepted request.
-int refused(Access& access, const Request& request, bool upgrade = false) {
+int refused(Access& access, Request request, bool upgrade = false) {
   const auto refusal = access.refuse(request, "10.1.2.3", upgrade, true, Clock::now());
   return refusal ? refusal->status : 0;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/run/json_limits.hpp"
+#include "server/serve/net/compression.hpp"
 #include "server/serve/net/http.hpp"
 #include "server/serve/net/router.hpp"
 
@@ -121,12 +122,39 @@ TEST(NetHttp, AResponderAnswersExactlyOnce) {
   EXPECT_EQ((std::vector<int>{200, 202, 500}), statuses);
 }
 
+TEST(NetCompression, JsonOfSomeSizeIsSentAsGzip) {
+  Request request;
+  request.headers = {{"Accept-Encoding", "gzip"}};
+  const std::string text = "[" + std::string(5000, '1') + "]";
+  Response response = json_response(200, text);
+  compress_json(request, response);
+  EXPECT_LT(response.body->size(), 100U);
+  EXPECT_EQ("\x1f\x8b", response.body->substr(0, 2));
+  const auto byte = [&](std::size_t i) {
+    return static_cast<unsigned char>((*response.body)[response.body->size() - 4 + i]);
+  };
+  EXPECT_EQ(text.size(), byte(0) + 256U * byte(1)) << "the length at its end";
+  const auto untouched = [&](Response plain, const Request& from) {
+    const std::string before = *plain.body;
+    compress_json(from, plain);
+    return *plain.body == before;
+  };
+  EXPECT_TRUE(untouched(json_response(200, "{}"), request));
+  EXPECT_TRUE(untouched(json_response(200, text), Request()));
+  EXPECT_TRUE(untouched(text_response(200, "text/csv", text), request));
+  EXPECT_TRUE(untouched(json_response(200, std::string(1 << 20, ' ')), request));
+}
+
 class NetRouter : public testing::Test {
  protected:
-  Response go(const std::string& method, const std::string& path) {
+  Response go(const std::string& method,
+              const std::string& path,
+              std::map<std::string, std::string> query = {}) {
     Request request;
     request.method = method;
     request.path = path;
+    request.query = std::move(query);
+    request.role = role_;
     Response out;
     failure_ = router_.dispatch(request, Responder([&](Response response) { out = response; }));
     return out;
@@ -139,8 +167,25 @@ class NetRouter : public testing::Test {
     };
   }
   Router router_{};
+  Role role_ = Role::Operator;
   std::string failure_{};
 };
+
+TEST_F(NetRouter, ARouteNeedsItsRole) {
+  router_.add("GET", "/runs", says("list"));
+  router_.add("POST", "/runs", says("started"));
+  router_.add("DELETE", "/runs/{id}", says("gone"));
+  router_.need("DELETE", "/runs/{id}", Role::Admin);
+  EXPECT_THROW(router_.need("PUT", "/runs", Role::Admin), std::invalid_argument);
+  const auto statuses = [&](Role role) {
+    role_ = role;
+    return std::vector<int>{
+        go("GET", "/runs").status, go("POST", "/runs").status, go("DELETE", "/runs/3").status};
+  };
+  EXPECT_EQ((std::vector<int>{200, 403, 403}), statuses(Role::Viewer));
+  EXPECT_EQ((std::vector<int>{200, 200, 403}), statuses(Role::Operator));
+  EXPECT_EQ((std::vector<int>{200, 200, 200}), statuses(Role::Admin));
+}
 
 TEST_F(NetRouter, MatchesSegmentsAndParameters) {
   router_.add("GET", "/runs", says("list"));
@@ -155,6 +200,25 @@ TEST_F(NetRouter, MatchesSegmentsAndParameters) {
   for (const char* path : {"/", "/run", "/runs/", "/runs/1/2", "/runs/1/ticks/", "/runs//ticks"}) {
     EXPECT_EQ(404, go("GET", path).status) << path;
   }
+}
+
+TEST_F(NetRouter, ANamedPathIsNoParameter) {
+  router_.add("DELETE", "/runs/{id}", says("gone"));
+  router_.add("POST", "/runs/delete", says("many"));
+  EXPECT_EQ("many", *go("POST", "/runs/delete").body);
+  EXPECT_EQ(405, go("DELETE", "/runs/delete").status);
+  EXPECT_EQ("gone id=delete_it", *go("DELETE", "/runs/delete_it").body);
+}
+
+TEST_F(NetRouter, RefusesAQueryThatARouteDoesNotTake) {
+  router_.add("GET", "/runs", says("list"));
+  router_.add("GET", "/free", says("free"));
+  router_.take_queries("GET", "/runs", {"limit", "q"});
+  EXPECT_EQ(200, go("GET", "/runs", {{"q", "a"}}).status);
+  EXPECT_EQ(200, go("GET", "/free", {{"colour", "red"}}).status);
+  const Response refused = go("GET", "/runs", {{"colour", "red"}, {"limit", "5"}});
+  EXPECT_EQ(400, refused.status);
+  EXPECT_NE(std::string::npos, refused.body->find("'colour'; it takes limit, q")) << *refused.body;
 }
 
 TEST_F(NetRouter, AnotherMethodGetsTheAllowedOnes) {

@@ -76,13 +76,14 @@ TEST(NetGuesses, TheLogIsLimitedPerAddressAndInTotal) {
   }
   EXPECT_LE(lines, 20);
   now += 60s;
-  EXPECT_EQ("Somebody at 10.0.0.9 has logged in.", throttle.right(at("10.0.0.9"), now));
+  EXPECT_EQ("Somebody at 10.0.0.9 has logged in as viewer.",
+            throttle.right(at("10.0.0.9"), Role::Viewer, now));
 }
 
 TEST(NetLoginSessions, LastWhileTheyAreUsed) {
   Clock::time_point now{};
   LoginSessions logins;
-  const std::string id = logins.open(now);
+  const std::string id = logins.open(Role::Operator, now);
   EXPECT_EQ(32u, id.size());
   now += LoginSessions::kIdle;
   EXPECT_TRUE(logins.use(id, now));
@@ -99,17 +100,25 @@ TEST(NetLoginSessions, LastWhileTheyAreUsed) {
   logins.keep(id, now - 2 * LoginSessions::kIdle);
 }
 
+TEST(NetLoginSessions, ViewersDisplaceNoOperator) {
+  Clock::time_point now{};
+  LoginSessions logins;
+  const std::string driver = logins.open(Role::Operator, now);
+  for (int i = 0; i < 1000; ++i) logins.open(Role::Viewer, now += 1s);
+  EXPECT_EQ(Role::Operator, logins.use(driver, now));
+}
+
 TEST(NetLoginSessions, TheLeastRecentlyUsedIsDroppedWhenFull) {
   Clock::time_point now{};
   LoginSessions logins;
-  const std::string driver = logins.open(now);
-  const std::string idle = logins.open(now);
-  for (int i = 0; i < 100; ++i) {
+  const std::string driver = logins.open(Role::Operator, now);
+  const std::string idle = logins.open(Role::Operator, now);
+  for (int i = 0; i < 300; ++i) {
     now += 1s;
     logins.keep(driver, now);
-    logins.open(now);
+    logins.open(Role::Operator, now);
   }
-  EXPECT_EQ(64u, logins.size());
+  EXPECT_EQ(256u, logins.size());
   EXPECT_TRUE(logins.use(driver, now));
   EXPECT_FALSE(logins.use(idle, now));
 }

@@ -25,6 +25,9 @@ class NetStatic : public testing::Test {
     write(folder_ / "secret.txt", "secret");
     write(folder_ / "web/index.html", "<!doctype html>");
     write(folder_ / "web/assets/main.js", "let x = 1;");
+    write(folder_ / "web/part-ABCDEFG2.js", "plain");
+    write(folder_ / "web/part-ABCDEFG2.js.gz", "zipped");
+    write(folder_ / "web/part-ABCDEFG2.js.br", "brotli");
     write(folder_ / "web/.hidden", "secret");
     fs::create_symlink("../secret.txt", folder_ / "web/leak.txt");
     fs::create_symlink("assets/main.js", folder_ / "web/alias.js");
@@ -92,6 +95,40 @@ TEST_F(NetStatic, AnUnchangedFileIsNotSentAgain) {
   write(folder_ / "web/index.html", "<!doctype html><p>new");
   client.send(get_request("/", "If-None-Match: " + tag + "\r\n"));
   EXPECT_EQ("<!doctype html><p>new", read_answer(client).body);
+}
+
+TEST_F(NetStatic, TheBestCodingThatTheClientTakesIsSent) {
+  const auto part = [&](const std::string& accepts) {
+    return get("/part-ABCDEFG2.js", accepts.empty() ? "" : "Accept-Encoding: " + accepts + "\r\n");
+  };
+  for (const auto& [accepts, body] : {std::pair{"", "plain"},
+                                      {"gzip, deflate", "zipped"},
+                                      {"gzip, deflate, br, zstd", "brotli"},
+                                      {"br;q=0, GZIP;q=0.5", "zipped"},
+                                      {"gzip;q=0.0", "plain"},
+                                      {"identity", "plain"},
+                                      {"xgzip", "plain"}}) {
+    const Answer answer = part(accepts);
+    EXPECT_EQ(body, answer.body) << accepts;
+    EXPECT_EQ("Accept-Encoding", answer.headers.at("Vary"));
+    EXPECT_EQ("text/javascript; charset=utf-8", answer.headers.at("Content-Type"));
+    const bool coded = answer.headers.count("Content-Encoding") > 0;
+    EXPECT_EQ(answer.body != "plain", coded) << accepts;
+  }
+  EXPECT_EQ("br", part("br").headers.at("Content-Encoding"));
+  EXPECT_NE(part("br").headers.at("ETag"), part("gzip").headers.at("ETag"));
+  EXPECT_EQ("let x = 1;", get("/assets/main.js", "Accept-Encoding: br, gzip\r\n").body);
+  const std::string tag = part("gzip").headers.at("ETag");
+  EXPECT_EQ(304, part("gzip\r\nIf-None-Match: " + tag).status);
+  EXPECT_EQ(200, part("br\r\nIf-None-Match: " + tag).status);
+}
+
+TEST_F(NetStatic, OnlyAFileNamedByItsContentIsKeptForEver) {
+  const auto control = [&](const char* path) { return get(path).headers.at("Cache-Control"); };
+  EXPECT_EQ("public, max-age=31536000, immutable", control("/part-ABCDEFG2.js"));
+  for (const char* path : {"/", "/assets/main.js", "/alias.js"}) {
+    EXPECT_EQ("no-cache", control(path)) << path;
+  }
 }
 
 TEST_F(NetStatic, FilesAreReadOnly) {

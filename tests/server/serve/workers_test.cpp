@@ -101,7 +101,7 @@ class BusyWorkers : public ::testing::Test {
   ~BusyWorkers() override {
     if (!released) release();
     workers.stop();
-    experiments.stop();
+    queue.stop();
     running.stop();
     sessions.end_all();
     std::filesystem::remove_all(folder);
@@ -134,7 +134,8 @@ class BusyWorkers : public ::testing::Test {
   ScenarioLibrary library{folder, {}};
   net::test::RunningServer running{};
   Workers workers{(folder / "runs.db").string()};
-  Experiments experiments{recorder};
+  Experiments experiments{{.folder = folder / "experiments"}, library};
+  RunQueue queue{recorder};
   Scheduler scheduler{};
   SessionRegistry sessions{
       {.runs = {.recorder = &recorder,
@@ -148,9 +149,12 @@ class BusyWorkers : public ::testing::Test {
   ApiContext context{.sessions = sessions,
                      .library = library,
                      .experiments = experiments,
+                     .queue = queue,
                      .recorder = recorder,
                      .workers = workers,
-                     .first = make_spec(library.load("case1"), {})};
+                     .first = make_spec(library.load("case1"), {}),
+                     .server = &running.server,
+                     .log_tail = [] { return std::vector<std::string>{}; }};
 };
 
 TEST_F(BusyWorkers, StopIsAnsweredWhileEveryOtherRouteWaits) {

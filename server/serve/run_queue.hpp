@@ -1,4 +1,4 @@
-// server/serve/experiments.hpp: runs headless experiments in the background, one after another.
+// server/serve/run_queue.hpp: runs headless runs in the background, one after another.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@
 
 namespace server {
 
-struct Experiment {
+struct RepeatedRun {
   RunSpec spec{};
   std::uint32_t repeats = 1;  // seeds spec.seed, spec.seed + 1, ...
   double pace = 0;            // times real time; 0 = as fast as possible
@@ -29,19 +29,19 @@ struct Experiment {
 /// neither the io thread nor a live robot waits. The queue waits while the store accepts no runs;
 /// its runs can still be cancelled. A restart leaves them `interrupted`; resume() queues them
 /// again.
-class Experiments {
+class RunQueue {
  public:
   using Accepted =
       std::function<void(const std::vector<db::RunId>& runs, const std::string& failure)>;
 
-  static constexpr std::size_t kMaxWaiting = 20'000;  // queued runs of all experiments
+  static constexpr std::size_t kMaxWaiting = 20'000;  // queued runs of all batches
   /// [bytes] of all queued worlds; repeats share one world.
   static constexpr std::size_t kMaxBytes = std::size_t{192} << 20;
 
   /// One thread by default, which leaves a core to the io thread, which carries Stop, and to live
   /// robots.
-  explicit Experiments(Recorder& recorder, unsigned threads = 1);
-  ~Experiments();  // interrupts current runs; queued runs stay in the database
+  explicit RunQueue(Recorder& recorder, unsigned threads = 1);
+  ~RunQueue();  // interrupts current runs; queued runs stay in the database
 
   /// Accepts no more runs. Returns when the database thread does no more work for it: half-queued
   /// batches are given up.
@@ -50,7 +50,7 @@ class Experiments {
   /// Numbers and queues the runs in slices, between the frames of live runs. Calls `accepted` on
   /// the database thread, with all numbers or the reason for a refusal. False if too many runs or
   /// too large worlds wait already. Throws if the world is invalid.
-  bool start(Experiment experiment, Accepted accepted);
+  bool start(RepeatedRun asked, Accepted accepted);
 
   /// Ends or unqueues a run. False if it is neither queued nor running.
   bool cancel(db::RunId run);
@@ -76,7 +76,7 @@ class Experiments {
 
     std::atomic<std::size_t>& held;
     std::size_t bytes = 0;
-    Experiment experiment{};
+    RepeatedRun asked{};
     db::NewRun row{};
     Accepted accepted{};
     std::vector<db::RunId> runs{};  // used by the database thread until queued

@@ -1,5 +1,5 @@
-// server/serve/experiments.cpp: the queue that feeds the pool.
-#include "server/serve/experiments.hpp"
+// server/serve/run_queue.cpp: the queue that feeds the pool.
+#include "server/serve/run_queue.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,18 +22,18 @@ constexpr std::chrono::milliseconds kStoreRetry{200};
 }  // namespace
 
 /// Counts the memory of a batch's world, given the size of its text. False if there is no room.
-bool Experiments::Batch::hold(std::size_t document_bytes) {
+bool RunQueue::Batch::hold(std::size_t document_bytes) {
   constexpr std::size_t kFixed = 4096;
   constexpr std::size_t kTimes = 6;  // measured: size of a world in memory relative to its text
   bytes = kFixed + kTimes * document_bytes;
   return held.fetch_add(bytes) + bytes <= kMaxBytes;
 }
 
-Experiments::Experiments(Recorder& recorder, unsigned threads)
+RunQueue::RunQueue(Recorder& recorder, unsigned threads)
     : recorder_(recorder),
       pool_(threads, [this](const std::stop_token& stop) { return take(stop); }) {}
 
-Experiments::~Experiments() {
+RunQueue::~RunQueue() {
   stop();
   pool_.request_stop();
   {
@@ -43,13 +43,13 @@ Experiments::~Experiments() {
   wake_.notify_all();
 }
 
-void Experiments::stop() {
+void RunQueue::stop() {
   std::unique_lock lock(mutex_);
   stopping_ = true;
   wake_.wait(lock, [this] { return arriving_ == 0; });
 }
 
-void Experiments::arrived(std::size_t runs) {
+void RunQueue::arrived(std::size_t runs) {
   {
     const std::lock_guard lock(mutex_);
     arriving_ -= runs;
@@ -57,37 +57,38 @@ void Experiments::arrived(std::size_t runs) {
   wake_.notify_all();
 }
 
-bool Experiments::start(Experiment experiment, Accepted accepted) {
+bool RunQueue::start(RepeatedRun asked, Accepted accepted) {
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_ || queue_.size() + arriving_ + experiment.repeats > kMaxWaiting) return false;
-    arriving_ += experiment.repeats;
+    if (stopping_ || queue_.size() + arriving_ + asked.repeats > kMaxWaiting) return false;
+    arriving_ += asked.repeats;
   }
   const auto batch = std::make_shared<Batch>(held_);
-  batch->experiment = std::move(experiment);
+  batch->asked = std::move(asked);
   batch->accepted = std::move(accepted);
   try {
     // Refuse a world that cannot be built now, not in the background. The row holds its robot's
     // spec.
-    const RunSpec& spec = batch->experiment.spec;
-    batch->row = headless_run(spec, make_robot(spec)->spec(), batch->experiment.pace);
+    const RunSpec& spec = batch->asked.spec;
+    batch->row = headless_run(spec, make_robot(spec)->spec(), batch->asked.pace);
+    if (batch->asked.repeats > 1) batch->row.batch = db::kNewBatch;
     if (!batch->hold(batch->row.document.size())) {
-      arrived(batch->experiment.repeats);
+      arrived(batch->asked.repeats);
       return false;
     }
     insert_slice(batch);
   } catch (...) {
-    arrived(batch->experiment.repeats);
+    arrived(batch->asked.repeats);
     throw;
   }
   return true;
 }
 
-void Experiments::insert_slice(const std::shared_ptr<Batch>& batch) {
+void RunQueue::insert_slice(const std::shared_ptr<Batch>& batch) {
   recorder_.post([this, batch](db::RunStore& store) {
     try {
       insert(store, *batch);
-      if (batch->runs.size() < batch->experiment.repeats) {
+      if (batch->runs.size() < batch->asked.repeats) {
         insert_slice(batch);
       } else {
         queue(batch);
@@ -98,19 +99,20 @@ void Experiments::insert_slice(const std::shared_ptr<Batch>& batch) {
   });
 }
 
-void Experiments::insert(db::RunStore& store, Batch& batch) {
+void RunQueue::insert(db::RunStore& store, Batch& batch) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) throw db::StoreError("The server is stopping; nothing more is queued.");
   }
   if (!recorder_.takes_more()) throw db::StoreError(recorder_.status().sentence);
   const std::size_t before = batch.runs.size();
-  const std::size_t end = std::min<std::size_t>(before + kSlice, batch.experiment.repeats);
+  const std::size_t end = std::min<std::size_t>(before + kSlice, batch.asked.repeats);
   const auto until = std::chrono::steady_clock::now() + kSliceTime;
   try {
     do {
-      batch.row.seed = batch.experiment.spec.seed + batch.runs.size();
+      batch.row.seed = batch.asked.spec.seed + batch.runs.size();
       batch.runs.push_back(store.queue_run(batch.row));
+      if (batch.row.batch == db::kNewBatch) batch.row.batch = batch.runs.front();
     } while (batch.runs.size() < end && std::chrono::steady_clock::now() < until);
     store.commit();
   } catch (...) {
@@ -119,23 +121,23 @@ void Experiments::insert(db::RunStore& store, Batch& batch) {
   }
 }
 
-void Experiments::queue(const std::shared_ptr<Batch>& batch) {
+void RunQueue::queue(const std::shared_ptr<Batch>& batch) {
   {
     const std::lock_guard lock(mutex_);
     for (std::size_t i = 0; i < batch->runs.size(); ++i) {
-      queue_.push_back({batch, batch->experiment.spec.seed + i, batch->runs[i]});
+      queue_.push_back({batch, batch->asked.spec.seed + i, batch->runs[i]});
     }
   }
   batch->row = {};  // the store has its document now
   batch->accepted(batch->runs, {});
-  arrived(batch->experiment.repeats);
+  arrived(batch->asked.repeats);
 }
 
 /// All or none: runs already in the store are cancelled, one slice at a time as they came.
-void Experiments::give_up(const Batch& batch, const std::string& why) {
+void RunQueue::give_up(const Batch& batch, const std::string& why) {
   Recorder& recorder = recorder_;
   batch.accepted({}, why);
-  arrived(batch.experiment.repeats);  // from here on stop() may return and this object be destroyed
+  arrived(batch.asked.repeats);  // from here on stop() may return and this object be destroyed
   for (std::size_t begin = 0; begin < batch.runs.size(); begin += kSlice) {
     const auto from = batch.runs.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto left = static_cast<std::size_t>(batch.runs.end() - from);
@@ -151,7 +153,7 @@ void Experiments::give_up(const Batch& batch, const std::string& why) {
   }
 }
 
-bool Experiments::cancel(db::RunId run) {
+bool RunQueue::cancel(db::RunId run) {
   const std::lock_guard lock(mutex_);
   if (const auto at_work = running_.find(run); at_work != running_.end()) {
     at_work->second->cancelled = true;
@@ -166,18 +168,18 @@ bool Experiments::cancel(db::RunId run) {
   return true;
 }
 
-bool Experiments::resume(db::RunId run,
-                         RunSpec spec,
-                         double pace,
-                         std::size_t document_bytes,
-                         std::function<void(const std::string&)> resumed) {
+bool RunQueue::resume(db::RunId run,
+                      RunSpec spec,
+                      double pace,
+                      std::size_t document_bytes,
+                      std::function<void(const std::string&)> resumed) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_ || queue_.size() + arriving_ >= kMaxWaiting) return false;
     ++arriving_;
   }
   const auto batch = std::make_shared<Batch>(held_);
-  batch->experiment = {.spec = std::move(spec), .pace = pace};
+  batch->asked = {.spec = std::move(spec), .pace = pace};
   if (!batch->hold(document_bytes)) {
     arrived(1);
     return false;
@@ -187,7 +189,7 @@ bool Experiments::resume(db::RunId run,
       const std::string refusal = requeue(store, run);
       if (refusal.empty()) {
         const std::lock_guard lock(mutex_);
-        queue_.push_back({batch, batch->experiment.spec.seed, run, true});
+        queue_.push_back({batch, batch->asked.spec.seed, run, true});
       }
       resumed(refusal);
       arrived(1);
@@ -200,7 +202,7 @@ bool Experiments::resume(db::RunId run,
 }
 
 /// Queues the run again in the store; returns the reason if it cannot, else "".
-std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
+std::string RunQueue::requeue(db::RunStore& store, db::RunId run) {
   try {
     if (!store.requeue_run(run)) return "The run is neither interrupted nor cancelled nor failed.";
     store.commit();
@@ -211,7 +213,7 @@ std::string Experiments::requeue(db::RunStore& store, db::RunId run) {
 }
 
 /// The next run of the queue as a job. Waits for a run, and for a store that takes it.
-experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
+experiment::Pool::Job RunQueue::take(const std::stop_token& stop) {
   give_way();
   std::unique_lock lock(mutex_);
   while (true) {
@@ -232,7 +234,7 @@ experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
   }
 }
 
-void Experiments::work_off(const Job& job, Running& running, const std::stop_token& stop) {
+void RunQueue::work_off(const Job& job, Running& running, const std::stop_token& stop) {
   const bool begun = execute(job, running);
   std::unique_lock lock(mutex_);
   running_.erase(job.run);
@@ -246,20 +248,20 @@ void Experiments::work_off(const Job& job, Running& running, const std::stop_tok
 }
 
 /// Ends a queued run as soon as the store takes it, unless it was lost with a damaged store.
-void Experiments::end_later(db::RunId run, db::RunEnd end) {
+void RunQueue::end_later(db::RunId run, db::RunEnd end) {
   recorder_.post_when_well([run, end = std::move(end)](db::RunStore& store) {
     if (store.status_of(run) == db::RunStatus::Queued) store.end_run(run, end);
   });
 }
 
-RunSpec Experiments::spec_of(const Job& job) {
-  RunSpec spec = job.batch->experiment.spec;
+RunSpec RunQueue::spec_of(const Job& job) {
+  RunSpec spec = job.batch->asked.spec;
   spec.seed = job.seed;
   return spec;
 }
 
 /// False if the store does not take the run now.
-bool Experiments::execute(const Job& job, Running& running) {
+bool RunQueue::execute(const Job& job, Running& running) {
   const auto failed = [](const std::exception& e) -> db::RunEnd {
     return {.status = db::RunStatus::Failed, .outcome = "failed", .reason = e.what()};
   };
@@ -273,7 +275,7 @@ bool Experiments::execute(const Job& job, Running& running) {
     end_later(job.run, failed(e));
     return true;
   }
-  const double pace = job.batch->experiment.pace;
+  const double pace = job.batch->asked.pace;
   const experiment::Trial trial{.spec = spec_of(job)};
   std::shared_ptr<RunChannel> record;
   experiment::TrialOptions options{.stop = running.stop.get_token(), .pace = pace};

@@ -1,0 +1,94 @@
+// server/serve/api/load_request.cpp: begins another run of a session, by a document.
+#include <utility>
+
+#include "server/run/hardware.hpp"
+#include "server/run/json_reader.hpp"
+#include "server/run/pose_json.hpp"
+#include "server/run/scenario_json.hpp"
+#include "server/serve/api/api.hpp"
+
+namespace server {
+
+namespace {
+
+using nlohmann::json;
+
+sim::Scenario scenario_to_load(const ScenarioLibrary& library,
+                               const LoadRequest& asked,
+                               const sim::Scenario& now) {
+  if (asked.name) return library.load(*asked.name);
+  if (asked.document) return scenario_from_json(*asked.document, library.robots());
+  if (asked.overrides.robot.is_null() || !library.has(now.name)) return now;
+  // The scenario is read again, so that another robot gets the sensors that the scenario gives it.
+  sim::Scenario anew = library.load(now.name);
+  anew.start = now.start;
+  anew.goal = now.goal;
+  anew.waypoints = now.waypoints;
+  anew.loop = now.loop;
+  anew.obstacles = now.obstacles;
+  anew.controller = now.controller;
+  anew.filter = now.filter;
+  anew.physics = now.physics;
+  anew.parameters = now.parameters;
+  return anew;
+}
+
+}  // namespace
+
+LoadRequest load_request(const json& body) {
+  const JsonReader in(body, "");
+  in.only({"scenario",
+           "controller",
+           "filter",
+           "physics",
+           "vehicle",
+           "robot",
+           "seed",
+           "parameters",
+           "begin"});
+  LoadRequest out{.overrides = overrides_from_json(body)};
+  if (in.has("scenario") && !body["scenario"].is_object()) out.name = in.text("scenario", 64);
+  if (in.has("scenario") && body["scenario"].is_object()) out.document = body["scenario"];
+  if (in.has("begin")) {
+    const JsonReader begin = in.object("begin");
+    begin.only({"x", "y", "heading"});
+    out.begin_W = pose_from_json(begin, 0);
+  }
+  return out;
+}
+
+RunSpec spec_to_load(const ScenarioLibrary& library, LoadRequest asked, const RunSpec& now) {
+  const bool same_world = !asked.name && !asked.document;
+  asked.overrides.controllers = now.controllers;
+  if (same_world && !asked.overrides.seed) asked.overrides.seed = now.seed;
+  RunSpec spec =
+      make_spec(scenario_to_load(library, asked, now.scenario), asked.overrides, library.robots());
+  spec.begin_W = asked.begin_W;
+  return spec;
+}
+
+bool load_from_json(ApiContext& context,
+                    OpenSession& session,
+                    const json& body,
+                    SessionLoader::Done done) {
+  const LoadRequest asked = load_request(body);
+  if (const auto& hardware = session.session().state().spec.hardware) {
+    if (asked.document || (asked.name && *asked.name != hardware->scenario.name)) {
+      throw DocumentError(
+          "scenario",
+          "cannot be loaded: this session drives real hardware. Open another for simulation");
+    }
+    if (asked.begin_W) throw DocumentError("begin", "cannot be chosen: this robot is real");
+    const auto plan = [hardware, overrides = asked.overrides] {
+      return [hardware, overrides] { return hardware_spec(hardware, overrides); };
+    };
+    return session.loader().load(plan, std::move(done));
+  }
+  const auto plan = [&library = context.library, &session, asked]() -> SessionLoader::Make {
+    const RunSpec now = session.session().again();
+    return [&library, asked, now] { return spec_to_load(library, asked, now); };
+  };
+  return session.loader().load(plan, std::move(done));
+}
+
+}  // namespace server

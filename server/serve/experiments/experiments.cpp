@@ -1,0 +1,237 @@
+// server/serve/experiments/experiments.cpp: the list of experiments, and their turns.
+#include "server/serve/experiments/experiments.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "server/experiment/sweep/sweep_run.hpp"
+#include "server/record/run_json.hpp"
+#include "server/serve/net/http.hpp"
+#include "server/serve/workers.hpp"
+
+namespace server {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostLoaded = 3;  // experiments that do not run, with plan and rows in memory
+
+unsigned workers_of(unsigned wanted) {
+  if (wanted > 0) return wanted;
+  return std::max(2U, std::thread::hardware_concurrency()) - 1;
+}
+
+[[noreturn]] void not_found(const std::string& id) {
+  throw net::HttpError(404, fmt::format("There is no experiment '{}'.", id));
+}
+
+}  // namespace
+
+Experiments::Experiments(ExperimentRules rules, const ScenarioLibrary& library)
+    : rules_(std::move(rules)),
+      library_(library),
+      pool_((read_folder(), workers_of(rules_.workers)),
+            [this](const std::stop_token& stop) { return take(stop); }) {}
+
+Experiments::~Experiments() {
+  pool_.request_stop();
+}
+
+void Experiments::read_folder() {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(rules_.folder, error)) {
+    if (!entry.is_directory(error)) continue;
+    try {
+      all_[entry.path().filename().string()] =
+          std::make_shared<Experiment>(entry.path(), library_.robots(), rules_.controllers);
+    } catch (const std::exception& e) {
+      spdlog::warn("The experiment in {} cannot be read: {}", entry.path().string(), e.what());
+    }
+  }
+}
+
+/// Holds mutex_.
+void Experiments::check_room() const {
+  const auto running = std::ranges::count_if(all_, [](const auto& entry) {
+    return entry.second->info().state == ExperimentState::Running;
+  });
+  if (static_cast<std::size_t>(running) >= rules_.most_running) {
+    throw net::HttpError(
+        503, fmt::format("{} experiments are running, as many as may. Try again later.", running));
+  }
+}
+
+/// Null without one. Holds mutex_.
+std::shared_ptr<Experiment> Experiments::with_key(const std::string& key) const {
+  if (key.empty()) return nullptr;
+  const auto it =
+      std::ranges::find_if(all_, [&](const auto& e) { return e.second->info().key == key; });
+  return it == all_.end() ? nullptr : it->second;
+}
+
+Experiments::Posted Experiments::post(const nlohmann::json& document,
+                                      const std::string& key,
+                                      const std::string& by) {
+  sweep::Plan plan(sweep::document_from_json(document, library_, rules_.controllers));
+  plan.check();
+  ExperimentInfo info{.id = sweep::hash_of(sweep::identity_of(plan.document())),
+                      .name = plan.document().name,
+                      .by = by,
+                      .key = key,
+                      .created = wall_time()};
+  Posted posted;
+  {
+    const std::lock_guard lock(mutex_);
+    const std::shared_ptr<Experiment> same_key = with_key(key);
+    if (same_key && same_key->info().id != info.id) {
+      throw net::HttpError(
+          409, "Idempotency-Key: an experiment with another document has this key already.");
+    }
+    const auto it = all_.find(info.id);
+    if (it != all_.end()) {
+      posted.experiment = it->second;
+    } else {
+      check_room();
+      if (all_.size() >= rules_.most_kept) {
+        throw net::HttpError(
+            503, fmt::format("{} experiments are kept, as many as may. Delete one.", all_.size()));
+      }
+      const fs::path folder = rules_.folder / info.id;
+      posted.experiment = std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
+      posted.created = true;
+      all_[posted.experiment->info().id] = posted.experiment;
+    }
+  }
+  if (!posted.created) resume(posted.experiment->info().id);
+  ring();
+  return posted;
+}
+
+std::vector<ExperimentInfo> Experiments::list() const {
+  std::vector<ExperimentInfo> list;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [id, experiment] : all_) list.push_back(experiment->info());
+  }
+  std::ranges::sort(list, [](const ExperimentInfo& a, const ExperimentInfo& b) {
+    return std::tie(a.created, a.id) > std::tie(b.created, b.id);
+  });
+  return list;
+}
+
+std::shared_ptr<Experiment> Experiments::find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = all_.find(id);
+  if (it == all_.end()) not_found(id);
+  return it->second;
+}
+
+void Experiments::resume(const std::string& id) {
+  const std::shared_ptr<Experiment> experiment = find(id);
+  if (experiment->info().state == ExperimentState::Running) return;
+  {
+    const std::lock_guard lock(mutex_);
+    check_room();
+  }
+  experiment->resume();
+  ring();
+}
+
+void Experiments::pause(const std::string& id) {
+  if (!find(id)->pause()) throw net::HttpError(409, "The experiment is not running.");
+}
+
+void Experiments::cancel(const std::string& id) {
+  if (!find(id)->cancel()) throw net::HttpError(409, "The experiment has ended already.");
+}
+
+void Experiments::remove(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto it = all_.find(id);
+  if (it == all_.end()) not_found(id);
+  const std::shared_ptr<Experiment> experiment = it->second;
+  experiment->cancel();
+  std::erase(looked_at_, experiment);
+  all_.erase(it);
+  if (experiment->at_work()) {
+    removed_.push_back(experiment);
+  } else {
+    delete_files(*experiment);
+  }
+}
+
+void Experiments::delete_files(const Experiment& experiment) {
+  std::error_code error;
+  fs::remove_all(experiment.folder(), error);
+  if (error) {
+    spdlog::warn("{} cannot be deleted: {}", experiment.folder().string(), error.message());
+  }
+}
+
+void Experiments::looked_at(const std::shared_ptr<Experiment>& experiment) {
+  const std::lock_guard lock(mutex_);
+  std::erase(looked_at_, experiment);
+  looked_at_.push_back(experiment);
+  if (looked_at_.size() <= kMostLoaded) return;
+  looked_at_.front()->unload();
+  looked_at_.erase(looked_at_.begin());
+}
+
+/// The next run of the experiment whose turn it is; nothing if none has one. Holds mutex_.
+std::optional<Experiments::Turn> Experiments::next_turn() {
+  if (alone_) return std::nullopt;
+  auto it = all_.upper_bound(last_);
+  for (std::size_t looked = 0; looked < all_.size(); ++looked, ++it) {
+    if (it == all_.end()) it = all_.begin();
+    if (at_work_ > 0 && it->second->next_is_alone()) return std::nullopt;  // those end first
+    if (const std::optional<Experiment::Work> work = it->second->next()) {
+      last_ = it->first;
+      ++at_work_;
+      alone_ = work->alone;
+      return Turn{it->second, *work};
+    }
+  }
+  return std::nullopt;
+}
+
+experiment::Pool::Job Experiments::take(const std::stop_token& stop) {
+  give_way();
+  std::unique_lock lock(mutex_);
+  std::optional<Turn> turn;
+  wake_.wait(lock, stop, [&] {
+    turn = next_turn();
+    return turn.has_value();
+  });
+  if (!turn) return {};
+  return [this, turn = *turn, stop] { work(turn, stop); };
+}
+
+/// Something has been started.
+void Experiments::ring() {
+  { const std::lock_guard lock(mutex_); }  // no worker is between its look and its wait
+  wake_.notify_all();
+}
+
+void Experiments::work(const Turn& turn, const std::stop_token& stop) {
+  const auto& [experiment, work] = turn;
+  const experiment::Row row = sweep::run_one(*work.plan, work.run, stop);
+  if (row.outcome == algo::Outcome::Stopped) {
+    experiment->put_back(work.run);
+  } else {
+    experiment->take(work.run, row);
+  }
+  const std::lock_guard lock(mutex_);
+  --at_work_;
+  if (alone_) wake_.notify_all();
+  alone_ = false;
+  if (experiment->at_work() || std::erase(removed_, experiment) == 0) return;
+  delete_files(*experiment);
+}
+
+}  // namespace server

@@ -1,0 +1,155 @@
+// tests/server/serve/world_test.cpp: a world that people have built outlives loads and resets, and
+// can be saved.
+#include "tests/server/serve/app_fixture.hpp"
+
+namespace server {
+namespace {
+
+using net::test::eventually;
+
+class WorldTest : public AppTest {
+ protected:
+  void build() const {
+    const json box = {{"type", "box"}, {"x", -3}, {"y", 2}, {"length", 0.5}, {"width", 0.4}};
+    ASSERT_EQ(post("/session/obstacles", box), 201);
+    const json goals = {{"goals", {{{"x", 1}, {"y", 4}}, {{"x", -2}, {"y", 4}}}}, {"loop", true}};
+    ASSERT_EQ(ask("PUT", "/session/goals", goals.dump()).status, 200);
+  }
+  void expect_built() const {
+    const json world = get("/session/scenario");
+    EXPECT_EQ(world["obstacles"].size(), 2U);
+    EXPECT_EQ(world["obstacles"][1]["length"], 0.5);
+    EXPECT_EQ(world["goal"]["x"], -2.0);
+    ASSERT_EQ(world["waypoints"].size(), 1U);
+    EXPECT_EQ(world["waypoints"][0]["x"], 1.0);
+    EXPECT_EQ(world["loop"], true);
+    EXPECT_EQ(get("/session/obstacles")["items"].size(), 2U);
+  }
+  int load(json body) const {
+    body["action"] = "load";
+    return post("/session/control", body);
+  }
+};
+
+TEST_F(WorldTest, OutlivesAResetAndAnotherControllerFilterPhysicsAndRobot) {
+  EXPECT_FALSE(get("/session")["edited"]);
+  build();
+  EXPECT_TRUE(get("/session")["edited"]);
+  for (const json& change : {json{{"controller", "strip"}},
+                             json{{"filter", "median"}},
+                             json{{"physics", "bullet"}},
+                             json{{"robot", "jackal"}}}) {
+    ASSERT_EQ(load(change), 200) << change;
+    expect_built();
+    EXPECT_EQ(get("/session/scenario")[change.items().begin().key()],
+              change.items().begin().value());
+  }
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  expect_built();
+  const json session = get("/session");
+  EXPECT_TRUE(session["edited"]);
+  EXPECT_TRUE(session["loop"]);
+  EXPECT_EQ(session["goal"]["x"], 1.0);
+  EXPECT_EQ(session["goals_ahead"].size(), 1U);
+}
+
+TEST_F(WorldTest, OutlivesDrivingByHandWhichClearsTheGoals) {
+  build();
+  ASSERT_EQ(post("/session/requests", {{"type", "joystick"}, {"forward", 0.1}, {"turn", 0}}), 200);
+  EXPECT_TRUE(eventually([&] { return get("/session")["goal"].is_null(); }));
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  expect_built();
+}
+
+TEST_F(WorldTest, TheNameOfTheScenarioLoadsItAsItIsInTheLibrary) {
+  build();
+  ASSERT_EQ(load({{"scenario", "case1"}}), 200);
+  EXPECT_EQ(get("/session/obstacles")["items"].size(), 1U);
+  EXPECT_FALSE(get("/session")["edited"]);
+}
+
+TEST_F(WorldTest, ADocumentIsLoadedWithTheRobotWhereItSays) {
+  build();
+  const json world = get("/session/scenario");
+  ASSERT_EQ(load({{"scenario", "case3"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "pause"}}), 200);
+  const json body = {{"scenario", world}, {"begin", {{"x", -1}, {"y", -1}, {"heading", 1}}}};
+  ASSERT_EQ(load(body), 200);
+  expect_built();
+  ASSERT_EQ(post("/session/control", {{"action", "step"}}), 200);
+  ASSERT_TRUE(eventually([&] { return get("/session").contains("pose"); }));
+  EXPECT_NEAR(get("/session")["pose"]["x"], -1, 0.05);
+  EXPECT_EQ(get("/session/scenario")["start"], world["start"]);  // as before
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "step"}}), 200);
+  ASSERT_TRUE(eventually([&] { return get("/session").contains("pose"); }));
+  EXPECT_NEAR(get("/session")["pose"]["x"], 0, 0.05);
+  expect_problem(ask("POST", "/session/control", R"({"action":"load","begin":{"x":"a","y":1}})"),
+                 422,
+                 "begin/x");
+}
+
+TEST_F(WorldTest, IsSavedAndOpenedUnderItsName) {
+  build();
+  ASSERT_EQ(post("/session/scenario", {{"name", "mine"}, {"title", "My room"}}), 201);
+  EXPECT_TRUE(eventually([&] { return !get("/session")["edited"].get<bool>(); }));
+  EXPECT_EQ(get("/session")["scenario"]["title"], "My room");
+  ASSERT_EQ(load({{"scenario", "case1"}}), 200);
+  ASSERT_EQ(load({{"scenario", "mine"}}), 200);
+  expect_built();
+  EXPECT_FALSE(get("/session")["edited"]);
+}
+
+TEST_F(WorldTest, AnObstacleIsReplacedByAnotherThatMayMove) {
+  json walker = {{"type", "cylinder"}, {"x", -3}, {"y", 2}, {"radius", 0.3}};
+  walker["path"] = {{"period", 4}, {"keys", {{0, -3, 2}, {2, -3, 4}}}};
+  const std::string path = "/session/obstacles/1";
+  ASSERT_EQ(ask("PUT", path, walker.dump()).status, 200);
+  const json items = get("/session/obstacles")["items"];
+  ASSERT_EQ(items.size(), 1U);
+  EXPECT_EQ(items[0]["path"]["period"], 4);
+  expect_problem(ask("PUT", path, R"({"x":-5,"y":0})"), 409, "moves by itself");
+  expect_problem(ask("PUT", "/session/obstacles/7", walker.dump()), 409, "no obstacle 7");
+  walker["path"]["keys"] = json::array();
+  expect_problem(ask("PUT", path, walker.dump()), 422, "obstacle/path/keys");
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  EXPECT_EQ(get("/session/obstacles")["items"][0]["path"]["period"], 4);
+}
+
+TEST_F(WorldTest, TheStartIsMovedAndTakenAtTheNextReset) {
+  EXPECT_EQ(ask("PUT", "/session/start", R"({"x":-2,"y":1,"heading":0.5})").status, 200);
+  EXPECT_TRUE(get("/session")["edited"]);
+  ASSERT_EQ(post("/session/control", {{"action", "pause"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "reset"}}), 200);
+  ASSERT_EQ(post("/session/control", {{"action", "step"}}), 200);
+  ASSERT_TRUE(eventually([&] { return get("/session").contains("pose"); }));
+  EXPECT_NEAR(get("/session")["pose"]["x"], -2, 0.05);
+  const json obstacle = get("/session/obstacles")["items"][0];
+  const json on_it = {{"x", obstacle["x"]}, {"y", obstacle["y"]}};
+  expect_problem(ask("PUT", "/session/start", on_it.dump()), 409, "overlap");
+  expect_problem(ask("PUT", "/session/start", R"({"x":1})"), 422, "y");
+}
+
+TEST_F(WorldTest, TheDemoDrivesToAndFroUntilSomebodySetsAGoal) {
+  ASSERT_EQ(load({{"scenario", "demo"}}), 200);
+  const json session = get("/session");
+  EXPECT_TRUE(session["loop"]);
+  EXPECT_FALSE(session["edited"]);
+  EXPECT_EQ(session["goal"]["x"], 7.5);
+  ASSERT_EQ(session["goals_ahead"].size(), 1U);
+  EXPECT_EQ(session["goals_ahead"][0]["x"], 0.0);
+  ASSERT_EQ(ask("PUT", "/session/goal", R"({"x":1,"y":1})").status, 200);
+  EXPECT_FALSE(get("/session")["loop"]);
+}
+
+TEST_F(WorldTest, AListOfGoalsIsCheckedAsAWhole) {
+  expect_problem(
+      ask("PUT", "/session/goals", R"({"goals":[{"x":1,"y":2}],"next":1})"), 422, "next");
+  expect_problem(
+      ask("PUT", "/session/goals", R"({"goals":[{"x":1,"y":2},{"x":1}]})"), 422, "goals/1/y");
+  EXPECT_EQ(ask("PUT", "/session/goals", R"({"goals":[]})").status, 200);
+  EXPECT_TRUE(get("/session")["goal"].is_null());
+}
+
+}  // namespace
+}  // namespace server
