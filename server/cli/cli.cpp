@@ -15,7 +15,9 @@
 namespace server {
 
 void RunFlags::add_to(CLI::App& command) {
-  command.add_option("--controller", overrides.controller, "Controller in place of the scenario's");
+  controllers.add_to(command,
+                     "Controller in place of the scenario's: a name, or the command that starts "
+                     "your own (docs/external-controllers.md)");
   command.add_option("--filter", overrides.filter, "pseudomedian, median, lulu or none");
   command.add_option("--physics,--vehicle", physics, "bullet or kinematic");
   add_robot_option(command, robot);
@@ -26,6 +28,8 @@ void RunFlags::add_to(CLI::App& command) {
 
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
   RunOverrides out = overrides;
+  out.controllers = controllers.catalogue();
+  out.controller = controllers.chosen();
   if (!physics.empty()) out.physics = physics_named(physics, "--physics");
   if (names_file(robot)) {
     out.robot = robot_document(robots.load_file_or_name(robot));

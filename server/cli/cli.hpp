@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "server/cli/controller_flags.hpp"
 #include "server/run/robot_library.hpp"
 #include "server/run/run_spec.hpp"
 
@@ -20,7 +21,7 @@ constexpr int kNotReached = 2;
 constexpr int kCollided = 3;
 constexpr int kNotHeld = 3;     // of `reproduce` and `compare`: a limit did not hold
 constexpr int kDifferent = 2;   // of `verify`
-constexpr int kIncomplete = 4;  // of `export` and `verify`: not the whole run
+constexpr int kIncomplete = 4;  // of `export`, `verify` and `sweep`: not the whole
 constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device has a fault
 
 void add_serve_command(CLI::App& app, int& status);
@@ -37,6 +38,11 @@ void add_compare_command(CLI::App& app, int& status);
 void add_doctor_command(CLI::App& app, int& status);
 void add_lms200_command(CLI::App& app, int& status);
 void add_map_command(CLI::App& app, int& status);
+void add_merge_command(CLI::App& app, int& status);
+void add_report_command(CLI::App& app, int& status);
+void add_sweep_command(CLI::App& app, int& status);
+void add_tune_command(CLI::App& app, int& status);
+void add_worlds_command(CLI::App& app, int& status);
 
 /// The built-in scenarios and the user's own.
 RobotLibrary own_robots();
@@ -46,11 +52,13 @@ CLI::Option* add_robot_option(CLI::App& command, std::string& robot);
 /// Options that several commands share.
 struct RunFlags {
   RunOverrides overrides{};
+  ControllerFlags controllers{};
   std::vector<std::string> settings{};  // k=v
   std::string physics{};
   std::string robot{};  // --robot-model
   void add_to(CLI::App& command);
-  /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot.
+  /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot, and
+  /// std::exception with a sentence for a controller that cannot be.
   RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;
 };
 

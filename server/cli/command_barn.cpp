@@ -27,6 +27,7 @@ struct BarnCommand {
   bool as_json = false;
   std::string scenarios{};
   std::string rows{};
+  ControllerFlags controllers{};
   barn::Options options{};
 };
 
@@ -109,6 +110,8 @@ int execute(BarnCommand command) {
     });
     if (worlds.empty()) throw std::runtime_error("no world of the file has such a number");
   }
+  command.options.conditions.controller = command.controllers.chosen().value_or("");
+  command.options.conditions.controllers = command.controllers.catalogue();
   command.options.conditions.physics = physics_named(command.physics, "--physics");
   if (!command.robot.empty()) {
     command.options.conditions.robot = own_robots().load_file_or_name(command.robot);
@@ -143,9 +146,10 @@ void add_barn_command(CLI::App& app, int& status) {
   CLI::App* barn = app.add_subcommand(
       "barn", "Run the worlds of a BARN or DynaBARN file and score them by the official formula");
   barn->add_option("file", command->file, "The worlds, as JSON")->required()->type_name("FILE");
-  barn->add_option("--controller",
-                   command->options.conditions.controller,
-                   "Default: strip; strip_moving in worlds with moving obstacles");
+  command->controllers.add_to(
+      *barn,
+      "Default: strip; strip_moving in worlds with moving obstacles; or the command that starts "
+      "your own (docs/external-controllers.md)");
   barn->add_flag(
       "--stress",
       command->options.conditions.stress,

@@ -21,6 +21,7 @@ struct Options {
   std::string format = "csv";
   std::string output{};
   bool as_json = false;
+  CsvOptions csv{};
 };
 
 std::shared_ptr<Options> add_common(CLI::App& command) {
@@ -46,7 +47,7 @@ int export_run(const Options& options) {
         fmt::format("There is no run {} in {}.", options.run, options.database));
   }
   ProgressLine progress;
-  const RunCsv csv(*row);
+  const RunCsv csv(reader, *row, options.csv);
   std::string text = csv.header();
   std::optional<std::uint64_t> from = 0;
   bool written = true;
@@ -102,6 +103,10 @@ void add_export_command(CLI::App& app, int& status) {
   auto options = add_common(*command);
   command->add_option("--format", options->format, "csv")->check(CLI::IsMember({"csv"}));
   command->add_option("--output,-o", options->output, "File to write (default: standard output)");
+  command->add_flag("--units", options->csv.units, "Name the columns with their units: \"t [s]\"");
+  command->add_flag("--arrays",
+                    options->csv.arrays,
+                    "Also the ranges of all scans, and the obstacles that move by themselves");
   command->footer(
       "Exit status: 0 the whole run, 1 bad input or error, 4 incomplete: a gap, a cut, or a run "
       "deleted meanwhile; the rest has been written.");

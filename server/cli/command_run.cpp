@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <memory>
 #include <stop_token>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
+#include "server/cli/interrupt_watch.hpp"
 #include "server/cli/signals.hpp"
 #include "server/record/headless.hpp"
 #include "server/record/run_json.hpp"
@@ -16,23 +16,6 @@ namespace server {
 namespace {
 
 using nlohmann::json;
-
-/// Turns Ctrl-C and other end signals into a stop request, so that the record is closed in order.
-class InterruptWatch {
- public:
-  explicit InterruptWatch(std::stop_source& source)
-      : thread_([&source](const std::stop_token& done) {
-          while (!done.stop_requested() && !end_requested()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-          }
-          if (end_requested()) source.request_stop();
-        }) {
-    heed_signals();
-  }
-
- private:
-  std::jthread thread_;
-};
 
 struct Options {
   std::string scenario{};

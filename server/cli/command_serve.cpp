@@ -7,6 +7,8 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
 
 #include "drivers/serial_robot.hpp"
@@ -33,7 +35,9 @@ struct Options {
 /// The initial spec, from the devices of a robot's file or from a scenario.
 RunSpec first_spec(const Options& options) {
   const RobotLibrary robots(options.app.robots);
-  const RunOverrides overrides = options.flags.resolved(robots);
+  RunOverrides overrides = options.flags.resolved(robots);
+  // Commands only add to the catalogue, from which the page chooses.
+  overrides.controller = options.flags.controllers.named();
   if (options.robot.empty()) {
     const ScenarioLibrary library(options.app.scenarios, options.app.logs, robots);
     return make_spec(names_file(options.scenario)
@@ -68,12 +72,32 @@ void warn_of_open_door(const net::ServerOptions& net, bool hardware) {
              hardware ? "DRIVE THE REAL ROBOT" : "drive the robot");
 }
 
+/// Takes the tokens that were not given as options from the environment, where no other user of
+/// this machine sees them.
+void read_tokens(net::AccessOptions& access) {
+  const auto read = [](std::string& token, const char* variable) {
+    const char* const value = std::getenv(variable);
+    if (token.empty() && value != nullptr) token = value;
+  };
+  read(access.token, "TAUTLINE_TOKEN");
+  read(access.operator_token, "TAUTLINE_OPERATOR_TOKEN");
+  read(access.viewer_token, "TAUTLINE_VIEWER_TOKEN");
+}
+
+/// Keeps the newest lines of the log for the System view.
+std::function<std::vector<std::string>()> keep_log_tail() {
+  constexpr std::size_t kLines = 200;
+  const auto tail = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(kLines);
+  tail->set_formatter(std::make_unique<spdlog::pattern_formatter>(
+      "%Y-%m-%dT%H:%M:%SZ %l: %v", spdlog::pattern_time_type::utc, ""));
+  spdlog::default_logger()->sinks().push_back(tail);
+  return [tail] { return tail->last_formatted(); };
+}
+
 void serve(Options& options) {
   AppOptions& app = options.app;
-  if (const char* token = std::getenv("TAUTLINE_TOKEN");
-      app.net.access.token.empty() && token != nullptr) {
-    app.net.access.token = token;
-  }
+  read_tokens(app.net.access);
+  app.log_tail = keep_log_tail();
   app.keep_bytes = static_cast<std::uint64_t>(options.keep_gigabytes * 1024 * 1024 * 1024);
   app.evict_oldest = options.evict == "oldest";
   app.sessions.idle = std::chrono::seconds(options.idle_seconds);
@@ -82,6 +106,7 @@ void serve(Options& options) {
   const std::string database = app.database.string();
   const bool armed = app.armed;
   const bool hardware = app.first.hardware != nullptr;
+  const bool emulated = hardware && app.first.hardware->emulated;
   app.ended = end_requested;
   warn_of_open_door(app.net, hardware);
   heed_signals();  // first: writing the database, opened next, may raise a signal
@@ -90,7 +115,8 @@ void serve(Options& options) {
   fmt::print("Tautline is at {}\n", program.url());
   fmt::print("Runs are kept in {}\n", database);
   if (hardware) {
-    fmt::print("REAL HARDWARE: {}. It moves only once it is armed{}.\n",
+    fmt::print("{}: {}. It moves only once it is armed{}.\n",
+               emulated ? "EMULATED DEVICES" : "REAL HARDWARE",
                options.robot,
                armed ? ", which happens as soon as its devices have no fault" : "");
   }
@@ -114,7 +140,16 @@ void add_serve_command(CLI::App& app, int& status) {
   command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
   command->add_option("--token",
                       net.access.token,
-                      "Require this token (or set TAUTLINE_TOKEN); needed beyond this machine");
+                      "Require this token (or set TAUTLINE_TOKEN); needed beyond this machine. "
+                      "Who has it is an admin");
+  command->add_option("--operator-token",
+                      net.access.operator_token,
+                      "Token of operators: they drive, edit and start runs, but delete nothing "
+                      "(or set TAUTLINE_OPERATOR_TOKEN)");
+  command->add_option("--viewer-token",
+                      net.access.viewer_token,
+                      "Token of viewers: they see everything and may press Stop (or set "
+                      "TAUTLINE_VIEWER_TOKEN)");
   command->add_flag(
       "--insecure", net.access.insecure, "Listen beyond this machine without a token");
   command
@@ -208,6 +243,12 @@ void add_serve_command(CLI::App& app, int& status) {
       ->add_option("--control-threads",
                    app_options.threads,
                    "Threads that drive simulated robots; 0: one per processor")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command
+      ->add_option("--experiment-workers",
+                   app_options.workers,
+                   "Threads that run experiments; 0: one per processor but one")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
   options->flags.add_to(*command);

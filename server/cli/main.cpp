@@ -10,6 +10,11 @@ int main(int argc, char** argv) {
                    add_soak_command,
                    add_compare_command,
                    add_map_command,
+                   add_merge_command,
+                   add_report_command,
+                   add_sweep_command,
+                   add_tune_command,
+                   add_worlds_command,
                    add_emulate_command});
   return run_program(
       argc, argv, commands, "Each command has its own --help. First time: tautline serve");

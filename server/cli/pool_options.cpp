@@ -2,6 +2,7 @@
 #include "server/cli/pool_options.hpp"
 
 #include <exception>
+#include <utility>
 
 #include "server/cli/cli.hpp"
 #include "server/experiment/judge.hpp"
@@ -31,21 +32,27 @@ void add_first_seed_option(CLI::App& command, std::uint64_t& seed, const std::st
   command.add_option("--first-seed", seed, help)->check(CLI::Range(0, 1'000'000'000));
 }
 
-void add_pool_options(CLI::App& command,
-                      experiment::PoolOptions& pool,
-                      const std::string& threads) {
-  add_threads_option(command, pool.threads, threads);
-  command
+CLI::Option* add_shard_option(CLI::App& command,
+                              std::function<void(const experiment::Shard&)> take) {
+  return command
       .add_option_function<std::string>(
           "--shard",
-          [&pool](const std::string& text) { pool.shard = experiment::shard_from_text(text); },
+          [take = std::move(take)](const std::string& text) {
+            take(experiment::shard_from_text(text));
+          },
           "Only every Nth run from number I on (0 is the first). The shards of all I together are "
-          "all "
-          "runs")
+          "all runs")
       ->check([](const std::string& text) {
         return complaint([&] { experiment::shard_from_text(text); });
       })
       ->type_name("I/N");
+}
+
+void add_pool_options(CLI::App& command,
+                      experiment::PoolOptions& pool,
+                      const std::string& threads) {
+  add_threads_option(command, pool.threads, threads);
+  add_shard_option(command, [&pool](const experiment::Shard& shard) { pool.shard = shard; });
 }
 
 void add_rows_option(CLI::App& command, std::string& file) {

@@ -1,6 +1,7 @@
 // server/cli/pool_options.hpp: options of the commands that run many trials.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +12,9 @@ namespace server {
 
 /// `threads` ("--workers") and --shard.
 void add_pool_options(CLI::App& command, experiment::PoolOptions& pool, const std::string& threads);
+/// --shard I/N; `take` gets what is given.
+CLI::Option* add_shard_option(CLI::App& command,
+                              std::function<void(const experiment::Shard&)> take);
 /// --threads of a study.
 void add_threads_option(CLI::App& command,
                         unsigned& threads,

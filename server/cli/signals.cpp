@@ -13,6 +13,7 @@ void heed_signals() {
   const auto note = [](int) { g_end = 1; };
   std::signal(SIGINT, note);
   std::signal(SIGTERM, note);
+  std::signal(SIGUSR1, note);
   if (std::signal(SIGHUP, note) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);

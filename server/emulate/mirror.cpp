@@ -65,12 +65,11 @@ void Mirror::follow(const drivers::lms200::Sweep& sweep, double now) {
       for (const algo::Obstacle& obstacle : scenario_.obstacles) model.add(obstacle);
     }
   }
-  for (const sim::ObstaclePath& path : scenario_.paths) {
-    const auto obstacle = std::ranges::find(scenario_.obstacles, path.id, &algo::Obstacle::id);
-    if (obstacle == scenario_.obstacles.end()) continue;
-    const algo::Vec2 at_W = path.at(now);
+  for (const algo::Obstacle& obstacle : scenario_.obstacles) {
+    if (!obstacle.path) continue;
+    const algo::Vec2 at_W = obstacle.path->at(now);
     for (sim::LaserModel& model : models_) {
-      model.move(path.id, {at_W.x(), at_W.y(), obstacle->pose_W.heading});
+      model.move(obstacle.id, {at_W.x(), at_W.y(), obstacle.pose_W.heading});
     }
   }
 }
