@@ -2,8 +2,9 @@
 // the unit tests of ../tests/web.
 import { execFileSync, spawnSync } from "node:child_process";
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { basename, dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { brotliCompressSync, constants, gzipSync } from "node:zlib";
 import * as esbuild from "esbuild";
 
 const root = dirname(fileURLToPath(import.meta.url));
@@ -36,20 +37,57 @@ const shared = {
   logLevel: "warning",
 };
 
+/** The page reads frames and writes none, so it leaves out the code that builds them. */
+const readers_only = {
+  name: "readers-only",
+  setup: (build) => build.onLoad({ filter: /src\/wire\/tautline\/wire\/.*\.ts$/ }, ({ path }) => ({
+    contents: readFileSync(path, "utf8").replace(/^static (?:start|add|create|end|finish)\w+\([^]*?^}\n/gm, ""),
+    loader: "ts",
+  })),
+};
+
 async function build_page() {
   const dist = join(root, "dist");
   rmSync(dist, { recursive: true, force: true });
-  await esbuild.build({
+  const { metafile } = await esbuild.build({
     ...shared,
     entryPoints: { app: "src/main.tsx" },
     outdir: dist,
     splitting: true, // three.js comes in its own file, when 3D is first asked for
+    entryNames: "[name]-[hash]", // the server lets browsers keep a name with a hash for ever
     chunkNames: "part-[hash]",
     minify: true,
+    plugins: [readers_only],
+    metafile: true,
     legalComments: "linked",
     define: { "process.env.NODE_ENV": '"production"' },
   });
   cpSync(join(root, "static"), dist, { recursive: true });
+  name_parts(join(dist, "index.html"), metafile.outputs);
+  for (const name of readdirSync(dist)) compress(join(dist, name));
+}
+
+/** Gives index.html the names of this build: of its script, its style, and the parts that the script begins with. */
+function name_parts(index, outputs) {
+  const [entry, { cssBundle, imports }] = Object.entries(outputs)
+    .find(([, output]) => output.entryPoint?.endsWith("main.tsx"));
+  const early = imports.filter((part) => part.kind === "import-statement").map((part) =>
+    `<link rel="modulepreload" href="/${basename(part.path)}">\n`);
+  const html = readFileSync(index, "utf8")
+    .replace("/app.css", `/${basename(cssBundle)}`)
+    .replace(/<script [^>]*app\.js/, (script) =>
+      early.join("") + script.replace("/app.js", `/${basename(entry)}`));
+  writeFileSync(index, html);
+}
+
+/** Writes NAME.gz and NAME.br beside a text. Browsers take brotli over HTTPS only. */
+function compress(file) {
+  if (![".html", ".js", ".css", ".svg"].includes(extname(file))) return;
+  const text = readFileSync(file);
+  writeFileSync(`${file}.gz`, gzipSync(text, { level: 9 }));
+  writeFileSync(`${file}.br`, brotliCompressSync(text, {
+    params: { [constants.BROTLI_PARAM_SIZE_HINT]: text.length },
+  }));
 }
 
 async function run_tests() {

@@ -4,14 +4,18 @@ import { existsSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { binary, until } from "./program.mjs";
 
-/** The devices on pseudo-terminals in `folder`, and the robot's file beside them. */
-export async function devices(folder) {
+/**
+ * The devices on pseudo-terminals in `folder`, and the robot's file beside them; with `named` the file says that
+ * they are emulated.
+ */
+export async function devices(folder, named = false) {
   const emulator = spawn(binary, ["emulate", "robot", "--scenario", "demo", "--links", folder],
     { stdio: ["pipe", "ignore", "inherit"] });
   const there = () => existsSync(join(folder, "scanner")) && existsSync(join(folder, "base"));
   await until("the emulated devices", 20, async () => there(), (yes) => yes);
   const file = join(folder, "robot.toml");
   writeFileSync(file, `name = "emulated"
+emulated = ${named}
 period = 0.026
 [hull]
 radius = 0.35

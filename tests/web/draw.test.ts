@@ -135,8 +135,14 @@ test("a polyline goes through its positions; NaN starts a new line", () => {
   assert.equal(dashed.of("stroke")[0].colour, "accent");
   assert.ok(dashed.of("stroke")[0].dash.length > 0);
   const solid = drawn(layer("polyline", [0, 0, 1, 0, 2, 1, 3, 1]));
-  assert.deepEqual(solid.of("curveTo").map((c) => c.args.slice(0, 2)), [[500, 300], [600, 200]], "bent towards its corners");
-  assert.deepEqual([xy(solid, "moveTo"), xy(solid, "lineTo")], [[[400, 300]], [[700, 200]]]);
+  assert.deepEqual([solid.of("moveTo")[0].args, ...xy(solid, "lineTo")], [[400, 300], [500, 300], [600, 200], [700, 200]]);
+  assert.deepEqual(xy(solid, "arc"), [[400, 300], [500, 300], [600, 200], [700, 200]], "each node is a dot");
+  assert.equal(solid.of("curveTo").length, 0, "nothing is rounded off");
+});
+
+test("the line from the strip's end to the goal does not look like the strip", () => {
+  const ahead = drawn(layer("polyline", [0, 0, 3, 0], { name: "strip.ahead", tone: "accent", style: "dashed" }));
+  assert.equal(ahead.of("stroke")[0].colour, "ok");
 });
 
 test("arrows: from a place by a vector; forces enlarged, velocities never", () => {
@@ -205,18 +211,32 @@ test("ground layers lie below the robot, nearer ones above it", () => {
   assert.deepEqual(above.map((l) => l.kind), ["polyline", "arrows", "arrows"]);
 });
 
+test("the place of the pointer stands above the scale bar", () => {
+  const g = new Recorder();
+  const overlay = {
+    selection: null, hovered: null, draft: {}, force_scale: 1, hidden: new Set<string>(), ghosts: [], future: false,
+    insets: { left: 0, top: 0, right: 0, bottom: 22 }, pointer: { x: 4.956, y: -3.684 },
+  };
+  draw_scene(g as unknown as CanvasRenderingContext2D, view, palette, new_scene(), overlay);
+  assert.deepEqual(g.of("text").map((c) => c.text), ["1 m", "x 4.96 m, y −3.68 m"]);
+});
+
 test("each layer is drawn while its switch is on, and nothing of it while it is off", () => {
   const scene = new_scene();
+  const truth: [number, number, number, number, boolean] = [0, 0, 0, 1, false];
   const kinds = [wire.LayerKind.Points, wire.LayerKind.Polyline, wire.LayerKind.Circles];
   const layers = kinds.map((kind, i) => ({ name: `l${i}`, kind, values: [0, 0, 1, 1, 0.5, 0.5] }));
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 0 }), new Legends()));
-  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, pose: [1, 0, 0], ranges: [1000, 2000, 1000], layers }), new Legends()));
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 0, truth }), new Legends()));
+  const far = [1.2, 0, 0, 1, false] as typeof truth;
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, pose: [1, 0, 0], ranges: [1000, 2000, 1000], layers, goal: [2, 2, null], truth: far }), new Legends()));
+  scene.goals_ahead = [{ x: 3, y: 3 }];
   scene.filtered.take(decode_sweep(scan_bytes({ ranges: [1500, 1500, 1500] }))!);
-  const names = [kOwn.scan.name, kOwn.filtered.name, kOwn.path.name, kOwn.safety.name, ...layers.map((l) => l.name)];
+  const own = [kOwn.scan, kOwn.filtered, kOwn.path, kOwn.truth, kOwn.route, kOwn.safety, kOwn.mesh];
+  const names = [...own.map((k) => k.name), ...layers.map((l) => l.name)];
   const calls = (hidden: string[]) => {
     const g = new Recorder();
     draw_scene(g as unknown as CanvasRenderingContext2D, view, palette, scene, {
-      selection: null, hovered: null, draft: {}, force_scale: 1, hidden: new Set(hidden), ghost: null, future: false,
+      selection: null, hovered: null, draft: {}, force_scale: 1, hidden: new Set(hidden), ghosts: [], future: false,
       insets: { left: 0, top: 0, right: 0, bottom: 0 },
     });
     return g.calls.length;

@@ -176,7 +176,7 @@ test("on a phone: tap a goal, tune in the sheet, pinch, look at a run", { timeou
     await p.page.touchscreen.tap(at.x, at.y);
     await p.page.waitForTimeout(400);
     assert.deepEqual((await json(base, "/session")).goal, goal);
-    await p.get("goal-hint").getByRole("button").click();
+    await p.get("steps-act").click();
     const there = await p.pixels(1.0, 4.0);
     await p.page.touchscreen.tap(there.x, there.y);
     await until("the goal", 10, () => json(base, "/session"), (s) => s.goal && near(s.goal.x, 1, 0.06) && near(s.goal.y, 4, 0.06));

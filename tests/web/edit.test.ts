@@ -1,18 +1,25 @@
 // tests/web/edit.test.ts: gestures to requests, undo and redo, the view's transform, words.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { RequestJson } from "../../web/src/contract";
+import { Selection } from "../../web/src/draw/scene";
 import { View } from "../../web/src/draw/view";
-import { add_edit, move_edit, new_box, new_cylinder, remove_edit, set_goal_edit } from "../../web/src/edit/edits";
+import { sketched } from "../../web/src/edit/drawn";
+import {
+  Step, add_edit, corners_of, move_edit, new_box, new_cylinder, new_wall, new_walker, polygon_defect, remove_edit,
+  reordered, route_edit, speed_of, without_goal,
+} from "../../web/src/edit/edits";
+import { handles_of } from "../../web/src/edit/handles";
+import { snapped } from "../../web/src/edit/snap";
+import { change_since } from "../../web/src/edit/stands";
 import { GestureTarget, Gestures, Tool } from "../../web/src/edit/gestures";
 import { EditHistory } from "../../web/src/edit/history";
 import { wrap_angle } from "../../web/src/geometry";
 import { covers, obstacle_from_json, obstacle_to_json, outline } from "../../web/src/obstacle";
 import { new_scene } from "../../web/src/state/scene";
-import { clock, fixed, link_words, run_word, state_word, titled } from "../../web/src/words";
+import { clock, fixed, link_words, result_word, state_word, titled } from "../../web/src/words";
 
 /** 100 px/m, world origin in the middle of 800 x 600: (x, y) m is at (400 + 100 x, 300 - 100 y). */
-function hands(tool: Tool, editable = true) {
+function hands(tool: Tool, editable = true, selection: Selection = null) {
   const done: string[] = [];
   const view = new View();
   Object.assign(view, { width: 800, height: 600, scale: 100, x: 0, y: 0 });
@@ -23,6 +30,11 @@ function hands(tool: Tool, editable = true) {
     set_goal: (g) => done.push(`goal ${g.x} ${g.y} ${g.heading === null ? "any" : g.heading.toFixed(3)}`),
     add_goal: (g) => done.push(`then ${g.x} ${g.y}`),
     add: (o) => done.push(`add ${o.kind} ${o.pose.x} ${o.pose.y} ${o.radius || `${o.length}x${o.width}`}`),
+    change_goal: (i, g) => done.push(`goal ${i} ${g.x} ${g.y}`),
+    set_start: (p) => done.push(`start ${p.x} ${p.y} ${p.heading.toFixed(3)}`),
+    change: (label, _, to) => done.push(`${label}: ${to.radius || `${to.length.toFixed(2)}x${to.width.toFixed(2)}`}`),
+    snap: (p) => ({ x: Math.round(p.x * 100) / 100, y: Math.round(p.y * 100) / 100 }), appends: () => false,
+    selection: () => selection, refuse: (sentence) => done.push(sentence),
     move: (id, pose, _, last) => done.push(`${last ? "moved" : "moving"} ${id} ${pose.x} ${pose.y}`),
     select: (s) => done.push(`select ${s?.kind ?? "nothing"}`), draft: () => undefined, hover: () => undefined,
     changed: () => undefined,
@@ -149,16 +161,120 @@ test("a fitted world lies inside the area left by the cards", () => {
   }
 });
 
+test("the resting tool moves what is selected, and nothing else", () => {
+  const { done, drag } = hands("pan", true, { kind: "obstacle", id: 4 });
+  drag([600, 210], [700, 210]);
+  assert.deepEqual(done, ["select obstacle", "moving 4 3 1", "moved 4 3 1"]);
+});
+
+test("a handle resizes the selected obstacle as one edit", () => {
+  const { done, drag } = hands("pan", true, { kind: "obstacle", id: 4 });
+  drag([630, 200], [650, 200]); // the handle at its right edge, 0.3 m from the middle
+  assert.deepEqual(done, ["Resize cylinder: 0.5"]);
+});
+
+test("an obstacle that is drawn small is still moved by its middle", () => {
+  const { done, drag, view } = hands("pan", true, { kind: "obstacle", id: 4 });
+  view.scale = 10; // its radius is 3 px, and a handle reaches over 14
+  drag([421, 290], [431, 290]);
+  assert.deepEqual(done, ["select obstacle", "moving 4 3 1", "moved 4 3 1"]);
+  done.length = 0;
+  drag([426, 290], [440, 290]);
+  assert.deepEqual(done, ["Resize cylinder: 2"]);
+});
+
+test("a wall is dragged, or its two ends are pressed, also on an obstacle", () => {
+  const { done, drag } = hands("wall");
+  drag([600, 200], [700, 200]);
+  drag([400, 300], [401, 300]);
+  drag([400, 200], [401, 200]);
+  assert.deepEqual(done, ["add wall 2.5 1 1x0.1", "add wall 0 0.5 1x0.1"]);
+});
+
+test("a polygon is closed at its first corner, and must be convex", () => {
+  const { done, drag, gestures } = hands("polygon");
+  for (const [x, y] of [[400, 300], [500, 300], [500, 200], [400, 300]]) drag([x, y], [x, y]);
+  assert.match(done[0], /add polygon 0.66\d* 0.33/);
+  for (const [x, y] of [[400, 300], [500, 300], [420, 280], [400, 200], [400, 300]]) drag([x, y], [x, y]);
+  assert.match(done[1], /convex/);
+  assert.equal(gestures.sketch.length, 4, "its corners stay, to be corrected");
+  gestures.cancel();
+  assert.equal(gestures.sketch.length, 0);
+});
+
+test("a walking person goes there and back at the usual speed", () => {
+  const { done, drag } = hands("mover");
+  for (const [x, y] of [[400, 300], [480, 300], [480, 300]]) drag([x, y], [x, y]);
+  assert.deepEqual(done, ["add cylinder 0 0 0.25"]);
+  const walker = new_walker([{ x: 0, y: 0 }, { x: 0.8, y: 0 }], 0.25, 0.8);
+  assert.deepEqual(walker.path, { period: 2, keys: [[0, 0, 0], [1, 0.8, 0], [2, 0, 0]] });
+  assert.deepEqual(corners_of(walker.path!), [{ x: 0, y: 0 }, { x: 0.8, y: 0 }]);
+  assert.ok(Math.abs(speed_of(walker.path!) - 0.8) < 1e-12);
+  assert.deepEqual(sketched("mover", [], { x: 1, y: 1 }, 0.1), { points: [{ x: 1, y: 1 }] });
+});
+
+test("the start is pressed, and dragged for its heading", () => {
+  const { done, drag } = hands("start");
+  drag([500, 300], [500, 200]);
+  drag([300, 300], [301, 300]);
+  assert.deepEqual(done, ["start 1 0 1.571", "start -1 0 0.000"]);
+});
+
+test("one goal of several is moved by its place in the list", () => {
+  const { done, drag, scene } = hands("goal");
+  scene.route = { goals: [{ x: 0, y: 0, heading: null }, { x: -1, y: 0, heading: 1 }], next: 0, loop: false };
+  scene.goal = scene.route.goals[0];
+  drag([300, 300], [300, 200]);
+  assert.deepEqual(done, ["select goal", "goal 1 -1 1"]);
+});
+
+test("each kind has handles that give another obstacle of its kind", () => {
+  const wall = new_wall({ x: 0, y: 0 }, { x: 2, y: 0 }, 0.1);
+  const [a, b, turn] = handles_of(wall);
+  assert.deepEqual([a.at, b.at], [{ x: 0, y: 0 }, { x: 2, y: 0 }]);
+  assert.equal(b.to({ x: 4, y: 0 })!.length, 4);
+  assert.equal(b.to({ x: 0, y: 0 }), null, "a wall without length");
+  assert.ok(Math.abs(turn.to({ x: 1, y: 5 })!.pose.heading) < 1e-12);
+  const box = handles_of(new_box(0, 0, 2, 1))[2].to({ x: 3, y: 1.5 })!;
+  assert.deepEqual([box.length, box.width, box.pose.x, box.pose.y], [4, 2, 1, 0.5], "the opposite corner stays");
+  const walker = new_walker([{ x: 0, y: 0 }, { x: 1, y: 0 }], 0.25, 1);
+  assert.deepEqual(handles_of(walker)[1].to({ x: 2, y: 0 })!.path!.keys, [[0, 0, 0], [2, 2, 0], [4, 0, 0]]);
+});
+
+test("a point is pulled to a corner, else to the grid, or to neither", () => {
+  const wall = { ...new_wall({ x: 0.25, y: 0 }, { x: 2.25, y: 0 }, 0.1), id: 1 };
+  assert.deepEqual(snapped({ x: 0.28, y: 0.02 }, [wall], 0.1, true), { x: 0.25, y: 0 });
+  assert.deepEqual(snapped({ x: 0.53, y: 0.48 }, [wall], 0.1, true), { x: 0.5, y: 0.5 });
+  assert.deepEqual(snapped({ x: 0.531, y: 0.48 }, [wall], 0.1, false), { x: 0.53, y: 0.48 });
+});
+
+test("a polygon says why it is none", () => {
+  assert.match(polygon_defect([{ x: 0, y: 0 }, { x: 1, y: 0 }])!, /three corners/);
+  assert.equal(polygon_defect([{ x: 0, y: 0 }, { x: 0, y: 1 }, { x: 1, y: 0 }]), null);
+});
+
+test("goals are reordered and removed, and the robot keeps its own", () => {
+  const goals = [1, 2, 3].map((x) => ({ x, y: 0, heading: null }));
+  const names = (r: { goals: { x: number }[]; next: number }) => [r.goals.map((g) => g.x).join(""), r.next];
+  assert.deepEqual(names(reordered({ goals, next: 1, loop: true }, 0, 2)), ["231", 0]);
+  assert.deepEqual(names(without_goal({ goals, next: 2, loop: false }, 0)), ["23", 1]);
+  assert.deepEqual(names(without_goal({ goals, next: 2, loop: false }, 2)), ["12", 1]);
+  assert.equal(without_goal({ goals: goals.slice(0, 2), next: 0, loop: true }, 0).loop, false);
+  assert.deepEqual(names(without_goal({ goals: goals.slice(0, 1), next: 0, loop: false }, 0)), ["", 0]);
+});
+
 /** A server that numbers added obstacles and remembers what stands where. */
 function world() {
   const standing = new Map<number, number>();
   let next = 10;
   let refuse = false;
-  const history = new EditHistory(async (r: RequestJson) => {
+  let changed: string | null = null;
+  const send = async (r: Step) => {
     if (refuse) throw new Error("Not now.");
     if (r.type === "add_obstacle") {
-      standing.set(++next, r.obstacle.x ?? 0);
-      return { id: next };
+      const id = r.obstacle.id || ++next;
+      standing.set(id, r.obstacle.x ?? 0);
+      return { id };
     }
     if (r.type === "remove_obstacle" && !standing.delete(r.id)) throw new Error(`no obstacle ${r.id}`);
     if (r.type === "move_obstacle") {
@@ -166,26 +282,29 @@ function world() {
       standing.set(r.id, r.x);
     }
     return {};
-  });
-  return { standing, history, set_refuse: (v: boolean) => (refuse = v) };
+  };
+  const history = new EditHistory({ send, stands: async () => changed, changed: () => undefined });
+  return {
+    standing, history, set_refuse: (v: boolean) => (refuse = v), set_changed: (v: string | null) => (changed = v),
+  };
 }
 
-test("undo and redo reach an obstacle that was restored with another id", async () => {
+test("a removed obstacle comes back with its number, so that older edits reach it", async () => {
   const { standing, history } = world();
   const { id } = await history.perform(add_edit(new_cylinder(1, 0, 0.3)));
   assert.equal(id, 11);
-  await history.perform(move_edit(11, { x: 1, y: 0, heading: 0 }, { x: 2, y: 0, heading: 0 }));
-  await history.perform(remove_edit({ ...new_cylinder(2, 0, 0.3), id: 11 }));
+  const here = { ...new_cylinder(2, 0, 0.3), id: 11 };
+  await history.perform(move_edit(here, { x: 1, y: 0, heading: 0 }, { x: 2, y: 0, heading: 0 }));
+  await history.perform(remove_edit(here));
   assert.equal(standing.size, 0);
-  await history.undo(); // comes back as 12
-  assert.deepEqual([...standing], [[12, 2]]);
-  await history.undo(); // its move is undone although it was a move of 11
-  assert.deepEqual([...standing], [[12, 1]]);
-  await history.undo(); // and its adding
+  await history.undo();
+  assert.deepEqual([...standing], [[11, 2]]);
+  await history.undo();
+  assert.deepEqual([...standing], [[11, 1]]);
+  await history.undo();
   assert.equal(standing.size, 0);
-  await history.redo();
-  await history.redo();
-  assert.deepEqual([...standing], [[13, 2]]);
+  for (let i = 0; i < 2; ++i) await history.redo();
+  assert.deepEqual([...standing], [[11, 2]]);
   await history.redo();
   assert.equal(standing.size, 0);
   assert.equal(history.can_redo, null);
@@ -200,6 +319,25 @@ test("undo and redo pressed faster than the server answers run in order", async 
   assert.equal(history.can_redo, null);
 });
 
+test("an undo that is pressed while a drag ends takes back that drag, not the edit before", async () => {
+  const { standing, history } = world();
+  await history.perform(add_edit(new_cylinder(1, 0, 0.3)));
+  let answered = () => undefined as void;
+  const answer = new Promise<void>((done) => (answered = done));
+  const here = { ...new_cylinder(1, 0, 0.3), id: 11 };
+  const drag = history.take(async () => {
+    await answer;
+    standing.set(11, 2);
+    return move_edit(here, { x: 1, y: 0, heading: 0 }, { x: 2, y: 0, heading: 0 });
+  });
+  const undo = history.undo();
+  answered();
+  await Promise.all([drag, undo]);
+  assert.deepEqual([...standing], [[11, 1]]);
+  await history.take(async () => null); // a refused one
+  assert.equal(history.can_undo, "Add cylinder");
+});
+
 test("a refused edit is not kept; a refused undo can be tried again", async () => {
   const { history, set_refuse } = world();
   set_refuse(true);
@@ -209,12 +347,40 @@ test("a refused edit is not kept; a refused undo can be tried again", async () =
   await history.perform(add_edit(new_box(0, 0, 1, 1)));
   set_refuse(true);
   await assert.rejects(history.undo(), /Not now/);
-  assert.equal(history.can_undo, "Add obstacle");
+  assert.equal(history.can_undo, "Add box");
 });
 
-test("a goal edit is undone to no goal, or to the earlier goal with its heading", () => {
-  assert.deepEqual(set_goal_edit(null, { x: 1, y: 2, heading: null }).backward, { type: "clear_goal" });
-  assert.deepEqual(set_goal_edit({ x: 0, y: 0, heading: 1 }, null).backward, { type: "set_goal", x: 0, y: 0, heading: 1 });
+test("an edit that somebody else has changed since is left, with the reason", async () => {
+  const { standing, history, set_changed } = world();
+  await history.perform(add_edit(new_cylinder(1, 0, 0.3)));
+  set_changed("Cylinder 11 has been moved since.");
+  await assert.rejects(history.undo(), /Cylinder 11 has been moved since. "Add cylinder" is left/);
+  assert.equal(standing.size, 1);
+  assert.equal(history.can_undo, null, "it is not ours alone any more");
+});
+
+test("changes by others are told apart from our own edits", () => {
+  const scene = new_scene();
+  const ours = { ...new_cylinder(1, 0, 0.3), id: 3 };
+  const moved = move_edit(ours, ours.pose, { x: 2, y: 0, heading: 0 }).forward;
+  scene.obstacles = [{ ...ours, pose: { x: 2, y: 0, heading: 0 } }];
+  assert.equal(change_since(moved, scene), null);
+  scene.obstacles = [{ ...ours, pose: { x: 5, y: 0, heading: 0 } }];
+  assert.match(change_since(moved, scene)!, /Cylinder 3 has been moved since/);
+  scene.obstacles = [];
+  assert.match(change_since(moved, scene)!, /removed since/);
+  const list = { goals: [{ x: 1, y: 2, heading: null }], next: 0, loop: false };
+  const edit = route_edit("Set goal", { goals: [], next: 0, loop: false }, list);
+  assert.match(change_since(edit.forward, scene)!, /goals have been changed/);
+  scene.route = { ...list, next: 0 };
+  assert.equal(change_since(edit.forward, scene), null);
+});
+
+test("an edit of the goals is undone to the whole list, with headings", () => {
+  const list = { goals: [{ x: 0, y: 0, heading: 1 }, { x: 1, y: 0, heading: null }], next: 1, loop: true };
+  const one = { goals: [{ x: 1, y: 2, heading: null }], next: 0, loop: false };
+  assert.deepEqual(route_edit("Set goal", list, one).backward,
+    { type: "set_goals", goals: [{ x: 0, y: 0, heading: 1 }, { x: 1, y: 0 }], next: 1, loop: true });
 });
 
 test("obstacles survive conversion to JSON and back", () => {
@@ -263,9 +429,8 @@ test("numbers and states in words", () => {
   const lost = { phase: "lost" as const, retry_at: 3400, rate: 0, latency: null };
   assert.equal(link_words(lost, 1900), "Connection lost. Trying again in 2 s.");
   assert.equal(link_words({ phase: "open", retry_at: 0, rate: 38, latency: 12.4 }, 0), "Connected · 38 frames/s · 12 ms");
-  assert.deepEqual(run_word("finished", "stuck"), { word: "Stuck", tone: "warn" });
-  assert.equal(run_word("recording", "running").word, "Recording");
-  assert.equal(run_word("recording", "reached").word, "Reached");
-  assert.deepEqual(run_word("interrupted", "running"), { word: "Interrupted", tone: "muted" });
+  assert.deepEqual(result_word("stuck"), { word: "Stuck", tone: "warn" });
+  assert.equal(result_word("recording").word, "Recording");
+  assert.deepEqual(result_word("interrupted"), { word: "Interrupted", tone: "muted" });
   assert.equal(state_word(null, null, false).word, "No link");
 });

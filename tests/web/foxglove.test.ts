@@ -176,7 +176,7 @@ test("a refused parameter resolves with the value the server kept", async () => 
   link.close();
 });
 
-test("a lost connection is reported, retries ever later, and fails pending calls", async () => {
+test("a lost connection is reported, tries again after its pauses, and fails pending calls", async () => {
   const timers = hand_wound();
   const { link, sockets, seen, ready } = linked();
   ready(sockets[0]);

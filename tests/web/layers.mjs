@@ -8,7 +8,8 @@ import { json, scratch, serve, until } from "./program.mjs";
 
 const kAtOnce = 1;    // ticks per step: of more the page gets only the last
 const kScale = 70;    // [px/m] of both views
-const kHalf = 140;    // [px] half size of the compared square about the robot
+const kHalf = 140;    // [px] half size of the compared piece about the robot, but
+const kBelow = 100;   // [px] below it: the scale bar stands there in a small view
 const kAlike = 0.001; // share of its pixels that may differ
 
 let browser;
@@ -63,11 +64,11 @@ async function look_at(p, pose) {
 
 /** Keeps the piece about the robot under `name`; with `than`, the share of its pixels that differ from that one. */
 function keep(p, name, than = null) {
-  return p.get("scene").evaluate(async (canvas, { name, than, half }) => {
+  return p.get("scene").evaluate(async (canvas, { name, than, half, below }) => {
     // A switch is rendered, then acted on, then drawn.
     for (let i = 0; i < 6; ++i) await new Promise((done) => requestAnimationFrame(done));
     const corner = (size) => Math.floor(size / 2) - half;
-    const { data } = canvas.getContext("2d").getImageData(corner(canvas.clientWidth), corner(canvas.clientHeight), 2 * half, 2 * half);
+    const { data } = canvas.getContext("2d").getImageData(corner(canvas.clientWidth), corner(canvas.clientHeight), 2 * half, half + below);
     const kept = (window.kept ??= {});
     kept[name] = data;
     if (than === null) return 0;
@@ -76,7 +77,7 @@ function keep(p, name, than = null) {
       if ([0, 1, 2].some((c) => Math.abs(data[i + c] - kept[than][i + c]) > 48)) ++differ;
     }
     return differ / (data.length / 4);
-  }, { name, than, half: kHalf });
+  }, { name, than, half: kHalf, below: kBelow });
 }
 
 const switches = (p) => p.page.getByRole("switch").evaluateAll((all) => all.map((e) => e.dataset.testid));
@@ -103,6 +104,8 @@ async function open_stored(p, base, run, tick) {
   await until("the record has it", 20, () => json(base, `/runs/${run}`), (r) => r.ticks > tick);
   await p.page.evaluate((id) => (location.hash = `#/runs/${id}`), run);
   await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 30_000 });
+  const fold = p.get("plots-fold"); // the scene gets their room
+  if (await fold.getAttribute("aria-expanded") === "true") await fold.click();
   await p.get("timeline").focus();
   await p.page.keyboard.press("End");
   await p.get("run-step").click(); // the slider's hundredths may end before the last tick

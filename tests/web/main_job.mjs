@@ -72,7 +72,7 @@ export async function main_job(p, base, physics) {
   await p.get("run-play").click();
   await until("it plays", 10, () => p.get("run-time").textContent(), (t) => t !== middle);
   await p.shot(`runs-${physics}`);
-  const csv = await fetch(`${base}/api/v1/runs/${run}/csv`);
+  const csv = await fetch(`${base}/api/v1/runs/${run}/csv?units=1`);
   assert.equal(csv.status, 200);
-  assert.equal(await p.get("csv").getAttribute("href"), `/api/v1/runs/${run}/csv`);
+  assert.equal(await p.get("csv").getAttribute("href"), `/api/v1/runs/${run}/csv?units=1`);
 }

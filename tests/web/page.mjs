@@ -9,6 +9,8 @@ const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 const kShots = process.env.TAUTLINE_SCREENSHOTS ?? join(repository, "build/screenshots");
 
+/** Of the pages whose test names none: TAUTLINE_THEME=light looks at every state of a suite in the other one. */
+export const usual_theme = process.env.TAUTLINE_THEME ?? "dark";
 export const desktop = { width: 1440, height: 900 };
 export const phone = { width: 390, height: 844 };
 
@@ -28,9 +30,10 @@ function read_scene() {
   };
 }
 
-/** A page in a browser context of its own. `faults` gathers console errors, exceptions and CSP; with `reads` a test may read the scene's pixels often. */
-export async function open(browser, base, { size = desktop, theme = "dark", hash = "", touch = false, patience = 20_000, reads = false } = {}) {
+/** A page in a browser context of its own. `faults` gathers console errors, exceptions and CSP; with `reads` a test may read the scene's pixels often. `token` signs in first. */
+export async function open(browser, base, { size = desktop, theme = usual_theme, hash = "", touch = false, patience = 20_000, reads = false, token = "" } = {}) {
   const context = await browser.newContext({ viewport: size, colorScheme: theme, hasTouch: touch, reducedMotion: "reduce" });
+  if (token) await context.request.post(`${base}/api/v1/login`, { data: { token }, headers: { Origin: base } });
   const page = await context.newPage();
   const faults = [];
   page.on("console", (m) => {
@@ -95,11 +98,11 @@ export async function open(browser, base, { size = desktop, theme = "dark", hash
     async pick_radio(group, value) {
       await get(group).locator(`label:has(input[value="${value}"])`).click();
     },
-    /** Serious faults of accessibility, as sentences. */
+    /** Faults of accessibility by WCAG A and AA and best practice, as sentences. */
     async accessibility() {
       await page.evaluate(axe);
       const { violations } = await page.evaluate(() => window.axe.run(document, {
-        runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa"],
+        runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"],
       }));
       return violations.map((v) => `${v.id}: ${v.help}: ${v.nodes.slice(0, 3).map((n) => n.target.join(" ")).join(", ")}`);
     },

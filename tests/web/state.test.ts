@@ -167,14 +167,20 @@ test("words stay until others come, or another run begins", () => {
 test("the panel lists every layer so far, absent ones too, until another controller drives", () => {
   const scene = new_scene();
   const session = (controller: string) => ({ run: null, controller, source: "simulation" }) as unknown as SessionState;
-  const names = () => layer_groups(scene, "M").map((g) => [g.title, ...g.keys.map((k) => k.name)]);
+  const names = () => layer_groups(scene).map((g) => [g.title, ...g.keys.map((k) => k.name)]);
   fold_session(scene, session("modified"));
-  assert.deepEqual(names(), [["Senses", "scan", "filtered"], ["Robot", "path", "safety"]]);
-  fold_frame(scene, frame({ tick: 0, goal, layers: [line, { ...line, name: "scan.nearest" }] }));
-  fold_frame(scene, frame({ tick: 1, goal }));
-  assert.deepEqual(names(), [["Senses", "scan", "filtered", "scan.nearest"], ["M", "strip"], ["Robot", "path", "safety"]]);
-  fold_session(scene, session("dwa"));
-  assert.deepEqual(names(), [["Senses", "scan", "filtered"], ["Robot", "path", "safety"]]);
+  const world = ["World", "safety", "goal", "robot", "start", "obstacles", "mesh"];
+  const bare = [["Senses", "scan", "filtered"], ["Ways", "path", "route"], world];
+  assert.deepEqual(names(), bare);
+  const force = { ...line, name: "strip.internal", kind: LayerKind.Arrows };
+  const map = { ...line, name: "map", kind: LayerKind.Grid };
+  fold_frame(scene, frame({ tick: 0, goal, truth: [0, 0, 0, 1, false], layers: [line, { ...line, name: "scan.nearest" }, force, map] }));
+  fold_frame(scene, frame({ tick: 1, goal, truth: [0, 0, 0, 1, false] }));
+  assert.deepEqual(names(), [["Senses", "scan", "filtered", "scan.nearest"], ["Forces", "strip.internal"],
+    ["Ways", "strip", "path", "truth", "route"], [...world.slice(0, -1), "map", "mesh"]]);
+  assert.deepEqual(layer_groups(scene, true)[2].keys.map((k) => [k.name, k.token]).slice(1, 3), [["path", "accent"], ["second", "elastic"]]);
+  fold_session(scene, { ...session("dwa"), run: { id: 7, status: "recording", outcome: "" } });
+  assert.deepEqual(names(), bare);
 });
 
 test("moving obstacles are at the frame's poses, the others at their own", () => {
@@ -254,7 +260,7 @@ test("a run that begins without a scan is no event; losing the scan later is", (
   for (const tick of [0, 1]) fold_frame(scene, frame({ tick, hold: "stale_scan" }));
   fold_frame(scene, frame({ tick: 2 }));
   assert.equal(scene.events.list.length, 0);
-  fold_frame(scene, frame({ tick: 100, hold: "stale_scan" }));
+  fold_frame(scene, frame({ tick: 30, hold: "stale_scan" }));
   assert.deepEqual(scene.events.list.map((e) => e.label), ["Scan too old"]);
 });
 
@@ -274,12 +280,15 @@ test("row_at finds the last row not after a time", () => {
   assert.deepEqual([-1, 0, 1.5, 2, 3.9, 99].map((t) => columns.row_at(t)), [0, 0, 1, 2, 2, 3]);
 });
 
-test("rows of the record come before those already present", () => {
+test("rows of the record come where their ticks belong", () => {
   const columns = new Columns();
   columns.push(frame({ tick: 10, stamp: 10, pose: [5, 0, 0] }));
   const row = (tick: number) => ({ tick, t: tick, x: tick / 2, y: 0, heading: 0, v: 0, omega: 0, clearance: 1 });
-  columns.prepend([row(8), row(9)]);
-  assert.deepEqual([...columns.get("x")], [4, 4.5, 5]);
+  columns.push(frame({ tick: 14, stamp: 14, pose: [7, 0, 0] }));
+  columns.insert([row(12), row(13)]);
+  columns.insert([row(8), row(9)]);
+  columns.insert([]);
+  assert.deepEqual([...columns.get("x")], [4, 4.5, 5, 6, 6.5, 7]);
   assert.ok(Number.isNaN(columns.at("strip.left", 0)), "what the record's columns do not hold stays open");
 });
 
@@ -474,4 +483,12 @@ test("filtered scans of a stored run are fetched only while wanted, and belong t
   run.want_filtered(false);
   run.seek(12);
   assert.equal(run.scene.filtered.shown, null);
+});
+
+test("clearance is unknown until a reading has come, although the wire says 0", () => {
+  const scene = new_scene();
+  fold_frame(scene, frame({ tick: 0 }));
+  fold_frame(scene, frame({ tick: 1, ranges: [2000, 2000, 2000], clearance: 1.5 }));
+  fold_frame(scene, frame({ tick: 2, clearance: 1.25 }));
+  assert.deepEqual([...scene.columns.get("clearance")], [NaN, 1.5, 1.25]);
 });

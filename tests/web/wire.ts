@@ -6,12 +6,16 @@ export interface FrameSpec {
   tick: number;
   stamp?: number;
   pose?: [number, number, number];
+  twist?: [number, number];   // by odometry
+  command?: [number, number];
+  clearance?: number;
   ranges?: number[];
   range_max?: number;
   mount?: [number, number, number];
   scan_stamp?: number;
   goal?: [number, number, number | null];
   mission?: wire.Mission;
+  clearance?: number;
   hold?: string;
   behaviour?: string;
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
@@ -184,7 +188,8 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   wire.Frame.startFrame(b);
   wire.Frame.addClock(b, wire.Clock.createClock(b, BigInt(spec.tick), spec.stamp ?? spec.tick * 0.026));
   const [x, y, heading] = spec.pose ?? [0, 0, 0];
-  wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, x, y, heading, 0.25, -0.5));
+  wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, x, y, heading, ...(spec.twist ?? [0.25, -0.5])));
+  if (spec.command) wire.Frame.addCommand(b, wire.Twist2.createTwist2(b, ...spec.command));
   if (scans) wire.Frame.addScans(b, scans);
   wire.Frame.addRequests(b, requests);
   if (spec.goal) {
@@ -197,7 +202,7 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, d - 0.5));
     wire.Frame.addCollided(b, hit);
   }
-  wire.Frame.addDecision(b, wire.Decision.createDecision(b, 0, spec.legend ?? legend_of(spec), spec.mission ?? wire.Mission.Idle, 0, false));
+  wire.Frame.addDecision(b, wire.Decision.createDecision(b, spec.clearance ?? 0, spec.legend ?? legend_of(spec), spec.mission ?? wire.Mission.Idle, 0, false));
   wire.Frame.addMoved(b, places);
   wire.Frame.addSonar(b, readings);
   if (news) wire.Frame.addNews(b, news);

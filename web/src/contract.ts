@@ -48,6 +48,7 @@ export interface HardwareInfo {
   armed: boolean;
   halt: string;
   trouble: string; // why the wheels stand still; empty when they may turn
+  disarmed: { why: string; at: string } | null; // the last disarming; null while armed
   devices: DeviceInfo[];
   warnings: string[];
   real_time: boolean;
@@ -57,8 +58,16 @@ export interface HardwareInfo {
   lateness: { ticks: number; worst: number; buckets: { below: number | null; ticks: number }[] };
 }
 
-/** The state of the live run's record. */
-export interface RecordInfo { status: string; sentence: string; deleted: string | null }
+/** The state of the live run's record; `kept_from` [s]: run clock of its oldest tick. */
+export interface RecordInfo { status: string; sentence: string; kept_from: number; deleted: string | null }
+
+/** Who did what still holds, by name or address; null: nobody that the server knows. */
+export interface By {
+  goal: string | null;
+  stop: string | null;
+  pause: string | null;
+  arming: string | null;
+}
 
 /** The /state document. */
 export interface SessionState {
@@ -74,6 +83,9 @@ export interface SessionState {
   stop: boolean;
   goal: GoalJson | null;
   goals_ahead: GoalJson[];
+  goals_behind: GoalJson[]; // reached
+  loop: boolean;            // after the last goal, go on to the first
+  edited: boolean;          // the world differs from the scenario as loaded or saved
   obstacles: ObstacleJson[];
   parameters: Record<string, number>;
   lost_ticks: number;
@@ -82,14 +94,19 @@ export interface SessionState {
   hardware: HardwareInfo | null;
   watchers: number; // pages in sight, and one more if scripts watch
   watched_by_script: boolean;
+  viewers: number;  // connected pages and other clients
+  by: By;
+  emulated: boolean; // the hardware's devices are emulated
   record: RecordInfo;
 }
 
 export type RequestJson =
   | { type: "set_goal"; x: number; y: number; heading?: number }
   | { type: "add_goal"; x: number; y: number; heading?: number }
+  | { type: "set_goals"; goals: GoalJson[]; next?: number; loop?: boolean }
   | { type: "clear_goal" }
   | { type: "add_obstacle"; obstacle: ObstacleJson }
+  | { type: "change_obstacle"; obstacle: ObstacleJson }
   | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }
   | { type: "remove_obstacle"; id: number }
   | { type: "stop"; engaged: boolean };
@@ -108,7 +125,8 @@ export interface ParameterInfo {
   initial: number;
   help?: string;
 }
-export interface Controller extends Choice { parameters: string[] }
+/** `outside`: the simulated world waits for its answers. */
+export interface Controller extends Choice { outside: boolean; parameters: string[] }
 export interface Catalog {
   controllers: Controller[];
   filters: Choice[];
@@ -124,6 +142,7 @@ export interface ScenarioItem {
   name: string;
   title: string;
   description: string;
+  builtin: boolean; // cannot be changed
   kind: "world" | "log";
 }
 
@@ -141,7 +160,13 @@ export interface RunItem {
   id: number;
   status: string;
   outcome: string;
+  result: string; // the outcome, or the status of a run without one
   reason?: string | null;
+  kind: "session" | "background";
+  batch: number | null;
+  label: string;
+  note: string;
+  tags: string[];
   scenario: string;
   controller: string;
   filter: string;
@@ -149,10 +174,26 @@ export interface RunItem {
   seed: number;
   parameters: Record<string, number>;
   ticks: number;
-  time: number;
+  time: number;     // [s] at which it reached its outcome; of the newest tick while it has none
+  end_time: number; // [s] of the newest tick
+  later: { outcome: string; reason: string; time: number } | null; // how a live run went on
   metrics: Metrics | null;
+  group?: RunGroup;
+  gaps?: Gap[];
   document?: RunDocument;
 }
+
+/** The runs of one batch that the list shows as one line. */
+export interface RunGroup { runs: number; first: number; last: number; results: Record<string, number> }
+
+/** A page of runs; the first one counts the runs by result. */
+export interface RunPage extends Page<RunItem> { results?: Record<string, number> }
+
+/** The answer to a change of many runs. */
+export interface ManyRuns { runs: number[]; refused: { id: number; why: string }[] }
+
+/** Ticks of a run that are not in its record. */
+export interface Gap { first_tick: number; last_tick: number; cause: string; sentence: string }
 
 /** The description of a run. */
 export interface RunDocument {

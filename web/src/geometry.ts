@@ -56,3 +56,8 @@ export function include(bounds: Bounds, x: number, y: number, margin = 0): void 
   bounds.max_x = Math.max(bounds.max_x, x + margin);
   bounds.max_y = Math.max(bounds.max_y, y + margin);
 }
+
+/** The one of `all` with the least `measure`; null if there is none. */
+export function least<T>(all: readonly T[], measure: (one: T) => number): T | null {
+  return all.reduce<T | null>((best, one) => (best === null || measure(one) < measure(best) ? one : best), null);
+}

@@ -27,7 +27,7 @@ export interface LayerView {
 }
 
 /** The byte of an unknown cell. */
-const kUnknownCell = 255;
+export const kUnknownCell = 255;
 
 /** A position in W; z is null where the layer gives no height. */
 export interface Place { x: number; y: number; z: number | null }
@@ -89,6 +89,10 @@ export const kRing = 0.1;    // [m] from the hull to the foot of a polar
 export const kTallest = 0.5; // [m] of a sector at twice the level and above
 export const kAlpha: Record<LayerStyle, number> = { solid: 1, dashed: 1, faint: 0.4 };
 
+export const kScanHeight = 0.3;     // [m] of the scan plane in 3D
+export const kStripHeight = 0.36;   // [m] above the hull, which covers a strip of one step
+export const kGround = 0.01;        // [m] of drawings on the floor
+
 const kArcPoints = 8; // corners of an arc
 
 /** Motions of constant curvature from the robot's pose, as lines. */
@@ -126,8 +130,24 @@ export function grade_of(cell: number): number {
   return Math.floor(((cell - kEven) * kGrades) / (kUnknownCell - kEven));
 }
 
+const graded = new WeakMap<Uint8Array, number[][]>();
+
+/** The indices of the cells of each grade. Found once for a grid, which holds for many frames. */
+export function cells_by_grade(cells: Uint8Array): number[][] {
+  let found = graded.get(cells);
+  if (!found) {
+    found = Array.from({ length: kGrades }, () => []);
+    for (let at = 0; at < cells.length; ++at) {
+      const grade = grade_of(cells[at]);
+      if (grade >= 0) found[grade].push(at);
+    }
+    graded.set(cells, found);
+  }
+  return found;
+}
+
 /** A sector of a polar with a density above 0: bearings in W, height 0 .. 1. */
-interface Sector { from: number; to: number; height: number; free: boolean }
+interface Sector { index: number; from: number; to: number; height: number; free: boolean }
 export function sectors(layer: LayerView, robot: Pose): Sector[] {
   const { values, level } = layer;
   if (!(level > 0)) return [];
@@ -137,7 +157,7 @@ export function sectors(layer: LayerView, robot: Pose): Sector[] {
   values.forEach((density, k) => {
     if (!(density > 0)) return;
     const from = wrap_angle(zero + k * width);
-    out.push({ from, to: from + width, height: Math.min(1, density / (2 * level)), free: density < level });
+    out.push({ index: k, from, to: from + width, height: Math.min(1, density / (2 * level)), free: density < level });
   });
   return out;
 }

@@ -1,28 +1,40 @@
 // web/src/main.tsx: puts the page together and starts the link.
-import "uplot/dist/uPlot.min.css";
 import "./style/tokens.css";
 import "./style/layout.css";
 import "./style/controls.css";
 import "./style/scene.css";
 import "./style/layers.css";
+import "./style/plots.css";
+import "./style/inspect.css";
 import "./style/runs.css";
+import "./style/experiments.css";
 import "./style/hardware.css";
+import "./style/timeline.css";
+import "./style/world.css";
+import "./style/people.css";
 import "./style/narrow.css";
+import "./style/short.css";
 import { JSX, render } from "preact";
 import { App, AppContext, use_app, use_ui } from "./app";
 import { use_listener, use_store } from "./state/store";
+import { lazy } from "./ui/lazy";
 import { Drive } from "./views/drive";
-import { SessionGone } from "./views/gone";
+import { Nowhere, SessionGone } from "./views/gone";
 import { stop_key, typing } from "./views/keys";
-import { HardwareBar } from "./views/hardware";
-import { Login } from "./views/login";
+import { Tips } from "./ui/tip";
 import { Rail } from "./views/rail";
-import { Runs } from "./views/runs";
-import { Shortcuts } from "./views/shortcuts";
-import { System } from "./views/system";
 import { StopAlarm } from "./views/stop";
 import { Spoken, Toasts } from "./views/toasts";
 import { TopBar } from "./views/topbar";
+
+// What Drive can do without at first.
+const Runs = lazy(async () => (await import("./views/runs")).Runs);
+const Experiments = lazy(async () => (await import("./experiments/experiments")).Experiments);
+const System = lazy(async () => (await import("./views/system")).System);
+
+const HardwareBar = lazy(async () => (await import("./views/hardware")).HardwareBar);
+const Login = lazy(async () => (await import("./views/login")).Login);
+const Shortcuts = lazy(async () => (await import("./views/shortcuts")).Shortcuts);
 
 function Shell(): JSX.Element {
   const app = use_app();
@@ -39,14 +51,17 @@ function Shell(): JSX.Element {
     <div class={`shell view-${view} ${hardware ? "real" : ""}`}>
       <TopBar />
       <Rail />
-      <HardwareBar />
+      {hardware && <HardwareBar />}
       {view === "drive" && <Drive />}
       {view === "runs" && <Runs />}
+      {view === "experiments" && <Experiments />}
       {view === "system" && <System />}
+      {view === "nowhere" && <Nowhere />}
       <SessionGone />
       <StopAlarm />
       <Toasts />
       <Spoken />
+      <Tips />
       {shortcuts && <Shortcuts />}
       {locked && <Login />}
     </div>

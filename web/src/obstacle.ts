@@ -13,9 +13,13 @@ export interface Obstacle {
   width: number;     // [m] box; a wall's thickness
   points: Point[];   // polygon, in its own frame
   height: number;    // [m]
+  path: PathJson | null; // of its reference point, if it moves by itself
   /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
   extra: Pick<ObstacleJson, "reflectivity" | "specular" | "height">;
 }
+
+/** Keys [t, x, y] in seconds and metres of W, linear in between, repeated each `period`. */
+export interface PathJson { period: number; phase?: number; keys: [number, number, number][] }
 
 /** The JSON form, as in scenario files. */
 export interface ObstacleJson {
@@ -34,6 +38,7 @@ export interface ObstacleJson {
   height?: number;
   reflectivity?: number;
   specular?: boolean;
+  path?: PathJson;
 }
 
 export function obstacle_from_json(json: ObstacleJson): Obstacle {
@@ -47,6 +52,7 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     width: json.width ?? json.thickness ?? 0,
     points: [],
     height: height ?? 1,
+    path: json.path ?? null,
     extra: { reflectivity, specular, height },
   };
   if (json.type === "wall" && json.from && json.to) {
@@ -65,19 +71,23 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
 
 /** The JSON that adds this obstacle again, without its id. */
 export function obstacle_to_json(o: Obstacle): ObstacleJson {
+  return { ...shape_to_json(o), ...o.extra, ...(o.path && { path: o.path }) };
+}
+
+function shape_to_json(o: Obstacle): ObstacleJson {
   const { x, y, heading } = o.pose;
   switch (o.kind) {
     case "cylinder":
-      return { type: "cylinder", x, y, radius: o.radius, ...o.extra };
+      return { type: "cylinder", x, y, radius: o.radius };
     case "box":
-      return { type: "box", x, y, heading, length: o.length, width: o.width, ...o.extra };
+      return { type: "box", x, y, heading, length: o.length, width: o.width };
     case "wall": {
       const a = to_parent(o.pose, -o.length / 2, 0);
       const b = to_parent(o.pose, o.length / 2, 0);
-      return { type: "wall", from: [a.x, a.y], to: [b.x, b.y], thickness: o.width, ...o.extra };
+      return { type: "wall", from: [a.x, a.y], to: [b.x, b.y], thickness: o.width };
     }
     case "polygon":
-      return { type: "polygon", points: outline(o).map((p) => [p.x, p.y]), ...o.extra };
+      return { type: "polygon", points: outline(o).map((p) => [p.x, p.y]) };
   }
 }
 

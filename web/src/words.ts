@@ -1,5 +1,5 @@
 // web/src/words.ts: states, outcomes and numbers in words.
-import { SessionState } from "./contract";
+import { RunItem, SessionState } from "./contract";
 import { LinkStatus } from "./link/live";
 import { Frame } from "./link/frame";
 import { age_words, motion, news_age } from "./state/age";
@@ -105,15 +105,27 @@ const kStatuses: Record<string, Word> = {
   recording: { word: "Recording", tone: "info" },
   interrupted: { word: "Interrupted", tone: "muted" },
   cancelled: { word: "Cancelled", tone: "muted" },
-  failed: { word: "Failed", tone: "bad" },
 };
 
-/** The outcome of a run once it has one, else its status. */
-export function run_word(status: string, outcome: string): Word {
-  const under_way = status === "recording" && outcome !== "running" && outcome !== "";
-  if (status !== "finished" && !under_way && kStatuses[status]) return kStatuses[status];
-  return kOutcomes[outcome] ?? { word: outcome || "Unknown", tone: "muted" };
+/** The result of a run: its outcome once it has one, else its status. */
+export function result_word(result: string): Word {
+  return kOutcomes[result] ?? kStatuses[result] ?? { word: titled(result) || "Unknown", tone: "muted" };
 }
+
+/** How a live run went on after its outcome; empty if it did not. */
+export function later_words(run: RunItem): string {
+  if (!run.later) return "";
+  const { outcome, time } = run.later;
+  const on = `The run went on to ${clock(time)}`;
+  if (outcome === run.outcome) return `${on}.`;
+  const how: Record<string, string> = { running: "and drives on", stopped: "and was stopped there" };
+  return `${on} ${how[outcome] ?? `and was last ${result_word(outcome).word.toLowerCase()}`}.`;
+}
+
+export const kind_words = {
+  session: { word: "Live", help: "Driven live in a session" },
+  background: { word: "Background", help: "Run in the background, from its start to its end" },
+};
 
 /** The controller of a run; "Replay" for a log. */
 export function driver_word(run: { controller: string; physics: string }): string {
@@ -132,6 +144,7 @@ export function titled(name: string): string {
 
 export function source_word(session: SessionState | null): { word: string; tone: string } | null {
   if (!session) return null;
+  if (session.source === "hardware" && session.emulated) return { word: "Emulated devices", tone: "warn" };
   if (session.source === "hardware") return { word: "REAL HARDWARE", tone: "bad" };
   if (session.source === "replay") return { word: "Replay", tone: "replay" };
   return { word: "Simulation", tone: "info" };

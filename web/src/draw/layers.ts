@@ -1,11 +1,11 @@
 // web/src/draw/layers.ts: the layers of a controller from above: a drawing for each kind.
-import { Point, Pose } from "../geometry";
+import { Point, Pose, distance } from "../geometry";
 import {
-  LayerKind, LayerView, arcs, arrows, circles, grade_of, grid_place, kGrades, kRing, kTallest, kAlpha, lines, places,
+  LayerKind, LayerView, arcs, arrows, cells_by_grade, circles, grid_place, kGrades, kRing, kTallest, kAlpha, lines, places,
   sectors,
 } from "../layer";
-import { is_scaled, kTokens } from "../state/layers";
-import { Context, arrow, circle, fill, stroke, trace, write } from "./marks";
+import { is_scaled, is_sketched, token_of } from "../state/layers";
+import { Context, arrow, circle, dots, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
@@ -20,7 +20,8 @@ interface Canvas {
 }
 type Draw = (c: Canvas, layer: LayerView, colour: string) => void;
 
-const kFew = 3; // up to so many points each is large, and a line has no room to bend
+const kFew = 3;      // up to so many points each is large, and a line needs no dots
+const kNodeRoom = 9; // [px] between nodes that are drawn as dots
 
 function draw_points(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view, palette } = c;
@@ -40,28 +41,26 @@ function draw_points(c: Canvas, layer: LayerView, colour: string): void {
   }
 }
 
-/** A solid line is smooth, like a string. A dashed line is predicted, a dotted one planned. */
+/** A solid line has its nodes as dots. A dashed line is predicted, a dotted one planned. */
 function draw_polyline(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
-  const dash = layer.tone === "plan" ? [2, 6] : [7, 6];
+  const sketched = is_sketched(layer);
+  const all = lines(layer, c.robot);
   g.lineJoin = "round";
   g.lineCap = "round";
   g.beginPath();
-  for (const line of lines(layer, c.robot)) {
-    if (layer.style === "solid" && line.length > kFew) trace_smooth(g, view, line);
-    else trace(g, view, line);
-  }
-  stroke(g, colour, layer.style === "solid" ? 3 : 2.3, layer.style === "dashed" ? dash : []);
+  for (const line of all) trace(g, view, line);
+  const width = layer.style === "solid" ? 3 : sketched ? 1.8 : 2.3;
+  stroke(g, colour, width, layer.style === "dashed" ? (sketched ? [2, 6] : [7, 6]) : []);
+  if (layer.style === "solid") for (const line of all) draw_nodes(g, view, line, colour);
 }
 
-/** Through the middles of the line's pieces, bent towards its corners. */
-function trace_smooth(g: Context, view: View, line: Point[]): void {
-  const at = line.map((p) => view.to_screen(p));
-  g.moveTo(at[0].x, at[0].y);
-  for (let i = 1; i < at.length - 1; ++i) {
-    g.quadraticCurveTo(at[i].x, at[i].y, (at[i].x + at[i + 1].x) / 2, (at[i].y + at[i + 1].y) / 2);
-  }
-  g.lineTo(at[at.length - 1].x, at[at.length - 1].y);
+/** Dots on the nodes of a line that has room for them. */
+function draw_nodes(g: Context, view: View, line: Point[], colour: string): void {
+  let way = 0; // [m]
+  for (let i = 1; i < line.length; ++i) way += distance(line[i - 1], line[i]);
+  if (line.length <= kFew || (way * view.scale) / (line.length - 1) < kNodeRoom) return;
+  dots(g, view, Float32Array.from(line.flatMap((p) => [p.x, p.y])), colour, 3.2);
 }
 
 function draw_arrows(c: Canvas, layer: LayerView, colour: string): void {
@@ -103,15 +102,13 @@ function draw_grid(c: Canvas, layer: LayerView, colour: string): void {
   g.translate(view.sx(corner.x), view.sy(corner.y));
   g.rotate(-corner.heading);
   g.fillStyle = colour;
-  for (let grade = 0; grade < kGrades; ++grade) {
+  cells_by_grade(layer.cells).forEach((cells, grade) => {
     g.globalAlpha = (alpha * 0.5 * (grade + 1)) / kGrades;
     g.beginPath();
-    layer.cells.forEach((cell, at) => {
-      // The screen's y axis points down.
-      if (grade_of(cell) === grade) g.rect((at % columns) * edge, -(Math.floor(at / columns) + 1) * edge, edge, edge);
-    });
+    // The screen's y axis points down.
+    for (const at of cells) g.rect((at % columns) * edge, -(Math.floor(at / columns) + 1) * edge, edge, edge);
     g.fill();
-  }
+  });
   g.restore();
 }
 
@@ -147,7 +144,7 @@ const kDraw: Record<LayerKind, Draw> = {
 export function draw_layer(c: Canvas, layer: LayerView): void {
   c.g.save();
   c.g.globalAlpha = kAlpha[layer.style];
-  kDraw[layer.kind](c, layer, c.palette[kTokens[layer.tone]]);
+  kDraw[layer.kind](c, layer, c.palette[token_of(layer)]);
   c.g.restore();
 }
 

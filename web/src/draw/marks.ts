@@ -6,25 +6,27 @@ import { View } from "./view";
 export type Context = CanvasRenderingContext2D;
 const kMostPathPoints = 3000;
 
-/** Rows [from, to) of the path. Long paths are drawn with fewer corners. */
+/** Rows [from, to) of the path, by odometry or `truly`. Long paths are drawn with fewer corners. */
 export function draw_path(g: Context, view: View, columns: Columns, from: number, to: number,
-  colour: string, width: number, alpha = 1): void {
-  if (to - from < 2) return;
+  colour: string, width: number, alpha = 1, dash: number[] = [], truly = false): void {
+  if (to - from < 2 || (truly && !columns.has("truth.x"))) return;
   g.save();
   g.lineJoin = "round";
   g.lineCap = "round";
   g.globalAlpha = alpha;
   g.beginPath();
-  columns.each_place(from, to, kMostPathPoints, (x, y) => g.lineTo(view.sx(x), view.sy(y)));
-  stroke(g, colour, width);
+  columns.each_place(from, to, kMostPathPoints, (x, y) => {
+    if (Number.isFinite(x)) g.lineTo(view.sx(x), view.sy(y));
+  }, truly);
+  stroke(g, colour, width, dash);
   g.restore();
 }
 
-/** An arrow by `v` [m] from `at`, `times` enlarged; cut at 2 m, left out below 5 px. */
+/** An arrow by `v` [m] from `at`, `times` enlarged; left out below 5 px. */
 export function arrow(g: Context, view: View, at: Point, v: Point, times: number, colour: string,
   width = 3, dash: number[] = []): void {
   const metres = Math.hypot(v.x, v.y) * times;
-  const length = Math.min(2, metres) * view.scale;
+  const length = metres * view.scale;
   if (!(length >= 5)) return;
   const head = Math.min(11, length * 0.6);
   const angle = Math.atan2(-v.y, v.x);

@@ -2,11 +2,11 @@
 
 const kNames = ["bg", "panel", "text", "muted", "grid", "grid2", "line", "accent", "ok", "warn", "bad",
   "scan", "filtered", "internal", "external", "elastic", "path", "robot", "obst", "obstline",
-  "safe"] as const;
+  "safe", "third", "fourth"] as const;
 export type Palette = Record<(typeof kNames)[number], string> & { font: string };
 
-export function read_palette(): Palette {
-  const style = getComputedStyle(document.documentElement);
+export function read_palette(of: Element = document.documentElement): Palette {
+  const style = getComputedStyle(of);
   const out = { font: style.getPropertyValue("--font").trim() || "sans-serif" } as Palette;
   for (const name of kNames) out[name] = style.getPropertyValue(`--${name}`).trim();
   return out;

@@ -77,13 +77,15 @@ export function draw_goal(g: Context, view: View, palette: Palette, goal: Goal, 
   }
 }
 
-/** The goals after `goal` with their numbers, and the line through them. */
+/** The goals after `goal` with their numbers, and the line through them if the `route` is shown. */
 export function draw_goals_ahead(g: Context, view: View, palette: Palette, goal: Point,
-  ahead: Point[]): void {
+  ahead: Point[], route: boolean): void {
   if (ahead.length === 0) return;
-  g.beginPath();
-  trace(g, view, [goal, ...ahead]);
-  stroke(g, palette.ok, 1.4, [3, 5]);
+  if (route) {
+    g.beginPath();
+    trace(g, view, [goal, ...ahead]);
+    stroke(g, palette.ok, 1.4, [3, 5]);
+  }
   ahead.forEach((next, i) => {
     circle(g, view, next, 9);
     fill(g, palette.bg);

@@ -4,30 +4,39 @@ import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
 import { sweep_age } from "../state/age";
-import { is_sensed, kOwn } from "../state/layers";
+import { kOwn, visible_layers } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
 import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
 import { Context, circle, dots, draw_path, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
+import { draw_handles, draw_paths, draw_route, draw_sketch, draw_start } from "./edit";
 import { draw_goal, draw_goals_ahead, draw_robot, draw_safety, draw_truth } from "./robot";
 import { draw_bumpers, draw_fan, draw_ranging } from "./sensing";
 import { Insets, View } from "./view";
 import { draw_grid, draw_obstacles, draw_scale, trace_obstacle } from "./world";
 
-export type Selection = { kind: "goal" } | { kind: "obstacle"; id: number } | null;
+/** A goal without an index is the one to which the robot drives. */
+export type Selection = { kind: "goal"; index?: number } | { kind: "obstacle"; id: number } | null;
 
 /** An edit in progress: drawn, but not sent. */
 export interface Draft {
   goal?: Goal;
   obstacle?: Obstacle;
+  start?: Pose;
+  sketch?: Point[]; // corners so far
   measure?: { from: Point; to: Point };
   cursor?: Point; // the keyboard's crosshair
   moved?: { id: number; pose: Pose }; // an obstacle in the hand
 }
 
-/** A second run drawn over the first. */
-export interface Ghost { columns: Columns; rows: number; pose: Pose | null; radius: number; hull: SceneState["hull"] }
+/** Another run drawn over the first, in its own colour and dashes. */
+export interface Ghost {
+  columns: Columns; rows: number; pose: Pose | null; radius: number; hull: SceneState["hull"];
+  look: RunLook;
+}
+/** How a compared run is drawn. The letter and the dashes repeat what the colour says. */
+export interface RunLook { letter: string; colour: "accent" | "elastic" | "third" | "fourth"; dash: number[] }
 
 export interface Overlay {
   selection: Selection;
@@ -35,27 +44,27 @@ export interface Overlay {
   draft: Draft;
   force_scale: number;
   hidden: ReadonlySet<string>; // names of the layers that are switched off
-  ghost: Ghost | null;
+  ghosts: Ghost[];
   future: boolean;             // draws the path still to come, faintly
   insets: Insets;
+  handles?: boolean;           // of the selected obstacle
+  pointer?: Point | null;      // the place of W under the mouse or the crosshair
   preview?: Goal | null;       // a goal that is not sent yet
   /** Another colour of the path: the Runs view draws the first of two runs in the accent. */
   path?: "accent";
 }
 
-const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
+export const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
 
 export function draw_scene(g: Context, view: View, palette: Palette,
   scene: SceneState, overlay: Overlay): void {
   g.fillStyle = palette.bg;
   g.fillRect(0, 0, view.width, view.height);
-  draw_grid(g, view, palette);
+  if (!overlay.hidden.has(kOwn.mesh.name)) draw_grid(g, view, palette);
   const pose = robot_pose(scene);
   const f = scene.frame;
   const on = (key: { name: string }) => !overlay.hidden.has(key.name);
-  const old = scene.sweeps.some((s) => sweep_age(scene, s) !== null);
-  const layers = [...scene.layers.values()].filter((l) => on(l) && !(old && is_sensed(l.name)));
-  const { below, above } = stacked(layers);
+  const { below, above } = stacked(visible_layers(scene, overlay.hidden));
   const canvas = f && { g, view, palette, robot: f.pose, radius: scene.radius, times: overlay.force_scale };
 
   const filtered = on(kOwn.filtered) ? scene.filtered.shown : null;
@@ -64,39 +73,53 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   const selected = overlay.selection?.kind === "obstacle" ? overlay.selection.id : null;
   draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
     overlay.hovered);
+  if (on(kOwn.ways)) draw_paths(g, view, palette, scene.obstacles, selected);
   if (on(kOwn.scan)) for (const sweep of scene.sweeps) dots(g, view, sweep_points(sweep).hits, palette.scan, 2.2);
   if (filtered) dots(g, view, sweep_points(filtered).hits, filtered_old ? palette.scan : palette.filtered, 1.4);
   if (on(kOwn.ranging)) draw_ranging(g, view, palette, scene.readings);
   const grids = below.filter((l) => l.kind === "grid");
   if (canvas) for (const layer of grids) draw_layer(canvas, layer);
-  draw_ways(g, view, palette, scene, overlay, on(kOwn.path));
-  if (pose && scene.world && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
+  draw_ways(g, view, palette, scene, overlay);
+  if (pose && scene.drives && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
   draw_goals(g, view, palette, scene, overlay);
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
   if (f) draw_bumpers(g, view, palette, f, scene.radius);
-  if (f?.truth && distance(f.truth.pose, f.pose) > kDrift) {
+  if (f?.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
   }
   if (canvas) for (const layer of above) draw_layer(canvas, layer);
+  const held = scene.obstacles.find((o) => o.id === selected);
+  if (held && overlay.handles && !overlay.draft.moved) draw_handles(g, view, palette, overlay.draft.obstacle ?? held);
   draw_draft(g, view, palette, overlay.draft);
-  draw_scale(g, view, palette, overlay.insets);
+  draw_scale(g, view, palette, overlay.insets, overlay.pointer ?? null);
 }
 
-/** The travelled path, the path of a second run, and the path still to come of a stored run. */
-function draw_ways(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay, travelled: boolean): void {
+/** The travelled path, the true one, the path of a second run, and the path still to come of a stored run. */
+function draw_ways(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay): void {
+  const travelled = !overlay.hidden.has(kOwn.path.name);
   const colour = palette[overlay.path ?? "path"];
   if (overlay.future && travelled) draw_path(g, view, scene.columns, 0, scene.columns.length, colour, 2, 0.3);
-  if (overlay.ghost) draw_ghost(g, view, palette, overlay.ghost);
-  if (travelled) draw_path(g, view, scene.columns, 0, Math.min(scene.rows, scene.columns.length), colour, 3);
+  for (const ghost of overlay.ghosts) draw_ghost(g, view, palette, ghost);
+  const rows = Math.min(scene.rows, scene.columns.length);
+  if (!overlay.hidden.has(kOwn.truth.name)) draw_path(g, view, scene.columns, 0, rows, palette.muted, 2, 1, [6, 5], true);
+  if (travelled) draw_path(g, view, scene.columns, 0, rows, colour, 3);
 }
 
 function draw_goals(g: Context, view: View, palette: Palette, scene: SceneState, overlay: Overlay): void {
   const preview = overlay.preview && !overlay.draft.goal ? overlay.preview : null;
   if (preview) draw_goal(g, view, palette, preview, overlay.selection?.kind === "goal", true);
+  draw_start(g, view, palette, overlay.draft.start ?? scene.start);
   const goal = overlay.draft.goal ?? scene.goal;
+  const routed = !overlay.hidden.has(kOwn.route.name);
+  if (routed && scene.route.goals.length > 1) {
+    const index = overlay.selection?.kind === "goal" ? overlay.selection.index ?? null : null;
+    draw_route(g, view, palette, scene.route, index);
+    if (overlay.draft.goal) draw_goal(g, view, palette, overlay.draft.goal, true, true);
+    return;
+  }
   if (!goal) return;
-  draw_goals_ahead(g, view, palette, goal, scene.goals_ahead);
+  draw_goals_ahead(g, view, palette, goal, scene.goals_ahead, routed);
   draw_goal(g, view, palette, goal, overlay.selection?.kind === "goal" && !preview, !!overlay.draft.goal);
 }
 
@@ -108,13 +131,21 @@ function held_obstacles(obstacles: Obstacle[], draft: Draft): Obstacle[] {
 }
 
 function draw_ghost(g: Context, view: View, palette: Palette, ghost: Ghost): void {
-  draw_path(g, view, ghost.columns, 0, ghost.columns.length, palette.elastic, 2, 0.4);
-  draw_path(g, view, ghost.columns, 0, ghost.rows, palette.elastic, 2.5, 0.9);
-  if (!ghost.pose) return;
-  draw_robot(g, view, palette, ghost.pose, ghost.radius, ghost.radius * 0.7, palette.elastic, 0.8, ghost.hull);
+  const { columns, rows, pose, radius, hull, look } = ghost;
+  const colour = palette[look.colour];
+  draw_path(g, view, columns, 0, columns.length, colour, 2, 0.4, look.dash);
+  draw_path(g, view, columns, 0, rows, colour, 2.5, 0.9, look.dash);
+  if (!pose) return;
+  draw_robot(g, view, palette, pose, radius, radius * 0.7, colour, 0.8, hull);
+  const { x, y } = view.to_screen(pose);
+  g.font = `600 13px ${palette.font}`;
+  g.textAlign = "center";
+  g.fillStyle = colour;
+  g.fillText(look.letter, x, y - Math.max(radius * view.scale, 6) - 5);
 }
 
 function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): void {
+  if (draft.sketch) draw_sketch(g, view, palette, draft.sketch);
   if (draft.obstacle) {
     trace_obstacle(g, view, draft.obstacle);
     g.globalAlpha = 0.6;

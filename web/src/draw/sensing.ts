@@ -6,7 +6,7 @@ import { Context, fill, stroke } from "./marks";
 import { Palette } from "./palette";
 import { View } from "./view";
 
-const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo came from somewhere on the arc
+export const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo came from somewhere on the arc
 const kDot = 2;                 // [px]
 
 /** The area that is free by the filtered scan, as a soft fan; a beam without a reading is a gap. */

@@ -1,5 +1,7 @@
 // web/src/draw/world.ts: the ground: grid, obstacles, scale bar.
 import { Obstacle, outline } from "../obstacle";
+import { Point } from "../geometry";
+import { fixed } from "../words";
 import { Context, circle, fill, stroke, trace, write } from "./marks";
 import { Palette } from "./palette";
 import { Insets, View } from "./view";
@@ -47,8 +49,8 @@ export function draw_obstacles(g: Context, view: View, palette: Palette, obstacl
   }
 }
 
-/** A bar of 0.1, 0.2, 0.5, 1, 2, 5 ... metres, as long as fits 60 to 150 pixels. */
-export function draw_scale(g: Context, view: View, palette: Palette, insets: Insets): void {
+/** A bar of 0.1, 0.2, 0.5, 1, 2, 5 ... metres, as long as fits 60 to 150 pixels; above it the place of the pointer. */
+export function draw_scale(g: Context, view: View, palette: Palette, insets: Insets, pointer: Point | null): void {
   let metres = 0.1;
   for (const next of [0.2, 0.5, 1, 2, 5, 10, 20]) if (metres * view.scale < 56) metres = next;
   const length = metres * view.scale;
@@ -61,4 +63,7 @@ export function draw_scale(g: Context, view: View, palette: Palette, insets: Ins
   g.lineTo(x, y - 5);
   stroke(g, palette.muted, 1.5);
   write(g, `${metres} m`, x, y - 9, palette.muted, `12px ${palette.font}`, "right", "alphabetic");
+  if (!pointer) return;
+  const text = `x ${fixed(pointer.x, 2)} m, y ${fixed(pointer.y, 2)} m`;
+  write(g, text, x, y - 26, palette.text, `12px ${palette.font}`, "right", "alphabetic");
 }

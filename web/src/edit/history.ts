@@ -1,15 +1,22 @@
-// web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the requests for
-// both ways; a drag is one step.
-import { Accepted, RequestJson } from "../contract";
+// web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the steps for
+// both ways; a drag is one edit. What somebody else has changed since is left as it is.
+import { Accepted } from "../contract";
+import { Step } from "./edits";
 
 export interface Edit {
   label: string;
-  forward: RequestJson;
-  backward: RequestJson | null; // null: cannot be undone
+  forward: Step;
+  backward: Step | null; // null: cannot be undone
+  at?: number;           // [ms] since 1970
 }
 
-/** Sends a request; resolves with the id of an added obstacle where there is one. */
-export type Send = (request: RequestJson) => Promise<Accepted>;
+export interface EditTarget {
+  /** Carries out a step; resolves with the id of an added obstacle where there is one. */
+  send(step: Step): Promise<Accepted>;
+  /** Whether the world is still as `step` left it; else who or what has changed since. */
+  stands(step: Step): Promise<string | null>;
+  changed(): void;
+}
 
 export class EditHistory {
   private done_: Edit[] = [];
@@ -17,7 +24,7 @@ export class EditHistory {
   private readonly most_ = 200;
   private last_: Promise<unknown> = Promise.resolve();
 
-  constructor(private readonly send_: Send, private readonly changed_: () => void = () => undefined) {}
+  constructor(private readonly t_: EditTarget) {}
 
   get can_undo(): string | null {
     return this.done_.at(-1)?.label ?? null;
@@ -25,41 +32,53 @@ export class EditHistory {
   get can_redo(): string | null {
     return this.undone_.at(-1)?.label ?? null;
   }
+  /** The edits that undo takes back, the newest first. */
+  get done(): Edit[] {
+    return [...this.done_].reverse();
+  }
 
   clear(): void {
     this.done_ = [];
     this.undone_ = [];
-    this.changed_();
+    this.t_.changed();
   }
 
   /** Sends the edit and keeps it for undo when the server accepts it; rejects when refused. */
   perform(edit: Edit): Promise<Accepted> {
     return this.in_turn(async () => {
-      const answer = await this.send_(edit.forward);
+      const answer = await this.t_.send(edit.forward);
       this.record(complete(edit, answer.id));
       return answer;
     });
   }
 
-  /** Keeps an edit that has already been sent, such as the end of a drag. */
-  record(edit: Edit): void {
-    if (edit.backward) this.done_.push(edit);
+  /** Keeps the edit that `send` has sent itself, such as the end of a drag; null: it was refused. An undo that
+   * is asked for meanwhile waits. */
+  take(send: () => Promise<Edit | null>): Promise<void> {
+    return this.in_turn(async () => {
+      const edit = await send();
+      if (edit) this.record(edit);
+    });
+  }
+
+  private record(edit: Edit): void {
+    if (edit.backward) this.done_.push({ ...edit, at: Date.now() });
     if (this.done_.length > this.most_) this.done_.shift();
     this.undone_ = [];
-    this.changed_();
+    this.t_.changed();
   }
 
   undo(): Promise<string | null> {
     return this.in_turn(async () => {
       const edit = this.done_.pop();
-      return edit?.backward ? this.move(edit, edit.backward, this.done_, this.undone_) : null;
+      return edit?.backward ? this.move(edit, edit.forward, edit.backward, this.done_, this.undone_) : null;
     });
   }
 
   redo(): Promise<string | null> {
     return this.in_turn(async () => {
       const edit = this.undone_.pop();
-      return edit ? this.move(edit, edit.forward, this.undone_, this.done_) : null;
+      return edit?.backward ? this.move(edit, edit.backward, edit.forward, this.undone_, this.done_) : null;
     });
   }
 
@@ -70,44 +89,28 @@ export class EditHistory {
     return next;
   }
 
-  private async move(edit: Edit, request: RequestJson, from: Edit[], to: Edit[]): Promise<string> {
+  /** Takes `last` back with `step`. An edit that no longer stands is dropped: it is not ours alone. */
+  private async move(edit: Edit, last: Step, step: Step, from: Edit[], to: Edit[]): Promise<string> {
     try {
-      const answer = await this.send_(request);
-      // An obstacle that comes back has a new id, which all other edits of it must use.
-      const old = id_of(edit);
-      if (request.type === "add_obstacle" && answer.id !== undefined && old !== null) {
-        to.push(renumbered(edit, old, answer.id));
-        this.done_ = this.done_.map((e) => renumbered(e, old, answer.id!));
-        this.undone_ = this.undone_.map((e) => renumbered(e, old, answer.id!));
-      } else {
-        to.push(edit);
-      }
+      const changed = await this.t_.stands(last);
+      if (changed) throw new EditDropped(`${changed} "${edit.label}" is left as it is.`);
+      await this.t_.send(step);
+      to.push(edit);
       return edit.label;
     } catch (error) {
-      from.push(edit);
+      if (!(error instanceof EditDropped)) from.push(edit);
       throw error;
     } finally {
-      this.changed_();
+      this.t_.changed();
     }
   }
 }
 
-/** The id the edit is about. */
-function id_of(edit: Edit): number | null {
-  for (const r of [edit.forward, edit.backward]) {
-    if (r && "id" in r) return r.id;
-  }
-  return null;
-}
+class EditDropped extends Error {}
 
-/** Gives an added obstacle the id of the answer, so that undo can remove it. */
+/** Gives an added obstacle the id of the answer: it keeps that id when it is removed and added again. */
 function complete(edit: Edit, id: number | undefined): Edit {
   if (edit.forward.type !== "add_obstacle" || id === undefined) return edit;
-  return { ...edit, backward: { type: "remove_obstacle", id } };
-}
-
-function renumbered(edit: Edit, old: number, fresh: number): Edit {
-  const change = (r: RequestJson | null): RequestJson | null =>
-    r && "id" in r && r.id === old ? { ...r, id: fresh } : r;
-  return { ...edit, forward: change(edit.forward)!, backward: change(edit.backward) };
+  const obstacle = { ...edit.forward.obstacle, id };
+  return { ...edit, forward: { type: "add_obstacle", obstacle }, backward: { type: "remove_obstacle", id } };
 }

@@ -2,7 +2,7 @@
 import * as flatbuffers from "flatbuffers";
 import { Point, Pose } from "../geometry";
 import { LayerView } from "../layer";
-import { Obstacle, ObstacleKind } from "../obstacle";
+import { Obstacle, ObstacleKind, PathJson } from "../obstacle";
 import * as wire from "../wire/telemetry_generated";
 import { Legends, Measure, legend_of, shown } from "./legend";
 
@@ -30,8 +30,10 @@ export interface Words { what: string; why: string }
 
 /** A request as the page reads it from a frame; joystick requests are left out. */
 export type FrameRequest =
-  | { type: "set_goal" | "add_goal" | "clear_goal" }
-  | { type: "add_obstacle"; obstacle: Obstacle }
+  | { type: "set_goal"; goals: Goal[]; next: number; loop: boolean }
+  | { type: "add_goal"; goal: Goal }
+  | { type: "clear_goal" }
+  | { type: "add_obstacle" | "change_obstacle"; obstacle: Obstacle }
   | { type: "move_obstacle"; id: number; pose: Pose }
   | { type: "remove_obstacle"; id: number }
   | { type: "stop"; engaged: boolean }
@@ -44,25 +46,34 @@ export type Halt = (typeof kHalts)[number];
 const kMissions = ["idle", "driving", "arrived", "stuck", "held"] as const;
 const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
 
+/** What the simulator knows: the true pose, and the nearest surface from the robot's centre and from its hull [m]. */
+export interface Truth { pose: Pose; collided: boolean; distance: number; clearance: number }
+
 /** One tick of a run; positions in W, metres, radians, seconds. */
 export interface Frame {
   tick: number;
   stamp: number;
   pose: Pose;               // odometry
-  twist: { v: number; omega: number };
+  twist: { v: number; omega: number };   // executed, by odometry
+  command: { v: number; omega: number };
   sweeps: Sweep[];          // only those new in this tick
   sonar: RangeReading[];
   infrared: RangeReading[];
   bumpers: { mount: Pose; pressed: boolean }[];
   requests: FrameRequest[]; // applied before this tick
-  truth: { pose: Pose; collided: boolean } | null; // simulator only
+  truth: Truth | null;      // simulator only
+  gyro: number | null;      // [rad/s]
+  inclination: { roll: number; pitch: number } | null;
+  encoders: { left: number; right: number } | null; // counts
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
   hold: string;             // "stale_scan", ...: why the command is zero; "none"
+  limit: string;            // what keeps the command below the wanted one; "": nothing
+  waits: boolean;           // the controller lets the robot stand
   halt: Halt;
   mission: (typeof kMissions)[number];
   behaviour: string;        // "rest", "avoid", "manual", ...
-  clearance: number;        // [m] hull to nearest filtered return
+  clearance: number;        // [m] hull to the nearest filtered return; its range less the radius without one
   words: Words | null;      // null: as in the frames before
   layers: LayerView[];      // a grid of an earlier frame holds
   measures: Measure[];
@@ -76,6 +87,7 @@ const zero: Point = { x: 0, y: 0 };
 const point = (p: XY | null): Point => (p ? { x: p.x(), y: p.y() } : zero);
 const pose = (p: XYH | null): Pose =>
   p ? { x: p.x(), y: p.y(), heading: p.heading() } : { x: 0, y: 0, heading: 0 };
+const twist = (t: wire.Twist2 | null) => ({ v: t?.v() ?? 0, omega: t?.omega() ?? 0 });
 
 /** Decodes `bytes`; throws when they are too short to be a frame. The ranges are copied. */
 export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
@@ -85,6 +97,8 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   const stamp = clock?.stamp() ?? 0;
   const odometry = f.odometry();
   const truth = f.truth();
+  const tilt = f.inclinometer();
+  const encoders = f.encoders();
   const goal = f.goal();
   const decision = f.decision();
   const what = f.news()?.what();
@@ -93,7 +107,8 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     tick: Number(clock?.tick() ?? 0),
     stamp,
     pose: pose(odometry?.pose() ?? null),
-    twist: { v: odometry?.twist()?.v() ?? 0, omega: odometry?.twist()?.omega() ?? 0 },
+    twist: twist(odometry?.twist() ?? null),
+    command: twist(f.command()),
     sweeps: list(f.scansLength(), (i) => sweep(f.scans(i)!)),
     sonar: list(f.sonarLength(), (i) => reading(f.sonar(i)!)),
     infrared: list(f.infraredLength(), (i) => reading(f.infrared(i)!)),
@@ -102,10 +117,17 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
       return { mount: pose(bumper.mount()), pressed: bumper.pressed() };
     }),
     requests: list(f.requestsLength(), (i) => request(f.requests(i)!)).filter((r) => r !== null),
-    truth: truth && { pose: pose(truth.pose()), collided: f.collided() },
+    truth: truth && {
+      pose: pose(truth.pose()), collided: f.collided(), distance: truth.obstacleDistance(), clearance: truth.clearance(),
+    },
+    gyro: f.gyro()?.rate() ?? null,
+    inclination: tilt && { roll: tilt.roll(), pitch: tilt.pitch() },
+    encoders: encoders && { left: encoders.left(), right: encoders.right() },
     goals_ahead: list(f.goalsAheadLength(), (i) => point(f.goalsAhead(i))),
     goal: goal && { ...point(goal), heading: f.goalHeading() },
     hold: f.hold() ?? "none",
+    limit: f.limit() ?? "",
+    waits: decision?.waits() ?? false,
     halt: kHalts[f.halt()] ?? "none",
     mission: kMissions[decision?.mission() ?? 0] ?? "idle",
     behaviour: f.behaviour() ?? "avoid",
@@ -177,22 +199,44 @@ function obstacle(o: wire.Obstacle): Obstacle {
     width: size.y,
     points: list(o.pointsLength(), (i) => point(o.points(i))),
     height: o.height() || 1,
+    path: path(o.path()),
     extra: {},
   };
+}
+
+function path(p: wire.ObstaclePath | null): PathJson | null {
+  if (!p) return null;
+  const keys = list(p.keysLength() / 3, (i) => [p.keys(3 * i)!, p.keys(3 * i + 1)!, p.keys(3 * i + 2)!]);
+  return { period: p.period(), phase: p.phase(), keys: keys as PathJson["keys"] };
+}
+
+function wanted(g: wire.SetGoal): Goal {
+  return { ...point(g.position()), heading: g.hasHeading() ? g.heading() : null };
 }
 
 function request(box: wire.RequestBox): FrameRequest | null {
   const read = <T>(into: T): T => box.request(into) as T;
   switch (box.requestType()) {
     case wire.Request.SetGoal:
-      return { type: "set_goal" };
-    case wire.Request.AddGoal:
-      return { type: "add_goal" };
+      return { type: "set_goal", goals: [wanted(read(new wire.SetGoal()))], next: 0, loop: false };
+    case wire.Request.AddGoal: {
+      const goal = read(new wire.AddGoal()).goal();
+      return goal && { type: "add_goal", goal: wanted(goal) };
+    }
+    case wire.Request.SetGoals: {
+      const s = read(new wire.SetGoals());
+      const goals = list(s.goalsLength(), (i) => wanted(s.goals(i)!));
+      return goals.length > 0 ? { type: "set_goal", goals, next: s.next(), loop: s.loop() } : { type: "clear_goal" };
+    }
     case wire.Request.ClearGoal:
       return { type: "clear_goal" };
     case wire.Request.AddObstacle: {
       const o = read(new wire.AddObstacle()).obstacle();
       return o && { type: "add_obstacle", obstacle: obstacle(o) };
+    }
+    case wire.Request.ChangeObstacle: {
+      const o = read(new wire.ChangeObstacle()).obstacle();
+      return o && { type: "change_obstacle", obstacle: obstacle(o) };
     }
     case wire.Request.MoveObstacle: {
       const m = read(new wire.MoveObstacle());

@@ -53,7 +53,7 @@ const kConnectTimeout = 8_000; // [ms]
 const kSilenceLimit = 6_000;   // [ms] of silence after which the connection counts as lost
 const kPingPeriod = 1_000;     // [ms]
 const kGone = 4404;            // close code: there is no such session
-export const kBackoff = [500, 1000, 2000, 4000, 5000]; // [ms]
+export const kBackoff = [500, 1000]; // [ms] pauses before the tries to connect
 
 export class LiveLink {
   private socket_: SocketLike | null = null;
@@ -104,8 +104,9 @@ export class LiveLink {
     this.connect();
   }
 
-  /** Connects to another address. */
+  /** Connects again: to another address, or as somebody else. */
   reconnect(): void {
+    if (this.socket_) this.lose();
     clearTimeout(this.retry_timer_);
     this.attempt_ = 0;
     this.connect();

@@ -1,4 +1,5 @@
-// web/src/link/rest.ts: GET, POST, DELETE on /api/v1, with the server's own sentence on failure.
+// web/src/link/rest.ts: GET, POST, PUT, PATCH, DELETE on /api/v1, with the server's own sentence on failure.
+import { own_name } from "./name";
 
 /** A failed request. The message is a sentence for people; the status is 0 without an answer. */
 export class RestError extends Error {
@@ -7,13 +8,19 @@ export class RestError extends Error {
   }
 }
 
+/** A header holds no letters beyond ASCII as they are. */
+function named(): Record<string, string> {
+  const name = own_name();
+  return name === "" ? {} : { "X-Tautline-Name": encodeURIComponent(name) };
+}
+
 async function ask(method: string, path: string, body?: unknown, signal?: AbortSignal):
   Promise<Response> {
   let response: Response;
   try {
     response = await fetch(`/api/v1${path}`, {
       method,
-      headers: body === undefined ? {} : { "Content-Type": "application/json" },
+      headers: { ...named(), ...(body === undefined ? {} : { "Content-Type": "application/json" }) },
       body: body === undefined ? undefined : JSON.stringify(body),
       signal,
     });
@@ -49,6 +56,14 @@ export async function get_bytes(path: string, signal?: AbortSignal):
 export async function post<T>(path: string, body: unknown): Promise<T> {
   const text = await (await ask("POST", path, body)).text();
   return (text === "" ? {} : JSON.parse(text)) as T;
+}
+
+export async function put<T>(path: string, body: unknown): Promise<T> {
+  return (await (await ask("PUT", path, body)).json()) as T;
+}
+
+export async function patch<T>(path: string, body: unknown): Promise<T> {
+  return (await (await ask("PATCH", path, body)).json()) as T;
 }
 
 export function remove(path: string): Promise<Response> {

@@ -1,4 +1,5 @@
 // web/src/link/session.ts: the session of this page: the one that its address names, else `main`.
+import { own_name } from "./name";
 import * as rest from "./rest";
 
 /** The id in the address of this page; null: `main`. */
@@ -9,8 +10,11 @@ export function session_id(): string | null {
 /** The address of the session's WebSocket. */
 export function socket_url(): string {
   const scheme = location.protocol === "https:" ? "wss:" : "ws:";
+  const query = new URLSearchParams();
   const id = session_id();
-  return `${scheme}//${location.host}/ws${id === null ? "" : `?session=${encodeURIComponent(id)}`}`;
+  if (id !== null) query.set("session", id);
+  if (own_name() !== "") query.set("name", own_name());
+  return `${scheme}//${location.host}/ws${query.size > 0 ? `?${query}` : ""}`;
 }
 
 /** The REST path of the session, or of a resource `below` it, such as "/control". */

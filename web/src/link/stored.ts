@@ -4,9 +4,10 @@ import { RunItem } from "../contract";
 import { Obstacle, ObstacleJson, obstacle_from_json } from "../obstacle";
 import { EventLog } from "../state/events";
 import { Columns, last_not_after } from "../state/columns";
+import { Route, first_route, rerouted, route_at } from "../state/goals";
 import { learn_layers } from "../state/layers";
 import {
-  SceneState, edited, forget_instant, goal_from_json, held_of, hold_time, new_scene, show_frame, take_parameters,
+  SceneState, edited, forget_instant, held_of, hold_time, new_scene, show_frame, take_parameters,
   take_robot,
 } from "../state/scene";
 import { placed } from "../state/sweeps";
@@ -18,8 +19,9 @@ import * as rest from "./rest";
 export type FetchFrames = (from: number, limit: number, signal?: AbortSignal) =>
   Promise<{ bytes: Uint8Array; next: number | null }>;
 
-/** The frames of run `id`, or a message for each: its filtered scan, empty without a new one. */
-export function stored_frames(id: number, what: "frames" | "filtered"): FetchFrames {
+/** The frames of run `id`, those of them in which something happens, or a message for each: its filtered
+ * scan, empty without a new one. */
+export function stored_frames(id: number, what: "frames" | "filtered" | "events"): FetchFrames {
   return (from, limit, signal) => rest.get_bytes(`/runs/${id}/${what}?from=${from}&limit=${limit}`, signal);
 }
 
@@ -52,12 +54,13 @@ export function split_frames(bytes: Uint8Array): Uint8Array[] {
 
 export class StoredRun {
   readonly columns = new Columns();
-  readonly events = new EventLog();
+  readonly events = new EventLog(true);
   readonly scene: SceneState;
   done = false;
   error: string | null = null;
   private chunks_: Chunk[] = [];
   private worlds_: { row: number; obstacles: Obstacle[] }[] = [];
+  private routes_: { row: number; route: Route }[] = [];
   private parameters_: { row: number; name: string; value: number }[] = [];
   private legends_ = new Legends();
   private clock_ = 0;
@@ -80,11 +83,13 @@ export class StoredRun {
     take_robot(this.scene, item.document?.robot);
     this.scene.start = doc?.start ?? null;
     this.scene.world = item.physics !== "log";
-    this.scene.goal = goal_from_json(doc?.goal);
-    const others = (item.document?.others ?? []).map(obstacle_from_json);
-    this.scene.obstacles = [...(doc?.obstacles ?? []).map(numbered), ...others];
+    this.scene.drives = this.scene.world;
+    this.scene.route = first_route(doc);
+    this.scene.goal = this.scene.route.goals[0] ?? null;
+    this.scene.obstacles = initial_obstacles(item);
     take_parameters(this.scene, item.parameters ?? {});
     this.worlds_.push({ row: -1, obstacles: this.scene.obstacles });
+    this.routes_.push({ row: -1, route: this.scene.route });
   }
 
   get rows(): number {
@@ -93,6 +98,11 @@ export class StoredRun {
   /** [s] run clock of the last frame. */
   get duration(): number {
     return this.rows === 0 ? 0 : this.columns.at("t", this.rows - 1);
+  }
+  /** [s] Run clock of the first scan that has been fetched; 0 without one. */
+  get opening(): number {
+    const rows = [...this.held_].filter(([name]) => name.startsWith("scan ")).map(([, bringing]) => bringing[0]);
+    return rows.length > 0 ? this.columns.at("t", Math.min(...rows)) : 0;
   }
   /** 0..1 of the run that has been fetched. */
   get progress(): number {
@@ -147,6 +157,7 @@ export class StoredRun {
     this.scene.obstacles = this.world_at(at);
     this.set_parameters_at(at);
     for (const frame of frames) show_frame(this.scene, frame);
+    this.scene.route = route_at(this.route_of(at), frames.at(-1)!);
     this.scene.rows = at + 1;
     this.show_filtered(at, ready);
     return true;
@@ -213,6 +224,9 @@ export class StoredRun {
         const before = this.worlds_.at(-1)!.obstacles;
         const after = edited(before, request);
         if (after !== before) this.worlds_.push({ row, obstacles: after });
+        const way = this.routes_.at(-1)!.route;
+        const route = rerouted(way, request);
+        if (route !== way) this.routes_.push({ row, route });
         if (request.type === "set_parameter") {
           this.parameters_.push({ row, name: request.name, value: request.value });
         }
@@ -268,6 +282,9 @@ export class StoredRun {
   private world_at(row: number): Obstacle[] {
     return this.worlds_[last_not_after(this.worlds_.map((w) => w.row), row)].obstacles;
   }
+  private route_of(row: number): Route {
+    return this.routes_[last_not_after(this.routes_.map((r) => r.row), row)].route;
+  }
 
   private set_parameters_at(row: number): void {
     const now: Record<string, number> = { ...this.item.parameters };
@@ -286,6 +303,12 @@ export async function fetch_all(fetch: FetchFrames, first: number,
     from = page.next;
   }
   return out;
+}
+
+/** The world with which the run began. */
+export function initial_obstacles({ document }: RunItem): Obstacle[] {
+  const own = (document?.scenario.obstacles ?? []).map(numbered);
+  return [...own, ...(document?.others ?? []).map(obstacle_from_json)];
 }
 
 /** Obstacles of a document may have no ids; then their order from 1 is their id. */

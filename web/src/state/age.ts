@@ -42,3 +42,8 @@ export function age_words(seconds: number): string {
   const s = Math.floor(seconds);
   return s < 60 ? `${s < 10 ? seconds.toFixed(1) : s} s` : `${Math.floor(s / 60)} min ${s % 60} s`;
 }
+
+/** "13.8 s ago", then "2 min 5 s ago": of an instant that somebody looks back at. */
+export function ago_words(seconds: number): string {
+  return `${seconds < 60 ? `${seconds.toFixed(1)} s` : age_words(seconds)} ago`;
+}

@@ -2,8 +2,9 @@
 // typed arrays; a missing number is NaN. Beyond a bound, a live run is thinned to save memory.
 import { ChannelInfo } from "../contract";
 import { Frame } from "../link/frame";
+import { Before, kFrameSignals } from "./signals";
 
-/** The columns of every robot. Each measure of its controller has a column of its own name. */
+/** The columns of the record's ticks. Each other signal has a column from its first value on. */
 const kColumns = ["t", "tick", "x", "y", "heading", "v", "omega", "clearance"] as const;
 
 export interface MeasureKey { name: string; unit: string }
@@ -25,6 +26,7 @@ export class Columns {
   private capacity_ = 1024;
   private stride_ = 1;
   private skipped_ = 0;
+  private before_: Before = { stamp: NaN, scan: NaN, sees: false };
 
   /** Keeps at most `most` rows: beyond, every second row goes, and later rows are thinned alike. */
   constructor(private readonly most_ = Infinity) {
@@ -36,13 +38,19 @@ export class Columns {
     return this.data_.get(name)?.subarray(0, this.length) ?? new Float64Array(this.length).fill(NaN);
   }
 
+  has(name: string): boolean {
+    return this.data_.has(name);
+  }
+
   at(name: string, row: number): number {
     return this.data_.get(name)?.[row] ?? NaN;
   }
 
   clear(): void {
-    for (const { name } of this.measures) this.data_.delete(name);
+    this.data_.clear();
+    for (const name of kColumns) this.add(name);
     this.measures = [];
+    this.before_ = { stamp: NaN, scan: NaN, sees: false };
     this.held_.clear();
     this.length = 0;
     this.stride_ = 1;
@@ -51,19 +59,24 @@ export class Columns {
 
   push(f: Frame): void {
     this.hold(f);
+    for (const { stamp } of f.sweeps) this.before_.scan = stamp;
+    this.before_.sees ||= f.sweeps.length > 0 || f.sonar.length > 0;
+    const values = kFrameSignals.map(({ name, of }) => ({ name, value: of(f, this.before_) }));
+    this.before_.stamp = f.stamp;
     if (++this.skipped_ < this.stride_) return;
     this.skipped_ = 0;
     if (this.length >= this.most_) this.thin();
     if (this.length === this.capacity_) this.grow();
     const i = this.length++;
+    for (const column of this.data_.values()) column[i] = NaN;
     const put = (name: string, value: number) => {
-      (this.data_.get(name) ?? this.add(name))[i] = value;
+      if (!Number.isNaN(value)) (this.data_.get(name) ?? this.add(name))[i] = value;
     };
-    const row: TickRow = { t: f.stamp, tick: f.tick, ...f.pose, ...f.twist, clearance: f.clearance };
-    for (const name of kColumns) put(name, row[name]);
-    for (const { name } of this.measures) put(name, NaN);
+    put("t", f.stamp);
+    put("tick", f.tick);
+    for (const { name, value } of values) put(name, value);
     const put_named = (name: string, unit: string, value: number) => {
-      if (!this.data_.has(name)) this.measures = [...this.measures, { name, unit }];
+      if (!this.measures.some((m) => m.name === name)) this.measures = [...this.measures, { name, unit }];
       put(name, value);
     };
     for (const { name, unit, value } of f.measures) put_named(name, unit, value);
@@ -87,23 +100,25 @@ export class Columns {
       Array.from({ length: info.values }, (_, k) => ({ name: column_of(info, k), unit: info.unit })));
   }
 
-  /** Inserts rows of the record at the front. Columns that they lack are NaN there. */
-  prepend(rows: TickRow[]): void {
+  /** Inserts rows of the record that follow each other, by their ticks. Columns that they lack are NaN there. */
+  insert(rows: TickRow[]): void {
     const count = rows.length;
+    if (count === 0) return;
+    const at = last_not_after(this.get("tick"), rows[0].tick) + 1;
     while (this.capacity_ < this.length + count) this.grow();
     for (const [name, column] of this.data_) {
-      column.copyWithin(count, 0, this.length);
+      column.copyWithin(at + count, at, this.length);
       for (let i = 0; i < count; ++i) {
-        column[i] = (rows[i] as unknown as Record<string, number | undefined>)[name] ?? NaN;
+        column[at + i] = (rows[i] as unknown as Record<string, number | undefined>)[name] ?? NaN;
       }
     }
     this.length += count;
   }
 
-  /** Calls `each` with the positions of rows [from, to), thinned to about `most`. */
-  each_place(from: number, to: number, most: number, each: (x: number, y: number) => void): void {
-    const xs = this.get("x");
-    const ys = this.get("y");
+  /** Calls `each` with the positions of rows [from, to), thinned to about `most`; with `truly` the true ones. */
+  each_place(from: number, to: number, most: number, each: (x: number, y: number) => void, truly = false): void {
+    const xs = this.get(truly ? "truth.x" : "x");
+    const ys = this.get(truly ? "truth.y" : "y");
     const step = Math.max(1, Math.floor((to - from) / most));
     for (let i = from; i < to - 1; i += step) each(xs[i], ys[i]);
     each(xs[to - 1], ys[to - 1]);
@@ -148,4 +163,12 @@ export function last_not_after(values: ArrayLike<number>, limit: number): number
     else high = mid;
   }
   return low - 1;
+}
+
+/** The value of column `y` where column `x` is `at`; both ascend, and begin before the rows with 0. */
+export function interpolated(columns: Columns, x: string, y: string, at: number): number {
+  const point = (row: number) => (row < 0 ? { x: 0, y: 0 } : { x: columns.at(x, row), y: columns.at(y, row) });
+  const row = Math.min(last_not_after(columns.get(x), at), columns.length - 2); // beyond the rows as between the last two
+  const [a, b] = [point(row), point(row + 1)];
+  return columns.length > 0 && b.x > a.x ? a.y + ((at - a.x) / (b.x - a.x)) * (b.y - a.y) : a.y;
 }

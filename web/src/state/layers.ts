@@ -1,51 +1,83 @@
-// web/src/state/layers.ts: the layers of the page and of the controller, and which of them are
-// switched off.
+// web/src/state/layers.ts: the layers of the page and of the controller, their groups in the legend,
+// and which of them are switched off.
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
+import { sweep_age } from "./age";
 import type { SceneState } from "./scene";
 import { keep, kept } from "./store";
 
 export type Token = Exclude<keyof Palette, "font">;
 
 /** The colour of each meaning; Foxglove's views have the same. */
-export const kTokens: Record<Tone, Token> = {
+const kTokens: Record<Tone, Token> = {
   accent: "accent", internal: "internal", external: "external", elastic: "elastic", plan: "accent", moving: "warn",
   muted: "muted", refused: "bad", good: "ok",
 };
 
-/** A layer as the panel lists it. */
+/** The straight line from the strip's end to the goal. It is no part of the strip and heeds no obstacle. */
+const kStraightOn = "strip.ahead";
+
+/** The colour of a layer. */
+export function token_of(layer: { name: string; tone: Tone }): Token {
+  return layer.name === kStraightOn ? "ok" : kTokens[layer.tone];
+}
+/** True for lines that nobody has driven or proved: they are drawn thin and dotted. */
+export function is_sketched(layer: { name: string; tone: Tone }): boolean {
+  return layer.tone === "plan" || layer.name === kStraightOn;
+}
+
+/** A layer as the legend lists it. */
 export interface LayerKey {
   name: string;
   label: string;
   token: Token;
-  kind: LayerKind;
+  kind: LayerKind | "mesh" | "solid"; // of its swatch
   style: LayerStyle;
   scaled: boolean; // its arrows may be drawn enlarged
+  always: boolean; // has no switch
 }
 
-const own = (name: string, label: string, token: Token, kind: LayerKind, style: LayerStyle = "solid"): LayerKey =>
-  ({ name, label, token, kind, style, scaled: false });
+const own = (name: string, label: string, token: Token, kind: LayerKey["kind"], style: LayerStyle = "solid",
+  always = false): LayerKey => ({ name, label, token, kind, style, scaled: false, always });
 
 /** The layers of every robot, with any controller. */
 export const kOwn = {
   scan: own("scan", "Raw scan", "scan", "points"),
   filtered: own("filtered", "Filtered scan", "filtered", "points"),
   ranging: own("ranging", "Sonar, infrared", "scan", "arcs"),
-  path: own("path", "Travelled path", "path", "polyline"),
+  bumpers: own("bumpers", "Bumper, pressed", "bad", "arcs", "solid", true),
+  path: own("path", "Travelled, by odometry", "path", "polyline"),
+  truth: own("truth", "True path and hull", "muted", "polyline", "dashed"),
+  route: own("route", "Route of goals", "ok", "polyline", "dashed"),
+  goal: own("goal", "Goal", "ok", "circles", "solid", true),
   safety: own("safety", "Safety circle", "safe", "circles", "dashed"),
+  robot: own("robot", "Robot, its hull", "robot", "circles", "solid", true),
+  start: own("start", "Start", "muted", "arrows", "solid", true),
+  ways: own("ways", "Ways of movers", "obstline", "polyline", "dashed"),
+  obstacles: own("obstacles", "Obstacles", "obstline", "solid", "solid", true),
+  mesh: own("mesh", "Grid, 1 m", "muted", "mesh"),
 };
+
+const kCompared = [
+  { ...kOwn.path, token: "accent" as const }, own("second", "Second run", "elastic", "polyline", "solid", true),
+];
 
 /** True for forces: displacements without a unit, which may be drawn enlarged to be seen. */
 export function is_scaled(layer: LayerView): boolean {
   return layer.kind === "arrows" && layer.unit === "";
 }
 
+/** `hidden` without the forces among the `known` layers. */
+export function forces_shown(hidden: ReadonlySet<string>, known: Map<string, LayerKey>): ReadonlySet<string> {
+  return new Set([...hidden].filter((name) => !known.get(name)?.scaled));
+}
+
 /** Adds the keys of new `layers` to `known`. */
 export function learn_layers(known: Map<string, LayerKey>, layers: LayerView[]): void {
   for (const layer of layers) {
     if (known.has(layer.name)) continue;
-    const { name, label, tone, kind, style } = layer;
-    known.set(name, { name, label, token: kTokens[tone], kind, style, scaled: is_scaled(layer) });
+    const { name, label, kind, style } = layer;
+    known.set(name, { name, label, token: token_of(layer), kind, style, scaled: is_scaled(layer), always: false });
   }
 }
 
@@ -54,17 +86,42 @@ export function is_sensed(name: string): boolean {
   return name.startsWith("scan.");
 }
 
-interface LayerGroup { title: string; keys: LayerKey[] }
+/** The layers to draw: those that are on, and none that was sensed in an old scan. */
+export function visible_layers(scene: SceneState, hidden: ReadonlySet<string>): LayerView[] {
+  const old = scene.sweeps.some((s) => sweep_age(scene, s) !== null);
+  return [...scene.layers.values()].filter((l) => !hidden.has(l.name) && !(old && is_sensed(l.name)));
+}
 
-/** The rows of the panel. A log has only sensors and the path. */
-export function layer_groups(scene: SceneState, method: string): LayerGroup[] {
+const kGroups = ["Senses", "Forces", "Ways", "World"] as const;
+type Group = (typeof kGroups)[number];
+
+/** Tracks and cells are of the world; the other layers of a controller are ways that it weighs or takes. */
+function group_of(key: LayerKey): Group {
+  if (is_sensed(key.name)) return "Senses";
+  if (key.scaled) return "Forces";
+  return key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
+}
+
+/**
+ * The rows of the legend: everything that is drawn. A log has only sensors and the path. Beside a second run the
+ * first one has the accent.
+ */
+export function layer_groups(scene: SceneState, compared = false): { title: Group; keys: LayerKey[] }[] {
   const known = [...scene.known.values()];
-  return [
-    { title: "Senses", keys: [kOwn.scan, kOwn.filtered, ...(scene.readings.size > 0 ? [kOwn.ranging] : []),
-      ...known.filter((k) => is_sensed(k.name))] },
-    { title: method, keys: known.filter((k) => !is_sensed(k.name)) },
-    { title: "Robot", keys: [kOwn.path, ...(scene.world ? [kOwn.safety] : [])] },
-  ].filter((group) => group.keys.length > 0);
+  const { frame, drives, readings } = scene;
+  const when = (drawn: boolean, ...keys: LayerKey[]) => (drawn ? keys : []);
+  const own: Record<Group, [LayerKey[], LayerKey[]]> = {
+    Senses: [[kOwn.scan, kOwn.filtered],
+      [...when(readings.size > 0, kOwn.ranging), ...when((frame?.bumpers.length ?? 0) > 0, kOwn.bumpers)]],
+    Forces: [[], []],
+    Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route)]],
+    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.world, kOwn.start, kOwn.obstacles),
+      ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [kOwn.mesh]],
+  };
+  return kGroups.map((title) => {
+    const [first, last] = own[title];
+    return { title, keys: [...first, ...known.filter((k) => group_of(k) === title), ...last] };
+  }).filter((group) => group.keys.length > 0);
 }
 
 const kHidden = "tautline.layers.hidden";
@@ -73,7 +130,7 @@ const kRoomFor = 1240; // [px] of a window in which the panel leaves the scene e
 
 /** The layers that were switched off at the last visit. */
 export function stored_hidden(): ReadonlySet<string> {
-  return kept(kHidden, new Set<string>(), (text) => new Set(JSON.parse(text) as string[]));
+  return kept(kHidden, new Set([kStraightOn]), (text) => new Set(JSON.parse(text) as string[]));
 }
 
 /** `hidden` with the layer `name` switched the other way, and kept for the next visit. */

@@ -1,12 +1,13 @@
 // web/src/state/scene.ts: the state that is drawn, as one plain object, and how frames and the
 // session's document change it. Live session and stored run fill the same object.
-import { GoalJson, RobotInfo, SessionState } from "../contract";
+import { RobotInfo, SessionState } from "../contract";
 import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
 import { Frame, FrameRequest, Goal, Words } from "../link/frame";
 import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
+import { Route, goal_from_json } from "./goals";
 import { LayerKey, learn_layers } from "./layers";
 import { PlacedReadings, kReadingHolds, place_readings, reading_key } from "./ranging";
 import { FilteredScan, PlacedSweep, newest_sweeps } from "./sweeps";
@@ -25,15 +26,18 @@ export interface SceneState {
   start: Pose | null;
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
+  route: Route;         // all goals of the live robot, as set
   radius: number;         // [m] hull
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
   safety_distance: number; // [m] about the centre
+  parameters: Record<string, number>; // of the shown instant
   scan_timeout: number; // [s] age of a scan at which the robot stops
   events: EventLog;
   run: number | null;
   controller: string;
   heard_at: number | null; // [ms] performance.now() when the newest live frame came
+  drives: boolean; // false for a recorded log, which nothing steers
   world: boolean; // false for a recorded log, which has no obstacles
 }
 
@@ -41,8 +45,8 @@ export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
     words: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
-    goal: null, goals_ahead: [], radius: 0.35, hull: null, half_track: 0.25, safety_distance: 1, scan_timeout: 0,
-    events: new EventLog(), run: null, controller: "", heard_at: null, world: true,
+    goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, radius: 0.35, hull: null, half_track: 0.25, safety_distance: 1, parameters: {},
+    scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true,
   };
 }
 
@@ -78,24 +82,30 @@ export function fold_session(scene: SceneState, s: SessionState): void {
   scene.start = s.scenario?.start ?? null;
   scene.goal = goal_from_json(s.goal);
   scene.goals_ahead = s.goals_ahead ?? [];
+  scene.route = route_of(s);
   take_robot(scene, s.robot);
   scene.world = s.source === "simulation";
   take_parameters(scene, s.parameters ?? {});
 }
 
-export function goal_from_json(goal: GoalJson | null | undefined): Goal | null {
-  return goal ? { x: goal.x, y: goal.y, heading: goal.heading ?? null } : null;
+/** All goals, reached and ahead. */
+function route_of(s: SessionState): Route {
+  const behind = s.goals_behind ?? [];
+  const all = [...behind, ...(s.goal ? [s.goal] : []), ...(s.goals_ahead ?? [])];
+  return { goals: all.map((g) => goal_from_json(g)!), next: s.goal ? behind.length : 0, loop: s.loop ?? false };
 }
 
 export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): void {
   scene.radius = robot.radius ?? scene.radius;
   scene.half_track = robot.half_track ?? scene.half_track;
+  scene.drives = robot.drives ?? scene.drives;
   const { half_length = 0, half_width = 0 } = robot;
   scene.columns.channels = robot.channels ?? [];
   scene.hull = half_length > 0 ? { half_length, half_width } : null;
 }
 
 export function take_parameters(scene: SceneState, p: Record<string, number>): void {
+  scene.parameters = { ...scene.parameters, ...p };
   scene.safety_distance = p.safety_distance ?? scene.safety_distance;
   scene.scan_timeout = p.scan_timeout ?? scene.scan_timeout;
 }
@@ -158,6 +168,8 @@ export function edited(obstacles: Obstacle[], request: FrameRequest): Obstacle[]
   switch (request.type) {
     case "add_obstacle":
       return [...obstacles.filter((o) => o.id !== request.obstacle.id), request.obstacle];
+    case "change_obstacle":
+      return obstacles.map((o) => (o.id === request.obstacle.id ? request.obstacle : o));
     case "move_obstacle":
       return obstacles.map((o) => (o.id === request.id ? { ...o, pose: request.pose } : o));
     case "remove_obstacle":
@@ -179,6 +191,8 @@ export function goal_distance(scene: SceneState): number | null {
   return distance(scene.goal, pose);
 }
 
+const kOpenSight = 4; // [m] shown about a robot in an empty world
+
 /** The bounds of a fitted view: obstacles, start, goals and robot. */
 export function scene_bounds(scene: SceneState): Bounds {
   const b = empty_bounds();
@@ -187,7 +201,8 @@ export function scene_bounds(scene: SceneState): Bounds {
   if (scene.goal) include(b, scene.goal.x, scene.goal.y, 0.7);
   for (const goal of scene.goals_ahead) include(b, goal.x, goal.y, 0.7);
   for (const o of scene.obstacles) include_obstacle(b, o);
-  if (pose) include(b, pose.x, pose.y, scene.world ? scene.radius + 0.25 : 5);
+  const empty = !scene.world || scene.obstacles.length === 0;
+  if (pose) include(b, pose.x, pose.y, empty ? kOpenSight : scene.radius + 0.25);
   if (b.min_x > b.max_x) include(b, 0, 0, 3);
   return b;
 }

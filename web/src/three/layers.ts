@@ -4,10 +4,10 @@ import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Pose } from "../geometry";
 import {
-  LayerKind, LayerView, Place, arcs, arrows, circles, grade_of, grid_place, kAlpha, kGrades, kRing, kTallest, lines,
-  places, sectors,
+  LayerKind, LayerView, Place, arcs, arrows, cells_by_grade, circles, grid_place, kAlpha, kGrades, kGround, kRing, kScanHeight,
+  kStripHeight, kTallest, lines, places, sectors,
 } from "../layer";
-import { is_scaled, kTokens } from "../state/layers";
+import { is_scaled, is_sketched, token_of } from "../state/layers";
 import { dot, flat, placed, push_arrow, ribbon, vertices } from "./shapes";
 
 /** Where and how a layer is drawn. */
@@ -20,9 +20,6 @@ export interface Stage {
 }
 type Build = (stage: Stage, layer: LayerView, colour: string) => void;
 
-export const kScanHeight = 0.3;   // [m] of the scan plane
-const kStripHeight = 0.36;        // [m] above the hull, which covers a strip of one step
-const kGround = 0.01;             // [m] of drawings on the floor
 const kDash = 0.12;               // [m] of a dash, and of the gap after it
 
 /** Gives every material of `object` the opacity `alpha`. */
@@ -70,7 +67,7 @@ function build_points(stage: Stage, layer: LayerView, colour: string): void {
 }
 
 function build_polyline(stage: Stage, layer: LayerView, colour: string): void {
-  const planned = layer.tone === "plan";
+  const planned = is_sketched(layer);
   for (const line of lines(layer, stage.robot)) {
     band(stage, layer, line, layer.style === "solid" ? 0.06 : 0.02, planned ? kGround : kStripHeight, colour);
   }
@@ -117,17 +114,15 @@ function build_grid(stage: Stage, layer: LayerView, colour: string): void {
   const { corner, cell, columns } = place;
   const c = Math.cos(corner.heading) * cell;
   const s = Math.sin(corner.heading) * cell;
-  const shades: number[][] = Array.from({ length: kGrades }, () => []);
-  layer.cells.forEach((byte, at) => {
-    const grade = grade_of(byte);
-    if (grade < 0) return;
+  const tile = (at: number): number[] => {
     const [i, j] = [at % columns, Math.floor(at / columns)];
     const corner_at = (di: number, dj: number) =>
       [corner.x + c * (i + di) - s * (j + dj), corner.y + s * (i + di) + c * (j + dj), kGround];
     const [a, b, d, e] = [corner_at(0, 0), corner_at(1, 0), corner_at(1, 1), corner_at(0, 1)];
-    shades[grade].push(...a, ...b, ...d, ...a, ...d, ...e);
-  });
-  shades.forEach((xyz, grade) => fill(stage, xyz, colour, (0.7 * (grade + 1)) / kGrades));
+    return [...a, ...b, ...d, ...a, ...d, ...e];
+  };
+  cells_by_grade(layer.cells).forEach((cells, grade) =>
+    fill(stage, cells.flatMap(tile), colour, (0.7 * (grade + 1)) / kGrades));
 }
 
 /** Sectors on the floor about the robot. */
@@ -182,5 +177,5 @@ const kBuild: Record<LayerKind, Build> = {
 };
 
 export function build_layer(stage: Stage, layer: LayerView): void {
-  kBuild[layer.kind](stage, layer, stage.palette[kTokens[layer.tone]]);
+  kBuild[layer.kind](stage, layer, stage.palette[token_of(layer)]);
 }

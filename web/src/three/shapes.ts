@@ -1,9 +1,12 @@
 // web/src/three/shapes.ts: the shapes of the 3D view: z up, metres.
 import * as THREE from "three";
 import { Palette } from "../draw/palette";
-import { Point } from "../geometry";
-import { Goal } from "../link/frame";
+import { Point, Pose, to_parent } from "../geometry";
+import { Frame, Goal } from "../link/frame";
+import { kHalfCone } from "../draw/sensing";
+import { kScanHeight } from "../layer";
 import { Obstacle, outline } from "../obstacle";
+import { PlacedReadings } from "../state/ranging";
 import { SceneState } from "../state/scene";
 
 export function clear(group: THREE.Group): void {
@@ -70,6 +73,7 @@ export function grid(p: Palette): THREE.Group {
 export function solid(o: Obstacle, p: Palette, chosen: boolean): THREE.Object3D {
   const material = new THREE.MeshStandardMaterial({ color: p.obstline, roughness: 0.85 });
   const mesh = shape_of(o, material);
+  mesh.userData.obstacle = o.id; // a pointer finds it
   const edges = new THREE.LineSegments(new THREE.EdgesGeometry(mesh.geometry, 30),
     new THREE.LineBasicMaterial({ color: chosen ? p.accent : p.muted }));
   mesh.add(edges);
@@ -101,9 +105,10 @@ export function ring(at: Point, inner: number, outer: number, z: number, colour:
   return placed(new THREE.RingGeometry(inner, outer, 72), flat(colour), at, z);
 }
 
-/** The goals after `from`, and the line through them. */
-export function goals_ahead(from: Point, ahead: Point[], p: Palette): THREE.Object3D[] {
-  return [ribbon([from, ...ahead], 0.015, 0.016, p.ok), ...ahead.map((at) => ring(at, 0.12, 0.15, 0.02, p.ok))];
+/** The goals after `from`, and the line through them if the `route` is shown. */
+export function goals_ahead(from: Point, ahead: Point[], p: Palette, route: boolean): THREE.Object3D[] {
+  const rings = ahead.map((at) => ring(at, 0.12, 0.15, 0.02, p.ok));
+  return route ? [ribbon([from, ...ahead], 0.015, 0.016, p.ok), ...rings] : rings;
 }
 
 export function dot(at: Point, radius: number, z: number, colour: string): THREE.Mesh {
@@ -126,10 +131,46 @@ export function ribbon(line: Point[], width: number, z: number, colour: string):
   return new THREE.Mesh(vertices(xyz).setIndex(faces), flat(colour));
 }
 
+/** The hull's outline at `pose`, on the floor. */
+export function outline_of(pose: Pose, scene: SceneState, colour: string): THREE.Object3D {
+  const { hull, radius } = scene;
+  const corners = hull
+    ? [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => [a * hull.half_length, b * hull.half_width])
+    : Array.from({ length: 48 }, (_, k) => [radius * Math.cos((k * Math.PI) / 24), radius * Math.sin((k * Math.PI) / 24)]);
+  const xyz = corners.flatMap(([x, y]) => {
+    const p = to_parent(pose, x, y);
+    return [p.x, p.y, 0.02];
+  });
+  return new THREE.LineLoop(vertices(xyz), new THREE.LineBasicMaterial({ color: colour }));
+}
+
+/** Sonar echoes as arcs, which hold the obstacle somewhere, and infrared returns as dots, in the scan plane. */
+export function ranging(readings: PlacedReadings, p: Palette): THREE.Object3D[] {
+  return [...readings.values()].filter((r) => r.hit).map(({ kind, origin, range }) => {
+    const at = (turn: number): Point => ({
+      x: origin.x + range * Math.cos(origin.heading + turn), y: origin.y + range * Math.sin(origin.heading + turn),
+    });
+    if (kind === "infrared") return dot(at(0), 0.02, kScanHeight, p.warn);
+    return ribbon(Array.from({ length: 9 }, (_, k) => at((k / 4 - 1) * kHalfCone)), 0.02, kScanHeight, p.scan);
+  });
+}
+
+/** Bumpers that are pressed, as bands round the hull. */
+export function pressed(f: Frame, radius: number, p: Palette): THREE.Object3D[] {
+  const half = Math.PI / Math.max(3, f.bumpers.length);
+  return f.bumpers.filter((b) => b.pressed).map(({ mount }) => {
+    const middle = f.pose.heading + mount.heading;
+    const at = (turn: number): Point => ({
+      x: f.pose.x + radius * Math.cos(middle + turn), y: f.pose.y + radius * Math.sin(middle + turn),
+    });
+    return ribbon(Array.from({ length: 13 }, (_, k) => at((k / 6 - 1) * half)), 0.05, 0.25, p.bad);
+  });
+}
+
 /** A horizontal arrow by `v` [m], `times` enlarged. Arrows below 3 cm are left out. */
 export function push_arrow(group: THREE.Group, at: Point, v: Point, times: number, colour: string,
   z = 0.08): void {
-  const length = Math.min(2, Math.hypot(v.x, v.y) * times);
+  const length = Math.hypot(v.x, v.y) * times;
   if (length < 0.03) return;
   const head = Math.min(0.12, length * 0.5);
   const arrow = new THREE.ArrowHelper(new THREE.Vector3(v.x, v.y, 0).normalize(),

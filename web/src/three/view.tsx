@@ -1,8 +1,13 @@
 // web/src/three/view.tsx: the 3D view as a component; three.js is fetched when it is first shown.
-import { JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { JSX, TargetedPointerEvent } from "preact";
+import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { read_palette } from "../draw/palette";
+import type { Insets } from "../draw/view";
+import { Point } from "../geometry";
+import { use_listener } from "../state/store";
+import { Inspector } from "../ui/inspector";
+import { Probe } from "../ui/probe";
 import type { World3 } from "./world";
 
 /** Why this browser cannot show 3D; null if it can. */
@@ -14,12 +19,19 @@ function no_webgl(): string | null {
     : "This browser offers no WebGL 2, so the 3D view cannot be drawn. The view from above shows the same.";
 }
 
-export function SceneThree(): JSX.Element {
+/** `insets`: the margins that tools and cards cover. */
+export function SceneThree(props: { insets: () => Insets }): JSX.Element {
   const app = use_app();
   const { theme, follow } = use_ui("theme", "follow");
   const box = useRef<HTMLDivElement>(null);
   const world = useRef<World3 | null>(null);
   const [problem, set_problem] = useState<string | null>(null);
+  const probe = useMemo(() => new Probe(), []);
+  const eye = (px: Point, slack: number) => world.current?.eye(px, slack) ?? null;
+  const place = (e: TargetedPointerEvent<HTMLElement>): Point => {
+    const corner = e.currentTarget.getBoundingClientRect();
+    return { x: e.clientX - corner.left, y: e.clientY - corner.top };
+  };
 
   useEffect(() => {
     const missing = no_webgl();
@@ -31,16 +43,19 @@ export function SceneThree(): JSX.Element {
     const started = async () => {
       const { World3 } = await import("./world");
       if (gone || !box.current) return;
-      world.current = new World3(box.current, read_palette(), app.scene, () => app.ui.value);
+      world.current = new World3(box.current, read_palette(), () => app.shown, () => app.ui.value);
       app.redraw = () => world.current?.request();
+      app.fit_three = () => world.current?.fit();
     };
     started().catch(() => set_problem("The 3D part of the page could not be fetched. The view from above shows the same."));
     return () => {
       gone = true;
+      app.fit_three = () => undefined;
       world.current?.dispose();
       world.current = null;
     };
   }, []);
+  use_listener("pagehide", () => world.current?.keep_orbit());
   useEffect(() => world.current?.set_palette(read_palette()), [theme]);
   useEffect(() => world.current?.request(), [follow]);
 
@@ -48,12 +63,17 @@ export function SceneThree(): JSX.Element {
     return (
       <div class="no-webgl" role="alert" data-testid="no-webgl">
         <p>{problem}</p>
-        <button class="small primary" onClick={() => app.ui.set({ three: false })}>Show it from above</button>
+        <button class="small primary" onClick={() => app.show_three(false)}>Show it from above</button>
       </div>
     );
   }
   return (
-    <div class="three" ref={box} data-testid="scene-3d">
+    <div class="three" ref={box} data-testid="scene-3d" onPointerDown={(e) => probe.pressed(place(e))}
+      onPointerMove={(e) => probe.moved(place(e), e.buttons === 0 ? e.pointerType : "drag")}
+      onPointerUp={(e) => probe.released(place(e), e.pointerType)}
+      onPointerLeave={() => probe.left()}>
+      <Inspector scene={app.shown} probe={probe} box={() => box.current} eye={eye} shown={() => app.ui.value}
+        insets={props.insets} resting={() => world.current !== null} selection={() => null} crosshair={() => null} />
       <button class={`follow small ${follow ? "on" : ""}`} aria-pressed={follow}
         onClick={() => app.ui.set({ follow: !follow })}>Follow the robot</button>
     </div>

@@ -1,16 +1,26 @@
 // web/src/three/world.ts: the scene in 3D, from the state of the view from above: z up, metres.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { SessionState } from "../contract";
 import { Palette } from "../draw/palette";
-import { Selection } from "../draw/scene";
-import { Point } from "../geometry";
-import { kOwn } from "../state/layers";
+import { Selection, kDrift } from "../draw/scene";
+import { Eye } from "../edit/inspect";
+import { Point, distance } from "../geometry";
+import { kScanHeight } from "../layer";
+import { sweep_age } from "../state/age";
+import { kOwn, visible_layers } from "../state/layers";
+import { drawing } from "../state/meter";
+import { Orbit, orbits } from "../state/remembered";
 import { SceneState, robot_pose, scene_bounds } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
-import { build_layer, kScanHeight } from "./layers";
-import { body, clear, goal, goals_ahead, grid, points, ribbon, ring, solid, sun, vertices } from "./shapes";
+import { build_layer } from "./layers";
+import {
+  body, clear, goal, goals_ahead, grid, outline_of, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
+} from "./shapes";
 
-interface Options { selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean }
+interface Options {
+  selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean; session: SessionState | null;
+}
 
 const kMostPath = 1500;
 
@@ -28,11 +38,12 @@ export class World3 {
   private pending_ = 0;
   private built_: unknown[] = [];
   private hull_: SceneState["hull"] = null; // of the robot that was built
-  private placed_ = false;
+  private scenario_: string | null = null; // for which the camera was placed
+  private turned_ = false;                 // by a hand
   private last_robot_: Point | null = null;
 
   constructor(private readonly box_: HTMLElement, private palette_: Palette,
-    private readonly scene_: SceneState, private readonly options_: () => Options) {
+    private readonly scene_: () => SceneState, private readonly options_: () => Options) {
     this.renderer_.setPixelRatio(Math.min(2, devicePixelRatio || 1));
     this.renderer_.domElement.setAttribute("aria-label",
       "The world in 3D. Drag to look round it, wheel to come nearer.");
@@ -44,6 +55,7 @@ export class World3 {
     this.controls_.minDistance = 0.8;
     this.controls_.maxDistance = 60;
     this.controls_.addEventListener("change", () => this.request());
+    this.controls_.addEventListener("start", () => (this.turned_ = true));
     this.world_.add(new THREE.HemisphereLight(0xffffff, 0x667788, 2.2), sun(), this.statics_,
       this.moving_, this.robot_, this.raw_, this.filtered_);
     this.observer_ = new ResizeObserver(() => this.resize());
@@ -60,13 +72,35 @@ export class World3 {
     this.palette_ = palette;
     this.world_.background = new THREE.Color(palette.bg);
     (this.raw_.material as THREE.PointsMaterial).color.set(palette.scan);
-    (this.filtered_.material as THREE.PointsMaterial).color.set(palette.filtered);
     this.built_ = []; // so that everything is built again in the new colours
     clear(this.robot_);
     this.request();
   }
 
+  /** How a pointer at `px` of the view sees the scene. */
+  eye(px: Point, slack: number): Eye {
+    const { clientWidth: w, clientHeight: h } = this.box_;
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(new THREE.Vector2((2 * px.x) / w - 1, 1 - (2 * px.y) / h), this.camera_);
+    const floor = ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
+    return {
+      px, slack, at: floor && { x: floor.x, y: floor.y },
+      to_screen: (p, height) => {
+        const at = new THREE.Vector3(p.x, p.y, height).project(this.camera_);
+        return at.z < 1 ? { x: ((at.x + 1) / 2) * w, y: ((1 - at.y) / 2) * h } : null;
+      },
+      body: () => {
+        const robot = ray.intersectObject(this.robot_, true).at(0)?.distance ?? Infinity;
+        const solids = this.statics_.children.filter((o) => o.userData.obstacle !== undefined);
+        const hit = ray.intersectObjects(solids, false).at(0);
+        if (hit && hit.distance < robot) return { kind: "obstacle", id: hit.object.userData.obstacle as number };
+        return robot < Infinity ? { kind: "robot" } : null;
+      },
+    };
+  }
+
   dispose(): void {
+    this.keep_orbit();
     cancelAnimationFrame(this.pending_);
     this.observer_.disconnect();
     this.controls_.dispose();
@@ -87,36 +121,62 @@ export class World3 {
 
   private draw(): void {
     this.pending_ = 0;
-    const scene = this.scene_;
+    const scene = this.scene_();
     const options = this.options_();
-    if (!this.placed_) this.place_camera(scene);
-    this.build_statics(scene, options.selection);
-    this.build_moving(scene, options);
-    this.place_robot(scene, options.follow);
-    this.place_points(scene, options.hidden);
-    this.controls_.update();
-    this.renderer_.render(this.world_, this.camera_);
+    const scenario = options.session?.scenario.name ?? "";
+    if (scenario !== this.scenario_) {
+      this.keep_orbit();
+      this.scenario_ = scenario;
+      this.place_camera(scene, orbits.get(scenario));
+    }
+    drawing.around(() => {
+      this.build_statics(scene, options.selection, options.hidden);
+      this.build_moving(scene, options);
+      this.place_robot(scene, options.follow);
+      this.place_points(scene, options.hidden);
+      this.controls_.update();
+      this.renderer_.render(this.world_, this.camera_);
+    });
   }
 
-  private place_camera(scene: SceneState): void {
+  /** Looks at the whole world again, now and at the next visit. */
+  fit(): void {
+    this.turned_ = false;
+    orbits.set(this.scenario_ ?? "", null);
+    this.place_camera(this.scene_(), null);
+    this.request();
+  }
+  /** Keeps the camera that a hand has turned for the next visit. */
+  keep_orbit(): void {
+    if (!this.turned_ || !this.scenario_) return;
+    orbits.set(this.scenario_, { eye: this.camera_.position.toArray(), target: this.controls_.target.toArray() });
+    this.turned_ = false;
+  }
+
+  private place_camera(scene: SceneState, orbit: Orbit | null): void {
+    if (orbit) {
+      this.controls_.target.fromArray(orbit.target);
+      this.camera_.position.fromArray(orbit.eye);
+      return;
+    }
     const b = scene_bounds(scene);
     const middle = new THREE.Vector3((b.min_x + b.max_x) / 2, (b.min_y + b.max_y) / 2, 0);
     // On a phone held upright the view is narrower than high.
     const span = Math.max(3, b.max_x - b.min_x, b.max_y - b.min_y) / Math.min(1, this.camera_.aspect);
     this.controls_.target.copy(middle);
     this.camera_.position.set(middle.x - 0.3 * span, middle.y - 0.85 * span, 0.85 * span);
-    this.placed_ = true;
   }
 
   /** Builds grid, obstacles and goal again only when one of them has changed. */
-  private build_statics(scene: SceneState, selection: Selection): void {
-    const key = [scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
+  private build_statics(scene: SceneState, selection: Selection, hidden: ReadonlySet<string>): void {
+    const mesh = !hidden.has(kOwn.mesh.name);
+    const key = [mesh, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
       selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
     if (key.length === this.built_.length && key.every((v, i) => v === this.built_[i])) return;
     this.built_ = key;
     clear(this.statics_);
     const p = this.palette_;
-    this.statics_.add(grid(p));
+    if (mesh) this.statics_.add(grid(p));
     for (const o of scene.obstacles) {
       const chosen = selection?.kind === "obstacle" && selection.id === o.id;
       this.statics_.add(solid(o, p, chosen));
@@ -128,25 +188,34 @@ export class World3 {
     clear(this.moving_);
     const p = this.palette_;
     const on = (layer: { name: string }) => !options.hidden.has(layer.name);
-    if (on(kOwn.path)) this.build_path(scene);
+    if (on(kOwn.path)) this.build_path(scene, 0.045, 0.012, p.path, false);
+    if (on(kOwn.truth)) this.build_path(scene, 0.03, 0.011, p.muted, true);
     const pose = robot_pose(scene);
-    if (pose && scene.world && on(kOwn.safety)) {
+    if (pose && scene.drives && on(kOwn.safety)) {
       this.moving_.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
     }
     if (scene.goal && scene.goals_ahead.length > 0) {
-      this.moving_.add(...goals_ahead(scene.goal, scene.goals_ahead, p));
+      this.moving_.add(...goals_ahead(scene.goal, scene.goals_ahead, p, on(kOwn.route)));
     }
-    if (!scene.frame) return;
-    const stage = { group: this.moving_, palette: p, robot: scene.frame.pose, radius: scene.radius, times: options.force_scale };
-    for (const layer of scene.layers.values()) if (on(layer)) build_layer(stage, layer);
+    if (on(kOwn.ranging)) for (const o of ranging(scene.readings, p)) this.moving_.add(o);
+    const f = scene.frame;
+    if (!f) return;
+    for (const o of pressed(f, scene.radius, p)) this.moving_.add(o);
+    if (f.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
+      this.moving_.add(outline_of(f.truth.pose, scene, p.muted));
+    }
+    const stage = { group: this.moving_, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
+    for (const layer of visible_layers(scene, options.hidden)) build_layer(stage, layer);
   }
 
-  private build_path(scene: SceneState): void {
+  private build_path(scene: SceneState, width: number, z: number, colour: string, truly: boolean): void {
     const rows = Math.min(scene.rows, scene.columns.length);
     if (rows < 2) return;
     const line: Point[] = [];
-    scene.columns.each_place(0, rows, kMostPath, (x, y) => line.push({ x, y }));
-    this.moving_.add(ribbon(line, 0.045, 0.012, this.palette_.path));
+    scene.columns.each_place(0, rows, kMostPath, (x, y) => {
+      if (Number.isFinite(x)) line.push({ x, y });
+    }, truly);
+    this.moving_.add(ribbon(line, width, z, colour));
   }
 
   private place_robot(scene: SceneState, follow: boolean): void {
@@ -172,6 +241,8 @@ export class World3 {
 
   private place_points(scene: SceneState, hidden: ReadonlySet<string>): void {
     const filtered = scene.filtered.shown;
+    const old = filtered !== null && sweep_age(scene, filtered) !== null;
+    (this.filtered_.material as THREE.PointsMaterial).color.set(old ? this.palette_.scan : this.palette_.filtered);
     set_points(this.raw_, hidden.has(kOwn.scan.name) ? [] : scene.sweeps);
     set_points(this.filtered_, filtered && !hidden.has(kOwn.filtered.name) ? [filtered] : []);
   }

@@ -1,9 +1,10 @@
 // web/src/ui/controls.tsx: the small controls the views share.
 import { ComponentChildren, JSX } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import { Choice, ParameterInfo } from "../contract";
 import { fixed, sentence_of } from "../words";
 import { icons } from "./icons";
+import { Named } from "./tip";
 
 /** The picked value until the server has answered; then the value that the server holds. */
 function use_picked(value: string, busy: boolean): [string, (picked: string) => void] {
@@ -41,6 +42,36 @@ export function Segments(props: PickProps): JSX.Element {
   );
 }
 
+export interface Tab { name: string; label: string; body: () => JSX.Element }
+
+/** Tabs by the ARIA pattern: one stop of the Tab key, arrows between them. Only the shown body exists. */
+export function Tabs(props: { label: string; tabs: Tab[]; shown: string; on_pick: (name: string) => void }): JSX.Element {
+  const { tabs } = props;
+  const shown = tabs.find((t) => t.name === props.shown) ?? tabs[0];
+  const id = useId();
+  const list = useRef<HTMLDivElement>(null);
+  const key = (e: KeyboardEvent) => {
+    const by = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
+    if (!by) return;
+    const next = (tabs.indexOf(shown) + by + tabs.length) % tabs.length;
+    props.on_pick(tabs[next].name);
+    list.current?.querySelectorAll("button")[next].focus();
+    e.preventDefault();
+    e.stopPropagation(); // the arrows move no selection
+  };
+  return (
+    <>
+      <div class="tabs" role="tablist" aria-label={props.label} ref={list} onKeyDown={key}>
+        {tabs.map((t) => (
+          <button key={t.name} role="tab" id={`${id}-${t.name}`} aria-selected={t === shown} aria-controls={`${id}-body`}
+            tabIndex={t === shown ? 0 : -1} data-testid={`tab-${t.name}`} onClick={() => props.on_pick(t.name)}>{t.label}</button>
+        ))}
+      </div>
+      <div class="tab-body" role="tabpanel" id={`${id}-body`} aria-labelledby={`${id}-${shown.name}`}>{shown.body()}</div>
+    </>
+  );
+}
+
 export function Pick(props: PickProps & { class?: string }): JSX.Element {
   const [value, set_picked] = use_picked(props.value, props.disabled ?? false);
   return (
@@ -58,7 +89,7 @@ export function Pick(props: PickProps & { class?: string }): JSX.Element {
 }
 
 /** "Repulsion K_r" with the part after the underscore as a subscript. */
-function Label(props: { text: string }): JSX.Element {
+export function Subscripted(props: { text: string }): JSX.Element {
   const parts = props.text.split(/_(\w+)/);
   return <>{parts.map((p, i) => (i % 2 === 1 ? <sub key={i}>{p}</sub> : p))}</>;
 }
@@ -104,8 +135,8 @@ export function Slider(props: {
   const id = `gain-${info.name}`;
   const changed = Math.abs(value - props.usual) > 1e-9;
   return (
-    <div class="gain" title={info.help}>
-      <label for={id}><Label text={info.label} /></label>
+    <div class="gain">
+      <label for={id} data-tip={info.help}><Subscripted text={info.label} /></label>
       <button class="mini" data-testid={`reset-${info.name}`} aria-label={`Reset ${info.label} to ${fixed(props.usual, digits)}`}
         title={`Back to ${fixed(props.usual, digits)} ${info.unit}`} hidden={!changed}
         onClick={() => change(props.usual)}>{icons.reset}</button>
@@ -113,7 +144,7 @@ export function Slider(props: {
       <span class="bound num" aria-hidden="true">{fixed(info.min, digits)}</span>
       <input id={id} data-testid={id} type="range" min={info.min} max={info.max} step={info.step}
         value={value} ref={(e) => e?.style.setProperty("--share", `${share}%`)}
-        aria-valuetext={`${fixed(value, digits)} ${info.unit}`}
+        aria-valuetext={`${fixed(value, digits)} ${info.unit}`} aria-description={info.help}
         onInput={(e) => change(Number(e.currentTarget.value))} />
       <span class="bound r num" aria-hidden="true">{fixed(info.max, digits)}</span>
     </div>
@@ -190,11 +221,15 @@ export function Problem(props: { text: string | null; name?: string }): JSX.Elem
     : <p class="problem" role="alert" data-testid={props.name}>{props.text}</p>;
 }
 
-/** A definition list of names and values. */
-export function Facts(props: { rows: [string, ComponentChildren][] }): JSX.Element {
+/** A definition list of names and values; `meaning` explains a name. */
+export function Facts(props: {
+  rows: [string, ComponentChildren][]; meaning?: (name: string) => string | null;
+}): JSX.Element {
   return (
     <dl class="facts-list">
-      {props.rows.map(([name, value]) => <div key={name}><dt>{name}</dt><dd class="num">{value}</dd></div>)}
+      {props.rows.map(([name, value]) => (
+        <div key={name}><dt><Named label={name} meaning={props.meaning?.(name) ?? null} /></dt><dd class="num">{value}</dd></div>
+      ))}
     </dl>
   );
 }

@@ -4,9 +4,12 @@ import { ComponentChildren, JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
 import { Words } from "../link/frame";
-import { age_words, news_age, scan_age } from "../state/age";
+import { may } from "../people";
+import { age_words, ago_words, news_age, scan_age } from "../state/age";
 import { SceneState } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
+import { use_me } from "../ui/guard";
+import { StoppedBy } from "./watching";
 import { Tone, frame_word, link_words, stopped_words } from "../words";
 
 /** The sentences of the controller: the robot's action and its reason, with the numbers. */
@@ -14,38 +17,68 @@ export function Explain(): JSX.Element | null {
   const app = use_app();
   use_pulse(150);
   const { session } = use_ui("session");
-  const words = explain_words(app.scene, session);
-  return <Sentence id="scene-words" name="explain" {...words} />;
-}
-
-export function Sentence(props: Words & { tone: string; name: string; id?: string }): JSX.Element {
+  const words = explain_words(app.shown, session);
+  const age = app.rewind.age;
+  if (age !== null) return <Sentence id="scene-words" name="explain" {...words} tone="elastic" age={age} />;
+  const trouble = trouble_word(app.scene, session);
   return (
-    <div class={`card explain tone-${props.tone}`} id={props.id} data-testid={props.name}>
-      <b>{props.what}</b>
-      {props.why && <span>{props.why}</span>}
-    </div>
+    <Sentence id="scene-words" name="explain" {...words}>
+      {trouble && <Why trouble={trouble} on_press={() => void app.show_trouble()} />}
+    </Sentence>
   );
 }
 
-function explain_words(scene: SceneState, session: SessionState | null): Words & { tone: string } {
+/** `next`: what a person may do now; `age` [s]: of an earlier instant. */
+export function Sentence(props: Words & {
+  tone: string; name: string; id?: string; next?: string; age?: number; children?: ComponentChildren;
+}): JSX.Element {
+  return (
+    <section class={`card explain tone-${props.tone}`} id={props.id} aria-label="What the robot does and why" data-testid={props.name}>
+      <b>{props.what}{props.age !== undefined && <em class="ago">{ago_words(props.age)}</em>}</b>
+      {props.why && <span>{props.why}</span>}
+      {props.next && <span class="next" data-testid="next"> {props.next}</span>}
+      {props.children}
+    </section>
+  );
+}
+
+/** Opens the instant of a trouble, with the forces of that instant. */
+export function Why(props: { trouble: string; on_press: () => void }): JSX.Element {
+  return (
+    <button class="text why" data-testid="why" title="Shows that instant with the forces on the robot"
+      onClick={props.on_press}>{props.trouble}</button>
+  );
+}
+
+/** The question to which the last trouble of the run is the answer; null while there is none. */
+function trouble_word(scene: SceneState, session: SessionState | null): string | null {
+  const f = scene.frame;
+  if (!f || !session?.robot.drives) return null;
+  if (f.truth?.collided || session.run?.outcome === "collided") return "Why did it touch the obstacle?";
+  if (f.mission === "stuck") return "Why did it get stuck?";
+  return f.mission === "held" && f.hold !== "stopped" ? "Why is it held?" : null;
+}
+
+function explain_words(scene: SceneState, session: SessionState | null): Words & { tone: string; next?: string } {
   const { frame: f, words } = scene;
   if (!session) {
     return { what: "Waiting for the server", why: "The world appears as soon as it answers.", tone: "muted" };
   }
-  if (!f) {
-    const { paused } = session.pace;
-    return { what: paused ? "Paused at the start" : "Nothing has been sensed yet",
-      why: paused ? "Press play to begin." : "", tone: "muted" };
-  }
+  const { paused } = session.pace;
+  const before_start = paused && (!f || (f.hold !== "none" && f.hold !== "stopped" && scene.sweeps.length === 0));
+  if (before_start) return { what: "Paused at the start", why: "Press play to begin.", tone: "info" };
+  if (!f) return { what: "Nothing has been sensed yet", why: "", tone: "muted" };
   // The server sends new sentences only. A page that opens late shows the state until then.
   const said = words ?? { what: frame_word(f).word, why: "" };
   if (!session.robot.drives) return { what: "Replaying the log", why: said.why, tone: "accent" };
-  const tone = f.hold !== "none" || f.mission === "held" ? "bad"
+  const held = f.hold !== "none" || f.mission === "held";
+  const tone = held ? (paused && !session.stop ? "info" : "bad")
     : f.mission === "stuck" ? "warn" : f.mission === "arrived" ? "ok" : "accent";
-  return { ...said, tone };
+  const next = f.mission === "arrived" && f.hold === "none" ? "Set another goal, or Reset to drive it again." : undefined;
+  return { ...said, tone, next };
 }
 
-/** A strip across the top of the scene, with buttons. */
+/** A note beside the sentence, with buttons. */
 function Strip(props: { tone: Tone; words: string; children?: ComponentChildren }): JSX.Element {
   return (
     <div class={`banner ${props.tone}`} role="alert" data-testid="banner">
@@ -58,6 +91,7 @@ function Strip(props: { tone: Tone; words: string; children?: ComponentChildren 
 export function Banner(): JSX.Element | null {
   const app = use_app();
   const { link, session } = use_ui("link", "session");
+  const may_drive = may(use_me(), "operator");
   use_pulse(250);
   if (link.phase === "lost") {
     const alone = session?.source === "hardware"
@@ -71,7 +105,8 @@ export function Banner(): JSX.Element | null {
   if (session?.stop) {
     return (
       <Strip tone="bad" words={stopped_words(app.scene, session, link.phase === "open", performance.now())}>
-        <button class="text" onClick={() => void app.release()}>Release</button>
+        <StoppedBy label={session.by?.stop ?? null} />
+        {may_drive && <button class="text twice" onClick={() => void app.release()}>Release</button>}
       </Strip>
     );
   }
@@ -86,7 +121,7 @@ export function Banner(): JSX.Element | null {
       failed: session?.problem ?? "The run failed." }[outcome];
     return (
       <Strip tone={outcome === "end_of_log" ? "info" : "bad"} words={words}>
-        <button class="text" onClick={() => void app.reset()}>Start again</button>
+        {may_drive && <button class="text" onClick={() => void app.editor.reset()}>Start again</button>}
         {session?.run && <button class="text" onClick={() => app.go("runs", session.run!.id)}>Open the run</button>}
       </Strip>
     );
@@ -98,14 +133,16 @@ export function Banner(): JSX.Element | null {
 export function Staleness(): JSX.Element | null {
   const app = use_app();
   const open = use_store(app.ui, (u) => u.link.phase === "open");
-  const { session } = use_ui("session");
+  const { session, catalog } = use_ui("session", "catalog");
   use_pulse(100);
+  const outside = open && catalog?.controllers.find((c) => c.name === session?.controller)?.outside;
   const news = news_age(app.scene, session, open, performance.now());
-  const scan = scan_age(app.scene);
+  const scan = scan_age(app.shown);
   if (news === null && scan === null) return null;
-  const words = news !== null
-    ? <>Old picture: the robot was last heard <b class="num">{age_words(news)}</b> ago</>
-    : <>The scan is <b class="num">{age_words(scan!)}</b> old</>;
+  const age = <b class="num">{age_words(news ?? scan!)}</b>;
+  const words = news === null ? <>The scan is {age} old</>
+    : outside ? <>Has waited {age} for {session?.controller}</>
+    : <>Old picture: the robot was last heard {age} ago</>;
   return (
     <div class={`stale ${news !== null ? "all" : ""}`} role="status" data-testid="stale"><span>{words}</span></div>
   );

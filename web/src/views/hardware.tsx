@@ -4,6 +4,7 @@ import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { DeviceInfo, HardwareInfo } from "../contract";
 import { Facts } from "../ui/controls";
+import { Guard } from "../ui/guard";
 import { titled, watchers_words } from "../words";
 
 /** A bar under the top bar: why the wheels stand still or may turn, and the Arm button. */
@@ -13,14 +14,23 @@ export function HardwareBar(): JSX.Element | null {
   if (session?.source !== "hardware") return null;
   const armed = hardware?.armed ?? false;
   const words = hardware?.trouble || (armed ? "Armed: the robot may move." : "Not armed.");
+  const disarmed = hardware?.disarmed ?? null;
   const next = armed ? "It moves when a goal is sent off with Go." : "Arming moves nothing by itself.";
   return (
     <div class={`hardware-bar ${armed ? "armed" : ""}`} role="status" data-testid="hardware-bar">
-      <p><b>REAL HARDWARE</b><span data-testid="hardware-words">{words}</span>
+      <p><b>{session.emulated ? "EMULATED DEVICES" : "REAL HARDWARE"}</b>
+        <span data-testid="hardware-words">{words}</span>
+        {disarmed && <span data-testid="disarmed">{disarmed_words(disarmed, words)}</span>}
         <span class="wide-only">{next}</span><span data-testid="watchers">{watchers_words(session)}</span></p>
-      {hardware && <ArmButton armed={armed} />}
+      {hardware && <Guard need="operator"><ArmButton armed={armed} /></Guard>}
     </div>
   );
+}
+
+/** When the robot was disarmed, and why, unless `shown` says so already. */
+export function disarmed_words(disarmed: { why: string; at: string }, shown: string): string {
+  const at = new Date(disarmed.at).toLocaleTimeString();
+  return `Disarmed at ${at}${shown === disarmed.why ? "." : `: ${disarmed.why}`}`;
 }
 
 /** The robot cannot move before someone has pressed it. */

@@ -1,8 +1,13 @@
 // web/src/views/keys.ts: the keyboard. Space stops everywhere but in a text field; the other keys
 // act on the view, the tool and the selection.
 import { App } from "../app";
-import { kUsualRadius, kUsualSide, move_edit, new_box, new_cylinder, remove_edit, round_cm } from "../edit/edits";
+import {
+  duplicate, kUsualRadius, kUsualSide, move_edit, new_box, new_cylinder, remove_edit, round_cm, shifted,
+} from "../edit/edits";
+import { is_sketch } from "../edit/drawn";
 import { Point, radians, wrap_angle } from "../geometry";
+import { Selection } from "../draw/scene";
+import { Goal } from "../link/frame";
 import { obstacle_title } from "../obstacle";
 import { use_listener } from "../state/store";
 import type { Hand } from "./drive";
@@ -54,7 +59,12 @@ export function use_scene_keys(app: App, hand: Hand): void {
     if (!hears(e)) return;
     if (control && (key === "z" || key === "y")) {
       e.preventDefault();
-      void (key === "y" || e.shiftKey ? app.redo() : app.undo());
+      void (key === "y" || e.shiftKey ? app.editor.redo() : app.editor.undo());
+    } else if (control && key === "d") {
+      const o = app.selected_obstacle;
+      if (!o || !app.ui.value.session?.robot.editable) return;
+      e.preventDefault();
+      void app.editor.add(duplicate(o));
     } else if (e.key in kArrows && !control && !e.altKey && moves_selection(app, e)) {
       e.preventDefault();
     }
@@ -62,14 +72,20 @@ export function use_scene_keys(app: App, hand: Hand): void {
   use_keys({
     p: () => void app.toggle_play(),
     ".": () => void app.step(),
+    ",": () => app.rewind.step(-1),
+    end: () => app.go_live(),
     v: () => app.pick_tool("pan"),
     g: () => app.pick_tool("goal"),
+    s: () => app.pick_tool("start"),
+    w: () => app.pick_tool("wall"),
+    o: () => app.pick_tool("polygon"),
+    k: () => app.pick_tool("mover"),
     c: () => app.pick_tool("cylinder"),
     b: () => app.pick_tool("box"),
     m: () => app.pick_tool("measure"),
     n: () => select_next(app),
-    l: () => app.show_layers(!app.ui.value.layers),
-    "3": () => set({ three: !app.ui.value.three }),
+    l: () => (app.ui.value.looking ? app.go_live() : app.show_layers(!app.ui.value.layers)),
+    "3": () => app.show_three(!app.ui.value.three),
     f: () => app.fit_view(),
     "+": () => zoom(app, 1.25),
     "=": () => zoom(app, 1.25),
@@ -90,19 +106,31 @@ export function use_scene_keys(app: App, hand: Hand): void {
 /** On the scene, with nothing selected: arrows move a crosshair, Enter places an object. */
 export function crosshair_key(app: App, hand: Hand, e: KeyboardEvent): void {
   const { cursor } = hand.draft;
-  if (e.key in kArrows && !app.ui.value.selection) {
-    const at = stepped(cursor ?? app.view, e);
-    hand.draft = { cursor: at };
-    app.say(`${at.x.toFixed(2)}, ${at.y.toFixed(2)} metres`);
+  const at = app.ui.value.selection ? null : crosshair_step(app, cursor ?? app.view, e);
+  if (at) {
+    hand.draft = { cursor: at, ...(hand.gestures.sketch.length > 0 && { sketch: [...hand.gestures.sketch, at] }) };
   } else if (e.key === "Enter" && cursor) {
-    place(app, cursor);
-    hand.draft = {};
+    if (is_sketch(app.usable_tool)) {
+      hand.gestures.tap(cursor);
+      hand.draft = { ...hand.draft, cursor };
+    } else {
+      place(app, cursor, e.shiftKey);
+      hand.draft = {};
+    }
   } else {
     return;
   }
   app.redraw();
   e.preventDefault();
   e.stopPropagation();
+}
+
+/** The crosshair one step on from `from`, which is spoken; null for a key that does not move it. */
+export function crosshair_step(app: App, from: Point, e: KeyboardEvent): Point | null {
+  if (!(e.key in kArrows)) return null;
+  const at = stepped(from, e);
+  app.say(`${at.x.toFixed(2)}, ${at.y.toFixed(2)} metres`);
+  return at;
 }
 
 /** `from` one step further by the arrow key of `e`. */
@@ -117,62 +145,74 @@ function zoom(app: App, factor: number): void {
   app.redraw();
 }
 
-/** The goal, then each obstacle, then nothing. */
+/** Each goal, then each obstacle, then nothing. */
 function select_next(app: App): void {
-  const s = app.ui.value.selection;
-  const ids = app.scene.obstacles.map((o) => o.id);
-  const first = ids.length > 0 ? ({ kind: "obstacle", id: ids[0] } as const) : null;
-  if (!s) {
-    app.ui.set({ selection: app.scene.goal ? { kind: "goal" } : first });
-  } else if (s.kind === "goal") {
-    app.ui.set({ selection: first });
-  } else {
-    const next = ids[ids.indexOf(s.id) + 1];
-    app.ui.set({ selection: next === undefined ? null : { kind: "obstacle", id: next } });
-  }
-  const now = app.ui.value.selection;
+  const { goal, route, obstacles } = app.scene;
+  const goals: Selection[] = route.goals.length > 1 ? route.goals.map((_, index) => ({ kind: "goal", index }))
+    : goal ? [{ kind: "goal" }] : [];
+  const all: Selection[] = [...goals, ...obstacles.map((o): Selection => ({ kind: "obstacle", id: o.id }))];
+  const now = JSON.stringify(app.ui.value.selection);
+  const next = all[all.findIndex((s) => JSON.stringify(s) === now) + 1] ?? null;
+  app.ui.set({ selection: next });
   const obstacle = app.selected_obstacle;
-  app.say(obstacle ? `${obstacle_title(obstacle)} selected` : now ? "Goal selected" : "Nothing selected");
+  const name = next?.kind === "goal" && next.index !== undefined ? `Goal ${next.index + 1}` : "Goal";
+  app.say(obstacle ? `${obstacle_title(obstacle)} selected` : next ? `${name} selected` : "Nothing selected");
+}
+
+/** The selected goal and the function that changes it. */
+function selected_goal(app: App): [Goal, (to: Goal | null) => void] | null {
+  const s = app.ui.value.selection;
+  if (s?.kind !== "goal") return null;
+  const { index } = s;
+  const goal = index === undefined ? app.editor.shown_goal : app.scene.route.goals[index];
+  if (!goal) return null;
+  return [goal, (to) => (index === undefined ? app.editor.want_goal(to) : app.editor.change_goal(index, to))];
 }
 
 function moves_selection(app: App, e: KeyboardEvent): boolean {
-  const s = app.ui.value.selection;
   // A slider or a list in focus keeps its arrows.
   const focus = document.activeElement;
   if (focus && focus !== document.body && !(focus instanceof HTMLCanvasElement)) return false;
-  const g = app.shown_goal;
-  if (s?.kind === "goal" && g) {
-    app.want_goal({ ...g, ...stepped(g, e) });
+  const goal = selected_goal(app);
+  if (goal) {
+    const [g, change] = goal;
+    change({ ...g, ...stepped(g, e) });
     return true;
   }
   const o = app.selected_obstacle;
   if (!o || !app.ui.value.session?.robot.editable) return false;
-  void app.edit(move_edit(o.id, o.pose, { ...o.pose, ...stepped(o.pose, e) }));
+  const by = stepped(o.pose, e);
+  if (o.path) void app.editor.change("Move path", o, shifted(o, by.x - o.pose.x, by.y - o.pose.y));
+  else void app.editor.edit(move_edit(o, o.pose, { ...o.pose, ...by }));
   return true;
 }
 
 function turn(app: App, by: number): void {
   const o = app.selected_obstacle;
-  const g = app.shown_goal;
+  const goal = selected_goal(app);
   if (o) {
-    void app.edit(move_edit(o.id, o.pose, { ...o.pose, heading: wrap_angle(o.pose.heading + by) }));
-  } else if (app.ui.value.selection?.kind === "goal" && g) {
-    app.want_goal({ ...g, heading: wrap_angle((g.heading ?? 0) + by) });
+    void app.editor.edit(move_edit(o, o.pose, { ...o.pose, heading: wrap_angle(o.pose.heading + by) }));
+  } else if (goal) {
+    const [g, change] = goal;
+    change({ ...g, heading: wrap_angle((g.heading ?? 0) + by) });
   }
 }
 
 function remove_selected(app: App): void {
   const o = app.selected_obstacle;
-  if (o && app.ui.value.session?.robot.editable) void app.edit(remove_edit(o));
-  else if (app.ui.value.selection?.kind === "goal" && app.shown_goal) {
-    app.want_goal(null);
+  const goal = selected_goal(app);
+  if (o && app.ui.value.session?.robot.editable) void app.editor.edit(remove_edit(o));
+  else if (goal) {
+    goal[1](null);
     app.ui.set({ selection: null });
   }
 }
 
-function place(app: App, at: Point): void {
+/** `further`: a goal is driven to after the others. */
+function place(app: App, at: Point, further: boolean): void {
   const tool = app.usable_tool;
-  if (tool === "goal") app.want_goal({ ...at, heading: null });
-  if (tool === "cylinder") void app.add(new_cylinder(at.x, at.y, kUsualRadius));
-  if (tool === "box") void app.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
+  if (tool === "goal") app.editor.want_goal({ ...at, heading: null }, further || app.ui.value.appending);
+  if (tool === "start" && app.scene.start) app.editor.set_start({ ...at, heading: app.scene.start.heading });
+  if (tool === "cylinder") void app.editor.add(new_cylinder(at.x, at.y, kUsualRadius));
+  if (tool === "box") void app.editor.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
 }

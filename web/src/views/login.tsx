@@ -10,15 +10,16 @@ export function Login(): JSX.Element {
   const [problem, attempt] = use_problem();
   const submit = (e: Event) => {
     e.preventDefault();
-    void attempt(() => app.login(token));
+    void attempt(() => app.entry.login(token));
   };
   return (
-    <Dialog title="This server needs its token" name="login" on_close={() => app.ui.set({ locked: false })}>
+    <Dialog title="Sign in with a token" name="login" on_close={() => app.ui.set({ locked: false })}>
       <form class="form" noValidate onSubmit={submit}>
         <label class="line"><span>Token</span>
           <input type="password" autocomplete="current-password" data-testid="token" value={token}
             autofocus onInput={(e) => set_token(e.currentTarget.value)} /></label>
-        <p class="quiet">Ask the person who runs the server: --token or TAUTLINE_TOKEN sets it.</p>
+        <p class="quiet">Ask the person who runs the server. There may be three tokens: of viewers, who
+          watch and may press Stop, of operators, who drive, and of admins.</p>
         <Problem text={problem} name="login-problem" />
         <button type="submit" class="small primary" disabled={token === ""} data-testid="login-go">Sign in</button>
       </form>

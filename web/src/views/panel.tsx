@@ -1,60 +1,92 @@
-// web/src/views/panel.tsx: the right panel of Drive: four figures, robot, controller, filter, physics and
-// gains; below them the signals.
+// web/src/views/panel.tsx: the right panel of Drive: four figures, and tabs: the robot with controller,
+// filter, physics and gains; the world; the signals.
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { Catalog, ParameterInfo, SessionState } from "../contract";
+import { Figure, figure_words, kLive, shown_clearance } from "../figures";
 import { goal_distance } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
-import { Pick, Segments, Slider } from "../ui/controls";
+import { Pick, Segments, Slider, Tab, Tabs } from "../ui/controls";
+import { Guard } from "../ui/guard";
 import { icons } from "../ui/icons";
-import { fixed, state_word, titled } from "../words";
-import { Signals } from "./signals";
+import { lazy } from "../ui/lazy";
+import { Named } from "../ui/tip";
+import { fixed, frame_word, state_word, titled } from "../words";
+
+// Fetched with their tabs.
+const Signals = lazy(async () => {
+  const { Signals: Plots } = await import("./signals");
+  return () => {
+    const { rewind } = use_app();
+    use_pulse(100);
+    return <Plots time={rewind.time} seek={(t) => rewind.seek(t)} />;
+  };
+});
+const World = lazy(async () => (await import("./world")).World);
 
 export function Figures(): JSX.Element {
   const app = use_app();
   use_pulse(100);
-  const { session } = use_ui("session");
+  const { session, looking } = use_ui("session", "looking");
   const open = use_store(app.ui, (u) => u.link.phase === "open");
-  const f = app.scene.frame;
-  const state = state_word(f, session, open);
+  const f = app.shown.frame;
+  const state = looking ? frame_word(f) : state_word(f, session, open);
   const drives = session?.robot.drives ?? true;
+  const clearance = shown_clearance(app.scene, session?.source === "simulation");
   return (
     <div class="stats" role="group" aria-label="Figures">
-      <Figure label="Clearance" value={fixed(f?.clearance, 2)} unit="m" name="clearance" />
-      <Figure label="Speed" value={fixed(f?.twist.v, 2)} unit="m/s" name="speed" />
+      <Stat of={clearance} value={clearance.value} beyond={clearance.beyond} name="clearance" />
+      <Stat of={kLive.speed} value={f?.twist.v} name="speed" />
       {drives
-        ? <Figure label="To goal" value={fixed(goal_distance(app.scene), 2)} unit="m" name="to-goal" />
-        : <Figure label="Scans" value={f ? String(f.tick + 1) : "–"} unit="" name="scans" />}
+        ? <Stat of={kLive.to_goal} value={goal_distance(app.shown)} name="to-goal" />
+        : <Stat of={kLive.scans} value={f && f.tick + 1} name="scans" />}
       <div class="stat">
-        <small>State</small>
+        <small><Named label={kLive.state.label} meaning={kLive.state.meaning} /></small>
         <b class={`word tone-${state.tone}`} data-testid="state">{state.word}</b>
       </div>
     </div>
   );
 }
 
-function Figure(props: { label: string; value: string; unit: string; name: string }): JSX.Element {
+function Stat(props: { of: Figure; value: number | null | undefined; beyond?: boolean; name: string }): JSX.Element {
+  const { label, unit, digits } = props.of;
   return (
     <div class="stat">
-      <small>{props.label}</small>
-      <b data-testid={`figure-${props.name}`}>{props.value}{props.unit && <u>{props.unit}</u>}</b>
+      <small><Named label={label} meaning={figure_words(props.of)} /></small>
+      <b data-testid={`figure-${props.name}`}>{props.beyond && "> "}{fixed(props.value, digits)}{unit && <u>{unit}</u>}</b>
     </div>
   );
 }
 
+/** The tabs of the panel, in their order; another one is one more entry. */
+const kTabs: Tab[] = [
+  { name: "robot", label: "Robot", body: () => <Robot /> },
+  { name: "world", label: "World", body: () => <Guard need="operator"><World /></Guard> },
+  { name: "signals", label: "Signals", body: () => <Signals /> },
+];
+
 /** The panel below the figures; on a phone it is a sheet. */
 export function Tuning(): JSX.Element {
+  const app = use_app();
+  const { tab } = use_ui("tab");
+  return <Tabs label="Panel" tabs={kTabs} shown={tab} on_pick={(tab) => app.ui.set({ tab })} />;
+}
+
+/** The plots share their cursor with the scene. */
+
+function Robot(): JSX.Element {
   const { session, catalog } = use_ui("session", "catalog");
   if (!session || !catalog) {
     return <p class="quiet">Controllers and gains appear here once the server has been reached.</p>;
   }
   return (
     <>
-      {session.robot.drives && session.source === "simulation" && <RobotPick session={session} />}
-      <Choices session={session} catalog={catalog} />
-      {session.robot.drives && <Gains session={session} catalog={catalog} />}
-      <Signals />
+      <Guard need="operator">
+        {session.robot.drives && session.source === "simulation" && <RobotPick session={session} />}
+        <Choices session={session} catalog={catalog} />
+        {session.robot.drives && <Gains session={session} catalog={catalog} />}
+      </Guard>
     </>
   );
 }
@@ -70,15 +102,15 @@ function Choices(props: { session: SessionState; catalog: Catalog }): JSX.Elemen
         <h2>Controller</h2>
         <Pick label="Controller" name="controller" choices={catalog.controllers}
           value={session.controller} disabled={loading} class="wide-pick"
-          on_pick={(controller) => void app.load({ controller })} />
+          on_pick={(controller) => void app.editor.load({ controller })} />
         {controller?.help && <p class="help">{controller.help}</p>}
       </>}
       {!session.robot.drives && <h2>Filter</h2>}
       <Segments label="Filter" name="filter" choices={catalog.filters} value={session.filter}
-        disabled={loading} on_pick={(filter) => void app.load({ filter })} />
+        disabled={loading} on_pick={(filter) => void app.editor.load({ filter })} />
       {session.robot.drives && session.source === "simulation" &&
         <Segments label="Physics" name="physics" choices={catalog.physics} value={session.physics}
-          disabled={loading} on_pick={(physics) => void app.load({ physics })} />}
+          disabled={loading} on_pick={(physics) => void app.editor.load({ physics })} />}
     </section>
   );
 }
@@ -97,7 +129,7 @@ function RobotPick(props: { session: SessionState }): JSX.Element | null {
     <section>
       <h2>Robot</h2>
       <Pick label="Robot" name="robot" choices={known ? choices : [{ name, label: titled(name) }, ...choices]}
-        value={name} disabled={loading} class="wide-pick" on_pick={(robot) => void app.load({ robot })} />
+        value={name} disabled={loading} class="wide-pick" on_pick={(robot) => void app.editor.load({ robot })} />
       {help && <p class="help">{help}</p>}
       {robots.filter((r) => !r.usable).map((r) => <p key={r.name} class="help bad" role="note">{r.description}</p>)}
     </section>
@@ -139,6 +171,7 @@ function Gain(props: { info: ParameterInfo; session: SessionState }): JSX.Elemen
     <Slider info={info} value={session.parameters[info.name] ?? info.initial}
       usual={own?.[info.name] ?? info.initial}
       on_set={async (value) => {
+        app.go_live();
         const held = await app.attempt(app.link.set_parameter(info.name, value));
         const now = app.ui.value.session;
         if (now && held !== null) {

@@ -1,9 +1,7 @@
-// web/src/views/preview.tsx: the unsent goal for real hardware, and the hint to set a goal.
+// web/src/views/preview.tsx: the unsent goal for real hardware.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { SessionState } from "../contract";
-import { use_store } from "../state/store";
-import { icons } from "../ui/icons";
 import { fixed } from "../words";
 
 /** The step that Go still needs; null when Go works. */
@@ -29,24 +27,10 @@ export function PreviewCard(): JSX.Element | null {
       {trouble && <p class="tone-warn words" role="alert" data-testid="preview-trouble">{trouble}</p>}
       {wait && <p class="tone-muted words" data-testid="preview-wait">{wait}</p>}
       <div class="acts">
-        <button class="go" disabled={wait !== null} data-testid="go" onClick={() => void app.go_there()}>Go</button>
+        <button class="go" disabled={wait !== null} data-testid="go" onClick={() => void app.editor.go_there()}>Go</button>
         <button class="ghost" data-testid="preview-drop"
-        onClick={() => app.drop_preview()}>Discard</button>
+        onClick={() => app.editor.drop_preview()}>Discard</button>
       </div>
-    </div>
-  );
-}
-
-/** Shown until a goal was set by hand. */
-export function GoalHint(): JSX.Element | null {
-  const app = use_app();
-  const { tool, selection, goal_learnt: learnt } = use_ui("tool", "selection", "goal_learnt");
-  const drives = use_store(app.ui, (u) => u.session?.robot.drives ?? false);
-  if (tool !== "pan" || selection || learnt || !drives) return null;
-  return (
-    <div class="card values hint" data-testid="goal-hint">
-      <span class="wide">Send the robot somewhere:</span>
-      <button class="small primary" onClick={() => app.ui.set({ tool: "goal" })}>{icons.goal}Set a goal<span class="wide">(G)</span></button>
     </div>
   );
 }

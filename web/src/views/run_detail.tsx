@@ -1,27 +1,30 @@
-// web/src/views/run_detail.tsx: one stored run: scene, time, lanes, metrics, and a second run drawn
+// web/src/views/run_detail.tsx: one stored run: scene, time, lanes, and up to three further runs drawn
 // over it.
 import { JSX } from "preact";
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
-import { Metrics, RunItem } from "../contract";
-import { Ghost } from "../draw/scene";
+import { RunItem } from "../contract";
+import { Ghost, Overlay } from "../draw/scene";
 import { Insets, View } from "../draw/view";
-import { Gestures } from "../edit/gestures";
-import { Bounds, Pose, include } from "../geometry";
+import { Gestures, only_looking } from "../edit/gestures";
+import { Bounds, Point, Pose, include } from "../geometry";
 import { Player } from "../link/player";
 import * as rest from "../link/rest";
+import { barred_by } from "../link/rewind";
 import { StoredRun, stored_frames } from "../link/stored";
 import { scene_bounds } from "../state/scene";
 import { use_redraw } from "../state/store";
-import { SceneCanvas, scale_insets } from "../ui/canvas";
-import { Dialog, Pick } from "../ui/controls";
+import { SceneCanvas, panel_cover, scale_insets } from "../ui/canvas";
+import { Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { Timeline } from "../ui/timeline";
-import { clock, driver_word, fixed, frame_word, run_word, sentence_of, speed_word, titled } from "../words";
-import { Sentence } from "./cards";
+import { clock, frame_word, sentence_of, speed_word } from "../words";
+import { Sentence, Why } from "./cards";
 import { Lanes } from "./lanes";
-import { LayerButton, LayerPanel, panel_cover, use_filtered } from "./layers";
-import { use_keys } from "./keys";
+import { RunFacts, kLooks } from "./run_facts";
+import { LayerButton, LayerPanel, use_filtered } from "./layers";
+import { crosshair_step, use_keys } from "./keys";
+import { use_place } from "./place";
 
 /** Fetches the row of a run and then its frames; calls `changed` for every page of them. */
 function use_stored(id: number | null, changed: () => void): { run: StoredRun | null; problem: string | null } {
@@ -47,12 +50,18 @@ function use_stored(id: number | null, changed: () => void): { run: StoredRun | 
 }
 
 export function RunDetail(props: {
-  id: number; compare: number | null; on_gone: () => void; on_uncompare: () => void;
+  id: number; compare: readonly number[]; on_changed: () => void; on_compare: (ids: number[]) => void;
 }): JSX.Element {
   const app = use_app();
   const redraw_controls = use_redraw();
   const first = use_stored(props.id, redraw_controls);
-  const second = use_stored(props.compare, redraw_controls);
+  const others = [0, 1, 2].map((i) => use_stored(props.compare[i] ?? null, redraw_controls));
+  useEffect(() => {
+    const failed = others.findIndex((other) => other.problem);
+    if (failed < 0) return;
+    app.toast("warn", others[failed].problem!);
+    props.on_compare(props.compare.filter((_, i) => i !== failed));
+  });
   if (!first.run) {
     return (
       <section class="view none">
@@ -63,31 +72,33 @@ export function RunDetail(props: {
       </section>
     );
   }
-  return <Opened run={first.run} other={second.run} on_gone={props.on_gone}
-    on_uncompare={props.on_uncompare} />;
+  return <Opened {...props} run={first.run} others={others.flatMap(({ run }) => run ?? [])} />;
 }
 
 function Opened(props: {
-  run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
+  run: StoredRun; others: StoredRun[]; compare: readonly number[]; on_changed: () => void; on_compare: (ids: number[]) => void;
 }): JSX.Element {
-  const { run, other } = props;
+  const app = use_app();
+  const { run, others } = props;
   const { hidden, force_scale } = use_ui("hidden", "force_scale");
   const [layers, set_layers] = useState(false);
   const redraw_controls = use_redraw();
   const redraw = useRef<() => void>(() => undefined);
   const frame = useRef<HTMLElement>(null);
   const view = useMemo(() => new View(), [run]);
+  const crosshair = useRef<Point | null>(null);
   const player = useMemo(() => new Player(run, () => {
     redraw_controls();
     redraw.current();
   }), [run]);
-  const gestures = useMemo(() => looking(view, run, () => redraw.current()), [view, run]);
+  const gestures = useMemo(() => new Gestures(only_looking(run.scene, view, () => redraw.current())), [view, run]);
 
-  // The first frame is shown as soon as it is there.
-  if (run.rows > 0 && run.scene.frame === null) player.seek(0);
-  if (other && other.rows > 0) {
-    const row = other.columns.row_at(player.time);
-    if (other.scene.rows !== row + 1) other.seek(row);
+  // Shown as soon as it is there: the first scan, then the time that the address names.
+  if (run.rows > 0 && run.scene.frame === null) player.seek(run.opening);
+  use_place(run, player, view);
+  for (const other of others) {
+    const row = other.rows > 0 ? other.columns.row_at(player.time) : -1;
+    if (row >= 0 && other.scene.rows !== row + 1) other.seek(row);
   }
   use_filtered((wanted) => {
     run.want_filtered(wanted);
@@ -118,38 +129,47 @@ function Opened(props: {
   use_keys({
     p: () => player.toggle(), ".": () => player.step(1), ",": () => player.step(-1),
     f: () => {
-      view.fitted = true;
+      view.fit();
       redraw.current();
     },
   });
 
-  const ghost = (): Ghost | null => other && {
+  const ghosts = (): Ghost[] => others.map((other, i) => ({
     columns: other.columns, rows: other.columns.row_at(player.time) + 1,
     pose: other.rows > 0 ? pose_at(other, player.time) : null, radius: other.scene.radius,
-    hull: other.scene.hull,
-  };
+    hull: other.scene.hull, look: kLooks[i + 1],
+  }));
+  const overlay = (): Overlay => ({
+    selection: null, hovered: null, draft: crosshair.current ? { cursor: crosshair.current } : {}, force_scale,
+    hidden, ghosts: ghosts(), future: true, insets: scale_insets(frame.current!),
+    path: others.length > 0 ? "accent" : undefined,
+  });
   const bounds = (): Bounds => {
     const b = scene_bounds(run.scene);
-    for (const r of other ? [run, other] : [run]) widen(b, r);
+    for (const r of [run, ...others]) widen(b, r);
     return b;
   };
   return (
     <>
-      <Facts run={run} other={other} on_gone={props.on_gone} on_uncompare={props.on_uncompare} />
+      <RunFacts run={run.item} others={others.map((other) => other.item)} on_changed={props.on_changed}
+        on_compare={props.on_compare} />
       <section class="view" ref={frame} aria-busy={!run.done && !run.error} aria-label={`Run ${run.item.id}`} data-testid="run-view">
-        <SceneCanvas scene={run.scene} view={view} gestures={gestures} cursor="pan"
-          label={`Run ${run.item.id} from above`} bounds={bounds}
-          insets={() => free_insets(frame.current!)}
+        <SceneCanvas scene={() => run.scene} view={view} gestures={gestures} cursor="pan"
+          label={`Run ${run.item.id} from above. Arrow keys move the crosshair, which tells what is there.`} bounds={bounds}
+          on_key={(e) => {
+            const at = crosshair_step(app, crosshair.current ?? view, e);
+            if (!at && e.key !== "Escape") return;
+            crosshair.current = at;
+            e.preventDefault();
+            redraw.current();
+          }}
+          insets={() => free_insets(frame.current!)} lost={() => !view.shows(bounds(), covered(frame.current!))}
           on_ready={(request) => (redraw.current = request)}
-          overlay={() => ({
-            selection: null, hovered: null, draft: {}, force_scale,
-            hidden, ghost: ghost(), future: true, insets: scale_insets(frame.current!),
-            path: other ? "accent" : undefined,
-          })} />
+          overlay={overlay} />
         <LayerButton class="icon layers-tool" open={layers} on_press={set_layers} />
-        <Instant run={run} />
+        <Instant run={run} on_seek={(t) => player.seek(t)} />
       </section>
-      {layers && <LayerPanel scene={run.scene} on_close={() => set_layers(false)} />}
+      {layers && <LayerPanel scene={run.scene} compared={others.length > 0} on_close={() => set_layers(false)} />}
       <section class="lanes" aria-label="Time and signals">
         <div class="controls">
           <button class="btn" aria-label="One tick back" title="One tick back (,)"
@@ -161,8 +181,9 @@ function Opened(props: {
           <button class="btn" aria-label="One tick on" title="One tick on (.)" data-testid="run-step"
             onClick={() => player.step(1)}>{icons.step}</button>
           <span class="num time" data-testid="run-time">{clock(player.time)}<span class="of"> / {clock(run.duration)}</span></span>
-          <Timeline time={player.time} end={run.duration} loaded={run.progress} events={run.events.list}
-            on_seek={(t) => player.seek(t)} />
+          <Timeline name="timeline" label="Time in the run" words={clock(player.time)} time={player.time}
+            end={run.duration} loaded={run.progress} barred={barred_by(run.item.gaps ?? [], run.columns)}
+            events={run.events.list} on_seek={(t) => player.seek(t)} />
           <Pick label="Speed" name="run-speed" value={String(player.speed)}
             choices={[0.25, 0.5, 1, 2, 4, 8, 16].map((s) => ({ name: String(s), label: speed_word(s) }))}
             on_pick={(v) => {
@@ -171,107 +192,48 @@ function Opened(props: {
             }} />
         </div>
         {run.error && <p class="problem" role="alert">The rest of this run could not be fetched: {run.error}</p>}
-        <Lanes run={run} other={other} time={player.time} on_pick={(t) => player.seek(t)} />
+        <Lanes runs={[run, ...others]} time={player.time} playing={player.playing}
+          on_pick={(t) => player.seek(t)} scene={() => ({ scene: run.scene, view, overlay: overlay() })} />
       </section>
     </>
   );
 }
 
-/** What the robot did and why at the shown instant. */
-function Instant(props: { run: StoredRun }): JSX.Element | null {
-  const f = props.run.scene.frame;
-  if (!f) return null;
-  const said = props.run.scene.words ?? { what: frame_word(f).word, why: "" };
-  return <Sentence name="run-explain" what={props.run.scene.world ? said.what : "Replaying the log"} why={said.why}
-    tone={f.hold !== "none" ? "bad" : "accent"} />;
-}
-
-/** The margins that the sentence, the button at the upper right and the layer panel cover. */
-function free_insets(view: HTMLElement): Insets {
-  const card = view.querySelector(".explain")?.getBoundingClientRect().height ?? 0;
-  const button = view.querySelector(".layers-tool")?.getBoundingClientRect().height ?? 0;
-  const high = view.clientHeight > view.clientWidth; // the button takes room above
-  return {
-    left: 20, top: 20 + (high ? button : 0), right: 20 + (panel_cover(view) || (high ? 0 : button)), bottom: card + 24,
-  };
-}
-
-const kRows: { label: string; unit: string; digits: number; of: (m: Metrics) => number | null }[] = [
-  { label: "Clearance", unit: "m", digits: 2, of: (m) => m.min_clearance },
-  { label: "Intrusion", unit: "m", digits: 2, of: (m) => m.intrusion },
-  { label: "Path", unit: "m", digits: 2, of: (m) => m.path_length },
-  { label: "Turning", unit: "rad", digits: 2, of: (m) => m.turning },
-  { label: "Via points", unit: "", digits: 0, of: (m) => m.via_points },
-  { label: "Time", unit: "s", digits: 1, of: (m) => m.time },
-];
-
-function Facts(props: {
-  run: StoredRun; other: StoredRun | null; on_gone: () => void; on_uncompare: () => void;
-}): JSX.Element {
+/** What the robot did and why at the shown instant. A run that went wrong offers the instant of that. */
+function Instant(props: { run: StoredRun; on_seek: (t: number) => void }): JSX.Element | null {
   const app = use_app();
-  const [asking, set_asking] = useState(false);
-  const { item } = props.run;
-  const word = run_word(item.status, item.outcome);
-  const runs = props.other ? [item, props.other.item] : [item];
-  const has_metrics = runs.some((r) => r.metrics);
-  const finished = !["recording", "queued"].includes(item.status);
-  const erase = async () => {
-    if (await app.attempt(rest.remove(`/runs/${item.id}`))) {
-      app.toast("info", `Run ${item.id} was deleted.`);
-      app.go("runs");
-      props.on_gone();
-    }
-    set_asking(false);
-  };
+  useEffect(() => () => app.conceal_forces(), []);
+  const { item, events, scene } = props.run;
+  const f = scene.frame;
+  if (!f) return null;
+  const said = scene.words ?? { what: frame_word(f).word, why: "" };
+  const trouble = { stuck: "Why did it get stuck?", collided: "Why did it touch the obstacle?" }[item.outcome];
+  const at = events.last_trouble?.t;
   return (
-    <section class="facts" aria-label="Result of the run" data-testid="facts">
-      <a class="icon narrow" href="#/runs" aria-label="Back to the list">{icons.back}</a>
-      <b>Run {item.id}</b>
-      <span class={`tag tone-${word.tone}`}><i />{word.word}</span>
-      <span class="quiet">{titled(item.scenario)} · {driver_word(item)} · {item.filter} · seed {item.seed}</span>
-      <span class="facts-acts">
-        {props.other && <button class="ghost" onClick={props.on_uncompare}>One run</button>}
-        <a class="ghost" href={`/api/v1/runs/${item.id}/csv`} download={`run-${item.id}.csv`}
-          data-testid="csv">{icons.download}CSV</a>
-        {finished && <button class="icon" aria-label={`Delete run ${item.id}`} title="Delete"
-          onClick={() => set_asking(true)} data-testid="delete-run">{icons.trash}</button>}
-      </span>
-      {item.reason && <p class="reason">{item.reason}</p>}
-      {has_metrics && <table class="measures">
-        <thead><tr>
-          {props.other && <td />}
-          {kRows.map((row) => <th key={row.label} scope="col">{row.label}{row.unit && <u> {row.unit}</u>}</th>)}
-        </tr></thead>
-        <tbody>
-          {runs.map((r, i) => (
-            <tr key={r.id}>
-              {props.other &&
-                <th scope="row" class={i === 0 ? "tone-accent" : "tone-elastic"}>{r.id} {driver_word(r)}</th>}
-              {kRows.map((row) => (
-                <td key={row.label} class="num">{r.metrics ? fixed(row.of(r.metrics), row.digits) : "–"}</td>
-              ))}
-            </tr>
-          ))}
-        </tbody>
-      </table>}
-      {asking && <Dialog title={`Delete run ${item.id}?`} name="delete-dialog" on_close={() => set_asking(false)}>
-        <p>This deletes its record for good. Other runs stay.</p>
-        <div class="facts-acts">
-          <button class="small bad" data-testid="delete-yes" onClick={() => void erase()}>Delete it</button>
-          <button class="ghost" onClick={() => set_asking(false)}>Keep it</button>
-        </div>
-      </Dialog>}
-    </section>
+    <Sentence name="run-explain" what={scene.world ? said.what : "Replaying the log"} why={said.why}
+      tone={f.hold !== "none" ? "bad" : "accent"}>
+      {trouble && at !== undefined && at !== f.stamp && <Why trouble={trouble} on_press={() => {
+        props.on_seek(at);
+        app.reveal_forces(scene);
+      }} />}
+    </Sentence>
   );
 }
 
-/** Gestures that move the view only: nothing changes a stored run. */
-function looking(view: View, run: StoredRun, redraw: () => void): Gestures {
-  const nothing = () => undefined;
-  return new Gestures({
-    scene: run.scene, view, tool: () => "pan", can_edit: () => false, set_goal: nothing, add_goal: nothing,
-    add: nothing, move: nothing, select: nothing, draft: nothing, hover: nothing, changed: redraw,
-  });
+const kMargin = 14; // [px] of the fitted world to the border and to cards
+
+/** The margins that the sentence, the button at the upper right and the layer panel cover. */
+function covered(view: HTMLElement): Insets {
+  const card = view.querySelector(".explain")?.getBoundingClientRect();
+  const button = view.querySelector(".layers-tool")?.getBoundingClientRect().height ?? 0;
+  const high = view.clientHeight > view.clientWidth; // the button takes room above
+  return { left: 0, top: high ? button : 0, right: panel_cover(view) || (high ? 0 : button),
+    bottom: card ? view.getBoundingClientRect().bottom - card.top : 0 };
+}
+
+function free_insets(view: HTMLElement): Insets {
+  const { left, top, right, bottom } = covered(view);
+  return { left: left + kMargin, top: top + kMargin, right: right + kMargin, bottom: bottom + kMargin };
 }
 
 function pose_at(run: StoredRun, t: number): Pose {

@@ -1,188 +1,112 @@
-// web/src/views/runs.tsx: the Runs view: the list with its filters, and the open run.
+// web/src/views/runs.tsx: the Runs view: search, chips, the list, the selection, and the open run.
 import { JSX } from "preact";
-import { useCallback, useEffect, useRef, useState } from "preact/hooks";
+import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
-import { Page, RunItem } from "../contract";
-import * as rest from "../link/rest";
 import { use_store } from "../state/store";
+import { Guard } from "../ui/guard";
 import { icons } from "../ui/icons";
-import { driver_word, fixed, matches, run_word, sentence_of, titled } from "../words";
+import { kind_words, result_word } from "../words";
+import { Selection, SelectionBar } from "./run_actions";
 import { RunDetail } from "./run_detail";
+import { RunList, kFirstSearch, use_run_list } from "./run_list";
+import { RunTable } from "./run_table";
 import { StartRun } from "./start_run";
+import { use_keys } from "./keys";
 
-const kPageSize = 50;
-const kRefreshMs = 3000;
-const kOutcomes = ["", "reached", "stuck", "collided", "out_of_time"];
+/** In the order of the chips; one that finds nothing is left out, except the first three. */
+const kResults = ["reached", "stuck", "collided", "out_of_time", "end_of_log", "stopped", "failed", "interrupted",
+  "cancelled", "queued", "recording"];
+const kAlways = kResults.slice(0, 3);
+const kNone: Selection = new Map();
 
 export function Runs(): JSX.Element {
   const app = use_app();
-  const { run: open } = use_ui("run");
+  const { run: open, compare } = use_ui("run", "compare"); // drawn over the open run
   const connected = use_store(app.ui, (u) => u.link.phase === "open");
-  const list = use_runs(connected);
-  const [text, set_text] = useState("");
-  const [compare, set_compare] = useState<number | null>(null);
+  const list = use_run_list(connected);
+  const [selection, set_selection] = useState<Selection>(kNone);
   const [starting, set_starting] = useState(false);
-  useEffect(() => {
-    if (compare === open) set_compare(null);
-  }, [open, compare]);
-
-  const shown = list.items.filter((r) =>
-    matches(`${r.id} ${r.scenario} ${r.controller} ${r.filter} ${r.physics} ${r.outcome} ${r.status}`, text));
+  use_keys({ escape: () => set_selection(kNone) });
+  const compare_all = (ids: number[]) => {
+    const first = open !== null && ids.includes(open) ? open : ids[0];
+    app.open_run(first, ids.filter((id) => id !== first));
+  };
   return (
     <main class={`runs ${open !== null ? "detail-open" : ""}`} aria-label="Runs">
-      <div class="find" role="search">
-        <input type="search" placeholder="Filter: scenario, controller, number" value={text}
-          aria-label="Filter the runs" data-testid="runs-filter"
-          onInput={(e) => set_text(e.currentTarget.value)} />
-        <div class="chips" role="group" aria-label="Outcome">
-          {kOutcomes.map((o) => (
-            <button key={o} class={`chip ${list.outcome === o ? "on" : ""}`} aria-pressed={list.outcome === o}
-              data-testid={`chip-${o || "all"}`} onClick={() => list.set_outcome(o)}>
-              {o === "" ? `All${list.total === null || list.outcome !== "" ? "" : ` ${list.total}`}` : run_word("finished", o).word}
-            </button>
-          ))}
-        </div>
-        <span class="space" />
-        <button class="ghost" data-testid="start-run" onClick={() => set_starting(true)}>Start a run</button>
-      </div>
+      <Find list={list} on_start={() => set_starting(true)} />
       <div class="list">
-        <RunTable runs={shown} open={open} compare={compare} on_compare={set_compare} />
-        {list.error && <p class="empty" role="alert">{list.error}</p>}
-        {!list.error && !list.loading && shown.length === 0 &&
-          <p class="empty">{list.items.length === 0
-            ? "No runs yet. Drive the robot, or start a run in the background."
-            : "No run matches. Clear the filter to see all runs."}</p>}
-        {list.next !== null &&
-          <button class="ghost more-runs" data-testid="more-runs" onClick={list.more}>Show earlier runs</button>}
+        <div class="rows">
+          <RunTable list={list} open={open} compare={compare} selection={selection} on_select={set_selection} />
+          {list.error && <p class="empty" role="alert">{list.error}</p>}
+          {!list.error && !list.loading && list.items.length === 0 && <Nothing list={list} />}
+          <Pager list={list} />
+        </div>
+        {selection.size > 0 && <SelectionBar selection={selection} on_clear={() => set_selection(kNone)}
+          on_changed={list.refresh} on_compare={compare_all} />}
       </div>
       {open !== null
-        ? <RunDetail key={open} id={open} compare={compare} on_gone={list.refresh}
-            on_uncompare={() => set_compare(null)} />
+        ? <RunDetail key={open} id={open} compare={compare} on_changed={list.refresh} on_compare={(ids) => app.compare_with(ids)} />
         : <section class="view none">
-            <p class="empty">Open a run to play it, to search it, or to compare it with another.</p>
+            <p class="empty">Open a run to play it. Select two to four to compare them.</p>
           </section>}
       {starting && <StartRun on_close={() => set_starting(false)} on_started={list.refresh} />}
     </main>
   );
 }
 
-interface RunList {
-  items: RunItem[]; next: string | number | null; loading: boolean; error: string | null;
-  total: number | null; outcome: string; set_outcome: (o: string) => void; more: () => void; refresh: () => void;
-}
-
-/** The list in pages, newest first. The open view fetches the first page every few seconds. */
-function use_runs(connected: boolean): RunList {
-  const [items, set_items] = useState<RunItem[]>([]);
-  const [next, set_next] = useState<string | number | null>(null);
-  const [loading, set_loading] = useState(true);
-  const [total, set_total] = useState<number | null>(null);
-  const [error, set_error] = useState<string | null>(null);
-  const [outcome, set_outcome] = useState("");
-  const asked = useRef(0);
-
-  const fetch_page = useCallback(async (cursor: string | number | null, append: boolean) => {
-    const mine = ++asked.current;
-    const query = new URLSearchParams({ limit: String(kPageSize) });
-    if (outcome) query.set("outcome", outcome);
-    if (cursor !== null) query.set("cursor", String(cursor));
-    try {
-      const page = await rest.get<Page<RunItem>>(`/runs?${query}`);
-      if (mine !== asked.current) return;
-      set_error(null);
-      if (page.total !== undefined) set_total(page.total);
-      if (append) {
-        set_items((old) => [...old, ...page.items]);
-        set_next(page.next);
-      } else {
-        // Older pages stay as they are; new and changed runs come with the first page.
-        set_items((old) => merged(page.items, old, outcome));
-        set_next((before) => (before === null ? page.next : before));
-      }
-    } catch (e) {
-      if (mine === asked.current) set_error(sentence_of(e));
-    }
-    set_loading(false);
-  }, [outcome]);
-
-  const refresh = useCallback(() => {
-    set_items([]);
-    set_next(null);
-    void fetch_page(null, false);
-  }, [fetch_page]);
-  useEffect(() => {
-    refresh();
-    const timer = setInterval(() => {
-      if (connected && !document.hidden) void fetch_page(null, false);
-    }, kRefreshMs);
-    return () => clearInterval(timer);
-  }, [refresh, connected]);
-  return {
-    items, next, loading, error, total, outcome, set_outcome, refresh,
-    more: () => void fetch_page(next, true),
-  };
-}
-
-/** The first page and the older runs behind it. */
-function merged(fresh: RunItem[], old: RunItem[], outcome: string): RunItem[] {
-  const oldest = fresh.at(-1)?.id ?? Infinity;
-  return [...fresh, ...old.filter((r) => r.id < oldest && (outcome === "" || r.outcome === outcome))];
-}
-
-function RunTable(props: {
-  runs: RunItem[]; open: number | null; compare: number | null;
-  on_compare: (id: number | null) => void;
-}): JSX.Element {
-  const app = use_app();
-  const move = (e: KeyboardEvent, at: number) => {
-    const by = { ArrowDown: 1, ArrowUp: -1 }[e.key];
-    if (by === undefined) return;
-    e.preventDefault();
-    const rows = (e.currentTarget as HTMLElement).closest("tbody")!.querySelectorAll<HTMLElement>("a.run-link");
-    rows[at + by]?.focus();
-  };
+function Find(props: { list: RunList; on_start: () => void }): JSX.Element {
+  const { search, results, set_search } = props.list;
+  const all = results && Object.values(results).reduce((sum, n) => sum + n, 0);
+  const shown = kResults.filter((r) => kAlways.includes(r) || (results?.[r] ?? 0) > 0 || search.result === r);
+  const chip = (result: string, word: string, count: number | null) => (
+    <button key={result} class={`chip ${search.result === result ? "on" : ""}`} aria-pressed={search.result === result}
+      data-testid={`chip-${result || "all"}`} onClick={() => set_search({ result })}>
+      {word}{count !== null && <b class="num">{count.toLocaleString("en")}</b>}
+    </button>
+  );
   return (
-    <table class="run-table" data-testid="run-table">
-      <thead>
-        <tr>
-          <th scope="col">Run</th><th scope="col">Scenario</th><th scope="col">Controller</th>
-          <th scope="col">Outcome</th><th scope="col" class="r">Time <u>s</u></th>
-          <th scope="col" class="r wide">Path <u>m</u></th><th scope="col" class="r wide">Clearance <u>m</u></th>
-          <th scope="col" class="r wide">Intrusion <u>m</u></th>
-          <th scope="col" class="wide"><span class="hidden-words">Compare</span></th>
-        </tr>
-      </thead>
-      <tbody>
-        {props.runs.map((r, i) => {
-          const word = run_word(r.status, r.outcome);
-          const m = r.metrics;
-          const on = r.id === props.open;
-          const second = r.id === props.compare;
-          return (
-            <tr key={r.id} class={on ? "on" : second ? "second" : ""} data-testid={`run-${r.id}`}
-              onClick={() => app.go("runs", r.id)}>
-              <td class="num"><a class="run-link" href={`#/runs/${r.id}`} aria-current={on ? "true" : undefined}
-                onKeyDown={(e) => move(e, i)} onClick={(e) => e.stopPropagation()}>{r.id}</a></td>
-              <td>{titled(r.scenario)}</td>
-              <td title={app.controller_label(r.controller)}>{driver_word(r)}</td>
-              <td><span class={`tag tone-${word.tone}`}><i />{word.word}</span></td>
-              <td class="r num">{fixed(m?.time ?? r.time, 1)}</td>
-              <td class="r num wide">{fixed(m?.path_length, 2)}</td>
-              <td class="r num wide">{fixed(m?.min_clearance, 2)}</td>
-              <td class="r num wide">{fixed(m?.intrusion, 2)}</td>
-              <td class="wide compare-cell">
-                {props.open !== null && !on &&
-                  <button class="icon" aria-pressed={second} data-testid={`compare-${r.id}`}
-                    aria-label={`Compare run ${r.id} with the open one`} title="Draw it over the open run"
-                    onClick={(e) => {
-                      e.stopPropagation();
-                      props.on_compare(second ? null : r.id);
-                    }}>{icons.compare}</button>}
-              </td>
-            </tr>
-          );
-        })}
-      </tbody>
-    </table>
+    <div class="find" role="search">
+      <input type="search" placeholder="Search all runs" value={search.text}
+        aria-label="Search all runs" title="Words in scenario, controller, label, note, tags or number" data-testid="runs-filter"
+        onInput={(e) => set_search({ text: e.currentTarget.value })} />
+      <div class="chips" role="group" aria-label="Outcome">
+        {search.batch !== null && <button class="chip on" data-testid="chip-batch" title="Show all runs again"
+          onClick={() => set_search({ batch: null })}>Batch {search.batch}{icons.close}</button>}
+        {chip("", "All", all)}
+        {shown.map((r) => chip(r, result_word(r).word, results && (results[r] ?? 0)))}
+        {(["session", "background"] as const).map((kind) => (
+          <button key={kind} class={`chip ${search.kind === kind ? "on" : ""}`} aria-pressed={search.kind === kind}
+            title={kind_words[kind].help} data-testid={`chip-${kind}`}
+            onClick={() => set_search({ kind: search.kind === kind ? "" : kind })}>
+            {kind === "session" ? icons.live : icons.background}{kind_words[kind].word}
+          </button>
+        ))}
+      </div>
+      <Guard need="operator"><button class="ghost start" data-testid="start-run" onClick={props.on_start}>Start a run</button></Guard>
+    </div>
+  );
+}
+
+function Nothing(props: { list: RunList }): JSX.Element {
+  const { search, set_search } = props.list;
+  const searching = search.text !== "" || search.result !== "" || search.kind !== "" || search.batch !== null;
+  if (!searching) return <p class="empty">No runs yet. Drive the robot, or start a run in the background.</p>;
+  return (
+    <p class="empty">No run matches. <button class="text" data-testid="show-all"
+      onClick={() => set_search({ ...kFirstSearch, sort: search.sort, descending: search.descending })}>Show all runs</button></p>
+  );
+}
+
+/** Which lines are shown, and the way to the others. */
+function Pager(props: { list: RunList }): JSX.Element | null {
+  const { at, items, total, older, newer } = props.list;
+  if (!older && !newer) return null;
+  return (
+    <nav class="pager" aria-label="Pages of the list">
+      <button class="ghost" data-testid="page-back" disabled={!newer} onClick={() => newer?.()}>Back</button>
+      <span class="num" data-testid="page-words">{(at + 1).toLocaleString("en")}–{(at + items.length).toLocaleString("en")}
+        {total !== null && ` of ${total.toLocaleString("en")}`}</span>
+      <button class="ghost" data-testid="page-on" disabled={!older} onClick={() => older?.()}>More</button>
+    </nav>
   );
 }

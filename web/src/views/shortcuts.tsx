@@ -1,12 +1,16 @@
-// web/src/views/shortcuts.tsx: the keys, as a table that the dialog and the System view share.
+// web/src/views/shortcuts.tsx: the help: how the scene is used by hand, the theme, and the keys as a table
+// that the System view shares.
 import { JSX } from "preact";
-import { use_app } from "../app";
+import { use_app, use_ui } from "../app";
 import { Dialog } from "../ui/controls";
+import { icons } from "../ui/icons";
 
 const kShortcuts: [string[], string][] = [
   [["Space"], "Stop. Works everywhere but in a text field; Release has its own button"],
-  [["P"], "Play or pause"],
+  [["P"], "Play or pause; while looking back, the record"],
+  [[","], "One tick back: look back in the run, while the robot goes on"],
   [["."], "One tick on"],
+  [["L", "End"], "Live again, while looking back"],
   [["V"], "Look round: drag to move the view, press to select. Every load returns to this tool"],
   [["G"], "Goal tool: press for the position, drag for the heading. Real hardware drives only after Go"],
   [["Shift+click"], "Goal tool: add a goal after the others"],
@@ -14,9 +18,9 @@ const kShortcuts: [string[], string][] = [
   [["B"], "Box tool"],
   [["M"], "Measure"],
   [["N"], "Select the next obstacle or the goal"],
-  [["Arrows"], "Move the selection by 0.1 m (with Shift 0.01 m)"],
+  [["Arrows"], "Move the selection by 0.1 m (with Shift 0.01 m); with none, the crosshair, which tells what is there"],
   [["[", "]"], "Turn the selection by 5°"],
-  [["Enter"], "Place the goal or obstacle at the crosshair (scene in focus)"],
+  [["Enter"], "Place the goal or obstacle at the crosshair (scene in focus); with Shift, one more goal"],
   [["Delete"], "Remove the selection"],
   [["Ctrl+Z"], "Undo"],
   [["Ctrl+Shift+Z"], "Do again"],
@@ -24,8 +28,10 @@ const kShortcuts: [string[], string][] = [
   [["+", "−"], "Zoom"],
   [["L"], "Layers: the meaning of each colour, and its switch (Enter)"],
   [["3"], "Switch between the view from above and 3D"],
+  [["←", "→"], "Plots in focus: one tick back or on (with Shift ten); + and − zoom, 0 goes back"],
+  [["X", "Shift+Arrows"], "Runs: select the run in focus, or those on the way"],
   [["Esc"], "Cancel the drawing; deselect"],
-  [["?"], "This list"],
+  [["?"], "Help and this list"],
 ];
 
 export function ShortcutTable(): JSX.Element {
@@ -44,8 +50,26 @@ export function ShortcutTable(): JSX.Element {
 
 export function Shortcuts(): JSX.Element {
   const app = use_app();
+  const { theme } = use_ui("theme");
+  const next = theme === "dark" ? "light" : "dark";
+  const close = () => app.ui.set({ shortcuts: false });
   return (
-    <Dialog title="Keys" name="shortcuts" on_close={() => app.ui.set({ shortcuts: false })}>
+    <Dialog title="Help" name="shortcuts" on_close={close}>
+      <ol class="how">
+        <li>Choose the goal tool and press in the scene: the robot drives there.</li>
+        <li>Put a cylinder or a box in its way, or drag one that stands there.</li>
+        <li>Choose another controller. Every drive is kept under Runs.</li>
+      </ol>
+      <p class="quiet">By hand: drag to look round with the first tool, two fingers or the wheel to zoom, press to select.</p>
+      <p class="ways">
+        <button class="ghost" data-testid="steps-again" onClick={() => {
+          app.to_step(0);
+          close();
+          app.go("drive");
+        }}>Show the first steps</button>
+        <button class="ghost" data-testid="help-theme" onClick={() => app.set_theme(next)}>{icons.theme}Use the {next} theme</button>
+      </p>
+      <h3>Keys</h3>
       <ShortcutTable />
     </Dialog>
   );

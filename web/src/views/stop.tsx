@@ -3,15 +3,18 @@ import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
 import { age_words } from "../state/age";
 import { use_pulse, use_store } from "../state/store";
+import { may } from "../people";
+import { use_me } from "../ui/guard";
 
 export function StopButtons(): JSX.Element {
   const app = use_app();
   const stopped = use_store(app.ui, (u) => u.session?.stop ?? false);
+  const may_release = may(use_me(), "operator");
   const phase = use_store(app.ui, (u) => u.stop.phase);
   const word = phase === "failed" ? "Stop again" : stopped ? "Stopped" : phase === "sent" ? "Stopping" : "Stop";
   return (
     <>
-      {stopped &&
+      {stopped && may_release &&
         <button class="release" data-testid="release" onClick={() => void app.release()}>Release</button>}
       <button class={`stop ${stopped ? "latched" : ""}`} data-testid="stop" aria-pressed={stopped}
         title="Brings the robot to rest and keeps it there (Space). It does not replace an emergency stop."

@@ -14,6 +14,11 @@ export function Toasts(): JSX.Element {
       {toasts.map((t) => (
         <div key={t.id} class={`toast tone-${t.tone}`}>
           <span>{t.text}</span>
+          {t.count > 1 && <b class="num" aria-label={`${t.count} times`} role="img">×{t.count}</b>}
+          {t.undo && <button class="ghost" data-testid="toast-undo" onClick={() => {
+            app.dismiss(t.id);
+            t.undo!();
+          }}>Undo</button>}
           <button class="icon" aria-label="Dismiss" onClick={() => app.dismiss(t.id)}>{icons.close}</button>
         </div>
       ))}

@@ -1,29 +1,38 @@
-// web/src/views/topbar.tsx: brand, scenario, source, link in words, theme, Stop and Release.
+// web/src/views/topbar.tsx: brand, scenario, source, link in words, theme, help, Stop and Release. At a small
+// height the Drive view has it as the head of its column, with a menu for the views.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { ScenarioItem } from "../contract";
 import { use_listener, use_pulse } from "../state/store";
 import { link_words, matches, source_word, titled } from "../words";
+import { Guard } from "../ui/guard";
 import { Brand, icons } from "../ui/icons";
 import { StopButtons } from "./stop";
+import { Watching } from "./watching";
 
 export function TopBar(): JSX.Element {
   const app = use_app();
-  const { session, theme } = use_ui("session", "theme");
+  const { session, theme, view, views } = use_ui("session", "theme", "view", "views");
   const source = source_word(session);
   const next = theme === "dark" ? "light" : "dark";
   return (
     <header class="topbar">
+      {view !== "nowhere" && <h1 class="hidden-words">{titled(view)}</h1>}
+      <button class="icon bar-button short" aria-label="Views" aria-expanded={views} data-testid="views"
+        onClick={() => app.ui.set({ views: !views })}>{icons.menu}</button>
       <a class="brand" href="#/drive" aria-label="Tautline, to the Drive view">
         <Brand /><span class="wide">Tautline</span>
       </a>
-      <ScenarioMenu />
+      <Guard need="operator"><ScenarioMenu /></Guard>
       {source && <span class={`badge ${source.tone}`} data-testid="source">{source.word}</span>}
       <span class="space" />
+      <Watching />
       <LinkWords />
-      <button class="icon wide" aria-label={`Use the ${next} theme`} title={`${titled(next)} theme`}
+      <button class="icon bar-button wide" aria-label={`Use the ${next} theme`} title={`${titled(next)} theme`}
         data-testid="theme" onClick={() => app.set_theme(next)}>{icons.theme}</button>
+      <button class="icon bar-button" aria-label="Help and keys" title="Help and keys (?)" data-testid="help"
+        onClick={() => app.ui.set({ shortcuts: true })}>{icons.help}</button>
       <StopButtons />
     </header>
   );
@@ -63,15 +72,19 @@ function ScenarioMenu(): JSX.Element {
     <div class="menu" ref={box}>
       <button ref={button} class="menu-button" aria-haspopup="listbox" aria-expanded={open}
         data-testid="scenario-menu" disabled={!session} data-scenario={name}
-        onClick={() => set_open(!open)}>
+        onClick={() => {
+          if (!open) void app.fetch_lists(); // somebody may have saved another world
+          set_open(!open);
+        }}>
         <span class="hidden-words">Scenario:</span>
         <span class="menu-name">{loading ? `Loading ${titled(loading)}` : titled(name) || "No scenario"}</span>
-        {!loading && title !== titled(name) && <small class="wide">{title}</small>}
+        {!loading && (session?.edited ? <small class="wide" title="The World tab saves it">changed, not saved</small>
+          : title !== titled(name) && <small class="wide">{title}</small>)}
         {icons.down}
       </button>
       {open && <ScenarioList current={name} on_close={close} on_pick={(s) => {
         close();
-        void app.load({ scenario: s.name });
+        void app.editor.load({ scenario: s.name });
       }} />}
     </div>
   );

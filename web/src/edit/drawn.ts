@@ -1,0 +1,79 @@
+// web/src/edit/drawn.ts: what a drag or a row of taps on the scene makes, by tool.
+import { Point, Pose, distance } from "../geometry";
+import { Goal } from "../link/frame";
+import { Obstacle } from "../obstacle";
+import {
+  kThickness, kUsualRadius, kUsualSide, kWalkSpeed, kWalkerRadius, new_box, new_cylinder, new_polygon, new_wall,
+  new_walker, polygon_defect, round_cm,
+} from "./edits";
+
+/** `pan` moves the view, and a press selects. */
+export type Tool = "pan" | "goal" | "start" | "wall" | "box" | "cylinder" | "polygon" | "mover" | "measure";
+/** Tools that make an obstacle of one drag, and those that take a point at a time. */
+export type DragTool = "wall" | "box" | "cylinder";
+export type SketchTool = "wall" | "polygon" | "mover";
+
+const kLeast = 0.05;   // [m] least radius, half side or length of a drawn obstacle
+
+export function is_sketch(tool: Tool): tool is SketchTool {
+  return tool === "wall" || tool === "polygon" || tool === "mover";
+}
+
+export function dragged_goal(at: Point, to: Point, with_heading: boolean): Goal {
+  return { x: round_cm(at.x), y: round_cm(at.y), heading: with_heading ? direction(at, to) : null };
+}
+
+/** The start at `at`, turned towards `to`; without a drag its heading stays. */
+export function dragged_start(at: Point, to: Point, turned: boolean, before: Pose | null): Pose {
+  return { x: round_cm(at.x), y: round_cm(at.y), heading: turned ? direction(at, to) : before?.heading ?? 0 };
+}
+
+function direction(from: Point, to: Point): number {
+  return Math.atan2(to.y - from.y, to.x - from.x);
+}
+
+/** A click makes an obstacle of usual size; a drag from the centre makes it as large as drawn. A wall
+ * goes from end to end; a click is its first end. */
+export function dragged_obstacle(kind: DragTool, at: Point, to: Point, dragged: boolean): Obstacle | null {
+  const x = round_cm(at.x);
+  const y = round_cm(at.y);
+  if (kind === "wall") return dragged && distance(at, to) >= kLeast ? new_wall(at, to, kThickness) : null;
+  if (kind === "cylinder") {
+    const radius = dragged ? Math.max(kLeast, distance(at, to)) : kUsualRadius;
+    return new_cylinder(x, y, round_cm(radius));
+  }
+  const length = dragged ? Math.max(kLeast, Math.abs(to.x - at.x)) * 2 : kUsualSide;
+  const width = dragged ? Math.max(kLeast, Math.abs(to.y - at.y)) * 2 : kUsualSide;
+  return new_box(x, y, round_cm(length), round_cm(width));
+}
+
+/** The effect of one more point of a sketch. */
+export type Sketched =
+  | { points: Point[] }         // it goes on with these
+  | { obstacle: Obstacle }      // it is complete
+  | { refusal: string };        // the point is not taken
+
+/** Adds `p` to `points`. A second point ends a wall. A press on the first or the last corner ends a polygon. A press
+ * on the last point ends a path. Points within `reach` [m] are the same. */
+export function sketched(tool: SketchTool, points: Point[], p: Point, reach: number): Sketched {
+  const last = points.at(-1);
+  const again = last !== undefined && distance(last, p) <= reach;
+  if (tool === "wall") {
+    if (!last) return { points: [p] };
+    return again ? { refusal: "A wall needs two ends." } : { obstacle: new_wall(last, p, kThickness) };
+  }
+  const closes = tool === "polygon" && points.length > 2 && distance(points[0], p) <= reach;
+  if (again || closes) return finished(tool, points);
+  return { points: [...points, p] };
+}
+
+/** The obstacle that `points` make. */
+export function finished(tool: SketchTool, points: Point[]): Sketched {
+  if (tool === "polygon") {
+    const defect = polygon_defect(points);
+    return defect ? { refusal: defect } : { obstacle: new_polygon(points) };
+  }
+  if (points.length < 2) return { refusal: tool === "wall" ? "A wall needs two ends." : "A path needs two points at least." };
+  return { obstacle: tool === "wall" ? new_wall(points[0], points[1], kThickness)
+    : new_walker(points, kWalkerRadius, kWalkSpeed) };
+}

@@ -1,0 +1,55 @@
+// web/src/edit/stands.ts: whether the world is still as an edit of this page left it.
+import { GoalJson } from "../contract";
+import { Obstacle, ObstacleJson, obstacle_from_json, obstacle_title } from "../obstacle";
+import { SceneState } from "../state/scene";
+import { Step } from "./edits";
+
+const kSame = 2e-3; // [m], [rad] below which two values are one
+
+/** What has changed since `step`, as a sentence; null if its effect still stands. */
+export function change_since(step: Step, scene: SceneState): string | null {
+  switch (step.type) {
+    case "add_obstacle":
+    case "change_obstacle": {
+      const now = scene.obstacles.find((o) => o.id === step.obstacle.id);
+      if (!now) return gone(step.obstacle.id ?? 0);
+      return same_obstacle(now, step.obstacle) ? null : `${obstacle_title(now)} has been changed since.`;
+    }
+    case "move_obstacle": {
+      const now = scene.obstacles.find((o) => o.id === step.id);
+      if (!now) return gone(step.id);
+      return near(now.pose.x, step.x) && near(now.pose.y, step.y) ? null : `${obstacle_title(now)} has been moved since.`;
+    }
+    case "remove_obstacle":
+      return scene.obstacles.some((o) => o.id === step.id) ? "It has been put back since." : null;
+    case "set_goals":
+      return same_goals(scene.route.goals, step.goals) && scene.route.loop === (step.loop ?? false)
+        ? null : "The goals have been changed since.";
+    case "start":
+      return scene.start && near(scene.start.x, step.pose.x) && near(scene.start.y, step.pose.y)
+        ? null : "The start has been moved since.";
+    default:
+      return null;
+  }
+}
+
+function gone(id: number): string {
+  return `Obstacle ${id} has been removed since.`;
+}
+
+function near(a: number, b: number): boolean {
+  return Math.abs(a - b) < kSame;
+}
+
+function same_goals(now: GoalJson[], then: GoalJson[]): boolean {
+  return now.length === then.length && now.every((g, i) => near(g.x, then[i].x) && near(g.y, then[i].y) &&
+    (g.heading ?? null) === null === ((then[i].heading ?? null) === null) && near(g.heading ?? 0, then[i].heading ?? 0));
+}
+
+/** Where something that moves by itself is now says nothing. */
+function same_obstacle(now: Obstacle, json: ObstacleJson): boolean {
+  const then = obstacle_from_json(json);
+  const place = now.path || (near(now.pose.x, then.pose.x) && near(now.pose.y, then.pose.y));
+  return !!place && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
+    near(now.width, then.width) && now.points.length === then.points.length && !now.path === !then.path;
+}

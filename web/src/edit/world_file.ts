@@ -1,0 +1,79 @@
+// web/src/edit/world_file.ts: a world from the files that a person chooses: a scenario, a BARN file, a map.
+import { ScenarioDocument } from "../contract";
+import { ObstacleJson } from "../obstacle";
+import { read_map_info, read_pgm, world_of_map } from "./map_file";
+
+export interface GivenFile { name: string; bytes: Uint8Array }
+
+/** A name that the server takes: a-z, 0-9, _ and -, at most 64 characters. */
+export function name_of(title: string): string {
+  return title.trim().toLowerCase().replace(/[^a-z0-9_-]+/g, "_").replace(/^_+|_+$/g, "").slice(0, 64);
+}
+
+/** The worlds in `files`; throws a sentence that names the file and the field. */
+export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
+  const of = (ends: RegExp) => files.find((f) => ends.test(f.name));
+  const picture = of(/\.pgm$/i);
+  const yaml = of(/\.ya?ml$/i);
+  if (picture || yaml) {
+    if (!picture || !yaml) throw new Error("A map is two files: choose the .pgm and the .yaml together.");
+    const info = read_map_info(text_of(yaml), yaml.name);
+    return [world_of_map(read_pgm(picture.bytes, picture.name), info, stem(picture.name))];
+  }
+  const json = of(/\.json$/i);
+  if (!json) throw new Error("Choose a scenario or BARN file (.json), or a map (.pgm and .yaml).");
+  let document: unknown;
+  try {
+    document = JSON.parse(text_of(json));
+  } catch (error) {
+    throw new Error(`${json.name} is not JSON: ${error instanceof Error ? error.message : error}.`);
+  }
+  if (!document || typeof document !== "object") throw new Error(`${json.name} holds no world.`);
+  if ("worlds" in document) return barn_worlds(document as BarnFile, json.name);
+  const one = document as ScenarioDocument;
+  return [{ ...one, name: name_of(one.name ?? stem(json.name)) || "world" }];
+}
+
+interface BarnFile { worlds: BarnWorld[] }
+interface BarnWorld {
+  id: number; start: number[]; goal: number[]; radius?: number;
+  obstacles: (number[] | { radius: number; period: number; keys: [number, number, number][] })[];
+}
+
+function barn_worlds({ worlds }: BarnFile, file: string): ScenarioDocument[] {
+  if (!Array.isArray(worlds) || worlds.length === 0) throw new Error(`${file}: worlds must hold one world at least.`);
+  return worlds.map((w, i) => {
+    const at = `${file}: world ${i + 1}`;
+    if (!numbers(w?.start, 3)) throw new Error(`${at}: start must be [x, y, heading].`);
+    if (!numbers(w.goal, 2)) throw new Error(`${at}: goal must be [x, y].`);
+    if (!Array.isArray(w.obstacles)) throw new Error(`${at}: obstacles must be a list.`);
+    const [x, y, heading] = w.start;
+    return {
+      name: `barn-${w.id}`, title: `BARN world ${w.id}`, robot: "jackal", start: { x, y, heading },
+      goal: { x: w.goal[0], y: w.goal[1] },
+      obstacles: w.obstacles.map((o, k) => barn_obstacle(o, w.radius ?? 0.075, k + 1, at)),
+    };
+  });
+}
+
+function barn_obstacle(o: BarnWorld["obstacles"][number], radius: number, id: number, at: string): ObstacleJson {
+  if (Array.isArray(o)) {
+    if (!numbers(o, 2)) throw new Error(`${at}: obstacle ${id} must be [x, y].`);
+    return { id, type: "cylinder", x: o[0], y: o[1], radius };
+  }
+  if (!Array.isArray(o?.keys) || o.keys.length === 0) throw new Error(`${at}: obstacle ${id} has no keys.`);
+  const [, x, y] = o.keys[0];
+  return { id, type: "cylinder", x, y, radius: o.radius, path: { period: o.period, keys: o.keys } };
+}
+
+function numbers(value: unknown, count: number): boolean {
+  return Array.isArray(value) && value.length === count && value.every((v) => Number.isFinite(v));
+}
+
+function text_of(file: GivenFile): string {
+  return new TextDecoder().decode(file.bytes);
+}
+
+function stem(file: string): string {
+  return name_of(file.replace(/\.\w+$/, "")) || "world";
+}
