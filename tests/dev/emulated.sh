@@ -10,10 +10,10 @@ run_emulated() {
     shift 2
   fi
   [[ $base =~ ^(roboteq|p2os|analog)$ ]] || fail "--base is roboteq, p2os or analog, not '$base'"
-  build_program
+  build_program release tautline
   links=$(mktemp -d)
   {
-    printf 'name = "emulated"\nperiod = 0.026\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\n'
+    printf 'name = "emulated"\nemulated = true\nperiod = 0.026\n[hull]\nradius = 0.35\n[limits]\nspeed = 0.1\n'
     printf '[[laser]]\nname = "front laser"\nport = "%s"\nrate = 500000\nstep_deg = 0.5\n' \
       "$links/scanner"
     printf '[base]\nport = "%s"\ntrack = 0.50\n' "$links/base"

@@ -9,7 +9,7 @@ import sqlite3
 import subprocess
 import time
 
-CSV_ROWS = 480_000  # some 55 MB of CSV
+CSV_ROWS = 160_000  # some 55 MB of CSV
 HEAVY = {"scenario": "case3", "controller": "certainty_grid", "vehicle": "kinematic"}
 
 
