@@ -44,9 +44,14 @@ async function step(p, base, ticks) {
   await control(base, { action: "step", ticks });
   const session = await until(`${ticks} ticks after ${before}`, 40, () => json(base, "/session"), (s) => s.tick >= before + ticks);
   const known = await until("the record has it", 40, () => frame_of(wire, base, session.run.id, session.tick));
-  await p.page.waitForTimeout(250);
+  const drawn = (text) => near(seconds(text), session.stamp, 0.051);
+  await until("the page shows it", 20, () => p.get("time").innerText(), drawn);
+  await p.page.waitForTimeout(250); // the scene's next frame
   return { session, ...known };
 }
+
+/** The seconds of the page's clock, "1:02.3". */
+const seconds = (text) => text.split(":").reduce((sum, part) => 60 * sum + Number(part), 0);
 
 const card = (p) => p.page.locator('[data-testid="inspect"]');
 const row = (p, label) => card(p).locator(`[data-row="${label}"] dd`).innerText();
@@ -78,6 +83,9 @@ function worked_out(numbers) {
   return Function(`"use strict"; return ${sum};`)();
 }
 
+/** Holds the mouse over a place of the world until the card of a thing that fits opens. */
+const find = (p, what, at, fits) => until(what, 10, () => hover(p, at), (thing) => thing && fits(thing));
+
 test("a beam's card has the wire's ranges, and its equation gives the wire's force, for several controllers and ticks", { timeout: 240_000 }, () =>
   with_page({ size: desktop }, async (p, base) => {
     await control(base, { action: "pause" });
@@ -89,8 +97,7 @@ test("a beam's card has the wire's ranges, and its equation gives the wire's for
         for (const point of points_of(frame, "scan.nearest")) {
           const beams = [...filtered.ranges.keys()].filter((i) => filtered.ranges[i] < 65520);
           const beam = beams.reduce((a, b) => (apart(end_of(frame, filtered, b), point) < apart(end_of(frame, filtered, a), point) ? b : a));
-          const thing = await hover(p, point);
-          assert.equal(thing?.kind, "beam", `${controller}, tick ${frame.tick}`);
+          const thing = await find(p, `${controller}, tick ${frame.tick}: a beam`, point, ({ kind }) => kind === "beam");
           // Neighbours may be nearer to the pointer's whole pixel than the beam itself.
           const title = await card(p).locator("h2").innerText();
           const shown = filtered.ranges[thing.beam] / 1000;
@@ -120,38 +127,37 @@ test("robot, goal, strip and obstacle tell the wire's numbers, the figures too; 
       const { session, frame } = await step(p, base, ticks);
       const { pose } = session;
       const back = { x: pose.x - 0.2 * Math.cos(pose.heading), y: pose.y - 0.2 * Math.sin(pose.heading) };
-      await until("the robot", 10, () => hover(p, back), (thing) => thing?.kind === "robot");
+      await find(p, "the robot", back, ({ kind }) => kind === "robot");
       assert.equal(await row(p, "Position x, y"), `${pose.x.toFixed(2)}, ${pose.y.toFixed(2)} m`.replaceAll("-", "−"));
       assert.ok(near(number(await row(p, "True clearance")), frame.truth.clearance, 0.0051));
       assert.ok(near(number(await p.get("figure-clearance").innerText()), frame.truth.clearance, 0.0051), "the true one in simulation");
       assert.ok(near(number(await p.get("figure-speed").innerText()), frame.twist.v, 0.0051));
       const d = apart(pose, session.goal);
       assert.ok(near(number(await p.get("figure-to-goal").innerText()), d, 0.0051));
-      assert.deepEqual(await hover(p, session.goal), { kind: "goal", index: 0 });
+      await find(p, "the goal", session.goal, ({ kind, index }) => kind === "goal" && index === 0);
       assert.ok(near(number(await row(p, "From the robot, D")), d, 0.0051));
       const [end] = points_of(frame, "strip.nodes");
-      await until("the strip's point", 10, () => hover(p, end), (thing) => thing?.kind === "mark");
+      await find(p, "the strip's point", end, ({ kind }) => kind === "mark");
       const o = session.obstacles.find((each) => each.type === "cylinder");
-      assert.deepEqual(await hover(p, o), { kind: "obstacle", id: o.id });
+      await find(p, "the obstacle", o, ({ kind, id }) => kind === "obstacle" && id === o.id);
       assert.ok(near(number(await row(p, "Radius")), o.radius, 0.0051));
     }
     await p.shot("inspect-obstacle");
     const { session } = await step(p, base, 1);
     const o = session.obstacles.find((each) => each.type === "cylinder");
     // The card stands beside its thing.
-    await hover(p, o);
+    await find(p, "the obstacle", o, ({ kind, id }) => kind === "obstacle" && id === o.id);
     const box = await card(p).boundingBox();
     const px = await p.pixels(o.x, o.y);
     assert.ok(px.x < box.x || px.x > box.x + box.width || px.y < box.y || px.y > box.y + box.height);
     // Another tool at work needs the place itself.
     await p.page.keyboard.press("g");
-    await p.page.waitForTimeout(250);
-    assert.equal(await card(p).count(), 0);
+    await card(p).waitFor({ state: "detached" });
     await p.page.keyboard.press("v");
     // A controller without a strip has none, in the legend or on the ground.
     await load(p, base, "go_to_goal");
     await step(p, base, 30);
-    assert.equal(await p.page.locator('[data-testid="layer-strip"]').count(), 0);
+    await p.page.locator('[data-testid="layer-strip"]').waitFor({ state: "detached" });
     assert.deepEqual(await p.page.locator(".layer-groups h3").allInnerTexts(), ["Senses", "Ways", "World"]);
     assert.deepEqual(await p.accessibility(), []);
   }));
@@ -222,8 +228,8 @@ test("a stored run tells the same numbers, and its figures are those of the reco
     await p.page.keyboard.press("End");
     await p.get("run-step").click();
     const { x: x_W, y: y_W, heading } = session.pose;
-    await until("the robot", 10, () => hover(p, { x: x_W - 0.2 * Math.cos(heading), y: y_W - 0.2 * Math.sin(heading) }),
-      (thing) => thing?.kind === "robot");
+    const back = { x: x_W - 0.2 * Math.cos(heading), y: y_W - 0.2 * Math.sin(heading) };
+    await find(p, "the robot", back, ({ kind }) => kind === "robot");
     assert.ok(near(number(await row(p, "True clearance")), frame.truth.clearance, 0.0051));
     await p.shot("inspect-stored");
     // By the keyboard: the crosshair goes from the middle of the view to the robot.
