@@ -64,7 +64,7 @@ int print_estimate(const sweep::Plan& plan) {
              document.scenarios.size(),
              document.controllers.size(),
              document.points.size(),
-             document.repeats);
+             document.most_repeats());
   fmt::print("runs      {}\n", plan.size());
   fmt::print("CPU time  at most {}, if every run lasts until its time limit\n",
              duration_text(cost.cpu_time));

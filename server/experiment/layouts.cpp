@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,16 +21,16 @@ using algo::Vec2;
 
 constexpr std::uint64_t kLayoutsPurpose = 0x6c61796f75747300;  // "layouts": the generator's purpose
 constexpr int kTries = 200;     // for one obstacle before the layout starts again
-constexpr double kAside = 2.0;  // [m] farthest centre from the straight line
+constexpr int kDraws = 50'000;  // of all obstacles of a layout before its rules are given up
 const Vec2 kGoal{5.0, 4.0};     // [m] of case 3; the start is the origin
 
 /// A cylinder or a box with equal probability, at any heading, its centre anywhere along and beside
 /// the line.
-algo::Obstacle draw(sim::Random& random, std::uint32_t id) {
+algo::Obstacle draw(sim::Random& random, std::uint32_t id, double farthest) {
   const Vec2 along = kGoal.normalized();
   const Vec2 across{-along.y(), along.x()};
   const double way = random.uniform(0, kGoal.norm());
-  const double aside = random.uniform(-kAside, kAside);
+  const double aside = random.uniform(-farthest, farthest);
   const Vec2 centre = way * along + aside * across;
   algo::Obstacle obstacle;
   obstacle.id = id;
@@ -59,23 +61,25 @@ bool in_lane(const algo::Obstacle& obstacle) {
   return low < kLaneHalf && high > -kLaneHalf;
 }
 
-bool fits(const algo::Obstacle& obstacle, const std::vector<algo::Obstacle>& others) {
+bool fits(const algo::Obstacle& obstacle, const std::vector<algo::Obstacle>& others, double gap) {
   if (signed_distance(obstacle, Vec2(0, 0)) < kFreeRoom) return false;
   if (signed_distance(obstacle, kGoal) < kFreeRoom) return false;
   return std::ranges::all_of(
-      others, [&](const auto& other) { return surface_gap(obstacle, other) >= kFreeGap; });
+      others, [&](const auto& other) { return surface_gap(obstacle, other) >= gap; });
 }
 
-/// Empty if an obstacle found no place.
-std::vector<algo::Obstacle> draw_all(sim::Random& random, std::size_t count) {
+/// Empty if an obstacle found no place. Adds its draws to `draws`.
+std::vector<algo::Obstacle> draw_all(sim::Random& random, const LayoutRules& rules, int& draws) {
   std::vector<algo::Obstacle> obstacles;
-  for (int tries = 0; obstacles.size() < count && tries < kTries; ++tries) {
-    algo::Obstacle next = draw(random, static_cast<std::uint32_t>(obstacles.size() + 1));
-    if (!fits(next, obstacles)) continue;
+  for (int tries = 0; obstacles.size() < rules.obstacles && tries < kTries; ++tries) {
+    ++draws;
+    algo::Obstacle next =
+        draw(random, static_cast<std::uint32_t>(obstacles.size() + 1), rules.aside);
+    if (!fits(next, obstacles, rules.gap)) continue;
     obstacles.push_back(std::move(next));
     tries = 0;
   }
-  if (obstacles.size() < count) obstacles.clear();
+  if (obstacles.size() < rules.obstacles) obstacles.clear();
   return obstacles;
 }
 
@@ -95,20 +99,33 @@ double surface_gap(const algo::Obstacle& a, const algo::Obstacle& b) {
   return nearest;
 }
 
-sim::Scenario random_layout(std::size_t obstacles, double repulsion_gain, std::size_t index) {
+double area_of(const LayoutRules& rules) {
+  return kGoal.norm() * 2 * rules.aside;
+}
+
+sim::Scenario random_layout(const LayoutRules& rules, std::size_t index) {
   sim::Scenario layout;
-  layout.name = fmt::format("random-{}-{:04d}", obstacles, index);
-  layout.title = fmt::format("Random layout {} of {} obstacles", index, obstacles);
+  layout.name = fmt::format("random-{}-", rules.obstacles);
+  if (rules.gap != kFreeGap) layout.name += fmt::format("gap{:.0f}-", 1000 * rules.gap);
+  if (rules.aside != kAside) layout.name += fmt::format("aside{:.0f}-", 1000 * rules.aside);
+  layout.name += fmt::format("{:04d}", index);
+  layout.title = fmt::format("Random layout {} of {} obstacles", index, rules.obstacles);
   layout.start.heading = std::atan2(kGoal.y(), kGoal.x());
   layout.goal = algo::SetGoal{kGoal, std::nullopt};
   layout.parameters = {{&algo::kContractionGain, 0.6},
-                       {&algo::kRepulsionGain, repulsion_gain},
+                       {&algo::kRepulsionGain, rules.repulsion_gain},
                        {&algo::kMaxSpeed, 0.1}};
-  sim::Random random(index, kLayoutsPurpose + obstacles);
-  while (layout.obstacles.empty() || std::ranges::none_of(layout.obstacles, in_lane)) {
-    layout.obstacles = draw_all(random, obstacles);
+  sim::Random random(index, kLayoutsPurpose + rules.obstacles);
+  for (int draws = 0; draws < kDraws;) {
+    layout.obstacles = draw_all(random, rules, draws);
+    if (std::ranges::any_of(layout.obstacles, in_lane)) return layout;
   }
-  return layout;
+  throw std::runtime_error(fmt::format(
+      "{} obstacles with free gaps of {:g} m find no place within {:g} m of the straight "
+      "line",
+      rules.obstacles,
+      rules.gap,
+      rules.aside));
 }
 
 }  // namespace server::experiment

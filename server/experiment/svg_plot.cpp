@@ -14,12 +14,15 @@ constexpr double kMargin = 10;      // [px]
 SvgPlot::SvgPlot(const algo::Vec2& low_W,
                  const algo::Vec2& high_W,
                  double width,
-                 std::size_t legend_lines)
+                 std::size_t legend_lines,
+                 std::string_view style_sheet)
     : low_W_(low_W),
       high_W_(high_W),
       scale_((width - 2 * kMargin) / (high_W - low_W).x()),
       plot_height_((high_W - low_W).y() * scale_ + 2 * kMargin),
-      canvas_(width, plot_height_ + static_cast<double>(legend_lines) * kLineHeight + kMargin) {}
+      canvas_(width,
+              plot_height_ + static_cast<double>(legend_lines) * kLineHeight + kMargin,
+              style_sheet) {}
 
 algo::Vec2 SvgPlot::pixel(const algo::Vec2& p_W) const {
   return {kMargin + (p_W.x() - low_W_.x()) * scale_, kMargin + (high_W_.y() - p_W.y()) * scale_};

@@ -22,11 +22,12 @@ struct CellRun {
 class SvgPlot {
  public:
   /// Shows the part of W between the corners `low_W` and `high_W` in a picture `width` pixels wide,
-  /// with room for `legend_lines` lines of text below it.
+  /// with room for `legend_lines` lines of text below it. `style_sheet`: as in SvgCanvas.
   SvgPlot(const algo::Vec2& low_W,
           const algo::Vec2& high_W,
           double width,
-          std::size_t legend_lines);
+          std::size_t legend_lines,
+          std::string_view style_sheet = "");
 
   void circle(const algo::Vec2& centre_W, double radius, std::string_view style);
   void polygon(std::span<const algo::Vec2> points_W, std::string_view style);

@@ -22,7 +22,9 @@ constexpr const char* kFigures =
     "(definition 7 of "
     "Hyndman and Fan). ";
 
-constexpr const char* kPairs = "Pairs of runs have the same scenario, seed and swept setting. ";
+constexpr const char* kPairs =
+    "Pairs of runs have the same scenario, seed and swept setting; a run without a partner is left "
+    "out. ";
 
 constexpr const char* kTests =
     "Differences are other minus baseline, their mean with a BCa interval. Times are of pairs that "
@@ -36,7 +38,7 @@ const char* unit_text(const Plan& plan) {
            "other "
            "scenarios.";
   }
-  if (plan.document().repeats == 1) {
+  if (plan.document().most_repeats() == 1) {
     return "Wilson's interval: each scenario has one run, so the runs are independent.";
   }
   return "Seeds of one scenario give nearly the same run, so the scenario is the unit: BCa "
@@ -45,8 +47,27 @@ const char* unit_text(const Plan& plan) {
          "Wilson's interval with the number of scenarios in place of the number of runs.";
 }
 
+/// "Not all controllers drive the same runs: strip_moving 9 of 309 scenarios, vff 1 of 10 seeds."
+/// Empty if they do.
+std::string shares_text(const Plan& plan) {
+  const Document& document = plan.document();
+  std::string shares;
+  for (const ControllerChoice& each : document.controllers) {
+    const auto add = [&](std::size_t part, std::size_t whole, const char* unit) {
+      if (part == whole) return;
+      shares += fmt::format(
+          "{} {} {} of {} {}", shares.empty() ? "" : ",", each.label, part, whole, unit);
+    };
+    const std::size_t scenarios = document.scenarios.size();
+    add(each.only.empty() ? scenarios : each.only.size(), scenarios, "scenarios");
+    add(each.repeats, document.most_repeats(), "seeds");
+  }
+  if (shares.empty()) return {};
+  return fmt::format(" Not all controllers drive the same runs:{}.", shares);
+}
+
 std::string rates_text(const Plan& plan) {
-  std::string text = fmt::format("{}{}", kRates, unit_text(plan));
+  std::string text = fmt::format("{}{}{}", kRates, unit_text(plan), shares_text(plan));
   const std::size_t scenarios = plan.document().scenarios.size();
   if (scenarios > 1 && scenarios < kFewScenarios) {
     text += fmt::format(" {} scenarios are few: the intervals and tests are rough.", scenarios);
@@ -69,7 +90,7 @@ std::string pairings_text(const Plan& plan) {
     text +=
         "There is one scenario: each pair is one observation, and the tests say nothing about "
         "other scenarios. Rates: McNemar's exact test. ";
-  } else if (plan.document().repeats == 1) {
+  } else if (plan.document().most_repeats() == 1) {
     text += "Each scenario has one pair. Rates: McNemar's exact test. ";
   } else {
     text +=
@@ -81,7 +102,9 @@ std::string pairings_text(const Plan& plan) {
 
 const std::string kRobustness =
     "The same runs, counted by other rules. The order is by rate of success, then by mean time of "
-    "success. Holds: no two controllers swap places; a tie is no swap.";
+    "success. Holds: no two controllers swap places; a tie is no swap. Only controllers that drive "
+    "all "
+    "scenarios are ordered.";
 
 const std::string kByScenario = "Intervals are Wilson's, over the seeds of that scenario alone.";
 
@@ -115,7 +138,7 @@ std::string summary_of(const Plan& plan) {
       document.controllers.size(),
       document.points.size(),
       document.seed,
-      document.seed + document.repeats - 1,
+      document.seed + document.most_repeats() - 1,
       plan.size(),
       kVersion,
       hash_of(identity_of(document)));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -40,7 +39,7 @@ std::vector<Reading> readings_for(const Plan& plan) {
                            {.name = "time limit x 0.75", .time_limit_share = 0.75},
                            {.name = "clearance of 0.05 m or more", .least_clearance = 0.05},
                            {.name = "clearance of 0.10 m or more", .least_clearance = 0.10}};
-  if (plan.document().repeats > 1) {
+  if (plan.document().most_repeats() > 1) {
     all.push_back({.name = "1st, 3rd, 5th ... seed", .seed_half = 0});
     all.push_back({.name = "2nd, 4th, 6th ... seed", .seed_half = 1});
   }
@@ -93,38 +92,47 @@ std::vector<std::vector<Score>> scores_of(const Plan& plan,
   return scores;
 }
 
-/// `all`: the scores of all runs.
+/// `arms`: those that are compared; `all`: the scores of all runs.
 Ranking ranking_of(std::string name,
+                   const std::vector<std::size_t>& arms,
                    const std::vector<Score>& scores,
                    const std::vector<Score>& all) {
-  Ranking out{.reading = std::move(name)};
+  Ranking out{.reading = std::move(name), .order = arms};
   for (const Score& each : scores) out.rates.push_back(each.rate());
-  out.order.resize(scores.size());
-  std::iota(out.order.begin(), out.order.end(), std::size_t{0});
   // An arm without runs comes last; the comparison must order all arms.
   const auto key = [&](std::size_t arm) {
     const Score& score = scores[arm];
     return std::pair(score.runs > 0 ? -score.rate() : 1.0, score.mean_time());
   };
   std::ranges::stable_sort(out.order, {}, key);
-  for (std::size_t a = 0; a < scores.size(); ++a) {
-    for (std::size_t b = a + 1; b < scores.size(); ++b) {
+  for (auto a = arms.begin(); a != arms.end(); ++a) {
+    for (auto b = a + 1; b != arms.end(); ++b) {
       ++out.pairs;
-      if (better(scores[a], scores[b]) * better(all[a], all[b]) < 0) ++out.swapped;
+      if (better(scores[*a], scores[*b]) * better(all[*a], all[*b]) < 0) ++out.swapped;
     }
   }
   return out;
+}
+
+/// Success in other scenarios says nothing about the order.
+std::vector<std::size_t> arms_in_all_scenarios(const Plan& plan) {
+  std::vector<std::size_t> arms;
+  for (std::size_t arm = 0; arm < plan.arms().size(); ++arm) {
+    if (plan.drives_all(arm)) arms.push_back(arm);
+  }
+  return arms;
 }
 
 }  // namespace
 
 std::vector<Ranking> rankings_of(const Plan& plan, const Rows& rows) {
   std::vector<Ranking> all;
-  if (plan.arms().size() < 2 || plan.arms().size() > kMostRanked) return all;
+  const std::vector<std::size_t> arms = arms_in_all_scenarios(plan);
+  if (arms.size() < 2 || arms.size() > kMostRanked) return all;
   const std::vector<Reading> readings = readings_for(plan);
   const std::vector<std::vector<Score>> scores = scores_of(plan, rows, readings);
   for (std::size_t k = 0; k < readings.size(); ++k) {
-    all.push_back(ranking_of(readings[k].name, scores[k], scores.front()));
+    all.push_back(ranking_of(readings[k].name, arms, scores[k], scores.front()));
   }
   return all;
 }

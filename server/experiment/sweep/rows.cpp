@@ -24,6 +24,7 @@ Rows::Rows(std::size_t size)
     : marks_(size),
       outcomes_(size, algo::Outcome::Running),
       reasons_(size),
+      tracks_(size),
       figures_(size * columns().size(), std::nan("")) {}
 
 const std::vector<std::string_view>& Rows::columns() {
@@ -46,6 +47,7 @@ double Rows::figure(std::size_t run, std::string_view column) const {
 
 experiment::Row Rows::row(std::size_t run) const {
   experiment::Row row{.outcome = outcomes_[run], .reason = reasons_[run], .broken = broken(run)};
+  row.track_W = tracks_[run];
   if (!is(run, kMeasured)) return row;
   for (std::size_t k = 0; k < columns().size(); ++k) {
     row.figures.emplace_back(columns()[k], figures_[run * columns().size() + k]);
@@ -64,6 +66,7 @@ void Rows::set(std::size_t run, const experiment::Row& row) {
   }
   outcomes_[run] = row.outcome;
   reasons_[run] = row.reason;
+  tracks_[run] = row.track_W;
   marks_[run] = static_cast<std::uint8_t>(kEnded | (row.broken ? kBroken : 0) |
                                           (row.figures.empty() ? 0 : kMeasured));
 }
@@ -80,6 +83,7 @@ void Rows::erase(std::size_t run) {
   marks_[run] = 0;
   outcomes_[run] = algo::Outcome::Running;
   reasons_[run].clear();
+  tracks_[run].clear();
   const auto width = static_cast<std::ptrdiff_t>(columns().size());
   std::fill_n(figures_.begin() + static_cast<std::ptrdiff_t>(run) * width, width, std::nan(""));
 }

@@ -30,9 +30,11 @@ class Rows {
   bool broken(std::size_t run) const { return is(run, kBroken); }
   /// It was under way when the program died, twice. It is broken too.
   bool killed_twice(std::size_t run) const { return is(run, kKilledTwice); }
+  /// Coarse; empty unless Plan::keeps_track().
+  const std::vector<algo::Vec2>& track_W(std::size_t run) const { return tracks_[run]; }
   /// NaN if it is not known, or no figure of columns().
   double figure(std::size_t run, std::string_view column) const;
-  /// All of the run but its track and its ticks. Without figures if it broke before it had any.
+  /// All of the run but its ticks. Without figures if it broke before it had any.
   experiment::Row row(std::size_t run) const;
 
   /// Throws std::out_of_range if the row has a figure that is not in columns().
@@ -50,6 +52,7 @@ class Rows {
   std::vector<std::uint8_t> marks_{};
   std::vector<algo::Outcome> outcomes_{};
   std::vector<std::string> reasons_{};
+  std::vector<std::vector<algo::Vec2>> tracks_{};  // empty of most runs
   std::vector<double> figures_{};  // run after run, in the order of columns(); NaN: not known
 };
 

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -36,6 +37,24 @@ algo::Outcome outcome_named(const std::string& name) {
   throw std::runtime_error("no outcome is called " + name);
 }
 
+/// [x, y, x, y ...] in centimetres.
+json track_json(const std::vector<algo::Vec2>& track_W) {
+  json track = json::array();
+  for (const algo::Vec2& p_W : track_W) {
+    track.push_back(std::llround(100 * p_W.x()));
+    track.push_back(std::llround(100 * p_W.y()));
+  }
+  return track;
+}
+
+std::vector<algo::Vec2> track_from_json(const json& track) {
+  std::vector<algo::Vec2> track_W;
+  for (std::size_t i = 0; i + 1 < track.size(); i += 2) {
+    track_W.emplace_back(track[i].get<double>() / 100, track[i + 1].get<double>() / 100);
+  }
+  return track_W;
+}
+
 Row row_from_json(const json& line) {
   Row row{.outcome = outcome_named(line.at("outcome").get<std::string>()),
           .reason = line.at("reason").get<std::string>(),
@@ -47,6 +66,7 @@ Row row_from_json(const json& line) {
     const json& value = figure.at(1);
     row.figures.emplace_back(column->name, value.is_null() ? std::nan("") : value.get<double>());
   }
+  if (line.contains("track")) row.track_W = track_from_json(line["track"]);
   return row;
 }
 
@@ -106,11 +126,13 @@ json row_json(std::size_t run, const Row& row) {
   for (const auto& [column, value] : row.figures) {
     figures.push_back({column, std::isfinite(value) ? json(value) : json(nullptr)});
   }
-  return {{"run", run},
-          {"outcome", algo::name(row.outcome)},
-          {"reason", row.reason},
-          {"broken", row.broken},
-          {"figures", std::move(figures)}};
+  json line = {{"run", run},
+               {"outcome", algo::name(row.outcome)},
+               {"reason", row.reason},
+               {"broken", row.broken},
+               {"figures", std::move(figures)}};
+  if (!row.track_W.empty()) line["track"] = track_json(row.track_W);
+  return line;
 }
 
 std::string difference(const json& theirs, const json& ours) {

@@ -78,6 +78,7 @@ nlohmann::json logged_identity(const std::filesystem::path& file);
 /// The document in the first line of a log. Throws std::runtime_error with a sentence.
 nlohmann::json logged_document(const std::filesystem::path& file);
 
+/// The line of a run; its track must be coarse.
 nlohmann::json row_json(std::size_t run, const experiment::Row& row);
 
 /// How `theirs` differs from `ours`, as a clause: "repeats is 2 there and 3 here".

@@ -2,6 +2,7 @@
 #include "server/experiment/sweep/scenario_entries.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <optional>
 #include <set>
@@ -23,28 +24,38 @@ namespace {
 
 using nlohmann::json;
 
-/// Random layouts of compare/layouts.hpp, from number `seed` on.
+/// Random layouts from number `seed` on.
 struct LayoutGenerator {
   std::size_t count = 0;
   std::uint64_t seed = 1;
-  std::size_t obstacles = 3;
-  double repulsion_gain = 0.3;
+  experiment::LayoutRules rules{};
   std::optional<std::string> robot{};  // in place of the default one
 };
 
-constexpr std::uint64_t kMostObstacles = 4;  // of a layout, as in `tautline compare`
+constexpr std::uint64_t kMostObstacles = 12;  // of a layout
+constexpr NumberRange kGap{0, 5};             // [m]
+constexpr NumberRange kAside{0.1, 5};         // [m]
 constexpr std::uint64_t kMostSeed = 1'000'000'000;
 
 LayoutGenerator generator_from_json(const JsonReader& in) {
-  in.only({"count", "seed", "obstacles", "k_r", "robot"});
+  in.only({"count", "seed", "obstacles", "density", "gap", "aside", "k_r", "robot"});
   LayoutGenerator out;
   out.count = in.whole("count", kMostLayouts);
   if (out.count == 0) in.fail("count", "must be at least 1");
   out.seed = in.whole_or("seed", out.seed, kMostSeed);
-  out.obstacles = in.whole_or("obstacles", out.obstacles, kMostObstacles);
-  if (out.obstacles == 0) in.fail("obstacles", "must be at least 1");
-  out.repulsion_gain = in.number_or("k_r", out.repulsion_gain);
-  if (const auto complaint = algo::limit_refusal(algo::kRepulsionGain, out.repulsion_gain)) {
+  experiment::LayoutRules& rules = out.rules;
+  rules.gap = in.number_or("gap", rules.gap, kGap);
+  rules.aside = in.number_or("aside", rules.aside, kAside);
+  rules.obstacles = in.whole_or("obstacles", rules.obstacles, kMostObstacles);
+  if (rules.obstacles == 0) in.fail("obstacles", "must be at least 1");
+  if (in.has("density")) {
+    if (in.has("obstacles")) in.fail("density", "stands beside obstacles; give one of them");
+    const double area = area_of(rules);
+    const double density = in.number("density", {0, static_cast<double>(kMostObstacles) / area});
+    rules.obstacles = static_cast<std::size_t>(std::max(1L, std::lround(density * area)));
+  }
+  rules.repulsion_gain = in.number_or("k_r", rules.repulsion_gain);
+  if (const auto complaint = algo::limit_refusal(algo::kRepulsionGain, rules.repulsion_gain)) {
     in.fail("k_r", *complaint);
   }
   if (in.has("robot")) out.robot = in.text("robot", 64);
@@ -71,8 +82,11 @@ void add_layouts(const LayoutGenerator& layouts,
     throw DocumentError(path + "/random_layouts/robot", e.what());
   }
   for (std::size_t i = 0; i < layouts.count; ++i) {
-    all.push_back(
-        experiment::random_layout(layouts.obstacles, layouts.repulsion_gain, layouts.seed + i));
+    try {
+      all.push_back(experiment::random_layout(layouts.rules, layouts.seed + i));
+    } catch (const std::runtime_error& e) {
+      throw DocumentError(path + "/random_layouts", e.what());
+    }
     if (!robot) continue;
     all.back().name += "-" + *layouts.robot;
     replace_robot(all.back(), *robot);

@@ -34,13 +34,31 @@ const std::vector<std::string_view> kFields{"name",
                                             "time_factor",
                                             "comparisons"};
 
+std::size_t repeats_from_json(const JsonReader& in, std::size_t fallback) {
+  const std::size_t repeats = in.whole_or("repeats", fallback, kMostRepeats);
+  if (repeats == 0) in.fail("repeats", "must be at least 1");
+  return repeats;
+}
+
+std::set<std::string> names_from_json(const JsonReader& in) {
+  std::set<std::string> names;
+  in.each("scenarios", kMostScenarios, [&](const json& value, const std::string& path) {
+    if (!value.is_string()) throw DocumentError(path, "must be the name of a scenario");
+    if (!names.insert(value.get<std::string>()).second) throw DocumentError(path, "stands twice");
+  });
+  if (names.empty()) in.fail("scenarios", "is empty");
+  return names;
+}
+
+/// `repeats`: of a controller that gives none.
 ControllerChoice controller_from_json(const json& value,
                                       const std::string& path,
+                                      std::size_t repeats,
                                       const algo::ControllerCatalogue& catalogue) {
   ControllerChoice choice;
   const json object = value.is_string() ? json{{"name", value}} : value;
   const JsonReader in(object, path);
-  in.only({"name", "label", "parameters"});
+  in.only({"name", "label", "parameters", "repeats", "scenarios"});
   choice.name = in.text("name", 64);
   if (catalogue.find(choice.name) == nullptr) {
     std::string known;
@@ -55,14 +73,17 @@ ControllerChoice controller_from_json(const json& value,
     in.fail("label", "must not be empty, nor have a | or a line break");
   }
   if (in.has("parameters")) choice.parameters = point_from_json(in.object("parameters"));
+  choice.repeats = repeats_from_json(in, repeats);
+  if (in.has("scenarios")) choice.only = names_from_json(in);
   return choice;
 }
 
 std::vector<ControllerChoice> controllers_from_json(const JsonReader& in,
+                                                    std::size_t repeats,
                                                     const algo::ControllerCatalogue& catalogue) {
   std::vector<ControllerChoice> all;
   in.each("controllers", kMostControllers, [&](const json& value, const std::string& path) {
-    all.push_back(controller_from_json(value, path, catalogue));
+    all.push_back(controller_from_json(value, path, repeats, catalogue));
     const std::string& label = all.back().label;
     if (std::ranges::count(all, label, &ControllerChoice::label) > 1) {
       throw DocumentError(path, fmt::format("the label '{}' stands twice", label));
@@ -89,20 +110,33 @@ void check_sweep(const Design& design, const Document& document) {
 }
 
 void check_count(double scenarios, double points, const Document& document) {
-  const auto controllers = static_cast<double>(document.controllers.size());
-  const auto repeats = static_cast<double>(document.repeats);
-  const double runs = scenarios * controllers * points * repeats;
+  double runs = 0;
+  for (const ControllerChoice& each : document.controllers) {
+    const double driven = each.only.empty() ? scenarios : static_cast<double>(each.only.size());
+    runs += driven * points * static_cast<double>(each.repeats);
+  }
   if (runs <= static_cast<double>(kMostRuns)) return;
   throw DocumentError(
       "",
-      fmt::format("asks for {:.0f} runs (scenarios {:.0f}, controllers {:.0f}, swept settings "
-                  "{:.0f}, repeats {:.0f}); at most {} are allowed",
+      fmt::format("asks for {:.0f} runs (scenarios {:.0f}, controllers {}, swept settings {:.0f}, "
+                  "repeats {}); at most {} are allowed",
                   runs,
                   scenarios,
-                  controllers,
+                  document.controllers.size(),
                   points,
-                  repeats,
+                  document.most_repeats(),
                   kMostRuns));
+}
+
+/// Each scenario that a controller names must be one of the document.
+void check_drivers(const Document& document) {
+  for (std::size_t i = 0; i < document.controllers.size(); ++i) {
+    for (const std::string& name : document.controllers[i].only) {
+      if (std::ranges::count(document.scenarios, name, &sim::Scenario::name) > 0) continue;
+      throw DocumentError(fmt::format("controllers/{}/scenarios", i),
+                          fmt::format("no scenario of the document has the name '{}'", name));
+    }
+  }
 }
 
 void check_label(const std::string& label, const std::string& path, const Document& document) {
@@ -136,6 +170,19 @@ Comparisons comparisons_from_json(const JsonReader& in, const Document& document
 
 }  // namespace
 
+std::size_t Document::most_repeats() const {
+  return std::ranges::max_element(controllers, {}, &ControllerChoice::repeats)->repeats;
+}
+
+std::size_t Document::runs() const {
+  std::size_t runs = 0;
+  for (const ControllerChoice& each : controllers) {
+    const std::size_t driven = each.only.empty() ? scenarios.size() : each.only.size();
+    runs += driven * points.size() * each.repeats;
+  }
+  return runs;
+}
+
 Document document_from_json(const json& source,
                             const ScenarioLibrary& library,
                             std::shared_ptr<const algo::ControllerCatalogue> controllers,
@@ -148,10 +195,10 @@ Document document_from_json(const json& source,
     in.fail("name", "must be 1 to 64 of the characters a-z, 0-9, _ and -");
   }
   document.catalogue = std::move(controllers);
-  document.controllers = controllers_from_json(
-      in, document.catalogue ? *document.catalogue : algo::builtin_controllers());
-  document.repeats = in.whole_or("repeats", 1, kMostRepeats);
-  if (document.repeats == 0) in.fail("repeats", "must be at least 1");
+  document.controllers =
+      controllers_from_json(in,
+                            repeats_from_json(in, 1),
+                            document.catalogue ? *document.catalogue : algo::builtin_controllers());
   document.seed = in.whole_or("seed", 1, kMaxSeed);
   if (in.has("comparisons")) {
     document.comparisons = comparisons_from_json(in.object("comparisons"), document);
@@ -161,6 +208,7 @@ Document document_from_json(const json& source,
   check_count(count_scenarios(in, files), design.size(), document);
   document.points = design.points();
   document.scenarios = scenarios_from_json(in, library, files);
+  check_drivers(document);
   override_scenarios(in, document.scenarios);
   return document;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,12 @@ struct ControllerChoice {
   std::string name{};
   std::string label{};  // in the report; the name unless given
   Point parameters{};
+  std::size_t repeats = 1;       // seeds in each of its scenarios and settings
+  std::set<std::string> only{};  // the names of its scenarios; empty: all
+
+  bool drives(const sim::Scenario& scenario) const {
+    return only.empty() || only.contains(scenario.name);
+  }
 };
 
 /// Every other controller against the baseline, on the same scenario, seed and swept setting.
@@ -45,15 +52,14 @@ struct Document {
   std::vector<sim::Scenario> scenarios{};  // with the document's physics, noise, limits
   std::vector<ControllerChoice> controllers{};
   std::vector<Point> points{};  // swept settings; a single empty one if nothing is swept
-  std::size_t repeats = 1;      // seeds of each scenario, controller and setting
   std::uint64_t seed = 1;       // the first
   std::optional<Comparisons> comparisons{};
   nlohmann::json source{};                                       // the document as given
   std::shared_ptr<const algo::ControllerCatalogue> catalogue{};  // as in RunSpec
 
-  std::size_t runs() const {
-    return scenarios.size() * controllers.size() * points.size() * repeats;
-  }
+  std::size_t most_repeats() const;  // of any controller
+  /// Counts them; see Plan::size().
+  std::size_t runs() const;
 };
 
 /// Reads a whole document; `library` has the scenarios it may name, and `controllers` the

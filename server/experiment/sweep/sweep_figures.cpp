@@ -12,7 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "algo/driving.hpp"
 #include "algo/pipeline/parameter_table.hpp"
+#include "server/experiment/path_picture.hpp"
 #include "server/experiment/row_chart.hpp"
 
 namespace server::sweep {
@@ -129,9 +131,29 @@ Picture heat_map_of(const Plan& plan,
                                cells)};
 }
 
+/// Nothing while no run has a path.
+std::optional<Picture> paths_in(const Plan& plan, const Rows& rows, std::size_t scenario) {
+  std::vector<experiment::DrawnPath> paths;
+  const std::size_t arms = std::min(experiment::kMostPaths, plan.arms().size());
+  for (std::size_t arm = 0; arm < arms; ++arm) {
+    if (plan.repeats(scenario, arm) == 0) continue;
+    const std::size_t run = plan.number({scenario, arm, 0});
+    if (rows.track_W(run).empty()) continue;
+    paths.push_back({fmt::format("{}: {}", plan.arms()[arm].label, algo::name(rows.outcome(run))),
+                     rows.track_W(run),
+                     arm});
+  }
+  if (paths.empty()) return std::nullopt;
+  const sim::Scenario& drawn = plan.document().scenarios[scenario];
+  const std::string title = fmt::format("{}: paths with seed {}", drawn.name, plan.document().seed);
+  return Picture{fmt::format("paths_{}.svg", drawn.name),
+                 title,
+                 experiment::draw_paths(title, drawn, drawn.parameters[algo::kGoalReach], paths)};
+}
+
 }  // namespace
 
-std::vector<Picture> pictures_of(const Plan& plan, const Results& results) {
+std::vector<Picture> pictures_of(const Plan& plan, const Rows& rows, const Results& results) {
   std::vector<Picture> all;
   if (plan.arms().size() <= kMostDrawn) {
     all.push_back(success(plan, results));
@@ -144,10 +166,14 @@ std::vector<Picture> pictures_of(const Plan& plan, const Results& results) {
   const std::map<std::string, std::set<double>> axes = grid_of(plan);
   const bool fits = std::ranges::all_of(
       axes, [](const auto& axis) { return axis.second.size() <= kMostDrawn / 2; });
-  if (axes.empty() || !fits) return all;
   const std::size_t controllers = std::min(kMostMaps, plan.document().controllers.size());
-  for (std::size_t c = 0; c < controllers; ++c) {
+  for (std::size_t c = 0; !axes.empty() && fits && c < controllers; ++c) {
     all.push_back(heat_map_of(plan, results, c, axes));
+  }
+  const std::size_t scenarios = std::min(kMostPathPictures, plan.document().scenarios.size());
+  for (std::size_t s = 0; s < scenarios; ++s) {
+    if (std::optional<Picture> picture = paths_in(plan, rows, s))
+      all.push_back(std::move(*picture));
   }
   return all;
 }

@@ -17,8 +17,9 @@ struct Picture {
   std::string svg{};
 };
 
-/// Rates of success with their intervals; times, paths and least clearances as boxes; and, for a
-/// grid over two parameters, a heat map of the success of each controller.
-std::vector<Picture> pictures_of(const Plan& plan, const Results& results);
+/// Rates of success with their intervals; times, paths and least clearances as boxes; for a grid
+/// over two parameters, a heat map of the success of each controller; and the paths in each of the
+/// first scenarios.
+std::vector<Picture> pictures_of(const Plan& plan, const Rows& rows, const Results& results);
 
 }  // namespace server::sweep

@@ -8,7 +8,6 @@
 
 #include "server/experiment/svg_canvas.hpp"
 #include "server/experiment/sweep/report_sections.hpp"
-#include "server/experiment/sweep/sweep_figures.hpp"
 #include "server/experiment/sweep/sweep_report.hpp"
 
 namespace server::sweep {
@@ -89,9 +88,10 @@ experiment::Table short_runs_table(const Plan& plan, const Rows& rows) {
   return table;
 }
 
-std::string pictures_html(const Plan& plan, const Results& results) {
+std::string pictures_html(std::span<const Picture> pictures) {
+  if (pictures.empty()) return {};
   std::string text = "<section><h2>Pictures</h2>\n<div class=\"pictures\">\n";
-  for (const Picture& each : pictures_of(plan, results)) {
+  for (const Picture& each : pictures) {
     text +=
         fmt::format("<figure><figcaption>{}</figcaption><div class=\"wide\">{}</div></figure>\n",
                     xml_text(each.title),
@@ -122,7 +122,10 @@ std::string runs_html(const Plan& plan, const Rows& rows) {
 
 }  // namespace
 
-std::string to_html(const Plan& plan, const Rows& rows, const Results& results) {
+std::string to_html(const Plan& plan,
+                    const Rows& rows,
+                    const Results& results,
+                    std::span<const Picture> pictures) {
   std::string text = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width,initial-scale=1\">\n<title>{0}: report of an "
@@ -136,9 +139,7 @@ std::string to_html(const Plan& plan, const Rows& rows, const Results& results) 
   const std::vector<Section> sections = sections_of(plan, results);
   for (const Section& section : sections) {
     text += section_html(section);
-    if (&section == &sections.front() && !pictures_of(plan, results).empty()) {
-      text += pictures_html(plan, results);
-    }
+    if (&section == &sections.front()) text += pictures_html(pictures);
   }
   return text + runs_html(plan, rows) + "</body></html>\n";
 }

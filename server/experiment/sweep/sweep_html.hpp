@@ -1,8 +1,10 @@
 // server/experiment/sweep/sweep_html.hpp: the report as one HTML file.
 #pragma once
 
+#include <span>
 #include <string>
 
+#include "server/experiment/sweep/sweep_figures.hpp"
 #include "server/experiment/sweep/sweep_results.hpp"
 
 namespace server::sweep {
@@ -11,6 +13,9 @@ constexpr std::size_t kMostListed = 1000;  // runs in the table of runs; of more
 
 /// A whole page: tables, pictures and method, with its style, its drawings and the script that
 /// sorts the table of runs in it. It loads nothing. Light or dark as the browser prefers.
-std::string to_html(const Plan& plan, const Rows& rows, const Results& results);
+std::string to_html(const Plan& plan,
+                    const Rows& rows,
+                    const Results& results,
+                    std::span<const Picture> pictures);
 
 }  // namespace server::sweep

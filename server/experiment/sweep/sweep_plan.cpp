@@ -1,10 +1,14 @@
 // server/experiment/sweep/sweep_plan.cpp: numbers the runs and makes their trials.
 #include "server/experiment/sweep/sweep_plan.hpp"
 
+#include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "server/experiment/path_picture.hpp"
 #include "server/experiment/series.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/robot_json.hpp"
@@ -37,15 +41,34 @@ Plan::Plan(Document document) : document_(std::move(document)) {
       arm.parameters.insert(controller.parameters.begin(), controller.parameters.end());
     }
   }
+  first_.push_back(0);
+  for (const sim::Scenario& scenario : document_.scenarios) {
+    for (const Arm& arm : arms_) {
+      const ControllerChoice& controller = document_.controllers[arm.controller];
+      first_.push_back(first_.back() + (controller.drives(scenario) ? controller.repeats : 0));
+    }
+  }
+}
+
+std::size_t Plan::repeats(std::size_t scenario, std::size_t arm) const {
+  const std::size_t series = scenario * arms_.size() + arm;
+  return first_[series + 1] - first_[series];
+}
+
+bool Plan::drives_all(std::size_t arm) const {
+  const std::set<std::string>& only = document_.controllers[arms_[arm].controller].only;
+  return only.empty() || only.size() == document_.scenarios.size();
 }
 
 RunPlace Plan::place(std::size_t i) const {
-  const std::size_t series = i / document_.repeats;
-  return {series / arms_.size(), series % arms_.size(), i % document_.repeats};
+  // The last series that begins at or before the run; those without runs begin there too.
+  const auto series =
+      static_cast<std::size_t>(std::ranges::upper_bound(first_, i) - first_.begin() - 1);
+  return {series / arms_.size(), series % arms_.size(), i - first_[series]};
 }
 
 std::size_t Plan::number(const RunPlace& place) const {
-  return (place.scenario * arms_.size() + place.arm) * document_.repeats + place.repeat;
+  return first_[place.scenario * arms_.size() + place.arm] + place.repeat;
 }
 
 RunSpec Plan::spec(std::size_t scenario, std::size_t arm, std::uint64_t seed) const {
@@ -68,10 +91,17 @@ const std::vector<experiment::JudgeChoice>& judges() {
 
 experiment::Trial Plan::trial(std::size_t i) const {
   const RunPlace at = place(i);
-  experiment::Trial trial{.spec = spec(at.scenario, at.arm, seed(i)), .judges = judges()};
+  experiment::Trial trial{.spec = spec(at.scenario, at.arm, seed(i)),
+                          .judges = judges(),
+                          .keep_track = keeps_track(at)};
   trial.name = fmt::format(
       "{}, {}, seed {}", document_.scenarios[at.scenario].name, arms_[at.arm].label, seed(i));
   return trial;
+}
+
+bool Plan::keeps_track(const RunPlace& place) const {
+  return place.repeat == 0 && place.arm < experiment::kMostPaths &&
+         place.scenario < kMostPathPictures;
 }
 
 double Plan::time_limit(std::size_t scenario, std::size_t arm) const {
@@ -95,7 +125,9 @@ std::string Plan::command(std::size_t i) const {
 void Plan::check() const {
   for (std::size_t s = 0; s < document_.scenarios.size(); ++s) {
     const std::string& scenario = document_.scenarios[s].name;
+    bool made_world = false;
     for (std::size_t a = 0; a < arms_.size(); ++a) {
+      if (repeats(s, a) == 0) continue;
       const std::string path = fmt::format("controllers/{}", arms_[a].controller);
       RunSpec made;
       try {
@@ -104,7 +136,8 @@ void Plan::check() const {
         throw DocumentError(
             path, fmt::format("'{}' in scenario '{}': {}", arms_[a].label, scenario, e.what()));
       }
-      if (a > 0) continue;
+      if (made_world) continue;
+      made_world = true;
       try {
         make_robot(made);
       } catch (const std::exception& e) {

@@ -20,12 +20,15 @@ struct Arm {
   Point parameters{};          // of both
 };
 
-/// Run `i` is a scenario, an arm and a seed; seeds change fastest, then arms.
+/// Run `i` is a scenario, an arm and a seed; seeds change fastest, then arms. An arm has no runs in
+/// a scenario that its controller does not drive.
 struct RunPlace {
   std::size_t scenario = 0;
   std::size_t arm = 0;
   std::size_t repeat = 0;
 };
+
+constexpr std::size_t kMostPathPictures = 24;  // one a scenario
 
 class Plan {
  public:
@@ -33,13 +36,18 @@ class Plan {
 
   const Document& document() const { return document_; }
   const std::vector<Arm>& arms() const { return arms_; }
-  std::size_t size() const { return document_.runs(); }
+  std::size_t size() const { return first_.back(); }
+  /// The runs of an arm in a scenario, 0 if it does not drive there.
+  std::size_t repeats(std::size_t scenario, std::size_t arm) const;
+  bool drives_all(std::size_t arm) const;  // the scenarios
 
   RunPlace place(std::size_t i) const;
   std::size_t number(const RunPlace& place) const;
   std::uint64_t seed(std::size_t i) const { return document_.seed + place(i).repeat; }
   /// Judged by judges(). Throws DocumentError if the parts do not go together.
   experiment::Trial trial(std::size_t i) const;
+  /// True of the first seed of the first arms in the first scenarios: their paths are drawn.
+  bool keeps_track(const RunPlace& place) const;
   /// [s] of the run clock, of a scenario with an arm.
   double time_limit(std::size_t scenario, std::size_t arm) const;
   /// The command that repeats the run alone, from the folder of the results.
@@ -54,6 +62,7 @@ class Plan {
 
   Document document_{};
   std::vector<Arm> arms_{};
+  std::vector<std::size_t> first_{};  // run of each scenario and arm; then the number of all runs
 };
 
 /// The judges of every study, and that of the motion.

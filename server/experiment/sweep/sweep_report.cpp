@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -80,9 +81,10 @@ void write_report(const Plan& plan,
   replace_text(folder / "results.json", results_json(plan, results).dump(1) + "\n");
   replace_text(folder / "report.md", to_markdown(plan, results));
   replace_text(folder / "report.tex", to_latex(plan, results));
-  replace_text(folder / "report.html", to_html(plan, rows, results));
+  const std::vector<Picture> pictures = pictures_of(plan, rows, results);
+  replace_text(folder / "report.html", to_html(plan, rows, results, pictures));
   make_folder(folder / "pictures");
-  for (const Picture& each : pictures_of(plan, results)) {
+  for (const Picture& each : pictures) {
     replace_text(folder / "pictures" / each.file, each.svg);
   }
 }

@@ -61,7 +61,7 @@ Group group_of(
   Group group{.arm = arm};
   std::vector<Runs> by_scenario(last - first);
   for (std::size_t scenario = first; scenario < last; ++scenario) {
-    for (std::size_t repeat = 0; repeat < plan.document().repeats; ++repeat) {
+    for (std::size_t repeat = 0; repeat < plan.repeats(scenario, arm); ++repeat) {
       const std::size_t run = plan.number({scenario, arm, repeat});
       if (rows.has(run)) by_scenario[scenario - first].push_back(run);
       ++(rows.has(run) ? group.runs : group.missing);
@@ -105,7 +105,9 @@ using Pairs = std::vector<std::vector<Pair>>;
 Pairs pairs_of(const Plan& plan, const Rows& rows, std::size_t baseline, std::size_t arm) {
   Pairs pairs(plan.document().scenarios.size());
   for (std::size_t scenario = 0; scenario < pairs.size(); ++scenario) {
-    for (std::size_t repeat = 0; repeat < plan.document().repeats; ++repeat) {
+    const std::size_t seeds =
+        std::min(plan.repeats(scenario, baseline), plan.repeats(scenario, arm));
+    for (std::size_t repeat = 0; repeat < seeds; ++repeat) {
       const Pair pair{plan.number({scenario, baseline, repeat}),
                       plan.number({scenario, arm, repeat})};
       if (rows.has(pair.baseline) && rows.has(pair.other)) pairs[scenario].push_back(pair);
@@ -208,6 +210,7 @@ Results results_of(const Plan& plan, const Rows& rows) {
   }
   for (std::size_t scenario = 0; scenario < scenarios; ++scenario) {
     for (std::size_t arm = 0; arm < plan.arms().size(); ++arm) {
+      if (plan.repeats(scenario, arm) == 0) continue;
       out.scenarios.push_back(group_of(plan, rows, arm, scenario, scenario + 1));
       out.scenarios.back().scenario = scenario;
     }

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "server/experiment/track.hpp"
+#include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
@@ -31,7 +33,8 @@ Cost measured(experiment::Trial trial) {
   double& limit = trial.spec.scenario.time_limit;
   limit = std::min(time_limit(trial.spec), kMeasured);
   const std::clock_t begin = std::clock();
-  const Row row = run_trial(trial);
+  Row row = run_trial(trial);
+  row.track_W = experiment::coarse(row.track_W);
   const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   return {spent / std::max(row["time_s"], trial.spec.scenario.period),
           static_cast<double>(dump_json(row_json(0, row)).size() + 1)};
@@ -64,9 +67,27 @@ std::vector<std::size_t> runs_to_make(const Rows& rows,
   return runs;
 }
 
-Row run_one(const Plan& plan, std::size_t i, const std::stop_token& stop) {
+Row run_one(const Plan& plan,
+            std::size_t i,
+            const std::stop_token& stop,
+            const Recording& recording) {
   try {
-    return run_trial(plan.trial(i), {.stop = stop});
+    const experiment::Trial trial = plan.trial(i);
+    const experiment::TrialOptions recorded{
+        .stop = stop, .record = [&](const algo::RobotSpec& robot) {
+          return recording.recorder->open(headless_run(trial.spec, robot, 0));
+        }};
+    const bool all = recording.recorder != nullptr && !recording.failures_only;
+    Row row = run_trial(trial, all ? recorded : experiment::TrialOptions{.stop = stop});
+    const bool failed = row.outcome != algo::Outcome::Reached && !stop.stop_requested();
+    if (recording.recorder != nullptr && recording.failures_only && failed) {
+      run_trial(trial, recorded);
+    }
+    while (recording.recorder != nullptr && !recording.recorder->flush() &&
+           !stop.stop_requested()) {  // waits for a store that is locked, or without room
+    }
+    row.track_W = experiment::coarse(row.track_W);
+    return row;
   } catch (const std::exception& e) {
     return {.outcome = algo::Outcome::Failed, .reason = e.what(), .broken = true};
   }
@@ -76,7 +97,8 @@ Rows run_sweep(const Plan& plan,
                const fs::path& folder,
                const experiment::PoolOptions& options,
                Wanted wanted,
-               const std::function<void(const std::string&)>& warn) {
+               const std::function<void(const std::string&)>& warn,
+               const Recording& recording) {
   make_folder(folder);
   const std::unique_ptr<RunLog> log = open_log(plan, folder);
   write_scenarios(plan.document(), folder);
@@ -98,7 +120,7 @@ Rows run_sweep(const Plan& plan,
     for_each(count, pool, [&](std::size_t k, const std::stop_token& stop) {
       const std::size_t i = runs[first + k];
       log->begin(i);
-      const Row row = run_one(plan, i, finish ? std::stop_token() : stop);
+      const Row row = run_one(plan, i, finish ? std::stop_token() : stop, recording);
       if (row.outcome == algo::Outcome::Stopped) return log->leave(i);
       log->append(i, row);
       rows.set(i, row);
@@ -112,15 +134,17 @@ Rows run_sweep(const Plan& plan,
 Estimate estimate(const Plan& plan) {
   Estimate sum;
   std::map<std::size_t, Cost> costs;  // by controller
-  const double repeats = static_cast<double>(plan.document().repeats);
-  for (std::size_t i = 0; i < plan.size(); i += plan.document().repeats) {
+  for (std::size_t i = 0; i < plan.size();) {
     const experiment::Trial trial = plan.trial(i);
-    const std::size_t controller = plan.arms()[plan.place(i).arm].controller;
+    const RunPlace at = plan.place(i);
+    const auto repeats = static_cast<double>(plan.repeats(at.scenario, at.arm));
+    const std::size_t controller = plan.arms()[at.arm].controller;
     const auto known = costs.find(controller);
     const Cost cost = known != costs.end() ? known->second : measured(trial);
     costs.emplace(controller, cost);
     sum.cpu_time += repeats * cost.cpu_time * time_limit(trial.spec);
     sum.bytes += repeats * cost.bytes * (1 + kCsvPerLogLine);
+    i += plan.repeats(at.scenario, at.arm);
   }
   for (const sim::Scenario& scenario : plan.document().scenarios) {
     sum.bytes += static_cast<double>(to_json(scenario).dump(1).size());

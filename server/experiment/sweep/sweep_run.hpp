@@ -15,6 +15,7 @@
 #include "server/experiment/pool.hpp"
 #include "server/experiment/sweep/run_log.hpp"
 #include "server/experiment/sweep/sweep_plan.hpp"
+#include "server/record/recorder.hpp"
 
 namespace server::sweep {
 
@@ -35,8 +36,17 @@ std::vector<std::size_t> runs_to_make(const Rows& rows,
                                       Wanted wanted = Wanted::Missing,
                                       const std::set<std::size_t>& lost = {},
                                       const experiment::Shard& shard = {});
-/// The row of a run: Failed with the reason if it breaks, Stopped after a stop.
-experiment::Row run_one(const Plan& plan, std::size_t i, const std::stop_token& stop);
+/// Where whole runs are stored, with every tick; nowhere without a recorder.
+struct Recording {
+  Recorder* recorder = nullptr;
+  bool failures_only = false;  // those that do not reach; each is made once more with its record
+};
+/// The row of a run: Failed with the reason if it breaks, Stopped after a stop. Its record is
+/// stored when this returns.
+experiment::Row run_one(const Plan& plan,
+                        std::size_t i,
+                        const std::stop_token& stop,
+                        const Recording& recording = {});
 
 /// Writes the scenarios to `folder`, then makes the runs that are `wanted`: first, one by one,
 /// those that may have killed the program, then the others. Returns all runs by number; after a
@@ -49,7 +59,8 @@ Rows run_sweep(const Plan& plan,
                const std::filesystem::path& folder,
                const experiment::PoolOptions& options,
                Wanted wanted = Wanted::Missing,
-               const std::function<void(const std::string&)>& warn = {});
+               const std::function<void(const std::string&)>& warn = {},
+               const Recording& recording = {});
 
 struct Estimate {
   double cpu_time = 0;  // [s] if every run lasts until its time limit

@@ -56,7 +56,7 @@ LayoutSet run_layouts(const Kind& kind, const Options& options) {
     const std::string controller(name);
     for (std::size_t i = 1; i <= options.layouts; ++i) {
       const sim::Scenario layout =
-          experiment::random_layout(kind.obstacles, kind.repulsion_gain, i);
+          experiment::random_layout({kind.obstacles, kind.repulsion_gain}, i);
       const auto plan = [&](const reproduce::Conditions& under) -> SeriesPlan {
         return {layout.name,
                 controller,

@@ -2,7 +2,9 @@
 #include "server/experiment/layouts.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -36,7 +38,7 @@ TEST(SurfaceGap, BetweenCylindersAndBoxes) {
 TEST(RandomLayouts, KeepTheirGapsAndBlockTheWay) {
   for (const std::size_t obstacles : {2U, 3U, 4U}) {
     for (std::size_t i = 1; i <= 40; ++i) {
-      const sim::Scenario layout = random_layout(obstacles, 0.3, i);
+      const sim::Scenario layout = random_layout({.obstacles = obstacles}, i);
       ASSERT_EQ(layout.obstacles.size(), obstacles);
       bool blocks = false;
       for (std::size_t a = 0; a < obstacles; ++a) {
@@ -58,9 +60,47 @@ TEST(RandomLayouts, KeepTheirGapsAndBlockTheWay) {
 }
 
 TEST(RandomLayouts, TheSameNumberIsTheSameLayout) {
-  EXPECT_EQ(random_layout(3, 0.3, 7).obstacles, random_layout(3, 0.3, 7).obstacles);
-  EXPECT_NE(random_layout(3, 0.3, 7).obstacles, random_layout(3, 0.3, 8).obstacles);
-  EXPECT_EQ(random_layout(2, 0.6, 12).name, "random-2-0012");
+  EXPECT_EQ(random_layout({}, 7).obstacles, random_layout({}, 7).obstacles);
+  EXPECT_NE(random_layout({}, 7).obstacles, random_layout({}, 8).obstacles);
+  EXPECT_EQ(random_layout({.obstacles = 2, .repulsion_gain = 0.6}, 12).name, "random-2-0012");
+}
+
+TEST(RandomLayouts, SmallerGapsLetMoreObstaclesIn) {
+  const sim::Scenario dense = random_layout({.obstacles = 9, .gap = 0.4}, 1);
+  EXPECT_EQ(dense.name, "random-9-gap400-0001");
+  ASSERT_EQ(dense.obstacles.size(), 9U);
+  double least = 1e9;
+  for (std::size_t a = 0; a < 9; ++a) {
+    for (std::size_t b = a + 1; b < 9; ++b) {
+      least = std::min(least, surface_gap(dense.obstacles[a], dense.obstacles[b]));
+    }
+  }
+  EXPECT_GE(least, 0.4);
+  EXPECT_LT(least, kFreeGap);
+}
+
+TEST(RandomLayouts, ObstaclesStandAsNearToTheLineAsAskedFor) {
+  const LayoutRules near{.aside = 0.8};
+  EXPECT_EQ(random_layout(near, 3).name, "random-3-aside800-0003");
+  for (std::size_t i = 1; i <= 20; ++i) {
+    const sim::Scenario layout = random_layout(near, i);
+    const Vec2 along = layout.goal->position_W.normalized();
+    for (const algo::Obstacle& each : layout.obstacles) {
+      const Vec2 at_W = each.pose_W.position();
+      EXPECT_LE(std::abs(along.x() * at_W.y() - along.y() * at_W.x()), near.aside + 1e-9);
+    }
+  }
+}
+
+TEST(RandomLayouts, RulesThatCannotHoldAreRefused) {
+  try {
+    random_layout({.obstacles = 12, .gap = 3.0}, 1);
+    FAIL() << "12 obstacles with 3 m between them";
+  } catch (const std::runtime_error& e) {
+    EXPECT_STREQ(
+        e.what(),
+        "12 obstacles with free gaps of 3 m find no place within 2 m of the straight line");
+  }
 }
 
 }  // namespace

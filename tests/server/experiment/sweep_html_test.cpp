@@ -39,16 +39,22 @@ Rows rows_of(const Plan& plan) {
   return rows;
 }
 
+std::string html_of(const Plan& plan, const Rows& rows) {
+  const Results results = results_of(plan, rows);
+  return to_html(plan, rows, results, pictures_of(plan, rows, results));
+}
+
 std::string html_of(const json& source) {
   const Plan plan = plan_of(source);
   const Rows rows = rows_of(plan);
-  return to_html(plan, rows, results_of(plan, rows));
+  return html_of(plan, rows);
 }
 
 std::vector<std::string> pictures_for(const json& source) {
   const Plan plan = plan_of(source);
+  const Rows rows = rows_of(plan);
   std::vector<std::string> files;
-  for (const Picture& each : pictures_of(plan, results_of(plan, rows_of(plan)))) {
+  for (const Picture& each : pictures_of(plan, rows, results_of(plan, rows))) {
     files.push_back(each.file);
   }
   return files;
@@ -68,7 +74,7 @@ TEST(SweepHtml, LoadsNothingAndEscapesLabels) {
 TEST(SweepHtml, AnIncompleteExperimentSaysSoFirst) {
   const Plan plan = plan_of(document());
   const Rows rows(plan.size());
-  const std::string html = to_html(plan, rows, results_of(plan, rows));
+  const std::string html = html_of(plan, rows);
   EXPECT_LT(html.find("INCOMPLETE: of 2 runs, 2 are missing"), html.find("<table>"));
   EXPECT_THAT(html, HasSubstr("<td>missing</td>"));
 }

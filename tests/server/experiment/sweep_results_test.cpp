@@ -115,6 +115,39 @@ TEST(SweepResults, PairsOfWhichARunIsMissingAreLeftOut) {
   EXPECT_EQ(found.time.signed_rank.pairs, 2U);
 }
 
+TEST(SweepResults, AControllerMayDriveAPartOfTheScenariosAndSeeds) {
+  json source = {{"name", "parts"},
+                 {"scenarios", {"case1", "case2", "case3"}},
+                 {"controllers",
+                  {"original",
+                   "modified",
+                   {{"name", "vff"}, {"repeats", 1}},
+                   {{"name", "strip"}, {"scenarios", {"case3", "case1"}}}}},
+                 {"repeats", 2},
+                 {"comparisons", {{"baseline", "original"}}}};
+  const Plan plan(document_from_json(source, ScenarioLibrary("", "")));
+  EXPECT_EQ(plan.document().runs(), 3U * 2 + 3 * 2 + 3 + 2 * 2);
+  ASSERT_EQ(plan.size(), plan.document().runs());
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    EXPECT_EQ(plan.number(plan.place(i)), i);
+    EXPECT_LT(plan.place(i).repeat, plan.repeats(plan.place(i).scenario, plan.place(i).arm));
+  }
+  EXPECT_EQ(plan.repeats(1, 3), 0U);  // strip in case2
+  Rows rows(plan.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows.set(i, run(true, 20));
+  const Results results = results_of(plan, rows);
+  EXPECT_TRUE(results.complete());
+  EXPECT_EQ(results.arms.at(2).runs, 3U);
+  EXPECT_EQ(results.arms.at(3).runs, 4U);
+  EXPECT_EQ(results.scenarios.size(), 11U);
+  EXPECT_EQ(results.pairings.at(1).reached.pairs, 3U);  // vff
+  EXPECT_EQ(results.pairings.at(2).reached.pairs, 4U);  // strip
+  EXPECT_EQ(results.rankings.at(0).order.size(), 3U) << "strip drives other scenarios";
+  EXPECT_THAT(
+      to_markdown(plan, results),
+      HasSubstr("Not all controllers drive the same runs: vff 1 of 2 seeds, strip 2 of 3 scen"));
+}
+
 const Ranking& reading(const Results& results, const std::string& name) {
   for (const Ranking& each : results.rankings) {
     if (each.reading == name) return each;

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "db/run_reader.hpp"
 #include "server/experiment/sweep/sweep_report.hpp"
 #include "server/experiment/sweep/sweep_tables.hpp"
 #include "server/run/text_file.hpp"
@@ -23,8 +24,13 @@ using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-constexpr const char* kFiles[] = {
-    "results.json", "runs.csv", "report.md", "report.tex", "report.html", "pictures/success.svg"};
+constexpr const char* kFiles[] = {"results.json",
+                                  "runs.csv",
+                                  "report.md",
+                                  "report.tex",
+                                  "report.html",
+                                  "pictures/success.svg",
+                                  "pictures/paths_post.svg"};
 
 /// 1 m to the goal past a post: some hundredths of a second a run.
 json document() {
@@ -64,6 +70,13 @@ void cut_log(const fs::path& folder, std::size_t lines, std::size_t more) {
   std::size_t at = 0;
   for (std::size_t i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
   write_text(folder / "runs.jsonl", text.substr(0, at + more));
+}
+
+std::vector<std::string> outcomes_in(const fs::path& store) {
+  std::vector<std::string> outcomes;
+  db::RunReader reader(store.string());
+  for (const db::RunRow& row : reader.list({}, 100).runs) outcomes.push_back(row.outcome);
+  return outcomes;
 }
 
 class SweepRun : public testing::Test {
@@ -275,6 +288,36 @@ TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
   EXPECT_GT(cost.cpu_time, 0);
   EXPECT_GT(cost.bytes, 24 * 500.0);
   EXPECT_LT(cost.bytes, 24 * 5000.0);
+}
+
+TEST_F(SweepRun, StoresWholeRunsOfAllOrOfThoseThatDoNotReach) {
+  json source = document();
+  source.erase("sweep");
+  source["repeats"] = 1;
+  source["controllers"] = {"original", "go_to_goal"};
+  // go_to_goal drives into the post, the original passes it.
+  source["scenarios"] = {
+      {{"name", "post"},
+       {"goal", {{"x", 3}, {"y", 0}}},
+       {"obstacles", {{{"type", "cylinder"}, {"x", 1.5}, {"y", 0.2}, {"radius", 0.1}}}}}};
+  const Plan few = plan_of(source);
+  for (const bool failures_only : {false, true}) {
+    const fs::path out = folder(failures_only ? "failures" : "all");
+    make_folder(out);
+    {
+      Recorder recorder((out / "runs.db").string());
+      const Rows rows =
+          run_sweep(few, out, {.threads = 2}, Wanted::Missing, {}, {&recorder, failures_only});
+      ASSERT_EQ(rows.outcome(0), algo::Outcome::Reached);
+      ASSERT_EQ(rows.outcome(1), algo::Outcome::Collided);
+    }
+    const std::vector<std::string> outcomes = outcomes_in(out / "runs.db");
+    if (failures_only) {
+      EXPECT_THAT(outcomes, testing::ElementsAre("collided"));
+    } else {
+      EXPECT_THAT(outcomes, testing::UnorderedElementsAre("reached", "collided"));
+    }
+  }
 }
 
 }  // namespace
