@@ -48,6 +48,8 @@ struct App::Impl {
         scheduler(options.threads),
         workers(options.database.string()),
         experiments({.folder = beside(options.database),
+                     .keep_bytes = options.keep_bytes,
+                     .evict_oldest = options.evict_oldest,
                      .workers = options.workers,
                      .controllers = options.first.controllers},
                     library),

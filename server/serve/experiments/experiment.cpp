@@ -271,9 +271,10 @@ std::shared_ptr<const sweep::Plan> Experiment::plan() {
   return plan_;
 }
 
-sweep::Rows Experiment::rows() {
+void Experiment::look(
+    const std::function<void(const sweep::Plan& plan, const sweep::Rows& rows)>& see) {
   const std::unique_lock lock = loaded();
-  return rows_;
+  see(*plan_, rows_);
 }
 
 std::shared_ptr<const json> Experiment::write_report() {

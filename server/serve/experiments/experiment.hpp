@@ -82,7 +82,8 @@ class Experiment {
 
   /// The plan and the rows so far, read from the folder if need be. Throws as resume().
   std::shared_ptr<const sweep::Plan> plan();
-  sweep::Rows rows();
+  /// Shows the rows so far, which do not change meanwhile: `see` must be quick.
+  void look(const std::function<void(const sweep::Plan& plan, const sweep::Rows& rows)>& see);
   /// Writes the report of the runs so far, unless it is new enough, and returns results.json.
   /// Throws std::exception.
   std::shared_ptr<const nlohmann::json> write_report();

@@ -27,6 +27,18 @@ unsigned workers_of(unsigned wanted) {
   return std::max(2U, std::thread::hardware_concurrency()) - 1;
 }
 
+/// Of all files below `folder`.
+std::uint64_t bytes_in(const fs::path& folder) {
+  std::uint64_t sum = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; it != end; it.increment(error)) {
+    std::error_code gone;  // it may be deleted meanwhile
+    const std::uint64_t size = it->is_regular_file(gone) ? it->file_size(gone) : 0;
+    if (!gone) sum += size;
+  }
+  return sum;
+}
+
 [[noreturn]] void not_found(const std::string& id) {
   throw net::HttpError(404, fmt::format("There is no experiment '{}'.", id));
 }
@@ -57,13 +69,35 @@ void Experiments::read_folder() {
 }
 
 /// Holds mutex_.
-void Experiments::check_room() const {
+void Experiments::check_turns() const {
   const auto running = std::ranges::count_if(all_, [](const auto& entry) {
     return entry.second->info().state == ExperimentState::Running;
   });
   if (static_cast<std::size_t>(running) >= rules_.most_running) {
     throw net::HttpError(
         503, fmt::format("{} experiments are running, as many as may. Try again later.", running));
+  }
+}
+
+/// Deletes the oldest finished ones if it may and must. Holds mutex_.
+void Experiments::make_room() {
+  const auto full = [&]() -> std::string {
+    if (all_.size() >= rules_.most_kept) {
+      return fmt::format("{} experiments are kept, as many as may.", all_.size());
+    }
+    if (rules_.keep_bytes == 0 || bytes_in(rules_.folder) < rules_.keep_bytes) return {};
+    return fmt::format("The experiments take the {:.3g} GB that --keep gives them.",
+                       static_cast<double>(rules_.keep_bytes) / (1 << 30));
+  };
+  for (std::string reason = full(); !reason.empty(); reason = full()) {
+    std::shared_ptr<Experiment> oldest;
+    for (const auto& [id, each] : all_) {
+      const bool finished = each->info().state == ExperimentState::Finished;
+      if (finished && (!oldest || each->info().created < oldest->info().created)) oldest = each;
+    }
+    if (!rules_.evict_oldest || !oldest) throw net::HttpError(503, reason + " Delete one.");
+    spdlog::info("{} The oldest finished one is deleted: {}.", reason, oldest->info().name);
+    drop(oldest);
   }
 }
 
@@ -97,11 +131,8 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
     if (it != all_.end()) {
       posted.experiment = it->second;
     } else {
-      check_room();
-      if (all_.size() >= rules_.most_kept) {
-        throw net::HttpError(
-            503, fmt::format("{} experiments are kept, as many as may. Delete one.", all_.size()));
-      }
+      check_turns();
+      make_room();
       const fs::path folder = rules_.folder / info.id;
       posted.experiment = std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
       posted.created = true;
@@ -137,7 +168,7 @@ void Experiments::resume(const std::string& id) {
   if (experiment->info().state == ExperimentState::Running) return;
   {
     const std::lock_guard lock(mutex_);
-    check_room();
+    check_turns();
   }
   experiment->resume();
   ring();
@@ -155,10 +186,14 @@ void Experiments::remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
   const auto it = all_.find(id);
   if (it == all_.end()) not_found(id);
-  const std::shared_ptr<Experiment> experiment = it->second;
+  drop(it->second);
+}
+
+/// Holds mutex_.
+void Experiments::drop(const std::shared_ptr<Experiment>& experiment) {
   experiment->cancel();
   std::erase(looked_at_, experiment);
-  all_.erase(it);
+  all_.erase(experiment->info().id);
   if (experiment->at_work()) {
     removed_.push_back(experiment);
   } else {

@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -22,6 +23,8 @@ namespace server {
 struct ExperimentRules {
   std::filesystem::path folder{};  // one folder in it per experiment; made at the first
   std::size_t most_kept = 200;
+  std::uint64_t keep_bytes = 0;  // room for the files of all, beside the record; 0: the whole disk
+  bool evict_oldest = false;     // finished ones may be deleted, each as a whole, to make room
   std::size_t most_running = 16;
   unsigned workers = 0;  // 0: one per processor but one, which the server keeps
   /// As in RunSpec.
@@ -44,7 +47,8 @@ class Experiments {
     bool created = false;  // false: it was there, and goes on if it had been stopped
   };
   /// Checks the whole document and starts it. The same document is the same experiment. Throws
-  /// DocumentError, or net::HttpError: 409 if `key` has another document, 503 if too many run.
+  /// DocumentError, or net::HttpError: 409 if `key` has another document, 503 if too many
+  /// run or there is no room for another.
   Posted post(const nlohmann::json& document, const std::string& key, const std::string& by);
 
   /// The newest first.
@@ -64,7 +68,8 @@ class Experiments {
 
  private:
   void read_folder();
-  void check_room() const;
+  void check_turns() const;
+  void make_room();
   std::shared_ptr<Experiment> with_key(const std::string& key) const;
   struct Turn {
     std::shared_ptr<Experiment> experiment{};
@@ -74,6 +79,7 @@ class Experiments {
   experiment::Pool::Job take(const std::stop_token& stop);
   void work(const Turn& turn, const std::stop_token& stop);
   void ring();
+  void drop(const std::shared_ptr<Experiment>& experiment);
   static void delete_files(const Experiment& experiment);
 
   const ExperimentRules rules_;

@@ -136,8 +136,10 @@ TEST_F(ExperimentsTest, ARunUnderWayAtTwoDeathsOfTheServerFailsAndTheOthersFinis
   ASSERT_TRUE(comes_to(*experiment, ExperimentState::Finished));
   EXPECT_EQ(experiment->info().done, 8U);
   EXPECT_EQ(experiment->info().failed, 1U);
-  EXPECT_THAT(experiment->rows().reason(5), HasSubstr("killed the program twice"));
-  EXPECT_FALSE(experiment->rows().broken(2));
+  experiment->look([](const sweep::Plan&, const sweep::Rows& rows) {
+    EXPECT_THAT(rows.reason(5), HasSubstr("killed the program twice"));
+    EXPECT_FALSE(rows.broken(2));
+  });
   experiments.resume(id);  // has nothing to make
   EXPECT_EQ(experiment->info().failed, 1U);
 }
@@ -197,7 +199,8 @@ TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
   });
   for (int i = 0; i < 1000; ++i) {
     EXPECT_EQ(experiment.plan()->size(), 4U);
-    EXPECT_EQ(experiment.rows().size(), 4U);
+    experiment.look(
+        [](const sweep::Plan&, const sweep::Rows& rows) { EXPECT_EQ(rows.size(), 4U); });
     EXPECT_EQ(experiment.write_report()->at("runs"), 4);
   }
 }
@@ -255,7 +258,29 @@ TEST_F(ExperimentsTest, AsManyRunAsMayAndAsManyAreKept) {
   const auto second = experiments.post(document("second", 1), "", "");
   ASSERT_TRUE(comes_to(*second.experiment, ExperimentState::Finished));
   EXPECT_THAT([&] { experiments.post(document("third", 1), "", ""); },
-              ThrowsMessage<net::HttpError>(HasSubstr("Delete one")));
+              ThrowsMessage<net::HttpError>(HasSubstr("2 experiments are kept, as many as may.")));
+}
+
+TEST_F(ExperimentsTest, TheOldestFinishedOnesMakeRoomIfTheyMay) {
+  ExperimentRules small = rules();
+  small.keep_bytes = 1;
+  Experiments experiments(small, library);
+  const auto first = experiments.post(document("first", 1), "", "");
+  ASSERT_TRUE(comes_to(*first.experiment, ExperimentState::Finished));
+  EXPECT_THAT([&] { experiments.post(document("second", 1), "", ""); },
+              ThrowsMessage<net::HttpError>(HasSubstr("that --keep gives them. Delete one.")));
+  small.evict_oldest = true;
+  small.keep_bytes = 0;
+  small.most_kept = 2;
+  small.folder = folder() / "other";
+  Experiments others(small, library);
+  const auto oldest = others.post(document("oldest", 1), "", "");
+  ASSERT_TRUE(comes_to(*oldest.experiment, ExperimentState::Finished));
+  const auto running = others.post(endless("running"), "", "");
+  others.post(document("newest", 1), "", "");
+  EXPECT_FALSE(fs::exists(oldest.experiment->folder()));
+  EXPECT_EQ(others.list().size(), 2U);
+  EXPECT_TRUE(fs::exists(running.experiment->folder()));
 }
 
 TEST_F(ExperimentsTest, FilesThatCannotBeReadAreNamedAndLeftAlone) {
