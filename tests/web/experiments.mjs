@@ -109,6 +109,32 @@ test("runs are filtered and sorted, and one is made again and opens", { timeout:
   await p.close();
 });
 
+test("the paths of all controllers lie over their world, and a press replays one", { timeout: 120_000 }, async () => {
+  const scenarios = [{ name: "post", goal: { x: 2, y: 0 }, obstacles: [{ type: "cylinder", x: 1, y: 0.8, radius: 0.15 }, { type: "box", x: 1, y: -0.9, length: 0.3, width: 0.2 }] },
+    { name: "near", goal: { x: 1, y: 0.2 } }];
+  const { id } = await post(short("paths", 2, { scenarios }));
+  await finished(id);
+  const p = await open(browser, server.base, { size: desktop, hash: `#/experiments/${id}` });
+  await p.get("experiment-paths").waitFor();
+  const told = await json(server.base, `/experiments/${id}/paths?scenario=post`);
+  assert.deepEqual(told.paths.map((each) => each.controller), ["original", "go_to_goal"]);
+  const ends = told.paths.map(({ points }) => points.at(-1));
+  assert.ok(ends.every(([x, y]) => Math.hypot(x - 2, y) < 0.12), JSON.stringify(ends));
+  assert.equal(await p.page.locator(".experiment-paths .obstacle").count(), 2);
+  assert.equal(await p.page.locator(".experiment-paths g.path").count(), 2);
+  await p.get("experiment-scenario").selectOption("near");
+  await p.page.getByText("Paths in Near").waitFor();
+  await p.get("experiment-scenario").selectOption("post");
+  await p.page.getByText("Paths in Post").waitFor();
+  assert.deepEqual(await p.accessibility(), []);
+  await p.shot("experiments-paths");
+  const { run } = told.paths[1];
+  await p.get(`path-${run}`).click();
+  await p.page.waitForURL(/#\/runs\/\d+$/, { timeout: 30_000 });
+  assert.equal((await json(server.base, `/runs/${p.page.url().match(/\d+$/)[0]}`)).controller, "go_to_goal");
+  await p.close();
+});
+
 test("pause, go on, cancel and delete; what another page does is shown", { timeout: 120_000 }, async () => {
   const { id } = await post(short("long", 4000));
   const p = await open(browser, server.base, { size: phone, touch: true, hash: `#/experiments/${id}` });

@@ -51,7 +51,11 @@ void add_run_routes(Routes& routes);
 void add_run_list_routes(Routes& routes);
 void add_run_edit_routes(Routes& routes);
 void add_experiment_routes(Routes& routes);
+void add_experiment_run_routes(Routes& routes);
 void add_system_routes(Routes& routes);
+
+/// Of the request's path. Throws net::HttpError 404.
+std::shared_ptr<Experiment> experiment_of(ApiContext& context, const net::Request& request);
 
 /// Queues the runs and answers 202 with their numbers, or 503.
 void queue_runs(ApiContext& context, RepeatedRun asked, const net::Responder& respond);

@@ -21,6 +21,7 @@ void add_api(net::Router& router, ApiContext& context) {
   add_run_list_routes(routes);
   add_run_edit_routes(routes);
   add_experiment_routes(routes);
+  add_experiment_run_routes(routes);
   add_system_routes(routes);
   take_described_queries(router);
   // The record and the scenarios know no owners: deleting what others have made is for admins.

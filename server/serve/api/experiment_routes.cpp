@@ -20,10 +20,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::shared_ptr<Experiment> experiment_of(ApiContext& context, const net::Request& request) {
-  return context.experiments.find(request.params.at("id"));
-}
-
 /// The files for people and their programs, by extension.
 bool is_result(const fs::path& file) {
   constexpr std::string_view kResults[] = {".csv", ".json", ".md", ".tex", ".html", ".svg"};
@@ -81,7 +77,7 @@ net::Response post_estimate(ApiContext& context, const net::Request& request, Wo
                         {"scenarios", document.scenarios.size()},
                         {"controllers", document.controllers.size()},
                         {"settings", document.points.size()},
-                        {"seeds", document.repeats},
+                        {"seeds", document.most_repeats()},
                         {"cpu_time", cost.cpu_time},
                         {"bytes", cost.bytes}});
 }
@@ -139,111 +135,6 @@ net::Response get_results(ApiContext& context, const net::Request& request, Work
     if (groups.empty()) throw DocumentError("?scenario", "the experiment has no such scenario");
   }
   return json_response(200, body);
-}
-
-// ---- the runs ----------------------------------------------------------------------------------
-
-/// Which runs a page lists, and in which order.
-struct RunQuery {
-  std::string arm{}, scenario{}, outcome{}, sort{};
-  bool descending = false;
-};
-
-json figures_json(const experiment::Row& row) {
-  json figures = json::object();
-  for (const auto& [column, value] : row.figures) {
-    figures[std::string(column)] = std::isfinite(value) ? json(value) : json(nullptr);
-  }
-  return figures;
-}
-
-json run_json(const sweep::Plan& plan, std::size_t i, const experiment::Row& row) {
-  const sweep::RunPlace at = plan.place(i);
-  return {{"run", i},
-          {"scenario", plan.document().scenarios[at.scenario].name},
-          {"controller", plan.arms()[at.arm].label},
-          {"seed", plan.seed(i)},
-          {"outcome", algo::name(row.outcome)},
-          {"reason", row.reason},
-          {"figures", figures_json(row)},
-          {"command", plan.command(i)}};
-}
-
-RunQuery query_of(const net::Request& request) {
-  const auto text = [&](const char* key) {
-    const auto it = request.query.find(key);
-    return it == request.query.end() ? std::string() : it->second;
-  };
-  RunQuery query{text("controller"), text("scenario"), text("outcome"), text("sort")};
-  if (query.sort.starts_with('-')) {
-    query.descending = true;
-    query.sort.erase(0, 1);
-  }
-  if (!query.sort.empty() && experiment::find_column(query.sort) == nullptr) {
-    throw DocumentError("?sort", fmt::format("no figure is called '{}'", query.sort));
-  }
-  return query;
-}
-
-/// The numbers of the finished runs that `query` asks for, in its order. Runs without the figure
-/// come last.
-std::vector<std::size_t> found(const sweep::Plan& plan,
-                               const sweep::Rows& rows,
-                               const RunQuery& query) {
-  std::vector<std::size_t> list;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (!rows.has(i)) continue;
-    const sweep::RunPlace at = plan.place(i);
-    const auto other = [](const std::string& wanted, std::string_view is) {
-      return !wanted.empty() && wanted != is;
-    };
-    if (other(query.arm, plan.arms()[at.arm].label)) continue;
-    if (other(query.scenario, plan.document().scenarios[at.scenario].name)) continue;
-    if (other(query.outcome, algo::name(rows.outcome(i)))) continue;
-    list.push_back(i);
-  }
-  if (query.sort.empty()) return list;
-  std::vector<double> keys(rows.size());
-  for (const std::size_t i : list) {
-    const double value = rows.figure(i, query.sort);
-    const double worst = std::numeric_limits<double>::infinity();
-    keys[i] = !std::isfinite(value) ? worst : query.descending ? -value : value;
-  }
-  std::ranges::stable_sort(list, {}, [&](std::size_t i) { return keys[i]; });
-  return list;
-}
-
-net::Response list_experiment_runs(ApiContext& context, const net::Request& request, Worker&) {
-  const std::shared_ptr<Experiment> experiment = experiment_of(context, request);
-  const RunQuery query = query_of(request);
-  const std::shared_ptr<const sweep::Plan> plan = experiment->plan();
-  const sweep::Rows rows = experiment->rows();
-  context.experiments.looked_at(experiment);
-  const std::vector<std::size_t> list = found(*plan, rows, query);
-  const std::size_t from = std::min<std::size_t>(list.size(), number_of(request, "from", 0));
-  const std::size_t end = std::min(list.size(), from + limit_of(request, 100, 1000));
-  json items = json::array();
-  for (std::size_t k = from; k < end; ++k)
-    items.push_back(run_json(*plan, list[k], rows.row(list[k])));
-  return json_response(200,
-                       {{"items", std::move(items)},
-                        {"found", list.size()},
-                        {"next", end < list.size() ? json(end) : json(nullptr)}});
-}
-
-/// Makes the run once more, with its record.
-void record_run(ApiContext& context,
-                const net::Request& request,
-                Worker&,
-                const net::Responder& respond) {
-  const std::shared_ptr<Experiment> experiment = experiment_of(context, request);
-  const std::shared_ptr<const sweep::Plan> plan = experiment->plan();
-  const auto run = whole_number(request.params.at("run"));
-  if (!run || *run >= plan->size()) {
-    throw net::HttpError(404,
-                         fmt::format("The experiment has the runs 0 to {}.", plan->size() - 1));
-  }
-  queue_runs(context, {.spec = plan->trial(*run).spec}, respond);
 }
 
 // ---- the files ---------------------------------------------------------------------------------
@@ -331,8 +222,6 @@ void add_experiment_routes(Routes& routes) {
   routes.make("POST", "/experiments/{id}/cancel", changes(&Experiments::cancel));
   routes.make("GET", "/experiments/{id}/events", get_events);
   routes.make("GET", "/experiments/{id}/results", get_results);
-  routes.make("GET", "/experiments/{id}/runs", list_experiment_runs);
-  routes.work("POST", "/experiments/{id}/runs/{run}/record", record_run);
   routes.make("GET", "/experiments/{id}/files/{file}", get_file);
   routes.make("GET", "/experiments/{id}/pictures/{file}", get_picture);
 }

@@ -76,6 +76,18 @@ export interface ExperimentRun {
 
 export interface RunsPage { items: ExperimentRun[]; found: number; next: number | null }
 
+export type Point = [number, number]; // [m] x, y
+
+/** The world of a scenario at its start, and a path a controller. */
+export interface PathsOf {
+  scenario: string;
+  obstacles: { x?: number; y?: number; radius?: number; corners?: Point[] }[];
+  start: { x: number; y: number };
+  radius: number; // [m] of the robot
+  goal: { x: number; y: number };
+  paths: { run: number; controller: string; outcome: string; points: Point[] }[];
+}
+
 export interface Estimate {
   name: string;
   runs: number;

@@ -10,7 +10,8 @@ import { fixed, titled } from "../words";
 import { ExperimentDetail, ExperimentInfo, Results } from "./contract";
 import { Bars, Boxes } from "./figures";
 import { ResultsTable } from "./results_table";
-import { RunsOf } from "./runs_of";
+import { Paths } from "./paths";
+import { RunsOf, open_again } from "./runs_of";
 import { use_calm, use_detail, use_progress, use_results } from "./watch";
 import { count, incomplete_words, span_words, state_of } from "./words";
 
@@ -45,6 +46,7 @@ function Body(props: {
   picked: string | null; on_pick: (label: string) => void; done: number | null;
 }): JSX.Element {
   const { detail, results, scenario } = props;
+  const app = use_app();
   const arms = results && arms_of(results, scenario);
   const baseline = results?.comparisons[0]?.baseline ?? null;
   const picked = props.picked ?? arms?.find((arm) => arm.label !== baseline)?.label ?? null;
@@ -63,6 +65,8 @@ function Body(props: {
         <Boxes title="Least clearance" unit="m" figure="min_clearance_m" arms={arms} baseline={baseline} picked={picked} />
       </div>
     </>}
+    <Paths id={props.id} scenario={scenario === "" ? detail.scenarios[0] : scenario} done={props.done}
+      on_replay={(run) => open_again(app, props.id, run)} />
     <RunsOf id={props.id} detail={detail} done={props.done} scenario={scenario} />
   </>;
 }

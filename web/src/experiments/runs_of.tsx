@@ -83,9 +83,8 @@ function Line(props: { run: ExperimentRun; id: string }): JSX.Element {
   const result = result_word(run.outcome);
   const replay = async () => {
     set_busy(true);
-    const made = await app.attempt(make_again(props.id, run.run));
+    await open_again(app, props.id, run.run);
     set_busy(false);
-    if (made !== null) app.open_run(made, []);
   };
   return (
     <tr>
@@ -108,6 +107,12 @@ async function copy(app: App, command: string): Promise<void> {
   } catch {
     app.toast("info", command); // no clipboard without https
   }
+}
+
+/** Makes the run again and opens it. */
+export async function open_again(app: App, id: string, run: number): Promise<void> {
+  const made = await app.attempt(make_again(id, run));
+  if (made !== null) app.open_run(made, []);
 }
 
 /** Makes the run again, with its record, and waits until it can be opened. */

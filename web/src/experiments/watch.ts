@@ -3,7 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import * as rest from "../link/rest";
 import { sentence_of } from "../words";
-import { ExperimentDetail, ExperimentInfo, Results, RunsPage } from "./contract";
+import { ExperimentDetail, ExperimentInfo, PathsOf, Results, RunsPage } from "./contract";
 
 const kListEvery = 3000;    // [ms]
 const kResultsEvery = 3000; // [ms] while runs come in
@@ -74,6 +74,10 @@ export function use_calm(done: number | null, running: boolean): number | null {
 export function use_results(id: string, scenario: string, done: number | null): Fetched<Results> {
   const query = scenario === "" ? "" : `?scenario=${encodeURIComponent(scenario)}`;
   return use_fetched(done === null ? null : `/experiments/${id}/results${query}`, [done]);
+}
+
+export function use_paths(id: string, scenario: string, done: number | null): Fetched<PathsOf> {
+  return use_fetched(done === null ? null : `/experiments/${id}/paths?scenario=${encodeURIComponent(scenario)}`, [done]);
 }
 
 export interface RunQuery { outcome: string; scenario: string; controller: string; sort: string }
