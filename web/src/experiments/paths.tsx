@@ -9,7 +9,7 @@ import { PathsOf, Point } from "./contract";
 import { use_paths } from "./watch";
 
 const kEdge = 0.6;  // [m] around the drawing
-const kDashes = ["", "0.24 0.1", "0.05 0.1", "0.3 0.1 0.05 0.1"];
+const kDashes = ["", "8 4", "2 4", "10 4 2 4"] /* [px] */;
 const kTones = 6;   // colours of paths in experiments.css
 
 export function Paths(props: { id: string; scenario: string; done: number | null; on_replay: (run: number) => Promise<void> }): JSX.Element | null {
@@ -28,7 +28,7 @@ export function Paths(props: { id: string; scenario: string; done: number | null
   const path = (i: number) => `path tone-path-${i % kTones} ${pointed === null ? "" : pointed === i ? "pointed" : "other"}`;
   const [x, y, width, height] = box_of(value);
   return (
-    <section class="experiment-paths" aria-label="Paths" data-testid="experiment-paths">
+    <section class="experiment-paths" aria-label="Paths over the world" data-testid="experiment-paths">
       <h3>Paths in {titled(value.scenario)}</h3>
       <div>
         <svg viewBox={`${x} ${-y - height} ${width} ${height}`} role="img" aria-label={`The paths of ${value.paths.length} controllers from the start to the goal; the list beside names them.`}>
