@@ -16,6 +16,7 @@
 #include "server/cli/sweep_files.hpp"
 #include "server/experiment/sweep/origin.hpp"
 #include "server/experiment/sweep/sweep_run.hpp"
+#include "server/record/run_json.hpp"
 #include "server/run/json_limits.hpp"
 #include "server/run/text_file.hpp"
 
@@ -28,7 +29,8 @@ struct SweepCommand {
   unsigned workers = 0;
   std::optional<experiment::Shard> shard{};
   bool dry_run = false;
-  std::string rerun{};  // "failed", "lost", or empty
+  std::string rerun{};             // "failed", "lost", or empty
+  std::string record = "nothing";  // or "failures" or "all"
   bool slurm = false;
   std::optional<std::size_t> tasks{};
   std::vector<std::string> sbatch{};
@@ -88,6 +90,14 @@ sweep::Wanted wanted_runs(const std::string& rerun) {
                            : sweep::Wanted::Missing;
 }
 
+/// Its room is the disk: what was asked for must not be thinned.
+std::unique_ptr<Recorder> open_recorder(const std::string& folder) {
+  make_folder(folder);
+  RecorderOptions options = recorder_options();
+  options.retention_bytes = 0;
+  return std::make_unique<Recorder>((std::filesystem::path(folder) / "runs.db").string(), options);
+}
+
 sweep::Rows run(const sweep::Plan& plan, const SweepCommand& command) {
   using Clock = std::chrono::steady_clock;
   ProgressLine line;
@@ -100,10 +110,15 @@ sweep::Rows run(const sweep::Plan& plan, const SweepCommand& command) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - begin).count();
     line.show(progress_text(done, all, elapsed));
   };
+  std::unique_ptr<Recorder> recorder;
+  if (command.record != "nothing") recorder = open_recorder(command.out);
   return run_sweep(
-      plan, command.out, pool, wanted_runs(command.rerun), [](const std::string& text) {
-        fmt::print(stderr, "tautline: warning: {}\n", text);
-      });
+      plan,
+      command.out,
+      pool,
+      wanted_runs(command.rerun),
+      [](const std::string& text) { fmt::print(stderr, "tautline: warning: {}\n", text); },
+      {recorder.get(), command.record == "failures"});
 }
 
 /// Runs one shard and writes no report, which only the whole can have.
@@ -209,8 +224,16 @@ void add_sweep_command(CLI::App& app, int& status) {
           "the program), lost (those under way when the program died)")
       ->check(CLI::IsMember({"failed", "lost"}))
       ->type_name("WHICH");
+  sweep
+      ->add_option("--record",
+                   command->record,
+                   "Whole runs to store in runs.db of the folder, for `tautline serve --db`: "
+                   "nothing (default), failures (those that do not reach), all")
+      ->check(CLI::IsMember({"nothing", "failures", "all"}))
+      ->type_name("WHICH");
   add_slurm_options(*sweep, *command);
   sweep->get_option("--slurm")->excludes(sweep->get_option("--shard"));
+  sweep->get_option("--slurm")->excludes(sweep->get_option("--record"));
   sweep->footer(
       "Ctrl-C keeps the finished runs; the same command goes on from there. Exit status: 0, 1 bad "
       "input or a run failed, 4 interrupted, or not yet at its end with --slurm.");

@@ -350,6 +350,7 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
             if (size !== phone) await p.page.locator("tbody tr").nth(0).click();
             await p.page.waitForTimeout(900);
           }
+          if (view === "system") await p.page.locator("dt", { hasText: "Drawing a frame" }).waitFor(); // fetched when first shown
           await p.shot(`${view}-${name}-${theme}`);
           if (name !== "tablet") {
             for (const fault of await p.accessibility()) faults.push(`${view} ${name} ${theme}: ${fault}`);
