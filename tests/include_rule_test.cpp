@@ -86,6 +86,7 @@ std::map<std::string, Rule> make_rules() {
                       "algo/full_strip",
                       "algo/baselines",
                       "algo/mapping",
+                      "algo/teleop",
                       "algo/pipeline"};
   const Rooms below_run = methods + "sim" + "drivers";
   const Rooms below_record = below_run + "server/run" + "db";
@@ -103,6 +104,7 @@ std::map<std::string, Rule> make_rules() {
       {"algo/full_strip", method({"algo", "algo/strip"})},
       {"algo/baselines", method({"algo", "algo/strip"})},
       {"algo/mapping", method({"algo"})},
+      {"algo/teleop", method({"algo"})},
       {"algo/pipeline",
        method({"algo", "algo/filter", "algo/strip", "algo/full_strip", "algo/baselines"})},
       {"sim",
