@@ -14,7 +14,7 @@
 
 namespace server {
 
-void RunFlags::add_to(CLI::App& command) {
+void RunFlags::add_to(Command command) {
   controllers.add_to(command,
                      "Controller in place of the scenario's: a name, or the command that starts "
                      "your own (docs/external-controllers.md)");
@@ -23,7 +23,7 @@ void RunFlags::add_to(CLI::App& command) {
   add_robot_option(command, robot);
   command.add_option("--seed", overrides.seed, "Seed of the sensor noise (default 1)");
   command.add_option("--set", settings, "A parameter, such as k_r=0.3; repeatable")
-      ->type_name("NAME=VALUE");
+      .type_name("NAME=VALUE");
 }
 
 RunOverrides RunFlags::resolved(const RobotLibrary& robots) const {
@@ -56,14 +56,14 @@ RobotLibrary own_robots() {
   return RobotLibrary(state_folder() / "robots");
 }
 
-CLI::Option* add_robot_option(CLI::App& command, std::string& robot) {
+Option add_robot_option(Command command, std::string& robot) {
   return command
       .add_option(
           "--robot-model",
           robot,
           "Drive this robot: a file, or a name such as jackal; another than the scenario's brings "
           "its own sensors")
-      ->type_name("FILE|NAME");
+      .type_name("FILE|NAME");
 }
 
 sim::Scenario find_scenario(const std::string& name) {
@@ -72,12 +72,9 @@ sim::Scenario find_scenario(const std::string& name) {
       .load(name);
 }
 
-CLI::Validator file_to_write() {
-  const auto check = [](const std::string& path) -> std::string {
-    if (!std::filesystem::is_directory(path)) return {};
-    return path + " is a folder: name the file to write";
-  };
-  return {check, ""};
+std::string refuse_folder(const std::string& path) {
+  if (!std::filesystem::is_directory(path)) return {};
+  return path + " is a folder: name the file to write";
 }
 
 ProgressLine::ProgressLine() : interactive_(isatty(STDERR_FILENO) != 0) {}

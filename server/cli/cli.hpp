@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "server/cli/controller_flags.hpp"
+#include "server/cli/options.hpp"
 #include "server/run/robot_library.hpp"
 #include "server/run/run_spec.hpp"
 
@@ -24,30 +23,30 @@ constexpr int kDifferent = 2;   // of `verify`
 constexpr int kIncomplete = 4;  // of `export`, `verify` and `sweep`: not the whole
 constexpr int kNotWell = 2;     // of `doctor` and `lms200`: a device has a fault
 
-void add_serve_command(CLI::App& app, int& status);
-void add_run_command(CLI::App& app, int& status);
-void add_replay_command(CLI::App& app, int& status);
-void add_export_command(CLI::App& app, int& status);
-void add_verify_command(CLI::App& app, int& status);
-void add_health_command(CLI::App& app, int& status);
-void add_reproduce_command(CLI::App& app, int& status);
-void add_barn_command(CLI::App& app, int& status);
-void add_soak_command(CLI::App& app, int& status);
-void add_emulate_command(CLI::App& app, int& status);
-void add_compare_command(CLI::App& app, int& status);
-void add_doctor_command(CLI::App& app, int& status);
-void add_lms200_command(CLI::App& app, int& status);
-void add_map_command(CLI::App& app, int& status);
-void add_merge_command(CLI::App& app, int& status);
-void add_report_command(CLI::App& app, int& status);
-void add_sweep_command(CLI::App& app, int& status);
-void add_tune_command(CLI::App& app, int& status);
-void add_worlds_command(CLI::App& app, int& status);
+void add_serve_command(Command app, int& status);
+void add_run_command(Command app, int& status);
+void add_replay_command(Command app, int& status);
+void add_export_command(Command app, int& status);
+void add_verify_command(Command app, int& status);
+void add_health_command(Command app, int& status);
+void add_reproduce_command(Command app, int& status);
+void add_barn_command(Command app, int& status);
+void add_soak_command(Command app, int& status);
+void add_emulate_command(Command app, int& status);
+void add_compare_command(Command app, int& status);
+void add_doctor_command(Command app, int& status);
+void add_lms200_command(Command app, int& status);
+void add_map_command(Command app, int& status);
+void add_merge_command(Command app, int& status);
+void add_report_command(Command app, int& status);
+void add_sweep_command(Command app, int& status);
+void add_tune_command(Command app, int& status);
+void add_worlds_command(Command app, int& status);
 
 /// The built-in scenarios and the user's own.
 RobotLibrary own_robots();
 /// --robot-model, for RobotLibrary::load_file_or_name().
-CLI::Option* add_robot_option(CLI::App& command, std::string& robot);
+Option add_robot_option(Command command, std::string& robot);
 
 /// Options that several commands share.
 struct RunFlags {
@@ -56,7 +55,7 @@ struct RunFlags {
   std::vector<std::string> settings{};  // k=v
   std::string physics{};
   std::string robot{};  // --robot-model
-  void add_to(CLI::App& command);
+  void add_to(Command command);
   /// Throws DocumentError for a malformed --set, LibraryError for an unknown robot, and
   /// std::exception with a sentence for a controller that cannot be.
   RunOverrides resolved(const RobotLibrary& robots = own_robots()) const;
@@ -65,8 +64,8 @@ struct RunFlags {
 /// Loads `name`: a path if such a file exists or it looks like a path, else a name of the library.
 sim::Scenario find_scenario(const std::string& name);
 
-/// Refuses a folder as output path at once, not after minutes of work.
-CLI::Validator file_to_write();
+/// A check for an output path, which refuses a folder at once and not after minutes of work.
+std::string refuse_folder(const std::string& path);
 
 /// Progress on standard error, only if that is a terminal.
 class ProgressLine {

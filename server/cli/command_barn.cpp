@@ -141,46 +141,46 @@ int execute(BarnCommand command) {
 
 }  // namespace
 
-void add_barn_command(CLI::App& app, int& status) {
+void add_barn_command(Command app, int& status) {
   auto command = std::make_shared<BarnCommand>();
-  CLI::App* barn = app.add_subcommand(
+  const Command barn = app.add_subcommand(
       "barn", "Run the worlds of a BARN or DynaBARN file and score them by the official formula");
-  barn->add_option("file", command->file, "The worlds, as JSON")->required()->type_name("FILE");
+  barn.add_option("file", command->file, "The worlds, as JSON").required().type_name("FILE");
   command->controllers.add_to(
-      *barn,
+      barn,
       "Default: strip; strip_moving in worlds with moving obstacles; or the command that starts "
       "your own (docs/external-controllers.md)");
-  barn->add_flag(
+  barn.add_flag(
       "--stress",
       command->options.conditions.stress,
       "Short scanner range, slow base, delay, slip, odometry drift; another robot keeps its own "
       "scanners and limits");
-  barn->add_option("--physics", command->physics, "bullet (default) or kinematic")
-      ->check(CLI::IsMember({"bullet", "kinematic"}));
-  CLI::Option* const robot = add_robot_option(*barn, command->robot);
-  barn->add_option(
+  barn.add_option("--physics", command->physics, "bullet (default) or kinematic")
+      .one_of({"bullet", "kinematic"});
+  const Option robot = add_robot_option(barn, command->robot);
+  barn.add_option(
           "--scanner",
           command->scanner,
           "flat (default): the benchmark's, which measures all beams at one instant; lms200: the "
           "default LMS200, which sweeps")
-      ->check(CLI::IsMember({"flat", "lms200"}))
-      ->excludes(robot);
-  barn->add_option("--repeats", command->options.repeats, "Seeds per world (default 1)")
-      ->check(CLI::Range(1, 10'000));
-  add_first_seed_option(*barn, command->options.first_seed);
-  barn->add_option("--phase",
-                   command->options.conditions.phase,
-                   "[s] Time of the obstacles' motion at the start of a run (default 0)")
-      ->check(CLI::Range(0.0, 1e6));
-  add_pool_options(*barn, command->options.pool, "--workers");
-  add_rows_option(*barn, command->rows);
-  barn->add_option("--world", command->only, "Only the worlds of these numbers");
-  barn->add_option("--scenarios",
-                   command->scenarios,
-                   "Run nothing: write each world to this folder as a scenario for the page")
-      ->type_name("DIR");
-  barn->add_flag("--json", command->as_json, "Print JSON");
-  barn->callback([command, &status] { status = execute(*command); });
+      .one_of({"flat", "lms200"})
+      .excludes(robot);
+  barn.add_option("--repeats", command->options.repeats, "Seeds per world (default 1)")
+      .range(1, 10'000);
+  add_first_seed_option(barn, command->options.first_seed);
+  barn.add_option("--phase",
+                  command->options.conditions.phase,
+                  "[s] Time of the obstacles' motion at the start of a run (default 0)")
+      .range(0.0, 1e6);
+  add_pool_options(barn, command->options.pool, "--workers");
+  add_rows_option(barn, command->rows);
+  barn.add_option("--world", command->only, "Only the worlds of these numbers");
+  barn.add_option("--scenarios",
+                  command->scenarios,
+                  "Run nothing: write each world to this folder as a scenario for the page")
+      .type_name("DIR");
+  barn.add_flag("--json", command->as_json, "Print JSON");
+  barn.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

@@ -46,46 +46,45 @@ int execute(CompareCommand command) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& status) {
+void add_compare_command(Command app, int& status) {
   auto command = std::make_shared<CompareCommand>();
-  CLI::App* compare = app.add_subcommand(
+  const Command compare = app.add_subcommand(
       "compare", "Run every controller on the same worlds and say which published claims hold");
-  compare->add_option("--part", command->parts, "worlds, bottlenecks or layouts (default: all)")
-      ->check(CLI::IsMember({"worlds", "bottlenecks", "layouts"}));
-  compare->add_option("--controller",
-                      command->options.only,
-                      "Only this controller, on the worlds and the bottlenecks; repeatable");
+  compare.add_option("--part", command->parts, "worlds, bottlenecks or layouts (default: all)")
+      .one_of({"worlds", "bottlenecks", "layouts"});
+  compare.add_option("--controller",
+                     command->options.only,
+                     "Only this controller, on the worlds and the bottlenecks; repeatable");
   compare
-      ->add_option("--judge",
-                   command->options.judges,
-                   "Also this judge, with its columns in the details; repeatable")
-      ->check(judge_name());
-  add_rows_option(*compare, command->rows);
-  compare->add_option("--seeds", command->options.seeds, "Runs per row (default 3)")
-      ->check(CLI::Range(1, 1000));
-  add_first_seed_option(*compare, command->options.first_seed);
-  compare->add_option("--layouts", command->options.layouts, "Random ones a kind (default 150)")
-      ->check(CLI::Range(1, 10'000));
+      .add_option("--judge",
+                  command->options.judges,
+                  "Also this judge, with its columns in the details; repeatable")
+      .check(refuse_unknown_judge);
+  add_rows_option(compare, command->rows);
+  compare.add_option("--seeds", command->options.seeds, "Runs per row (default 3)").range(1, 1000);
+  add_first_seed_option(compare, command->options.first_seed);
+  compare.add_option("--layouts", command->options.layouts, "Random ones a kind (default 150)")
+      .range(1, 10'000);
   compare
-      ->add_option(
+      .add_option(
           "--layout-seeds", command->options.layout_seeds, "Runs per random layout (default 2)")
-      ->check(CLI::Range(1, 1000));
-  add_threads_option(*compare, command->options.threads);
+      .range(1, 1000);
+  add_threads_option(compare, command->options.threads);
   compare
-      ->add_option("--markdown",
-                   command->markdown,
-                   "Also write comparison.md to this folder, and the table of the worlds into its "
-                   "controllers.md")
-      ->type_name("DIR");
-  compare->add_flag("--json", command->as_json, "Print JSON");
+      .add_option("--markdown",
+                  command->markdown,
+                  "Also write comparison.md to this folder, and the table of the worlds into its "
+                  "controllers.md")
+      .type_name("DIR");
+  compare.add_flag("--json", command->as_json, "Print JSON");
   std::string footer = "Judges:\n";
   for (const experiment::JudgeInfo& judge : experiment::judge_table()) {
     footer += fmt::format("  {:<12}{}\n", judge.name, judge.help);
   }
-  compare->footer(footer +
-                  "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer "
-                  "than 99 % of goals reached, or a collision.");
-  compare->callback([command, &status] { status = execute(*command); });
+  compare.footer(footer +
+                 "Exit status: 0, 1 bad input, 3 `strip` failed on the random layouts: fewer "
+                 "than 99 % of goals reached, or a collision.");
+  compare.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

@@ -41,7 +41,7 @@ const BaseRow& row_of(BaseKind kind) {
   return *std::ranges::find(kBases, kind, &BaseRow::kind);
 }
 
-struct Options {
+struct EmulateCommand {
   EmulationOptions emulation{};
   std::string scenario = "demo";
   std::filesystem::path link{};
@@ -110,7 +110,7 @@ void attend(Emulation& emulation, const Signals& signals) {
   }
 }
 
-void emulate_devices(Options& options) {
+void emulate_devices(EmulateCommand& options) {
   EmulationOptions& emulation = options.emulation;
   emulation.scenario = find_scenario(options.scenario);
   if (!emulation.scenario.log.empty()) emulation.log = emulation.scenario.log;
@@ -134,45 +134,41 @@ void emulate_devices(Options& options) {
   attend(running, signals);
 }
 
-void add_common_flags(CLI::App& command, Options& options) {
+void add_common_flags(Command command, EmulateCommand& options) {
   command.add_option("--scenario", options.scenario, "The world: a scenario's name or .json file")
-      ->capture_default_str();
-  command.add_option("--seed", options.emulation.seed, "Seed of noise and faults")
-      ->capture_default_str();
+      .show_default();
+  command.add_option("--seed", options.emulation.seed, "Seed of noise and faults").show_default();
   command
       .add_option("--record",
                   options.emulation.record,
                   "Write every scan sent, every wheel command and the true poses to this file")
-      ->type_name("FILE");
+      .type_name("FILE");
   drivers::emulators::LineFaults& faults = options.emulation.faults;
-  command.add_option("--drop", faults.drop, "Probability that a byte is lost")
-      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--drop", faults.drop, "Probability that a byte is lost").range(0.0, 1.0);
   command.add_option("--flip", faults.flip, "Probability that a byte has a bit flipped")
-      ->check(CLI::Range(0.0, 1.0));
+      .range(0.0, 1.0);
   command.add_option("--damage", faults.damage, "Probability that a telegram is damaged")
-      ->check(CLI::Range(0.0, 1.0));
+      .range(0.0, 1.0);
   command.footer("Faults while it runs, one per line on standard input, such as 'silence 2':\n" +
                  emulate::command_help() + "  quit     end");
 }
 
-void add_scanner_flags(CLI::App& command, Options& options) {
-  command.add_option("--address", options.address, "The scanner's own address")
-      ->check(CLI::Range(0, 127));
+void add_scanner_flags(Command command, EmulateCommand& options) {
+  command.add_option("--address", options.address, "The scanner's own address").range(0, 127);
   command.add_option("--boot", options.boot, "Power comes now: the start-up time [s]")
-      ->check(CLI::Range(0.0, 120.0));
-  command
-      .add_option("--rate", options.emulation.scanner.start_rate, "Stored start-up rate [bit/s]")
-      ->check(CLI::IsMember({9600, 19200, 38400, 500000}))
-      ->capture_default_str();
+      .range(0.0, 120.0);
+  command.add_option("--rate", options.emulation.scanner.start_rate, "Stored start-up rate [bit/s]")
+      .one_of({9600, 19200, 38400, 500000})
+      .show_default();
   drivers::lms200::EmulatorOptions& scanner = options.emulation.scanner;
   command.add_option("--mode-time", scanner.times.mode, "Duration of a mode switch [s]")
-      ->check(CLI::Range(0.0, 60.0));
+      .range(0.0, 60.0);
   command
       .add_option("--deaf",
                   scanner.times.deaf,
                   "The scanner ignores all bytes and sends none for this time [s] after a mode "
                   "switch and power-on")
-      ->check(CLI::Range(0.0, 60.0));
+      .range(0.0, 60.0);
   command.add_option("--refuse", scanner.refusals, "Number of telegrams it answers with NAK");
   command.add_option("--password", scanner.password, "Password of its configuration");
   command.add_flag("--rs232", options.rs232, "The plug's jumper is set to RS-232: no 500000");
@@ -183,48 +179,48 @@ void add_scanner_flags(CLI::App& command, Options& options) {
       .add_option("--field-a",
                   options.emulation.scanner.field_a,
                   "Values nearer than this [m] get the flag of field A")
-      ->check(CLI::Range(0.0, 100.0));
+      .range(0.0, 100.0);
 }
 
-void add_base_flags(CLI::App& command, Options& options) {
+void add_base_flags(Command command, EmulateCommand& options) {
   command.add_flag("--near-wrap",
                    options.emulation.near_wrap,
                    "The base's counters start shortly before they wrap");
   command.add_option("--watchdog", options.emulation.watchdog, "The base's own watchdog [s]")
-      ->check(CLI::Range(0.0, 60.0));
+      .range(0.0, 60.0);
   drivers::emulators::CardChannels& card = options.emulation.card;
   command.add_option("--card-outputs", card.outputs, "Analog outputs of an acquisition card")
-      ->check(CLI::Range(0, 2))
-      ->capture_default_str();
+      .range(0, 2)
+      .show_default();
   command.add_option("--card-counters", card.counters, "Counters of an acquisition card")
-      ->check(CLI::Range(0, 2))
-      ->capture_default_str();
+      .range(0, 2)
+      .show_default();
   command.add_option("--card-lines", card.lines, "Digital lines of an acquisition card")
-      ->check(CLI::Range(0, 32))
-      ->capture_default_str();
+      .range(0, 32)
+      .show_default();
 }
 
 }  // namespace
 
-void add_emulate_command(CLI::App& app, int& status) {
-  CLI::App* const command = app.add_subcommand(
+void add_emulate_command(Command app, int& status) {
+  const Command command = app.add_subcommand(
       "emulate", "Emulate devices on pseudo-terminals, in a simulated world or from a log");
-  command->require_subcommand(1);
+  command.require_subcommand();
 
   const auto single = [&](const char* name, const char* help, BaseKind kind) {
-    auto options = std::make_shared<Options>();
-    CLI::App* const device = command->add_subcommand(name, help);
-    device->add_option("--link", options->link, "Path of the port")->type_name("PATH")->required();
-    add_common_flags(*device, *options);
+    auto options = std::make_shared<EmulateCommand>();
+    const Command device = command.add_subcommand(name, help);
+    device.add_option("--link", options->link, "Path of the port").type_name("PATH").required();
+    add_common_flags(device, *options);
     if (kind == BaseKind::None) {
-      add_scanner_flags(*device, *options);
-      device->add_option("--log", options->emulation.log, "A CARMEN log instead of a world")
-          ->type_name("FILE")
-          ->check(CLI::ExistingFile);
+      add_scanner_flags(device, *options);
+      device.add_option("--log", options->emulation.log, "A CARMEN log instead of a world")
+          .type_name("FILE")
+          .existing_file();
     } else {
-      add_base_flags(*device, *options);
+      add_base_flags(device, *options);
     }
-    device->callback([options, kind, &status] {
+    device.callback([options, kind, &status] {
       options->emulation.base = kind;
       if (kind == BaseKind::None) {
         options->emulation.scanner_links = {options->link};
@@ -240,17 +236,17 @@ void add_emulate_command(CLI::App& app, int& status) {
   single("roboteq", "A Roboteq motor controller with two motors", BaseKind::Roboteq);
   single("analog", "An acquisition card wired to two motor amplifiers", BaseKind::Analog);
 
-  auto options = std::make_shared<Options>();
-  CLI::App* const robot = command->add_subcommand(
+  auto options = std::make_shared<EmulateCommand>();
+  const Command robot = command.add_subcommand(
       "robot", "A base and the scenario's scanners in one world: DIR/base, DIR/scanner, ...");
-  robot->add_option("--links", options->links, "Folder of the ports")->type_name("DIR")->required();
-  robot->add_option("--base", options->base, "p2os, roboteq or analog")
-      ->check(CLI::IsMember({"p2os", "roboteq", "analog"}))
-      ->capture_default_str();
-  add_common_flags(*robot, *options);
-  add_scanner_flags(*robot, *options);
-  add_base_flags(*robot, *options);
-  robot->callback([options, &status] {
+  robot.add_option("--links", options->links, "Folder of the ports").type_name("DIR").required();
+  robot.add_option("--base", options->base, "p2os, roboteq or analog")
+      .one_of({"p2os", "roboteq", "analog"})
+      .show_default();
+  add_common_flags(robot, *options);
+  add_scanner_flags(robot, *options);
+  add_base_flags(robot, *options);
+  robot.callback([options, &status] {
     EmulationOptions& emulation = options->emulation;
     std::filesystem::create_directories(options->links);
     const std::size_t scanners = find_scenario(options->scenario).robot.sensors.lasers.size();

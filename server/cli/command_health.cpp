@@ -81,16 +81,16 @@ int health(const std::string& host, const std::string& port) {
 
 }  // namespace
 
-void add_health_command(CLI::App& app, int& status) {
+void add_health_command(Command app, int& status) {
   struct Options {
     std::string host = "127.0.0.1";
     std::string port = "8080";
   };
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("health", "Ask a running server whether it is well");
-  command->add_option("--host", options->host, "Host of the server")->capture_default_str();
-  command->add_option("--port", options->port, "Port of the server")->capture_default_str();
-  command->callback([options, &status] { status = health(options->host, options->port); });
+  const Command command = app.add_subcommand("health", "Ask a running server whether it is well");
+  command.add_option("--host", options->host, "Host of the server").show_default();
+  command.add_option("--port", options->port, "Port of the server").show_default();
+  command.callback([options, &status] { status = health(options->host, options->port); });
 }
 
 }  // namespace server

@@ -27,7 +27,7 @@ namespace {
 using drivers::lms200::LaserSetup;
 using drivers::lms200::Lms200Device;
 
-struct Options {
+struct Lms200Command {
   std::string port{};
   std::optional<unsigned> rate{};
   std::optional<double> step{};
@@ -38,7 +38,7 @@ struct Options {
   std::size_t scans = 0;
   std::string output{};
 
-  /// Options not given keep the device's settings. Throws for settings that no device has.
+  /// Lms200Command not given keep the device's settings. Throws for settings that no device has.
   LaserSetup setup() const {
     LaserSetup out;
     out.password = password;
@@ -105,7 +105,7 @@ double wall_now(const algo::LaserScan& scan) {
   return std::chrono::duration<double>(day).count() - (drivers::steady_now() - scan.stamp);
 }
 
-void write_log(Lms200Device& laser, const Options& options) {
+void write_log(Lms200Device& laser, const Lms200Command& options) {
   std::ofstream file;
   if (!options.output.empty()) {
     file.open(options.output);
@@ -125,40 +125,40 @@ void write_log(Lms200Device& laser, const Options& options) {
   out.flush();
 }
 
-void add_common(CLI::App& command, Options& options) {
-  command.add_option("device", options.port, "A serial port, or tcp:HOST:PORT")->required();
+void add_common(Command command, Lms200Command& options) {
+  command.add_option("device", options.port, "A serial port, or tcp:HOST:PORT").required();
   command.add_option("--rate", options.rate, "Line rate to set")
-      ->check(CLI::IsMember({9600U, 19200U, 38400U, 500'000U}));
+      .one_of({9600U, 19200U, 38400U, 500'000U});
   command.add_option("--step", options.step, "Degrees between two beams: 1, 0.5 or 0.25")
-      ->check(CLI::IsMember({1.0, 0.5, 0.25}));
+      .one_of({1.0, 0.5, 0.25});
   command.add_option("--angle", options.angle, "Field of view: 100 or 180 degrees")
-      ->check(CLI::IsMember({100U, 180U}));
+      .one_of({100U, 180U});
   command.add_option("--range", options.range, "Metres: 8, 16, 32 or 80 (in centimetres)")
-      ->check(CLI::IsMember({8U, 16U, 32U, 80U}));
+      .one_of({8U, 16U, 32U, 80U});
   command
       .add_option(
           "--password", options.password, "Password of its configuration, if it was changed")
-      ->check(
+      .check(
           [](const std::string& text) -> std::string {
             return drivers::lms200::good_password(text) ? "" : "A password has 8 characters.";
           },
           "8 CHARACTERS")
-      ->capture_default_str();
+      .show_default();
   command.add_option("--patience", options.patience, "Seconds to search for the scanner")
-      ->check(CLI::Range(1.0, 300.0))
-      ->capture_default_str();
+      .range(1.0, 300.0)
+      .show_default();
 }
 
 template <class Action>
-void add_action(CLI::App& parent,
-                const char* name,
-                const char* help,
-                const std::shared_ptr<Options>& options,
-                int& status,
-                Action action) {
-  CLI::App* command = parent.add_subcommand(name, help);
-  add_common(*command, *options);
-  command->callback([options, &status, action] {
+Command add_action(Command parent,
+                   const char* name,
+                   const char* help,
+                   const std::shared_ptr<Lms200Command>& options,
+                   int& status,
+                   Action action) {
+  const Command command = parent.add_subcommand(name, help);
+  add_common(command, *options);
+  command.callback([options, &status, action] {
     heed_signals();
     try {
       Lms200Device laser("laser", options->port, options->setup());
@@ -170,41 +170,42 @@ void add_action(CLI::App& parent,
       status = kNotWell;
     }
   });
+  return command;
 }
 
 }  // namespace
 
-void add_lms200_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command =
+void add_lms200_command(Command app, int& status) {
+  auto options = std::make_shared<Lms200Command>();
+  const Command command =
       app.add_subcommand("lms200", "One SICK LMS2xx: its state, a scan or a log of scans");
-  command->require_subcommand(1);
-  command->footer(
+  command.require_subcommand();
+  command.footer(
       "Without --rate, --step, --angle or --range the scanner keeps its own settings. At the end "
       "it "
       "is silent, at the rate at which it was found.");
-  add_action(*command,
+  add_action(command,
              "info",
              "Print its type, settings and health",
              options,
              status,
-             [](Lms200Device& laser, const Options&) { print_info(laser); });
-  add_action(*command,
+             [](Lms200Device& laser, const Lms200Command&) { print_info(laser); });
+  add_action(command,
              "scan",
              "Print one scan: degrees, millimetres",
              options,
              status,
-             [](Lms200Device& laser, const Options&) { print_scan(laser); });
-  add_action(*command,
-             "log",
-             "Write scans as CARMEN FLASER lines, until Ctrl-C",
-             options,
-             status,
-             [](Lms200Device& laser, const Options& o) { write_log(laser, o); });
-  CLI::App* log = command->get_subcommand("log");
-  log->add_option("--scans", options->scans, "Number of scans; 0: no end")->capture_default_str();
-  log->add_option("--out", options->output, "File to write instead of standard output")
-      ->type_name("FILE");
+             [](Lms200Device& laser, const Lms200Command&) { print_scan(laser); });
+  const Command log =
+      add_action(command,
+                 "log",
+                 "Write scans as CARMEN FLASER lines, until Ctrl-C",
+                 options,
+                 status,
+                 [](Lms200Device& laser, const Lms200Command& o) { write_log(laser, o); });
+  log.add_option("--scans", options->scans, "Number of scans; 0: no end").show_default();
+  log.add_option("--out", options->output, "File to write instead of standard output")
+      .type_name("FILE");
 }
 
 }  // namespace server

@@ -56,38 +56,38 @@ int execute(MapCommand command) {
 
 }  // namespace
 
-void add_map_command(CLI::App& app, int& status) {
+void add_map_command(Command app, int& status) {
   auto command = std::make_shared<MapCommand>();
   mapping::MapOptions& options = command->options;
-  CLI::App* map = app.add_subcommand(
+  const Command map = app.add_subcommand(
       "map", "Map recorded CARMEN logs and print the error of the path against the log's own");
-  map->add_option("logs", command->logs, "The logs")->required()->type_name("LOG");
-  map->add_flag("--match", options.match, "Correct each scan's pose by matching it to the map");
-  map->add_option("--odometry-scale",
-                  options.errors.odometry_scale,
-                  "Add errors to the log's poses: of distances and of angles, each of random sign "
-                  "(0.02 is 2 %)");
-  map->add_option("--yaw-slip",
-                  options.errors.odometry_slip,
-                  "Share of each turn that the wheels lose by slip (0.05 is 5 %)");
-  map->add_option("--odometry-noise",
-                  options.errors.odometry_noise,
-                  "Random error per metre and per radian, relative (0.01 is 1 %)");
-  map->add_option("--seed", options.first_seed, "Seed of the errors (default 1)")
-      ->check(CLI::Range(0, 1'000'000'000));
-  map->add_option("--seeds", options.seeds, "Number of seeds from --seed on (default 1)")
-      ->check(CLI::Range(1, 1000));
-  add_threads_option(*map, options.threads);
-  map->add_option("--out", command->out, "A picture of the first seed's map, as SVG")
-      ->check(file_to_write())
-      ->type_name("FILE");
-  map->add_option("--markdown",
-                  command->markdown,
-                  "Also write tables to this file, and pictures into pictures/mapping/ beside it")
-      ->check(file_to_write())
-      ->type_name("FILE");
-  map->add_flag("--json", command->as_json, "Print JSON");
-  map->callback([command, &status] { status = execute(*command); });
+  map.add_option("logs", command->logs, "The logs").required().type_name("LOG");
+  map.add_flag("--match", options.match, "Correct each scan's pose by matching it to the map");
+  map.add_option("--odometry-scale",
+                 options.errors.odometry_scale,
+                 "Add errors to the log's poses: of distances and of angles, each of random sign "
+                 "(0.02 is 2 %)");
+  map.add_option("--yaw-slip",
+                 options.errors.odometry_slip,
+                 "Share of each turn that the wheels lose by slip (0.05 is 5 %)");
+  map.add_option("--odometry-noise",
+                 options.errors.odometry_noise,
+                 "Random error per metre and per radian, relative (0.01 is 1 %)");
+  map.add_option("--seed", options.first_seed, "Seed of the errors (default 1)")
+      .range(0, 1'000'000'000);
+  map.add_option("--seeds", options.seeds, "Number of seeds from --seed on (default 1)")
+      .range(1, 1000);
+  add_threads_option(map, options.threads);
+  map.add_option("--out", command->out, "A picture of the first seed's map, as SVG")
+      .check(refuse_folder)
+      .type_name("FILE");
+  map.add_option("--markdown",
+                 command->markdown,
+                 "Also write tables to this file, and pictures into pictures/mapping/ beside it")
+      .check(refuse_folder)
+      .type_name("FILE");
+  map.add_flag("--json", command->as_json, "Print JSON");
+  map.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

@@ -35,22 +35,22 @@ int merge(const MergeCommand& command) {
 
 }  // namespace
 
-void add_merge_command(CLI::App& app, int& status) {
+void add_merge_command(Command app, int& status) {
   auto options = std::make_shared<MergeCommand>();
-  CLI::App* const command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "merge", "Fold the shards of an experiment into one folder, and write its report");
-  command->add_option("out", options->out, "The folder to fold into; it may hold runs already")
-      ->required()
-      ->type_name("OUT");
-  command->add_option("shards", options->shards, "The folders of `tautline sweep --shard`")
-      ->required()
-      ->check(CLI::ExistingDirectory)
-      ->type_name("SHARD...");
-  options->controllers.add_to(*command, "A controller of your own that the runs had; repeatable");
-  command->footer(
+  command.add_option("out", options->out, "The folder to fold into; it may hold runs already")
+      .required()
+      .type_name("OUT");
+  command.add_option("shards", options->shards, "The folders of `tautline sweep --shard`")
+      .required()
+      .existing_folder()
+      .type_name("SHARD...");
+  options->controllers.add_to(command, "A controller of your own that the runs had; repeatable");
+  command.footer(
       "The shards are only read; merging again changes nothing. Exit status: 0, 1 bad input or a "
       "run failed, 4 runs are missing.");
-  command->callback([options, &status] { status = merge(*options); });
+  command.callback([options, &status] { status = merge(*options); });
 }
 
 }  // namespace server

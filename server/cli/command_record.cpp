@@ -15,7 +15,7 @@
 namespace server {
 namespace {
 
-struct Options {
+struct RecordCommand {
   db::RunId run = 0;
   std::string database = (state_folder() / "runs.db").string();
   std::string format = "csv";
@@ -24,15 +24,15 @@ struct Options {
   CsvOptions csv{};
 };
 
-std::shared_ptr<Options> add_common(CLI::App& command) {
-  auto options = std::make_shared<Options>();
-  command.add_option("RUN", options->run, "Number of the run")->required();
+std::shared_ptr<RecordCommand> add_common(Command command) {
+  auto options = std::make_shared<RecordCommand>();
+  command.add_option("RUN", options->run, "Number of the run").required();
   command.add_option("--db", options->database, "Database file (default: the server's own)")
-      ->type_name("FILE");
+      .type_name("FILE");
   return options;
 }
 
-int export_run(const Options& options) {
+int export_run(const RecordCommand& options) {
   db::RunReader reader(options.database);
   std::FILE* out = stdout;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(nullptr, &std::fclose);
@@ -69,7 +69,7 @@ int export_run(const Options& options) {
   return kIncomplete;
 }
 
-int verify(const Options& options) {
+int verify(const RecordCommand& options) {
   db::RunReader reader(options.database);
   const Verification result = verify_run(reader, options.run);
   if (options.as_json) {
@@ -98,30 +98,30 @@ int verify(const Options& options) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("export", "Write a stored run as a table");
-  auto options = add_common(*command);
-  command->add_option("--format", options->format, "csv")->check(CLI::IsMember({"csv"}));
-  command->add_option("--output,-o", options->output, "File to write (default: standard output)");
-  command->add_flag("--units", options->csv.units, "Name the columns with their units: \"t [s]\"");
-  command->add_flag("--arrays",
-                    options->csv.arrays,
-                    "Also the ranges of all scans, and the obstacles that move by themselves");
-  command->footer(
+void add_export_command(Command app, int& status) {
+  const Command command = app.add_subcommand("export", "Write a stored run as a table");
+  auto options = add_common(command);
+  command.add_option("--format", options->format, "csv").one_of({"csv"});
+  command.add_option("--output,-o", options->output, "File to write (default: standard output)");
+  command.add_flag("--units", options->csv.units, "Name the columns with their units: \"t [s]\"");
+  command.add_flag("--arrays",
+                   options->csv.arrays,
+                   "Also the ranges of all scans, and the obstacles that move by themselves");
+  command.footer(
       "Exit status: 0 the whole run, 1 bad input or error, 4 incomplete: a gap, a cut, or a run "
       "deleted meanwhile; the rest has been written.");
-  command->callback([options, &status] { status = export_run(*options); });
+  command.callback([options, &status] { status = export_run(*options); });
 }
 
-void add_verify_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
+void add_verify_command(Command app, int& status) {
+  const Command command = app.add_subcommand(
       "verify", "Feed a stored run to a fresh pipeline and compare every command");
-  auto options = add_common(*command);
-  command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer(
+  auto options = add_common(command);
+  command.add_flag("--json", options->as_json, "Print JSON");
+  command.footer(
       "Exit status: 0 identical, 1 bad input or error, 2 different, 4 incomplete: a gap, a pause "
       "or a cut of the record, beyond which nothing can be compared.");
-  command->callback([options, &status] { status = verify(*options); });
+  command.callback([options, &status] { status = verify(*options); });
 }
 
 }  // namespace server

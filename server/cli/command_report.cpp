@@ -25,17 +25,17 @@ int report(const ReportCommand& command) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, int& status) {
+void add_report_command(Command app, int& status) {
   auto options = std::make_shared<ReportCommand>();
-  CLI::App* const command = app.add_subcommand(
+  const Command command = app.add_subcommand(
       "report", "Write the report of an experiment again, from its finished runs");
-  command->add_option("folder", options->folder, "The folder that `tautline sweep` wrote")
-      ->required()
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR");
-  options->controllers.add_to(*command, "A controller of your own that the runs had; repeatable");
-  command->footer("Exit status: 0, 1 bad input or a run failed, 4 runs are missing.");
-  command->callback([options, &status] { status = report(*options); });
+  command.add_option("folder", options->folder, "The folder that `tautline sweep` wrote")
+      .required()
+      .existing_folder()
+      .type_name("DIR");
+  options->controllers.add_to(command, "A controller of your own that the runs had; repeatable");
+  command.footer("Exit status: 0, 1 bad input or a run failed, 4 runs are missing.");
+  command.callback([options, &status] { status = report(*options); });
 }
 
 }  // namespace server

@@ -13,7 +13,7 @@
 namespace server {
 namespace {
 
-struct Options {
+struct ReproduceCommand {
   std::string scenarios{};
   bool as_json = false;
   bool paper_only = false;
@@ -25,7 +25,7 @@ struct Options {
 };
 
 /// Only chapter 3. Its verdicts are findings, not limits.
-int execute_filter_study(const Options& options) {
+int execute_filter_study(const ReproduceCommand& options) {
   FilterStudyOptions wanted;
   if (!options.logs.empty()) wanted.logs = options.logs;
   const FilterStudy study = study_filters(wanted);
@@ -41,7 +41,7 @@ int execute_filter_study(const Options& options) {
 /// More seeds would take an hour and change no verdict.
 constexpr std::size_t kSweepSeeds = 3;
 
-int execute(Options options) {
+int execute(ReproduceCommand options) {
   const reproduce::StudyFile file = options.scenarios.empty()
                                         ? reproduce::embedded_study_file()
                                         : reproduce::read_study_file(options.scenarios);
@@ -86,36 +86,35 @@ int execute(Options options) {
 
 }  // namespace
 
-void add_reproduce_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+void add_reproduce_command(Command app, int& status) {
+  auto options = std::make_shared<ReproduceCommand>();
+  const Command command = app.add_subcommand(
       "reproduce", "Run the papers' scenarios with every reading and say which claims hold");
-  command->add_option("--scenarios", options->scenarios, "Another file of scenarios and limits")
-      ->type_name("FILE");
-  command->add_option("--seeds", options->study.seeds, "Runs per row (default 10)")
-      ->check(CLI::Range(1, 1000));
-  add_first_seed_option(*command, options->study.first_seed);
-  add_threads_option(*command, options->study.threads);
-  command->add_flag("--paper-only", options->paper_only, "Leave out the full simulator");
-  command->add_flag("--sweeps", options->sweeps, "Also sweep K_c, K_r, d_safe and N");
+  command.add_option("--scenarios", options->scenarios, "Another file of scenarios and limits")
+      .type_name("FILE");
+  command.add_option("--seeds", options->study.seeds, "Runs per row (default 10)").range(1, 1000);
+  add_first_seed_option(command, options->study.first_seed);
+  add_threads_option(command, options->study.threads);
+  command.add_flag("--paper-only", options->paper_only, "Leave out the full simulator");
+  command.add_flag("--sweeps", options->sweeps, "Also sweep K_c, K_r, d_safe and N");
   command
-      ->add_option("--markdown",
-                   options->markdown,
-                   "Also write the report to this file, and pictures/reproduction/ beside it")
-      ->check(file_to_write())
-      ->type_name("FILE");
-  CLI::Option* filter = command->add_flag(
+      .add_option("--markdown",
+                  options->markdown,
+                  "Also write the report to this file, and pictures/reproduction/ beside it")
+      .check(refuse_folder)
+      .type_name("FILE");
+  const Option filter = command.add_flag(
       "--filter", options->filter, "Run the filter chapter instead: scenes, recordings, verdicts");
-  command->add_option("--logs", options->logs, "Folder of CARMEN logs of a real scanner")
-      ->type_name("DIR")
-      ->needs(filter);
+  command.add_option("--logs", options->logs, "Folder of CARMEN logs of a real scanner")
+      .type_name("DIR")
+      .needs(filter);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
-    filter->excludes(command->get_option(tables));
+    filter.excludes(command.get_option(tables));
   }
-  command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer("Exit status: 0 every limit of the file held, 1 bad input, 3 a limit failed.");
-  command->callback([options, &status] {
+  command.add_flag("--json", options->as_json, "Print JSON");
+  command.footer("Exit status: 0 every limit of the file held, 1 bad input, 3 a limit failed.");
+  command.callback([options, &status] {
     status = options->filter ? execute_filter_study(*options) : execute(*options);
   });
 }

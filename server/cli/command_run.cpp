@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct RunCommand {
   std::string scenario{};
   std::string out{};
   double pace = 0;
@@ -59,7 +59,7 @@ void print_table(const RunSpec& spec, const HeadlessResult& result, std::int64_t
   fmt::print("  telemetry_hash   {:016x}\n", result.telemetry_hash);
 }
 
-int execute(const Options& options) {
+int execute(const RunCommand& options) {
   const RunSpec spec = make_spec(find_scenario(options.scenario), options.flags.resolved());
   const std::unique_ptr<algo::Robot> robot = make_robot(spec);
   std::unique_ptr<Recorder> recorder;
@@ -115,44 +115,42 @@ int execute(const Options& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("run", "Run a scenario headless and print its figures");
-  command->add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
-      ->required();
-  options->flags.add_to(*command);
-  command->add_option("--out", options->out, "Also store the run in this database")
-      ->type_name("DB");
-  command->add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
-      ->check(CLI::Range(0.0, 1000.0));
-  command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer(
+void add_run_command(Command app, int& status) {
+  auto options = std::make_shared<RunCommand>();
+  const Command command =
+      app.add_subcommand("run", "Run a scenario headless and print its figures");
+  command.add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
+      .required();
+  options->flags.add_to(command);
+  command.add_option("--out", options->out, "Also store the run in this database").type_name("DB");
+  command.add_option("--pace", options->pace, "Times real time; 0 (default): as fast as it goes")
+      .range(0.0, 1000.0);
+  command.add_flag("--json", options->as_json, "Print JSON");
+  command.footer(
       "Exit status: 0 reached, 1 bad input or error, 2 stuck or out of time, 3 collision.");
-  command->callback([options, &status] { status = execute(*options); });
+  command.callback([options, &status] { status = execute(*options); });
 }
 
-void add_replay_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command =
+void add_replay_command(Command app, int& status) {
+  auto options = std::make_shared<RunCommand>();
+  const Command command =
       app.add_subcommand("replay", "Replay a CARMEN laser log through the whole pipeline");
-  command->add_option("LOG", options->scenario, "A CARMEN log file")
-      ->required()
-      ->check(CLI::ExistingFile);
-  command->add_option(
+  command.add_option("LOG", options->scenario, "A CARMEN log file").required().existing_file();
+  command.add_option(
       "--filter", options->flags.overrides.filter, "pseudomedian (default), median, lulu or none");
   command
-      ->add_option(
+      .add_option(
           "--set", options->flags.settings, "A parameter, such as filter_half_width=2; repeatable")
-      ->type_name("NAME=VALUE");
-  command->add_option("--out", options->out, "Store the run in this database")->type_name("DB");
+      .type_name("NAME=VALUE");
+  command.add_option("--out", options->out, "Store the run in this database").type_name("DB");
   command
-      ->add_option("--pace",
-                   options->pace,
-                   "1: the log's own pace; N: times that; 0 (default): as fast as it goes")
-      ->check(CLI::Range(0.0, 1000.0));
-  command->add_flag("--json", options->as_json, "Print JSON");
-  command->footer("To watch a log in the browser: tautline serve --scenario LOG");
-  command->callback([options, &status] { status = execute(*options); });
+      .add_option("--pace",
+                  options->pace,
+                  "1: the log's own pace; N: times that; 0 (default): as fast as it goes")
+      .range(0.0, 1000.0);
+  command.add_flag("--json", options->as_json, "Print JSON");
+  command.footer("To watch a log in the browser: tautline serve --scenario LOG");
+  command.callback([options, &status] { status = execute(*options); });
 }
 
 }  // namespace server

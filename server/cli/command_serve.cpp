@@ -22,7 +22,7 @@
 namespace server {
 namespace {
 
-struct Options {
+struct ServeCommand {
   AppOptions app{};
   std::string scenario = "demo";
   std::string robot{};  // file of real hardware; empty: simulation
@@ -33,7 +33,7 @@ struct Options {
 };
 
 /// The initial spec, from the devices of a robot's file or from a scenario.
-RunSpec first_spec(const Options& options) {
+RunSpec first_spec(const ServeCommand& options) {
   const RobotLibrary robots(options.app.robots);
   RunOverrides overrides = options.flags.resolved(robots);
   // Commands only add to the catalogue, from which the page chooses.
@@ -94,7 +94,7 @@ std::function<std::vector<std::string>()> keep_log_tail() {
   return [tail] { return tail->last_formatted(); };
 }
 
-void serve(Options& options) {
+void serve(ServeCommand& options) {
   AppOptions& app = options.app;
   read_tokens(app.net.access);
   app.log_tail = keep_log_tail();
@@ -126,8 +126,8 @@ void serve(Options& options) {
 
 }  // namespace
 
-void add_serve_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
+void add_serve_command(Command app, int& status) {
+  auto options = std::make_shared<ServeCommand>();
   net::ServerOptions& net = options->app.net;
   net.web_root = web_folder();
   options->app.database = state_folder() / "runs.db";
@@ -135,124 +135,121 @@ void add_serve_command(CLI::App& app, int& status) {
   options->app.robots = state_folder() / "robots";
   options->app.logs = state_folder() / "logs";
 
-  CLI::App* command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
-  command->add_option("--port", net.port, "Port; 0: any free one")->capture_default_str();
-  command->add_option("--listen", net.address, "Address to listen on")->capture_default_str();
-  command->add_option("--token",
-                      net.access.token,
-                      "Require this token (or set TAUTLINE_TOKEN); needed beyond this machine. "
-                      "Who has it is an admin");
-  command->add_option("--operator-token",
-                      net.access.operator_token,
-                      "Token of operators: they drive, edit and start runs, but delete nothing "
-                      "(or set TAUTLINE_OPERATOR_TOKEN)");
-  command->add_option("--viewer-token",
-                      net.access.viewer_token,
-                      "Token of viewers: they see everything and may press Stop (or set "
-                      "TAUTLINE_VIEWER_TOKEN)");
-  command->add_flag(
-      "--insecure", net.access.insecure, "Listen beyond this machine without a token");
+  const Command command = app.add_subcommand("serve", "Serve the page, REST and WebSocket");
+  command.add_option("--port", net.port, "Port; 0: any free one").show_default();
+  command.add_option("--listen", net.address, "Address to listen on").show_default();
+  command.add_option("--token",
+                     net.access.token,
+                     "Require this token (or set TAUTLINE_TOKEN); needed beyond this machine. "
+                     "Who has it is an admin");
+  command.add_option("--operator-token",
+                     net.access.operator_token,
+                     "Token of operators: they drive, edit and start runs, but delete nothing "
+                     "(or set TAUTLINE_OPERATOR_TOKEN)");
+  command.add_option("--viewer-token",
+                     net.access.viewer_token,
+                     "Token of viewers: they see everything and may press Stop (or set "
+                     "TAUTLINE_VIEWER_TOKEN)");
+  command.add_flag("--insecure", net.access.insecure, "Listen beyond this machine without a token");
   command
-      ->add_option(
+      .add_option(
           "--trusted-proxy",
           net.access.trusted_proxies,
           "A trusted proxy whose X-Forwarded-For and X-Forwarded-Proto count, such as 127.0.0.1 or "
           "172.17.0.0/16; repeatable")
-      ->type_name("ADDRESS");
+      .type_name("ADDRESS");
   command
-      ->add_option("--per-address",
-                   net.limits.connections_per_address,
-                   "Connections per address; raise it for many people behind one router")
-      ->check(CLI::Range(8, 100000))
-      ->capture_default_str();
-  command->add_option("--allow-host",
-                      net.access.allow_hosts,
-                      "A further host name of this server, such as one of a port mapping");
-  command->add_option(
+      .add_option("--per-address",
+                  net.limits.connections_per_address,
+                  "Connections per address; raise it for many people behind one router")
+      .range(8, 100000)
+      .show_default();
+  command.add_option("--allow-host",
+                     net.access.allow_hosts,
+                     "A further host name of this server, such as one of a port mapping");
+  command.add_option(
       "--allow-origin",
       net.access.allow_origins,
       "Origin of a page hosted elsewhere that may connect, such as https://viewer.example");
-  command->add_option("--db", options->app.database, "Database of the runs")
-      ->type_name("FILE")
-      ->capture_default_str();
+  command.add_option("--db", options->app.database, "Database of the runs")
+      .type_name("FILE")
+      .show_default();
   command
-      ->add_option(
+      .add_option(
           "--keep",
           options->keep_gigabytes,
           "Room for the record. When it is full, a live run drops its oldest ticks, and other runs "
           "are not recorded; 0: as much as the disk has")
-      ->type_name("GB")
-      ->check(CLI::Range(0.0, 1e6))
-      ->capture_default_str();
+      .type_name("GB")
+      .range(0.0, 1e6)
+      .show_default();
   command
-      ->add_option("--evict",
-                   options->evict,
-                   "Finished runs to delete when the room is full: never or the oldest")
-      ->check(CLI::IsMember({"never", "oldest"}))
-      ->capture_default_str();
-  command->add_flag("--require-record",
-                    options->app.require_record,
-                    "Stop a live run that cannot be recorded; without this the robot drives on");
-  command->add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_option("--robots", options->app.robots, "Folder of your own robot models")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_option("--web", net.web_root, "Folder of the built page")->type_name("DIR");
+      .add_option("--evict",
+                  options->evict,
+                  "Finished runs to delete when the room is full: never or the oldest")
+      .one_of({"never", "oldest"})
+      .show_default();
+  command.add_flag("--require-record",
+                   options->app.require_record,
+                   "Stop a live run that cannot be recorded; without this the robot drives on");
+  command.add_option("--scenarios", options->app.scenarios, "Folder of your own scenarios")
+      .type_name("DIR")
+      .show_default();
+  command.add_option("--robots", options->app.robots, "Folder of your own robot models")
+      .type_name("DIR")
+      .show_default();
+  command.add_option("--logs", options->app.logs, "Folder of CARMEN logs to offer for replay")
+      .type_name("DIR")
+      .show_default();
+  command.add_option("--web", net.web_root, "Folder of the built page").type_name("DIR");
   command
-      ->add_option("--scenario",
-                   options->scenario,
-                   "First world to load: a name, a .json file, or a .log to replay")
-      ->capture_default_str();
+      .add_option("--scenario",
+                  options->scenario,
+                  "First world to load: a name, a .json file, or a .log to replay")
+      .show_default();
   command
-      ->add_option(
+      .add_option(
           "--robot", options->robot, "TOML file that describes real hardware (docs/hardware.md)")
-      ->type_name("FILE");
-  command->add_flag(
+      .type_name("FILE");
+  command.add_flag(
       "--armed", options->app.armed, "Arm real hardware as soon as its devices have no fault");
-  command->add_flag("--unattended",
-                    options->app.unattended,
-                    "Let real hardware drive on when no page or script is there to stop it");
+  command.add_flag("--unattended",
+                   options->app.unattended,
+                   "Let real hardware drive on when no page or script is there to stop it");
   AppOptions& app_options = options->app;
-  command->add_flag(
-      "--per-visitor",
-      app_options.sessions.per_visitor,
-      "Give each visitor who opens the page without a session a session of their own");
+  command.add_flag("--per-visitor",
+                   app_options.sessions.per_visitor,
+                   "Give each visitor who opens the page without a session a session of their own");
   command
-      ->add_option(
-          "--sessions", app_options.sessions.sessions, "Most sessions at once, beside main")
-      ->check(CLI::Range(0, 100000))
-      ->capture_default_str();
+      .add_option("--sessions", app_options.sessions.sessions, "Most sessions at once, beside main")
+      .range(0, 100000)
+      .show_default();
   command
-      ->add_option("--session-runs",
-                   app_options.sessions.runs,
-                   "Most loads and resets of a session other than main; 0: no limit")
-      ->capture_default_str();
+      .add_option("--session-runs",
+                  app_options.sessions.runs,
+                  "Most loads and resets of a session other than main; 0: no limit")
+      .show_default();
   command
-      ->add_option("--session-idle",
-                   options->idle_seconds,
-                   "A session other than main ends after this time without a viewer or a request")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(1, 31'536'000))
-      ->capture_default_str();
+      .add_option("--session-idle",
+                  options->idle_seconds,
+                  "A session other than main ends after this time without a viewer or a request")
+      .type_name("SECONDS")
+      .range(1, 31'536'000)
+      .show_default();
   command
-      ->add_option("--control-threads",
-                   app_options.threads,
-                   "Threads that drive simulated robots; 0: one per processor")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+      .add_option("--control-threads",
+                  app_options.threads,
+                  "Threads that drive simulated robots; 0: one per processor")
+      .range(0, 1024)
+      .show_default();
   command
-      ->add_option("--experiment-workers",
-                   app_options.workers,
-                   "Threads that run experiments; 0: one per processor but one")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  options->flags.add_to(*command);
-  command->callback([options, &status] {
+      .add_option("--experiment-workers",
+                  app_options.workers,
+                  "Threads that run experiments; 0: one per processor but one")
+      .range(0, 1024)
+      .show_default();
+  options->flags.add_to(command);
+  command.callback([options, &status] {
     serve(*options);
     status = 0;
   });

@@ -71,24 +71,24 @@ int execute(SoakCommand command) {
 
 }  // namespace
 
-void add_soak_command(CLI::App& app, int& status) {
+void add_soak_command(Command app, int& status) {
   auto command = std::make_shared<SoakCommand>();
-  CLI::App* soak = app.add_subcommand(
+  const Command soak = app.add_subcommand(
       "soak",
       "Drive to random goals in random worlds. Exit status 3 after a collision, a NaN, or a stop "
       "without a reason given");
-  soak->add_option("--worlds", command->options.worlds, "Number of worlds (default 1000)")
-      ->check(CLI::Range(1, 1'000'000));
-  add_first_seed_option(*soak, command->options.first_seed, "The first world (default 1)");
-  soak->add_option("--controller", command->options.controller, "Default: strip");
-  add_pool_options(*soak, command->options.pool, "--workers");
-  add_rows_option(*soak, command->rows);
-  soak->add_flag("--list", command->list, "List every world whose goal was not reached");
-  soak->add_option("--scenario",
-                   command->scenario,
-                   "Run nothing: write the first world to this file as a scenario for the page")
-      ->type_name("FILE");
-  soak->callback([command, &status] { status = execute(*command); });
+  soak.add_option("--worlds", command->options.worlds, "Number of worlds (default 1000)")
+      .range(1, 1'000'000);
+  add_first_seed_option(soak, command->options.first_seed, "The first world (default 1)");
+  soak.add_option("--controller", command->options.controller, "Default: strip");
+  add_pool_options(soak, command->options.pool, "--workers");
+  add_rows_option(soak, command->rows);
+  soak.add_flag("--list", command->list, "List every world whose goal was not reached");
+  soak.add_option("--scenario",
+                  command->scenario,
+                  "Run nothing: write the first world to this file as a scenario for the page")
+      .type_name("FILE");
+  soak.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

@@ -172,72 +172,71 @@ int execute(SweepCommand command) {
   return write_and_print(plan, run(plan, command), command.out);
 }
 
-void add_slurm_options(CLI::App& sweep, SweepCommand& command) {
-  CLI::Option* const slurm = sweep.add_flag(
+void add_slurm_options(Command sweep, SweepCommand& command) {
+  const Option slurm = sweep.add_flag(
       "--slurm",
       command.slurm,
       "Submit the runs as one array of Slurm. Again: submit what is missing; if nothing is, merge "
       "and report (docs/scale.md)");
   sweep.add_option("--tasks", command.tasks, "Tasks of the array (default 16)")
-      ->check(CLI::Range(1, 100'000))
-      ->needs(slurm);
+      .range(1, 100'000)
+      .needs(slurm);
   sweep
       .add_option(
           "--sbatch", command.sbatch, "An option of sbatch, as --sbatch=--time=1:00:00; repeatable")
-      ->type_name("OPTION")
-      ->allow_extra_args(false)
-      ->needs(slurm);
+      .type_name("OPTION")
+      .one_value()
+      .needs(slurm);
 }
 
 }  // namespace
 
-void add_sweep_command(CLI::App& app, int& status) {
+void add_sweep_command(Command app, int& status) {
   auto command = std::make_shared<SweepCommand>();
-  CLI::App* const sweep = app.add_subcommand(
+  const Command sweep = app.add_subcommand(
       "sweep", "Run an experiment: scenarios x controllers x parameters x seeds, from a document");
-  sweep->add_option("file", command->file, "The document, as JSON (docs/experiments.md)")
-      ->required()
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE");
-  add_threads_option(*sweep, command->workers, "--workers");
+  sweep.add_option("file", command->file, "The document, as JSON (docs/experiments.md)")
+      .required()
+      .existing_file()
+      .type_name("FILE");
+  add_threads_option(sweep, command->workers, "--workers");
   command->controllers.add_to(
-      *sweep, "A controller of your own for the document to name, as NAME=COMMAND; repeatable");
-  sweep->add_flag("--dry-run",
-                  command->dry_run,
-                  "Run nothing: check everything, print the number of runs, CPU time and bytes");
-  CLI::Option* const out =
+      sweep, "A controller of your own for the document to name, as NAME=COMMAND; repeatable");
+  sweep.add_flag("--dry-run",
+                 command->dry_run,
+                 "Run nothing: check everything, print the number of runs, CPU time and bytes");
+  const Option out =
       sweep
-          ->add_option(
+          .add_option(
               "--out",
               command->out,
               "Folder of the results (default: the document's name); the finished runs that it "
               "holds are not made again")
-          ->type_name("DIR");
-  add_shard_option(*sweep, [command](const experiment::Shard& shard) {
+          .type_name("DIR");
+  add_shard_option(sweep, [command](const experiment::Shard& shard) {
     command->shard = shard;
-  })->needs(out);
+  }).needs(out);
   sweep
-      ->add_option(
-          "--rerun",
-          command->rerun,
-          "Make only some runs again, with their seeds: failed (those that broke or killed "
-          "the program), lost (those under way when the program died)")
-      ->check(CLI::IsMember({"failed", "lost"}))
-      ->type_name("WHICH");
+      .add_option("--rerun",
+                  command->rerun,
+                  "Make only some runs again, with their seeds: failed (those that broke or killed "
+                  "the program), lost (those under way when the program died)")
+      .one_of({"failed", "lost"})
+      .type_name("WHICH");
   sweep
-      ->add_option("--record",
-                   command->record,
-                   "Whole runs to store in runs.db of the folder, for `tautline serve --db`: "
-                   "nothing (default), failures (those that do not reach), all")
-      ->check(CLI::IsMember({"nothing", "failures", "all"}))
-      ->type_name("WHICH");
-  add_slurm_options(*sweep, *command);
-  sweep->get_option("--slurm")->excludes(sweep->get_option("--shard"));
-  sweep->get_option("--slurm")->excludes(sweep->get_option("--record"));
-  sweep->footer(
+      .add_option("--record",
+                  command->record,
+                  "Whole runs to store in runs.db of the folder, for `tautline serve --db`: "
+                  "nothing (default), failures (those that do not reach), all")
+      .one_of({"nothing", "failures", "all"})
+      .type_name("WHICH");
+  add_slurm_options(sweep, *command);
+  sweep.get_option("--slurm").excludes(sweep.get_option("--shard"));
+  sweep.get_option("--slurm").excludes(sweep.get_option("--record"));
+  sweep.footer(
       "Ctrl-C keeps the finished runs; the same command goes on from there. Exit status: 0, 1 bad "
       "input or a run failed, 4 interrupted, or not yet at its end with --slurm.");
-  sweep->callback([command, &status] { status = execute(*command); });
+  sweep.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

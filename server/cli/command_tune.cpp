@@ -115,23 +115,23 @@ int execute(TuneCommand command) {
 
 }  // namespace
 
-void add_tune_command(CLI::App& app, int& status) {
+void add_tune_command(Command app, int& status) {
   auto command = std::make_shared<TuneCommand>();
-  CLI::App* const tune = app.add_subcommand(
+  const Command tune = app.add_subcommand(
       "tune", "Search parameters on training scenarios, and report them on test scenarios");
-  tune->add_option("file", command->file, "The document, as JSON (docs/experiments.md)")
-      ->required()
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE");
-  add_threads_option(*tune, command->workers, "--workers");
+  tune.add_option("file", command->file, "The document, as JSON (docs/experiments.md)")
+      .required()
+      .existing_file()
+      .type_name("FILE");
+  add_threads_option(tune, command->workers, "--workers");
   command->controllers.add_to(
-      *tune, "A controller of your own for the document to name, as NAME=COMMAND; repeatable");
-  tune->add_option("--out", command->out, "Folder of the results (default: the document's name)")
-      ->type_name("DIR");
-  tune->footer(
+      tune, "A controller of your own for the document to name, as NAME=COMMAND; repeatable");
+  tune.add_option("--out", command->out, "Folder of the results (default: the document's name)")
+      .type_name("DIR");
+  tune.footer(
       "The same document gives the same result. Exit status: 0, 1 bad input or a run failed, 4 "
       "interrupted.");
-  tune->callback([command, &status] { status = execute(*command); });
+  tune.callback([command, &status] { status = execute(*command); });
 }
 
 }  // namespace server

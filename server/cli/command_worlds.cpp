@@ -17,7 +17,7 @@ using experiment::Worlds;
 using experiment::WorldState;
 constexpr std::size_t kMostWorlds = 4096;
 
-struct Options {
+struct WorldsCommand {
   std::string scenario{};
   std::size_t count = 1;
   RunFlags flags{};
@@ -52,7 +52,7 @@ bool show(const Worlds& worlds) {
 }
 
 /// Ends when the other side closes either pipe.
-int execute(const Options& options) {
+int execute(const WorldsCommand& options) {
   const RunSpec spec = make_spec(find_scenario(options.scenario), options.flags.resolved());
   Worlds worlds(spec, options.count);
   std::fputs(header(worlds, options.count).c_str(), stdout);
@@ -68,17 +68,17 @@ int execute(const Options& options) {
 
 }  // namespace
 
-void add_worlds_command(CLI::App& app, int& status) {
-  auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+void add_worlds_command(Command app, int& status) {
+  auto options = std::make_shared<WorldsCommand>();
+  const Command command = app.add_subcommand(
       "worlds", "Step worlds of a scenario by actions from standard input, for training");
-  command->add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
-      ->required();
-  command->add_option("--worlds", options->count, "How many, with successive seeds")
-      ->check(CLI::Range(std::size_t{1}, kMostWorlds))
-      ->capture_default_str();
-  options->flags.add_to(*command);
-  command->callback([options, &status] { status = execute(*options); });
+  command.add_option("SCENARIO", options->scenario, "Name of a scenario, or path of a .json file")
+      .required();
+  command.add_option("--worlds", options->count, "How many, with successive seeds")
+      .range(std::size_t{1}, kMostWorlds)
+      .show_default();
+  options->flags.add_to(command);
+  command.callback([options, &status] { status = execute(*options); });
 }
 
 }  // namespace server

@@ -5,23 +5,21 @@
 
 namespace server {
 
-void ControllerFlags::add_to(CLI::App& command, const std::string& help) {
-  command.add_option("--controller", given, help)
-      ->type_name("NAME|[NAME=]COMMAND")
-      ->allow_extra_args(false);
+void ControllerFlags::add_to(Command command, const std::string& help) {
+  command.add_option("--controller", given, help).type_name("NAME|[NAME=]COMMAND").one_value();
   command
       .add_option(
           "--answer-limit", answer_limit, "Longest wait for a controller of your own; 0: for ever")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 86'400.0))
-      ->capture_default_str();
+      .type_name("SECONDS")
+      .range(0.0, 86'400.0)
+      .show_default();
   command
       .add_option("--think-time",
                   think_time,
                   "While a controller of your own thinks, the world pauses (pause), or its answer "
                   "acts as much later as it took (measured), or a number of ticks later")
-      ->type_name("pause|measured|TICKS")
-      ->capture_default_str();
+      .type_name("pause|measured|TICKS")
+      .show_default();
 }
 
 std::shared_ptr<const algo::ControllerCatalogue> ControllerFlags::catalogue() const {

@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "algo/pipeline/controllers.hpp"
+#include "server/cli/options.hpp"
 
 namespace server {
 
@@ -18,7 +17,7 @@ struct ControllerFlags {
   double answer_limit = 10;          // [s] 0: none
   std::string think_time = "pause";
 
-  void add_to(CLI::App& command, const std::string& help);
+  void add_to(Command command, const std::string& help);
   /// The built-in controllers and those given as commands; null if none is. Throws std::exception
   /// with a sentence.
   std::shared_ptr<const algo::ControllerCatalogue> catalogue() const;

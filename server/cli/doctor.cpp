@@ -35,18 +35,18 @@ class Notes {
  public:
   Notes(std::string device, const Found& found) : device_(std::move(device)), found_(found) {}
 
-  void well(const std::string& sentence) { add(Verdict::Well, sentence, ""); }
+  void well(const std::string& sentence) { add(Finding::Verdict::Well, sentence, ""); }
   void note(const std::string& sentence, const std::string& advice = "") {
-    add(Verdict::Note, sentence, advice);
+    add(Finding::Verdict::Note, sentence, advice);
   }
   void bad(const std::string& sentence, const std::string& advice) {
-    add(Verdict::Bad, sentence, advice);
+    add(Finding::Verdict::Bad, sentence, advice);
     all_well_ = false;
   }
   bool all_well() const { return all_well_; }
 
  private:
-  void add(Verdict verdict, const std::string& sentence, const std::string& advice) {
+  void add(Finding::Verdict verdict, const std::string& sentence, const std::string& advice) {
     found_({verdict, device_, sentence, advice});
   }
 
@@ -364,7 +364,8 @@ std::size_t count_spikes(const std::vector<double>& ranges) {
 }
 
 bool examine(const drivers::RobotFile& file, const DoctorOptions& options, const Found& found) {
-  for (const std::string& warning : file.warnings) found({Verdict::Note, "file", warning, ""});
+  for (const std::string& warning : file.warnings)
+    found({Finding::Verdict::Note, "file", warning, ""});
   look_at_system(found);
   bool well = true;
   for (const drivers::LaserEntry& laser : file.lasers) {

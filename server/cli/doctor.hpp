@@ -9,10 +9,9 @@
 
 namespace server {
 
-enum class Verdict : std::uint8_t { Well, Note, Bad };
-
 /// The result of one check.
 struct Finding {
+  enum class Verdict : std::uint8_t { Well, Note, Bad };
   Verdict verdict = Verdict::Well;
   std::string device{};  // "front laser", "base", "system", "file"
   std::string sentence{};

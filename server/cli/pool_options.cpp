@@ -24,53 +24,47 @@ std::string complaint(const Check& check) {
 
 }  // namespace
 
-void add_threads_option(CLI::App& command, unsigned& threads, const std::string& name) {
-  command.add_option(name, threads, "0 (default): one per core")->check(CLI::Range(0, 256));
+void add_threads_option(Command command, unsigned& threads, const std::string& name) {
+  command.add_option(name, threads, "0 (default): one per core").range(0, 256);
 }
 
-void add_first_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
-  command.add_option("--first-seed", seed, help)->check(CLI::Range(0, 1'000'000'000));
+void add_first_seed_option(Command command, std::uint64_t& seed, const std::string& help) {
+  command.add_option("--first-seed", seed, help).range(0, 1'000'000'000);
 }
 
-CLI::Option* add_shard_option(CLI::App& command,
-                              std::function<void(const experiment::Shard&)> take) {
+Option add_shard_option(Command command, std::function<void(const experiment::Shard&)> take) {
   return command
-      .add_option_function<std::string>(
+      .add_option_function(
           "--shard",
           [take = std::move(take)](const std::string& text) {
             take(experiment::shard_from_text(text));
           },
           "Only every Nth run from number I on (0 is the first). The shards of all I together are "
           "all runs")
-      ->check([](const std::string& text) {
+      .check([](const std::string& text) {
         return complaint([&] { experiment::shard_from_text(text); });
       })
-      ->type_name("I/N");
+      .type_name("I/N");
 }
 
-void add_pool_options(CLI::App& command,
-                      experiment::PoolOptions& pool,
-                      const std::string& threads) {
+void add_pool_options(Command command, experiment::PoolOptions& pool, const std::string& threads) {
   add_threads_option(command, pool.threads, threads);
   add_shard_option(command, [&pool](const experiment::Shard& shard) { pool.shard = shard; });
 }
 
-void add_rows_option(CLI::App& command, std::string& file) {
+void add_rows_option(Command command, std::string& file) {
   command.add_option("--rows", file, "Also write every run with every figure to this file")
-      ->check(file_to_write())
-      ->check([](const std::string& path) -> std::string {
+      .check(refuse_folder)
+      .check([](const std::string& path) -> std::string {
         return experiment::is_table_file(path)
                    ? ""
                    : path + ": must end in .txt, .md, .csv, .tex or .json";
       })
-      ->type_name("FILE");
+      .type_name("FILE");
 }
 
-CLI::Validator judge_name() {
-  const auto check = [](const std::string& name) {
-    return complaint([&] { experiment::find_judge(name); });
-  };
-  return {check, ""};
+std::string refuse_unknown_judge(const std::string& name) {
+  return complaint([&] { experiment::find_judge(name); });
 }
 
 }  // namespace server

@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "server/run/version.hpp"
@@ -23,7 +24,7 @@ int carry_out(int argc,
   app.footer(footer);
   int status = 0;
   try {
-    for (const AddCommand& add : commands) add(app, status);
+    for (const AddCommand& add : commands) add(Command(app), status);
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     // CLI11's own statuses reach 100 and more; scripts read 1 as "bad input".

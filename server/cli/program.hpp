@@ -8,7 +8,7 @@
 
 namespace server {
 
-using AddCommand = void (*)(CLI::App& app, int& status);
+using AddCommand = void (*)(Command app, int& status);
 
 /// Adds the commands of every build: serving, single runs, stored runs, devices.
 std::vector<AddCommand> serving_commands();

@@ -36,7 +36,7 @@ track = 0.33
   EXPECT_FALSE(examine(file, {}, [&](const Finding& f) { findings.push_back(f); }));
   std::vector<Finding> bad;
   for (const Finding& f : findings) {
-    if (f.verdict == Verdict::Bad) bad.push_back(f);
+    if (f.verdict == Finding::Verdict::Bad) bad.push_back(f);
   }
   ASSERT_EQ(bad.size(), 2U);
   EXPECT_THAT(bad[0].sentence, HasSubstr("/dev/no_such_laser"));
@@ -62,7 +62,7 @@ std::string bad_words_after(const std::string& command) {
       "a.toml");
   std::string bad;
   const auto listen = [&bad](const Finding& f) {
-    if (f.verdict == Verdict::Bad && f.device == "laser 1") bad += f.sentence + "\n";
+    if (f.verdict == Finding::Verdict::Bad && f.device == "laser 1") bad += f.sentence + "\n";
     EXPECT_THAT(f.sentence, Not(HasSubstr("% of the beams meet something")));
   };
   EXPECT_FALSE(examine(file, {.measuring = 0.5}, listen));
