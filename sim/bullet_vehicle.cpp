@@ -10,12 +10,12 @@
 namespace sim {
 namespace {
 
-constexpr double kLoadLag = 0.010;    // [s] low-pass of the wheel loads
-constexpr double kStillSpeed = 0.05;  // [m/s] below it parking begins
-constexpr double kStillTurn = 0.10;   // [rad/s]
-constexpr double kStillTime = 0.5;    // [s]
-constexpr double kSettleTime = 0.5;   // [s] for the wheels to settle on the floor
-constexpr double kTouching = 1e-4;    // [m] Bullet keeps contact points up to 0.02 m apart
+constexpr double kLoadLag = 0.010;         // [s] low-pass of the wheel loads
+constexpr double kStillSpeed = 0.05;       // [m/s] below it parking begins
+constexpr double kStillTurn = 0.10;        // [rad/s]
+constexpr double kStillTime = 0.5;         // [s]
+constexpr double kSettleTime = 0.5;        // [s] for the wheels to settle on the floor
+constexpr double kContactTouching = 1e-4;  // [m] Bullet keeps contact points up to 0.02 m apart
 constexpr int kHullPart = 0;
 
 /// The wheel side of a part of the chassis, by sign.
@@ -177,7 +177,7 @@ void BulletVehicle::read_contacts() {
       const btVector3 up = first ? point.m_normalWorldOnB : -point.m_normalWorldOnB;
       const double impulse = point.getAppliedImpulse();
       if (part == kHullPart) {
-        const bool touching = impulse > 0 || point.getDistance() < kTouching;
+        const bool touching = impulse > 0 || point.getDistance() < kContactTouching;
         if (touching && std::abs(up.z()) < 0.5) state_.contact = true;
         continue;
       }

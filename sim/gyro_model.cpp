@@ -10,7 +10,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x4759524f;  // of its errors: unlike any other sensor's
+constexpr std::uint64_t kGyroPurpose = 0x4759524f;  // of its errors: unlike any other sensor's
 
 }  // namespace
 
@@ -22,7 +22,7 @@ std::optional<std::string> defect(const GyroConfig& config) {
 }
 
 GyroModel::GyroModel(const GyroConfig& config, std::uint64_t seed)
-    : config_(checked(config, "Gyro")), random_(seed, kPurpose) {
+    : config_(checked(config, "Gyro")), random_(seed, kGyroPurpose) {
   double draw = 0;
   random_.fill_normal(std::span(&draw, 1));
   bias_ = config_.bias * draw;

@@ -7,8 +7,8 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x4952;  // of its noise: unlike any other sensor's
-constexpr double kOnTime = 1e-9;            // [s] below any period, above rounding
+constexpr std::uint64_t kInfraredPurpose = 0x4952;  // of its noise: unlike any other sensor's
+constexpr double kInfraredOnTime = 1e-9;            // [s] below any period, above rounding
 constexpr std::uint32_t kMostBeams = 361;
 
 BeamPattern fan_of(const InfraredConfig& config) {
@@ -34,7 +34,7 @@ InfraredModel::InfraredModel(const InfraredConfig& config, std::uint64_t seed, s
     : CastingSensor(config.height),
       config_(checked(config, "Infrared scanner")),
       fan_(fan_of(config)),
-      noise_(seed, (kPurpose << 8U) + index),
+      noise_(seed, (kInfraredPurpose << 8U) + index),
       ranges_(config.beams),
       hits_(config.beams),
       errors_(config.beams) {
@@ -48,7 +48,7 @@ InfraredModel::InfraredModel(const InfraredConfig& config, std::uint64_t seed, s
 void InfraredModel::sense(double now,
                           const PoseTrail& trail,
                           algo::Recycled<algo::RangeReading>& readings) {
-  const double taken = std::floor((now - phase_ + kOnTime) / config_.period) + 1;
+  const double taken = std::floor((now - phase_ + kInfraredOnTime) / config_.period) + 1;
   const auto scans = static_cast<std::int64_t>(std::max(0.0, taken));
   if (scans <= scans_) return;
   scans_ = scans;

@@ -15,7 +15,7 @@ constexpr double kGravity = 9.81;  // [m/s2]
 constexpr int kIterations = 10;    // enough on a flat floor
 constexpr double kRegather = 0.5;  // [m] driven before the near obstacles are selected anew
 constexpr double kSideways = 0.1;  // z of a contact's normal below which it supports nothing
-constexpr int kHullPart = 0;
+constexpr int kHullShape = 0;
 
 /// Drops contacts at the sides of a wheel. A support ball replaces the wheel and extends farther
 /// sideways than it; only the hull touches obstacles beside the robot. The user index of a chassis
@@ -36,7 +36,7 @@ void drop_wheel_sides(btBroadphasePair& pair,
     for (int c = manifold.getNumContacts() - 1; c >= 0; --c) {
       const btManifoldPoint& point = manifold.getContactPoint(c);
       const int part = first ? point.m_index0 : point.m_index1;
-      const bool wheel = part > kHullPart && part <= last_wheel;
+      const bool wheel = part > kHullShape && part <= last_wheel;
       if (wheel && std::abs(point.m_normalWorldOnB.z()) < kSideways) manifold.removeContactPoint(c);
     }
   }

@@ -10,8 +10,8 @@
 namespace sim {
 namespace {
 
-constexpr double kTouching = 0.005;  // [m] a caster raised by more carries no load
-constexpr double kFirmly = 0.01;     // [m] from the centre of mass to the line of two supports
+constexpr double kCasterTouching = 0.005;  // [m] a caster raised by more carries no load
+constexpr double kFirmly = 0.01;  // [m] from the centre of mass to the line of two supports
 constexpr int kDirections = 72;
 
 /// True if the supports extend beyond R in every direction.
@@ -22,7 +22,7 @@ bool stands(const RobotModel& robot) {
     supports.emplace_back(x, -robot.half_track);
   }
   for (const Caster& caster : robot.casters) {
-    if (caster.raised <= kTouching) supports.emplace_back(caster.x, caster.y);
+    if (caster.raised <= kCasterTouching) supports.emplace_back(caster.x, caster.y);
   }
   for (int k = 0; k < kDirections; ++k) {
     const algo::Vec2 way = algo::direction(2 * std::numbers::pi * k / kDirections);

@@ -9,10 +9,10 @@
 namespace sim {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x534f4e4152;  // of its noise: unlike any scanner's
-constexpr std::size_t kRays = 31;                 // per cone
-constexpr double kRounding = 1e-9;                // [rad] error of degrees to radians and back
-constexpr double kOnTime = 1e-9;                  // [s] below any period, above rounding
+constexpr std::uint64_t kSonarPurpose = 0x534f4e4152;  // of its noise: unlike any scanner's
+constexpr std::size_t kRays = 31;                      // per cone
+constexpr double kRounding = 1e-9;                     // [rad] error of degrees to radians and back
+constexpr double kSonarOnTime = 1e-9;                  // [s] below any period, above rounding
 
 /// Axis of sensor `k` [rad], spaced evenly over the field. A whole turn: from straight ahead
 /// leftwards, without its end. Part of a turn: from its right to its left border.
@@ -44,7 +44,7 @@ SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t s
     : CastingSensor(config.height),
       config_(checked(config, "Sonar")),
       cone_{-config.cone / 2, config.cone / (kRays - 1), kRays},
-      noise_(seed, kPurpose),
+      noise_(seed, kSonarPurpose),
       ranges_(kRays),
       hits_(kRays) {
   for (std::uint32_t k = 0; k < config_.count; ++k) {
@@ -74,7 +74,7 @@ void SonarModel::sense(double now,
                        algo::Recycled<algo::RangeReading>& readings) {
   for (;; ++pings_) {
     const double fired = static_cast<double>(pings_) * config_.ping;
-    if (fired > now + kOnTime) return;
+    if (fired > now + kSonarOnTime) return;
     const algo::Pose2& mount = mounts_R_[pings_ % mounts_R_.size()];
     const auto echo = nearest_echo(algo::compose(trail.at(fired), mount));
     double error = 0;

@@ -25,14 +25,14 @@ constexpr std::uint8_t kNoPlan = 2;
 constexpr std::size_t kCells =
     static_cast<std::size_t>(CertaintyGrid::kSide) * CertaintyGrid::kSide;
 
-constexpr ParameterInfo kMargin{.name = "certainty_grid.margin",
-                                .label = "Margin",
-                                .unit = "m",
-                                .min = 0,
-                                .max = 0.5,
-                                .step = 0.01,
-                                .initial = 0.05,
-                                .help = "Room that the path keeps beyond the hull."};
+constexpr ParameterInfo kGridMargin{.name = "certainty_grid.margin",
+                                    .label = "Margin",
+                                    .unit = "m",
+                                    .min = 0,
+                                    .max = 0.5,
+                                    .step = 0.01,
+                                    .initial = 0.05,
+                                    .help = "Room that the path keeps beyond the hull."};
 constexpr ParameterInfo kLookAhead{.name = "certainty_grid.look_ahead",
                                    .label = "Look ahead",
                                    .unit = "m",
@@ -41,13 +41,13 @@ constexpr ParameterInfo kLookAhead{.name = "certainty_grid.look_ahead",
                                    .step = 0.05,
                                    .initial = 0.4,
                                    .help = "How far ahead on its path the robot aims."};
-constexpr auto kParameters = std::to_array<const ParameterInfo*>(
-    {&kMargin, &kLookAhead, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
+constexpr auto kGridParameters = std::to_array<const ParameterInfo*>(
+    {&kGridMargin, &kLookAhead, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 }  // namespace
 
 ParameterList CertaintyGridPlanner::parameters() {
-  return kParameters;
+  return kGridParameters;
 }
 
 void CertaintyGridPlanner::forget() {
@@ -153,7 +153,7 @@ void CertaintyGridPlanner::steer(const ControlInput& in,
   Layer& grid = add_layer(out.layers, kGrid);
   if (in.grids) grid_.show(grid);
   if (!planned_at_ || in.stamp - *planned_at_ >= kReplanPeriod) {
-    plan(in, parameters[kMargin]);
+    plan(in, parameters[kGridMargin]);
     planned_at_ = in.stamp;
   }
   out.state = reaches_ ? kPlanned : kNoPlan;

@@ -55,14 +55,14 @@ constexpr ParameterInfo kSpeedWeight{.name = "dwa.speed_weight",
                                      .step = 0.05,
                                      .initial = 0.2,
                                      .help = "What speed is worth."};
-constexpr auto kParameters = std::to_array<const ParameterInfo*>({&kHeadingWeight,
-                                                                  &kRoomWeight,
-                                                                  &kSpeedWeight,
-                                                                  &kMargin,
-                                                                  &kMaxSpeed,
-                                                                  &kMaxTurnRate,
-                                                                  &kHeadingGain,
-                                                                  &kGoalReach});
+constexpr auto kDwaParameters = std::to_array<const ParameterInfo*>({&kHeadingWeight,
+                                                                     &kRoomWeight,
+                                                                     &kSpeedWeight,
+                                                                     &kMargin,
+                                                                     &kMaxSpeed,
+                                                                     &kMaxTurnRate,
+                                                                     &kHeadingGain,
+                                                                     &kGoalReach});
 
 double full_turn(double angle) {
   const double wrapped = wrap_angle(angle);
@@ -194,7 +194,7 @@ double dwa_objective(const Pose2& pose_W,
 }
 
 ParameterList Dwa::parameters() {
-  return kParameters;
+  return kDwaParameters;
 }
 
 void Dwa::forget() {

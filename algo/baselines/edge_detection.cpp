@@ -15,7 +15,7 @@ constexpr double kAside = 0.45;        // [m] [D]
 constexpr double kStandingTime = 0.5;  // [s] [D]
 constexpr double kViaReach = 0.1;      // [m] [D] reach of the via point
 
-constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+constexpr auto kEdgeParameters = std::to_array<const ParameterInfo*>(
     {&kSafetyDistance, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 /// The first edge from `beam` on, going left (step +1) or right (step -1).
@@ -35,7 +35,7 @@ std::optional<Edge> first_edge(const LaserScan& scan, std::size_t beam, int step
 }  // namespace
 
 ParameterList EdgeDetection::parameters() {
-  return kParameters;
+  return kEdgeParameters;
 }
 
 EdgePair bounding_edges(const LaserScan& scan, std::size_t beam) {

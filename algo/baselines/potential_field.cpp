@@ -52,13 +52,13 @@ constexpr ParameterInfo kPush{
     .step = 0.05,
     .initial = 0.5,
     .help = "How strongly each obstacle within the safety distance pushes."};
-constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+constexpr auto kPotentialParameters = std::to_array<const ParameterInfo*>(
     {&kPull, &kPush, &kSafetyDistance, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 }  // namespace
 
 ParameterList PotentialField::parameters() {
-  return kParameters;
+  return kPotentialParameters;
 }
 
 Vec2 attraction(const PotentialSettings& settings, const Vec2& p_W, const Vec2& goal_W) {

@@ -25,7 +25,7 @@ constexpr ParameterInfo kAttraction{.name = "vff.attraction",
                                     .step = 0.05,
                                     .initial = 1.0,
                                     .help = "How strongly the goal pulls."};
-constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+constexpr auto kVffParameters = std::to_array<const ParameterInfo*>(
     {&kRepulsion, &kAttraction, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 // [D] The least share of v_max. Under the faintest push from straight ahead, the law would stand
 // still for ever, since nothing else then changes.
@@ -34,7 +34,7 @@ constexpr double kCreep = 0.1;
 }  // namespace
 
 ParameterList Vff::parameters() {
-  return kParameters;
+  return kVffParameters;
 }
 
 VffForces vff_forces(

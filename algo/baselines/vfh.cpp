@@ -29,7 +29,7 @@ constexpr ParameterInfo kStandstill{.name = "vfh.standstill",
                                     .step = 100,
                                     .initial = 3000,
                                     .help = "At this density straight ahead the robot stands."};
-constexpr auto kParameters = std::to_array<const ParameterInfo*>(
+constexpr auto kVfhParameters = std::to_array<const ParameterInfo*>(
     {&kThreshold, &kStandstill, &kMaxSpeed, &kMaxTurnRate, &kHeadingGain, &kGoalReach});
 
 constexpr LayerInfo kHistogram{.name = "histogram",
@@ -70,7 +70,7 @@ int steer_through(const Valley& valley, int target) {
 }  // namespace
 
 ParameterList Vfh::parameters() {
-  return kParameters;
+  return kVfhParameters;
 }
 
 int sector_of(double bearing) {

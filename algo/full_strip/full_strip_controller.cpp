@@ -34,7 +34,7 @@ constexpr int kManeuverExpansions = 150;   // in a tick
 constexpr double kManeuverMargin = 0.031;  // [m] of room on the way
 constexpr std::size_t kNearest = 4;        // nodes ahead: a manoeuvre ends from here to kFarthest;
 constexpr std::size_t kFarthest = 11;
-constexpr std::size_t kAim = 7;                    // its search aims here
+constexpr std::size_t kAimedNode = 7;              // its search aims here
 constexpr double kOnStrip = 0.10;                  // [m]
 constexpr double kAlongStrip = 0.35;               // [rad]
 constexpr double kLastLeg = 2 * LocalMap::kReach;  // [m] to the goal
@@ -370,7 +370,7 @@ void FullStripController::look_for_maneuver(const ControlInput& in) {
   if (search_.state() != ManeuverSearch::State::Searching) {
     const bool moving = std::abs(in.odometry.twist.v) > 0.05;
     if (moving) return;
-    const std::size_t aim = std::min(nodes.size() - 1, kAim);
+    const std::size_t aim = std::min(nodes.size() - 1, kAimedNode);
     search_.start(here, nodes[aim].position_W, kManeuverMargin);
     next_search_ = in.stamp + kSearchEvery;
   }

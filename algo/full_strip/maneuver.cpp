@@ -29,12 +29,12 @@ constexpr std::array<Action, 12> kActions{{{kAhead, 0, 0.10F},
                                            {-kAhead, -2 * kNotch, 0.17F},
                                            {0, kNotch, 0.06F},
                                            {0, -kNotch, 0.06F}}};
-constexpr std::size_t kLongest = 256;  // pieces reserved from the start
-constexpr float kShift = 0.10F;        // [m] cost of changing between forward, back and turning
-constexpr double kSpeed = 0.3;         // [m/s] of a piece
-constexpr double kTurnSpeed = 0.8;     // [rad/s]
-constexpr double kTurnSlowly = 0.4;    // [rad/s] near the end of a turn
-constexpr double kAim = 0.20;          // [m] ahead on the piece, the point to steer for
+constexpr std::size_t kMostPieces = 256;  // pieces reserved from the start
+constexpr float kShift = 0.10F;           // [m] cost of changing between forward, back and turning
+constexpr double kSpeed = 0.3;            // [m/s] of a piece
+constexpr double kTurnSpeed = 0.8;        // [rad/s]
+constexpr double kTurnSlowly = 0.4;       // [rad/s] near the end of a turn
+constexpr double kAimAhead = 0.20;        // [m] ahead on the piece, the point to steer for
 
 /// The pose after the fraction `share` of an arc.
 Pose2 along(const Pose2& from, double length, double turn, double share) {
@@ -49,7 +49,7 @@ int sign(double value) {
 
 ManeuverSearch::ManeuverSearch() : nodes_(static_cast<std::size_t>(kCells) * kCells * kHeadings) {
   heap_.reserve(4 * nodes_.size() / 10);
-  pieces_.reserve(kLongest);
+  pieces_.reserve(kMostPieces);
 }
 
 std::optional<std::uint32_t> ManeuverSearch::node_at(const Pose2& pose_W) const {
@@ -151,7 +151,7 @@ void ManeuverSearch::trace(std::uint32_t node) {
 }
 
 ManeuverDrive::ManeuverDrive() {
-  pieces_.reserve(kLongest);
+  pieces_.reserve(kMostPieces);
 }
 
 void ManeuverDrive::start(const Recycled<Piece>& pieces) {
@@ -181,7 +181,7 @@ std::optional<Twist2> ManeuverDrive::next(const Pose2& pose_W, const MotionLimit
     // Steers for a point some way ahead on the pieces with the same direction.
     std::size_t aim = next_;
     while (aim + 1 < pieces_.size() && sign(pieces_[aim + 1].length) == way &&
-           (pieces_[aim].end_W.position() - pose_W.position()).norm() < kAim) {
+           (pieces_[aim].end_W.position() - pose_W.position()).norm() < kAimAhead) {
       ++aim;
     }
     const Vec2 to = pieces_[aim].end_W.position() - pose_W.position();

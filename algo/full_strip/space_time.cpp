@@ -26,11 +26,12 @@ constexpr double kRiskTime = 0.5;          // [s] plus the distance that both dr
 constexpr double kRisk = 1.5;              // [s/s] at zero room
 constexpr double kRiskFades = 2.5;         // [s] prediction time after which it counts 1/e
 constexpr double kReverse = 0.15;          // [s/s] for driving into where the scanner does not look
-constexpr double kReach = 6.0;    // [m] tracks farther than this from the motion are ignored
-constexpr double kCloser = 0.3;   // of the margins, if nothing else is clear
-constexpr double kHeld = 1.5;     // [s] of the candidate motions if none is clear
-constexpr double kLater = 0.02;   // [m] bonus in room for every later substep
-constexpr double kSlack = 0.002;  // [m] a position may be this much nearer to static obstacles
+constexpr double kReach = 6.0;   // [m] tracks farther than this from the motion are ignored
+constexpr double kCloser = 0.3;  // of the margins, if nothing else is clear
+constexpr double kHeld = 1.5;    // [s] of the candidate motions if none is clear
+constexpr double kLater = 0.02;  // [m] bonus in room for every later substep
+constexpr double kStaticSlack =
+    0.002;  // [m] a position may be this much nearer to static obstacles
 constexpr std::size_t kBins = 1 << 16;
 
 Twist2 command(std::size_t index, const MotionLimits& limits) {
@@ -162,7 +163,7 @@ Twist2 SpaceTimeSearch::search(const SpaceTimeInput& in, Weighing& out) {
     near_speeds_.push_back(track.velocity_W.norm());
   }
   // Already too close to a static obstacle: come no closer.
-  const double standing = in.hull->clearance(*in.map, in.state.pose_W) - kSlack;
+  const double standing = in.hull->clearance(*in.map, in.state.pose_W) - kStaticSlack;
   static_margin_ = std::clamp(standing, kStaticFloor, kStaticMargin);
   const double room = std::min(kStaticFloor, standing);
   for (std::size_t c = 0; c < kCommands; ++c) {

@@ -17,7 +17,7 @@ constexpr double kGapPerMetre = 0.02;  // and per metre of range
 constexpr double kCuspArm = 0.15;      // [m] on both sides of a dent that separates two clusters
 constexpr double kCusp = 0.04;         // [m] depth of the dent
 constexpr std::size_t kFewest = 4;     // beams of a cluster
-constexpr double kLongest = 1.6;       // [m] of a cluster's chord
+constexpr double kLongestChord = 1.6;  // [m] of a cluster's chord
 constexpr double kThinnest = 0.06, kThickest = 0.8;            // [m] radii
 constexpr double kRound = 0.035;                               // [m] largest residual of a circle
 constexpr double kTypicalRadius = 0.35, kRadiusSpread = 0.25;  // [m] prior of a new track
@@ -30,7 +30,7 @@ constexpr double kAcceleration = 0.5;   // [m/s2] process noise
 constexpr double kSurprise = 9;         // normalised innovation squared that widens the velocity
 constexpr double kFirstSpeed = 1.5;     // [m/s] standard deviation of a new track
 constexpr double kFound = 0.25;         // [s] a track is watched before it may count as moving
-constexpr double kMoves = 0.25;         // [m/s]
+constexpr double kMovingSpeed = 0.25;   // [m/s]
 constexpr double kGone = 0.12;          // [m] from the place of first sight
 constexpr double kStands = 0.12;        // [m/s] below it, for kStandsFor, it stands
 constexpr double kStandsFor = 1.0;      // [s]
@@ -164,7 +164,7 @@ void Tracker::close(std::size_t first,
   c.first = first;
   c.last = last;
   c.chord = (points_W[last] - points_W[first]).norm();
-  if (c.chord > kLongest) return;
+  if (c.chord > kLongestChord) return;
   fit(c, sensor_W, points_W, kTypicalRadius, kRadiusSpread);
   clusters_.push_back(c);
 }
@@ -371,7 +371,7 @@ void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points
     f.moving = !stands;
     return;
   }
-  f.moving = stamp - f.born > kFound && speed > kMoves && speed > 1.5 * std::sqrt(f.vv) &&
+  f.moving = stamp - f.born > kFound && speed > kMovingSpeed && speed > 1.5 * std::sqrt(f.vv) &&
              (f.position_W - f.born_at_W).norm() > kGone && c.last - c.first >= kSolid &&
              f.radius > kStout && changed(f, c, points_W);
   if (f.moving) {

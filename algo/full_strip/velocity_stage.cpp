@@ -20,8 +20,8 @@ constexpr double kTurnGain = 2.5;      // [1/s]
 constexpr double kArc = 0.1;           // [rad] heading error that an arc removes by itself,
 constexpr double kArcPerSpeed = 1.0;   // [rad per m/s] and more with speed
 constexpr std::array<double, 5> kShares{1, 0.75, 0.5, 0.3, 0.15};
-constexpr double kFloor = 0.02;   // [m] below it only an escape is tried; above a scanner's error
-constexpr double kSlack = 0.002;  // [m] a position may be this much nearer than the last
+constexpr double kFloor = 0.02;  // [m] below it only an escape is tried; above a scanner's error
+constexpr double kStepSlack = 0.002;    // [m] a position may be this much nearer than the last
 constexpr double kReverseSpeed = 0.24;  // [m/s]
 
 /// [m] Distance ahead of the robot of the point it steers for, at speed `v`.
@@ -112,7 +112,7 @@ bool VelocityStage::admissible(const StageInput& in,
   // The robot's distance along the strip when its command begins to act.
   s += (state.pose_W.position() - in.strip->nodes()[0].position_W).norm();
   // Already too close: no step may lead closer until there is room again.
-  double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kSlack);
+  double margin = std::min(kMargin, hull_.clearance(*in.map, state.pose_W) - kStepSlack);
   if (margin < kFloor) return false;
   const int ticks = std::max(1, static_cast<int>(std::lround(kHorizon / in.dt)));
   for (int k = 0; k < ticks; ++k) {
@@ -127,7 +127,7 @@ bool VelocityStage::admissible(const StageInput& in,
     if (hull_.enters_unseen(in.map->seen(), state.pose_W, state.twist)) return false;
     const double room = hull_.clearance(*in.map, state.pose_W);
     if (room < margin) return false;
-    margin = std::max(margin, std::min(kMargin, room - kSlack));
+    margin = std::max(margin, std::min(kMargin, room - kStepSlack));
     // The strip may change at the next tick, or a person may press Stop.
     if (k == 0 && !rests_clear(*in.map, hull_, state, in.limits, in.dt, margin)) return false;
     if (state.twist == Twist2{} && command == Twist2{}) return true;
@@ -156,7 +156,7 @@ std::optional<Twist2> VelocityStage::proven(const StageInput& in,
                                             const Twist2& wanted,
                                             Weighing& out) const {
   const double here = hull_.clearance(*in.map, in.state.pose_W);
-  const double margin = std::min(kMargin, here) - kSlack;
+  const double margin = std::min(kMargin, here) - kStepSlack;
   MotionState state = in.state;
   bool allowed = margin >= kFloor;
   for (int k = 0; allowed && k < 2; ++k) {

@@ -4,7 +4,7 @@
 namespace algo {
 namespace {
 
-constexpr double kPeriod = 0.5;   // [s] between two grids
+constexpr double kGridPeriod = 0.5;  // [s] between two grids
 constexpr double kRefresh = 5.0;  // [s] after which an unchanged one comes again, for new viewers
 
 bool brings_grid(const Layer& layer) {
@@ -25,7 +25,7 @@ void GridThinning::reset() {
 }
 
 bool GridThinning::due(double stamp) {
-  if (!passed(asked_at_, stamp, kPeriod)) return false;
+  if (!passed(asked_at_, stamp, kGridPeriod)) return false;
   asked_at_ = stamp;
   return true;
 }

@@ -6,8 +6,8 @@
 namespace algo {
 namespace {
 
-constexpr double kPeriod = 0.5;        // [s]
-constexpr double kLegendPeriod = 2.0;  // [s] longest wait of a viewer who missed a frame
+constexpr double kNarrationPeriod = 0.5;  // [s]
+constexpr double kLegendPeriod = 2.0;     // [s] longest wait of a viewer who missed a frame
 // Room for the longest words, so that words longer than all before do not allocate.
 constexpr std::size_t kLongestWhat = 60;
 constexpr std::size_t kLongestWhy = 250;
@@ -34,7 +34,8 @@ void Narrator::tell(const Controller& controller, Telemetry& t) {
                  .behaviour = t.behaviour,
                  .state = t.output.state};
   // Written so that a NaN stamp makes new words.
-  t.words_fresh = !said_ || !now.same_state(*said_) || !(now.stamp - said_->stamp < kPeriod);
+  t.words_fresh =
+      !said_ || !now.same_state(*said_) || !(now.stamp - said_->stamp < kNarrationPeriod);
   make_room(t.words);
   if (t.words_fresh) {
     make_room(words_);

@@ -12,9 +12,15 @@ constexpr double kRamp = 1.5;        // [m/s2] of a wheel with power
 constexpr double kCoasting = 0.8;    // [m/s2] of one without
 constexpr double kLowestVolts = 20;  // [V] of the battery; below, the amplifiers stop
 
-enum Line : std::uint32_t { RelayClosed = 1, StopReleased = 2, Well = 3, Bumper = 4, Enable = 5 };
+enum DigitalLine : std::uint32_t {
+  RelayClosed = 1,
+  StopReleased = 2,
+  Well = 3,
+  Bumper = 4,
+  Enable = 5
+};
 
-std::uint32_t bit(Line line, bool high) {
+std::uint32_t bit(DigitalLine line, bool high) {
   return high ? 1U << line : 0U;
 }
 

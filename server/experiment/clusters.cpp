@@ -10,7 +10,8 @@
 namespace server::experiment {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x636c757374657273;  // "clusters": the generator's purpose
+constexpr std::uint64_t kClusterPurpose =
+    0x636c757374657273;  // "clusters": the generator's purpose
 
 Cluster total(std::span<const Cluster> clusters) {
   Cluster all;
@@ -35,7 +36,7 @@ bool alike(std::span<const Cluster> clusters) {
 std::vector<double> resampled_ratios(std::span<const Cluster> clusters,
                                      std::size_t count,
                                      std::uint64_t seed) {
-  sim::Random random(seed, kPurpose);
+  sim::Random random(seed, kClusterPurpose);
   const auto n = static_cast<double>(clusters.size());
   std::vector<double> ratios(count);
   for (double& each : ratios) {

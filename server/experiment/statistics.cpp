@@ -12,7 +12,8 @@
 namespace server::experiment {
 namespace {
 
-constexpr std::uint64_t kPurpose = 0x626f6f7473747270;  // "bootstrp": the generator's purpose
+constexpr std::uint64_t kBootstrapPurpose =
+    0x626f6f7473747270;  // "bootstrp": the generator's purpose
 
 double mean_of(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
@@ -77,7 +78,7 @@ std::optional<Summary> summarise(std::vector<double> values) {
 std::vector<double> resampled_means(std::span<const double> values,
                                     std::size_t count,
                                     std::uint64_t seed) {
-  sim::Random random(seed, kPurpose);
+  sim::Random random(seed, kBootstrapPurpose);
   const auto n = static_cast<double>(values.size());
   std::vector<double> means(count);
   for (double& mean : means) {

@@ -15,7 +15,7 @@ namespace {
 
 // Between two slices of a batch, the database thread takes the frames of live runs.
 constexpr std::chrono::milliseconds kSliceTime{10};
-constexpr std::size_t kSlice = 200;  // runs
+constexpr std::size_t kQueueSlice = 200;  // runs
 // Interval at which the queue checks if the store takes runs again.
 constexpr std::chrono::milliseconds kStoreRetry{200};
 
@@ -106,7 +106,7 @@ void RunQueue::insert(db::RunStore& store, Batch& batch) {
   }
   if (!recorder_.takes_more()) throw db::StoreError(recorder_.status().sentence);
   const std::size_t before = batch.runs.size();
-  const std::size_t end = std::min<std::size_t>(before + kSlice, batch.asked.repeats);
+  const std::size_t end = std::min<std::size_t>(before + kQueueSlice, batch.asked.repeats);
   const auto until = std::chrono::steady_clock::now() + kSliceTime;
   try {
     do {
@@ -138,10 +138,10 @@ void RunQueue::give_up(const Batch& batch, const std::string& why) {
   Recorder& recorder = recorder_;
   batch.accepted({}, why);
   arrived(batch.asked.repeats);  // from here on stop() may return and this object be destroyed
-  for (std::size_t begin = 0; begin < batch.runs.size(); begin += kSlice) {
+  for (std::size_t begin = 0; begin < batch.runs.size(); begin += kQueueSlice) {
     const auto from = batch.runs.begin() + static_cast<std::ptrdiff_t>(begin);
     const auto left = static_cast<std::size_t>(batch.runs.end() - from);
-    const auto to = from + static_cast<std::ptrdiff_t>(std::min(kSlice, left));
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(kQueueSlice, left));
     // The cause of the failure may also block this write, so retry it: nothing else would.
     recorder.post_when_well([runs = std::vector<db::RunId>(from, to), why](db::RunStore& store) {
       for (const db::RunId run : runs) {

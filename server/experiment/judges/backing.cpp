@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kSpell = 0.05;  // [m] backwards without a break, to count as one spell
 
-constexpr Column kColumns[] = {{"backing_m", Aggregate::Mean, 2},
-                               {"backing_spells", Aggregate::Mean, 1}};
+constexpr Column kBackingColumns[] = {{"backing_m", Aggregate::Mean, 2},
+                                      {"backing_spells", Aggregate::Mean, 1}};
 
 class Backing final : public Judge {
  public:
@@ -45,7 +45,7 @@ class Backing final : public Judge {
 
 JudgeInfo backing() {
   return {.help = "How far and how often the robot drives backwards",
-          .columns = kColumns,
+          .columns = kBackingColumns,
           .make = make_judge<Backing>};
 }
 

@@ -15,12 +15,12 @@ constexpr double kTimeLimit = 100;     // [s] of that clock
 constexpr double kPatience = 60;       // [s] for a robot that never moves
 constexpr double kOptimalSpeed = 2.0;  // [m/s]
 
-constexpr Column kColumns[] = {
+constexpr Column kBarnColumns[] = {
     {"barn_time_s", Aggregate::Mean, 2},        // of the benchmark's clock
     {"barn_score", Aggregate::Mean, 4},         // at most 0.5: editions since 2024
     {"barn_score_quarter", Aggregate::Mean, 4}  // at most 0.25: 2022 and 2023
 };
-constexpr std::string_view kSettings[] = {"goal_radius", "optimal_length"};
+constexpr std::string_view kBarnSettings[] = {"goal_radius", "optimal_length"};
 
 /// Settings: `goal_radius` [m], default the benchmark's 1; `optimal_length` [m] of the best known
 /// path, default the straight line.
@@ -76,9 +76,9 @@ class BarnScore final : public Judge {
 
 JudgeInfo barn_score() {
   return {.help = "Clock, ending and score of the BARN Challenge",
-          .columns = kColumns,
+          .columns = kBarnColumns,
           .make = make_judge<BarnScore>,
-          .settings = kSettings,
+          .settings = kBarnSettings,
           .ends = true};
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTrail = 4;  // [s] kept: a little more than the oracle goes back
 
-constexpr Column kColumns[] = {{"contact", Aggregate::Largest, 0}};  // a Contact
+constexpr Column kContactColumns[] = {{"contact", Aggregate::Largest, 0}};  // a Contact
 
 class ContactJudge final : public Judge {
  public:
@@ -48,7 +48,7 @@ JudgeInfo contact() {
   return {.help =
               "Whether a contact with something that moves could have been avoided: 0 none, "
               "1 avoidable, 2 not, 3 with an obstacle that had jumped",
-          .columns = kColumns,
+          .columns = kContactColumns,
           .make = make_judge<ContactJudge>};
 }
 

@@ -6,13 +6,13 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr Column kColumns[] = {{"time_s", Aggregate::Mean, 1},
-                               {"path_m", Aggregate::Mean, 2},
-                               {"min_clearance_m", Aggregate::Least, 3},
-                               {"safety_infringed_s", Aggregate::Largest, 1},
-                               {"safety_depth_m", Aggregate::Largest, 3},
-                               {"turning_rad", Aggregate::Mean, 2},
-                               {"via_points", Aggregate::Mean, 1}};
+constexpr Column kMetricColumns[] = {{"time_s", Aggregate::Mean, 1},
+                                     {"path_m", Aggregate::Mean, 2},
+                                     {"min_clearance_m", Aggregate::Least, 3},
+                                     {"safety_infringed_s", Aggregate::Largest, 1},
+                                     {"safety_depth_m", Aggregate::Largest, 3},
+                                     {"turning_rad", Aggregate::Mean, 2},
+                                     {"via_points", Aggregate::Mean, 1}};
 
 class Metrics final : public Judge {
  public:
@@ -42,7 +42,7 @@ class Metrics final : public Judge {
 
 JudgeInfo metrics() {
   return {.help = "Time, path, clearance, safety circle, turning, via points",
-          .columns = kColumns,
+          .columns = kMetricColumns,
           .make = make_judge<Metrics>};
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kTurns = 0.05;  // [rad/s] a slower command is no turn
 
-constexpr Column kColumns[] = {
+constexpr Column kMotionColumns[] = {
     {"path_ratio", Aggregate::Mean, 2},        // driven / straight from the start through the goals
     {"mean_clearance_m", Aggregate::Mean, 3},  // over time, from the hull
     {"jerk_rms_m_s3", Aggregate::Mean, 2},     // second difference of the true speed / period^2
@@ -99,7 +99,7 @@ class Motion final : public Judge {
 
 JudgeInfo motion() {
   return {.help = "Path / straight line, mean clearance, jerk, control effort, turns that flip",
-          .columns = kColumns,
+          .columns = kMotionColumns,
           .make = make_judge<Motion>};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kResample = 0.050;  // [m] between kept positions, as for the turning
 
-constexpr Column kColumns[] = {
+constexpr Column kPathColumns[] = {
     {"body_infringed_s", Aggregate::Largest, 1},  // an obstacle within d_safe of the hull
     {"body_depth_m", Aggregate::Largest, 3},      // its greatest depth
     // Sum of (change of direction)^2 / length of the later segment, of the path resampled at 50 mm
@@ -99,7 +99,7 @@ class Path final : public Judge {
 
 JudgeInfo path() {
   return {.help = "Circle about the hull, bending, and what the strip does along the way",
-          .columns = kColumns,
+          .columns = kPathColumns,
           .make = make_judge<Path>};
 }
 

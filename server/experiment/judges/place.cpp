@@ -6,7 +6,7 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr Column kColumns[] = {{"end_x_m"}, {"end_y_m"}, {"end_heading_rad"}};
+constexpr Column kPlaceColumns[] = {{"end_x_m"}, {"end_y_m"}, {"end_heading_rad"}};
 
 class Place final : public Judge {
  public:
@@ -31,7 +31,7 @@ class Place final : public Judge {
 
 JudgeInfo place() {
   return {.help = "The true pose in which the run ends",
-          .columns = kColumns,
+          .columns = kPlaceColumns,
           .make = make_judge<Place>};
 }
 

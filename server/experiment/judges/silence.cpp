@@ -8,12 +8,12 @@
 namespace server::experiment::judges {
 namespace {
 
-constexpr double kTimeLimit = 300;  // [s]
-constexpr double kStands = 20;      // [s] without moving or turning: the robot stands
-constexpr double kWay = 0.05;       // [m]
-constexpr double kTurn = 0.2;       // [rad]
+constexpr double kSilenceTimeLimit = 300;  // [s]
+constexpr double kStands = 20;             // [s] without moving or turning: the robot stands
+constexpr double kWay = 0.05;              // [m]
+constexpr double kTurn = 0.2;              // [rad]
 
-constexpr Column kColumns[] = {
+constexpr Column kSilenceColumns[] = {
     {"silent", Aggregate::Sum, 0},     // 1: it stood for 20 s and gave no reason
     {"not_finite", Aggregate::Sum, 0}  // 1: a command was not a number
 };
@@ -67,7 +67,7 @@ class Silence final : public Judge {
       silent_ = stamp - reason_ >= kStands;
       return end(algo::Outcome::Stuck, t);
     }
-    if (stamp > kTimeLimit) end(algo::Outcome::OutOfTime, t);
+    if (stamp > kSilenceTimeLimit) end(algo::Outcome::OutOfTime, t);
   }
 
   void write(std::span<double> row) const override {
@@ -93,7 +93,7 @@ class Silence final : public Judge {
 
 JudgeInfo silence() {
   return {.help = "Whether the robot stood still without saying why, or commanded no number",
-          .columns = kColumns,
+          .columns = kSilenceColumns,
           .make = make_judge<Silence>,
           .ends = true};
 }

@@ -12,7 +12,7 @@ constexpr double kSlow = 0.05;      // share of the top speed; slower counts as 
 constexpr double kPause = 0.1;      // [s] of rest that make a pause
 constexpr double kRounding = 1e-9;  // [s] by which a sum of periods may be less than their product
 
-constexpr Column kColumns[] = {
+constexpr Column kStandingColumns[] = {
     {"standing_s", Aggregate::Mean, 1},  // all rest
     // Times it rested for 0.1 s or more and then drove on. The rest before the first motion and the
     // rest at the end of a run do not count.
@@ -74,7 +74,7 @@ class Standing final : public Judge {
 
 JudgeInfo standing() {
   return {.help = "Time at rest, and pauses from which the robot drives on",
-          .columns = kColumns,
+          .columns = kStandingColumns,
           .make = make_judge<Standing>};
 }
 

@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uint64_t kPurpose = 0x7377656570000000;  // "sweep": the generator's purpose
-constexpr std::uint64_t kMaxSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
+constexpr std::uint64_t kMaxDesignSeed = (std::uint64_t{1} << 53) - 1;  // exact in a JSON number
 
 const algo::ParameterInfo& parameter_named(const JsonReader& in, const std::string& name) {
   const algo::ParameterInfo* const found = algo::find_parameter(name);
@@ -87,7 +87,7 @@ void read_draws(const JsonReader& in, Design& design) {
   in.only({"count", "seed", "parameters"});
   design.draws = in.whole("count", kMostDraws);
   if (design.draws == 0) in.fail("count", "must be at least 1");
-  design.seed = in.whole_or("seed", design.seed, kMaxSeed);
+  design.seed = in.whole_or("seed", design.seed, kMaxDesignSeed);
   design.axes = axes_from_json(in, "parameters", 2);
   const JsonReader ranges = in.object("parameters");
   for (const auto& [name, value] : ranges.raw().items()) {

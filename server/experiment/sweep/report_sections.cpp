@@ -16,7 +16,7 @@ constexpr const char* kRates =
     "out "
     "of time stay in the denominator. ";
 
-constexpr const char* kFigures =
+constexpr const char* kFiguresText =
     "Clearances, infringed and standing time are of all runs, the other figures of those that "
     "reached their goal; n is their number. Quantiles are linear between order statistics "
     "(definition 7 of "
@@ -81,7 +81,7 @@ std::string figures_text(const Plan& plan) {
           ? "The interval of the mean is BCa over the seeds of the one scenario."
           : "The interval of the mean is BCa with 2000 resamples of whole scenarios; of a figure "
             "that runs in one scenario alone have, over those runs.";
-  return fmt::format("{}{}", kFigures, interval);
+  return fmt::format("{}{}", kFiguresText, interval);
 }
 
 std::string pairings_text(const Plan& plan) {

@@ -24,14 +24,14 @@ namespace fs = std::filesystem;
 using experiment::Row;
 using nlohmann::json;
 
-constexpr algo::Outcome kOutcomes[] = {algo::Outcome::Reached,
-                                       algo::Outcome::Stuck,
-                                       algo::Outcome::OutOfTime,
-                                       algo::Outcome::Collided,
-                                       algo::Outcome::Failed};
+constexpr algo::Outcome kLoggedOutcomes[] = {algo::Outcome::Reached,
+                                             algo::Outcome::Stuck,
+                                             algo::Outcome::OutOfTime,
+                                             algo::Outcome::Collided,
+                                             algo::Outcome::Failed};
 
 algo::Outcome outcome_named(const std::string& name) {
-  for (const algo::Outcome outcome : kOutcomes) {
+  for (const algo::Outcome outcome : kLoggedOutcomes) {
     if (algo::name(outcome) == name) return outcome;
   }
   throw std::runtime_error("no outcome is called " + name);

@@ -7,7 +7,7 @@
 namespace server::mapping {
 namespace {
 
-constexpr double kPiece = 10;  // [m]
+constexpr double kPathPiece = 10;  // [m]
 
 double way(const algo::Pose2& from_W, const algo::Pose2& to_W) {
   return (to_W.position() - from_W.position()).norm();
@@ -38,11 +38,11 @@ PathError path_error(std::span<const algo::Pose2> true_W, std::span<const algo::
   double length = 0;  // [m] of the true path from i to j
   std::size_t j = 0;
   for (std::size_t i = 0; i < true_W.size(); ++i) {
-    while (length < kPiece && j + 1 < true_W.size()) {
+    while (length < kPathPiece && j + 1 < true_W.size()) {
       length += way(true_W[j], true_W[j + 1]);
       ++j;
     }
-    if (length < kPiece) break;
+    if (length < kPathPiece) break;
     const algo::Pose2 truth = algo::pose_step(true_W[i], true_W[j]);
     const algo::Pose2 estimate = algo::pose_step(estimate_W[i], estimate_W[j]);
     const double turn = algo::wrap_angle(estimate.heading - truth.heading);

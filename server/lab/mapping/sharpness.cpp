@@ -8,9 +8,9 @@
 namespace server::mapping {
 namespace {
 
-constexpr double kCell = 0.04;  // [m]
-constexpr double kReach = 15;   // [m]
-constexpr double kPiece = 10;   // [m]
+constexpr double kCell = 0.04;    // [m]
+constexpr double kReach = 15;     // [m]
+constexpr double kMapPiece = 10;  // [m]
 
 class Cells {
  public:
@@ -43,7 +43,7 @@ std::vector<std::size_t> wall_cells(std::span<const algo::LaserScan> scans,
   double length = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     if (i > 0) length += (reference_W[i].position() - reference_W[i - 1].position()).norm();
-    if (length >= kPiece) {
+    if (length >= kMapPiece) {
       counts.push_back(cells.count());
       cells.clear();
       length = 0;

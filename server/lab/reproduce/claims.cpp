@@ -48,18 +48,18 @@ constexpr auto kStatements = std::to_array<Statement>({
      }},
 });
 
-struct Reading {
+struct ModifiedReading {
   const char* name = "";
   bool as_printed = false;
 };
-constexpr std::array<Reading, 4> kModified{{{"modified_published", true},
-                                            {"modified_linear", true},
-                                            {"modified_c1", false},
-                                            {"modified", false}}};
+constexpr std::array<ModifiedReading, 4> kModified{{{"modified_published", true},
+                                                    {"modified_linear", true},
+                                                    {"modified_c1", false},
+                                                    {"modified", false}}};
 
 Claim judge(std::span<const Series> rows, const Series& original, const Statement& statement) {
   Claim claim{.scenario = original.scenario, .text = statement.text};
-  for (const Reading& reading : kModified) {
+  for (const ModifiedReading& reading : kModified) {
     const Series* modified = find_series(rows, original.scenario, reading.name);
     if (modified == nullptr || !statement.holds(original, *modified)) continue;
     claim.held_by.emplace_back(reading.name);

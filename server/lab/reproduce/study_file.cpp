@@ -25,13 +25,13 @@ constexpr std::size_t kMaxLimits = 10'000;
 constexpr std::size_t kMaxValues = 100;
 constexpr NumberRange kPeriod{0.002, 0.2};  // [s] no longer than the scan timeout of the robot
 
-constexpr auto kReadings = std::to_array<std::string_view>({"original",
-                                                            "modified_published",
-                                                            "modified_linear",
-                                                            "modified_c1",
-                                                            "modified",
-                                                            "via_kept",
-                                                            "original_side"});
+constexpr auto kReadingNames = std::to_array<std::string_view>({"original",
+                                                                "modified_published",
+                                                                "modified_linear",
+                                                                "modified_c1",
+                                                                "modified",
+                                                                "via_kept",
+                                                                "original_side"});
 
 using Paper = PaperConditions;
 constexpr Field<Paper> kConditions[] = {
@@ -66,9 +66,9 @@ PaperConditions read_conditions(const JsonReader& in) {
 }
 
 std::string known_reading(const std::string& path, std::string name) {
-  if (std::ranges::find(kReadings, name) != kReadings.end()) return name;
+  if (std::ranges::find(kReadingNames, name) != kReadingNames.end()) return name;
   throw DocumentError(
-      path, fmt::format("'{}' is no reading; there are {}", name, fmt::join(kReadings, ", ")));
+      path, fmt::format("'{}' is no reading; there are {}", name, fmt::join(kReadingNames, ", ")));
 }
 
 std::string reading_name(const JsonReader& in, std::string_view key) {
@@ -131,7 +131,7 @@ SweepPlan read_sweep(const JsonReader& in) {
   const std::string name = in.text("parameter", 64);
   plan.parameter = algo::find_parameter(name);
   if (plan.parameter == nullptr) in.fail("parameter", fmt::format("'{}' is unknown", name));
-  in.each("controllers", kReadings.size(), [&](const json& value, const std::string& at) {
+  in.each("controllers", kReadingNames.size(), [&](const json& value, const std::string& at) {
     if (!value.is_string()) throw DocumentError(at, "must be text");
     plan.controllers.push_back(known_reading(at, value));
   });
@@ -149,7 +149,7 @@ StudyFile from_text(std::string_view text) {
 }  // namespace
 
 std::span<const std::string_view> readings() {
-  return kReadings;
+  return kReadingNames;
 }
 
 StudyFile study_file_from_json(const json& document) {

@@ -19,7 +19,7 @@ namespace {
 using algo::Outcome;
 
 /// How a sweep of one parameter is shown and judged.
-struct Reading {
+struct SweptReading {
   const algo::ParameterInfo* parameter = nullptr;
   const char* name = "";
   std::string (*cell)(const Series&) = nullptr;
@@ -200,7 +200,7 @@ constexpr const char* kClearance =
     "least clearance [mm] and outcome: r reached, s stuck, t out of time, C collided; * refused "
     "elsewhere, since S >= K_r d_safe";
 
-constexpr auto kReadings = std::to_array<Reading>({
+constexpr auto kSweptReadings = std::to_array<SweptReading>({
     {&algo::kRepulsionGain, "K_r", clearance_cell, kClearance, judge_repulsion},
     {&algo::kSafetyDistance, "d_safe", clearance_cell, kClearance, judge_safety_distance},
     {&algo::kContractionGain,
@@ -222,13 +222,13 @@ void judge_nothing(Sweep& sweep, double /*tolerance_mm*/) {
   sweep.because = "These are figures only.";
 }
 
-Reading reading_of(const algo::ParameterInfo& parameter) {
-  const auto* const found = std::ranges::find(kReadings, &parameter, &Reading::parameter);
-  if (found != kReadings.end()) return *found;
+SweptReading reading_of(const algo::ParameterInfo& parameter) {
+  const auto* const found = std::ranges::find(kSweptReadings, &parameter, &SweptReading::parameter);
+  if (found != kSweptReadings.end()) return *found;
   return {&parameter, parameter.key().data(), clearance_cell, kClearance, judge_nothing};
 }
 
-void tabulate(Sweep& sweep, const Reading& reading) {
+void tabulate(Sweep& sweep, const SweptReading& reading) {
   sweep.legend = reading.legend;
   sweep.table.words = 2;
   sweep.table.header = {"scenario", "reading"};
@@ -287,7 +287,7 @@ std::vector<Sweep> run_sweeps(const StudyFile& file,
       line.rows.assign(next, end);
       next = end;
     }
-    const Reading reading = reading_of(*file.sweeps[i].parameter);
+    const SweptReading reading = reading_of(*file.sweeps[i].parameter);
     reading.judge(sweeps[i], file.conditions.noise * kMillimetres);
     tabulate(sweeps[i], reading);
   }

@@ -22,7 +22,7 @@ constexpr std::size_t kMostNote = 4000;
 constexpr std::size_t kMostTags = 16;
 constexpr std::size_t kMostTag = 40;
 constexpr std::size_t kMostRuns = 20'000;  // of one request
-constexpr std::size_t kSlice = 200;        // runs changed between the frames of live runs
+constexpr std::size_t kEditSlice = 200;    // runs changed between the frames of live runs
 
 /// A tag is one line, so that a search can tell it from others.
 std::vector<std::string> tags_from(const JsonReader& in, std::string_view key) {
@@ -96,8 +96,8 @@ net::Response change_runs(ApiContext& context, const JsonReader& in, const Chang
   const std::vector<db::RunId> runs = named_runs(context, in);
   json changed = json::array();
   json refused = json::array();
-  for (std::size_t from = 0; from < runs.size(); from += kSlice) {
-    const auto slice = std::span(runs).subspan(from, std::min(kSlice, runs.size() - from));
+  for (std::size_t from = 0; from < runs.size(); from += kEditSlice) {
+    const auto slice = std::span(runs).subspan(from, std::min(kEditSlice, runs.size() - from));
     const auto refusals = context.recorder.ask([&](db::RunStore& store) {
       std::vector<std::string> out;
       for (const db::RunId run : slice) out.push_back(change(store, run));
