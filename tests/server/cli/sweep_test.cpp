@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "tests/temporary_folder.hpp"
+#include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ class SweepCommandTest : public testing::Test {
     const std::filesystem::path file = folder_.path() / "document.json";
     write_text(file, document);
     CLI::App app;
-    add_sweep_command(app, status);
+    add_sweep_command(Command(app), status);
     std::vector<std::string> arguments{"sweep", file.string(), "--out", out().string()};
     arguments.insert(arguments.end(), options.begin(), options.end());
     std::ranges::reverse(arguments);  // CLI11 takes them from the end
@@ -39,7 +40,7 @@ class SweepCommandTest : public testing::Test {
   /// Runs `tautline report` on the folder of the results.
   void report() {
     CLI::App app;
-    add_report_command(app, status);
+    add_report_command(Command(app), status);
     std::vector<std::string> arguments{out().string(), "report"};
     testing::internal::CaptureStdout();
     try {
