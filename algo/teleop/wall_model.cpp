@@ -12,7 +12,8 @@ namespace {
 constexpr int kThetaCells = 72;
 constexpr double kThetaCell = 2 * std::numbers::pi / kThetaCells;
 constexpr double kRhoCellsPerMetre = 10;
-constexpr std::size_t kRhoCells = static_cast<std::size_t>(kWallReach * kRhoCellsPerMetre + 0.5);
+constexpr std::size_t kRhoCells = 128;  // up to kWallReach
+static_assert(static_cast<std::size_t>(kWallReach * kRhoCellsPerMetre) == kRhoCells);
 constexpr double kOnLimit = 1e-9;   // [rad] an axis this near to the sector's limit is on it
 constexpr double kRounding = 1e-9;  // [m] sums that differ by less are equal, as mirrored ones are
 

@@ -75,7 +75,7 @@ Option Command::add_option(const std::string& names, T& variable, const std::str
 }
 
 Option Command::add_option_function(const std::string& names,
-                                    std::function<void(const std::string&)> take,
+                                    const std::function<void(const std::string&)>& take,
                                     const std::string& help) const {
   return Option(*app_->add_option_function<std::string>(names, take, help));
 }

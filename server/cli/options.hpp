@@ -58,7 +58,7 @@ class Command {
   Option add_option(const std::string& names, T& variable, const std::string& help) const;
   /// `take` gets the value once it has passed its checks.
   Option add_option_function(const std::string& names,
-                             std::function<void(const std::string&)> take,
+                             const std::function<void(const std::string&)>& take,
                              const std::string& help) const;
   Option add_flag(const std::string& names, bool& variable, const std::string& help) const;
   /// An option or flag added before. Throws std::exception if there is none.
