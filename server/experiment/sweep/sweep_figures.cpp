@@ -134,11 +134,8 @@ Picture heat_map_of(const Plan& plan,
 /// Nothing while no run has a path.
 std::optional<Picture> paths_in(const Plan& plan, const Rows& rows, std::size_t scenario) {
   std::vector<experiment::DrawnPath> paths;
-  const std::size_t arms = std::min(experiment::kMostPaths, plan.arms().size());
-  for (std::size_t arm = 0; arm < arms; ++arm) {
-    if (plan.repeats(scenario, arm) == 0) continue;
-    const std::size_t run = plan.number({scenario, arm, 0});
-    if (rows.track_W(run).empty()) continue;
+  for (const std::size_t run : runs_with_path(plan, rows, scenario)) {
+    const std::size_t arm = plan.place(run).arm;
     paths.push_back({fmt::format("{}: {}", plan.arms()[arm].label, algo::name(rows.outcome(run))),
                      rows.track_W(run),
                      arm});
@@ -152,6 +149,16 @@ std::optional<Picture> paths_in(const Plan& plan, const Rows& rows, std::size_t 
 }
 
 }  // namespace
+
+std::vector<std::size_t> runs_with_path(const Plan& plan, const Rows& rows, std::size_t scenario) {
+  std::vector<std::size_t> runs;
+  for (std::size_t arm = 0; arm < plan.arms().size(); ++arm) {
+    if (plan.repeats(scenario, arm) == 0) continue;
+    const std::size_t run = plan.number({scenario, arm, 0});
+    if (!rows.track_W(run).empty()) runs.push_back(run);
+  }
+  return runs;
+}
 
 std::vector<Picture> pictures_of(const Plan& plan, const Rows& rows, const Results& results) {
   std::vector<Picture> all;

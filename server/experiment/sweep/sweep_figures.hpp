@@ -17,6 +17,9 @@ struct Picture {
   std::string svg{};
 };
 
+/// The runs in a scenario whose paths are drawn, one an arm.
+std::vector<std::size_t> runs_with_path(const Plan& plan, const Rows& rows, std::size_t scenario);
+
 /// Rates of success with their intervals; times, paths and least clearances as boxes; for a grid
 /// over two parameters, a heat map of the success of each controller; and the paths in each of the
 /// first scenarios.

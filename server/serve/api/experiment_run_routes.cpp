@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "server/experiment/judge.hpp"
+#include "server/experiment/sweep/sweep_figures.hpp"
 #include "server/run/json_reader.hpp"
 #include "server/run/pose_json.hpp"
 #include "server/serve/api/api.hpp"
@@ -135,12 +136,9 @@ json outlines_json(const sim::Scenario& scenario) {
 
 json paths_json(const sweep::Plan& plan, const sweep::Rows& rows, std::size_t scenario) {
   json paths = json::array();
-  for (std::size_t arm = 0; arm < plan.arms().size(); ++arm) {
-    if (plan.repeats(scenario, arm) == 0) continue;
-    const std::size_t run = plan.number({scenario, arm, 0});
-    if (rows.track_W(run).empty()) continue;
+  for (const std::size_t run : sweep::runs_with_path(plan, rows, scenario)) {
     paths.push_back({{"run", run},
-                     {"controller", plan.arms()[arm].label},
+                     {"controller", plan.arms()[plan.place(run).arm].label},
                      {"outcome", algo::name(rows.outcome(run))},
                      {"points", points_json(rows.track_W(run))}});
   }

@@ -79,24 +79,27 @@ void Experiments::check_turns() const {
   }
 }
 
-/// Deletes the oldest finished ones if it may and must. Holds mutex_.
-void Experiments::make_room() {
+/// Deletes the oldest that have ended, if it may and must. `bytes`: of the files of all, counted
+/// without the lock, since that visits every file. Holds mutex_.
+void Experiments::make_room(std::uint64_t bytes) {
   const auto full = [&]() -> std::string {
     if (all_.size() >= rules_.most_kept) {
       return fmt::format("{} experiments are kept, as many as may.", all_.size());
     }
-    if (rules_.keep_bytes == 0 || bytes_in(rules_.folder) < rules_.keep_bytes) return {};
+    if (rules_.keep_bytes == 0 || bytes < rules_.keep_bytes) return {};
     return fmt::format("The experiments take the {:.3g} GB that --keep gives them.",
                        static_cast<double>(rules_.keep_bytes) / (1 << 30));
   };
   for (std::string reason = full(); !reason.empty(); reason = full()) {
     std::shared_ptr<Experiment> oldest;
     for (const auto& [id, each] : all_) {
-      const bool finished = each->info().state == ExperimentState::Finished;
-      if (finished && (!oldest || each->info().created < oldest->info().created)) oldest = each;
+      const ExperimentState state = each->info().state;
+      const bool ended = state == ExperimentState::Finished || state == ExperimentState::Cancelled;
+      if (ended && (!oldest || each->info().created < oldest->info().created)) oldest = each;
     }
     if (!rules_.evict_oldest || !oldest) throw net::HttpError(503, reason + " Delete one.");
-    spdlog::info("{} The oldest finished one is deleted: {}.", reason, oldest->info().name);
+    spdlog::info("{} The oldest that has ended is deleted: {}.", reason, oldest->info().name);
+    bytes -= std::min(bytes, bytes_in(oldest->folder()));
     drop(oldest);
   }
 }
@@ -120,6 +123,7 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
                       .key = key,
                       .created = wall_time()};
   Posted posted;
+  const std::uint64_t bytes = rules_.keep_bytes > 0 ? bytes_in(rules_.folder) : 0;
   {
     const std::lock_guard lock(mutex_);
     const std::shared_ptr<Experiment> same_key = with_key(key);
@@ -132,7 +136,7 @@ Experiments::Posted Experiments::post(const nlohmann::json& document,
       posted.experiment = it->second;
     } else {
       check_turns();
-      make_room();
+      make_room(bytes);
       const fs::path folder = rules_.folder / info.id;
       posted.experiment = std::make_shared<Experiment>(folder, std::move(plan), std::move(info));
       posted.created = true;

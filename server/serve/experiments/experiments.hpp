@@ -24,7 +24,7 @@ struct ExperimentRules {
   std::filesystem::path folder{};  // one folder in it per experiment; made at the first
   std::size_t most_kept = 200;
   std::uint64_t keep_bytes = 0;  // room for the files of all, beside the record; 0: the whole disk
-  bool evict_oldest = false;     // finished ones may be deleted, each as a whole, to make room
+  bool evict_oldest = false;     // ended ones may be deleted, each as a whole, to make room
   std::size_t most_running = 16;
   unsigned workers = 0;  // 0: one per processor but one, which the server keeps
   /// As in RunSpec.
@@ -69,7 +69,7 @@ class Experiments {
  private:
   void read_folder();
   void check_turns() const;
-  void make_room();
+  void make_room(std::uint64_t bytes);
   std::shared_ptr<Experiment> with_key(const std::string& key) const;
   struct Turn {
     std::shared_ptr<Experiment> experiment{};

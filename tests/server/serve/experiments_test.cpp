@@ -281,6 +281,10 @@ TEST_F(ExperimentsTest, TheOldestFinishedOnesMakeRoomIfTheyMay) {
   EXPECT_FALSE(fs::exists(oldest.experiment->folder()));
   EXPECT_EQ(others.list().size(), 2U);
   EXPECT_TRUE(fs::exists(running.experiment->folder()));
+  others.cancel(running.experiment->info().id);
+  others.post(document("after", 1), "", "");
+  EXPECT_TRUE(comes([&] { return !fs::exists(running.experiment->folder()); }))
+      << "a cancelled one is not kept for ever";
 }
 
 TEST_F(ExperimentsTest, FilesThatCannotBeReadAreNamedAndLeftAlone) {
