@@ -73,7 +73,7 @@ std::string metrics_text(algo::Outcome outcome, const algo::Metrics& metrics) {
 }
 }  // namespace
 
-db::RunEnd run_end(const RunResult& result, bool cut, const std::optional<Verdict>& verdict) {
+db::RunEnd run_end(const RunResult& result, bool cut, const std::optional<FirstOutcome>& verdict) {
   const bool interrupted = cut && result.outcome == algo::Outcome::Stopped;
   const bool failed = result.outcome == algo::Outcome::Failed;
   db::RunEnd end;
@@ -92,7 +92,7 @@ db::RunEnd run_end(const RunResult& result, bool cut, const std::optional<Verdic
   return end;
 }
 
-db::RunVerdict run_verdict(const std::optional<Verdict>& verdict, algo::Outcome now) {
+db::RunVerdict run_verdict(const std::optional<FirstOutcome>& verdict, algo::Outcome now) {
   db::RunVerdict row;
   row.outcome = algo::name(verdict ? verdict->outcome : now);
   if (!verdict) return row;

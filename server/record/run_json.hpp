@@ -29,7 +29,7 @@ db::NewRun new_run(const RunSpec& spec, const algo::RobotSpec& robot);
 /// start.
 db::NewRun headless_run(const RunSpec& spec, const algo::RobotSpec& robot, double pace);
 /// The first outcome of a live run, which may drive on to further goals.
-struct Verdict {
+struct FirstOutcome {
   algo::Outcome outcome = algo::Outcome::Running;
   std::string reason{};
   algo::Metrics metrics{};  // at that time
@@ -39,9 +39,9 @@ struct Verdict {
 /// keeps that, and the result is how the run went on.
 db::RunEnd run_end(const RunResult& result,
                    bool cut = false,
-                   const std::optional<Verdict>& verdict = {});
+                   const std::optional<FirstOutcome>& verdict = {});
 /// The row of a live run that has the `verdict` and now the outcome `now`.
-db::RunVerdict run_verdict(const std::optional<Verdict>& verdict, algo::Outcome now);
+db::RunVerdict run_verdict(const std::optional<FirstOutcome>& verdict, algo::Outcome now);
 
 /// The run's initial parameters, unchanged, even values that this program would refuse today.
 /// Throws std::runtime_error for a parameter, or a filter, that this program does not have.

@@ -141,7 +141,7 @@ void LiveRun::look_for_operator(const algo::Telemetry& t) {
   if (why != nullptr) arming_->disarm(why);
 }
 
-std::optional<Verdict> LiveRun::verdict() const {
+std::optional<FirstOutcome> LiveRun::verdict() const {
   const std::lock_guard lock(mutex_);
   return verdict_;
 }

@@ -62,7 +62,7 @@ class LiveRun final : private Scheduler::Task {
   algo::Robot& robot() { return *robot_; }
   algo::Outcome outcome() const { return outcome_.load(std::memory_order_relaxed); }
   /// The first outcome of the run, with the metrics then: later goals do not change it.
-  std::optional<Verdict> verdict() const;
+  std::optional<FirstOutcome> verdict() const;
   /// Lateness of the ticks against their deadlines. Hardware gives it in its own report.
   algo::LatenessHistogram lateness() const { return pacer_.lateness(); }
   bool finished() const { return finished_.load(std::memory_order_acquire); }
@@ -95,7 +95,7 @@ class LiveRun final : private Scheduler::Task {
   RunResult result_{};
   std::atomic<bool> cut_{false};
   mutable std::mutex mutex_{};
-  std::optional<Verdict> verdict_{};  // guarded by mutex_
+  std::optional<FirstOutcome> verdict_{};  // guarded by mutex_
   std::atomic<algo::Outcome> outcome_{algo::Outcome::Running};
   std::atomic<bool> finished_{false};
   std::jthread thread_{};  // last: it uses all of the above. Only with own_thread_
