@@ -69,8 +69,8 @@ class Line {
   unsigned leave(double now, std::vector<std::uint8_t>& out);
 
   /// [s] When the next byte arrives or is sent; kNever without one.
-  double next_arrival() const { return incoming_.empty() ? kNever : incoming_.front().time; }
-  double next_departure() const { return outgoing_.empty() ? kNever : outgoing_.front().time; }
+  double next_arrival() const { return first_time(incoming_); }
+  double next_departure() const { return first_time(outgoing_); }
 
  private:
   struct Timed {
@@ -79,6 +79,10 @@ class Line {
     std::uint8_t value = 0;
   };
 
+  static double first_time(const std::deque<Timed>& bytes) {
+    if (bytes.empty()) return kNever;
+    return bytes.front().time;
+  }
   double byte_time() const { return 10.0 / static_cast<double>(baud_); }
   bool happens(double probability);
   bool spoil(ByteView bytes);

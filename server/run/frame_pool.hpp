@@ -58,7 +58,7 @@ class FramePool : public std::enable_shared_from_this<FramePool> {
   /// Makes all `frames` at once, so that take() allocates nothing.
   template <typename Kind = Frame>
   static std::shared_ptr<FramePool> make(std::size_t frames) {
-    const std::shared_ptr<FramePool> pool(new FramePool(frames, frames, nullptr, &make_one<Kind>));
+    std::shared_ptr<FramePool> pool(new FramePool(frames, frames, nullptr, &make_one<Kind>));
     while (pool->frames_.size() < frames) pool->add();
     return pool;
   }
