@@ -8,9 +8,9 @@
 namespace algo {
 namespace {
 
-constexpr double kFullSpeed = 0.9;  // of v_max: from here the operator does not steer
-constexpr double kNearWall = 2.0;   // of D_ref
-constexpr double kRounding = 1e-9;  // [s] of sums of periods
+constexpr double kFullSpeed = 0.9;        // of v_max: from here the operator does not steer
+constexpr double kNearWall = 2.0;         // of D_ref
+constexpr double kPeriodRounding = 1e-9;  // [s] of sums of periods
 
 }  // namespace
 
@@ -35,7 +35,7 @@ bool follows_wall(const Wall& wall, double v_cmd, double v_max, const Parameters
 }
 
 std::optional<Wall> FollowedSide::follow(const std::optional<Wall>& seen, double stamp) {
-  const bool recent = held_ && stamp - held_stamp_ <= kPatience + kRounding;
+  const bool recent = held_ && stamp - held_stamp_ <= kPatience + kPeriodRounding;
   if (!seen) {
     other_since_.reset();
     if (!recent) held_.reset();
@@ -43,7 +43,7 @@ std::optional<Wall> FollowedSide::follow(const std::optional<Wall>& seen, double
   }
   if (held_ && side_of(*seen) != side_of(*held_)) {
     if (!other_since_) other_since_ = stamp;
-    const bool proven = stamp - *other_since_ >= kPatience - kRounding;
+    const bool proven = stamp - *other_since_ >= kPatience - kPeriodRounding;
     if (!proven) return recent ? held_ : std::nullopt;
   }
   held_ = seen;

@@ -16,31 +16,32 @@ using namespace algo::units;
 
 constexpr double kAvoidanceRange = 1350_mm;
 
-const Json& document() {
+const Json& geometry_vectors() {
   static const Json loaded = golden::load("C_geometry.json");
   return loaded;
 }
-double tolerance() {
-  return golden::tolerance(document());
+double geometry_tolerance() {
+  return golden::tolerance(geometry_vectors());
 }
 
 TEST(GeometryGolden, Vectors) {
-  ASSERT_FALSE(document().at("vectors").empty());
-  for (const Json& vector : document().at("vectors")) {
+  ASSERT_FALSE(geometry_vectors().at("vectors").empty());
+  for (const Json& vector : geometry_vectors().at("vectors")) {
     const double bearing = (vector.at("beam").get<double>() * 0.5 - 90) * kRadiansPerDegree;
     const double range = vector.at("range").get<double>() * golden::kMm;
     const algo::Pose2 mount = golden::pose_mm(vector.at("sensor_offset"));
     const algo::Pose2 pose = golden::pose_mm(vector.at("pose"));
-    EXPECT_TRUE(golden::close_mm(
-        algo::beam_point_W(pose, mount, bearing, range), vector.at("obstacle"), tolerance()));
+    EXPECT_TRUE(golden::close_mm(algo::beam_point_W(pose, mount, bearing, range),
+                                 vector.at("obstacle"),
+                                 geometry_tolerance()));
     EXPECT_TRUE(golden::close(algo::beam_point_R(mount, bearing, range).norm() / golden::kMm,
                               vector.at("range_from_centre"),
-                              tolerance()));
+                              geometry_tolerance()));
   }
 }
 
 algo::LaserScan golden_scan() {
-  const Json& about = document().at("scan");
+  const Json& about = geometry_vectors().at("scan");
   algo::LaserScan scan;
   scan.range_max = 8000_mm;
   scan.angle_min = -90_deg;
@@ -58,29 +59,32 @@ algo::LaserScan golden_scan() {
 }
 
 TEST(GeometryGolden, ObstacleCheckLiteral) {
-  const Json& expected = document().at("obstacle_check_literal_1350");
+  const Json& expected = geometry_vectors().at("obstacle_check_literal_1350");
   const auto found = algo::obstacle_check_literal(golden_scan().ranges, kAvoidanceRange);
   ASSERT_EQ(found.has_value(), expected.at("found").get<bool>());
   if (!found) return;
   EXPECT_EQ(found->beam, expected.at("beam").get<std::size_t>());
   EXPECT_EQ(found->angle_degrees, expected.at("angle_int").get<int>());
-  EXPECT_TRUE(golden::close(found->distance / golden::kMm, expected.at("distance"), tolerance()));
+  EXPECT_TRUE(
+      golden::close(found->distance / golden::kMm, expected.at("distance"), geometry_tolerance()));
 }
 
 TEST(GeometryGolden, ObstacleCheckNearest) {
-  const Json& expected = document().at("nearest_1350");
+  const Json& expected = geometry_vectors().at("nearest_1350");
   const algo::LaserScan scan = golden_scan();
   const auto found = algo::obstacle_check(scan, kAvoidanceRange);
   ASSERT_EQ(found.has_value(), !expected.is_null());
   if (!found) return;
   EXPECT_EQ(found->beam, expected.at("beam").get<std::size_t>());
-  EXPECT_TRUE(golden::close(
-      scan.angle(found->beam) / kRadiansPerDegree + 90, expected.at("angle_deg"), tolerance()));
-  EXPECT_TRUE(golden::close(found->distance / golden::kMm, expected.at("distance"), tolerance()));
+  EXPECT_TRUE(golden::close(scan.angle(found->beam) / kRadiansPerDegree + 90,
+                            expected.at("angle_deg"),
+                            geometry_tolerance()));
+  EXPECT_TRUE(
+      golden::close(found->distance / golden::kMm, expected.at("distance"), geometry_tolerance()));
 }
 
 TEST(GeometryGolden, Split) {
-  const Json& expected = document().at("split");
+  const Json& expected = geometry_vectors().at("split");
   algo::Scene scene;
   scene.scan = golden_scan();
   algo::perceive({}, scene);
@@ -90,7 +94,8 @@ TEST(GeometryGolden, Split) {
     ASSERT_EQ(found.has_value(), !beam.is_null()) << side;
     if (!found) continue;
     EXPECT_EQ(found->beam, beam.get<std::uint32_t>()) << side;
-    EXPECT_TRUE(golden::close(found->distance / golden::kMm, expected.at("d_" + side), tolerance()))
+    EXPECT_TRUE(golden::close(
+        found->distance / golden::kMm, expected.at("d_" + side), geometry_tolerance()))
         << side;
   }
 }

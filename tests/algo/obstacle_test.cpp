@@ -6,6 +6,7 @@
 #include <numbers>
 #include <random>
 
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 namespace {
@@ -17,7 +18,7 @@ using algo::Polygon;
 using algo::Vec2;
 using algo::Wall;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 
 Obstacle at(const algo::Pose2& pose, const algo::Shape& shape) {
   Obstacle obstacle;

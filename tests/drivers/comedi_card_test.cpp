@@ -22,7 +22,7 @@ using emulators::CardFile;
 using emulators::CardMemory;
 using ::testing::HasSubstr;
 
-ComediSetup setup() {
+ComediSetup card_setup() {
   ComediSetup out;
   out.library = tests::emulated_comedi().string();
   out.relay_closed_line = 1;
@@ -36,11 +36,11 @@ ComediSetup setup() {
 struct Slot {
   explicit Slot(const CardChannels& channels = {}) : file(path(), channels) {}
   std::filesystem::path path() const { return folder.path() / "card"; }
-  std::unique_ptr<AnalogCard> open(const ComediSetup& with = setup()) const {
+  std::unique_ptr<AnalogCard> open(const ComediSetup& with = card_setup()) const {
     return open_comedi_card(path().string(), with);
   }
   /// The error sentence for `setup`.
-  std::string refusal(const ComediSetup& with = setup()) const {
+  std::string refusal(const ComediSetup& with = card_setup()) const {
     try {
       open(with);
     } catch (const CardError& error) {
@@ -65,7 +65,7 @@ TEST(ComediCard, OpensWithZeroVoltsAndTheRelayOpen) {
 
 TEST(ComediCard, WritesVoltsOfBothSigns) {
   const Slot slot;
-  ComediSetup with = setup();
+  ComediSetup with = card_setup();
   with.reversed_outputs = {false, true};
   const auto card = slot.open(with);
   card->write({2.5, 2.5});
@@ -78,7 +78,7 @@ TEST(ComediCard, WritesVoltsOfBothSigns) {
 TEST(ComediCard, CountsContinueOverTheCounterWrap) {
   const Slot slot;
   slot.memory().turned[0] = 0xFF'FFFE;
-  ComediSetup with = setup();
+  ComediSetup with = card_setup();
   with.reversed_counters = {false, true};
   const auto card = slot.open(with);
   slot.memory().turned[0] = 0x100'0003;
@@ -110,7 +110,7 @@ TEST(ComediCard, TogglingHoldsTheRelayClosed) {
 
 TEST(ComediCard, TheEnableInputIsLowAtFirst) {
   const Slot slot;
-  ComediSetup with = setup();
+  ComediSetup with = card_setup();
   with.bumper_lines = {4};
   with.enable_line = 5;
   slot.memory().set_line(5, true, 0);
@@ -142,7 +142,7 @@ TEST(ComediCard, ALostCardIsReported) {
 TEST(ComediCard, AMissingCardOrLibraryIsReported) {
   const Slot slot;
   const auto refused = [&](const std::function<void(ComediSetup&)>& change) {
-    ComediSetup with = setup();
+    ComediSetup with = card_setup();
     change(with);
     return slot.refusal(with);
   };
@@ -184,7 +184,7 @@ TEST(ComediCard, AnEndingEmulatorKeepsTheNextOnesCardFile) {
   auto first = std::make_unique<CardFile>(path, CardChannels{});
   auto second = std::make_unique<CardFile>(path, CardChannels{});
   first.reset();
-  EXPECT_EQ(open_comedi_card(path.string(), setup())->read().stop_button, true);
+  EXPECT_EQ(open_comedi_card(path.string(), card_setup())->read().stop_button, true);
   second.reset();
   EXPECT_FALSE(std::filesystem::exists(path));
 }

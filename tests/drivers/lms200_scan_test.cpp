@@ -16,9 +16,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 /// A printed answer with its values; asserts that its CRC is right and that we write the same
 /// bytes.
-class Printed {
+class PrintedScan {
  public:
-  explicit Printed(const std::string& text) : bytes_(hex(text)) {
+  explicit PrintedScan(const std::string& text) : bytes_(hex(text)) {
     Kept kept;
     kept.feed(bytes_);
     EXPECT_EQ(kept.frames, std::vector<Bytes>{bytes_}) << text;
@@ -50,7 +50,7 @@ MeasuredValues values_of(const Bytes& frame) {
 }
 
 TEST(Lms200Scan, MillimetresWithCodesAndFlags) {
-  const Printed printed("02 80 0E 00 B0 05 40 E8 03 D0 07 F7 1F FF 1F FE 9F 10 3A 9E");
+  const PrintedScan printed("02 80 0E 00 B0 05 40 E8 03 D0 07 F7 1F FF 1F FE 9F 10 3A 9E");
   EXPECT_FALSE(printed.values().indices);
   const algo::LaserScan scan = beams_of(printed.values(), 0);
   ASSERT_EQ(scan.size(), 5U);
@@ -65,7 +65,7 @@ TEST(Lms200Scan, MillimetresWithCodesAndFlags) {
 }
 
 TEST(Lms200Scan, Centimetres) {
-  const Printed printed("02 80 0A 00 B0 03 00 7B 00 D7 11 FB 1F 10 69 0D");
+  const PrintedScan printed("02 80 0A 00 B0 03 00 7B 00 D7 11 FB 1F 10 69 0D");
   const algo::LaserScan scan = beams_of(printed.values(), 0);
   EXPECT_EQ(scan.ranges[0], 1.23);
   EXPECT_EQ(scan.ranges[1], 45.67);
@@ -73,26 +73,26 @@ TEST(Lms200Scan, Centimetres) {
 }
 
 TEST(Lms200Scan, TelegramLengthTellsWhetherIndicesAreSent) {
-  const Printed printed("02 80 0C 00 B0 03 40 F4 01 58 02 BC 02 07 2A 10 39 26");
+  const PrintedScan printed("02 80 0C 00 B0 03 40 F4 01 58 02 BC 02 07 2A 10 39 26");
   EXPECT_EQ(printed.values().indices, (Indices{.turn = 7, .telegram = 42}));
   EXPECT_EQ(printed.values().health, Health(0x10));
   EXPECT_EQ(beams_of(printed.values(), 0).ranges, (std::vector{0.5, 0.6, 0.7}));
 }
 
 TEST(Lms200Scan, PartialScan) {
-  const Printed printed("02 80 08 00 B0 02 70 DC 05 40 06 10 96 6E");
+  const PrintedScan printed("02 80 08 00 B0 02 70 DC 05 40 06 10 96 6E");
   EXPECT_TRUE(printed.values().partial);
   EXPECT_EQ(printed.values().part, 2);
   EXPECT_EQ(beams_of(printed.values(), 0).ranges, (std::vector{1.5, 1.6}));
 }
 
 TEST(Lms200Scan, FieldFlagIsNotReadAsDistance) {
-  const Printed printed("02 80 08 00 B0 02 40 20 4E 00 FD 10 E6 D2");
+  const PrintedScan printed("02 80 08 00 B0 02 40 20 4E 00 FD 10 E6 D2");
   EXPECT_EQ(beams_of(printed.values(), 6).ranges, (std::vector{20.0, 32.0}));
 }
 
 TEST(Lms200Scan, Range) {
-  const Printed printed("02 80 0E 00 B7 B5 00 B7 00 03 40 B8 0B C2 0B CC 0B 10 D2 57");
+  const PrintedScan printed("02 80 0E 00 B7 B5 00 B7 00 03 40 B8 0B C2 0B CC 0B 10 D2 57");
   const ScanDecoder decoder({180, 50}, WordFormat{});
   algo::LaserScan scan;
   ASSERT_TRUE(decoder.decode(printed.values(), scan));
@@ -102,7 +102,7 @@ TEST(Lms200Scan, Range) {
 }
 
 TEST(Lms200Scan, PollutionComesWithTheValues) {
-  const Printed printed("02 80 06 00 B0 01 40 D2 04 92 72 B9");
+  const PrintedScan printed("02 80 06 00 B0 01 40 D2 04 92 72 B9");
   EXPECT_TRUE(printed.values().health.polluted());
   EXPECT_TRUE(printed.values().health.usable());
   EXPECT_EQ(beams_of(printed.values(), 0).ranges, (std::vector{1.234}));

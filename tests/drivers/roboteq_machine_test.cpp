@@ -128,7 +128,7 @@ class FakeRoboteq final : public LineDevice {
   double next_ = 0;
 };
 
-RoboteqSetup setup() {
+RoboteqSetup roboteq_setup() {
   RoboteqSetup out;
   out.wheel = {.radius = 0.1, .gear = 20, .encoder_lines = 500, .full_speed_rpm = 1000};
   out.half_track = 0.25;
@@ -137,7 +137,8 @@ RoboteqSetup setup() {
 }
 
 struct Fixture {
-  explicit Fixture(const RoboteqSetup& with = setup()) : machine(with), bench(machine, device) {}
+  explicit Fixture(const RoboteqSetup& with = roboteq_setup())
+      : machine(with), bench(machine, device) {}
   Fixture(const Fixture&) = delete;
   Fixture& operator=(const Fixture&) = delete;
 
@@ -201,7 +202,7 @@ TEST(RoboteqMachine, SendsSpeedsAsSharesOfFullSpeedOnlyWhenEnabled) {
 }
 
 TEST(RoboteqMachine, SwappedAndReversedMotorsAreMapped) {
-  RoboteqSetup with = setup();
+  RoboteqSetup with = roboteq_setup();
   with.swapped = true;
   with.reversed = {false, true};
   Fixture f(with);
@@ -301,7 +302,7 @@ TEST(RoboteqMachine, ControllerWithoutLoopErrorsIsStillDriven) {
 }
 
 TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
-  RoboteqSetup with = setup();
+  RoboteqSetup with = roboteq_setup();
   with.bumper_inputs = {2, 3};
   Fixture f(with);
   ASSERT_TRUE(f.running());
@@ -316,7 +317,7 @@ TEST(RoboteqMachine, BumperThatCannotBeReadCountsAsHit) {
 }
 
 TEST(RoboteqMachine, RearBumpersAreNotReportedAsFrontBumpers) {
-  RoboteqSetup with = setup();
+  RoboteqSetup with = roboteq_setup();
   with.bumper_inputs = {1};
   with.rear_bumper_inputs = {2};
   Fixture f(with);

@@ -151,14 +151,14 @@ roboteq::RoboteqSetup roboteq_setup() {
 }
 
 template <class Emulator, class Machine>
-struct Driven {
+struct Rig {
   template <class Setup>
-  Driven(const typename std::type_identity<Setup>::type& setup, std::type_identity<Setup> /*tag*/)
+  Rig(const typename std::type_identity<Setup>::type& setup, std::type_identity<Setup> /*tag*/)
       : device(emulator), machine(setup), bench(machine, device) {
     bench.open();
   }
-  Driven(const Driven&) = delete;
-  Driven& operator=(const Driven&) = delete;
+  Rig(const Rig&) = delete;
+  Rig& operator=(const Rig&) = delete;
 
   bool ready(double seconds = 20) {
     return bench.run_until(seconds, [&] { return machine.state().running; });
@@ -269,7 +269,7 @@ BaseLimits gentle() {
 TEST(WithEmulators, PioneerBrakesWithItsEmergencyRamp) {
   p2os::PioneerSetup setup = pioneer();
   setup.limits = gentle();
-  Driven<p2os::Emulator, p2os::PioneerMachine> rig(setup, std::type_identity<p2os::PioneerSetup>());
+  Rig<p2os::Emulator, p2os::PioneerMachine> rig(setup, std::type_identity<p2os::PioneerSetup>());
   check_braking(rig);
 }
 
@@ -277,14 +277,14 @@ TEST(WithEmulators, RoboteqBrakesWithItsEmergencyRamp) {
   roboteq::RoboteqSetup setup = roboteq_setup();
   setup.limits = gentle();
   setup.limits.turn_acceleration = 0.01;  // its ramps are of the wheels, and a turn's part adds up
-  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
-      setup, std::type_identity<roboteq::RoboteqSetup>());
+  Rig<roboteq::Emulator, roboteq::RoboteqMachine> rig(setup,
+                                                      std::type_identity<roboteq::RoboteqSetup>());
   check_braking(rig);
 }
 
 TEST(WithEmulators, PioneerReportsItsWatchdog) {
-  Driven<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
-                                                   std::type_identity<p2os::PioneerSetup>());
+  Rig<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
+                                                std::type_identity<p2os::PioneerSetup>());
   ASSERT_TRUE(rig.ready());
   rig.bench.run(1);
   ASSERT_TRUE(rig.machine.state().watchdog);
@@ -292,8 +292,8 @@ TEST(WithEmulators, PioneerReportsItsWatchdog) {
 }
 
 TEST(WithEmulators, RoboteqReportsABlockedWheelAtAnyCurrent) {
-  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
-      roboteq_setup(), std::type_identity<roboteq::RoboteqSetup>());
+  Rig<roboteq::Emulator, roboteq::RoboteqMachine> rig(roboteq_setup(),
+                                                      std::type_identity<roboteq::RoboteqSetup>());
   ASSERT_TRUE(rig.ready());
   EXPECT_THAT(rig.machine.report(rig.bench.now()).remarks,
               ::testing::Contains(::testing::HasSubstr("^CLERD was set")));
@@ -307,14 +307,14 @@ TEST(WithEmulators, RoboteqReportsABlockedWheelAtAnyCurrent) {
 }
 
 TEST(WithEmulators, PioneerIsDrivenAndStops) {
-  Driven<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
-                                                   std::type_identity<p2os::PioneerSetup>());
+  Rig<p2os::Emulator, p2os::PioneerMachine> rig(pioneer(),
+                                                std::type_identity<p2os::PioneerSetup>());
   check_base(rig);
 }
 
 TEST(WithEmulators, RoboteqIsDrivenAndStops) {
-  Driven<roboteq::Emulator, roboteq::RoboteqMachine> rig(
-      roboteq_setup(), std::type_identity<roboteq::RoboteqSetup>());
+  Rig<roboteq::Emulator, roboteq::RoboteqMachine> rig(roboteq_setup(),
+                                                      std::type_identity<roboteq::RoboteqSetup>());
   check_base(rig);
 }
 

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <random>
 #include <set>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
 
@@ -30,8 +30,8 @@ using algo::Scene;
 using algo::Twist2;
 using algo::Vec2;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tests::kInf;
+using tests::kNan;
 
 /// A robot in front of a post on its way, with valid inputs.
 struct Situation {

@@ -19,23 +19,23 @@ namespace {
 using golden::Json;
 using namespace algo::units;
 
-const Json& document() {
+const Json& modified_vectors() {
   static const Json loaded = golden::load("E_modified.json");
   return loaded;
 }
-double tolerance() {
-  return golden::tolerance(document());
+double modified_tolerance() {
+  return golden::tolerance(modified_vectors());
 }
 
 TEST(ModifiedGolden, Factor) {
-  ASSERT_FALSE(document().at("factor").empty());
-  for (const Json& vector : document().at("factor")) {
+  ASSERT_FALSE(modified_vectors().at("factor").empty());
+  for (const Json& vector : modified_vectors().at("factor")) {
     const double d = vector.at("d").get<double>() * golden::kMm;
     const double reach = vector.at("d_r").get<double>() * golden::kMm;
     const double step = vector.at("S").get<double>() * golden::kMm;
     const double k_r = vector.at("Kr");
     const auto expect = [&](const char* name, double actual) {
-      EXPECT_TRUE(golden::close(actual / golden::kMm, vector.at(name), tolerance()))
+      EXPECT_TRUE(golden::close(actual / golden::kMm, vector.at(name), modified_tolerance()))
           << name << " of " << vector.dump();
     };
     expect("published_guard_eps10_cap1000", algo::published_factor(d, reach, k_r));
@@ -88,8 +88,8 @@ void expect_part(const std::optional<algo::Nearest>& nearest,
     return;
   }
   EXPECT_EQ(nearest->beam, part.at("beam").get<std::uint32_t>());
-  EXPECT_TRUE(golden::close(nearest->distance / golden::kMm, part.at("d"), tolerance()));
-  EXPECT_TRUE(golden::close_mm(force, part.at("F"), tolerance()));
+  EXPECT_TRUE(golden::close(nearest->distance / golden::kMm, part.at("d"), modified_tolerance()));
+  EXPECT_TRUE(golden::close_mm(force, part.at("F"), modified_tolerance()));
 }
 
 void expect_tick(const std::string& controller, const Json& vector, const Json& expected) {
@@ -97,11 +97,11 @@ void expect_tick(const std::string& controller, const Json& vector, const Json& 
   const Tick tick = run(controller, vector);
   expect_part(tick.scene.left, tick.forces.left_W, expected.at("parts").at("L"));
   expect_part(tick.scene.right, tick.forces.right_W, expected.at("parts").at("R"));
-  EXPECT_TRUE(golden::close_mm(tick.forces.elastic_W, expected.at("F"), tolerance()));
+  EXPECT_TRUE(golden::close_mm(tick.forces.elastic_W, expected.at("F"), modified_tolerance()));
   ASSERT_TRUE(tick.out.pass_W);
-  EXPECT_TRUE(golden::close_mm(*tick.out.pass_W, expected.at("pass"), tolerance()));
+  EXPECT_TRUE(golden::close_mm(*tick.out.pass_W, expected.at("pass"), modified_tolerance()));
   EXPECT_EQ(static_cast<int>(tick.forces.side), expected.at("side").get<int>());
-  EXPECT_TRUE(golden::close(tick.forces.side_alpha, expected.at("alpha"), tolerance()));
+  EXPECT_TRUE(golden::close(tick.forces.side_alpha, expected.at("alpha"), modified_tolerance()));
   const Json& beam = expected.at("blocked_beam");
   ASSERT_EQ(tick.forces.blocked_beam.has_value(), !beam.is_null());
   if (tick.forces.blocked_beam) {
@@ -110,8 +110,8 @@ void expect_tick(const std::string& controller, const Json& vector, const Json& 
 }
 
 TEST(ModifiedGolden, Force) {
-  ASSERT_FALSE(document().at("force").empty());
-  for (const Json& vector : document().at("force")) {
+  ASSERT_FALSE(modified_vectors().at("force").empty());
+  for (const Json& vector : modified_vectors().at("force")) {
     expect_tick("modified_published", vector, vector.at("published"));
     expect_tick("modified_c1", vector, vector.at("c1"));
     expect_tick("modified", vector, vector.at("c1_side_choice"));

@@ -2,11 +2,11 @@
 #include "algo/teleop/reflected_force.hpp"
 
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 #include "algo/teleop/sonar_ring.hpp"
@@ -19,10 +19,10 @@ using algo::ForceLevels;
 using algo::ForwardForce;
 using algo::Parameters;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kTop = 0.4;     // [m/s]
-constexpr double kBangBang = 0;  // ramp
+using tests::kInf;
+using tests::kNan;
+constexpr double kFastest = 0.4;  // [m/s]
+constexpr double kBangBang = 0;   // ramp
 
 TEST(ReflectedForce, LimitsAreInsideTheBand) {
   const ForceBand band{.offset = 1000, .half_width = 100};
@@ -44,7 +44,7 @@ TEST(ReflectedForce, RisesAlongTheRamp) {
 }
 
 TEST(ReflectedForce, AheadOnlyPushesBack) {
-  const ForceBand band = algo::forward_band(0.2, kTop);
+  const ForceBand band = algo::forward_band(0.2, kFastest);
   EXPECT_EQ(band.offset, 5000);
   EXPECT_EQ(band.half_width, 100);
   EXPECT_EQ(algo::reflected_force(6000, band, algo::kForwardLevels, kBangBang), -10000);
@@ -68,7 +68,7 @@ TEST(ForwardLimit, HasBothReadingsOfThePaperAndOurs) {
   algo::RingReadings readings{};
   readings.fill(1.0);
   const auto limit = [&](ForwardForce reading, double v_cmd) {
-    return algo::forward_limit(v_cmd, 0.2, readings, kTop, Parameters{}, reading);
+    return algo::forward_limit(v_cmd, 0.2, readings, kFastest, Parameters{}, reading);
   };
   EXPECT_EQ(limit(ForwardForce::Sparseness, 0.1), 0.2);
   EXPECT_NEAR(limit(ForwardForce::Executed, 0.1), 0.0776870, 1e-6);
@@ -84,9 +84,10 @@ TEST(ForwardLimit, OnlyTheSecondReadingPushesTheHandToRest) {
   const auto rest = [&](ForwardForce reading) {
     double q = 10000;
     for (int n = 0; n < 2000; ++n) {
-      const double v = q / 10000 * kTop;
-      const double limit = algo::forward_limit(v, kTop, readings, kTop, Parameters{}, reading);
-      const ForceBand band = algo::forward_band(limit, kTop);
+      const double v = q / 10000 * kFastest;
+      const double limit =
+          algo::forward_limit(v, kFastest, readings, kFastest, Parameters{}, reading);
+      const ForceBand band = algo::forward_band(limit, kFastest);
       q += 1e-3 * algo::reflected_force(q, band, algo::kForwardLevels, kBangBang);
     }
     return q;
@@ -136,10 +137,10 @@ TEST(ReflectedForce, AllocatesNothing) {
   algo::RingReadings readings{};
   const Parameters parameters;
   const auto before = allocations::count();
-  const double limit = algo::forward_limit(kTop, kTop, readings, kTop, parameters);
-  EXPECT_NE(
-      algo::reflected_force(9000, algo::forward_band(limit, kTop), algo::kForwardLevels, kBangBang),
-      0);
+  const double limit = algo::forward_limit(kFastest, kFastest, readings, kFastest, parameters);
+  EXPECT_NE(algo::reflected_force(
+                9000, algo::forward_band(limit, kFastest), algo::kForwardLevels, kBangBang),
+            0);
   EXPECT_EQ(allocations::count(), before);
 }
 

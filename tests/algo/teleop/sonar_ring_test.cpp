@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include "tests/algo/worlds.hpp"
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ using algo::Parameters;
 using algo::RingReadings;
 using algo::units::kRadiansPerDegree;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 
 LaserScan scan_of(const worlds::World& world, const algo::Pose2& mount_R = {}) {
   LaserScan scan;

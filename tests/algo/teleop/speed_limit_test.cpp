@@ -3,11 +3,11 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <vector>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 namespace {
@@ -15,8 +15,8 @@ namespace {
 using algo::Parameters;
 using algo::RingReadings;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tests::kInf;
+using tests::kNan;
 constexpr double kTop = 0.4;  // [m/s] of the paper's course
 
 RingReadings all(double d) {

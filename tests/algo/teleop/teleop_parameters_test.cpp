@@ -1,15 +1,14 @@
 // tests/algo/teleop/teleop_parameters_test.cpp: the parameters of the laws for driving by hand.
 #include "algo/teleop/teleop_parameters.hpp"
 
-#include <limits>
-
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 namespace {
 
 using algo::Parameters;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 
 TEST(TeleopRefusal, WantsTheStopDistanceOutsideTheHullAndWithinReach) {
   Parameters parameters;

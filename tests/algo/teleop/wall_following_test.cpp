@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 #include "algo/diff_drive.hpp"
@@ -20,7 +21,7 @@ using algo::Wall;
 using algo::WallLaw;
 using algo::units::kRadiansPerDegree;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using tests::kNan;
 constexpr double kTurn = 25 * kRadiansPerDegree;  // [rad/s] of the paper's course
 
 Wall wall(double rho, double degrees) {

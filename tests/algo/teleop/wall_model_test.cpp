@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
 #include "tests/algo/allocations.hpp"
+#include "tests/algo/not_finite.hpp"
 #include <gtest/gtest.h>
 
 namespace {
@@ -21,8 +21,8 @@ using algo::VotingPoint;
 using algo::Wall;
 using algo::units::kRadiansPerDegree;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+using tests::kInf;
+using tests::kNan;
 
 double degrees(const Wall& wall) {
   return wall.theta / kRadiansPerDegree;

@@ -40,13 +40,13 @@ json carrier() {
   })");
 }
 
-sim::RobotModel read(const json& document) {
+sim::RobotModel read_robot(const json& document) {
   return robot_from_json({document, ""});
 }
 
 std::string complaint(const json& document) {
   try {
-    read(document);
+    read_robot(document);
   } catch (const DocumentError& e) {
     return e.what();
   }
@@ -73,7 +73,7 @@ TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
     SCOPED_TRACE(entry.name);
     EXPECT_TRUE(entry.builtin && entry.usable);
     const sim::RobotModel robot = builtin_robot(entry.name);
-    const sim::RobotModel again = read(robot_document(robot));
+    const sim::RobotModel again = read_robot(robot_document(robot));
     EXPECT_TRUE(static_cast<const sim::Machine&>(robot) == again);
     EXPECT_EQ(robot_document(robot), robot_document(again));
     EXPECT_EQ(robot_reference(robot), entry.name);
@@ -86,7 +86,7 @@ TEST(RobotJson, TheRobotOfAScenarioThatNamesNoneIsTheSilvermate) {
 }
 
 TEST(RobotJson, AFileNeedsOnlyRequiredFields) {
-  const sim::RobotModel robot = read(carrier());
+  const sim::RobotModel robot = read_robot(carrier());
   EXPECT_FALSE(robot.round);
   EXPECT_DOUBLE_EQ(robot.radius, std::hypot(0.6, 0.35));
   EXPECT_DOUBLE_EQ(robot.half_track, 0.3);
@@ -95,7 +95,7 @@ TEST(RobotJson, AFileNeedsOnlyRequiredFields) {
   ASSERT_EQ(robot.casters.size(), 2U);
   EXPECT_GT(robot.casters[0].x, 0.3);
   ASSERT_EQ(robot.sensors.lasers.size(), 2U);
-  EXPECT_EQ(robot_document(robot), robot_document(read(robot_document(robot))));
+  EXPECT_EQ(robot_document(robot), robot_document(read_robot(robot_document(robot))));
 }
 
 TEST(RobotJson, BadFilesGetASentenceThatNamesTheField) {
@@ -296,8 +296,8 @@ TEST(RobotJson, AcceptedModelsReadBack) {
                             R"({"hull": {"length": 0.05, "width": 0.05}, "track": 0.05})"}) {
     json document = carrier();
     document.merge_patch(json::parse(patch));
-    const json written = robot_document(read(document));
-    EXPECT_EQ(written, robot_document(read(written))) << patch;
+    const json written = robot_document(read_robot(document));
+    EXPECT_EQ(written, robot_document(read_robot(written))) << patch;
   }
 }
 

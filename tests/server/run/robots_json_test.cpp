@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-sim::Scenario read(const std::string& robots) {
+sim::Scenario read_fleet(const std::string& robots) {
   return scenario_from_json(
       json::parse(R"({"name":"a","goal":{"x":5,"y":0},"robots":)" + robots + "}"));
 }
@@ -33,16 +33,17 @@ TEST(RobotsJson, ComeBackFromTheirText) {
         R"("waypoints":[{"x":0,"y":1},{"x":1,"y":1}],"controller":"original","filter":"lulu",)"
         R"("parameters":{"v_max":0.2,"k_r":0.3}}])"}) {
     SCOPED_TRACE(text);
-    const json document = to_json(read(text));
+    const json document = to_json(read_fleet(text));
     EXPECT_EQ(document, to_json(scenario_from_json(json::parse(document.dump()))));
     EXPECT_EQ(document.contains("robots"), std::string(text) != "[]");
   }
 }
 
 TEST(RobotsJson, AbsentFieldsAreTheFirstRobots) {
-  const sim::Scenario s = read(R"([{"start":{"x":5,"y":-2}},{"start":{"x":1,"y":2},"goal":null},)"
-                               R"({"start":{"x":1,"y":4},"goal":{"x":1,"y":9},)"
-                               R"("waypoints":[{"x":-3,"y":4}]}])");
+  const sim::Scenario s =
+      read_fleet(R"([{"start":{"x":5,"y":-2}},{"start":{"x":1,"y":2},"goal":null},)"
+                 R"({"start":{"x":1,"y":4},"goal":{"x":1,"y":9},)"
+                 R"("waypoints":[{"x":-3,"y":4}]}])");
   ASSERT_EQ(s.robots.size(), 3U);
   EXPECT_EQ(s.robots[0].goals, std::nullopt);
   EXPECT_NEAR(s.robots[0].start.heading, M_PI / 2, 1e-12);  // it faces the first robot's goal
@@ -88,7 +89,7 @@ TEST(RobotsJson, SaysWhereAndWhat) {
   for (const auto& [robots, complaint] : cases) {
     SCOPED_TRACE(robots.substr(0, 200));
     try {
-      read(robots);
+      read_fleet(robots);
       FAIL() << "accepted";
     } catch (const DocumentError& e) {
       EXPECT_EQ(std::string(e.what()).substr(0, complaint.size()), complaint);
@@ -113,7 +114,7 @@ TEST(RobotsJson, ManyRobotsAmongManyObstaclesAreRefused) {
 TEST(RobotsJson, EachRobotIsCheckedAgainstItsController) {
   const auto complaint = [](const std::string& robots, const RunOverrides& overrides) {
     try {
-      make_spec(read(robots), overrides);
+      make_spec(read_fleet(robots), overrides);
     } catch (const DocumentError& e) {
       return std::string(e.what());
     }
@@ -140,13 +141,13 @@ TEST(RobotsJson, EditsAcceptRobotIdsAndNoHigherOnes) {
 }
 
 TEST(RobotsJson, TheRunsDocumentHasThemAsObstaclesAtTheirStarts) {
-  RunSpec spec = make_spec(read(R"([{"start":{"x":1,"y":2,"heading":1}}])"), {});
+  RunSpec spec = make_spec(read_fleet(R"([{"start":{"x":1,"y":2,"heading":1}}])"), {});
   const json document = run_document(spec, make_robot(spec)->spec());
   ASSERT_EQ(document.at("others").size(), 1U);
   EXPECT_EQ(document["others"][0]["id"], 1'000'000'002);
   EXPECT_EQ(document["others"][0]["radius"], 0.35);
   EXPECT_EQ(document["others"][0]["x"], 1.0);
-  EXPECT_FALSE(run_document(make_spec(read("[]"), {}), {}).contains("others"));
+  EXPECT_FALSE(run_document(make_spec(read_fleet("[]"), {}), {}).contains("others"));
 }
 
 }  // namespace

@@ -92,12 +92,12 @@ struct RunnerTest : ::testing::Test {
   std::stop_source stop{};
 };
 
-const algo::Request kGoal = algo::SetGoal{{1.0, 0.0}, std::nullopt};
+const algo::Request kNearGoal = algo::SetGoal{{1.0, 0.0}, std::nullopt};
 
 TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
   std::uint64_t frames = 0;
   links.listeners.push_back([&](const Frame& frame) { EXPECT_EQ(frame.telemetry.tick, frames++); });
-  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
+  const RunResult result = go({kNearGoal}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.metrics.ticks, frames);
   EXPECT_NEAR(result.metrics.path_length, 0.9, 0.03);
@@ -106,20 +106,20 @@ TEST_F(RunnerTest, EndsWhenTheGoalIsReachedAndStopsTheRobot) {
 
 TEST_F(RunnerTest, EndsAtTheLastOfSeveralGoals) {
   const algo::AddGoal then{{{2.0, 0.0}, std::nullopt}};
-  const RunResult result = go({kGoal, then}, {.until_outcome = true, .time_limit = 100});
+  const RunResult result = go({kNearGoal, then}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_NEAR(result.metrics.path_length, 1.9, 0.03);
 }
 
 TEST_F(RunnerTest, RunsOutOfTime) {
-  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 0.5});
+  const RunResult result = go({kNearGoal}, {.until_outcome = true, .time_limit = 0.5});
   EXPECT_EQ(result.outcome, algo::Outcome::OutOfTime);
   EXPECT_NEAR(result.metrics.time, 0.5, 1e-9);
 }
 
 TEST_F(RunnerTest, ALostLinkFailsTheRunWithTheReason) {
   robot.link_lost_at = 5;
-  const RunResult result = go({kGoal}, {});
+  const RunResult result = go({kNearGoal}, {});
   EXPECT_EQ(result.outcome, algo::Outcome::Failed);
   EXPECT_EQ(result.reason, "The cable is out.");
   EXPECT_TRUE(robot.stopped);
@@ -173,12 +173,12 @@ TEST_F(RunnerTest, AStopThatMetAFullRingActsAfterAnEarlierRelease) {
     EXPECT_EQ(frame.telemetry.hold, algo::holds::kStopped);
     stop.request_stop();
   });
-  go({kGoal}, {});
+  go({kNearGoal}, {});
 }
 
 TEST_F(RunnerTest, AFullStreamDropsOnlyAViewersFrame) {
   links.rings = &rings;  // never drained
-  const RunResult result = go({kGoal}, {.until_outcome = true, .time_limit = 100});
+  const RunResult result = go({kNearGoal}, {.until_outcome = true, .time_limit = 100});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.lost_ticks, 0u);
 }
@@ -194,7 +194,7 @@ TEST_F(RunnerTest, APausedWorldServesRequestsAndKeepsItsTick) {
   one.begin({});
   EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
   rings.requests.push({1, algo::RemoveObstacle{9}});
-  rings.requests.push({2, kGoal});
+  rings.requests.push({2, kNearGoal});
   EXPECT_EQ(one.advance().when, Run::Next::When::Asked);
   EXPECT_EQ(rings.replies.read_available(), 2U);
   ASSERT_EQ(seen.size(), 1U);
@@ -222,7 +222,7 @@ TEST_F(RunnerTest, AdvancedTooEarlyItOnlyReturnsTheNextTime) {
   EXPECT_EQ(first.when, Run::Next::When::At);
   EXPECT_EQ(first.time, second.time);
   EXPECT_EQ(robot.steps, 0);
-  rings.requests.push({1, kGoal});  // still answered
+  rings.requests.push({1, kNearGoal});  // still answered
   one.advance();
   EXPECT_EQ(rings.replies.read_available(), 1U);
   stop.request_stop();
@@ -256,7 +256,7 @@ class BrokenSink final : public FrameSink {
 TEST_F(RunnerTest, ARequiredRecordThatFailsStopsTheRobot) {
   BrokenSink sink;
   links.record = &sink;
-  const RunResult result = go({kGoal}, {.require_record = true});
+  const RunResult result = go({kNearGoal}, {.require_record = true});
   EXPECT_EQ(result.outcome, algo::Outcome::Failed);
   EXPECT_EQ(result.reason, "The disk is full.");
   EXPECT_TRUE(robot.stopped);
@@ -266,7 +266,7 @@ TEST_F(RunnerTest, AFailedOptionalRecordStopsNoRobot) {
   BrokenSink sink;
   links.record = &sink;
   const RunResult result = go(
-      {kGoal},
+      {kNearGoal},
       {.until_outcome = true, .time_limit = 100, .record_patience = std::chrono::milliseconds(1)});
   EXPECT_EQ(result.outcome, algo::Outcome::Reached);
   EXPECT_EQ(result.lost_ticks + 9, result.metrics.ticks);
@@ -302,7 +302,7 @@ TEST_F(RunnerTest, TheRecordPausesAtRestAndResumesWithTheNextGoal) {
     }
     if (asked != 0 && t.tick == asked + 20) stop.request_stop();
   });
-  go({kGoal}, {.pause_record_after = 5});
+  go({kNearGoal}, {.pause_record_after = 5});
   ASSERT_TRUE(reached);
   const double period = robot.spec().period;
   EXPECT_GT(sink.pauses, 400 - static_cast<int>(7 / period));

@@ -16,7 +16,7 @@ using net::test::Answer;
 const std::string kToken = "the-token-of-the-walk-0123";
 const std::set<std::string> kMethods{"get", "put", "post", "delete", "patch"};
 
-std::string upper(std::string text) {
+std::string upper_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::toupper(c));
   return text;
 }
@@ -154,7 +154,7 @@ class AppWalk : public AppTest {
 TEST_F(AppWalk, EveryStatusThatOccursIsDocumented) {
   for (const auto& [path, methods] : api_.at("paths").items()) {
     for (const auto& [name, operation] : methods.items()) {
-      const std::string method = upper(name);
+      const std::string method = upper_case(name);
       std::string body;
       if (operation.contains("requestBody")) {
         body = sample(operation["requestBody"]["content"]["application/json"]["schema"]).dump();
@@ -185,11 +185,12 @@ TEST_F(AppWalk, WhatHasNoOperationIsNamedBesideThem) {
     for (const std::string& method : kMethods) {
       if (methods.contains(method)) continue;
       SCOPED_TRACE(method + ' ' + path);
-      const Answer answer = net::test::ask(port_, request(upper(method), targets(path)[0], ""));
+      const Answer answer =
+          net::test::ask(port_, request(upper_case(method), targets(path)[0], ""));
       expect(answer, 405);
       ASSERT_EQ(answer.headers.count("Allow"), 1u);
       for (const auto& [there, unused] : methods.items()) {
-        EXPECT_NE(answer.headers.at("Allow").find(upper(there)), std::string::npos);
+        EXPECT_NE(answer.headers.at("Allow").find(upper_case(there)), std::string::npos);
       }
     }
   }
@@ -212,10 +213,10 @@ TEST_F(AppWalkOutside, ARequestWithoutATokenLearnsNothing) {
   const json api = json::parse(known.body);
   for (const auto& [path, methods] : api.at("paths").items()) {
     for (const auto& [name, operation] : methods.items()) {
-      SCOPED_TRACE(upper(name) + ' ' + path);
+      SCOPED_TRACE(upper_case(name) + ' ' + path);
       const bool open = operation.contains("security") && operation["security"].empty();
-      const Answer answer =
-          net::test::ask(port_, upper(name) + ' ' + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+      const Answer answer = net::test::ask(
+          port_, upper_case(name) + ' ' + path + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
       EXPECT_EQ(answer.status == 401, !open);
       EXPECT_TRUE(operation["responses"].contains(std::to_string(answer.status))) << answer.status;
       EXPECT_EQ(answer.body.find(folder_.string()), std::string::npos) << answer.body;

@@ -10,23 +10,23 @@ namespace {
 
 using namespace std::chrono_literals;
 
-Address at(const std::string& text) {
+Address from(const std::string& text) {
   return Address::parse(text).value();
 }
 
 TEST(NetGuesses, TenAtOnceAndOneEveryFiveSeconds) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait) << i;
-  EXPECT_EQ(5s, throttle.wrong(at("10.0.0.1"), now).wait);
-  EXPECT_EQ(5s, throttle.wrong(at("10.0.0.1"), now).wait);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(from("10.0.0.1"), now).wait) << i;
+  EXPECT_EQ(5s, throttle.wrong(from("10.0.0.1"), now).wait);
+  EXPECT_EQ(5s, throttle.wrong(from("10.0.0.1"), now).wait);
   now += 5s;
-  EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait);
-  EXPECT_TRUE(throttle.wrong(at("10.0.0.1"), now).wait);
-  EXPECT_FALSE(throttle.wrong(at("10.0.0.2"), now).wait) << "another visitor";
+  EXPECT_FALSE(throttle.wrong(from("10.0.0.1"), now).wait);
+  EXPECT_TRUE(throttle.wrong(from("10.0.0.1"), now).wait);
+  EXPECT_FALSE(throttle.wrong(from("10.0.0.2"), now).wait) << "another visitor";
   now += 10min;  // no more than ten are ever saved up
-  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(at("10.0.0.1"), now).wait) << i;
-  EXPECT_TRUE(throttle.wrong(at("10.0.0.1"), now).wait);
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(throttle.wrong(from("10.0.0.1"), now).wait) << i;
+  EXPECT_TRUE(throttle.wrong(from("10.0.0.1"), now).wait);
 }
 
 TEST(NetGuesses, GuessesFasterThanAPersonAreNotChecked) {
@@ -34,50 +34,50 @@ TEST(NetGuesses, GuessesFasterThanAPersonAreNotChecked) {
   GuessThrottle throttle(now);
   int looked_at = 0;
   for (int i = 0; i < 10'000; ++i, now += 1ms) {  // ten seconds of a thousand guesses a second
-    if (throttle.may_look(at("10.0.0.1"), now)) ++looked_at;
-    throttle.wrong(at("10.0.0.1"), now);
+    if (throttle.may_look(from("10.0.0.1"), now)) ++looked_at;
+    throttle.wrong(from("10.0.0.1"), now);
   }
   EXPECT_LE(looked_at, 50 + 10 * 10 + 1);
-  EXPECT_TRUE(throttle.may_look(at("10.0.0.2"), now));
+  EXPECT_TRUE(throttle.may_look(from("10.0.0.2"), now));
   now += 1s;
-  EXPECT_TRUE(throttle.may_look(at("10.0.0.1"), now));
+  EXPECT_TRUE(throttle.may_look(from("10.0.0.1"), now));
 }
 
 TEST(NetGuesses, AnIpv6VisitorCountsOnceAndManyAddressesTakeNoMoreMemory) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
-  for (int i = 0; i < 10; ++i) throttle.wrong(at("2001:db8:0:1::" + std::to_string(i)), now);
-  EXPECT_TRUE(throttle.wrong(at("2001:db8:0:1::99"), now).wait);
+  for (int i = 0; i < 10; ++i) throttle.wrong(from("2001:db8:0:1::" + std::to_string(i)), now);
+  EXPECT_TRUE(throttle.wrong(from("2001:db8:0:1::99"), now).wait);
   EXPECT_EQ(1u, throttle.addresses());
   for (int i = 0; i < 20'000; ++i) {
-    throttle.wrong(at("10." + std::to_string(i >> 16) + '.' + std::to_string(i >> 8 & 255) + '.' +
-                      std::to_string(i & 255)),
+    throttle.wrong(from("10." + std::to_string(i >> 16) + '.' + std::to_string(i >> 8 & 255) + '.' +
+                        std::to_string(i & 255)),
                    now);
   }
   EXPECT_EQ(GuessThrottle::kAddresses, throttle.addresses());
-  EXPECT_TRUE(throttle.wrong(at("192.0.2.1"), now).wait) << "beyond them all share one account";
-  EXPECT_TRUE(throttle.may_look(at("192.0.2.2"), now)) << "the right token still passes";
+  EXPECT_TRUE(throttle.wrong(from("192.0.2.1"), now).wait) << "beyond them all share one account";
+  EXPECT_TRUE(throttle.may_look(from("192.0.2.2"), now)) << "the right token still passes";
   now += 1min;
-  EXPECT_FALSE(throttle.wrong(at("192.0.2.1"), now).wait) << "those who stopped are forgotten";
+  EXPECT_FALSE(throttle.wrong(from("192.0.2.1"), now).wait) << "those who stopped are forgotten";
 }
 
 TEST(NetGuesses, TheLogIsLimitedPerAddressAndInTotal) {
   Clock::time_point now{};
   GuessThrottle throttle(now);
-  EXPECT_EQ("A wrong token came from 10.0.0.1.", throttle.wrong(at("10.0.0.1"), now).line);
-  for (int i = 0; i < 30; ++i) EXPECT_EQ("", throttle.wrong(at("10.0.0.1"), now).line);
+  EXPECT_EQ("A wrong token came from 10.0.0.1.", throttle.wrong(from("10.0.0.1"), now).line);
+  for (int i = 0; i < 30; ++i) EXPECT_EQ("", throttle.wrong(from("10.0.0.1"), now).line);
   EXPECT_EQ("", throttle.overdue(now));
   now += 60s;
   EXPECT_EQ("30 wrong tokens came from 10.0.0.1.", throttle.overdue(now));
   EXPECT_EQ("", throttle.overdue(now));
   int lines = 0;
   for (int i = 0; i < 200; ++i) {
-    if (!throttle.wrong(at("10.0.1." + std::to_string(i)), now).line.empty()) ++lines;
+    if (!throttle.wrong(from("10.0.1." + std::to_string(i)), now).line.empty()) ++lines;
   }
   EXPECT_LE(lines, 20);
   now += 60s;
   EXPECT_EQ("Somebody at 10.0.0.9 has logged in as viewer.",
-            throttle.right(at("10.0.0.9"), Role::Viewer, now));
+            throttle.right(from("10.0.0.9"), Role::Viewer, now));
 }
 
 TEST(NetLoginSessions, LastWhileTheyAreUsed) {
