@@ -21,60 +21,12 @@ format_check() {
   return 1
 }
 
-# tidy_keys: "KEY<tab>FILE" for each of our sources in the release build; tests are only formatted,
-# since clang-tidy needs more time for GoogleTest's macros than for all the rest. KEY is a hash over the
-# file, our headers that it includes (as the compiler saw them) and the options of clang-tidy.
-tidy_keys() {
-  local pairs rules source
-  rules=$(sha256sum .clang-tidy CMakeLists.txt tests/dev/check.sh; clang-tidy-16 --version)
-  pairs=$(ninja -C build/release -t deps | awk -v root="$root/" '
-    /^[^ ]/ { source = ""; next }
-    NF {
-      path = substr($0, 5)
-      if (index(path, root) == 1) path = substr(path, length(root) + 1)
-      else if (!sub(/^\.\.\/\.\.\//, "", path) && path !~ /^\//) path = "build/release/" path
-      if (path ~ /^\//) next
-      if (source == "") source = path
-      if (source !~ /^(build|tests)\//) print source "\t" path
-    }' | sort -u)
-  while IFS= read -r source; do
-    printf '%s\t%s\n' "$({ printf '%s\n' "$rules"
-      awk -F '\t' -v s="$source" '$1 == s { print $2 }' <<<"$pairs" | xargs -d '\n' sha256sum; } |
-      sha256sum | cut -c 1-32)" "$source"
-  done < <(cut -f 1 <<<"$pairs" | sort -u)
-}
-
-# tidy_file KEY FILE: quiet, and cached when clean. The analyzer runs only for the mathematics and the
-# storage: for JSON and Beast it doubles the time and has found nothing.
-tidy_file() {
-  local checks=() log=$work/tidy/$1.log
-  if [[ $2 == server/* ]]; then
-    checks=(--checks='-clang-analyzer-*')
-  fi
-  if clang-tidy-16 -p "$work/tidy" --quiet "${checks[@]}" "$2" >"$log" 2>&1; then
-    mv -- "$log" "$work/tidy/$1.ok"
-  else
-    grep -vE '^[0-9]+ warnings? (and [0-9]+ errors? )?generated' -- "$log" || true
-    return 1
-  fi
-}
-
+# tidy_all: clang-tidy over the sources in groups, from a build folder of its own that compiles nothing.
 tidy_all() {
-  local keys key source todo=()
-  mkdir -p "$work/tidy"
-  # The compiler's options, except those for g++ only: precompiled headers, its memory.
-  sed -E 's/ (-fpch-preprocess|-Winvalid-pch -include [^ ]+cmake_pch\.hxx|--param ggc-[^ ]+)//g' \
-    build/release/compile_commands.json >"$work/tidy/compile_commands.json"
-  keys=$(tidy_keys)
-  [[ -n "$keys" ]] || { echo "the release build knows no source of ours"; return 1; }
-  while IFS=$'\t' read -r key source; do
-    [[ -f $work/tidy/$key.ok ]] || todo+=("$key" "$source")
-  done <<<"$keys"
-  ((${#todo[@]} > 0)) || return 0
-  export -f tidy_file
-  export work
-  # shellcheck disable=SC2016 # the inner shell expands them
-  printf '%s\0' "${todo[@]}" | xargs -0 -n 2 -P "$(job_count)" bash -c 'tidy_file "$1" "$2"' tidy
+  local made
+  mapfile -t made < <(ninja -C build/lint -t targets rule CUSTOM_COMMAND | grep -E '\.(cpp|h|bfbs)$')
+  ninja -C build/lint "${made[@]}" && # the generated headers and sources
+    python3 -B tests/dev/tidy.py build/lint "$work/tidy" "$(job_count)"
 }
 
 # types_of_page: type-checks the page when it has changed.
@@ -88,7 +40,8 @@ types_of_page() {
 verb_lint() {
   local status=0
   need "${run_packages[@]}" "${test_packages[@]}" "${check_packages[@]}"
-  build_all release # clang-tidy needs the generated headers and the compiler's list of includes
+  build_page # the page's packages hold schemas that a generated source embeds
+  configure lint OFF
   quietly format.log "clang-format" format_check || status=1
   quietly tidy.log "clang-tidy" tidy_all || status=1
   quietly types.log "Types of the page" types_of_page || status=1
