@@ -37,3 +37,17 @@ full_speed_rpm = 1000
 `);
   return { file, tell: (line) => emulator.stdin.write(`${line}\n`), end: () => emulator.kill() };
 }
+
+/**
+ * Arms the robot by the page `p` as a person does: where a moment refused, such as a late scan, they press again.
+ * `session` asks the server.
+ */
+export async function arm(p, session) {
+  const press = async () => {
+    const at_rest = (await p.get("arm").getAttribute("aria-pressed")) === "false";
+    if (at_rest) await p.get("arm").click();
+    await p.page.waitForTimeout(1000);
+    return session();
+  };
+  await until("armed", 20, press, (s) => s.hardware.armed);
+}

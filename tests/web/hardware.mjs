@@ -2,7 +2,7 @@
 // Stop, and all controls usable on a phone.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { devices } from "./devices.mjs";
+import { arm, devices } from "./devices.mjs";
 import { desktop, launch, open, phone } from "./page.mjs";
 import { json, scratch, serve, until } from "./program.mjs";
 
@@ -52,8 +52,7 @@ test("emulated hardware: arm, drive, a silent scanner, the stop button, Stop", {
       await until("disarmed, as it stood for long", 10, session, (s) => !s.hardware.armed);
       await words("a scanner that is lost", /looked for again/);
       await until("a scanner that is back", 30, session, (s) => s.hardware.devices.every((d) => d.well));
-      await p.get("arm").click();
-      await until("armed again", 20, session, (s) => s.hardware.armed);
+      await arm(p, session);
 
       robot.tell("stop on");
       await words("the stop button", /stop button/i);

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { after, before, test } from "node:test";
-import { devices } from "./devices.mjs";
+import { arm, devices } from "./devices.mjs";
 import { launch, open, usual_theme } from "./page.mjs";
 import { json, near, repository, scratch, serve, until } from "./program.mjs";
 
@@ -255,8 +255,7 @@ test("hardware: disarmed, with a goal that is not sent yet, armed and driving, h
       await p.page.mouse.click(at.x, at.y);
       await p.get("preview").waitFor();
       await check("preview");
-      await p.get("arm").click();
-      await until("armed", 20, session, (s) => s.hardware.armed);
+      await arm(p, session);
       await p.get("go").click();
       await until("a goal", 10, session, (s) => s.goal);
       await check("armed");

@@ -2,7 +2,7 @@
 // pressed; on emulated devices, in real time.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { devices } from "./devices.mjs";
+import { arm, devices } from "./devices.mjs";
 import { launch, open, phone } from "./page.mjs";
 import { json, scratch, serve, until } from "./program.mjs";
 
@@ -37,8 +37,7 @@ async function with_driver(act, size) {
 }
 
 async function send_off(p, session) {
-  await p.get("arm").click();
-  await until("armed", 20, session, (s) => s.hardware.armed);
+  await arm(p, session);
   await p.get("tool-goal").click();
   const at = await p.pixels(3, -1);
   await p.page.mouse.click(at.x, at.y);
@@ -107,8 +106,8 @@ test("a stray tap, a pan, Arm with a goal waiting and Release move nothing", { t
     assert.match(await p.get("preview-wait").textContent(), /Arm the motors first/);
     assert.ok(await p.get("go").isDisabled());
     await p.shot("hardware-phone-preview");
-    await p.get("arm").click();
-    await until("armed", 20, session, (s) => s.hardware.armed && s.hold === "none");
+    await arm(p, session);
+    await until("nothing holds it", 20, session, (s) => s.hold === "none");
     await rests("arming with a goal waiting");
     await p.get("stop").click();
     await until("stopped", 10, session, (s) => s.stop);
