@@ -2,6 +2,7 @@
 #include "algo/intent.hpp"
 
 #include <algorithm>
+#include <array>
 #include <variant>
 
 namespace algo {
@@ -13,6 +14,8 @@ struct Overloaded : Ts... {
 };
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
+
+constexpr std::array<std::string_view, 3> kStickModes{"guarded", "wall", "raw"};
 
 }  // namespace
 
@@ -70,7 +73,7 @@ bool Intent::apply(const Request& request) {
                    stick = pushed;
                    // When a driver goes silent the robot must stand still, not drive off to an old
                    // goal.
-                   return pushed != Joystick{} && set_goal(std::nullopt);
+                   return !pushed.centred() && set_goal(std::nullopt);
                  },
                  [&](const Stop& wanted) {
                    stop = wanted.engaged;
@@ -99,6 +102,16 @@ bool Intent::apply(const Request& request) {
                    return false;
                  }},
       request);
+}
+
+std::string_view name(StickMode mode) {
+  return kStickModes.at(static_cast<std::size_t>(mode));
+}
+
+std::optional<StickMode> stick_mode(std::string_view name) {
+  const auto* const it = std::ranges::find(kStickModes, name);
+  if (it == kStickModes.end()) return std::nullopt;
+  return static_cast<StickMode>(it - kStickModes.begin());
 }
 
 bool is_edit(const Request& request) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -51,10 +52,24 @@ struct RemoveObstacle {
   std::uint32_t id = 0;
   bool operator==(const RemoveObstacle&) const = default;
 };
+/// How far a driver's stick is obeyed. It comes with every push, so a lost request cannot leave the
+/// robot in a mode that its driver does not know.
+enum class StickMode : std::uint8_t {
+  Guarded,  // as far as the robot can still stop before all that it sees
+  Wall,  // besides, slower where it is crowded, and along a wall at full stick (Park et al. 2005)
+  Raw,   // as it is: only Stop, the bumpers and the watchdog hold
+};
+/// "guarded", as REST and CSV spell it.
+std::string_view name(StickMode mode);
+/// The mode of that name; nothing if there is none.
+std::optional<StickMode> stick_mode(std::string_view name);
+
 /// A manual driver's stick; each axis in [-1, 1] of the robot's limits.
 struct Joystick {
   double forward = 0;
   double turn = 0;  // left is positive
+  StickMode mode = StickMode::Guarded;
+  bool centred() const { return forward == 0 && turn == 0; }
   bool operator==(const Joystick&) const = default;
 };
 /// `engaged` latches the robot at rest until a Stop{false} releases it.

@@ -142,6 +142,7 @@ void read_limits(Section in, RobotFile& robot) {
   limits.speed = in.number_or("speed", limits.speed, {0.01, 2});
   limits.turn = in.number_or("turn", limits.turn, {0.01, 5});
   limits.acceleration = in.number_or("acceleration", limits.acceleration, {0.01, 5});
+  robot.spec.raw_stick = in.flag_or("raw_stick", false);
   limits.turn_acceleration =
       in.number_or("turn_acceleration", limits.turn_acceleration, {0.01, 20});
   in.done();

@@ -46,6 +46,7 @@ World::World(const Scenario& scenario, std::uint64_t seed)
   spec_ = spec_of(robot_, scenario_.period);
   spec_.command_delay = scenario_.period * scenario_.drive.delay_ticks;
   spec_.drives = true;
+  spec_.raw_stick = true;
   for (const SensorConfig& config : robot_.sensors.further) {
     spec_.channels.push_back(channel_of(config));
   }

@@ -10,12 +10,13 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/reactive.hpp"
 #include "algo/strip/strip_law.hpp"
+#include "algo/teleop/teleop_parameters.hpp"
 
 namespace algo {
 namespace {
 
-constexpr auto kCommon =
-    std::to_array<const ParameterInfo*>({&kFilterHalfWidth, &kScanTimeout, &kJoystickTimeout});
+constexpr auto kCommon = std::to_array<const ParameterInfo*>(
+    {&kFilterHalfWidth, &kScanTimeout, &kJoystickTimeout, &kStickSpeed});
 
 std::vector<const ParameterInfo*> all_parameters() {
   std::vector<const ParameterInfo*> all;
@@ -28,6 +29,7 @@ std::vector<const ParameterInfo*> all_parameters() {
     add(controller.parameters);
   }
   add(kCommon);
+  add(kTeleopParameters);
   return all;
 }
 

@@ -13,6 +13,7 @@
 #include "algo/perceive.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/reactive.hpp"
+#include "algo/teleop/teleop_parameters.hpp"
 
 namespace algo {
 namespace {
@@ -62,7 +63,11 @@ Pipeline::Pipeline(const PipelineConfig& config,
       controller_(controllers.at(config.controller)),
       initial_parameters_(config.parameters),
       sensing_(config.filter) {
-  if (spec.drives && by_hand_) coordinator_.add(std::make_unique<ManualBehaviour>());
+  if (spec.drives && by_hand_) {
+    auto manual = std::make_unique<ManualBehaviour>();
+    manual_ = manual.get();
+    coordinator_.add(std::move(manual));
+  }
   auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
   avoid->begin(config.run);
   avoiding_ = &avoid->controller();
@@ -107,6 +112,12 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
     }
     if (!spec_.drives) return "This robot only replays a log; it cannot be driven.";
     if (!by_hand_) return "This robot drives by itself; it has no stick.";
+    if (stick->mode == StickMode::Raw && !spec_.raw_stick) {
+      return "This robot's file does not allow a stick without a guard (raw).";
+    }
+    if (stick->mode == StickMode::Wall) {
+      return teleop_refusal(intent_.parameters, spec_.radius);
+    }
   }
   return std::nullopt;
 }
@@ -247,6 +258,7 @@ void Pipeline::control(Telemetry& t) {
   resource.grids = grids_wanted_ && grids_.due(t.observation.stamp);
   const Decision decision = coordinator_.decide(resource, t.output);
   if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);
+  if (manual_ != nullptr) manual_->show(t);
   t.behaviour = decision.winner;
   t.limit = decision.limit;
   t.command = actuate(decision.twist, spec_);

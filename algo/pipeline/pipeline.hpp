@@ -79,6 +79,8 @@ class Pipeline {
   Intent intent_{};  // without the obstacles, which belong to the robot
   Sensing sensing_;
   BehaviourCoordinator coordinator_{};
+  const ManualBehaviour* manual_ =
+      nullptr;                            // one of its behaviours, if a person may take the stick
   const Controller* avoiding_ = nullptr;  // the controller of one of its behaviours
   Sequencer sequencer_{};
   Scene scene_{};

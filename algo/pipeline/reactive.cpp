@@ -19,14 +19,28 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
   ControlInput input = static_cast<const ControlInput&>(in);
   if (in.mission == Mission::Arrived) input.goal.reset();
   controller_->update(input, *in.parameters, output);
-  return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}};
+  return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}, .limit = {}};
 }
 
 Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
   guard_.sense(in);
+  const bool shared = in.manual && in.joystick.mode == StickMode::Wall;
+  if (!shared) shared_.reset();
   if (!in.manual) return {};
-  const Twist2 wanted{in.joystick.forward * in.spec->max_v, in.joystick.turn * in.spec->max_omega};
-  return {.active = true, .twist = guard_.limit(in, wanted), .limits = {}};
+  const Twist2 full = full_stick(in);
+  const Twist2 wanted{in.joystick.forward * full.v, in.joystick.turn * full.omega};
+  Proposal out{.active = true, .twist = wanted, .limits = {}, .limit = {}};
+  if (in.joystick.mode == StickMode::Raw) return out;
+  if (shared) out.twist = shared_.share(in, wanted, out.limit);
+  const Twist2 safe = guard_.limit(in, out.twist);
+  if (safe != out.twist) out.limit = limits::kGuard;
+  out.twist = safe;
+  return out;
+}
+
+void ManualBehaviour::reset(const Pose2& start_W) {
+  guard_.reset(start_W);
+  shared_.reset();
 }
 
 void BehaviourCoordinator::reset(const Pose2& start_W) {
@@ -49,6 +63,7 @@ Decision BehaviourCoordinator::decide(const Resource& resource, ControlOutput& o
     if (!slot.held.active || decision.winner != behaviours::kRest) continue;
     decision.winner = slot.behaviour->name();
     decision.twist = slot.held.twist;
+    decision.limit = slot.held.limit;
   }
   // A limit only bounds a motion; it never starts one.
   if (decision.winner == behaviours::kRest) return decision;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "algo/controller.hpp"
+#include "algo/pipeline/shared_control.hpp"
 #include "algo/pipeline/stick_guard.hpp"
 #include "algo/sensor_merge.hpp"
 #include "algo/telemetry.hpp"
@@ -42,6 +43,7 @@ struct Proposal {
   bool active = false;  // wants the base
   Twist2 twist{};
   TwistLimits limits{};  // apply even if the behaviour does not want the base
+  Limit limit{};         // why `twist` is not what its driver wants
 };
 
 class Behaviour {
@@ -82,21 +84,24 @@ inline constexpr ParameterInfo kJoystickTimeout{
     .help = "The robot stops when the stick has been silent for this long.",
     .alias = "joystick_timeout"};
 
-/// Follows the driver's stick as far as its guard allows.
+/// Follows the driver's stick as far as its mode allows.
 class ManualBehaviour final : public Behaviour {
  public:
   Name name() const override { return behaviours::kManual; }
-  void reset(const Pose2& start_W) override { guard_.reset(start_W); }
+  void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
+  /// Adds the explanation of this tick's motion to `t`.
+  void show(Telemetry& t) const { shared_.show(t); }
 
  private:
   StickGuard guard_{};
+  SharedControl shared_{};  // at rest unless a stick in mode Wall is active
 };
 
 struct Decision {
   Name winner = behaviours::kRest;
   Twist2 twist{};
-  Limit limit{};  // the limit that changed the twist; the last of several
+  Limit limit{};  // the winner's own, or the limit that changed its twist; the last of several
 };
 
 /// Samples each behaviour at its own period and takes the first active one in the order given,

@@ -15,6 +15,7 @@ constexpr auto kBearings = ring_bearings();
 /// The beams of one virtual cone.
 struct Cone {
   double nearest = std::numeric_limits<double>::infinity();  // [m] from the robot's centre
+  double bearing = 0;                                        // [rad] of the nearest
   int beams = 0;                                             // that point into it
   int silent = 0;                                            // of these, without a measurement
 };
@@ -41,7 +42,7 @@ double nearest_heard(std::span<const double> distances, const Parameters& parame
   return least;
 }
 
-RingReadings virtual_sonars(const LaserScan& scan, const Parameters& parameters) {
+Ring virtual_sonars(const LaserScan& scan, const Parameters& parameters) {
   std::array<Cone, kRingSonars> cones{};
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const bool ok = scan.status[i] == Beam::Ok && std::isfinite(scan.ranges[i]);
@@ -53,18 +54,20 @@ RingReadings virtual_sonars(const LaserScan& scan, const Parameters& parameters)
     if (!ok) continue;
     // A scanner off the centre sees a return elsewhere than the centre would.
     const Vec2 p_R = beam_point_R(scan.mount_R, scan.angle(i), scan.ranges[i]);
-    each_cone(cones, std::atan2(p_R.y(), p_R.x()), [&p_R](Cone& cone) {
-      cone.nearest = std::min(cone.nearest, p_R.norm());
+    const double bearing = std::atan2(p_R.y(), p_R.x());
+    each_cone(cones, bearing, [&](Cone& cone) {
+      if (p_R.norm() < cone.nearest) cone = {p_R.norm(), bearing, cone.beams, cone.silent};
     });
   }
-  RingReadings readings{};
+  Ring ring;
   for (std::size_t n = 0; n < kRingSonars; ++n) {
     const Cone& cone = cones[n];
     const bool unknown = 2 * cone.silent > cone.beams && !std::isfinite(cone.nearest);
-    readings[n] = unknown ? std::numeric_limits<double>::quiet_NaN()
-                          : std::min(cone.nearest, parameters[kRingReach]);
+    ring.distances[n] = unknown ? std::numeric_limits<double>::quiet_NaN()
+                                : std::min(cone.nearest, parameters[kRingReach]);
+    if (std::isfinite(cone.nearest)) ring.bearings[n] = cone.bearing;
   }
-  return readings;
+  return ring;
 }
 
 }  // namespace algo

@@ -60,13 +60,20 @@ double heard(double d, const Parameters& parameters);
 /// The smallest of `distances` as heard(); D_min if there are none.
 double nearest_heard(std::span<const double> distances, const Parameters& parameters);
 
-/// The ring's readings out of a laser scan, for a robot without sonars (ours).
+/// The readings with the bearing [rad, in R] of each nearest return: a sonar knows only its axis, a
+/// laser the true one.
+struct Ring {
+  RingReadings distances{};
+  RingReadings bearings = ring_bearings();
+};
+
+/// The ring out of a laser scan, for a robot without sonars (ours).
 ///
 /// Reading n is the distance from the robot's centre to the nearest Ok return whose bearing from
 /// the centre lies within kRingHalfCone of the ring's axis n, and D_max if there is none or it is
 /// farther. The cones overlap, so no return between the axes is lost. NaN if most beams in the cone
 /// are Invalid or not finite, and no return is there: nothing is known about it. A cone outside the
 /// scanner's field of view reads D_max, like a sonar that the robot lacks.
-RingReadings virtual_sonars(const LaserScan& scan, const Parameters& parameters);
+Ring virtual_sonars(const LaserScan& scan, const Parameters& parameters);
 
 }  // namespace algo

@@ -14,7 +14,27 @@
 
 namespace algo {
 
-inline constexpr auto kTeleopParameters = std::to_array<const ParameterInfo*>({&kRingReach,
+// The fastest that full stick asks for, within the robot's own limits.
+inline constexpr ParameterInfo kStickSpeed{.name = "teleop.v_max",
+                                           .label = "Stick speed",
+                                           .unit = "m/s",
+                                           .min = 0.05,
+                                           .max = 2.0,
+                                           .step = 0.05,
+                                           .initial = 2.0,
+                                           .help = "Speed at full stick, if the robot can."};
+inline constexpr ParameterInfo kStickTurnRate{.name = "teleop.w_max",
+                                              .label = "Stick turn rate",
+                                              .unit = "rad/s",
+                                              .min = 0.1,
+                                              .max = 6.0,
+                                              .step = 0.1,
+                                              .initial = 6.0,
+                                              .help = "Turn rate at full stick, if the robot can."};
+
+inline constexpr auto kTeleopParameters = std::to_array<const ParameterInfo*>({&kStickSpeed,
+                                                                               &kStickTurnRate,
+                                                                               &kRingReach,
                                                                                &kStopDistance,
                                                                                &kSparsenessFactor,
                                                                                &kLeastSparseness,

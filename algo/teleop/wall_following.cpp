@@ -14,7 +14,10 @@ constexpr double kPeriodRounding = 1e-9;  // [s] of sums of periods
 
 }  // namespace
 
-WallTurn follow_wall(const Wall& wall, double w_max, const Parameters& parameters, WallLaw law) {
+WallTurn follow_wall(const WallModel& wall,
+                     double w_max,
+                     const Parameters& parameters,
+                     WallLaw law) {
   if (!std::isfinite(wall.rho) || !std::isfinite(wall.theta) || !std::isfinite(w_max)) return {};
   const double d_ref = parameters[kWallDistance];
   const double side = side_of(wall);
@@ -30,11 +33,11 @@ WallTurn follow_wall(const Wall& wall, double w_max, const Parameters& parameter
   return turn;
 }
 
-bool follows_wall(const Wall& wall, double v_cmd, double v_max, const Parameters& parameters) {
+bool follows_wall(const WallModel& wall, double v_cmd, double v_max, const Parameters& parameters) {
   return v_cmd > kFullSpeed * v_max && wall.rho <= kNearWall * parameters[kWallDistance];
 }
 
-std::optional<Wall> FollowedSide::follow(const std::optional<Wall>& seen, double stamp) {
+std::optional<WallModel> FollowedSide::follow(const std::optional<WallModel>& seen, double stamp) {
   const bool recent = held_ && stamp - held_stamp_ <= kPatience + kPeriodRounding;
   if (!seen) {
     other_since_.reset();

@@ -45,14 +45,14 @@ struct WallTurn {
 
 /// The turn that keeps `wall` at D_ref beside the robot. `w_max` [rad/s], >= 0. Zero if the wall or
 /// w_max is not finite.
-WallTurn follow_wall(const Wall& wall,
+WallTurn follow_wall(const WallModel& wall,
                      double w_max,
                      const Parameters& parameters,
                      WallLaw law = WallLaw::Corrected);
 
 /// The condition of Eq. 6-10: the operator drives at more than 0.9 v_max, and rho' <= 2 D_ref.
 /// `v_cmd`, `v_max` [m/s].
-bool follows_wall(const Wall& wall, double v_cmd, double v_max, const Parameters& parameters);
+bool follows_wall(const WallModel& wall, double v_cmd, double v_max, const Parameters& parameters);
 
 /// Keeps to one side (ours): the followed wall changes its side only after kPatience on the other.
 /// At a wall dead ahead theta' changes its sign from sample to sample, and w_d would jump between
@@ -65,11 +65,11 @@ class FollowedSide {
   /// side has to prove itself, the newest wall on the followed side, which is at most kPatience
   /// old. Nothing if neither is there. After kPatience without any wall, both sides are equal
   /// again.
-  std::optional<Wall> follow(const std::optional<Wall>& seen, double stamp);
+  std::optional<WallModel> follow(const std::optional<WallModel>& seen, double stamp);
   void reset() { *this = {}; }
 
  private:
-  std::optional<Wall> held_{};           // the newest on the followed side
+  std::optional<WallModel> held_{};      // the newest on the followed side
   double held_stamp_ = 0;                // [s] run clock
   std::optional<double> other_since_{};  // [s] run clock; the other side was seen without a break
 };

@@ -50,7 +50,7 @@ void vote(const VotingPoint& point, int k, Row& row) {
 }
 
 /// [m] Sum over the points of zeta |X cos(theta) + Y sin(theta) - rho|.
-double misfit(std::span<const VotingPoint> points, const Wall& wall) {
+double misfit(std::span<const VotingPoint> points, const WallModel& wall) {
   const Vec2 normal = direction(wall.theta);
   double sum = 0;
   for (const VotingPoint& p : points) {
@@ -60,12 +60,12 @@ double misfit(std::span<const VotingPoint> points, const Wall& wall) {
 }
 
 struct Best {
-  Wall wall{};
+  WallModel wall{};
   double misfit = std::numeric_limits<double>::infinity();
 };
 
 /// Cells come in rising theta.
-void compare(std::span<const VotingPoint> points, Wall cell, Best& best) {
+void compare(std::span<const VotingPoint> points, WallModel cell, Best& best) {
   cell.ties = 1;
   const bool tie = cell.votes == best.wall.votes;
   if (tie) cell.ties = ++best.wall.ties;
@@ -94,7 +94,7 @@ void count_votes(std::span<const double> bearings,
   zeta[static_cast<std::size_t>(nearest)] = 2;
 }
 
-std::optional<Wall> find_wall(std::span<const VotingPoint> points) {
+std::optional<WallModel> find_wall(std::span<const VotingPoint> points) {
   Best best;
   for (int k = 0; k < kThetaCells; ++k) {
     Row row{};
@@ -111,17 +111,17 @@ std::optional<Wall> find_wall(std::span<const VotingPoint> points) {
   return best.wall;
 }
 
-std::optional<Wall> wall_of_ring(const RingReadings& readings, const Parameters& parameters) {
+std::optional<WallModel> wall_of_ring(const Ring& ring, const Parameters& parameters) {
   static constexpr auto kBearings = ring_bearings();
   RingReadings distances{};
   std::ranges::transform(
-      readings, distances.begin(), [&](double d) { return heard(d, parameters); });
+      ring.distances, distances.begin(), [&](double d) { return heard(d, parameters); });
   std::array<int, kRingSonars> zeta{};
   count_votes(kBearings, distances, parameters, zeta);
   std::array<VotingPoint, kRingSonars> points{};
   for (std::size_t n = 0; n < kRingSonars; ++n) {
     const bool echo = distances[n] < parameters[kRingReach];
-    points[n] = {distances[n] * direction(kBearings[n]), echo ? zeta[n] : 0};
+    points[n] = {distances[n] * direction(ring.bearings[n]), echo ? zeta[n] : 0};
   }
   return find_wall(points);
 }

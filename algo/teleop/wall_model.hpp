@@ -28,7 +28,7 @@ inline constexpr ParameterInfo kWallSector{
 
 /// The line x cos(theta) + y sin(theta) = rho in R: its foot lies at distance rho and bearing
 /// theta. theta < 0: a wall on the right.
-struct Wall {
+struct WallModel {
   double rho = 0;        // [m] >= 0
   double theta = 0;      // [rad] in [-pi, pi)
   int votes = 0;         // of its cell
@@ -36,7 +36,7 @@ struct Wall {
 };
 
 /// sign(theta'), with sign(0) = +1 (equations.md G).
-inline double side_of(const Wall& wall) {
+inline double side_of(const WallModel& wall) {
   return wall.theta < 0 ? -1.0 : 1.0;
 }
 
@@ -67,12 +67,19 @@ void count_votes(std::span<const double> bearings,
 /// the smaller theta.
 ///
 /// Nothing if no point votes. Points that are not finite, and walls beyond kWallReach, are ignored.
-std::optional<Wall> find_wall(std::span<const VotingPoint> points);
+std::optional<WallModel> find_wall(std::span<const VotingPoint> points);
 
 constexpr double kWallReach = 12.8;  // [m] farther than any reading
 
 /// find_wall() for one sample of the ring. A reading without an echo does not vote (ours): its
-/// point at D_max would be a wall that nobody saw.
-std::optional<Wall> wall_of_ring(const RingReadings& readings, const Parameters& parameters);
+/// point at D_max would be a wall that nobody saw. With the true bearings of a laser's returns the
+/// model does not lean (ours): a sonar puts the near edge of its cone on its axis, so that a wall
+/// beside the robot seems to come nearer, by 10.7 degrees between the last two of eight cones.
+std::optional<WallModel> wall_of_ring(const Ring& ring, const Parameters& parameters);
+/// The same with each point on its sonar's axis, as published.
+inline std::optional<WallModel> wall_of_ring(const RingReadings& distances,
+                                             const Parameters& parameters) {
+  return wall_of_ring(Ring{.distances = distances}, parameters);
+}
 
 }  // namespace algo

@@ -26,7 +26,10 @@ std::string_view type_of(const algo::Request& request) {
       "joystick",
       "stop",
       "set_parameter",
-      "add_goal"};
+      "add_goal",
+      "set_goals",
+      "change_obstacle"};
+  static_assert(!kTypes.back().empty(), "every kind of request has its name");
   return kTypes[request.index()];
 }
 

@@ -141,7 +141,11 @@ algo::Request read_request(const fb::RequestBox& box) {
       return algo::RemoveObstacle{box.request_as_RemoveObstacle()->id()};
     case fb::Request_Joystick: {
       const auto* stick = box.request_as_Joystick();
-      return algo::Joystick{stick->forward(), stick->turn()};
+      if (stick->mode() > static_cast<std::uint8_t>(algo::StickMode::Raw)) {
+        throw WireError("The frame has a stick of an unknown mode.");
+      }
+      return algo::Joystick{
+          stick->forward(), stick->turn(), static_cast<algo::StickMode>(stick->mode())};
     }
     case fb::Request_Stop:
       return algo::Stop{box.request_as_Stop()->engaged()};

@@ -126,7 +126,8 @@ struct RequestWriter {
     return {fb::Request_RemoveObstacle, fb::CreateRemoveObstacle(b, r.id).Union()};
   }
   Written operator()(const algo::Joystick& r) const {
-    return {fb::Request_Joystick, fb::CreateJoystick(b, r.forward, r.turn).Union()};
+    return {fb::Request_Joystick,
+            fb::CreateJoystick(b, r.forward, r.turn, static_cast<std::uint8_t>(r.mode)).Union()};
   }
   Written operator()(const algo::Stop& r) const {
     return {fb::Request_Stop, fb::CreateStop(b, r.engaged).Union()};

@@ -22,7 +22,7 @@ bool FreshOrders::notice(std::uint32_t epoch) {
 
 std::optional<std::string> FreshOrders::refusal(const algo::Request& request, double now) {
   const auto* stick = std::get_if<algo::Joystick>(&request);
-  const bool pushed = stick != nullptr && *stick != algo::Joystick{};
+  const bool pushed = stick != nullptr && !stick->centred();
   if (stick != nullptr && !pushed) held_at_ = -std::numeric_limits<double>::infinity();
   if (!pushed && !is_goal(request)) return std::nullopt;
   const char* why = nullptr;

@@ -52,8 +52,11 @@ algo::Request request_from_json(const nlohmann::json& value) {
     return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxStandingId))};
   }
   if (type == "joystick") {
-    in.only({"type", "forward", "turn"});
-    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1})};
+    in.only({"type", "forward", "turn", "mode"});
+    const std::string mode = in.text_or("mode", "guarded");
+    const auto known = algo::stick_mode(mode);
+    if (!known) in.fail("mode", fmt::format("'{}' is unknown; known are guarded, wall, raw", mode));
+    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1}), *known};
   }
   if (type == "stop") {
     in.only({"type", "engaged"});

@@ -123,7 +123,7 @@ void expect_turn(const Json& vector, const std::string& name, algo::WallLaw law)
   Parameters parameters;
   parameters.set(algo::kWallDistance, metres(vector.at("D_ref")));
   parameters.set(algo::kWallSector, radians(vector.at("theta_sr")));
-  const algo::Wall wall{.rho = metres(vector.at("rho")), .theta = radians(vector.at("theta"))};
+  const algo::WallModel wall{.rho = metres(vector.at("rho")), .theta = radians(vector.at("theta"))};
   const auto turn = algo::follow_wall(wall, radians(vector.at("w_max")), parameters, law);
   const Json& out = vector.at(name);
   EXPECT_TRUE(close(turn.offset * kCmPerMetre, out.at("D_diff"), tolerance())) << name;

@@ -46,7 +46,8 @@ TEST(Heard, IsWithinReachAndNearForNan) {
 }
 
 TEST(VirtualSonars, AnEmptyPlaceHasNoEcho) {
-  for (const double d : algo::virtual_sonars(scan_of({}), Parameters{})) EXPECT_EQ(d, 3.0);
+  for (const double d : algo::virtual_sonars(scan_of({}), Parameters{}).distances)
+    EXPECT_EQ(d, 3.0);
 }
 
 /// A pole of 5 cm, 1.5 m away on each axis in turn: its cone reads 1.45 m, and all others nothing.
@@ -54,7 +55,7 @@ TEST(VirtualSonars, ReadTheNearestReturnOfTheirCone) {
   const auto bearings = algo::ring_bearings();
   for (std::size_t n = 0; n < algo::kRingSonars; ++n) {
     const worlds::World world{.circles = {{1.5 * algo::direction(bearings[n]), 0.05}}};
-    const RingReadings readings = algo::virtual_sonars(scan_of(world), Parameters{});
+    const RingReadings readings = algo::virtual_sonars(scan_of(world), Parameters{}).distances;
     for (std::size_t k = 0; k < algo::kRingSonars; ++k) {
       EXPECT_NEAR(readings[k], k == n ? 1.45 : 3.0, 1e-3) << n << ", cone " << k;
     }
@@ -65,7 +66,7 @@ TEST(VirtualSonars, NothingFallsBetweenTwoCones) {
   for (double degrees = -90; degrees <= 90; degrees += 0.5) {
     LaserScan scan = scan_of({});
     scan.set_ok(static_cast<std::size_t>(std::lround(2 * (degrees + 90))), 1.0);
-    const RingReadings readings = algo::virtual_sonars(scan, Parameters{});
+    const RingReadings readings = algo::virtual_sonars(scan, Parameters{}).distances;
     EXPECT_NEAR(algo::nearest_heard(readings, Parameters{}), 1.0, 1e-12) << degrees;
   }
 }
@@ -75,7 +76,8 @@ TEST(VirtualSonars, NothingFallsBetweenTwoCones) {
 TEST(VirtualSonars, CountFromTheCentreNotFromTheScanner) {
   const worlds::World world{.circles = {{{1.3, 0}, 0.05}}};
   const RingReadings readings =
-      algo::virtual_sonars(scan_of(world, {0.3, 0, 40 * kRadiansPerDegree}), Parameters{});
+      algo::virtual_sonars(scan_of(world, {0.3, 0, 40 * kRadiansPerDegree}), Parameters{})
+          .distances;
   EXPECT_NEAR(readings[3], 1.25, 1e-3);
   EXPECT_NEAR(readings[4], 1.25, 1e-3);
   EXPECT_EQ(readings[2], 3.0);
@@ -85,12 +87,12 @@ TEST(VirtualSonars, CountFromTheCentreNotFromTheScanner) {
 TEST(VirtualSonars, ABlindConeIsNotAFreeOne) {
   LaserScan scan = scan_of({});
   for (std::size_t i = 180; i <= 240; ++i) scan.set_invalid(i, algo::BeamCode::Dazzled);  // 0..30
-  RingReadings readings = algo::virtual_sonars(scan, Parameters{});
+  RingReadings readings = algo::virtual_sonars(scan, Parameters{}).distances;
   EXPECT_TRUE(std::isnan(readings[4]));
   EXPECT_EQ(readings[1], 3.0);
   EXPECT_EQ(algo::nearest_heard(readings, Parameters{}), 0.5);
   scan.set_ok(200, 1.0);  // a return among blind beams is still a return
-  readings = algo::virtual_sonars(scan, Parameters{});
+  readings = algo::virtual_sonars(scan, Parameters{}).distances;
   EXPECT_DOUBLE_EQ(readings[4], 1.0);
 }
 
@@ -102,11 +104,12 @@ TEST(VirtualSonars, ConesOutsideTheFieldReadNoEcho) {
   scan.range_max = 8;
   scan.resize(401);
   for (std::size_t i = 0; i < scan.size(); ++i) scan.set_ok(i, 2.0);
-  const RingReadings readings = algo::virtual_sonars(scan, Parameters{});
+  const RingReadings readings = algo::virtual_sonars(scan, Parameters{}).distances;
   EXPECT_EQ(readings[0], 3.0);
   EXPECT_DOUBLE_EQ(readings[2], 2.0);
   EXPECT_EQ(readings[7], 3.0);
-  for (const double d : algo::virtual_sonars(LaserScan{}, Parameters{})) EXPECT_EQ(d, 3.0);
+  for (const double d : algo::virtual_sonars(LaserScan{}, Parameters{}).distances)
+    EXPECT_EQ(d, 3.0);
 }
 
 TEST(VirtualSonars, AnyScanGivesReadingsThatTheLawsCanHear) {
@@ -119,7 +122,7 @@ TEST(VirtualSonars, AnyScanGivesReadingsThatTheLawsCanHear) {
       if (random() % 3 == 0) scan.set_invalid(i, algo::BeamCode::NoEcho);
       if (random() % 3 == 0) scan.set_ok(i, random() % 9 == 0 ? odd[random() % 4] : range);
     }
-    for (const double d : algo::virtual_sonars(scan, Parameters{})) {
+    for (const double d : algo::virtual_sonars(scan, Parameters{}).distances) {
       const double taken = algo::heard(d, Parameters{});
       EXPECT_TRUE(taken >= 0 && taken <= 3.0) << d;
     }
@@ -130,7 +133,7 @@ TEST(VirtualSonars, AllocateNothing) {
   const LaserScan scan = scan_of({.circles = {{{1.3, 0}, 0.05}}});
   const Parameters parameters;
   const auto before = allocations::count();
-  EXPECT_LT(algo::virtual_sonars(scan, parameters)[3], 3);
+  EXPECT_LT(algo::virtual_sonars(scan, parameters).distances[3], 3);
   EXPECT_EQ(allocations::count(), before);
 }
 

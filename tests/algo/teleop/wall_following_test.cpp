@@ -17,14 +17,14 @@ namespace {
 
 using algo::FollowedSide;
 using algo::Parameters;
-using algo::Wall;
 using algo::WallLaw;
+using algo::WallModel;
 using algo::units::kRadiansPerDegree;
 
 using tests::kNan;
 constexpr double kTurn = 25 * kRadiansPerDegree;  // [rad/s] of the paper's course
 
-Wall wall(double rho, double degrees) {
+WallModel wall(double rho, double degrees) {
   return {.rho = rho, .theta = degrees * kRadiansPerDegree};
 }
 double omega(double rho, double degrees, WallLaw law = WallLaw::Corrected) {
@@ -100,8 +100,8 @@ TEST(FollowWall, ClosesInOnItsDistance) {
   for (const algo::Pose2 start : {algo::Pose2{0, 0.4, 0}, algo::Pose2{0, 0.4, -0.6}}) {
     algo::Pose2 pose = start;
     for (int n = 0; n < 400; ++n) {
-      const Wall seen{.rho = pose.y + 0.8,
-                      .theta = algo::wrap_angle(-std::numbers::pi / 2 - pose.heading)};
+      const WallModel seen{.rho = pose.y + 0.8,
+                           .theta = algo::wrap_angle(-std::numbers::pi / 2 - pose.heading)};
       const double w = algo::follow_wall(seen, kTurn, Parameters{}).omega;
       pose = algo::integrate_arc(pose, {0.36, w}, algo::kTeleopPeriod);
       EXPECT_GT(pose.y + 0.8, 0.39) << "the hull's corner touches the wall";
@@ -114,7 +114,7 @@ TEST(FollowWall, ClosesInOnItsDistance) {
 TEST(FollowedSide, DoesNotFlickerAtAWallDeadAhead) {
   FollowedSide side;
   for (int n = 0; n < 100; ++n) {
-    const Wall seen = wall(1, n % 2 == 0 ? -2.5 : 2.5);
+    const WallModel seen = wall(1, n % 2 == 0 ? -2.5 : 2.5);
     const auto followed = side.follow(seen, n * 0.1);
     ASSERT_TRUE(followed);
     EXPECT_LT(followed->theta, 0) << n;

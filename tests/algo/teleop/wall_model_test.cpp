@@ -18,13 +18,13 @@ using algo::Parameters;
 using algo::RingReadings;
 using algo::Vec2;
 using algo::VotingPoint;
-using algo::Wall;
+using algo::WallModel;
 using algo::units::kRadiansPerDegree;
 
 using tests::kInf;
 using tests::kNan;
 
-double degrees(const Wall& wall) {
+double degrees(const WallModel& wall) {
   return wall.theta / kRadiansPerDegree;
 }
 

@@ -1,0 +1,179 @@
+// tests/algo/pipeline/shared_control_test.cpp: the modes of the stick, through the whole pipeline.
+#include "algo/pipeline/shared_control.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "tests/algo/allocations.hpp"
+#include "tests/algo/pipeline/by_hand.hpp"
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "algo/teleop/teleop_parameters.hpp"
+
+namespace {
+
+using algo::Joystick;
+using algo::StickMode;
+using by_hand::box;
+using by_hand::ByHand;
+
+constexpr Joystick kAhead{1, 0, StickMode::Wall};
+
+/// A wall along x, its face `beside` [m] to the left of the start; negative: to the right.
+ByHand beside_wall(double beside) {
+  ByHand robot;
+  const double far = beside + std::copysign(0.2, beside);
+  robot.world.polygons.push_back(box({-5, std::min(beside, far)}, {30, std::max(beside, far)}));
+  robot.start();
+  return robot;
+}
+
+double value(const ByHand& robot, const char* name) {
+  return robot.t.output.measure(name).value_or(-99);
+}
+
+TEST(SharedControl, KeepsTheDistanceToAWallOnEitherSide) {
+  for (const double beside : {1.2, -1.2, 0.6, -0.6}) {
+    ByHand robot = beside_wall(beside);
+    robot.hold(kAhead, 20);
+    SCOPED_TRACE(beside);
+    // The model's cells are 10 cm and 5 degrees wide.
+    EXPECT_NEAR(std::abs(beside - robot.pose.y), 0.8, 0.12);
+    EXPECT_NEAR(robot.pose.heading, 0, 0.15);
+    EXPECT_GT(robot.pose.x, 0.8);
+    EXPECT_GT(robot.least, 0.05);
+  }
+}
+
+TEST(SharedControl, FollowsNoWallUnlessTheStickIsNearlyFull) {
+  ByHand robot = beside_wall(-1.2);
+  robot.hold({0.85, 0, StickMode::Wall}, 6);
+  EXPECT_NEAR(robot.pose.y, 0, 1e-6);
+  EXPECT_TRUE(std::isnan(value(robot, "teleop.w_d")));
+}
+
+TEST(SharedControl, StopsByDegreesBeforeAnObstacleAndSaysWhy) {
+  ByHand robot;
+  robot.world.circles.push_back({{3, 0}, 0.15});
+  robot.start();
+  robot.hold({0.8, 0, StickMode::Wall}, 40);
+  EXPECT_EQ(robot.t.limit, algo::limits::kAhead);
+  EXPECT_LT(robot.twist.v, 0.01);
+  EXPECT_GT(robot.least, 3 - 0.15 - 0.35 - robot.pose.x - 1e-9);
+  EXPECT_NEAR(3 - 0.15 - robot.pose.x, 0.5, 0.12) << "D_min from the centre";
+}
+
+TEST(SharedControl, LeavesTheStickAloneInTheOpen) {
+  ByHand robot;
+  robot.start();
+  robot.hold({0.8, 0.3, StickMode::Wall}, 3);
+  EXPECT_DOUBLE_EQ(robot.t.command.base.v, 0.8 * 0.5 * (1 - std::exp(-3 * (3 - 0.5))));
+  EXPECT_DOUBLE_EQ(robot.t.command.base.omega, 0.3);
+  EXPECT_EQ(value(robot, "teleop.force_left"), 0);
+}
+
+TEST(SharedControl, TheSparsenessShrinksEveryTenthOfASecondAtAnyPeriod) {
+  for (const double period : {0.02, 0.025, 0.026, 0.05, 0.1}) {
+    ByHand robot;
+    robot.spec.period = period;
+    robot.world.circles.push_back({{0, 0.9}, 0.1});
+    robot.start();
+    SCOPED_TRACE(period);
+    robot.hold({0, 0.01, StickMode::Wall}, 1.05);
+    EXPECT_NEAR(value(robot, "teleop.v_sprs"), 0.5 * std::pow(0.9, 10), 1e-3);
+  }
+}
+
+TEST(SharedControl, PushesTheHandBackFromAnObstacleAndTowardsTheWallsTurn) {
+  ByHand near;
+  near.world.circles.push_back({{1.2, 0}, 0.15});
+  near.start();
+  near.hold({0.8, 0, StickMode::Wall}, 1);
+  EXPECT_LT(value(near, "teleop.force_forward"), 0);
+  ByHand right = beside_wall(-1.2);
+  right.hold(kAhead, 1);
+  EXPECT_LT(value(right, "teleop.w_d"), 0) << "too far from it: turn right";
+  EXPECT_LT(value(right, "teleop.force_left"), 0);
+}
+
+TEST(SharedControl, StartsAfreshWhenTheStickIsTakenAnew) {
+  ByHand robot;
+  robot.world.circles.push_back({{0, 0.9}, 0.1});
+  robot.start();
+  robot.hold({0, 0.01, StickMode::Wall}, 2);
+  robot.idle(1);
+  robot.hold({0, 0.01, StickMode::Wall}, 0.05);
+  EXPECT_DOUBLE_EQ(value(robot, "teleop.v_sprs"), 0.5);
+}
+
+TEST(SharedControl, ASonarThatFailsCountsAsAnObstacle) {
+  ByHand robot;
+  robot.spec.has_laser = false;
+  robot.scans = false;
+  for (const double bearing : algo::ring_bearings()) robot.sonars.push_back(bearing);
+  robot.start();
+  robot.hold({0.8, 0, StickMode::Wall}, 1);
+  ASSERT_EQ(robot.t.observation.sonar.size(), 8U);
+  EXPECT_GT(value(robot, "teleop.nearest"), 2.9);
+  robot.sonars.clear();
+  robot.hold({0.8, 0, StickMode::Wall}, 1);
+  EXPECT_EQ(robot.twist.v, 0);
+}
+
+TEST(StickModes, TheGuardSaysThatItLimits) {
+  ByHand robot;
+  robot.world.polygons.push_back(box({2, -3}, {2.2, 3}));
+  robot.start();
+  robot.hold({1, 0}, 1);
+  EXPECT_FALSE(robot.t.limit);
+  robot.hold({1, 0}, 8);
+  EXPECT_EQ(robot.t.limit, algo::limits::kGuard);
+}
+
+TEST(StickModes, RawObeysTheStickWhereTheRobotAllowsIt) {
+  ByHand robot;
+  robot.world.polygons.push_back(box({1, -3}, {1.2, 3}));
+  robot.start();
+  const Joystick raw{1, 0, StickMode::Raw};
+  EXPECT_THAT(robot.pipeline->refusal(raw).value_or(""), testing::HasSubstr("raw"));
+  robot.spec.raw_stick = true;
+  robot.start();
+  EXPECT_FALSE(robot.pipeline->refusal(raw));
+  robot.hold(raw, 4);
+  EXPECT_LT(robot.least, 0);
+  EXPECT_EQ(robot.t.command.base.v, 0.5);
+  EXPECT_FALSE(robot.t.limit);
+}
+
+TEST(StickModes, WallIsRefusedWithAStopDistanceWithinTheHull) {
+  ByHand robot;
+  robot.spec.radius = 0.6;
+  robot.start();
+  EXPECT_THAT(robot.pipeline->refusal(kAhead).value_or(""), testing::HasSubstr("teleop.d_min"));
+  EXPECT_FALSE(robot.pipeline->refusal(Joystick{1, 0}));
+}
+
+TEST(StickModes, FullStickAsksForNoMoreThanTheParameter) {
+  ByHand robot;
+  robot.start();
+  robot.t.requests.clear();
+  robot.sense();
+  robot.t.requests.push_back(algo::SetParameter{&algo::kStickSpeed, 0.2});
+  robot.pipeline->tick(robot.t);
+  robot.hold({1, 0}, 1);
+  EXPECT_EQ(robot.t.command.base.v, 0.2);
+}
+
+TEST(StickModes, ASteadyTickAllocatesNothingInAnyMode) {
+  for (const StickMode mode : {StickMode::Guarded, StickMode::Wall, StickMode::Raw}) {
+    ByHand robot = beside_wall(-1.0);
+    robot.hold({1, 0.1, mode}, 3);
+    robot.sense();
+    const std::size_t before = allocations::count();
+    robot.pipeline->tick(robot.t);
+    EXPECT_EQ(allocations::count(), before) << name(mode);
+  }
+}
+
+}  // namespace
