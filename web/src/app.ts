@@ -380,7 +380,7 @@ export class App {
     const { view, run, experiment, compare, time, camera } = this.route_;
     this.ui.set({ view, run, experiment, compare, place: { time, camera }, sheet: false, views: false });
     document.title = {
-      drive: "Tautline", runs: "Tautline: runs", experiments: "Tautline: experiments", system: "Tautline: system", nowhere: "Tautline: unknown address",
+      drive: "Tautline", teleop: "Tautline: driving by hand", runs: "Tautline: runs", experiments: "Tautline: experiments", system: "Tautline: system", nowhere: "Tautline: unknown address",
     }[view];
   }
 

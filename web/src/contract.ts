@@ -109,6 +109,7 @@ export type RequestJson =
   | { type: "change_obstacle"; obstacle: ObstacleJson }
   | { type: "move_obstacle"; id: number; x: number; y: number; heading: number }
   | { type: "remove_obstacle"; id: number }
+  | { type: "joystick"; forward: number; turn: number; mode: string }
   | { type: "stop"; engaged: boolean };
 
 /** The answer to a request; `warning` says why a goal may not be reached. */

@@ -12,6 +12,7 @@ import "./style/hardware.css";
 import "./style/timeline.css";
 import "./style/world.css";
 import "./style/people.css";
+import "./style/teleop.css";
 import "./style/narrow.css";
 import "./style/short.css";
 import { JSX, render } from "preact";
@@ -28,6 +29,7 @@ import { Spoken, Toasts } from "./views/toasts";
 import { TopBar } from "./views/topbar";
 
 // What Drive can do without at first.
+const Teleop = lazy(async () => (await import("./teleop/teleop")).Teleop);
 const Runs = lazy(async () => (await import("./views/runs")).Runs);
 const Experiments = lazy(async () => (await import("./experiments/experiments")).Experiments);
 const System = lazy(async () => (await import("./views/system")).System);
@@ -53,6 +55,7 @@ function Shell(): JSX.Element {
       <Rail />
       {hardware && <HardwareBar />}
       {view === "drive" && <Drive />}
+      {view === "teleop" && <Teleop />}
       {view === "runs" && <Runs />}
       {view === "experiments" && <Experiments />}
       {view === "system" && <System />}

@@ -34,6 +34,7 @@ export interface LinkEvents {
 export interface SocketLike {
   binaryType: string;
   readyState: number;
+  bufferedAmount: number; // [byte] not yet sent
   send(data: string | Uint8Array<ArrayBuffer>): void;
   close(): void;
   onopen: (() => void) | null;
@@ -162,6 +163,11 @@ export class LiveLink {
   tell(name: string): void {
     const service = this.services_.get(name);
     if (this.is_open && service !== undefined) this.send(service_request(service, this.next_id_++, {}));
+  }
+
+  /** Whether everything said so far has left this computer. */
+  get is_clear(): boolean {
+    return this.is_open && this.socket_?.bufferedAmount === 0;
   }
 
   /** [ms] Since the last message of the server. */

@@ -2,9 +2,9 @@
 // run, time in it, runs compared with it, and the camera.
 import type { Camera } from "../draw/view";
 
-const kViews: Record<string, ViewName> = { "": "drive", drive: "drive", runs: "runs", experiments: "experiments", system: "system" };
+const kViews: Record<string, ViewName> = { "": "drive", drive: "drive", teleop: "teleop", runs: "runs", experiments: "experiments", system: "system" };
 /** `nowhere`: the address names no view. */
-export type ViewName = "drive" | "runs" | "experiments" | "system" | "nowhere";
+export type ViewName = "drive" | "teleop" | "runs" | "experiments" | "system" | "nowhere";
 
 export interface Route {
   view: ViewName;

@@ -18,6 +18,7 @@ function solid(children: ComponentChildren): JSX.Element {
 }
 
 export const icons = {
+  teleop: line(<><circle cx="10" cy="10" r="7" /><circle cx="10" cy="10" r="2.4" /></>),
   drive: line(<path d="M3 15c4 0 4-9 7-9s3 9 7 9" />),
   runs: line(<path d="M4 5h12M4 10h12M4 15h8" />),
   experiments: line(<path d="M4 16v-5M8 16V6M12 16v-8M16 16V4" />),

@@ -83,14 +83,15 @@ export function Drive(): JSX.Element {
   );
 }
 
-function make_hand(app: App): Hand {
+/** `tool`: what a press does. */
+export function make_hand(app: App, tool: () => Tool = () => app.usable_tool): Hand {
   const hand: Hand = { draft: {}, hovered: null, gestures: null as unknown as Gestures };
   hand.gestures = new Gestures({
     get scene() {
       return app.shown;
     },
     view: app.view,
-    tool: () => app.usable_tool,
+    tool,
     can_edit: () => app.people.may("operator") && (app.ui.value.session?.robot.editable ?? false),
     will_edit: () => app.go_live(),
     looks_back: () => app.ui.value.looking,

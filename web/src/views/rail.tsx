@@ -7,6 +7,7 @@ import { icons } from "../ui/icons";
 
 const kViews: { name: ViewName; label: string; icon: JSX.Element }[] = [
   { name: "drive", label: "Drive", icon: icons.drive },
+  { name: "teleop", label: "Teleop", icon: icons.teleop },
   { name: "runs", label: "Runs", icon: icons.runs },
   { name: "experiments", label: "Experiments", icon: icons.experiments },
   { name: "system", label: "System", icon: icons.system },
