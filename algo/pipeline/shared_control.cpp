@@ -16,6 +16,8 @@ namespace {
 constexpr double kOldestEcho = 0.1;  // [s] all sonars of the ring have measured within this time
 constexpr double kSlack = 1e-9;      // [s], [m/s] of sums
 
+constexpr double kAsGood = 0.99;     // of a speed; Eq. 4 never gives all of it, even in the open
+
 constexpr LayerInfo kRing{.name = "teleop.ring",
                           .label = "Nearest in each sonar's sector",
                           .kind = LayerKind::Arrows,
@@ -48,7 +50,7 @@ Twist2 SharedControl::share(const Resource& in, const Twist2& wanted, Limit& lim
     out.omega = turn_->omega;
     if (std::abs(out.omega - wanted.omega) > kSlack) limit = limits::kWallBeside;
   }
-  if (out.v < wanted.v - kSlack) {
+  if (out.v < kAsGood * wanted.v) {
     // Of the two factors of Eq. 4, the smaller one.
     const double sparse = std::min(wanted.v, step_.speed);
     limit = sparse * sparse < out.v * wanted.v ? limits::kCrowded : limits::kAhead;

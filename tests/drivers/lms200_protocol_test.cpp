@@ -40,12 +40,12 @@ Configuration configuration(std::uint8_t threshold_mv,
   return result;
 }
 
-struct Row {
+struct PrintedRow {
   Command command;
   std::string bytes;
 };
 
-std::vector<Row> requests() {
+std::vector<PrintedRow> requests() {
   return {
       {status_command(), "02 00 01 00 31 15 12"},
       {type_command(), "02 00 01 00 3A 1E 12"},
@@ -86,7 +86,7 @@ std::vector<Row> requests() {
 }
 
 TEST(Lms200Protocol, RequestsMatchTheManualAndDecodeAgain) {
-  for (const Row& row : requests()) {
+  for (const PrintedRow& row : requests()) {
     EXPECT_EQ(bytes_of(row.command.view()), hex(row.bytes));
     Kept kept(Sender::Host);
     kept.feed(hex(row.bytes));

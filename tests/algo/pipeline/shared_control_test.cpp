@@ -71,6 +71,7 @@ TEST(SharedControl, LeavesTheStickAloneInTheOpen) {
   EXPECT_DOUBLE_EQ(robot.t.command.base.v, 0.8 * 0.5 * (1 - std::exp(-3 * (3 - 0.5))));
   EXPECT_DOUBLE_EQ(robot.t.command.base.omega, 0.3);
   EXPECT_EQ(value(robot, "teleop.force_left"), 0);
+  EXPECT_FALSE(robot.t.limit);
 }
 
 TEST(SharedControl, TheSparsenessShrinksEveryTenthOfASecondAtAnyPeriod) {
