@@ -22,9 +22,10 @@ const control = (action) => json(server.base, "/session/control", { method: "POS
 const moves = (s) => Math.hypot(s.command.v, s.command.omega) > 0.005;
 const rests = (s) => Math.hypot(s.command.v, s.command.omega) < 1e-9;
 
-/** A page at the seat, with the robot at its start. */
+/** A page at the seat, with the robot at its start and without a goal. */
 async function seat(options = {}) {
   await control("reset");
+  await json(server.base, "/session/goal", { method: "DELETE" });
   const p = await open(browser, server.base, { hash: "#/teleop", ...options });
   await p.get("hand-stick").waitFor();
   return p;
