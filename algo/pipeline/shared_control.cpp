@@ -16,7 +16,7 @@ namespace {
 constexpr double kOldestEcho = 0.1;  // [s] all sonars of the ring have measured within this time
 constexpr double kSlack = 1e-9;      // [s], [m/s] of sums
 
-constexpr double kAsGood = 0.99;     // of a speed; Eq. 4 never gives all of it, even in the open
+constexpr double kAsGood = 0.99;  // of a speed; Eq. 4 never gives all of it, even in the open
 
 constexpr LayerInfo kRing{.name = "teleop.ring",
                           .label = "Nearest in each sonar's sector",

@@ -53,6 +53,12 @@ TEST(RobotFile, TenLinesAreEnough) {
   EXPECT_THAT(robot.warnings, IsEmpty());
 }
 
+TEST(RobotFile, AStickWithoutAGuardMustBeAllowed) {
+  EXPECT_FALSE(parse_robot(kGood, "my.toml").spec.raw_stick);
+  EXPECT_TRUE(
+      parse_robot(with("[limits]", "[limits]\nraw_stick = true"), "my.toml").spec.raw_stick);
+}
+
 TEST(RobotFile, MistakesAreNamedWithTheirLine) {
   EXPECT_THAT(error_of("name = \"a\nb\""), HasSubstr("my.toml:1: "));
   EXPECT_EQ(error_of(with("track = 0.5", "track = \"wide\"")),

@@ -343,13 +343,14 @@ test("every view is accessible, in both themes; screenshots are kept", { timeout
         // A page opened while the world is paused shows its present state, not its start.
         await until("the newest instant", 10, () => p.get("time").textContent(), (t) => t > "00:13");
         await p.page.waitForTimeout(500);
-        for (const view of ["drive", "runs", "system"]) {
+        for (const view of ["drive", "teleop", "runs", "system"]) {
           await p.get(`nav-${view}`).click();
           if (view === "runs") {
             await p.page.locator("a.run-link").nth(size === phone ? 0 : 1).waitFor();
             if (size !== phone) await p.page.locator("tbody tr").nth(0).click();
             await p.page.waitForTimeout(900);
           }
+          if (view === "teleop") await p.get("hand-stick").waitFor(); // fetched when first shown
           if (view === "system") await p.page.locator("dt", { hasText: "Drawing a frame" }).waitFor(); // fetched when first shown
           await p.shot(`${view}-${name}-${theme}`);
           if (name !== "tablet") {

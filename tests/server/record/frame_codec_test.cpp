@@ -76,7 +76,7 @@ algo::Telemetry full_telemetry() {
   t.requests.push_back(algo::ChangeObstacle{walker});
   t.requests.push_back(algo::MoveObstacle{7, {1.5, 2.5, 0.5}});
   t.requests.push_back(algo::RemoveObstacle{7});
-  t.requests.push_back(algo::Joystick{0.5, -0.25});
+  t.requests.push_back(algo::Joystick{0.5, -0.25, algo::StickMode::Wall});
   t.requests.push_back(algo::Stop{false});
   t.requests.push_back(algo::SetParameter{&algo::kRepulsionGain, 0.45});
   t.ground_truth = algo::GroundTruth{{1, 2, 3}, 0.75, 0.5, true};

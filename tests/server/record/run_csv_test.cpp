@@ -157,6 +157,8 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
   t.observation.encoders = {0.03, 7, 4294967295U};
   t.requests.push_back(algo::ClearGoal{});
   t.requests.push_back(algo::Stop{false});
+  t.requests.push_back(algo::SetGoals{});
+  t.requests.push_back(algo::ChangeObstacle{});
   t.command.joints = 2;
   t.command.joint_rates = {0.5, -0.5};
   auto cells = table(whole(stored(paper_robot(), ticks), 100));
@@ -187,7 +189,7 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
       {"encoders.stamp", {"", "0.03"}},
       {"encoders.left", {"", "7"}},
       {"encoders.right", {"", "4294967295"}},
-      {"requests", {"", "clear_goal stop"}},
+      {"requests", {"", "clear_goal stop set_goals change_obstacle"}},
       {"joint_rate[0]", {"", "0.5"}},
       {"joint_rate[1]", {"", "-0.5"}},
   };

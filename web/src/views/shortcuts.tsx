@@ -30,6 +30,7 @@ const kShortcuts: [string[], string][] = [
   [["3"], "Switch between the view from above and 3D"],
   [["←", "→"], "Plots in focus: one tick back or on (with Shift ten); + and − zoom, 0 goes back"],
   [["X", "Shift+Arrows"], "Runs: select the run in focus, or those on the way"],
+  [["W", "A", "S", "D", "Arrows"], "Teleop: drive by hand while held"],
   [["Esc"], "Cancel the drawing; deselect"],
   [["?"], "Help and this list"],
 ];
