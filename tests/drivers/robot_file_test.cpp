@@ -55,8 +55,8 @@ TEST(RobotFile, TenLinesAreEnough) {
 
 TEST(RobotFile, AStickWithoutAGuardMustBeAllowed) {
   EXPECT_FALSE(parse_robot(kGood, "my.toml").spec.raw_stick);
-  EXPECT_TRUE(
-      parse_robot(with("[limits]", "[limits]\nraw_stick = true"), "my.toml").spec.raw_stick);
+  EXPECT_TRUE(parse_robot(with("[[laser]]", "[limits]\nraw_stick = true\n[[laser]]"), "my.toml")
+                  .spec.raw_stick);
 }
 
 TEST(RobotFile, MistakesAreNamedWithTheirLine) {
