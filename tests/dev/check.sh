@@ -57,12 +57,12 @@ verb_fmt() {
 
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
-# ThreadSanitizer runs only the tests with threads; the others would only take time.
+# ThreadSanitizer runs only the tests of rooms that start threads; the others would only take time.
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
     asan) targets=(tests_algo tests_sim tests_drivers tests_db tests_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
-    tsan) targets=(tests_server tests_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
+    tsan) targets=(test_server_{run,record,experiment,external,serve,emulate} tests_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac
   need clang-16 libclang-rt-16-dev
