@@ -19,7 +19,7 @@ struct Bars {
   double floor = kNone;
   double stretch = kNone;
 };
-struct Case {
+struct ScanCase {
   std::string row{};
   std::string name{};
   std::uint32_t obstacles = 0;
@@ -27,7 +27,7 @@ struct Case {
   Bars scan{};
 };
 
-std::vector<Case> cases() {
+std::vector<ScanCase> cases() {
   return {{"P1", "scan/20 8.191 m", 20, kNearRange, {100, 300}},
           {"P2", "scan/100 30 m", 100, kFarRange, {60, 150}},
           {"P3", "scan/1000 30 m", 1000, kFarRange, {15, 40}},
@@ -36,7 +36,7 @@ std::vector<Case> cases() {
 
 /// One world seen by our caster and by Bullet, from the same poses.
 struct Bench {
-  Bench(const Case& about, std::size_t pose_count)
+  Bench(const ScanCase& about, std::size_t pose_count)
       : range_max(about.range_max),
         world(reference::room(about.obstacles)),
         poses(poses_in(world, about.obstacles, pose_count)),
@@ -92,7 +92,7 @@ void check_against_bullet(Bench& bench, const std::string& row) {
           fmt::format("{}: {} of {} beams differ from Bullet's", row, off, beams));
 }
 
-void time_scan(Pass& pass, const Case& about) {
+void time_scan(Pass& pass, const ScanCase& about) {
   Bench bench(about, pass.count<std::size_t>(256, 16));
   check_against_bullet(bench, about.row);
   const auto times =
@@ -110,7 +110,7 @@ void time_scan(Pass& pass, const Case& about) {
 /// drives a circle of 0.5 m; and the flat scan from the poses of the same circle.
 class RollingScan {
  public:
-  explicit RollingScan(const Case& about)
+  explicit RollingScan(const ScanCase& about)
       : bench_(about, 1), model_(laser(about.range_max), 1, 0), trail_(step(), 0.1) {
     for (const algo::Obstacle& obstacle : bench_.world) model_.add(obstacle);
     trail_.reset(at(0), 0);
@@ -239,7 +239,7 @@ class RollingScan {
   std::size_t next_ = 0;
 };
 
-void time_rolling(Pass& pass, const Case& about) {
+void time_rolling(Pass& pass, const ScanCase& about) {
   RollingScan scan(about);
   scan.check(about.obstacles > 100 ? pass.count(40, 2) : pass.count(200, 8), "P1r");
   const auto times = pass.time("P1r" + about.name,
@@ -257,7 +257,7 @@ void time_rolling(Pass& pass, const Case& about) {
 
 /// Moves one obstacle to and fro by 0.3 m and scans.
 void time_edit(Pass& pass) {
-  const Case about{"P5", "scan after an edit, 100", 100, kFarRange, {40, 120}};
+  const ScanCase about{"P5", "scan after an edit, 100", 100, kFarRange, {40, 120}};
   Bench bench(about, pass.count<std::size_t>(256, 16));
   algo::Obstacle moved = bench.world[0];
   const double home = moved.pose_W.x;
@@ -338,8 +338,8 @@ void accuracy(Pass& pass) {
 }  // namespace
 
 void scans(Pass& pass) {
-  for (const Case& about : cases()) time_scan(pass, about);
-  for (const Case& about : cases()) time_rolling(pass, about);
+  for (const ScanCase& about : cases()) time_scan(pass, about);
+  for (const ScanCase& about : cases()) time_rolling(pass, about);
   accuracy(pass);
   time_edit(pass);
 }
