@@ -15,8 +15,7 @@ namespace {
 
 constexpr double kOldestEcho = 0.1;  // [s] all sonars of the ring have measured within this time
 constexpr double kSlack = 1e-9;      // [s], [m/s] of sums
-
-constexpr double kAsGood = 0.99;  // of a speed; Eq. 4 never gives all of it, even in the open
+constexpr double kAsGood = 0.99;     // of a speed; Eq. 4 never gives all of it, even in the open
 
 constexpr LayerInfo kRing{.name = "teleop.ring",
                           .label = "Nearest in each sonar's sector",
@@ -98,9 +97,9 @@ void SharedControl::reflect(const Resource& in, const Twist2& wanted, const Twis
   force_forward_ =
       force(kFullStick * wanted.v / full.v, forward_band(v_limit, full.v), kForwardLevels);
   force_left_ = 0;
-  if (turn_)
-    force_left_ =
-        force(kFullStick * wanted.omega / full.omega, wall_band(turn_->omega, full.omega), {});
+  if (!turn_) return;
+  force_left_ =
+      force(kFullStick * wanted.omega / full.omega, wall_band(turn_->omega, full.omega), {});
 }
 
 void SharedControl::show(Telemetry& t) const {

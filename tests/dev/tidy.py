@@ -48,9 +48,9 @@ def key(group, files, rules):
     return digest.hexdigest()[:32]
 
 
-def check(build, group, files):
+def check(build, group, files, root):
     """The words of clang-tidy on one group; empty when it is clean."""
-    server = any("/server/" in str(path) for path in [group, *files] if path.suffix == ".cpp")
+    server = any(str(path.relative_to(root)).startswith("server/") for path in [group, *files])
     result = subprocess.run(
         ["clang-tidy-16", "-p", str(build), *OPTIONS, "--checks=" + (SERVER_CHECKS if server else CHECKS),
          str(group)], capture_output=True, text=True, check=False)
@@ -80,7 +80,7 @@ def main():
     todo.sort(key=lambda item: -item[0])  # the longest first, so that the workers end together
     clean = True
     with concurrent.futures.ThreadPoolExecutor(jobs) as workers:
-        running = {workers.submit(check, build, group, files): mark for _, group, files, mark in todo}
+        running = {workers.submit(check, build, group, files, root): mark for _, group, files, mark in todo}
         for done in concurrent.futures.as_completed(running):
             if done.result():
                 clean = False

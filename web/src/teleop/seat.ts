@@ -57,9 +57,10 @@ export class Seat {
   private barred_ = false; // until the middle
   private zeros_ = 0;      // still to send
 
-  /** Whether the key is one of the seat's. */
-  key(code: string, down: boolean): boolean {
+  /** Whether the key is one of the seat's. A repeat presses nothing: after a loss it would go on by itself. */
+  key(code: string, down: boolean, repeat = false): boolean {
     if (!Object.hasOwn(kKeys, code)) return false;
+    if (repeat) return true;
     if (down) this.keys_.add(code);
     else this.keys_.delete(code);
     return true;

@@ -34,7 +34,7 @@ export function Teleop(): JSX.Element {
   const me = use_me();
   const seat = useMemo(() => new Seat(), []);
   const view = useMemo(() => new View(), []);
-  const hand = useMemo(() => make_hand(app, () => "pan"), [app]);
+  const hand = useMemo(() => make_hand(app, { tool: () => "pan", edits: false }), [app]);
   const [mode, set_mode] = useState<Mode>("guarded");
   const [strange, set_strange] = useState(false);
   const told = useRef(-Infinity);
@@ -68,13 +68,11 @@ export function Teleop(): JSX.Element {
     }, kSendEvery);
     return () => clearInterval(beat);
   }, [drives]);
-  useEffect(() => {
-    if (stop.phase !== "none") seat.drop();
-  }, [stop.phase]);
+  useEffect(() => seat.drop(), [stop.phase, session?.stop]); // by Stop or Release of any page
   use_listener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || typing(e.target) || document.querySelector("dialog[open]")) return;
-    if (e.target instanceof HTMLInputElement) return; // a slider or a choice keeps its arrows
-    if (seat.key(e.code, true)) e.preventDefault();
+    if (e.target instanceof HTMLInputElement && e.code.startsWith("Arrow")) return; // a slider or a choice keeps them
+    if (seat.key(e.code, true, e.repeat)) e.preventDefault();
   });
   use_listener("keyup", (e) => void seat.key(e.code, false));
   use_listener("blur", () => seat.drop());
@@ -107,10 +105,7 @@ export function Teleop(): JSX.Element {
         </div>
         <div class="deck-choices">
           <Segments label="Mode" name="stick-mode" choices={kModes} value={mode} disabled={!drives}
-            on_pick={(name) => {
-              set_mode(name as Mode);
-              latest_mode.current = name as Mode;
-            }} />
+            on_pick={(name) => set_mode(name as Mode)} />
           <p class="quiet">{kModes.find((m) => m.name === mode)!.help}.</p>
           <SpeedCap disabled={!drives} />
           {!awake && <p class="quiet">This browser may let the screen go dark: it keeps it awake only over https.</p>}
@@ -172,7 +167,7 @@ function Reason(props: { scene: SceneState; seat: Seat; drives: boolean; strange
   );
 }
 
-/** Commanded and executed speed, as bars from the middle. */
+/** The size of wanted, commanded and executed speed, as bars. */
 function Speeds(props: { scene: SceneState; seat: Seat; full: number }): JSX.Element {
   const { frame } = props.scene;
   const full = Math.max(props.full, 0.01);

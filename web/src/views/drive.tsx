@@ -83,8 +83,8 @@ export function Drive(): JSX.Element {
   );
 }
 
-/** `tool`: what a press does. */
-export function make_hand(app: App, tool: () => Tool = () => app.usable_tool): Hand {
+/** `tool`: the one that a press uses. Without `edits` no press changes the world. */
+export function make_hand(app: App, { tool = () => app.usable_tool, edits = true } = {}): Hand {
   const hand: Hand = { draft: {}, hovered: null, gestures: null as unknown as Gestures };
   hand.gestures = new Gestures({
     get scene() {
@@ -92,7 +92,7 @@ export function make_hand(app: App, tool: () => Tool = () => app.usable_tool): H
     },
     view: app.view,
     tool,
-    can_edit: () => app.people.may("operator") && (app.ui.value.session?.robot.editable ?? false),
+    can_edit: () => edits && app.people.may("operator") && (app.ui.value.session?.robot.editable ?? false),
     will_edit: () => app.go_live(),
     looks_back: () => app.ui.value.looking,
     set_goal: (goal) => app.editor.want_goal(goal),
