@@ -11,6 +11,7 @@ import hashlib
 import json
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 
@@ -22,9 +23,10 @@ RULES = (".clang-tidy", "CMakeLists.txt", "tests/dev/tidy.py")
 # source only here, and an embedded document may be long.
 OPTIONS = ("--quiet", "--header-filter=/(algo|sim|drivers|db|server)/.*[.][ch]pp$", "--extra-arg=-Wno-shadow",
            "--extra-arg=-Wno-overlength-strings")
-# The analyzer runs only for the mathematics and the storage: for JSON and Beast it doubles the time and has
-# found nothing.
-CHECKS, SERVER_CHECKS = "-bugprone-suspicious-include", "-bugprone-suspicious-include,-clang-analyzer-*"
+GROUP_CHECKS = "--checks=-bugprone-suspicious-include,-clang-analyzer-*"
+# The analyzer passes over included sources, so it reads each alone. It runs only for the mathematics and the
+# storage: for JSON and Beast it doubles the time and has found nothing.
+ANALYZER = "--checks=-*,clang-analyzer-*,-clang-analyzer-optin.*"
 
 
 def ours(group, root):
@@ -48,15 +50,24 @@ def key(group, files, rules):
     return digest.hexdigest()[:32]
 
 
-def check(build, group, files, root):
-    """The words of clang-tidy on one group; empty when it is clean."""
-    server = any(str(path.relative_to(root)).startswith("server/") for path in [group, *files])
-    result = subprocess.run(
-        ["clang-tidy-16", "-p", str(build), *OPTIONS, "--checks=" + (SERVER_CHECKS if server else CHECKS),
-         str(group)], capture_output=True, text=True, check=False)
+def tidy(*arguments):
+    """The words of clang-tidy; empty when it finds nothing."""
+    result = subprocess.run(["clang-tidy-16", *OPTIONS, *arguments], capture_output=True, text=True, check=False)
     if result.returncode == 0:
         return ""
     return result.stdout + re.sub(r"(?m)^\d+ warnings?.* generated\.\n", "", result.stderr)
+
+
+def check(build, entry, files, root):
+    """The words of clang-tidy on the group of `entry`, and of the analyzer on each of its sources."""
+    words = tidy("-p", str(build), GROUP_CHECKS, entry["file"])
+    sources = [path for path in [pathlib.Path(entry["file"]), *files] if path.suffix == ".cpp"]
+    command = shlex.split(entry["command"])
+    options = [word for word in command[:command.index("-o")] if not word.endswith(("ccache", "clang++-16"))]
+    for source in sources:
+        if not str(source.relative_to(root)).startswith("server/"):
+            words += tidy(ANALYZER, str(source), "--", *options)
+    return words
 
 
 def main():
@@ -74,13 +85,13 @@ def main():
         files = ours(group, root)
         mark = cache / (key(group, files, rules) + ".ok")
         if not mark.exists():
-            todo.append((group.stat().st_size + sum(path.stat().st_size for path in files), group, files, mark))
+            todo.append((group.stat().st_size + sum(path.stat().st_size for path in files), entry, files, mark))
     if not todo and not any(cache.glob("*.ok")):
         sys.exit(f"{build} knows no source of ours")
     todo.sort(key=lambda item: -item[0])  # the longest first, so that the workers end together
     clean = True
     with concurrent.futures.ThreadPoolExecutor(jobs) as workers:
-        running = {workers.submit(check, build, group, files, root): mark for _, group, files, mark in todo}
+        running = {workers.submit(check, build, entry, files, root): mark for _, entry, files, mark in todo}
         for done in concurrent.futures.as_completed(running):
             if done.result():
                 clean = False
