@@ -72,7 +72,9 @@ void Scheduler::work_timed(const std::stop_token& stop) {
     if (timed_.empty()) {
       wake_.wait(lock);
     } else {
-      wake_.wait_until(lock, timed_.begin()->first);
+      // A copy: another thread may take the task out while wait_until() still reads its deadline.
+      const Clock::time_point due = timed_.begin()->first;
+      wake_.wait_until(lock, due);
     }
     --idle_;
   }
