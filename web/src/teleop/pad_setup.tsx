@@ -49,7 +49,7 @@ export function PadSetup(props: { find: () => Pad | null; on_close: () => void }
       <table class="pad-roles">
         <tbody>
           {kRoles.map((role) => (
-            <tr key={role} class={ear.role === role ? "on" : ""}>
+            <tr key={role} class={ear.role === role ? "asked" : ""}>
               <th scope="row">{kWords[role].name}</th>
               <td class="num" data-testid={`pad-${role}`}>{answer(ear.map, role)}</td>
               <td><button class="ghost" data-testid={`assign-${role}`} aria-label={`${kWords[role].name}: assign`}

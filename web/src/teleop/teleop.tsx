@@ -13,6 +13,7 @@ import { Devices } from "./devices";
 import { DriverView } from "./eye";
 import { Hand, Mode, use_hand } from "./hand";
 import { driven_words } from "./reasons";
+import { use_second_thumb } from "./second_thumb";
 
 export { ReplayDeck } from "./deck"; // of one part of the page: more parts would cost the first load more
 
@@ -31,12 +32,13 @@ export function Teleop(): JSX.Element {
   const hand = use_hand(drives, mode);
   const { seat } = hand;
   const awake = use_awake();
+  use_second_thumb();
   use_pulse(100);
   return (
     <>
       <main class="scene" aria-label="The world about the robot">
         <DriverView />
-        <Reason scene={app.scene} hand={hand} drives={drives} />
+        <Reason scene={app.scene} hand={hand} drives={drives} stopped={session?.stop ?? false} />
       </main>
       <Deck scene={app.scene} wish={seat.idle ? null : seat.wish} barred={seat.barred}
         hold={drives ? (stick) => seat.draw(stick) : null}>
@@ -56,10 +58,11 @@ export function Teleop(): JSX.Element {
 }
 
 /** The sentence of the view: why the robot does not do what the hand wants. */
-function Reason(props: { scene: SceneState; hand: Hand; drives: boolean }): JSX.Element {
+function Reason(props: { scene: SceneState; hand: Hand; drives: boolean; stopped: boolean }): JSX.Element {
   const { frame } = props.scene;
   const { what, why } = !props.drives
     ? { what: "You only watch", why: "This robot takes no stick, or your role may not drive." }
+    : props.stopped ? { what: "Stopped", why: "Release lets the robot drive again, once the stick has been in the middle." }
     : props.hand.seat.barred ? { what: "Let go of the stick", why: "The robot goes on only after the stick has been in the middle." }
     : frame?.behaviour === "manual" ? driven_words(props.scene)
     : props.hand.strange ? { what: "This gamepad moves nothing", why: "Its buttons have no standard order, so none is known to be Stop. Set it up below." }

@@ -29,6 +29,9 @@ interface Options {
 const kChaseEye = [-2.4, 0, 1.9] as const, kChaseTarget = [1.3, 0, 0] as const;
 
 const kMostPath = 1500;
+const kLate = 80;       // [ms] from asking for a picture to drawing it
+const kMostLate = 4;    // late ones in a row
+const kCoarser = 0.7, kCoarsest = 0.35; // of the pixels of the page, along each axis
 
 export class World3 {
   private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
@@ -42,6 +45,8 @@ export class World3 {
   private readonly raw_ = points(2.5);
   private readonly filtered_ = points(3.5);
   private pending_ = 0;
+  private asked_ = 0; // [ms] when the pending drawing was asked for
+  private late_ = 0;  // drawings in a row that came late
   private built_: unknown[] = [];
   private hull_: SceneState["hull"] = null; // of the robot that was built
   private scenario_: string | null = null; // for which the camera was placed
@@ -72,7 +77,9 @@ export class World3 {
   }
 
   request(): void {
-    this.pending_ ||= requestAnimationFrame(() => this.draw());
+    if (this.pending_) return;
+    this.asked_ = performance.now();
+    this.pending_ = requestAnimationFrame(() => this.draw());
   }
 
   set_palette(palette: Palette): void {
@@ -138,6 +145,7 @@ export class World3 {
       this.place_camera(scene, orbits.get(scenario));
     }
     this.controls_.enabled = !this.chases_;
+    if (this.chases_) this.keep_pace();
     drawing.around(() => {
       this.build_statics(scene, options.selection, options.hidden);
       this.build_moving(scene, options);
@@ -231,6 +239,15 @@ export class World3 {
       if (Number.isFinite(x)) line.push({ x, y });
     }, truly);
     this.moving_.add(ribbon(line, width, z, colour));
+  }
+
+  /** A driver needs a new picture more than a fine one: where pictures come late they get coarser. */
+  private keep_pace(): void {
+    this.late_ = performance.now() - this.asked_ > kLate ? this.late_ + 1 : 0;
+    const ratio = this.renderer_.getPixelRatio();
+    if (this.late_ < kMostLate || ratio <= kCoarsest) return;
+    this.late_ = 0;
+    this.renderer_.setPixelRatio(Math.max(kCoarsest, ratio * kCoarser));
   }
 
   private ride_behind(scene: SceneState): void {
