@@ -1,7 +1,6 @@
 // tests/web/teleop.test.ts: the operator's seat: its sources, its dead man, and the gamepad's axes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { frame_bytes } from "./wire";
 import { Legends } from "../../web/src/link/legend";
 import { decode_frame } from "../../web/src/link/frame";
 import { driven_words, speed_reason, turn_reason } from "../../web/src/teleop/reasons";
@@ -11,6 +10,7 @@ import { Pad, PadEar, PadMap, curved, find_pad, fits, is_map, read_maps, read_pa
 import { push_words } from "../../web/src/teleop/drawn_stick";
 import { Seat } from "../../web/src/teleop/seat";
 import * as wire from "../../web/src/wire/telemetry_generated";
+import { frame_bytes, push_stick } from "./wire";
 
 function pad(axes: number[], pressed: number[] = [], mapping = "standard", buttons = 17): Pad {
   const all = Array.from({ length: buttons }, (_, i) => ({ pressed: pressed.includes(i), value: pressed.includes(i) ? 1 : 0 }));
@@ -171,7 +171,7 @@ function driven_scene(more: object = {}, measures = kMeasures) {
     { name: "teleop.wall", kind: wire.LayerKind.Polyline, values: [1, 2, 3, 4] }];
   fold_frame(scene, decode_frame(frame_bytes({
     tick: 1, behaviour: "manual", pose: [1, 2, Math.PI / 2], twist: [0.1, 0], command: [0.2, 0.2], words: ["a", "b"], layers, measures,
-    requests: [(b) => [wire.Request.Joystick, wire.Joystick.createJoystick(b, 0.8, -0.25, 1)]], ...more,
+    requests: [push_stick(0.8, -0.25, 1)], ...more,
   }), new Legends()));
   return scene;
 }
@@ -202,6 +202,10 @@ test("the ring's sectors lie about their axes; the nearest one slows the robot",
     assert.equal(s.echo, [1, 3, 4].includes(n));
     assert.equal(s.limits, n === 1);
   });
+  const fewer = driven_scene();
+  const ring = fewer.layers.get("teleop.ring")!;
+  ring.values = ring.values.filter((_, i) => i >= 12); // the three on the right are silent
+  assert.deepEqual(ring_sectors(fewer).map((s) => s.bearing), sectors.slice(3).map((s) => s.bearing));
   assert.ok(ring_sectors(driven_scene()).every((s) => !s.limits), "nothing is slowed");
 });
 

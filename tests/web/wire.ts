@@ -133,6 +133,11 @@ export const remove = (id: number) => (b: flatbuffers.Builder): [wire.Request, n
   return [wire.Request.RemoveObstacle, wire.RemoveObstacle.endRemoveObstacle(b)];
 };
 
+/** mode: 0 guarded, 1 wall, 2 raw */
+export const push_stick = (forward: number, turn: number, mode: number) =>
+  (b: flatbuffers.Builder): [wire.Request, number] =>
+    [wire.Request.Joystick, wire.Joystick.createJoystick(b, forward, turn, mode)];
+
 export const set_parameter = (name: string, value: number) =>
   (b: flatbuffers.Builder): [wire.Request, number] => {
     const text = b.createString(name);

@@ -1,8 +1,8 @@
 // web/src/teleop/eye.tsx: the world as the driver sees it: from behind the robot, from above, or from anywhere.
 import { JSX } from "preact";
-import { useMemo, useState } from "preact/hooks";
+import { useMemo, useRef, useState } from "preact/hooks";
 import { use_app } from "../app";
-import { View } from "../draw/view";
+import { Insets, View } from "../draw/view";
 import { Bounds } from "../geometry";
 import { SceneState } from "../state/scene";
 import { keep, kept } from "../state/store";
@@ -43,17 +43,27 @@ export function DriverView(): JSX.Element {
 function FromAbove(): JSX.Element {
   const app = use_app();
   const view = useMemo(() => new View(), []);
+  const box = useRef<HTMLDivElement>(null);
   const hand = useMemo(() => make_hand(app, { tool: () => "pan", edits: false, view }), [app]);
   return (
-    <SceneCanvas scene={() => app.shown} view={view} gestures={hand.gestures}
+    <div ref={box}><SceneCanvas scene={() => app.shown} view={view} gestures={hand.gestures}
       label="The robot and its surroundings from above" bounds={() => about(app.shown)}
-      insets={() => kInsets} lost={() => strayed(view, app.shown)}
+      insets={() => free_of(box.current!.parentElement!)} lost={() => strayed(view, app.shown)}
       on_ready={(redraw) => (app.redraw = redraw)}
       overlay={() => ({
         selection: null, hovered: null, draft: {}, handles: false, force_scale: app.ui.value.force_scale,
         hidden: app.ui.value.hidden, ghosts: [], future: false, insets: kInsets, preview: null,
-      })} />
+      })} /></div>
   );
+}
+
+const kSpans = 0.7; // of the view's width, from which on the sentence leaves no room beside it
+
+/** The margins of the free part of `view`: on a phone the sentence covers all above. */
+function free_of(view: HTMLElement): Insets {
+  const say = view.querySelector(".say")?.getBoundingClientRect(), all = view.getBoundingClientRect();
+  const covers = say && say.width > kSpans * all.width;
+  return { ...kInsets, top: covers ? say.bottom - all.top : kInsets.top };
 }
 
 /** The bounds of what the driver needs to see. */
