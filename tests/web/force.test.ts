@@ -164,15 +164,18 @@ test("what cannot push says so in a sentence", async () => {
     ["did not take", { waits: 1000 }],
   ];
   for (const [why, broken] of reports) {
-    await assert.rejects(PidStick.open(Object.assign(fake(), broken), unlost), new RegExp(why));
+    const device = Object.assign(fake(), broken);
+    await assert.rejects(PidStick.open(device, unlost), new RegExp(why));
+    assert.ok(!device.opened, "it is not kept from others");
   }
 });
 
 test("of the chosen devices the one with a constant force is taken; none may be chosen", async () => {
   const usable = fake(), other = { ...fake(), collections: [] };
-  const hid = (list: HidDevice[]) => ({ requestDevice: async (o: { filters: { usagePage: number }[] }) => {
-    assert.deepEqual(o.filters, [{ usagePage: 0x0f }]);
-    return list;
+  const hid = (list: HidDevice[]) => ({ requestDevice: async (o: { filters: { usagePage: number; usage?: number }[] }) => {
+    // As Chromium: only the outermost collections count.
+    return list.filter((d) => o.filters.some((f) => d.collections.length === 0 ||
+      d.collections.some((c) => c.usagePage === f.usagePage && (f.usage ?? c.usage) === c.usage)));
   } }) as unknown as Hid;
   assert.equal(await choose_device(hid([other, usable])), usable);
   assert.equal(await choose_device(hid([])), null);

@@ -212,7 +212,9 @@ test("a force stick over WebHID is pushed, and let go by a blur, by Stop, by the
   const p = await seat();
   await p.page.evaluate(`window.device = (${force_stick})()`);
   await p.page.evaluate(() => {
-    navigator.hid.requestDevice = async ({ filters }) => (filters[0].usagePage === 0x0f ? [window.device] : []);
+    const [{ usagePage, usage }] = window.device.collections; // browsers compare these only
+    navigator.hid.requestDevice = async ({ filters }) =>
+      (filters.some((f) => f.usagePage === usagePage && (f.usage ?? usage) === usage) ? [window.device] : []);
   });
   await p.get("force-open").click();
   await until("connected", 10, () => p.get("force-words").textContent(), (t) => /pushes Fake force stick/.test(t));

@@ -29,9 +29,12 @@ export function hid_of(from: object = navigator): Hid | null {
   return "hid" in from ? ((from as { hid?: Hid }).hid ?? null) : null;
 }
 
+/** Browsers compare with the whole device, not with its parts: mostly a joystick, gamepad or wheel with PID inside. */
+const kFilters = [{ usagePage: kPage }, { usagePage: 1, usage: 4 }, { usagePage: 1, usage: 5 }, { usagePage: 2 }];
+
 /** Lets a person choose a device; null: none was chosen. Must be called by a press. */
 export async function choose_device(hid: Hid): Promise<HidDevice | null> {
-  const chosen = await hid.requestDevice({ filters: [{ usagePage: kPage }] });
+  const chosen = await hid.requestDevice({ filters: kFilters });
   return chosen.find((d) => find_report(d.collections, kSetConstant)) ?? chosen[0] ?? null;
 }
 
@@ -65,18 +68,17 @@ export class PidStick implements ForceDevice {
     } catch (error) {
       throw new Error(`${named} could not be opened. On Linux the browser needs leave to write to it (a udev rule). ${error}`);
     }
-    const control = find_report(device.collections, ...kControl);
-    if (control) {
-      await send(device, control, [[kReset, 1]]);
-      await send(device, control, [[kEnable, 1]]);
+    try {
+      const block = await ready(device, named);
+      const free = find_report(device.collections, kBlockFree);
+      const stick = new PidStick(device, block, effect, force, operation, free, lost);
+      await stick.turn(0);
+      await stick.push(0);
+      return stick;
+    } catch (error) {
+      await device.close().catch(() => undefined);
+      throw error;
     }
-    const gain = find_report(device.collections, kDeviceGain);
-    if (gain) await send(device, gain, [[kGainField, gain.field(kGainField)?.max ?? 0]]);
-    const block = await make_effect(device, named);
-    const stick = new PidStick(device, block, effect, force, operation, find_report(device.collections, kBlockFree), lost);
-    await stick.turn(0);
-    await stick.push(0);
-    return stick;
   }
 
   set_force(forward: number, left: number): void {
@@ -155,6 +157,7 @@ export class PidStick implements ForceDevice {
   private lose(why: string): void {
     if (this.closed_) return;
     this.closed_ = true;
+    void this.device_.close().catch(() => undefined);
     this.lost_(why);
   }
 }
@@ -162,6 +165,18 @@ export class PidStick implements ForceDevice {
 async function send(device: HidDevice, to: Layout, values: Values): Promise<void> {
   const data = to.pack(new Map(values));
   await (to.feature ? device.sendFeatureReport(to.id, data) : device.sendReport(to.id, data));
+}
+
+/** Switches the device on, at its full gain, and returns the number of a new effect. */
+async function ready(device: HidDevice, named: string): Promise<number> {
+  const control = find_report(device.collections, ...kControl);
+  if (control) {
+    await send(device, control, [[kReset, 1]]);
+    await send(device, control, [[kEnable, 1]]);
+  }
+  const gain = find_report(device.collections, kDeviceGain);
+  if (gain) await send(device, gain, [[kGainField, gain.field(kGainField)?.max ?? 0]]);
+  return make_effect(device, named);
 }
 
 /** The number of a new constant effect. A device without reports for that has its effects ready. */

@@ -35,7 +35,7 @@ export interface HidDevice {
   receiveFeatureReport(id: number): Promise<DataView>;
 }
 export interface Hid extends EventTarget {
-  requestDevice(options: { filters: { usagePage: number }[] }): Promise<HidDevice[]>;
+  requestDevice(options: { filters: { usagePage: number; usage?: number }[] }): Promise<HidDevice[]>;
 }
 
 /** One value of a report. */
