@@ -5,6 +5,7 @@ import * as for_driver from "../../web/src/draw/driven";
 import { draw_layer, stacked } from "../../web/src/draw/layers";
 import { Palette } from "../../web/src/draw/palette";
 import { draw_for_driver, draw_scene } from "../../web/src/draw/scene";
+import { draw_ranging, kConeAlpha } from "../../web/src/draw/sensing";
 import { View } from "../../web/src/draw/view";
 import { LayerKind, LayerView, arcs, grid_place, sectors } from "../../web/src/layer";
 import { decode_frame, decode_sweep } from "../../web/src/link/frame";
@@ -251,6 +252,18 @@ test("each layer is drawn while its switch is on, and nothing of it while it is 
     sum += alone - bare;
   }
   assert.equal(calls([]), sum, "all together are what each is alone");
+});
+
+test("an echo of a sonar is an arc, and the cone before it is free", () => {
+  const scene = new_scene();
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, sonar: [[0, 2]] }), new Legends()));
+  const g = new Recorder();
+  draw_ranging(g as unknown as CanvasRenderingContext2D, view, palette, scene.readings);
+  const [cone] = g.of("fill");
+  assert.deepEqual([g.of("fill").length, cone.colour, cone.alpha], [1, "scan", kConeAlpha]);
+  near(g.of("moveTo")[0].args, [400, 300]);
+  assert.deepEqual(g.of("arc").map((c) => c.args[2]), [200, 200]);
+  assert.deepEqual(g.of("stroke").map((c) => [c.colour, c.alpha]), [["scan", 0.8]]);
 });
 
 test("a driver sees sectors instead of arrows, the wall's numbers, and both ways ahead, each while its switch is on", () => {

@@ -1,7 +1,6 @@
 // web/src/draw/driven.ts: what a driver sees about the robot from above: the sectors that the laws hear, the followed
 // wall with its numbers, and where stick and robot lead to.
-import { full_stick, kAhead, ring_sectors, sector_arc, wall_of, wall_words, way_of } from "../state/driven";
-import { kOwn } from "../state/layers";
+import { ring_sectors, sector_arc, wall_of, wall_words, ways_ahead } from "../state/driven";
 import type { SceneState } from "../state/scene";
 import { kRing, kWall } from "../state/stick";
 import { Context, fill, stroke, trace, write } from "./marks";
@@ -66,20 +65,13 @@ export function draw_wall_words(g: Context, view: View, palette: Palette, scene:
     right ? "left" : "right");
 }
 
-/** The ways of the next `kAhead` seconds: as the stick asks, and as the robot moves now. */
+/** Where the stick and the robot's present motion lead to. */
 export function draw_ways_ahead(g: Context, view: View, palette: Palette, scene: SceneState, hidden: ReadonlySet<string>): void {
-  const { stick, frame } = scene;
-  if (!stick || !frame) return;
-  const { pose } = frame;
-  const full = full_stick(scene);
   g.save();
   g.lineCap = "round";
-  for (const [key, v, omega] of [
-    [kOwn.wanted, stick.forward * full.v, stick.turn * full.omega], [kOwn.executed, frame.twist.v, frame.twist.omega],
-  ] as const) {
-    if (hidden.has(key.name) || Math.abs(v) * kAhead < 0.05) continue;
+  for (const { key, line } of ways_ahead(scene, hidden)) {
     g.beginPath();
-    trace(g, view, way_of(pose, v, omega));
+    trace(g, view, line);
     stroke(g, palette[key.token], 3, key.style === "dashed" ? [8, 6] : []);
   }
   g.restore();

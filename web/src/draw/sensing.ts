@@ -7,7 +7,7 @@ import { Palette } from "./palette";
 import { View } from "./view";
 
 export const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo came from somewhere on the arc
-const kConeAlpha = 0.12;        // of the cone that is free up to the arc
+export const kConeAlpha = 0.12;        // of the cone that is free up to the arc
 const kDot = 2;                 // [px]
 
 /** The area that is free by the filtered scan, as a soft fan; a beam without a reading is a gap. */

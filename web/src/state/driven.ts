@@ -1,14 +1,16 @@
 // web/src/state/driven.ts: what a scene tells of a robot that somebody drives by hand: the force on the stick, the sectors
 // that the laws hear, the followed wall. Live or of a stored run.
 import { Point, Pose, degrees, to_parent, wrap_angle } from "../geometry";
-import type { SceneState } from "./scene";
 import { fixed } from "../words";
+import { LayerKey, kOwn } from "./layers";
+import type { SceneState } from "./scene";
 import { kRing, kWall } from "./stick";
 
 const kSectors = 8;                // of the half circle ahead, from right to left
 const kHalfSector = Math.PI / 12;  // [rad] half the cone of a sonar of the ring; cones overlap
 const kDrawnHalf = Math.PI / 2 / (kSectors - 1); // [rad] up to the middle between two axes
-export const kAhead = 3;                  // [s] for which the ways of stick and robot are drawn
+const kAhead = 3;      // [s] for which the ways of stick and robot are drawn
+const kShortest = 0.05; // [m] of such a way
 
 export function measure(scene: SceneState, name: string): number | null {
   const value = scene.frame?.measures.find((m) => m.name === name)?.value;
@@ -90,4 +92,17 @@ export function way_of(pose: Pose, v: number, omega: number, points = 25): Point
 /** "Wall 0.75 m, −77°": its distance and its bearing from the robot's nose, left positive. */
 export function wall_words(wall: { rho: number; theta: number }): string {
   return `Wall ${fixed(wall.rho, 2)} m, ${fixed(degrees(wall.theta), 0)}°`;
+}
+
+/** The ways of the next `kAhead` seconds that are not `hidden`: as the stick asks, and as the robot moves now. */
+export function ways_ahead(scene: SceneState, hidden: ReadonlySet<string>): { key: LayerKey; line: Point[] }[] {
+  const { stick, frame } = scene;
+  if (!stick || !frame) return [];
+  const full = full_stick(scene);
+  const all = [
+    { key: kOwn.wanted, v: stick.forward * full.v, omega: stick.turn * full.omega },
+    { key: kOwn.executed, v: frame.twist.v, omega: frame.twist.omega },
+  ];
+  return all.filter(({ key, v }) => !hidden.has(key.name) && Math.abs(v) * kAhead >= kShortest)
+    .map(({ key, v, omega }) => ({ key, line: way_of(frame.pose, v, omega) }));
 }

@@ -228,7 +228,7 @@ export class World3 {
       else build_layer(stage, layer);
       if (layer.name === kWall) this.moving_.add(...build_wall_words(scene, p));
     }
-    for (const o of build_ways_ahead(scene, p, f.pose, options.hidden)) this.moving_.add(o);
+    for (const o of build_ways_ahead(scene, p, options.hidden)) this.moving_.add(o);
   }
 
   private build_path(scene: SceneState, width: number, z: number, colour: string, truly: boolean): void {
