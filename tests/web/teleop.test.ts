@@ -233,6 +233,7 @@ test("each limit has its reason with numbers, and a robot that only starts has n
   assert.match(speed_reason(at("guard"), 0.4).tail, /50 %/);
   assert.equal(speed_reason(at(""), 0.4).head, "");
   assert.equal(speed_reason(at("guard"), 0.2).head, "", "it has what it wants");
+  assert.equal(speed_reason(driven_scene({ behaviour: "avoid" }), 0.4).tail, "", "nobody drives");
   const wall = turn_reason(at("wall", [...kMeasures, ...kWallBeside]), -0.2);
   assert.equal(`${wall.head} ${wall.tail}`, "Wall on the right turns it left (Eq. 8)");
   assert.match(driven_words(at("wall", [...kMeasures, ...kWallBeside])).why, /nose 18° towards it: turning left 11\.5 °\/s/);

@@ -9,6 +9,7 @@ import { fixed, limit_words } from "../words";
 export interface Reason { head: string; tail: string; tone: "external" | "internal" | "muted" }
 
 const kNone: Reason = { head: "", tail: "Nothing limits it.", tone: "muted" };
+const kIdle: Reason = { ...kNone, tail: "" }; // nobody drives
 const kLess = 0.01; // [m/s], [rad/s]
 
 const side = (left: boolean) => (left ? "left" : "right");
@@ -16,7 +17,8 @@ const side = (left: boolean) => (left ? "left" : "right");
 /** Why the speed is below the `wanted` one [m/s]. */
 export function speed_reason(scene: SceneState, wanted: number): Reason {
   const f = scene.frame;
-  if (!f || !scene.stick || Math.abs(f.command.v) > Math.abs(wanted) - kLess) return kNone;
+  if (!f || !scene.stick) return kIdle;
+  if (Math.abs(f.command.v) > Math.abs(wanted) - kLess) return kNone;
   const room = measure(scene, "teleop.v_sprs"), nearest = measure(scene, "teleop.nearest");
   const share = `${fixed((100 * f.command.v) / wanted, 0)} %`;
   if (f.limit === "crowded") return { head: "Crowded:", tail: `room for ${fixed(room, 2)} m/s (Eq. 1-3)`, tone: "external" };
@@ -29,7 +31,7 @@ export function speed_reason(scene: SceneState, wanted: number): Reason {
 /** Why the robot turns otherwise than `wanted` [rad/s]. */
 export function turn_reason(scene: SceneState, wanted: number): Reason {
   const f = scene.frame;
-  if (!f || !scene.stick) return kNone;
+  if (!f || !scene.stick) return kIdle;
   const turn = measure(scene, "teleop.w_d"), wall = wall_of(scene);
   if (turn !== null && wall) {
     return {

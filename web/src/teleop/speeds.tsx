@@ -64,7 +64,7 @@ function Bars(props: {
       {row("Commanded", wanted, "wanted", [])}
       <div class="funnel">
         <svg viewBox={`0 0 ${kWide} ${kFunnel}`} preserveAspectRatio="none" aria-hidden="true">
-          {!centred && <path class="kept" d={funnel(centred, Math.min(Math.abs(wanted), Math.abs(sent)), sent)} />}
+          {!centred && why.tail !== "" && <path class="kept" d={funnel(centred, Math.min(Math.abs(wanted), Math.abs(sent)), sent)} />}
           {limited && <path class={`c-${why.tone} lost`} d={centred ? funnel(true, wanted, sent) : cut(wanted, sent)} />}
         </svg>
         <p class={`c-${why.tone}`}>{why.head && <b>{why.head} </b>}{why.tail}</p>
