@@ -37,8 +37,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
   const { session, stop } = use_ui("session", "stop");
   const seat = useMemo(() => new Seat(), []);
   const rumble = useMemo(() => new Rumble(gamepad), []);
-  const stick = useRef<PidStick | null>(null);
-  const [connected, set_connected] = useState<PidStick | null>(null);
+  const force = use_force_stick(app);
   const [heard, set_heard] = useState({ strange: false, pad: null as string | null, rumbles: false });
   const [setting_up, set_up] = useState(false);
   const told = useRef(-Infinity);
@@ -47,7 +46,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
 
   const let_go = () => {
     seat.drop();
-    stick.current?.set_force(0, 0);
+    force.held.current?.set_force(0, 0);
   };
   const refused = (error: unknown) => {
     let_go();
@@ -73,7 +72,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
       if (!app.link.is_open) let_go();
       const next = seat.next();
       const { forward, left } = felt(app, seat);
-      for (const device of [rumble, stick.current]) device?.set_force(forward, left);
+      for (const device of [rumble, force.held.current]) device?.set_force(forward, left);
       // Old commands that wait in the socket would reach the robot late: none is added to them.
       if (!next || !app.link.is_clear) return;
       app.link.call("/request", { type: "joystick", ...next, mode: latest.current.mode }).catch(refused);
@@ -85,49 +84,63 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
   }, [drives]);
   useEffect(let_go, [stop.phase, session?.stop]); // by Stop or Release of any page
   use_seat_keys(seat);
-  use_listener("blur", let_go);
-  use_listener("pagehide", let_go);
-  use_listener("gamepaddisconnected", let_go);
-  useEffect(() => {
-    const hide = () => document.hidden && let_go();
-    document.addEventListener("visibilitychange", hide);
-    return () => document.removeEventListener("visibilitychange", hide);
-  }, []);
-
-  const let_device_go = () => {
-    stick.current?.close();
-    stick.current = null;
-    set_connected(null);
-  };
-  useEffect(() => {
-    const hid = hid_of();
-    const unplugged = (e: Event) => stick.current?.unplugged((e as Event & { device?: unknown }).device);
-    hid?.addEventListener("disconnect", unplugged);
-    return () => {
-      hid?.removeEventListener("disconnect", unplugged);
-      stick.current?.close();
-    };
-  }, []);
-  const connect = async () => {
-    const hid = hid_of();
-    const device = hid && await choose_device(hid);
-    if (!device) return;
-    let_device_go();
-    stick.current = await PidStick.open(device, (why) => {
-      stick.current = null;
-      set_connected(null);
-      app.toast("warn", why);
-    });
-    set_connected(stick.current);
-  };
+  use_losses(let_go);
   return {
-    seat, ...heard, stick: connected, setting_up, disconnect: let_device_go,
-    connect: async () => void await app.attempt(connect()),
+    seat, ...heard, stick: force.stick, connect: force.connect, disconnect: force.disconnect, setting_up,
     set_up: (open) => {
       let_go();
       set_up(open);
     },
   };
+}
+
+/** Calls `let_go` when the hand may be gone: another window, a hidden or closed tab, a gamepad that was unplugged. */
+function use_losses(let_go: () => void): void {
+  use_listener("blur", let_go);
+  use_listener("pagehide", let_go);
+  use_listener("gamepaddisconnected", let_go);
+  const latest = use_latest(let_go);
+  useEffect(() => {
+    const hide = () => document.hidden && latest.current();
+    document.addEventListener("visibilitychange", hide);
+    return () => document.removeEventListener("visibilitychange", hide);
+  }, []);
+}
+
+interface ForceStick extends Pick<Hand, "stick" | "connect" | "disconnect"> { held: { current: PidStick | null } }
+
+/** The stick that pushes back, from its choice until it is let go or unplugged. */
+function use_force_stick(app: App): ForceStick {
+  const held = useRef<PidStick | null>(null);
+  const [stick, set_stick] = useState<PidStick | null>(null);
+  const hold = (now: PidStick | null) => {
+    held.current = now;
+    set_stick(now);
+  };
+  const disconnect = () => {
+    held.current?.close();
+    hold(null);
+  };
+  const connect = async () => {
+    const hid = hid_of();
+    const device = hid && await choose_device(hid);
+    if (!device) return;
+    disconnect();
+    hold(await PidStick.open(device, (why) => {
+      hold(null);
+      app.toast("warn", why);
+    }));
+  };
+  useEffect(() => {
+    const hid = hid_of();
+    const unplugged = (e: Event) => held.current?.unplugged((e as Event & { device?: unknown }).device);
+    hid?.addEventListener("disconnect", unplugged);
+    return () => {
+      hid?.removeEventListener("disconnect", unplugged);
+      held.current?.close();
+    };
+  }, []);
+  return { held, stick, disconnect, connect: async () => void await app.attempt(connect()) };
 }
 
 function same(a: object, b: object): boolean {
