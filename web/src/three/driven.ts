@@ -10,30 +10,30 @@ import { ribbon, wedge } from "./shapes";
 const kFloor = 0.015;    // [m] of sectors
 const kWayHeight = 0.03; // [m]
 const kWordsHeight = 0.1; // [m] above the floor
-const kWordsSize = 0.17;  // of a label that shrinks with the distance, at 1 m
+const kWordsHigh = 18;    // [px] of the view, with their margins
 
-/** Words of the same size near and far. */
-function words_at(text: string, at: Point, z: number, colour: string, p: Palette): THREE.Sprite {
-  const sprite = label(text, { ...at, z: null }, z, colour, p.font);
+/** Words of the same size near and far. `pixel`: its size at 1 m from the eye [m]. */
+function words_at(text: string, at: Point, colour: string, p: Palette, pixel: number): THREE.Sprite {
+  const sprite = label(text, { ...at, z: null }, kWordsHeight, colour, p.font);
   sprite.material.sizeAttenuation = false;
-  sprite.scale.multiplyScalar(kWordsSize);
+  sprite.scale.multiplyScalar((kWordsHigh * pixel) / sprite.scale.y);
   return sprite;
 }
 
-export function build_sectors(scene: SceneState, p: Palette, pose: Pose): THREE.Object3D[] {
+export function build_sectors(scene: SceneState, p: Palette, pose: Pose, pixel: number): THREE.Object3D[] {
   return ring_sectors(scene).flatMap((s) => {
     const colour = s.limits ? p.external : p.filtered;
     const arc = sector_arc(pose, s);
     const end = s.echo ? [ribbon(arc, s.limits ? 0.05 : 0.03, kFloor + 0.005, colour)] : [];
     const middle = arc[arc.length >> 1];
-    const words = s.echo ? [words_at(`${s.range.toFixed(2)} m`, middle, kWordsHeight, colour, p)] : [];
+    const words = s.echo ? [words_at(`${s.range.toFixed(2)} m`, middle, colour, p, pixel)] : [];
     return [wedge(pose, arc, kFloor, colour, s.limits ? 0.4 : s.echo ? 0.16 : 0.06), ...end, ...words];
   });
 }
 
-export function build_wall_words(scene: SceneState, p: Palette): THREE.Object3D[] {
+export function build_wall_words(scene: SceneState, p: Palette, pixel: number): THREE.Object3D[] {
   const wall = wall_of(scene);
-  return wall ? [words_at(wall_words(wall), wall.words, kWordsHeight, p.internal, p)] : [];
+  return wall ? [words_at(wall_words(wall), wall.words, p.internal, p, pixel)] : [];
 }
 
 export function build_ways_ahead(scene: SceneState, p: Palette, hidden: ReadonlySet<string>): THREE.Object3D[] {

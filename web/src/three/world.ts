@@ -223,10 +223,11 @@ export class World3 {
       this.moving_.add(outline_of(f.truth.pose, scene, p.muted));
     }
     const stage = { group: this.moving_, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
+    const pixel = (2 * Math.tan((this.camera_.fov * Math.PI) / 360)) / Math.max(1, this.box_.clientHeight);
     for (const layer of visible_layers(scene, options.hidden)) {
-      if (layer.name === kRing) this.moving_.add(...build_sectors(scene, p, f.pose));
+      if (layer.name === kRing) this.moving_.add(...build_sectors(scene, p, f.pose, pixel));
       else build_layer(stage, layer);
-      if (layer.name === kWall) this.moving_.add(...build_wall_words(scene, p));
+      if (layer.name === kWall) this.moving_.add(...build_wall_words(scene, p, pixel));
     }
     for (const o of build_ways_ahead(scene, p, options.hidden)) this.moving_.add(o);
   }
