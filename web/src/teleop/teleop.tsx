@@ -15,7 +15,9 @@ import { make_hand } from "../views/drive";
 import { typing } from "../views/keys";
 import { fixed, limit_words, sentence_of } from "../words";
 import { DrawnStick } from "./drawn_stick";
+import { OperatorLink } from "./operator_link";
 import { Seat, kSendEvery, read_pad } from "./seat";
+import { WhoDrives } from "./who_drives";
 
 const kAround = 3;        // [m] shown about the robot
 const kFarOff = 0.8;      // [m] from the middle, until the view follows
@@ -24,15 +26,17 @@ const kRumble = 0.1;      // of full force
 const kModes = [
   { name: "guarded", label: "Guarded", help: "As far as the robot can still stop before all that it sees" },
   { name: "wall", label: "Wall", help: "Slower where it is crowded; at full stick it follows a wall" },
+  { name: "elastic", label: "Elastic", help: "The stick pulls the goal along; the robot finds the way" },
   { name: "raw", label: "Raw", help: "No guard: only Stop, the bumpers and the watchdog hold" },
 ];
-type Mode = "guarded" | "wall" | "raw";
+type Mode = "guarded" | "wall" | "raw" | "elastic";
 
 export function Teleop(): JSX.Element {
   const app = use_app();
   const { session, stop } = use_ui("session", "stop");
   const me = use_me();
   const seat = useMemo(() => new Seat(), []);
+  const link = useMemo(() => new OperatorLink(app.link), [app]);
   const view = useMemo(() => new View(), []);
   const hand = useMemo(() => make_hand(app, { tool: () => "pan", edits: false }), [app]);
   const [mode, set_mode] = useState<Mode>("guarded");
@@ -60,11 +64,11 @@ export function Teleop(): JSX.Element {
       if (wish.stop && !stopping.current) app.stop();
       stopping.current = wish.stop;
       rumble(pad, app.scene);
-      if (!app.link.is_open) seat.drop();
+      if (!link.beat()) seat.drop();
       const next = seat.next();
       // Old commands that wait in the socket would reach the robot late: none is added to them.
       if (!next || !app.link.is_clear) return;
-      app.link.call("/request", { type: "joystick", ...next, mode: latest_mode.current }).catch(refused);
+      app.link.call("/request", { type: "joystick", ...link.stamped(next), mode: latest_mode.current }).catch(refused);
     }, kSendEvery);
     return () => clearInterval(beat);
   }, [drives]);
@@ -100,6 +104,7 @@ export function Teleop(): JSX.Element {
       <section class="deck" aria-label="Driving by hand">
         <DrawnStick seat={seat} disabled={!drives} force={force_of(app.scene)} />
         <div class="deck-words">
+          <WhoDrives link={link} on_loss={() => seat.drop()} />
           <Reason scene={app.scene} seat={seat} drives={drives} strange={strange} />
           <Speeds scene={app.scene} seat={seat} full={full_speed(app.scene, session?.robot.max_v ?? 0)} />
         </div>
