@@ -46,6 +46,17 @@ const readers_only = {
   })),
 };
 
+/** `import css from "x.css?text"`: the style sheet as a string. */
+const sheets_as_text = {
+  name: "sheets-as-text",
+  setup: (build) => {
+    build.onResolve({ filter: /\.css\?text$/ }, ({ path, resolveDir }) => ({ path: join(resolveDir, path.replace(/\?text$/, "")), namespace: "sheet" }));
+    build.onLoad({ filter: /./, namespace: "sheet" }, async ({ path }) => ({
+      contents: (await esbuild.transform(readFileSync(path, "utf8"), { loader: "css", minify: true })).code, loader: "text",
+    }));
+  },
+};
+
 async function build_page() {
   const dist = join(root, "dist");
   rmSync(dist, { recursive: true, force: true });
@@ -57,7 +68,7 @@ async function build_page() {
     entryNames: "[name]-[hash]", // the server lets browsers keep a name with a hash for ever
     chunkNames: "part-[hash]",
     minify: true,
-    plugins: [readers_only],
+    plugins: [readers_only, sheets_as_text],
     metafile: true,
     legalComments: "linked",
     define: { "process.env.NODE_ENV": '"production"' },

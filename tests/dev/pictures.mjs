@@ -167,6 +167,26 @@ const kFeatures = {
     await p.get("nav-drive").click();
     await p.page.setViewportSize(kSize);
   },
+  async teleop(p, base) {
+    await load(p, base, { scenario: "demo", controller: "strip", robot: "robhaz" });
+    await json(base, "/session/goal", { method: "DELETE" });
+    const { x, y, heading } = (await session(base)).pose;
+    const [c, s] = [Math.cos(heading), Math.sin(heading)];
+    await post(base, "/session/requests", { type: "add_obstacle", // a wall at the right hand
+      obstacle: { type: "box", x: x + 2.6 * c + 0.95 * s, y: y + 2.6 * s - 0.95 * c, heading, length: 5, width: 0.15 } });
+    await p.get("nav-teleop").click();
+    await p.pick_radio("stick-mode", "wall");
+    await control(base, { action: "play" });
+    const stick = await p.get("hand-stick").boundingBox();
+    const [px, py] = [stick.x + stick.width / 2, stick.y + stick.height / 2];
+    await p.page.mouse.move(px, py);
+    await p.page.mouse.down();
+    await p.page.mouse.move(px - 3, py - 0.29 * Math.min(stick.width, stick.height));
+    await pause(3200);
+    await shoot(p.page, "teleop", kMostFeature);
+    await p.page.mouse.up();
+    await p.get("nav-drive").click();
+  },
   async barn(p, base) {
     if (!process.env.TAUTLINE_BARN_WORLD) return console.log("barn: left out, for TAUTLINE_BARN_WORLD names no file");
     const world = JSON.parse(readFileSync(process.env.TAUTLINE_BARN_WORLD));

@@ -1,9 +1,11 @@
 // tests/web/draw.test.ts: each kind of layer draws its values at the right place.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import * as for_driver from "../../web/src/draw/driven";
 import { draw_layer, stacked } from "../../web/src/draw/layers";
 import { Palette } from "../../web/src/draw/palette";
-import { draw_scene } from "../../web/src/draw/scene";
+import { draw_for_driver, draw_scene } from "../../web/src/draw/scene";
+import { draw_ranging, kConeAlpha } from "../../web/src/draw/sensing";
 import { View } from "../../web/src/draw/view";
 import { LayerKind, LayerView, arcs, grid_place, sectors } from "../../web/src/layer";
 import { decode_frame, decode_sweep } from "../../web/src/link/frame";
@@ -11,7 +13,7 @@ import { Legends } from "../../web/src/link/legend";
 import { kOwn } from "../../web/src/state/layers";
 import { fold_frame, new_scene } from "../../web/src/state/scene";
 import * as wire from "../../web/src/wire/telemetry_generated";
-import { frame_bytes, scan_bytes } from "./wire";
+import { frame_bytes, push_stick, scan_bytes } from "./wire";
 
 /** A canvas that writes down what is drawn on it, in the window's pixels. */
 class Recorder {
@@ -76,6 +78,7 @@ class Recorder {
   stroke() {
     this.note("stroke", []);
   }
+  strokeText() {}
   fillText(text: string, x: number, y: number) {
     this.note("text", this.map(x, y), this.fillStyle, text);
   }
@@ -249,4 +252,55 @@ test("each layer is drawn while its switch is on, and nothing of it while it is 
     sum += alone - bare;
   }
   assert.equal(calls([]), sum, "all together are what each is alone");
+});
+
+test("an echo of a sonar is an arc, and the cone before it is free", () => {
+  const scene = new_scene();
+  fold_frame(scene, decode_frame(frame_bytes({ tick: 1, sonar: [[0, 2]] }), new Legends()));
+  const g = new Recorder();
+  draw_ranging(g as unknown as CanvasRenderingContext2D, view, palette, scene.readings);
+  const [cone] = g.of("fill");
+  assert.deepEqual([g.of("fill").length, cone.colour, cone.alpha], [1, "scan", kConeAlpha]);
+  near(g.of("moveTo")[0].args, [400, 300]);
+  assert.deepEqual(g.of("arc").map((c) => c.args[2]), [200, 200]);
+  assert.deepEqual(g.of("stroke").map((c) => [c.colour, c.alpha]), [["scan", 0.8]]);
+});
+
+test("a driver sees sectors instead of arrows, the wall's numbers, and both ways ahead, each while its switch is on", () => {
+  const scene = new_scene();
+  scene.top = { v: 0.5, omega: 1 };
+  scene.parameters = { "teleop.d_max": 3 };
+  const ranges = [3, 1, 3, 2, 3, 3, 3, 3];
+  const arrows = ranges.flatMap((r, n) => {
+    const bearing = (n / 7 - 0.5) * Math.PI; // the robot looks along x
+    return [0, 0, r * Math.cos(bearing), r * Math.sin(bearing)];
+  });
+  const layers = [{ name: "teleop.ring", kind: wire.LayerKind.Arrows, values: arrows, style: wire.LayerStyle.Dashed },
+    { name: "teleop.wall", kind: wire.LayerKind.Polyline, values: [-1, -0.8, 1, -0.8] }];
+  fold_frame(scene, decode_frame(frame_bytes({
+    tick: 1, behaviour: "manual", limit: "crowded", layers, words: ["a", "b"], twist: [0.2, 0], command: [0.2, 0],
+    measures: [["teleop.wall_rho", "m", 0.8], ["teleop.wall_theta", "rad", -Math.PI / 2]],
+    requests: [push_stick(0.8, 0, 1)],
+  }), new Legends()));
+  const shown = (...hidden: string[]) => {
+    const g = new Recorder();
+    draw_scene(g as unknown as CanvasRenderingContext2D, view, palette, scene, {
+      selection: null, hovered: null, draft: {}, force_scale: 1, hidden: new Set(hidden), ghosts: [], future: false,
+      insets: { left: 0, top: 0, right: 0, bottom: 0 },
+    });
+    const dashed = g.of("stroke").filter((c) => c.colour === "accent" && c.dash.length > 0).length;
+    return { words: g.of("text").map((c) => c.text), wedges: g.of("fill").filter((c) => ["filtered", "external"].includes(c.colour)).length,
+      orange: g.of("fill").filter((c) => c.colour === "external").length, dashed, path: g.of("stroke").filter((c) => c.colour === "path").length };
+  };
+  const before = shown(); // the part for driving is not there yet
+  assert.ok(before.wedges > 0 && !before.words.includes("1.00"), "arrows");
+  draw_for_driver(for_driver);
+  const all = shown();
+  assert.deepEqual([all.wedges, all.orange, all.dashed, all.path], [8, 1, 1, 1]);
+  for (const words of ["1.00", "2.00", "Wall 0.80 m, −90°"]) assert.ok(all.words.includes(words), words);
+  assert.ok(!all.words.includes("3.00"), "no echo, no number");
+  assert.equal(shown("teleop.ring").wedges, 0);
+  assert.ok(!shown("teleop.wall").words.includes("Wall 0.80 m, −90°"));
+  assert.equal(shown("teleop.wanted").dashed, 0);
+  assert.equal(shown("teleop.executed").path, 0);
 });

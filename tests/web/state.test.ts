@@ -11,7 +11,7 @@ import { layer_groups } from "../../web/src/state/layers";
 import { SceneState, begin_run, fold_frame, fold_session, goal_distance, new_scene, scene_bounds, take_robot } from "../../web/src/state/scene";
 import { FilteredScan, sweep_points } from "../../web/src/state/sweeps";
 import { LayerFrame, LayerKind, LayerStyle, Mission, Tone } from "../../web/src/wire/telemetry_generated";
-import { FrameSpec, LayerSpec, add_cylinder, frame_bytes, framed, move, remove, scan_bytes, set_parameter } from "./wire";
+import { FrameSpec, LayerSpec, add_cylinder, frame_bytes, framed, move, push_stick, remove, scan_bytes, set_parameter } from "./wire";
 
 const frame = (spec: FrameSpec) => decode_frame(frame_bytes(spec), new Legends());
 
@@ -439,6 +439,23 @@ const shown = (scene: SceneState) => ({
   words: scene.words, layers: [...scene.layers.values()].map((l) => [l.name, l.cells[0]]), goal: scene.goal,
   obstacles: scene.obstacles.map((o) => [o.id, o.pose.x]), sweeps: scene.sweeps.map((s) => [s.sweep.ranges[0], s.origin.x]),
   readings: [...scene.readings.values()].map((r) => `${r.kind} ${r.range} ${r.stamp}`).sort(),
+});
+
+test("a stored run of a driver has its stick at every row, also where a row brings none, and says that it was driven", async () => {
+  const stick = (forward: number) => push_stick(forward, 0.5, 2);
+  const bytes = Array.from({ length: 12 }, (_, tick) => frame_bytes({
+    tick, behaviour: tick >= 3 && tick < 9 ? "manual" : "rest", requests: tick === 3 ? [stick(0.25), stick(0.5)] : tick === 6 ? [stick(1)] : [],
+  }));
+  const run = new StoredRun(item, async () => ({ bytes: framed(bytes), next: null }), none);
+  assert.ok(!run.driven);
+  await run.load(() => undefined);
+  assert.ok(run.driven);
+  const forward = (row: number) => {
+    run.seek(row);
+    return run.scene.stick?.forward ?? null;
+  };
+  assert.deepEqual([2, 8, 5, 3, 6, 9, 11].map(forward), [null, 1, 0.5, 0.5, 1, null, null]);
+  assert.equal(run.events.list.length, 0, "a stick is no mark of the timeline");
 });
 
 test("a stored run shows the live view at any tick, sought in any order", async () => {

@@ -18,6 +18,7 @@ export interface FrameSpec {
   clearance?: number;
   hold?: string;
   behaviour?: string;
+  limit?: string;
   requests?: ((b: flatbuffers.Builder) => [wire.Request, number])[];
   truth?: [number, number, number, number, boolean];
   words?: Words | null; // null: no news, although there are layers
@@ -132,6 +133,11 @@ export const remove = (id: number) => (b: flatbuffers.Builder): [wire.Request, n
   return [wire.Request.RemoveObstacle, wire.RemoveObstacle.endRemoveObstacle(b)];
 };
 
+/** mode: 0 guarded, 1 wall, 2 raw, 3 elastic */
+export const push_stick = (forward: number, turn: number, mode: number) =>
+  (b: flatbuffers.Builder): [wire.Request, number] =>
+    [wire.Request.Joystick, wire.Joystick.createJoystick(b, forward, turn, mode)];
+
 export const set_parameter = (name: string, value: number) =>
   (b: flatbuffers.Builder): [wire.Request, number] => {
     const text = b.createString(name);
@@ -170,6 +176,7 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   const more = add_more(b, layers);
   const hold = spec.hold ? b.createString(spec.hold) : 0;
   const behaviour = b.createString(spec.behaviour ?? "rest");
+  const limit = spec.limit ? b.createString(spec.limit) : 0;
   const readings_of = (spec.readings ?? []).map(([channel, list, stamp]) => {
     const numbers = wire.Reading.createValuesVector(b, list);
     return wire.Reading.createReading(b, channel, numbers, stamp ?? null);
@@ -186,6 +193,7 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
   }
   const readings = b.endVector();
   wire.Frame.startFrame(b);
+  if (limit) wire.Frame.addLimit(b, limit);
   wire.Frame.addClock(b, wire.Clock.createClock(b, BigInt(spec.tick), spec.stamp ?? spec.tick * 0.026));
   const [x, y, heading] = spec.pose ?? [0, 0, 0];
   wire.Frame.addOdometry(b, wire.Odometry.createOdometry(b, x, y, heading, ...(spec.twist ?? [0.25, -0.5])));

@@ -6,6 +6,7 @@ import { Columns } from "../state/columns";
 import { sweep_age } from "../state/age";
 import { kOwn, visible_layers } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
+import { kRing } from "../state/stick";
 import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
 import { Context, circle, dots, draw_path, fill, stroke, trace, write } from "./marks";
@@ -54,6 +55,16 @@ export interface Overlay {
   path?: "accent";
 }
 
+/** Draws something of `scene`, by the layers that are not `hidden`. */
+type Draw = (g: Context, view: View, palette: Palette, scene: SceneState, hidden: ReadonlySet<string>) => void;
+interface DriverDrawings { draw_sectors: Draw; draw_ways_ahead: Draw; draw_wall_words: Draw }
+let driver: DriverDrawings | null = null;
+
+/** Adds what a driver sees to every scene from now on. The part of the page for driving brings it along. */
+export function draw_for_driver(drawings: DriverDrawings): void {
+  driver = drawings;
+}
+
 export const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
 
 export function draw_scene(g: Context, view: View, palette: Palette,
@@ -64,7 +75,8 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   const pose = robot_pose(scene);
   const f = scene.frame;
   const on = (key: { name: string }) => !overlay.hidden.has(key.name);
-  const { below, above } = stacked(visible_layers(scene, overlay.hidden));
+  const shown = visible_layers(scene, overlay.hidden);
+  const { below, above } = stacked(shown.filter((l) => !driver || l.name !== kRing));
   const canvas = f && { g, view, palette, robot: f.pose, radius: scene.radius, times: overlay.force_scale };
 
   const filtered = on(kOwn.filtered) ? scene.filtered.shown : null;
@@ -79,7 +91,9 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   if (on(kOwn.ranging)) draw_ranging(g, view, palette, scene.readings);
   const grids = below.filter((l) => l.kind === "grid");
   if (canvas) for (const layer of grids) draw_layer(canvas, layer);
+  driver?.draw_sectors(g, view, palette, scene, overlay.hidden);
   draw_ways(g, view, palette, scene, overlay);
+  driver?.draw_ways_ahead(g, view, palette, scene, overlay.hidden);
   if (pose && scene.drives && on(kOwn.safety)) draw_safety(g, view, palette, pose, scene.safety_distance);
   draw_goals(g, view, palette, scene, overlay);
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
@@ -89,6 +103,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
     draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
   }
   if (canvas) for (const layer of above) draw_layer(canvas, layer);
+  driver?.draw_wall_words(g, view, palette, scene, overlay.hidden);
   const held = scene.obstacles.find((o) => o.id === selected);
   if (held && overlay.handles && !overlay.draft.moved) draw_handles(g, view, palette, overlay.draft.obstacle ?? held);
   draw_draft(g, view, palette, overlay.draft);

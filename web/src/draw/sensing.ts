@@ -7,6 +7,7 @@ import { Palette } from "./palette";
 import { View } from "./view";
 
 export const kHalfCone = Math.PI / 12; // [rad] of a sonar: the echo came from somewhere on the arc
+export const kConeAlpha = 0.12;        // of the cone that is free up to the arc
 const kDot = 2;                 // [px]
 
 /** The area that is free by the filtered scan, as a soft fan; a beam without a reading is a gap. */
@@ -30,13 +31,20 @@ export function draw_ranging(g: Context, view: View, palette: Palette,
   readings: PlacedReadings): void {
   const hits = [...readings.values()].filter((r) => r.hit);
   g.save();
-  g.globalAlpha = 0.8;
   for (const { kind, origin, range } of hits) {
     if (kind !== "sonar") continue;
-    g.beginPath();
+    const [x, y] = [view.sx(origin.x), view.sy(origin.y)];
     // The screen's y axis points down.
-    g.arc(view.sx(origin.x), view.sy(origin.y), range * view.scale, -origin.heading - kHalfCone,
-      -origin.heading + kHalfCone);
+    const arc = () => g.arc(x, y, range * view.scale, -origin.heading - kHalfCone, -origin.heading + kHalfCone);
+    g.globalAlpha = kConeAlpha;
+    g.beginPath();
+    g.moveTo(x, y);
+    arc();
+    g.closePath();
+    fill(g, palette.scan);
+    g.globalAlpha = 0.8;
+    g.beginPath();
+    arc();
     stroke(g, palette.scan, 2);
   }
   g.globalAlpha = 1;

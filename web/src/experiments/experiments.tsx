@@ -2,12 +2,16 @@
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
+import css from "../style/experiments.css?text";
 import { Guard } from "../ui/guard";
+import { adopt } from "../ui/sheet";
 import { ExperimentInfo } from "./contract";
 import { NewExperiment } from "./new_experiment";
 import { OpenExperiment } from "./open_experiment";
 import { use_list } from "./watch";
 import { progress_words, state_of } from "./words";
+
+adopt(css);
 
 export function Experiments(): JSX.Element {
   const app = use_app();

@@ -3,6 +3,7 @@ import * as flatbuffers from "flatbuffers";
 import { Point, Pose } from "../geometry";
 import { LayerView } from "../layer";
 import { Obstacle, ObstacleKind, PathJson } from "../obstacle";
+import type { DrivenStick } from "../state/stick";
 import * as wire from "../wire/telemetry_generated";
 import { Legends, Measure, legend_of, shown } from "./legend";
 
@@ -28,7 +29,7 @@ export interface ChannelReading { channel: number; stamp: number; values: number
 /** The robot's action and its reason: a sentence each. */
 export interface Words { what: string; why: string }
 
-/** A request as the page reads it from a frame; joystick requests are left out. */
+/** A request as the page reads it from a frame; a joystick's is the frame's stick. */
 export type FrameRequest =
   | { type: "set_goal"; goals: Goal[]; next: number; loop: boolean }
   | { type: "add_goal"; goal: Goal }
@@ -61,6 +62,7 @@ export interface Frame {
   infrared: RangeReading[];
   bumpers: { mount: Pose; pressed: boolean }[];
   requests: FrameRequest[]; // applied before this tick
+  stick: DrivenStick | null; // newly pushed in this tick
   truth: Truth | null;      // simulator only
   gyro: number | null;      // [rad/s]
   inclination: { roll: number; pitch: number } | null;
@@ -117,6 +119,7 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
       return { mount: pose(bumper.mount()), pressed: bumper.pressed() };
     }),
     requests: list(f.requestsLength(), (i) => request(f.requests(i)!)).filter((r) => r !== null),
+    stick: stick_of(f),
     truth: truth && {
       pose: pose(truth.pose()), collided: f.collided(), distance: truth.obstacleDistance(), clearance: truth.clearance(),
     },
@@ -212,6 +215,19 @@ function path(p: wire.ObstaclePath | null): PathJson | null {
 
 function wanted(g: wire.SetGoal): Goal {
   return { ...point(g.position()), heading: g.hasHeading() ? g.heading() : null };
+}
+
+const kStickModes = ["guarded", "wall", "raw", "elastic"];
+
+/** The last joystick request of the tick. */
+function stick_of(f: wire.Frame): DrivenStick | null {
+  for (let i = f.requestsLength() - 1; i >= 0; --i) {
+    const box = f.requests(i)!;
+    if (box.requestType() !== wire.Request.Joystick) continue;
+    const s = box.request(new wire.Joystick()) as wire.Joystick;
+    return { forward: s.forward(), turn: s.turn(), mode: kStickModes[s.mode()] ?? "" };
+  }
+  return null;
 }
 
 function request(box: wire.RequestBox): FrameRequest | null {

@@ -104,6 +104,10 @@ export class StoredRun {
     const rows = [...this.held_].filter(([name]) => name.startsWith("scan ")).map(([, bringing]) => bringing[0]);
     return rows.length > 0 ? this.columns.at("t", Math.min(...rows)) : 0;
   }
+  /** Whether somebody drove by hand, as far as it has been fetched. */
+  get driven(): boolean {
+    return this.held_.has("stick");
+  }
   /** 0..1 of the run that has been fetched. */
   get progress(): number {
     if (this.done) return 1;

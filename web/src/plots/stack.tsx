@@ -4,6 +4,8 @@ import { JSX } from "preact";
 import { useRef, useState } from "preact/hooks";
 import { is_shown, signals_of_all, store_choices, stored_choices } from "../state/signals";
 import { keep, kept } from "../state/store";
+import css from "../style/plots.css?text";
+import { adopt } from "../ui/sheet";
 import { fixed } from "../words";
 import { PlotBar } from "./bar";
 import { PlotCanvas } from "./canvas";
@@ -12,6 +14,8 @@ import { Picker } from "./picker";
 import { SaveDialog, SaveProps } from "./save_dialog";
 import { Span, Zoom, choice_of, panned, shown_span, zoomed } from "./span";
 import { Plot, PlotRun, chart_of, plots_with, value_words, whole_of } from "./traces";
+
+adopt(css);
 
 interface StackProps {
   runs: PlotRun[];     // the first one's ticks are those of the cursor

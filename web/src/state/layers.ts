@@ -3,6 +3,7 @@
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
 import { sweep_age } from "./age";
+import { kRing } from "./stick";
 import type { SceneState } from "./scene";
 import { keep, kept } from "./store";
 
@@ -19,6 +20,7 @@ const kStraightOn = "strip.ahead";
 
 /** The colour of a layer. */
 export function token_of(layer: { name: string; tone: Tone }): Token {
+  if (layer.name === kRing) return "filtered"; // drawn as sectors, which are sensed
   return layer.name === kStraightOn ? "ok" : kTokens[layer.tone];
 }
 /** True for lines that nobody has driven or proved: they are drawn thin and dotted. */
@@ -47,6 +49,8 @@ export const kOwn = {
   ranging: own("ranging", "Sonar, infrared", "scan", "arcs"),
   bumpers: own("bumpers", "Bumper, pressed", "bad", "arcs", "solid", true),
   path: own("path", "Travelled, by odometry", "path", "polyline"),
+  wanted: own("teleop.wanted", "Stick, 3 s on", "accent", "polyline", "dashed"),
+  executed: own("teleop.executed", "Robot, 3 s on", "path", "polyline"),
   truth: own("truth", "True path and hull", "muted", "polyline", "dashed"),
   route: own("route", "Route of goals", "ok", "polyline", "dashed"),
   goal: own("goal", "Goal", "ok", "circles", "solid", true),
@@ -64,7 +68,7 @@ const kCompared = [
 
 /** True for forces: displacements without a unit, which may be drawn enlarged to be seen. */
 export function is_scaled(layer: LayerView): boolean {
-  return layer.kind === "arrows" && layer.unit === "";
+  return layer.kind === "arrows" && layer.unit === "" && layer.name !== kRing;
 }
 
 /** `hidden` without the forces among the `known` layers. */
@@ -76,14 +80,15 @@ export function forces_shown(hidden: ReadonlySet<string>, known: Map<string, Lay
 export function learn_layers(known: Map<string, LayerKey>, layers: LayerView[]): void {
   for (const layer of layers) {
     if (known.has(layer.name)) continue;
-    const { name, label, kind, style } = layer;
+    const { name, label } = layer;
+    const { kind, style } = name === kRing ? { kind: "arcs" as const, style: "solid" as const } : layer;
     known.set(name, { name, label, token: token_of(layer), kind, style, scaled: is_scaled(layer), always: false });
   }
 }
 
 /** True for layers of the sensors, false for those of the controller. */
 export function is_sensed(name: string): boolean {
-  return name.startsWith("scan.");
+  return name.startsWith("scan.") || name === kRing;
 }
 
 /** The layers to draw: those that are on, and none that was sensed in an old scan. */
@@ -114,7 +119,8 @@ export function layer_groups(scene: SceneState, compared = false): { title: Grou
     Senses: [[kOwn.scan, kOwn.filtered],
       [...when(readings.size > 0, kOwn.ranging), ...when((frame?.bumpers.length ?? 0) > 0, kOwn.bumpers)]],
     Forces: [[], []],
-    Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route)]],
+    Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(scene.stick !== null, kOwn.wanted, kOwn.executed),
+      ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route)]],
     World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.world, kOwn.start, kOwn.obstacles),
       ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [kOwn.mesh]],
   };

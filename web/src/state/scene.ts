@@ -10,6 +10,7 @@ import { EventLog } from "./events";
 import { Route, goal_from_json } from "./goals";
 import { LayerKey, learn_layers } from "./layers";
 import { PlacedReadings, kReadingHolds, place_readings, reading_key } from "./ranging";
+import { DrivenStick, stick_after } from "./stick";
 import { FilteredScan, PlacedSweep, newest_sweeps } from "./sweeps";
 
 export interface SceneState {
@@ -20,6 +21,7 @@ export interface SceneState {
   layers: Map<string, LayerView>;  // of the controller; the newest of each grid
   known: Map<string, LayerKey>;    // of every layer so far, also those without values now
   words: Words | null;             // the newest
+  stick: DrivenStick | null;       // of somebody who drives by hand now
   columns: Columns;
   rows: number;           // of the columns, up to the shown instant
   obstacles: Obstacle[];
@@ -30,6 +32,7 @@ export interface SceneState {
   radius: number;         // [m] hull
   hull: { half_length: number; half_width: number } | null; // [m] of a rectangle; null: a disc
   half_track: number;     // [m]
+  top: { v: number; omega: number }; // [m/s, rad/s] of the robot
   safety_distance: number; // [m] about the centre
   parameters: Record<string, number>; // of the shown instant
   scan_timeout: number; // [s] age of a scan at which the robot stops
@@ -44,8 +47,8 @@ export interface SceneState {
 export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
-    words: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
-    goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, radius: 0.35, hull: null, half_track: 0.25, safety_distance: 1, parameters: {},
+    words: null, stick: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
+    goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, radius: 0.35, hull: null, half_track: 0.25, top: { v: Infinity, omega: Infinity }, safety_distance: 1, parameters: {},
     scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true,
   };
 }
@@ -67,6 +70,7 @@ export function forget_instant(scene: SceneState): void {
   scene.readings.clear();
   scene.layers.clear();
   scene.words = null;
+  scene.stick = null;
 }
 
 export function fold_session(scene: SceneState, s: SessionState): void {
@@ -99,6 +103,7 @@ export function take_robot(scene: SceneState, robot: Partial<RobotInfo> = {}): v
   scene.radius = robot.radius ?? scene.radius;
   scene.half_track = robot.half_track ?? scene.half_track;
   scene.drives = robot.drives ?? scene.drives;
+  scene.top = { v: robot.max_v ?? scene.top.v, omega: robot.max_omega ?? scene.top.omega };
   const { half_length = 0, half_width = 0 } = robot;
   scene.columns.channels = robot.channels ?? [];
   scene.hull = half_length > 0 ? { half_length, half_width } : null;
@@ -127,6 +132,7 @@ export function show_frame(scene: SceneState, f: Frame): void {
   scene.goal = f.goal;
   scene.goals_ahead = f.goals_ahead;
   scene.words = f.words ?? scene.words;
+  scene.stick = stick_after(scene.stick, f);
   scene.obstacles = moved_by_themselves(scene.obstacles, f);
   for (const [name, layer] of scene.layers) if (layer.kind !== "grid" || !f.goal) scene.layers.delete(name);
   for (const layer of f.layers) {
@@ -142,6 +148,7 @@ export function held_of(f: Frame): string[] {
   const mount = (m: Pose) => `${m.x} ${m.y} ${m.heading}`;
   return [
     ...(f.words ? ["words"] : []),
+    ...(f.stick ? ["stick"] : []),
     ...(f.goal ? [] : ["no goal"]),
     ...(f.moved.length > 0 ? ["moved"] : []),
     ...f.layers.filter((l) => l.kind === "grid").map((l) => `grid ${l.name}`),
@@ -151,8 +158,11 @@ export function held_of(f: Frame): string[] {
   ];
 }
 
+const kStickHolds = 2; // [s] at most: the greatest manual.joystick_timeout
+
 /** [s] For how long the value `name` of `held_of` holds. */
 export function hold_time(name: string): number {
+  if (name === "stick") return kStickHolds;
   return /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 

@@ -5,8 +5,6 @@
 export interface Stick { forward: number; turn: number }
 
 export const kSendEvery = 50; // [ms] the server's watchdog waits 500
-const kDeadZone = 0.12;       // of an axis of a gamepad
-const kExpo = 0.35;           // share of the cube: fine near the middle
 const kZeros = 3;             // sent after letting go, so that one that is lost does not matter
 
 const kKeys: Record<string, Stick> = {
@@ -15,36 +13,6 @@ const kKeys: Record<string, Stick> = {
   KeyA: { forward: 0, turn: 1 }, ArrowLeft: { forward: 0, turn: 1 },
   KeyD: { forward: 0, turn: -1 }, ArrowRight: { forward: 0, turn: -1 },
 };
-// Of the standard mapping.
-const kButtonB = 1, kBumpers = [4, 5], kBackTrigger = 6, kAheadTrigger = 7;
-
-/** The parts of a Gamepad that count. */
-export interface Pad {
-  mapping: string;
-  axes: readonly number[];
-  buttons: readonly { pressed: boolean; value: number }[];
-}
-
-/** What a pad asks for. `stop`: B is pressed. `stick` is null unless a bumper is held. */
-export interface PadWish { stick: Stick | null; stop: boolean; strange: boolean }
-
-/** Left stick: ahead; right stick: turn; triggers: ahead and back. Browsers count axes down and right: negated here. */
-export function read_pad(pad: Pad | null): PadWish {
-  if (!pad) return { stick: null, stop: false, strange: false };
-  if (pad.mapping !== "standard") return { stick: null, stop: false, strange: true };
-  const stop = pad.buttons[kButtonB]?.pressed ?? false;
-  if (!kBumpers.some((b) => pad.buttons[b]?.pressed)) return { stick: null, stop, strange: false };
-  const trigger = (b: number) => pad.buttons[b]?.value ?? 0;
-  const forward = clamped(-curved(pad.axes[1] ?? 0) + trigger(kAheadTrigger) - trigger(kBackTrigger));
-  return { stick: { forward: forward + 0, turn: -curved(pad.axes[2] ?? 0) + 0 }, stop, strange: false };
-}
-
-/** Without the dead zone, and finer near the middle. */
-export function curved(axis: number): number {
-  if (!Number.isFinite(axis)) return 0;
-  const beyond = Math.max(0, Math.min(1, Math.abs(axis)) - kDeadZone) / (1 - kDeadZone);
-  return Math.sign(axis) * ((1 - kExpo) * beyond + kExpo * beyond ** 3);
-}
 
 function clamped(value: number): number {
   return Math.max(-1, Math.min(1, value));
@@ -98,6 +66,14 @@ export class Seat {
   }
   private get centred(): boolean {
     return this.wish.forward === 0 && this.wish.turn === 0;
+  }
+  /** Whether nobody holds a stick or a key here. */
+  get idle(): boolean {
+    return !this.drawn_ && this.keys_.size === 0 && !this.pad_;
+  }
+  /** Whether the hand moves the robot, so that it may be pushed back. */
+  get drives(): boolean {
+    return !this.barred_ && !this.centred;
   }
 
   /** The stick to send now; null: none. */

@@ -32,7 +32,7 @@ function faded<T extends THREE.Object3D>(object: T, alpha: number): T {
 }
 
 /** Every second piece of length `kDash` along `line`, across its corners. */
-function dashes(line: Place[]): Place[][] {
+export function dashes(line: Place[]): Place[][] {
   const out: Place[][] = [];
   let way = 0; // [m] along the line up to the present corner
   for (let i = 1; i < line.length; ++i) {
@@ -154,7 +154,7 @@ function build_text(stage: Stage, layer: LayerView, colour: string): void {
   });
 }
 
-function label(text: string, at: Place, z: number, colour: string, font: string): THREE.Sprite {
+export function label(text: string, at: Place, z: number, colour: string, font: string): THREE.Sprite {
   const canvas = document.createElement("canvas");
   const height = 48; // [px]
   const g = canvas.getContext("2d")!;

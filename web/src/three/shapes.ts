@@ -3,7 +3,7 @@ import * as THREE from "three";
 import { Palette } from "../draw/palette";
 import { Point, Pose, to_parent } from "../geometry";
 import { Frame, Goal } from "../link/frame";
-import { kHalfCone } from "../draw/sensing";
+import { kConeAlpha, kHalfCone } from "../draw/sensing";
 import { kScanHeight } from "../layer";
 import { Obstacle, outline } from "../obstacle";
 import { PlacedReadings } from "../state/ranging";
@@ -144,15 +144,26 @@ export function outline_of(pose: Pose, scene: SceneState, colour: string): THREE
   return new THREE.LineLoop(vertices(xyz), new THREE.LineBasicMaterial({ color: colour }));
 }
 
-/** Sonar echoes as arcs, which hold the obstacle somewhere, and infrared returns as dots, in the scan plane. */
+/** Sonar echoes as arcs, which hold the obstacle somewhere, with the free cone before them, and infrared returns as
+ * dots, in the scan plane. */
 export function ranging(readings: PlacedReadings, p: Palette): THREE.Object3D[] {
-  return [...readings.values()].filter((r) => r.hit).map(({ kind, origin, range }) => {
+  return [...readings.values()].filter((r) => r.hit).flatMap(({ kind, origin, range }) => {
     const at = (turn: number): Point => ({
       x: origin.x + range * Math.cos(origin.heading + turn), y: origin.y + range * Math.sin(origin.heading + turn),
     });
     if (kind === "infrared") return dot(at(0), 0.02, kScanHeight, p.warn);
-    return ribbon(Array.from({ length: 9 }, (_, k) => at((k / 4 - 1) * kHalfCone)), 0.02, kScanHeight, p.scan);
+    const arc = Array.from({ length: 9 }, (_, k) => at((k / 4 - 1) * kHalfCone));
+    return [ribbon(arc, 0.02, kScanHeight, p.scan), wedge(origin, arc, kScanHeight, p.scan, kConeAlpha)];
   });
+}
+
+/** The area from `tip` to `arc`, see-through. */
+export function wedge(tip: Point, arc: Point[], z: number, colour: string, opacity: number): THREE.Mesh {
+  const xyz: number[] = [];
+  for (let i = 1; i < arc.length; ++i) {
+    xyz.push(tip.x, tip.y, z, arc[i - 1].x, arc[i - 1].y, z, arc[i].x, arc[i].y, z);
+  }
+  return new THREE.Mesh(vertices(xyz), Object.assign(flat(colour), { transparent: true, opacity, depthWrite: false }));
 }
 
 /** Bumpers that are pressed, as bands round the hull. */

@@ -5,7 +5,7 @@ import { use_app, use_ui } from "../app";
 import { read_palette } from "../draw/palette";
 import type { Insets } from "../draw/view";
 import { Point } from "../geometry";
-import { use_listener } from "../state/store";
+import { use_latest, use_listener } from "../state/store";
 import { Inspector } from "../ui/inspector";
 import { Probe } from "../ui/probe";
 import type { World3 } from "./world";
@@ -19,12 +19,14 @@ function no_webgl(): string | null {
     : "This browser offers no WebGL 2, so the 3D view cannot be drawn. The view from above shows the same.";
 }
 
-/** `insets`: the margins that tools and cards cover. */
-export function SceneThree(props: { insets: () => Insets }): JSX.Element {
+/** `insets`: the margins that tools and cards cover. With `chase` the camera rides behind the robot. `on_above`: goes
+ * to the view from above. */
+export function SceneThree(props: { insets: () => Insets; chase?: boolean; on_above?: () => void }): JSX.Element {
   const app = use_app();
   const { theme, follow } = use_ui("theme", "follow");
   const box = useRef<HTMLDivElement>(null);
   const world = useRef<World3 | null>(null);
+  const latest = use_latest(props);
   const [problem, set_problem] = useState<string | null>(null);
   const probe = useMemo(() => new Probe(), []);
   const eye = (px: Point, slack: number) => world.current?.eye(px, slack) ?? null;
@@ -43,7 +45,7 @@ export function SceneThree(props: { insets: () => Insets }): JSX.Element {
     const started = async () => {
       const { World3 } = await import("./world");
       if (gone || !box.current) return;
-      world.current = new World3(box.current, read_palette(), () => app.shown, () => app.ui.value);
+      world.current = new World3(box.current, read_palette(), () => app.shown, () => ({ ...app.ui.value, chase: latest.current.chase }));
       app.redraw = () => world.current?.request();
       app.fit_three = () => world.current?.fit();
     };
@@ -57,13 +59,13 @@ export function SceneThree(props: { insets: () => Insets }): JSX.Element {
   }, []);
   use_listener("pagehide", () => world.current?.keep_orbit());
   useEffect(() => world.current?.set_palette(read_palette()), [theme]);
-  useEffect(() => world.current?.request(), [follow]);
+  useEffect(() => world.current?.request(), [follow, props.chase]);
 
   if (problem) {
     return (
       <div class="no-webgl" role="alert" data-testid="no-webgl">
         <p>{problem}</p>
-        <button class="small primary" onClick={() => app.show_three(false)}>Show it from above</button>
+        <button class="small primary" onClick={() => (props.on_above ?? (() => app.show_three(false)))()}>Show it from above</button>
       </div>
     );
   }
@@ -74,8 +76,8 @@ export function SceneThree(props: { insets: () => Insets }): JSX.Element {
       onPointerLeave={() => probe.left()}>
       <Inspector scene={app.shown} probe={probe} box={() => box.current} eye={eye} shown={() => app.ui.value}
         insets={props.insets} resting={() => world.current !== null} selection={() => null} crosshair={() => null} />
-      <button class={`follow small ${follow ? "on" : ""}`} aria-pressed={follow}
-        onClick={() => app.ui.set({ follow: !follow })}>Follow the robot</button>
+      {!props.chase && <button class={`follow small ${follow ? "on" : ""}`} aria-pressed={follow}
+        onClick={() => app.ui.set({ follow: !follow })}>Follow the robot</button>}
     </div>
   );
 }

@@ -5,14 +5,16 @@ import { SessionState } from "../contract";
 import { Palette } from "../draw/palette";
 import { Selection, kDrift } from "../draw/scene";
 import { Eye } from "../edit/inspect";
-import { Point, distance } from "../geometry";
+import { Point, distance, to_parent } from "../geometry";
 import { kScanHeight } from "../layer";
 import { sweep_age } from "../state/age";
 import { kOwn, visible_layers } from "../state/layers";
 import { drawing } from "../state/meter";
 import { Orbit, orbits } from "../state/remembered";
+import { kRing, kWall } from "../state/stick";
 import { SceneState, robot_pose, scene_bounds } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
+import { build_sectors, build_wall_words, build_ways_ahead } from "./driven";
 import { build_layer } from "./layers";
 import {
   body, clear, goal, goals_ahead, grid, outline_of, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
@@ -20,9 +22,16 @@ import {
 
 interface Options {
   selection: Selection; force_scale: number; hidden: ReadonlySet<string>; follow: boolean; session: SessionState | null;
+  chase?: boolean; // the camera rides behind the robot
 }
 
+// The camera that rides behind the robot [m], R: its eye, and the point ahead that it looks at.
+const kChaseEye = [-2.4, 0, 1.9] as const, kChaseTarget = [1.3, 0, 0] as const;
+
 const kMostPath = 1500;
+const kLate = 80;       // [ms] from asking for a picture to drawing it
+const kMostLate = 4;    // late ones in a row
+const kCoarser = 0.7, kCoarsest = 0.35; // of the pixels of the page, along each axis
 
 export class World3 {
   private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
@@ -36,10 +45,13 @@ export class World3 {
   private readonly raw_ = points(2.5);
   private readonly filtered_ = points(3.5);
   private pending_ = 0;
+  private asked_ = 0; // [ms] when the pending drawing was asked for
+  private late_ = 0;  // drawings in a row that came late
   private built_: unknown[] = [];
   private hull_: SceneState["hull"] = null; // of the robot that was built
   private scenario_: string | null = null; // for which the camera was placed
   private turned_ = false;                 // by a hand
+  private chases_ = false;                 // the camera rides behind the robot
   private last_robot_: Point | null = null;
 
   constructor(private readonly box_: HTMLElement, private palette_: Palette,
@@ -65,7 +77,9 @@ export class World3 {
   }
 
   request(): void {
-    this.pending_ ||= requestAnimationFrame(() => this.draw());
+    if (this.pending_) return;
+    this.asked_ = performance.now();
+    this.pending_ = requestAnimationFrame(() => this.draw());
   }
 
   set_palette(palette: Palette): void {
@@ -124,17 +138,21 @@ export class World3 {
     const scene = this.scene_();
     const options = this.options_();
     const scenario = options.session?.scenario.name ?? "";
-    if (scenario !== this.scenario_) {
+    if (scenario !== this.scenario_ || this.chases_ !== (options.chase ?? false)) {
       this.keep_orbit();
       this.scenario_ = scenario;
+      this.chases_ = options.chase ?? false;
       this.place_camera(scene, orbits.get(scenario));
     }
+    this.controls_.enabled = !this.chases_;
+    if (this.chases_) this.keep_pace();
     drawing.around(() => {
       this.build_statics(scene, options.selection, options.hidden);
       this.build_moving(scene, options);
       this.place_robot(scene, options.follow);
       this.place_points(scene, options.hidden);
-      this.controls_.update();
+      if (this.chases_) this.ride_behind(scene);
+      else this.controls_.update();
       this.renderer_.render(this.world_, this.camera_);
     });
   }
@@ -205,7 +223,12 @@ export class World3 {
       this.moving_.add(outline_of(f.truth.pose, scene, p.muted));
     }
     const stage = { group: this.moving_, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
-    for (const layer of visible_layers(scene, options.hidden)) build_layer(stage, layer);
+    for (const layer of visible_layers(scene, options.hidden)) {
+      if (layer.name === kRing) this.moving_.add(...build_sectors(scene, p, f.pose));
+      else build_layer(stage, layer);
+      if (layer.name === kWall) this.moving_.add(...build_wall_words(scene, p));
+    }
+    for (const o of build_ways_ahead(scene, p, options.hidden)) this.moving_.add(o);
   }
 
   private build_path(scene: SceneState, width: number, z: number, colour: string, truly: boolean): void {
@@ -216,6 +239,26 @@ export class World3 {
       if (Number.isFinite(x)) line.push({ x, y });
     }, truly);
     this.moving_.add(ribbon(line, width, z, colour));
+  }
+
+  /** A driver needs a new picture more than a fine one: where pictures come late they get coarser. */
+  private keep_pace(): void {
+    this.late_ = performance.now() - this.asked_ > kLate ? this.late_ + 1 : 0;
+    const ratio = this.renderer_.getPixelRatio();
+    if (this.late_ < kMostLate || ratio <= kCoarsest) return;
+    this.late_ = 0;
+    this.renderer_.setPixelRatio(Math.max(kCoarsest, ratio * kCoarser));
+  }
+
+  private ride_behind(scene: SceneState): void {
+    const pose = robot_pose(scene);
+    if (!pose) return;
+    const at = ([x, y, z]: readonly [number, number, number]) => {
+      const p = to_parent(pose, x, y);
+      return new THREE.Vector3(p.x, p.y, z);
+    };
+    this.camera_.position.copy(at(kChaseEye));
+    this.camera_.lookAt(at(kChaseTarget));
   }
 
   private place_robot(scene: SceneState, follow: boolean): void {

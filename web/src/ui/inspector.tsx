@@ -9,8 +9,12 @@ import { Eye, Shown, Thing, card_place, thing_at } from "../edit/inspect";
 import { Point } from "../geometry";
 import { SceneState } from "../state/scene";
 import { use_pulse } from "../state/store";
+import css from "../style/inspect.css?text";
 import { Subscripted } from "./controls";
 import type { Probe } from "./probe";
+import { adopt } from "./sheet";
+
+adopt(css);
 
 const kRest = 400;       // [ms] until a thing is spoken
 const kMargin = 8;       // [px] from the edge of the scene

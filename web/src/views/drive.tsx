@@ -84,13 +84,13 @@ export function Drive(): JSX.Element {
 }
 
 /** `tool`: the one that a press uses. Without `edits` no press changes the world. */
-export function make_hand(app: App, { tool = () => app.usable_tool, edits = true } = {}): Hand {
+export function make_hand(app: App, { tool = () => app.usable_tool, edits = true, view = app.view } = {}): Hand {
   const hand: Hand = { draft: {}, hovered: null, gestures: null as unknown as Gestures };
   hand.gestures = new Gestures({
     get scene() {
       return app.shown;
     },
-    view: app.view,
+    view,
     tool,
     can_edit: () => edits && app.people.may("operator") && (app.ui.value.session?.robot.editable ?? false),
     will_edit: () => app.go_live(),

@@ -17,6 +17,7 @@ import { use_redraw } from "../state/store";
 import { SceneCanvas, panel_cover, scale_insets } from "../ui/canvas";
 import { Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
+import { lazy } from "../ui/lazy";
 import { Timeline } from "../ui/timeline";
 import { clock, frame_word, sentence_of, speed_word } from "../words";
 import { Sentence, Why } from "./cards";
@@ -25,6 +26,8 @@ import { RunFacts, kLooks } from "./run_facts";
 import { LayerButton, LayerPanel, use_filtered } from "./layers";
 import { crosshair_step, use_keys } from "./keys";
 import { use_place } from "./place";
+
+const ReplayDeck = lazy(async () => (await import("../teleop/teleop")).ReplayDeck);
 
 /** Fetches the row of a run and then its frames; calls `changed` for every page of them. */
 function use_stored(id: number | null, changed: () => void): { run: StoredRun | null; problem: string | null } {
@@ -191,6 +194,7 @@ function Opened(props: {
               redraw_controls();
             }} />
         </div>
+        {run.driven && <ReplayDeck scene={run.scene} />}
         {run.error && <p class="problem" role="alert">The rest of this run could not be fetched: {run.error}</p>}
         <Lanes runs={[run, ...others]} time={player.time} playing={player.playing}
           on_pick={(t) => player.seek(t)} scene={() => ({ scene: run.scene, view, overlay: overlay() })} />

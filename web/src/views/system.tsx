@@ -6,15 +6,19 @@ import { system_meaning } from "../figures";
 import { SessionState } from "../contract";
 import * as rest from "../link/rest";
 import { drawing } from "../state/meter";
+import css from "../style/system.css?text";
 import { use_pulse } from "../state/store";
 import { Facts, Problem, use_problem } from "../ui/controls";
 import { use_me } from "../ui/guard";
+import { adopt } from "../ui/sheet";
 import { fixed, link_words, titled, watchers_words } from "../words";
 import { Clients, ClientInfo, LogTail } from "./clients";
 import { Devices } from "./hardware";
 import { ShortcutTable } from "./shortcuts";
 import { deeds } from "./watching";
 import { You } from "./you";
+
+adopt(css);
 
 /** The answer of /system; what this page's role may not see is null. */
 interface SystemInfo {

@@ -1,0 +1,79 @@
+// web/src/teleop/eye.tsx: the world as the driver sees it: from behind the robot, from above, or from anywhere.
+import { JSX } from "preact";
+import { useMemo, useRef, useState } from "preact/hooks";
+import { use_app } from "../app";
+import { Insets, View } from "../draw/view";
+import { Bounds } from "../geometry";
+import { SceneState } from "../state/scene";
+import { keep, kept } from "../state/store";
+import { SceneCanvas } from "../ui/canvas";
+import { Segments } from "../ui/controls";
+import { lazy } from "../ui/lazy";
+import { make_hand } from "../views/drive";
+
+const SceneThree = lazy(async () => (await import("../three/view")).SceneThree);
+
+const kAround = 3;  // [m] shown about the robot
+const kFarOff = 0.8; // [m] from the middle, until the view follows
+const kInsets = { left: 12, top: 12, right: 12, bottom: 12 };
+
+const kEyes = [
+  { name: "follow", label: "Follow", help: "In 3D, from behind the robot" },
+  { name: "above", label: "Above", help: "From above" },
+  { name: "free", label: "Free", help: "In 3D: drag to look round" },
+];
+type Eye = "follow" | "above" | "free";
+const kEye = "tautline.teleop.eye";
+const is_eye = (text: string): text is Eye => kEyes.some((e) => e.name === text);
+
+export function DriverView(): JSX.Element {
+  const [eye, set_eye] = useState<Eye>(() => kept<Eye>(kEye, "above", (text) => (is_eye(text) ? text : "above")));
+  const look = (name: string) => {
+    keep(kEye, name);
+    set_eye(name as Eye);
+  };
+  return (
+    <>
+      {eye === "above" ? <FromAbove /> : <SceneThree insets={() => kInsets} chase={eye === "follow"} on_above={() => look("above")} />}
+      <div class="eye"><Segments label="View" name="eye" choices={kEyes} value={eye} on_pick={look} /></div>
+    </>
+  );
+}
+
+function FromAbove(): JSX.Element {
+  const app = use_app();
+  const view = useMemo(() => new View(), []);
+  const box = useRef<HTMLDivElement>(null);
+  const hand = useMemo(() => make_hand(app, { tool: () => "pan", edits: false, view }), [app]);
+  return (
+    <div ref={box}><SceneCanvas scene={() => app.shown} view={view} gestures={hand.gestures}
+      label="The robot and its surroundings from above" bounds={() => about(app.shown)}
+      insets={() => free_of(box.current!.parentElement!)} lost={() => strayed(view, app.shown)}
+      on_ready={(redraw) => (app.redraw = redraw)}
+      overlay={() => ({
+        selection: null, hovered: null, draft: {}, handles: false, force_scale: app.ui.value.force_scale,
+        hidden: app.ui.value.hidden, ghosts: [], future: false, insets: kInsets, preview: null,
+      })} /></div>
+  );
+}
+
+const kSpans = 0.7; // of the view's width, from which on the sentence leaves no room beside it
+
+/** The margins of the free part of `view`: on a phone the sentence covers all above. */
+function free_of(view: HTMLElement): Insets {
+  const say = view.querySelector(".say")?.getBoundingClientRect(), all = view.getBoundingClientRect();
+  const covers = say && say.width > kSpans * all.width;
+  return { ...kInsets, top: covers ? say.bottom - all.top : kInsets.top };
+}
+
+/** The bounds of what the driver needs to see. */
+function about(scene: SceneState): Bounds {
+  const at = scene.frame?.pose ?? { x: 0, y: 0 };
+  return { min_x: at.x - kAround, max_x: at.x + kAround, min_y: at.y - kAround, max_y: at.y + kAround };
+}
+
+function strayed(view: View, scene: SceneState): boolean {
+  const at = scene.frame?.pose;
+  const { x, y } = view.target ?? view;
+  return at !== undefined && Math.hypot(at.x - x, at.y - y) > kFarOff;
+}

@@ -1,0 +1,64 @@
+// web/src/teleop/reasons.ts: why a robot that is driven by hand does less than the stick asks, in words with numbers.
+import { degrees } from "../geometry";
+import { Words } from "../link/frame";
+import { measure, wall_of } from "../state/driven";
+import { SceneState } from "../state/scene";
+import { fixed, limit_words } from "../words";
+
+/** `tone`: the colour of its cause. */
+export interface Reason { head: string; tail: string; tone: "external" | "internal" | "muted" }
+
+const kNone: Reason = { head: "", tail: "Nothing limits it.", tone: "muted" };
+const kIdle: Reason = { ...kNone, tail: "" }; // nobody drives
+const kLess = 0.01; // [m/s], [rad/s]
+
+const side = (left: boolean) => (left ? "left" : "right");
+
+/** Why the speed is below the `wanted` one [m/s]. */
+export function speed_reason(scene: SceneState, wanted: number): Reason {
+  const f = scene.frame;
+  if (!f || !scene.stick) return kIdle;
+  if (Math.abs(f.command.v) > Math.abs(wanted) - kLess) return kNone;
+  const room = measure(scene, "teleop.v_sprs"), nearest = measure(scene, "teleop.nearest");
+  const share = `${fixed((100 * f.command.v) / wanted, 0)} %`;
+  if (f.limit === "crowded") return { head: "Crowded:", tail: `room for ${fixed(room, 2)} m/s (Eq. 1-3)`, tone: "external" };
+  if (f.limit === "obstacle_ahead") return { head: `Nearest at ${fixed(nearest, 2)} m:`, tail: `${share} of it (Eq. 4)`, tone: "external" };
+  if (f.limit === "guard") return { head: "Guard:", tail: `${share} of it, to stop before what it sees`, tone: "external" };
+  if (f.limit === "" || f.limit === "wall") return kNone; // the base is still on its way
+  return { head: `${limit_words(f.limit)!.what}:`, tail: `${share} of it`, tone: "external" };
+}
+
+/** Why the robot turns otherwise than `wanted` [rad/s]. */
+export function turn_reason(scene: SceneState, wanted: number): Reason {
+  const f = scene.frame;
+  if (!f || !scene.stick) return kIdle;
+  const turn = measure(scene, "teleop.w_d"), wall = wall_of(scene);
+  if (turn !== null && wall) {
+    return {
+      head: `Wall on the ${side(wall.theta > 0)}`, tail: `turns it ${side(turn > 0)} (Eq. 8)`, tone: "internal",
+    };
+  }
+  if (f.limit === "guard" && Math.abs(f.command.omega - wanted) > kLess) {
+    return { head: "Guard:", tail: "to turn clear of what it sees", tone: "external" };
+  }
+  return kNone;
+}
+
+/** What a driven robot does and why. */
+export function driven_words(scene: SceneState): Words {
+  const f = scene.frame;
+  const words = limit_words(f?.limit ?? "");
+  const wall = wall_of(scene), nearest = measure(scene, "teleop.nearest"), turn = measure(scene, "teleop.w_d");
+  const beside = wall ? ` Wall ${fixed(wall.rho, 2)} m away, ${fixed(Math.abs(degrees(wall.theta)), 0)}° to the ${side(wall.theta > 0)}.` : "";
+  if (!f || !words) return { what: "The robot follows your stick", why: `Nothing limits it.${beside}` };
+  if (f.limit === "wall" && wall && turn !== null) {
+    const towards = 90 - Math.abs(degrees(wall.theta));
+    return {
+      what: `Following the wall on your ${side(wall.theta > 0)}`,
+      why: `Wall ${fixed(wall.rho, 2)} m away, nose ${fixed(Math.abs(towards), 0)}° ${towards >= 0 ? "towards" : "away from"} it: ` +
+        `turning ${side(turn > 0)} ${fixed(Math.abs(degrees(turn)), 1)} °/s.`,
+    };
+  }
+  const near = nearest !== null ? ` The nearest is ${fixed(nearest, 2)} m from its middle.` : "";
+  return { what: words.what, why: `${words.why}${near}` };
+}
