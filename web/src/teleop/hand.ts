@@ -12,7 +12,7 @@ import { OperatorLink } from "./operator_link";
 import { find_pad, map_of, read_pad } from "./pads";
 import { Seat, kSendEvery } from "./seat";
 
-export type Mode = "guarded" | "wall" | "elastic" | "raw";
+export type Mode = "guarded" | "wall" | "elastic" | "goal" | "raw";
 
 const kToldAgain = 3000; // [ms] between two refusals that are told
 const kOldForce = 500;   // [ms] of silence of the server, after which its force is none
@@ -77,7 +77,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
       const { forward, left } = felt(app, seat);
       for (const device of [rumble, force.held.current]) device?.set_force(forward, left);
       // Old commands that wait in the socket would reach the robot late: none is added to them.
-      if (!next || !app.link.is_clear) return;
+      if (!next || !app.link.is_clear || latest.current.mode === "goal") return;
       app.link.call("/request", { type: "joystick", ...link.stamped(next), mode: latest.current.mode }).catch(refused);
     }, kSendEvery);
     return () => {

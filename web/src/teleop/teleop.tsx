@@ -22,6 +22,7 @@ const kModes = [
   { name: "guarded", label: "Guarded", help: "As far as the robot can still stop before all that it sees" },
   { name: "wall", label: "Wall", help: "Slower where it is crowded; at full stick it follows a wall" },
   { name: "elastic", label: "Elastic", help: "The stick steers a course; the robot finds the way along it" },
+  { name: "goal", label: "Goal", help: "The stick rests: press on the place to which the robot shall go" },
   { name: "raw", label: "Raw", help: "No guard: only Stop, the bumpers and the watchdog hold" },
 ];
 
@@ -39,7 +40,7 @@ export function Teleop(): JSX.Element {
   return (
     <>
       <main class="scene" aria-label="The world about the robot">
-        <DriverView />
+        <DriverView sets_goal={mode === "goal" && drives} />
         <Reason scene={app.scene} hand={hand} drives={drives} stopped={session?.stop ?? false} />
       </main>
       <Deck scene={app.scene} wish={seat.idle ? null : seat.wish} barred={seat.barred}
