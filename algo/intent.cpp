@@ -15,7 +15,7 @@ struct Overloaded : Ts... {
 template <class... Ts>
 Overloaded(Ts...) -> Overloaded<Ts...>;
 
-constexpr std::array<std::string_view, 3> kStickModes{"guarded", "wall", "raw"};
+constexpr std::array<std::string_view, 4> kStickModes{"guarded", "wall", "raw", "elastic"};
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "algo/name.hpp"
 #include "algo/obstacle.hpp"
 #include "algo/parameters.hpp"
 #include "algo/types.hpp"
@@ -58,7 +59,9 @@ enum class StickMode : std::uint8_t {
   Guarded,  // as far as the robot can still stop before all that it sees
   Wall,  // besides, slower where it is crowded, and along a wall at full stick (Park et al. 2005)
   Raw,   // as it is: only Stop, the bumpers and the watchdog hold
+  Elastic,  // it pulls the goal of the run's controller along, which finds the way (ours)
 };
+inline constexpr const char* kStickModeList = "guarded, wall, raw, elastic";
 /// "guarded", as REST and CSV spell it.
 std::string_view name(StickMode mode);
 /// The mode of that name; nothing if there is none.
@@ -69,6 +72,10 @@ struct Joystick {
   double forward = 0;
   double turn = 0;  // left is positive
   StickMode mode = StickMode::Guarded;
+  /// [s] How long the driver's hand takes to answer what the robot does, without the driver's own
+  /// part: the round trip of the link. 0: beside the robot.
+  double round_trip = 0;
+  Name driver{};  // who gave it; empty: nobody knows
   bool centred() const { return forward == 0 && turn == 0; }
   bool operator==(const Joystick&) const = default;
 };

@@ -11,6 +11,7 @@
 #include "algo/geometry.hpp"
 #include "algo/hull.hpp"
 #include "algo/perceive.hpp"
+#include "algo/pipeline/driver_link.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "algo/pipeline/reactive.hpp"
 #include "algo/teleop/teleop_parameters.hpp"
@@ -63,14 +64,14 @@ Pipeline::Pipeline(const PipelineConfig& config,
       controller_(controllers.at(config.controller)),
       initial_parameters_(config.parameters),
       sensing_(config.filter) {
-  if (spec.drives && by_hand_) {
-    auto manual = std::make_unique<ManualBehaviour>();
-    manual_ = manual.get();
-    coordinator_.add(std::move(manual));
-  }
   auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
   avoid->begin(config.run);
   avoiding_ = &avoid->controller();
+  if (spec.drives && by_hand_) {
+    auto manual = std::make_unique<ManualBehaviour>(*avoid);
+    manual_ = manual.get();
+    coordinator_.add(std::move(manual));
+  }
   coordinator_.add(std::move(avoid));
   by_sonar_ = !spec.has_laser && controller_.by_sonar;
   const double delay = spec.period > 0 ? std::round(spec.command_delay / spec.period) : 0;
@@ -115,6 +116,7 @@ std::optional<std::string> Pipeline::refusal(const Request& request) const {
     if (stick->mode == StickMode::Raw && !spec_.raw_stick) {
       return "This robot's file does not allow a stick without a guard (raw).";
     }
+    if (auto reason = link_refusal(*stick)) return reason;
     if (stick->mode == StickMode::Wall) {
       return teleop_refusal(intent_.parameters, spec_.radius);
     }

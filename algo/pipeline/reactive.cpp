@@ -2,9 +2,20 @@
 #include "algo/pipeline/reactive.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "algo/geometry.hpp"
+#include "algo/pipeline/driver_link.hpp"
 
 namespace algo {
 namespace {
+
+constexpr double kPulls = 0.05;     // of the stick's travel ahead
+constexpr double kPullReach = 1.5;  // [m] to the pulled goal
+constexpr LayerInfo kPull{.name = "teleop.pull",
+                          .label = "Goal that the stick pulls along",
+                          .kind = LayerKind::Points,
+                          .tone = Tone::Internal};
 
 TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
   return {.v_min = std::max(a.v_min, b.v_min),
@@ -16,31 +27,84 @@ TwistLimits intersect(const TwistLimits& a, const TwistLimits& b) {
 }  // namespace
 
 Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
+  if (pulls_goal(in)) return {};  // the driver's behaviour has asked the controller already
   ControlInput input = static_cast<const ControlInput&>(in);
   if (in.mission == Mission::Arrived) input.goal.reset();
   controller_->update(input, *in.parameters, output);
   return {.active = input.goal.has_value(), .twist = output.twist, .limits = {}, .limit = {}};
 }
 
-Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
+Twist2 AvoidBehaviour::follow(const Resource& in, const SetGoal& pulled, ControlOutput& output) {
+  ControlInput input = static_cast<const ControlInput&>(in);
+  input.goal = pulled;
+  controller_->update(input, *in.parameters, output);
+  return output.twist;
+}
+
+bool pulls_goal(const Resource& in) {
+  return in.manual && in.joystick.mode == StickMode::Elastic && in.joystick.forward > kPulls;
+}
+
+Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& output) {
   guard_.sense(in);
+  pull_W_.reset();
   const bool shared = in.manual && in.joystick.mode == StickMode::Wall;
   if (!shared) shared_.reset();
-  if (!in.manual) return {};
+  if (!in.manual) {
+    course_.reset();
+    return {};
+  }
   const Twist2 full = full_stick(in);
   const Twist2 wanted{in.joystick.forward * full.v, in.joystick.turn * full.omega};
   Proposal out{.active = true, .twist = wanted, .limits = {}, .limit = {}};
-  if (in.joystick.mode == StickMode::Raw) return out;
+  if (in.joystick.mode == StickMode::Raw) {
+    out.twist = capped_for_link(wanted, in.joystick);
+    if (out.twist != wanted) out.limit = limits::kLink;
+    return out;
+  }
   if (shared) out.twist = shared_.share(in, wanted, out.limit);
-  const Twist2 safe = guard_.limit(in, out.twist);
-  if (safe != out.twist) out.limit = limits::kGuard;
-  out.twist = safe;
+  if (!pulls_goal(in)) course_.reset();
+  if (pulls_goal(in)) {
+    out.twist = pulled(in, full, output);
+    out.limit = limits::kPulled;
+  }
+  out.twist = guarded(in, out.twist, out.limit);
   return out;
+}
+
+/// First as if the driver stood beside the robot, then as slow as the driver's link wants it.
+Twist2 ManualBehaviour::guarded(const Resource& in, const Twist2& wanted, Limit& limit) {
+  const Twist2 near = guard_.limit(in, wanted);
+  if (near != wanted) limit = limits::kGuard;
+  const double delay = driver_delay(in.joystick);
+  if (delay == 0) return near;
+  const Twist2 far = guard_.limit(in, near, delay);
+  if (far != near) limit = limits::kLink;
+  return far;
+}
+
+/// The controller's way to the goal, no faster than the stick asks for. The goal lies on the course
+/// that the stick steers, not ahead of the hull: a robot that goes round an obstacle comes back to
+/// it.
+Twist2 ManualBehaviour::pulled(const Resource& in, const Twist2& full, ControlOutput& output) {
+  const Pose2& here = in.odometry.pose;
+  course_ = wrap_angle(course_.value_or(here.heading) + in.joystick.turn * full.omega * in.dt);
+  pull_W_ = here.position() + kPullReach * direction(*course_);
+  const Twist2 twist = avoid_.follow(in, {*pull_W_, std::nullopt}, output);
+  const double most = in.joystick.forward * full.v;
+  const double share = std::abs(twist.v) > most ? most / std::abs(twist.v) : 1.0;
+  return {share * twist.v, share * twist.omega};
+}
+
+void ManualBehaviour::show(Telemetry& t) const {
+  shared_.show(t);
+  if (pull_W_) put(add_layer(t.layers, kPull, 2), *pull_W_);
 }
 
 void ManualBehaviour::reset(const Pose2& start_W) {
   guard_.reset(start_W);
   shared_.reset();
+  course_.reset();
 }
 
 void BehaviourCoordinator::reset(const Pose2& start_W) {

@@ -68,10 +68,16 @@ class AvoidBehaviour final : public Behaviour {
   Name name() const override { return behaviours::kAvoid; }
   void reset(const Pose2& start_W) override { controller_->reset(start_W); }
   Proposal propose(const Resource& resource, ControlOutput& output) override;
+  /// The motion to a goal that a driver's stick pulls along.
+  Twist2 follow(const Resource& in, const SetGoal& pulled, ControlOutput& output);
 
  private:
   std::unique_ptr<Controller> controller_;
 };
+
+/// Whether the stick pulls a goal along: in mode Elastic, and ahead. Controllers do not back up to
+/// a goal behind.
+bool pulls_goal(const Resource& in);
 
 inline constexpr ParameterInfo kJoystickTimeout{
     .name = "manual.joystick_timeout",
@@ -87,15 +93,23 @@ inline constexpr ParameterInfo kJoystickTimeout{
 /// Follows the driver's stick as far as its mode allows.
 class ManualBehaviour final : public Behaviour {
  public:
+  /// `avoid` follows the goals that the stick pulls along; it outlives this.
+  explicit ManualBehaviour(AvoidBehaviour& avoid) : avoid_(avoid) {}
   Name name() const override { return behaviours::kManual; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
   /// Adds the explanation of this tick's motion to `t`.
-  void show(Telemetry& t) const { shared_.show(t); }
+  void show(Telemetry& t) const;
 
  private:
+  Twist2 guarded(const Resource& in, const Twist2& wanted, Limit& limit);
+  Twist2 pulled(const Resource& in, const Twist2& full, ControlOutput& output);
+
+  AvoidBehaviour& avoid_;
   StickGuard guard_{};
-  SharedControl shared_{};  // at rest unless a stick in mode Wall is active
+  SharedControl shared_{};          // at rest unless a stick in mode Wall is active
+  std::optional<double> course_{};  // [rad] in W, while the stick pulls a goal along
+  std::optional<Vec2> pull_W_{};    // this tick's pulled goal
 };
 
 struct Decision {

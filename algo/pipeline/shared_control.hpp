@@ -25,6 +25,9 @@ inline constexpr Limit kCrowded{"crowded", "The place is crowded: less speed ahe
 inline constexpr Limit kAhead{"obstacle_ahead", "An obstacle is near ahead."};
 inline constexpr Limit kWallBeside{"wall", "The robot keeps its distance to the wall beside it."};
 inline constexpr Limit kGuard{"guard", "The robot could not stop before what it sees."};
+inline constexpr Limit kLink{"link",
+                             "The link is slow: the driver's answer would come too late for more."};
+inline constexpr Limit kPulled{"elastic", "The robot finds its own way to where the stick pulls."};
 
 }  // namespace limits
 

@@ -137,7 +137,8 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
     margin = std::max(margin, std::min(kMargin, left));
     return true;
   };
-  for (int k = 0; k < kActs * pieces; ++k) {
+  const double acts = kActs * pieces + std::ceil(delay_ / step);
+  for (int k = 0; k < acts; ++k) {
     state = on(state, command);
     if (!free(state)) return false;
   }
@@ -148,9 +149,10 @@ bool StickGuard::safe(const Resource& in, const Twist2& command) const {
   return safe(in, command, Answer::AtOnce) && safe(in, command, Answer::Ramped);
 }
 
-Twist2 StickGuard::limit(const Resource& in, const Twist2& wanted) {
+Twist2 StickGuard::limit(const Resource& in, const Twist2& wanted, double delay) {
   const Observation& seen = *in.observation;
   if (wanted == Twist2{} || !finite(seen)) return {};
+  delay_ = delay;
   limits_ = {in.spec->max_v,
              in.spec->max_omega,
              in.spec->max_acceleration,

@@ -31,8 +31,9 @@ class StickGuard {
   void reset(const Pose2& start_W);
   /// Takes the sensor data of every tick. Maps less often while nobody holds the stick.
   void sense(const Resource& in);
-  /// The allowed part of `wanted`; zero if no motion is allowed.
-  Twist2 limit(const Resource& in, const Twist2& wanted);
+  /// The allowed part of `wanted`; zero if no motion is allowed. `delay` [s]: the command may act
+  /// for so much longer, because the driver's answer comes late.
+  Twist2 limit(const Resource& in, const Twist2& wanted, double delay = 0);
 
  private:
   /// The base's assumed answer: within its limits, or faster than they say.
@@ -55,6 +56,7 @@ class StickGuard {
   std::optional<double> straight_back_since_{};  // [s] run clock
   bool insists_ = false;
   bool may_back_ = false;         // into unseen space, in this tick
+  double delay_ = 0;              // [s] of this tick's driver
   MotionLimits limits_{};         // of this tick's robot
   std::vector<Vec2> beside_W_{};  // this tick's returns from where no scanner looks
 };

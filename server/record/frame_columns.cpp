@@ -40,6 +40,16 @@ void put_requests(Out& out, const T& t) {
   }
 }
 
+/// Calls `put` with the newest stick that was applied in the tick.
+template <typename Put>
+void put_stick(Out& out, const T& t, const Put& put) {
+  const algo::Joystick* newest = nullptr;
+  for (const algo::Request& request : t.requests) {
+    if (const auto* stick = std::get_if<algo::Joystick>(&request)) newest = stick;
+  }
+  if (newest != nullptr) put(out, *newest);
+}
+
 /// Appends a number of the simulator's truth, at the frame's precision.
 template <typename Get>
 void put_truth(Out& out, const T& t, const Get& get) {
@@ -148,6 +158,31 @@ constexpr auto kColumns = std::to_array<FrameColumn>({
      }},
     {"scans", "", [](Out& o, const T& t) { put_count(o, t.observation.scans.size()); }},
     {"requests", "", put_requests},
+    {"stick.forward",
+     "",
+     [](Out& o, const T& t) {
+       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.forward); });
+     }},
+    {"stick.turn",
+     "",
+     [](Out& o, const T& t) {
+       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.turn); });
+     }},
+    {"stick.mode",
+     "",
+     [](Out& o, const T& t) {
+       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_text(out, name(s.mode)); });
+     }},
+    {"stick.round_trip",
+     "s",
+     [](Out& o, const T& t) {
+       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_number(out, s.round_trip); });
+     }},
+    {"stick.driver",
+     "",
+     [](Out& o, const T& t) {
+       put_stick(o, t, [](Out& out, const algo::Joystick& s) { put_text(out, s.driver.view()); });
+     }},
     {"what",
      "",
      [](Out& o, const T& t) {

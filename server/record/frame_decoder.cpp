@@ -141,11 +141,18 @@ algo::Request read_request(const fb::RequestBox& box) {
       return algo::RemoveObstacle{box.request_as_RemoveObstacle()->id()};
     case fb::Request_Joystick: {
       const auto* stick = box.request_as_Joystick();
-      if (stick->mode() > static_cast<std::uint8_t>(algo::StickMode::Raw)) {
+      if (stick->mode() > static_cast<std::uint8_t>(algo::StickMode::Elastic)) {
         throw WireError("The frame has a stick of an unknown mode.");
       }
-      return algo::Joystick{
-          stick->forward(), stick->turn(), static_cast<algo::StickMode>(stick->mode())};
+      const std::string_view driver = stick->driver() ? stick->driver()->string_view() : "";
+      if (driver.size() > algo::Name::kLongest) {
+        throw WireError("The frame has a driver of too long a name.");
+      }
+      return algo::Joystick{stick->forward(),
+                            stick->turn(),
+                            static_cast<algo::StickMode>(stick->mode()),
+                            stick->round_trip(),
+                            driver};
     }
     case fb::Request_Stop:
       return algo::Stop{box.request_as_Stop()->engaged()};

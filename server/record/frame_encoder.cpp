@@ -126,8 +126,12 @@ struct RequestWriter {
     return {fb::Request_RemoveObstacle, fb::CreateRemoveObstacle(b, r.id).Union()};
   }
   Written operator()(const algo::Joystick& r) const {
+    const std::string_view driver = r.driver.view();
+    const auto name = driver.empty() ? flatbuffers::Offset<flatbuffers::String>()
+                                     : b.CreateString(driver.data(), driver.size());
+    const auto mode = static_cast<std::uint8_t>(r.mode);
     return {fb::Request_Joystick,
-            fb::CreateJoystick(b, r.forward, r.turn, static_cast<std::uint8_t>(r.mode)).Union()};
+            fb::CreateJoystick(b, r.forward, r.turn, mode, r.round_trip, name).Union()};
   }
   Written operator()(const algo::Stop& r) const {
     return {fb::Request_Stop, fb::CreateStop(b, r.engaged).Union()};

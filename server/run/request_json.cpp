@@ -52,11 +52,14 @@ algo::Request request_from_json(const nlohmann::json& value) {
     return algo::RemoveObstacle{static_cast<std::uint32_t>(in.whole("id", kMaxStandingId))};
   }
   if (type == "joystick") {
-    in.only({"type", "forward", "turn", "mode"});
+    in.only({"type", "forward", "turn", "mode", "round_trip"});
     const std::string mode = in.text_or("mode", "guarded");
     const auto known = algo::stick_mode(mode);
-    if (!known) in.fail("mode", fmt::format("'{}' is unknown; known are guarded, wall, raw", mode));
-    return algo::Joystick{in.number("forward", {-1, 1}), in.number("turn", {-1, 1}), *known};
+    if (!known)
+      in.fail("mode", fmt::format("'{}' is unknown; known are {}", mode, algo::kStickModeList));
+    const double round_trip = in.has("round_trip") ? in.number("round_trip", {0, 60}) : 0;
+    return algo::Joystick{
+        in.number("forward", {-1, 1}), in.number("turn", {-1, 1}), *known, round_trip};
   }
   if (type == "stop") {
     in.only({"type", "engaged"});

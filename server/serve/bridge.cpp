@@ -28,7 +28,6 @@ using foxglove::ServiceReply;
 using nlohmann::json;
 constexpr std::chrono::milliseconds kPathPeriod{500};  // the whole path is sent each time
 constexpr int kStateShare = 9;  // next state after this many times its publishing time
-constexpr const char* kBusy = "More is waiting to be done than this robot can take. Try again.";
 
 std::shared_ptr<const std::string> shared(std::string text) {
   return std::make_shared<const std::string>(std::move(text));
@@ -36,42 +35,6 @@ std::shared_ptr<const std::string> shared(std::string text) {
 
 std::string text_of(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-double yaw_of(const JsonReader& q) {
-  const double x = q.number("x"), y = q.number("y"), z = q.number("z"), w = q.number("w");
-  return std::atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
-}
-
-/// Applies the same limits as REST.
-algo::Request goal_at(const JsonReader& position, std::optional<double> heading) {
-  json goal = {{"type", "set_goal"}, {"x", position.number("x")}, {"y", position.number("y")}};
-  if (heading) goal["heading"] = *heading;
-  return request_from_json(goal);
-}
-
-/// geometry_msgs/PoseStamped.
-algo::Request goal_from_pose(const json& message) {
-  const JsonReader pose = JsonReader(message, "").object("pose");
-  std::optional<double> heading;
-  if (pose.has("orientation")) heading = yaw_of(pose.object("orientation"));
-  return goal_at(pose.object("position"), heading);
-}
-
-/// geometry_msgs/PointStamped.
-algo::Request goal_from_point(const json& message) {
-  return goal_at(JsonReader(message, "").object("point"), std::nullopt);
-}
-
-/// geometry_msgs/Twist in m/s and rad/s, as a share of the robot's limits.
-algo::Joystick stick_from_twist(const json& message, const algo::RobotSpec& robot) {
-  const JsonReader in(message, "");
-  const double v = in.object("linear").number("x");
-  const double omega = in.object("angular").number("z");
-  const auto share = [](double value, double limit) {
-    return limit > 0 ? std::clamp(value / limit, -1.0, 1.0) : 0.0;
-  };
-  return {share(v, robot.max_v), share(omega, robot.max_omega)};
 }
 
 std::function<void(std::exception_ptr)> answer_when_loaded(const ServiceReply& reply) {
@@ -99,10 +62,13 @@ std::vector<foxglove::Parameter> Bridge::Gains::list() const {
   out.push_back({"controller", scenario.controller, ""});
   out.push_back({"filter", scenario.filter, ""});
   out.push_back({"scenario", scenario.name, ""});
+  out.push_back({kTwistMode, std::string(algo::name(bridge_.twist_mode_)), ""});
   return out;
 }
 
-std::string Bridge::Gains::set(const std::string& name, const json& value) {
+std::string Bridge::Gains::set(ClientId client, const std::string& name, const json& value) {
+  if (const auto refusal = admit_deed(bridge_.session_, bridge_.sender(client))) return *refusal;
+  if (name == kTwistMode) return bridge_.set_twist_mode(value);
   const algo::ParameterInfo* const parameter = algo::find_parameter(name);
   if (parameter == nullptr) {
     const bool read_only = name == "controller" || name == "filter" || name == "scenario";
@@ -193,15 +159,23 @@ void Bridge::sign_of(ClientId client) {
   session_.watch().page_sign(client, OperatorWatch::Clock::now());
 }
 
-void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& reply) {
+Sender Bridge::sender(ClientId client) const {
   const net::Visitor& who = hub_.who(client);
-  if (who.role < needed_for(request)) {
-    throw std::runtime_error(net::role_refusal(who.role, needed_for(request)));
+  return {{client, who.label(), who.role}, {}};
+}
+
+void Bridge::submit(ClientId client, StampedRequest request, const ServiceReply& reply) {
+  const net::Visitor& who = hub_.who(client);
+  if (who.role < needed_for(request.request)) {
+    throw std::runtime_error(net::role_refusal(who.role, needed_for(request.request)));
   }
   if (who.role >= net::Role::Operator) sign_of(client);
+  if (const auto refusal = admit(session_, sender(client), request)) {
+    throw std::runtime_error(*refusal);
+  }
   const bool taken = server::submit(
       session_,
-      std::move(request),
+      std::move(request.request),
       [reply](const json& body) { reply.success(body); },
       [reply](const std::string& refusal) { reply.failure(refusal); },
       who.label());
@@ -211,10 +185,16 @@ void Bridge::submit(ClientId client, algo::Request request, const ServiceReply& 
 void Bridge::add_services() {
   // Each throws on a bad request; the hub turns that into the call's failure.
   using Action = std::function<void(const json&, const std::string& who)>;
-  const auto add = [this](const char* name, Action action) {
+  const auto heed_driver = [this](ClientId client) {
+    if (const auto refusal = admit_deed(session_, sender(client))) {
+      throw std::runtime_error(*refusal);
+    }
+  };
+  const auto add = [this, heed_driver](const char* name, Action action) {
     hub_.add_service(name,
-                     [this, action = std::move(action)](
+                     [this, heed_driver, action = std::move(action)](
                          ClientId client, const json& body, const ServiceReply& reply) {
+                       heed_driver(client);
                        action(body, hub_.who(client).label());
                        reply.success({{"ok", true}});
                      });
@@ -222,7 +202,16 @@ void Bridge::add_services() {
   hub_.add_service(
       "/request",
       [this](ClientId client, const json& body, const ServiceReply& reply) {
-        submit(client, request_from_json(body), reply);
+        submit(client, stamped_request_from_json(session_, body), reply);
+      },
+      net::Role::Viewer);
+  hub_.add_service("/lease", [this](ClientId client, const json& body, const ServiceReply& reply) {
+    reply.success(lease_action(session_, sender(client), body));
+  });
+  hub_.add_service(
+      "/clock",
+      [](ClientId, const json&, const ServiceReply& reply) {
+        reply.success({{"ok", true}, {"now", clock_seconds(StickWatch::Clock::now())}});
       },
       net::Role::Viewer);
   hub_.add_service("/watch", [this](ClientId client, const json& body, const ServiceReply& reply) {
@@ -237,14 +226,18 @@ void Bridge::add_services() {
     }
     reply.success(goal_check_json(session_, body));
   });
-  hub_.add_service("/load", [this](ClientId client, const json& body, const ServiceReply& reply) {
-    if (!loads_.load(body, answer_when_loaded(reply))) return reply.failure(kBusy);
-    tell_deed(session_, hub_.who(client).label(), "loads another run");
-  });
-  hub_.add_service("/reset", [this](ClientId client, const json&, const ServiceReply& reply) {
-    if (!loads_.reset(answer_when_loaded(reply))) return reply.failure(kBusy);
-    tell_deed(session_, hub_.who(client).label(), "resets the run");
-  });
+  hub_.add_service(
+      "/load", [this, heed_driver](ClientId client, const json& body, const ServiceReply& reply) {
+        heed_driver(client);
+        if (!loads_.load(body, answer_when_loaded(reply))) return reply.failure(kBusy);
+        tell_deed(session_, hub_.who(client).label(), "loads another run");
+      });
+  hub_.add_service("/reset",
+                   [this, heed_driver](ClientId client, const json&, const ServiceReply& reply) {
+                     heed_driver(client);
+                     if (!loads_.reset(answer_when_loaded(reply))) return reply.failure(kBusy);
+                     tell_deed(session_, hub_.who(client).label(), "resets the run");
+                   });
   const auto heed_pace = [this] {
     if (const auto refusal = session_.pace_refusal()) throw std::runtime_error(*refusal);
   };
@@ -280,59 +273,6 @@ void Bridge::add_services() {
     heed_pace();
     JsonReader(body, "").number("speed");
     session_.set_speed(pace_from_json(body, "speed", 1));
-  });
-}
-
-/// A later refusal goes to the status line of the client that sent the request.
-std::string Bridge::hand_over(ClientId client, algo::Request request) {
-  sign_of(client);
-  const bool stick = std::holds_alternative<algo::Joystick>(request);
-  const bool taken = server::submit(
-      session_,
-      std::move(request),
-      [this, client](const json& answer) {
-        if (answer.contains("warning")) hub_.warn(client, answer["warning"].get<std::string>());
-      },
-      [this, client, stick](const std::string& refusal) { say_refusal(client, stick, refusal); },
-      hub_.who(client).label());
-  return taken ? std::string() : std::string(kBusy);
-}
-
-/// A stick is published many times a second, so its refusals are reported only at intervals.
-void Bridge::say_refusal(ClientId client, bool stick, const std::string& refusal) {
-  constexpr std::chrono::seconds kEvery{3};
-  const auto now = std::chrono::steady_clock::now();
-  if (stick) {
-    const auto [said, first] = stick_refused_.try_emplace(client, now);
-    if (!first && now - said->second < kEvery) return;
-    said->second = now;
-  }
-  hub_.warn(client, refusal);
-}
-
-void Bridge::add_topics() {
-  for (const char* topic : {"/goal_pose", "/move_base_simple/goal"}) {
-    hub_.on_publish(topic, [this](ClientId client, const json& message) {
-      return hand_over(client, goal_from_pose(message));
-    });
-  }
-  hub_.on_publish("/clicked_point", [this](ClientId client, const json& message) {
-    return hand_over(client, goal_from_point(message));
-  });
-  hub_.on_publish("/cmd_vel", [this](ClientId client, const json& message) {
-    return hand_over(client, stick_from_twist(message, session_.state().robot));
-  });
-  hub_.on_publish("/edits", [this](ClientId client, const json& message) {
-    return hand_over(client, request_from_json(message));
-  });
-  hub_.on_client_gone([this](ClientId client) {
-    session_.watch().page_gone(client);
-    stick_refused_.erase(client);
-  });
-  hub_.on_clients([this] { session_.count_viewers(hub_.clients()); });
-  hub_.on_publisher_gone([this](ClientId, const std::string& topic) {
-    // A driver who leaves lets go of the stick.
-    if (topic == "/cmd_vel") session_.submit(algo::Joystick{}, {});
   });
 }
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "server/record/frame_codec.hpp"
+#include "server/serve/driving.hpp"
 #include "server/serve/foxglove/hub.hpp"
 #include "server/serve/session.hpp"
 
@@ -39,7 +40,9 @@ class Bridge {
    public:
     explicit Gains(Bridge& bridge) : bridge_(bridge) {}
     std::vector<foxglove::Parameter> list() const override;
-    std::string set(const std::string& name, const nlohmann::json& value) override;
+    std::string set(foxglove::ClientId client,
+                    const std::string& name,
+                    const nlohmann::json& value) override;
     /// Copies the session's current values. A value still on its way to the run stays visible.
     void follow();
 
@@ -49,6 +52,10 @@ class Bridge {
     std::size_t on_their_way_ = 0;
   };
 
+  static constexpr const char* kBusy =
+      "More is waiting to be done than this robot can take. Try again.";
+  static constexpr const char* kTwistMode = "cmd_vel.mode";  // a Twist has no room for it
+
   void add_channels();
   void add_services();
   void add_topics();
@@ -56,10 +63,14 @@ class Bridge {
   std::shared_ptr<const std::string> with_news(const Frame& frame);
   void publish_state();
   void state_changed();
+  Sender sender(foxglove::ClientId client) const;
   void submit(foxglove::ClientId client,
-              algo::Request request,
+              StampedRequest request,
               const foxglove::ServiceReply& reply);
   std::string hand_over(foxglove::ClientId client, algo::Request request);
+  std::string drive(foxglove::ClientId client, const nlohmann::json& twist);
+  void advise_rate(foxglove::ClientId client, std::chrono::steady_clock::time_point now);
+  std::string set_twist_mode(const nlohmann::json& value);
   void sign_of(foxglove::ClientId client);
   void say_refusal(foxglove::ClientId client, bool stick, const std::string& refusal);
   std::uint64_t now_ns() const;
@@ -76,6 +87,11 @@ class Bridge {
   std::chrono::steady_clock::time_point state_due_{};  // earliest time of the next publication
   std::size_t path_published_ = 0;
   std::map<foxglove::ClientId, std::chrono::steady_clock::time_point> stick_refused_{};
+  struct TwistRate {
+    std::chrono::steady_clock::time_point last{}, told{};
+  };
+  std::map<foxglove::ClientId, TwistRate> twists_{};
+  algo::StickMode twist_mode_ = algo::StickMode::Guarded;
   std::chrono::steady_clock::time_point path_sent_{};
 
   foxglove::ChannelId telemetry_ = 0, state_ = 0, scan_ = 0, tf_ = 0, odom_ = 0, layers_ = 0,

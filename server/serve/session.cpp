@@ -245,6 +245,7 @@ void Session::single_step(std::uint32_t ticks) {
 
 void Session::poll() {
   count_watchers();
+  watch_lease();
   watch_record();
   if (!live_) return;
   drain_replies();

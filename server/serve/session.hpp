@@ -17,11 +17,13 @@
 #include "server/record/recorder.hpp"
 #include "server/run/frame_pool.hpp"
 #include "server/run/run_spec.hpp"
+#include "server/serve/control_lease.hpp"
 #include "server/serve/credits.hpp"
 #include "server/serve/live_run.hpp"
 #include "server/serve/operator_watch.hpp"
 #include "server/serve/path_trail.hpp"
 #include "server/serve/scene_json.hpp"
+#include "server/serve/stick_watch.hpp"
 
 namespace server {
 
@@ -103,6 +105,23 @@ class Session {
   OperatorWatch& watch() { return watch_; }
   void count_viewers(std::size_t viewers);
 
+  /// Who has the controls. After a change call pass_controls() or tell().
+  ControlLease& lease() { return lease_; }
+  const ControlLease& lease() const { return lease_; }
+  const StickWatch& sticks() const { return sticks_; }
+  /// Other hands have the controls, or nobody: the stick is let go.
+  void pass_controls();
+  /// Clients are told that state() has changed.
+  void tell() const { changed(); }
+  /// As StickWatch::refusal().
+  std::optional<std::string> judge(std::uint64_t client,
+                                   const algo::Joystick& stick,
+                                   const StickStamp& stamp);
+  void count_unreadable_stick();
+  void client_came(std::uint64_t client);
+  /// The link of a client is lost, and with it the controls.
+  void client_gone(std::uint64_t client);
+
   /// Why this robot's time cannot be paused, stepped or sped up (real hardware), as a sentence.
   std::optional<std::string> pace_refusal() const;
   void pause(bool paused);
@@ -162,6 +181,8 @@ class Session {
   std::optional<std::string> trouble_with_goal(const algo::SetGoal& goal) const;
   void watch_record();
   void watch_hardware();
+  void watch_lease();
+  void after(const std::function<bool()>& end);
   void note_arming(bool armed, const std::string& why);
   void count_watchers();
   void narrate(const algo::Telemetry& t);
@@ -175,6 +196,9 @@ class Session {
   Recorder* recorder_;
   std::function<void()> news_;
   OperatorWatch watch_{};  // outlives the runs
+  ControlLease lease_{};
+  bool told_silent_ = false;  // that others may take over
+  StickWatch sticks_{};
   SessionState state_{};
   FrameRef newest_{};
   std::chrono::steady_clock::time_point newest_came_{};

@@ -10,6 +10,7 @@
 #include "server/run/pose_json.hpp"
 #include "server/run/request_json.hpp"
 #include "server/run/scenario_json.hpp"
+#include "server/serve/driving.hpp"
 
 namespace server {
 
@@ -50,6 +51,7 @@ json state_json(const Session& session) {
       {"watched_by_script", s.watchers.scripts},
       {"viewers", s.viewers},
       {"by", by_json(session)},
+      {"driving", driving_json(session)},
       {"emulated", s.spec.hardware && s.spec.hardware->emulated},
   };
   if (s.asked.goal) out["goal"] = to_json(*s.asked.goal);

@@ -61,7 +61,7 @@ verb_fmt() {
 verb_sanitize() {
   local targets=() only=()
   case "${1:-}" in
-    asan) targets=(tests_algo tests_sim tests_drivers tests_db tests_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.') ;;
+    asan) targets=(tests_algo tests_sim tests_drivers tests_db tests_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Docs\.|^Bench\.') ;;
     tsan) targets=(test_server_{run,record,experiment,external,serve,emulate} tests_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac

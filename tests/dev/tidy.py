@@ -19,14 +19,13 @@ FOLDERS = ("algo/", "sim/", "drivers/", "db/", "server/")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 # What the checks themselves depend on.
 RULES = (".clang-tidy", "CMakeLists.txt", "tests/dev/tidy.py")
-# A group's file includes sources; the findings that count lie in them. A local name may shadow that of another
-# source only here, and an embedded document may be long.
+# The findings that count lie in our files. A local name may shadow that of another source only here, and an
+# embedded document may be long.
 OPTIONS = ("--quiet", "--header-filter=/(algo|sim|drivers|db|server)/.*[.][ch]pp$", "--extra-arg=-Wno-shadow",
            "--extra-arg=-Wno-overlength-strings")
-GROUP_CHECKS = "--checks=-bugprone-suspicious-include,-clang-analyzer-*"
-# The analyzer passes over included sources, so it reads each alone. It runs only for the mathematics and the
-# storage: for JSON and Beast it doubles the time and has found nothing.
-ANALYZER = "--checks=-*,clang-analyzer-*,-clang-analyzer-optin.*"
+# The analyzer runs only for the mathematics and the storage: for JSON and Beast it doubles the time and has
+# found nothing.
+WITHOUT_ANALYZER = "--checks=-clang-analyzer-*"
 
 
 def ours(group, root):
@@ -50,30 +49,40 @@ def key(group, files, rules):
     return digest.hexdigest()[:32]
 
 
-def tidy(*arguments):
-    """The words of clang-tidy; empty when it finds nothing."""
-    result = subprocess.run(["clang-tidy-16", *OPTIONS, *arguments], capture_output=True, text=True, check=False)
-    if result.returncode == 0:
-        return ""
-    return result.stdout + re.sub(r"(?m)^\d+ warnings?.* generated\.\n", "", result.stderr)
+def joined(group, files, root, folder):
+    """The sources of a group as one file, and for each of its lines the line it comes from. Included ones would
+    not do: the analyzer passes over all that is not in the main file."""
+    sources = [path for path in files if path.suffix == ".cpp"] if "/Unity/" in str(group) else [group]
+    lines, origins = [], []
+    for source in sources:
+        for number, line in enumerate(source.read_text(encoding="utf-8").split("\n"), 1):
+            lines.append(line)
+            origins.append(f"{source.relative_to(root)}:{number}")
+    path = folder / ("_".join(group.relative_to(root).with_suffix("").parts) + ".cpp")
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path, origins
 
 
-def check(build, entry, files, root):
-    """The words of clang-tidy on the group of `entry`, and of the analyzer on each of its sources."""
-    words = tidy("-p", str(build), GROUP_CHECKS, entry["file"])
-    sources = [path for path in [pathlib.Path(entry["file"]), *files] if path.suffix == ".cpp"]
+def check(entry, files, root, folder):
+    """The words of clang-tidy on a group; empty when it finds nothing."""
+    path, origins = joined(pathlib.Path(entry["file"]), files, root, folder)
+    checks = [WITHOUT_ANALYZER] if origins[0].startswith("server/") else []
     command = shlex.split(entry["command"])
     options = [word for word in command[:command.index("-o")] if not word.endswith(("ccache", "clang++-16"))]
-    for source in sources:
-        if not str(source.relative_to(root)).startswith("server/"):
-            words += tidy(ANALYZER, str(source), "--", *options)
-    return words
+    result = subprocess.run(["clang-tidy-16", *OPTIONS, *checks, str(path), "--", *options],
+                            capture_output=True, text=True, check=False)
+    if result.returncode == 0:
+        return ""
+    words = result.stdout + re.sub(r"(?m)^\d+ warnings?.* generated\.\n", "", result.stderr)
+    return re.sub(re.escape(str(path)) + r":(\d+)", lambda found: origins[int(found[1]) - 1], words)
 
 
 def main():
     build, cache, jobs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), int(sys.argv[3])
     root = pathlib.Path.cwd().resolve()
     cache.mkdir(parents=True, exist_ok=True)
+    folder = build / "joined"  # .clang-tidy is found from there
+    folder.mkdir(exist_ok=True)
     rules = b"".join((root / name).read_bytes() for name in RULES)
     rules += subprocess.run(["clang-tidy-16", "--version"], capture_output=True, check=True).stdout
     todo = []
@@ -91,7 +100,7 @@ def main():
     todo.sort(key=lambda item: -item[0])  # the longest first, so that the workers end together
     clean = True
     with concurrent.futures.ThreadPoolExecutor(jobs) as workers:
-        running = {workers.submit(check, build, entry, files, root): mark for _, entry, files, mark in todo}
+        running = {workers.submit(check, entry, files, root, folder): mark for _, entry, files, mark in todo}
         for done in concurrent.futures.as_completed(running):
             if done.result():
                 clean = False

@@ -133,7 +133,7 @@ export const remove = (id: number) => (b: flatbuffers.Builder): [wire.Request, n
   return [wire.Request.RemoveObstacle, wire.RemoveObstacle.endRemoveObstacle(b)];
 };
 
-/** mode: 0 guarded, 1 wall, 2 raw */
+/** mode: 0 guarded, 1 wall, 2 raw, 3 elastic */
 export const push_stick = (forward: number, turn: number, mode: number) =>
   (b: flatbuffers.Builder): [wire.Request, number] =>
     [wire.Request.Joystick, wire.Joystick.createJoystick(b, forward, turn, mode)];

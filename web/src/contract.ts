@@ -69,6 +69,16 @@ export interface By {
   arming: string | null;
 }
 
+/** Somebody with a WebSocket. */
+export interface Party { client: number; name: string }
+
+/** Who has the controls (`silent`: others may take over), who asks for them, and sticks that were not obeyed. */
+export interface Driving {
+  driver: (Party & { silent: boolean }) | null;
+  asking: Party[];
+  dropped: { late: number; out_of_order: number; barred: number; unreadable: number };
+}
+
 /** The /state document. */
 export interface SessionState {
   run: { id: number; status: string; outcome: string } | null;
@@ -96,6 +106,7 @@ export interface SessionState {
   watched_by_script: boolean;
   viewers: number;  // connected pages and other clients
   by: By;
+  driving: Driving;
   emulated: boolean; // the hardware's devices are emulated
   record: RecordInfo;
 }

@@ -88,6 +88,8 @@ const kLimits: Record<string, { what: string; why: string }> = {
   obstacle_ahead: { what: "Slower before an obstacle", why: "Something is near ahead." },
   wall: { what: "Following the wall", why: "The robot turns so that it keeps its distance to the wall beside it." },
   guard: { what: "The guard holds back", why: "The robot could not stop before what it sees." },
+  link: { what: "Slower over a slow link", why: "Your answer to what you see would come too late for more." },
+  elastic: { what: "The robot finds the way", why: "Your stick pulls its goal along; it goes round what is in between." },
 };
 /** Why the command is below the wanted one; null: nothing limits it. */
 export function limit_words(limit: string): { what: string; why: string } | null {

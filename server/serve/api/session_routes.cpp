@@ -13,12 +13,16 @@
 #include "server/run/scenario_json.hpp"
 #include "server/serve/api/api.hpp"
 #include "server/serve/api/reply.hpp"
+#include "server/serve/driving.hpp"
 #include "server/serve/session_json.hpp"
 
 namespace server {
 namespace {
 
 using nlohmann::json;
+/// The key of a lease, in each request of a script that drives.
+constexpr std::string_view kLeaseHeader = "X-Tautline-Lease";
+
 void busy(const net::Responder& respond) {
   net::Response response =
       net::problem(503, "Busy", "More is waiting to be done than this robot can take. Try again.");
@@ -37,17 +41,28 @@ SessionLoader::Done answer_when_loaded(OpenSession& open, const net::Responder& 
   };
 }
 
+Sender sender(const net::Request& from) {
+  return {{Party::kNoClient, from.visitor().label(), from.role},
+          std::string(from.header(kLeaseHeader))};
+}
+
+/// Throws the 409 that says who drives.
+void heed(const std::optional<std::string>& refusal) {
+  if (refusal) throw net::HttpError(409, *refusal);
+}
+
 /// Submits a request. Answers after the control thread has, or at once for a Stop: `status`, or 409
 /// with the reason.
 void submit_and_reply(Session& session,
-                      algo::Request request,
+                      StampedRequest request,
                       const net::Request& from,
                       const net::Responder& respond,
                       int status = 200) {
-  require(from, needed_for(request));
+  require(from, needed_for(request.request));
+  heed(admit(session, sender(from), request));
   const bool taken = submit(
       session,
-      std::move(request),
+      std::move(request.request),
       [respond, status](const json& body) { respond(json_response(status, body)); },
       [respond](const std::string& refusal) { respond(net::problem(409, "Refused", refusal)); },
       from.visitor().label());
@@ -90,7 +105,9 @@ std::vector<algo::SetParameter> in_safe_order(const json& body, algo::Parameters
 }
 
 /// All values are checked together before the first is submitted.
-void patch_parameters(Session& session, const json& body, const net::Responder& respond) {
+void patch_parameters(Session& session, const net::Request& from, const net::Responder& respond) {
+  heed(admit_deed(session, sender(from)));
+  const json body = body_json(from);
   const algo::Parameters& now = session.state().asked.parameters;
   parameters_from_json(body, "", now);
   const std::vector<algo::SetParameter> order = in_safe_order(body, now);
@@ -126,6 +143,7 @@ void control(ApiContext& context,
   const std::string who = from.visitor().label();
   require(from, action == "stop" ? net::Role::Viewer : net::Role::Operator);
   Session& session = open.session();
+  if (action != "stop") heed(admit_deed(session, sender(from)));
   if (action == "pause" || action == "step" || action == "speed") {
     if (const auto refusal = session.pace_refusal()) {
       respond(net::problem(409, "Refused", *refusal));
@@ -150,7 +168,7 @@ void control(ApiContext& context,
     session.set_speed(pace_from_json(body, "speed", 1));
   } else if (action == "stop" || action == "release") {
     in.only({"action"});
-    submit_and_reply(session, algo::Stop{action == "stop"}, from, respond);
+    submit_and_reply(session, {algo::Stop{action == "stop"}, {}}, from, respond);
     return;
   } else if (action == "arm" || action == "disarm") {
     in.only({"action"});
@@ -222,7 +240,7 @@ SessionHandler goal_route(const char* type) {
     json body = body_json(request);
     JsonReader(body, "").only({"x", "y", "heading"});
     body["type"] = type;
-    submit_and_reply(open.session(), request_from_json(body), request, respond);
+    submit_and_reply(open.session(), {request_from_json(body), {}}, request, respond);
   };
 }
 
@@ -306,6 +324,22 @@ void add_session_routes(net::Router& router, ApiContext& context) {
     respond(json_response(200, {{"ok", true}}));
   });
   routes.add(
+      "POST", "/lease", [](OpenSession& open, const Request& request, const Responder& respond) {
+        try {
+          respond(json_response(200,
+                                lease_action(open.session(), sender(request), body_json(request))));
+        } catch (const LeaseRefusal& refusal) {
+          throw net::HttpError(409, refusal.what());
+        }
+      });
+  routes.add(
+      "GET",
+      "/clock",
+      [](OpenSession&, const Request&, const Responder& respond) {
+        respond(json_response(200, {{"now", clock_seconds(StickWatch::Clock::now())}}));
+      },
+      Sign::None);
+  routes.add(
       "POST",
       "/goal/check",
       [](OpenSession& open, const Request& request, const Responder& respond) {
@@ -318,19 +352,22 @@ void add_session_routes(net::Router& router, ApiContext& context) {
       Sign::None);
   routes.add(
       "POST", "/requests", [](OpenSession& open, const Request& request, const Responder& respond) {
-        submit_and_reply(open.session(), request_from_json(body_json(request)), request, respond);
+        submit_and_reply(open.session(),
+                         stamped_request_from_json(open.session(), body_json(request)),
+                         request,
+                         respond);
       });
   routes.add("PUT", "/goal", goal_route("set_goal"));
   routes.add("POST", "/goal", goal_route("add_goal"));
   routes.add(
       "DELETE", "/goal", [](OpenSession& open, const Request& request, const Responder& respond) {
-        submit_and_reply(open.session(), algo::ClearGoal{}, request, respond);
+        submit_and_reply(open.session(), {algo::ClearGoal{}, {}}, request, respond);
       });
   routes.add("POST",
              "/obstacles",
              [](OpenSession& open, const Request& request, const Responder& respond) {
                algo::AddObstacle add{obstacle_from_json(body_json(request), "")};
-               submit_and_reply(open.session(), std::move(add), request, respond, 201);
+               submit_and_reply(open.session(), {std::move(add), {}}, request, respond, 201);
              });
   routes.add(
       "PUT",
@@ -338,17 +375,18 @@ void add_session_routes(net::Router& router, ApiContext& context) {
       [](OpenSession& open, const Request& request, const Responder& respond) {
         json body = body_json(request);
         submit_and_reply(
-            open.session(), edit_of(std::move(body), obstacle_id(request)), request, respond);
+            open.session(), {edit_of(std::move(body), obstacle_id(request)), {}}, request, respond);
       });
   routes.add(
       "PUT", "/goals", [](OpenSession& open, const Request& request, const Responder& respond) {
         json body = body_json(request);
         JsonReader(body, "").only({"goals", "next", "loop"});
         body["type"] = "set_goals";
-        submit_and_reply(open.session(), request_from_json(body), request, respond);
+        submit_and_reply(open.session(), {request_from_json(body), {}}, request, respond);
       });
   routes.add(
       "PUT", "/start", [](OpenSession& open, const Request& request, const Responder& respond) {
+        heed(admit_deed(open.session(), sender(request)));
         if (const auto refusal = set_start(open.session(), body_json(request))) {
           respond(net::problem(409, "Refused", *refusal));
         } else {
@@ -359,12 +397,12 @@ void add_session_routes(net::Router& router, ApiContext& context) {
              "/obstacles/{id}",
              [](OpenSession& open, const Request& request, const Responder& respond) {
                const algo::RemoveObstacle remove{obstacle_id(request)};
-               submit_and_reply(open.session(), remove, request, respond);
+               submit_and_reply(open.session(), {remove, {}}, request, respond);
              });
   routes.add("PATCH",
              "/parameters",
              [](OpenSession& open, const Request& request, const Responder& respond) {
-               patch_parameters(open.session(), body_json(request), respond);
+               patch_parameters(open.session(), request, respond);
              });
   routes.add("POST",
              "/control",

@@ -33,7 +33,9 @@ class ParameterSource {
   /// All parameters with the values that clients should see, including those just set.
   virtual std::vector<Parameter> list() const = 0;
   /// Sets a parameter. @return the refusal as a sentence; empty if it is accepted
-  virtual std::string set(const std::string& name, const nlohmann::json& value) = 0;
+  virtual std::string set(ClientId client,
+                          const std::string& name,
+                          const nlohmann::json& value) = 0;
 };
 
 /// Answers one service call, at once or later, on the io thread only. The first answer counts; a
@@ -102,6 +104,9 @@ class Hub {
   /// Called when a client stops publishing on `topic`, or has gone.
   void on_publisher_gone(std::function<void(ClientId, const std::string& topic)> callback);
   void on_client_gone(std::function<void(ClientId)> callback);
+  void on_client_came(std::function<void(ClientId)> callback) {
+    client_came_ = std::move(callback);
+  }
   /// Called when a client has come or gone.
   void on_clients(std::function<void()> callback) { clients_changed_ = std::move(callback); }
 
@@ -187,6 +192,7 @@ class Hub {
   ParameterSource* parameters_ = nullptr;
   std::function<void(ClientId, const std::string&)> publisher_gone_{};
   std::function<void(ClientId)> client_gone_{};
+  std::function<void(ClientId)> client_came_{};
   std::function<void()> clients_changed_{};
   std::map<ClientId, Client> clients_{};
   std::optional<std::chrono::steady_clock::time_point> time_sent_{};

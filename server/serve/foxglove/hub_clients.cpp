@@ -70,6 +70,7 @@ void Hub::opened(const std::shared_ptr<net::WsClient>& socket) {
   send(client, advertise(channels_));
   if (!services_.empty()) send(client, advertise_services(services_));
   if (time_ns_) socket->send_latest(kTimeKey, time_message(*time_ns_), nullptr);
+  if (client_came_) client_came_(socket->id());
   if (clients_changed_) clients_changed_();
 }
 
@@ -247,7 +248,7 @@ void Hub::handle(Client& client, const SetParameters& op) {
       } else if (parameters_ != nullptr && parameter.value.is_null()) {
         refusal = "a parameter cannot be unset";
       } else if (parameters_ != nullptr) {
-        refusal = parameters_->set(parameter.name, parameter.value);
+        refusal = parameters_->set(client.socket->id(), parameter.name, parameter.value);
       }
     } catch (const std::exception& error) {
       refusal = error.what();

@@ -166,8 +166,98 @@ TEST(StickModes, FullStickAsksForNoMoreThanTheParameter) {
   EXPECT_EQ(robot.t.command.base.v, 0.2);
 }
 
+/// A link with this round trip [s].
+Joystick over_link(double round_trip, StickMode mode = StickMode::Guarded) {
+  return {1, 0, mode, round_trip};
+}
+
+/// [m/s] at this distance [m] ahead of a wall, with the stick fully ahead.
+double speed_before_wall(double distance, const Joystick& stick) {
+  ByHand robot;
+  robot.world.polygons.push_back(box({distance, -3}, {distance + 0.2, 3}));
+  robot.start();
+  robot.hold(stick, 1);
+  return robot.t.command.base.v;
+}
+
+TEST(StickModes, ASlowLinkKeepsMoreRoom) {
+  // 0.5 m/s covers in a round trip of 0.45 s and a reaction 0.28 m, and brakes in 0.25 m more.
+  EXPECT_EQ(speed_before_wall(1.6, over_link(0)), 0.5);
+  EXPECT_EQ(speed_before_wall(1.6, over_link(0.45)), 0.5);
+  EXPECT_EQ(speed_before_wall(1.2, over_link(0)), 0.5);
+  const double far = speed_before_wall(1.2, over_link(0.45));
+  const double farther = speed_before_wall(1.2, over_link(0.3));
+  EXPECT_LT(far, farther);
+  EXPECT_LT(far, 0.5);
+  EXPECT_GT(far, 0);
+}
+
+TEST(StickModes, TheLinkIsNamedWhereItLimits) {
+  ByHand robot;
+  robot.world.polygons.push_back(box({1.2, -3}, {1.4, 3}));
+  robot.start();
+  robot.hold(over_link(0.45), 1);
+  EXPECT_EQ(robot.t.limit, algo::limits::kLink);
+  robot.hold(over_link(0.45), 6);
+  EXPECT_GT(robot.least, 0);
+}
+
+TEST(StickModes, OverATooSlowLinkOnlyTheMiddleCounts) {
+  ByHand robot;
+  robot.start();
+  EXPECT_FALSE(robot.pipeline->refusal(over_link(0.5)));
+  EXPECT_THAT(robot.pipeline->refusal(over_link(0.51)).value_or(""), testing::HasSubstr("Stop"));
+  EXPECT_FALSE(robot.pipeline->refusal(Joystick{0, 0, StickMode::Guarded, 3}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(robot.pipeline->refusal(over_link(nan)));
+  EXPECT_TRUE(robot.pipeline->refusal(over_link(-1)));
+}
+
+TEST(StickModes, RawIsSlowedByTheRoundTripAlone) {
+  ByHand robot;
+  robot.spec.raw_stick = true;
+  robot.spec.max_v = 2;
+  robot.start();
+  robot.hold(over_link(0, StickMode::Raw), 0.1);
+  EXPECT_EQ(robot.t.command.base.v, 2);
+  robot.hold(over_link(0.4, StickMode::Raw), 0.1);
+  EXPECT_NEAR(robot.t.command.base.v, 0.3 / 0.5, 1e-12);
+  EXPECT_EQ(robot.t.limit, algo::limits::kLink);
+}
+
+TEST(StickModes, ElasticFindsItsWayRoundAnObstacle) {
+  // GIVEN a pillar on the line WHEN the stick is pushed straight ahead THEN guarded stops before
+  // it, and elastic passes.
+  for (const StickMode mode : {StickMode::Guarded, StickMode::Elastic}) {
+    ByHand robot;
+    robot.world.circles.push_back({{2, 0.1}, 0.3});
+    robot.start();
+    robot.hold({1, 0, mode}, 16);
+    EXPECT_GT(robot.least, 0) << name(mode);
+    if (mode == StickMode::Guarded) {
+      EXPECT_LT(robot.pose.x, 1.5);
+    } else {
+      EXPECT_GT(robot.pose.x, 2.7);
+      EXPECT_EQ(robot.t.behaviour, algo::behaviours::kManual);
+    }
+  }
+}
+
+TEST(StickModes, ElasticIsNoFasterThanTheStickAsks) {
+  ByHand robot;
+  robot.start();
+  robot.hold({0.4, 0, StickMode::Elastic}, 3);
+  EXPECT_NEAR(robot.t.command.base.v, 0.2, 0.02);
+  EXPECT_EQ(robot.t.limit, algo::limits::kPulled);
+  // Back and aside, no goal is pulled along: it is guarded.
+  robot.hold({0, 0.5, StickMode::Elastic}, 1);
+  EXPECT_EQ(robot.t.command.base.v, 0);
+  EXPECT_EQ(robot.t.command.base.omega, 0.5);
+}
+
 TEST(StickModes, ASteadyTickAllocatesNothingInAnyMode) {
-  for (const StickMode mode : {StickMode::Guarded, StickMode::Wall, StickMode::Raw}) {
+  for (const StickMode mode :
+       {StickMode::Guarded, StickMode::Wall, StickMode::Raw, StickMode::Elastic}) {
     ByHand robot = beside_wall(-1.0);
     robot.hold({1, 0.1, mode}, 3);
     robot.sense();

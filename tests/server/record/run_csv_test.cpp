@@ -159,6 +159,7 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
   t.requests.push_back(algo::Stop{false});
   t.requests.push_back(algo::SetGoals{});
   t.requests.push_back(algo::ChangeObstacle{});
+  t.requests.push_back(algo::Joystick{0.5, -0.25, algo::StickMode::Elastic, 0.125, "Ann"});
   t.command.joints = 2;
   t.command.joint_rates = {0.5, -0.5};
   auto cells = table(whole(stored(paper_robot(), ticks), 100));
@@ -189,7 +190,12 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
       {"encoders.stamp", {"", "0.03"}},
       {"encoders.left", {"", "7"}},
       {"encoders.right", {"", "4294967295"}},
-      {"requests", {"", "clear_goal stop set_goals change_obstacle"}},
+      {"requests", {"", "clear_goal stop set_goals change_obstacle joystick"}},
+      {"stick.forward", {"", "0.5"}},
+      {"stick.turn", {"", "-0.25"}},
+      {"stick.mode", {"", "elastic"}},
+      {"stick.round_trip", {"", "0.125"}},
+      {"stick.driver", {"", "Ann"}},
       {"joint_rate[0]", {"", "0.5"}},
       {"joint_rate[1]", {"", "-0.5"}},
   };

@@ -71,7 +71,7 @@ class Gains final : public ParameterSource {
   std::vector<Parameter> list() const override {
     return {{"k_r", k_r, "float64"}, {"controller", "modified", ""}};
   }
-  std::string set(const std::string& name, const json& value) override {
+  std::string set(ClientId /*client*/, const std::string& name, const json& value) override {
     if (name == "controller") return "is read only";
     if (name != "k_r") return "is not a parameter";
     if (!value.is_number() || value < 0 || value > 1) return "must be from 0 to 1";

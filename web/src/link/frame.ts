@@ -217,7 +217,7 @@ function wanted(g: wire.SetGoal): Goal {
   return { ...point(g.position()), heading: g.hasHeading() ? g.heading() : null };
 }
 
-const kStickModes = ["guarded", "wall", "raw"];
+const kStickModes = ["guarded", "wall", "raw", "elastic"];
 
 /** The last joystick request of the tick. */
 function stick_of(f: wire.Frame): DrivenStick | null {

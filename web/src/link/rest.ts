@@ -1,4 +1,5 @@
 // web/src/link/rest.ts: GET, POST, PUT, PATCH, DELETE on /api/v1, with the server's own sentence on failure.
+import { lease_key } from "./lease_key";
 import { own_name } from "./name";
 
 /** A failed request. The message is a sentence for people; the status is 0 without an answer. */
@@ -8,10 +9,13 @@ export class RestError extends Error {
   }
 }
 
-/** A header holds no letters beyond ASCII as they are. */
+/** Who sends. A header holds no letters beyond ASCII as they are. */
 function named(): Record<string, string> {
-  const name = own_name();
-  return name === "" ? {} : { "X-Tautline-Name": encodeURIComponent(name) };
+  const name = own_name(), key = lease_key();
+  return {
+    ...(name === "" ? {} : { "X-Tautline-Name": encodeURIComponent(name) }),
+    ...(key === "" ? {} : { "X-Tautline-Lease": key }),
+  };
 }
 
 async function ask(method: string, path: string, body?: unknown, signal?: AbortSignal):

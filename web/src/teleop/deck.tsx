@@ -38,7 +38,7 @@ export function Deck(props: {
   );
 }
 
-const kModes: Record<string, string> = { guarded: "Guarded", wall: "Wall", raw: "Raw" };
+const kModes: Record<string, string> = { guarded: "Guarded", wall: "Wall", elastic: "Elastic", raw: "Raw" };
 
 /** The deck of a stored run at the shown instant. */
 export function ReplayDeck(props: { scene: SceneState }): JSX.Element {

@@ -5,7 +5,7 @@ import { use_app } from "../app";
 import { Insets, View } from "../draw/view";
 import { Bounds } from "../geometry";
 import { SceneState } from "../state/scene";
-import { keep, kept } from "../state/store";
+import { keep, kept, use_latest } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { Segments } from "../ui/controls";
 import { lazy } from "../ui/lazy";
@@ -26,7 +26,8 @@ type Eye = "follow" | "above" | "free";
 const kEye = "tautline.teleop.eye";
 const is_eye = (text: string): text is Eye => kEyes.some((e) => e.name === text);
 
-export function DriverView(): JSX.Element {
+/** `sets_goal`: a press sets a goal, from above, where the place is plain. */
+export function DriverView(props: { sets_goal: boolean }): JSX.Element {
   const [eye, set_eye] = useState<Eye>(() => kept<Eye>(kEye, "above", (text) => (is_eye(text) ? text : "above")));
   const look = (name: string) => {
     keep(kEye, name);
@@ -34,17 +35,19 @@ export function DriverView(): JSX.Element {
   };
   return (
     <>
-      {eye === "above" ? <FromAbove /> : <SceneThree insets={() => kInsets} chase={eye === "follow"} on_above={() => look("above")} />}
+      {eye === "above" || props.sets_goal ? <FromAbove sets_goal={props.sets_goal} /> : <SceneThree insets={() => kInsets} chase={eye === "follow"} on_above={() => look("above")} />}
       <div class="eye"><Segments label="View" name="eye" choices={kEyes} value={eye} on_pick={look} /></div>
     </>
   );
 }
 
-function FromAbove(): JSX.Element {
+function FromAbove(props: { sets_goal: boolean }): JSX.Element {
   const app = use_app();
   const view = useMemo(() => new View(), []);
   const box = useRef<HTMLDivElement>(null);
-  const hand = useMemo(() => make_hand(app, { tool: () => "pan", edits: false, view }), [app]);
+  const latest = use_latest(props);
+  const hand = useMemo(
+    () => make_hand(app, { tool: () => (latest.current.sets_goal ? "goal" : "pan"), edits: false, view }), [app]);
   return (
     <div ref={box}><SceneCanvas scene={() => app.shown} view={view} gestures={hand.gestures}
       label="The robot and its surroundings from above" bounds={() => about(app.shown)}

@@ -8,10 +8,11 @@ import { typing } from "../views/keys";
 import { sentence_of } from "../words";
 import { ForceDevice, Rumble } from "./force";
 import { PidStick, choose_device, hid_of } from "./hid_pid";
+import { OperatorLink } from "./operator_link";
 import { find_pad, map_of, read_pad } from "./pads";
 import { Seat, kSendEvery } from "./seat";
 
-export type Mode = "guarded" | "wall" | "raw";
+export type Mode = "guarded" | "wall" | "elastic" | "goal" | "raw";
 
 const kToldAgain = 3000; // [ms] between two refusals that are told
 const kOldForce = 500;   // [ms] of silence of the server, after which its force is none
@@ -20,6 +21,7 @@ export const gamepad = (): Gamepad | null => find_pad(() => navigator.getGamepad
 
 export interface Hand {
   seat: Seat;
+  link: OperatorLink;
   strange: boolean;           // the gamepad has no order that is known
   pad: string | null;         // its id
   rumbles: boolean;
@@ -36,6 +38,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
   const app = use_app();
   const { session, stop } = use_ui("session", "stop");
   const seat = useMemo(() => new Seat(), []);
+  const link = useMemo(() => new OperatorLink(app.link), [app]);
   const rumble = useMemo(() => new Rumble(gamepad), []);
   const force = use_force_stick(app);
   const [heard, set_heard] = useState({ strange: false, pad: null as string | null, rumbles: false });
@@ -69,13 +72,13 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
     if (!drives) return;
     const beat = setInterval(() => {
       hear();
-      if (!app.link.is_open) let_go();
+      if (!link.beat()) let_go();
       const next = seat.next();
       const { forward, left } = felt(app, seat);
       for (const device of [rumble, force.held.current]) device?.set_force(forward, left);
       // Old commands that wait in the socket would reach the robot late: none is added to them.
-      if (!next || !app.link.is_clear) return;
-      app.link.call("/request", { type: "joystick", ...next, mode: latest.current.mode }).catch(refused);
+      if (!next || !app.link.is_clear || latest.current.mode === "goal") return;
+      app.link.call("/request", { type: "joystick", ...link.stamped(next), mode: latest.current.mode }).catch(refused);
     }, kSendEvery);
     return () => {
       clearInterval(beat);
@@ -86,7 +89,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
   use_seat_keys(seat);
   use_losses(let_go);
   return {
-    seat, ...heard, stick: force.stick, connect: force.connect, disconnect: force.disconnect, setting_up,
+    seat, link, ...heard, stick: force.stick, connect: force.connect, disconnect: force.disconnect, setting_up,
     set_up: (open) => {
       let_go();
       set_up(open);

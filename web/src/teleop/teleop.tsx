@@ -14,12 +14,15 @@ import { DriverView } from "./eye";
 import { Hand, Mode, use_hand } from "./hand";
 import { driven_words } from "./reasons";
 import { use_second_thumb } from "./second_thumb";
+import { WhoDrives } from "./who_drives";
 
 export { ReplayDeck } from "./deck"; // of one part of the page: more parts would cost the first load more
 
 const kModes = [
   { name: "guarded", label: "Guarded", help: "As far as the robot can still stop before all that it sees" },
   { name: "wall", label: "Wall", help: "Slower where it is crowded; at full stick it follows a wall" },
+  { name: "elastic", label: "Elastic", help: "The stick steers a course; the robot finds the way along it" },
+  { name: "goal", label: "Goal", help: "The stick rests: press on the place to which the robot shall go" },
   { name: "raw", label: "Raw", help: "No guard: only Stop, the bumpers and the watchdog hold" },
 ];
 
@@ -37,7 +40,7 @@ export function Teleop(): JSX.Element {
   return (
     <>
       <main class="scene" aria-label="The world about the robot">
-        <DriverView />
+        <DriverView sets_goal={mode === "goal" && drives} />
         <Reason scene={app.scene} hand={hand} drives={drives} stopped={session?.stop ?? false} />
       </main>
       <Deck scene={app.scene} wish={seat.idle ? null : seat.wish} barred={seat.barred}
@@ -48,6 +51,7 @@ export function Teleop(): JSX.Element {
           <p class="quiet">{kModes.find((m) => m.name === mode)!.help}.</p>
         </div>
         <div class="deck-more">
+          <WhoDrives link={hand.link} on_loss={() => seat.drop()} />
           <SpeedCap disabled={!drives} />
           <Devices hand={hand} disabled={!drives} />
           {!awake && <p class="quiet">This browser may let the screen go dark: it keeps it awake only over https.</p>}
