@@ -82,10 +82,12 @@ json lease_action(Session& session, const Sender& sender, const json& body) {
   ControlLease& lease = session.lease();
   const auto now = ControlLease::Clock::now();
   const std::string& who = sender.who.label;
+  bool took = false;  // a script shows no key yet
   if (action == "take") {
     const bool force = in.flag_or("force", false);
     if (!lease.holds(sender.who, sender.key)) {
       heed(lease.take(sender.who, force, now));
+      took = true;
       session.pass_controls();
       tell_deed(session, who, force ? "takes the controls by force" : "takes the controls");
     }
@@ -108,7 +110,7 @@ json lease_action(Session& session, const Sender& sender, const json& body) {
     in.fail("action", fmt::format("'{}' is unknown; known are take, ask, give, release", action));
   }
   json out = {{"ok", true}, {"you", sender.who.client}, {"driving", driving_json(session)}};
-  if (lease.holds(sender.who, sender.key)) out["key"] = lease.holder()->key;
+  if (took || lease.holds(sender.who, sender.key)) out["key"] = lease.holder()->key;
   return out;
 }
 

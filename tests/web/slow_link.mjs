@@ -5,14 +5,15 @@ import { connect, createServer } from "node:net";
 export async function slow_link(port, { delay = 0, jitter = 0 } = {}) {
   const link = { delay, jitter, held: null, sockets: new Set() };
   const pipe = (from, to) => {
-    let last = 0; // due time of the newest chunk: none overtakes it
+    let last = Promise.resolve(); // none overtakes the one before
     const pass = (act) => {
-      const due = Math.max(last, performance.now() + link.delay + Math.random() * link.jitter);
-      last = due;
-      setTimeout(async () => {
+      const due = performance.now() + link.delay + Math.random() * link.jitter;
+      last = last.then(async () => {
+        const rest = due - performance.now();
+        if (rest > 0) await new Promise((resolve) => setTimeout(resolve, rest));
         await link.held?.promise;
         act();
-      }, due - performance.now());
+      });
     };
     from.on("data", (bytes) => pass(() => !to.destroyed && to.write(bytes)));
     from.on("end", () => pass(() => to.end()));

@@ -99,7 +99,7 @@ class Driver : public Viewer {
 TEST_F(DrivingTest, WithoutAHolderScriptsWorkAsBefore) {
   EXPECT_EQ(driving().at("driver"), nullptr);
   EXPECT_EQ(goal().status, 200);
-  EXPECT_EQ(stick({}).status, 200);
+  EXPECT_EQ(stick(json::object()).status, 200);
 }
 
 TEST_F(DrivingTest, OnlyTheKeyOfTheLeaseControls) {
@@ -107,12 +107,12 @@ TEST_F(DrivingTest, OnlyTheKeyOfTheLeaseControls) {
   ASSERT_EQ(taken.status, 200) << taken.body;
   const std::string key = json::parse(taken.body).at("key");
   expect_problem(goal(), 409, "has the controls");
-  expect_problem(stick({}), 409, "has the controls");
+  expect_problem(stick(json::object()), 409, "has the controls");
   expect_problem(ask("PATCH", "/session/parameters", R"({"k_r":0.5})"), 409, "has the controls");
   expect_problem(ask("POST", "/session/control", R"({"action":"reset"})"), 409, "controls");
   expect_problem(ask("PUT", "/session/start", R"({"x":0,"y":0})"), 409, "controls");
   EXPECT_EQ(goal(key).status, 200);
-  EXPECT_EQ(stick({}, key).status, 200);
+  EXPECT_EQ(stick(json::object(), key).status, 200);
   // WHEN anybody presses Stop THEN it holds.
   EXPECT_EQ(post("/session/control", {{"action", "stop"}}), 200);
   EXPECT_EQ(get("/session").at("stop"), true);
@@ -185,7 +185,7 @@ TEST_F(DrivingTest, ATwistOfAnotherIsIgnoredWithAReasonAndStopsNobody) {
   foxglove.advertise_twist();
   foxglove.publish(0);
   EXPECT_THAT(foxglove.complaint(), HasSubstr("has the controls"));
-  EXPECT_EQ(stick({}, key).status, 200);
+  EXPECT_EQ(stick(json::object(), key).status, 200);
 }
 
 TEST_F(DrivingTest, TheRecordSaysWhoGaveTheStick) {

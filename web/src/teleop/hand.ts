@@ -76,8 +76,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
       const next = seat.next();
       const { forward, left } = felt(app, seat);
       for (const device of [rumble, force.held.current]) device?.set_force(forward, left);
-      // Old commands that wait in the socket would reach the robot late: none is added to them.
-      if (!next || !app.link.is_clear || latest.current.mode === "goal") return;
+      if (!next || !link.takes_sticks || latest.current.mode === "goal") return;
       app.link.call("/request", { type: "joystick", ...link.stamped(next), mode: latest.current.mode }).catch(refused);
     }, kSendEvery);
     return () => {

@@ -7,6 +7,7 @@ const kAskEvery = 500;   // [ms]
 const kStuck = 500;      // [ms] a stick older than this is not obeyed
 export const kGood = 0.1;       // [s] of round trip
 export const kTooSlow = 0.5;    // [s] beyond it the server accepts only Stop
+const kSettles = 1100;          // [ms] after a connection: the server takes a stick that comes at once for one that is stuck
 const kUnanswered = 2000;       // [ms] a question that is still open counts as that slow
 
 /** What goes with a stick: its number, the server's time at which it was sent, and the round trip. */
@@ -18,6 +19,7 @@ export class OperatorLink {
   private asked_ = -Infinity;
   private answered_ = true;
   private clear_at_ = performance.now();
+  private opened_: number | null = null;
 
   constructor(private readonly link_: LiveLink) {}
 
@@ -28,11 +30,18 @@ export class OperatorLink {
       this.clock_.clear();
       this.answered_ = true;
       this.clear_at_ = now;
+      this.opened_ = null;
       return false;
     }
+    this.opened_ ??= now;
     if (this.link_.is_clear) this.clear_at_ = now;
     if (now - this.asked_ >= kAskEvery && (this.answered_ || now - this.asked_ > kUnanswered)) this.ask(now);
     return now - this.clear_at_ < kStuck;
+  }
+
+  /** Whether a stick may be sent now: none waits in the socket, where it would grow old. */
+  get takes_sticks(): boolean {
+    return this.link_.is_clear && this.opened_ !== null && performance.now() - this.opened_ > kSettles;
   }
 
   private ask(sent: number): void {

@@ -48,20 +48,20 @@ export function WhoDrives(props: { link: OperatorLink; on_loss: () => void }): J
         {asks && <span> You have asked for them.</span>}
       </p>
       <div class="who-acts">
-        {driver === null && <button onClick={() => ask({ action: "take" })}>Take the controls</button>}
+        {driver === null && <button class="ghost" onClick={() => ask({ action: "take" })}>Take the controls</button>}
         {mine && driving.asking.map((a) => (
-          <button key={a.client} onClick={() => ask({ action: "give", to: a.client })}>Hand over to {a.name}</button>
+          <button class="ghost" key={a.client} onClick={() => ask({ action: "give", to: a.client })}>Hand over to {a.name}</button>
         ))}
-        {mine && <button onClick={() => ask({ action: "release" })}>Give them back</button>}
-        {driver !== null && !mine && !asks && <button onClick={() => ask({ action: "ask" })}>Ask for them</button>}
+        {mine && <button class="ghost" onClick={() => ask({ action: "release" })}>Give them back</button>}
+        {driver !== null && !mine && !asks && <button class="ghost" onClick={() => ask({ action: "ask" })}>Ask for them</button>}
         {driver !== null && !mine && driver.silent && (
-          <button onClick={() => ask({ action: "take" })}>Take over</button>
+          <button class="ghost" onClick={() => ask({ action: "take" })}>Take over</button>
         )}
         {driver !== null && !mine && !driver.silent && may(me, "admin") && (
-          <button class="danger" onClick={() => ask({ action: "take", force: true })}>Take by force</button>
+          <button class="ghost danger" onClick={() => ask({ action: "take", force: true })}>Take by force</button>
         )}
       </div>
-      <p class={`quiet link-quality ${quality.tone}`} data-testid="link-quality">
+      <p class={`link-quality ${quality.tone === "ok" ? "quiet" : quality.tone}`} data-testid="link-quality">
         Link: {quality.word}{dropped > 0 && `. ${dropped} of its sticks came too late`}.
       </p>
     </div>
