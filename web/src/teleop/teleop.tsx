@@ -12,6 +12,7 @@ import { Deck } from "./deck";
 import { Devices } from "./devices";
 import { DriverView } from "./eye";
 import { Hand, Mode, use_hand } from "./hand";
+import { kTooSlow } from "./operator_link";
 import { driven_words } from "./reasons";
 import { use_second_thumb } from "./second_thumb";
 import { WhoDrives } from "./who_drives";
@@ -67,6 +68,7 @@ function Reason(props: { scene: SceneState; hand: Hand; drives: boolean; stopped
   const { what, why } = !props.drives
     ? { what: "You only watch", why: "This robot takes no stick, or your role may not drive." }
     : props.stopped ? { what: "Stopped", why: "Release lets the robot drive again, once the stick has been in the middle." }
+    : (props.hand.link.round_trip ?? 0) > kTooSlow ? { what: "The link is too slow to drive", why: "Your answer to what you see would come too late; Stop works." }
     : props.hand.seat.barred ? { what: "Let go of the stick", why: "The robot goes on only after the stick has been in the middle." }
     : frame?.behaviour === "manual" ? driven_words(props.scene)
     : props.hand.strange ? { what: "This gamepad moves nothing", why: "Its buttons have no standard order, so none is known to be Stop. Set it up below." }
