@@ -299,7 +299,7 @@ void Tracker::begin(const Cluster& c, double stamp) {
   f.hits = 1;
   f.body = c.body;
   filters_.push_back(f);
-  if (f.body) just_found_.push_back({f.position_W, f.velocity_W, f.radius, 0, 0});
+  if (f.body) just_found_.push_back({f.position_W, f.velocity_W, f.radius, 0, 0, false});
 }
 
 void Tracker::memorise(const LaserScan& scan, const Pose2& sensor_W, double stamp) {
@@ -375,7 +375,7 @@ void Tracker::judge(Filter& f, const Cluster& c, const std::vector<Vec2>& points
              (f.position_W - f.born_at_W).norm() > kGone && c.last - c.first >= kSolid &&
              f.radius > kStout && changed(f, c, points_W);
   if (f.moving) {
-    just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0});
+    just_found_.push_back({f.position_W, f.velocity_W, f.radius, stamp - f.born, 0, true});
   }
 }
 
@@ -426,7 +426,7 @@ void Tracker::publish(double stamp) {
   for (const Filter& f : filters_) {
     if (f.of_map()) continue;
     const Vec2 at_W = f.position_W + f.velocity_W * (stamp - now_);
-    moving_.push_back({at_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen});
+    moving_.push_back({at_W, f.velocity_W, f.radius, stamp - f.born, stamp - f.seen, f.moving});
   }
 }
 

@@ -12,13 +12,14 @@
 
 namespace algo {
 
-/// An obstacle that was seen moving.
+/// An obstacle that moves, or may move.
 struct Track {
   Vec2 position_W{0, 0};
   Vec2 velocity_W{0, 0};  // [m/s]
   double radius = 0;      // [m]
   double age = 0;         // [s] since it was first seen
   double unseen = 0;      // [s] since it was last seen
+  bool moves = false;     // it was seen moving
 };
 
 /// A round body at least as thick as a person counts as possibly moving from its first scan on,

@@ -3,10 +3,10 @@
 #include "algo/pipeline/stick_guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "algo/perceive.hpp"
+#include "algo/pipeline/nearest_twist.hpp"
 #include "algo/pipeline/reactive.hpp"
 
 namespace algo {
@@ -19,48 +19,44 @@ constexpr double kIdleBesideEvery = 0.25;
 constexpr double kStep = 0.02;  // [s] largest step of a roll-out
 constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
 constexpr double kRounding = 1e-9;   // [m]
-constexpr double kBack = 0.5;        // of the stick's travel: this far back, the driver insists,
-constexpr double kStraight = 0.2;    // and at most this far aside
 constexpr double kNoMotion = 0.015;  // [m/s] so slow that it could back into the unseen unnoticed
+constexpr double kSwerve = 1.0;      // [m/s2] by which what moves may depart from its course
+constexpr double kBlur = 0.05;       // [m] error of the outline of what moves
+constexpr double kTowards = 0.02;    // [m/s] below it the robot does not approach what moves
 constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
 constexpr std::size_t kMostBeside = 1024;
+constexpr std::size_t kMostMovers = 64;
 
 bool finite(const Observation& seen) {
   return std::isfinite(seen.stamp) && finite(seen.odometry.pose) && finite(seen.odometry.twist);
 }
 
-/// Shares of the stick's two components, in the order in which a driver would miss them least:
-/// slower in the wanted direction, then slower in both, then turning alone.
-struct Shares {
-  double v = 1, omega = 1;
-};
-constexpr std::array<Shares, 20> kShares{
-    {{1, 1},    {0.8, 1},     {0.6, 1},   {0.45, 1},    {0.3, 1},   {0.2, 1}, {0.1, 1},
-     {0.05, 1}, {0.75, 0.75}, {0.5, 0.5}, {0.25, 0.25}, {0.1, 0.1}, {0, 1},   {0.5, 0},
-     {0.25, 0}, {0.1, 0},     {0.05, 0},  {0, 0.5},     {0, 0.2},   {0, 0.05}}};
-
 }  // namespace
 
 StickGuard::StickGuard() {
   beside_W_.reserve(kMostBeside);
+  movers_.reserve(kMostMovers);
   map_.remember_for(kMemory);
 }
 
 void StickGuard::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
+  ahead_.reset();
+  beside_.reset();
   points_.reset();
   rear_.reset();
   placed_ = false;
   next_look_ = 0;
   next_look_beside_ = 0;
   mapped_.reset();
-  straight_back_since_.reset();
 }
 
-void StickGuard::look(const Resource& in, const LaserScan& scan) {
+/// `movers` follows what moves in this scanner's scans; null: nobody does.
+void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* movers) {
   // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
   const Pose2 sensor_W = points_.map(scan);
+  if (movers != nullptr) movers->take(scan, sensor_W, points_.points_W(), map_);
   map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
   // No obstacle can be inside the hull.
   const Pose2& here = in.observation->odometry.pose;
@@ -72,11 +68,16 @@ void StickGuard::look(const Resource& in, const LaserScan& scan) {
 void StickGuard::sense(const Resource& in) {
   const Observation& seen = *in.observation;
   if (!finite(seen)) return;
-  const Pose2& here = seen.odometry.pose;
   if (!hull_.is_of(*in.spec)) hull_ = HullCheck(*in.spec);
   rear_.take(seen);
-  points_.follow(here, seen.stamp);
-  watch_insistence(in);
+  points_.follow(seen.odometry.pose, seen.stamp);
+  look_around(in);
+  if (in.manual) prepare(in);
+}
+
+void StickGuard::look_around(const Resource& in) {
+  const Observation& seen = *in.observation;
+  const Pose2& here = seen.odometry.pose;
   const LaserScan* ahead = front_scan(seen);
   const LaserScan& newest = in.scene->scan;  // of the scanner ahead, filtered
   const bool others = seen.scans.size() > (ahead != nullptr ? 1U : 0U);
@@ -89,25 +90,39 @@ void StickGuard::sense(const Resource& in) {
   placed_ = true;
   hull_.stand_on(map_.seen(), here);
   if (looks) {
-    look(in, newest);
+    look(in, newest, in.manual ? &ahead_ : nullptr);
     mapped_ = newest.stamp;
     next_look_ = seen.stamp + kIdleEvery;
   }
   if (!looks_beside) return;
+  MoverWatch* movers = in.manual ? &beside_ : nullptr;
   for (const LaserScan& scan : seen.scans) {
-    if (&scan != ahead) look(in, scan);
+    if (&scan == ahead) continue;
+    look(in, scan, movers);
+    movers = nullptr;  // a tracker follows one scanner
   }
   next_look_beside_ = seen.stamp + kIdleBesideEvery;
 }
 
-/// A robot may stand where it can neither turn to look nor has seen what is behind it.
-void StickGuard::watch_insistence(const Resource& in) {
-  const double now = in.observation->stamp;
-  const bool straight_back =
-      in.manual && in.joystick.forward <= -kBack && std::abs(in.joystick.turn) <= kStraight;
-  if (!straight_back) straight_back_since_.reset();
-  if (straight_back && !straight_back_since_) straight_back_since_ = now;
-  insists_ = straight_back && now - *straight_back_since_ >= kInsist;
+/// Collects all that the roll-outs of this tick compare with.
+void StickGuard::prepare(const Resource& in) {
+  const Observation& seen = *in.observation;
+  limits_ = {in.spec->max_v,
+             in.spec->max_omega,
+             in.spec->max_acceleration,
+             in.spec->max_angular_acceleration};
+  may_back_ = rear_.looks(seen.stamp);
+  beside_W_.clear();
+  const Pose2& here = seen.odometry.pose;
+  in.merge->each_beside(here, seen.stamp, in.scene->scan, [&](const Vec2& point_W) {
+    if (beside_W_.size() < kMostBeside) beside_W_.push_back(point_W);
+  });
+  movers_.clear();
+  for (MoverWatch* watch : {&ahead_, &beside_}) {
+    watch->each(seen.stamp, [&](const Track& track) {
+      if (movers_.size() < kMostMovers) movers_.push_back(track);
+    });
+  }
 }
 
 /// [m] Distance from the hull at `pose_W` to the nearest known obstacle.
@@ -115,6 +130,22 @@ double StickGuard::room(const Pose2& pose_W) const {
   double least = hull_.clearance(map_, pose_W);
   for (const Vec2& point_W : beside_W_) least = std::min(least, hull_.distance(pose_W, point_W));
   return least;
+}
+
+/// True if the step of `step` [s] from one pose to another brings the hull nearer to something that
+/// moves and may be within kMargin by then, `after` [s] from now: it may swerve meanwhile.
+bool StickGuard::approaches(const Pose2& from_W,
+                            const Pose2& to_W,
+                            double after,
+                            double step) const {
+  for (const Track& track : movers_) {
+    const Vec2 then_W = track.position_W + after * track.velocity_W;
+    const double far = hull_.distance(to_W, then_W);
+    const double reach = kMargin + kBlur + kSwerve * after * after / 2;
+    if (far - track.radius > reach) continue;
+    if (hull_.distance(from_W, then_W) - far > kTowards * step) return true;
+  }
+  return false;
 }
 
 bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) const {
@@ -128,11 +159,19 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
   for (const Twist2& given : in.under_way) {
     for (int k = 0; k < pieces; ++k) state = on(state, given);
   }
+  double after = step * pieces * static_cast<double>(in.under_way.size());
+  Pose2 before_W = state.pose_W;
   // Already too close: no step may lead closer until there is room again.
-  double margin = std::min(kMargin, room(state.pose_W));
+  double left = room(state.pose_W);
+  double margin = std::min(kMargin, left);
   const auto free = [&](const MotionState& next) {
     if (!may_back_ && hull_.enters_unseen(map_.seen(), next.pose_W, next.twist)) return false;
-    const double left = room(next.pose_W);
+    after += step;
+    if (approaches(before_W, next.pose_W, after, step)) return false;
+    before_W = next.pose_W;
+    // No point of the hull has come nearer than it has moved.
+    left -= step * (std::abs(next.twist.v) + std::abs(next.twist.omega) * in.spec->radius);
+    if (left < kMargin) left = room(next.pose_W);
     if (left < margin - kRounding) return false;
     margin = std::max(margin, std::min(kMargin, left));
     return true;
@@ -145,33 +184,21 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
   return rests(state, limits_, step, free);
 }
 
-bool StickGuard::safe(const Resource& in, const Twist2& command) const {
+bool StickGuard::admits(const Resource& in, const Twist2& command) const {
+  if (command == Twist2{}) return true;
+  if (command.v < 0 && command.v > -kNoMotion) return false;
+  if (!may_back_ && command.v < -kBlindSpeed) return false;
   return safe(in, command, Answer::AtOnce) && safe(in, command, Answer::Ramped);
 }
 
 Twist2 StickGuard::limit(const Resource& in, const Twist2& wanted, double delay) {
-  const Observation& seen = *in.observation;
-  if (wanted == Twist2{} || !finite(seen)) return {};
   delay_ = delay;
-  limits_ = {in.spec->max_v,
-             in.spec->max_omega,
-             in.spec->max_acceleration,
-             in.spec->max_angular_acceleration};
-  const Pose2& here = seen.odometry.pose;
-  beside_W_.clear();
-  in.merge->each_beside(here, seen.stamp, in.scene->scan, [&](const Vec2& point_W) {
-    if (beside_W_.size() < kMostBeside) beside_W_.push_back(point_W);
-  });
-  Twist2 asked = wanted;
-  const bool looks_back = rear_.looks(seen.stamp);
-  if (!looks_back) asked.v = std::max(asked.v, -kBlindSpeed);
-  may_back_ = looks_back || insists_;
-  for (const Shares& share : kShares) {
-    Twist2 command{share.v * asked.v, share.omega * asked.omega};
-    if (command.v < 0 && command.v > -kNoMotion) command.v = 0;
-    if (safe(in, command)) return command;
-  }
-  return {};
+  if (!finite(*in.observation)) return {};
+  Twist2 most = wanted;
+  if (!may_back_) most.v = std::max(most.v, -kBlindSpeed);
+  if (most.v < 0 && most.v > -kNoMotion) most.v = 0;
+  return nearest_twist(
+      wanted, most, full_stick(in), [&](const Twist2& twist) { return admits(in, twist); });
 }
 
 }  // namespace algo

@@ -1,11 +1,14 @@
 // server/cli/command_soak.cpp: `tautline soak`: searches random worlds for forbidden outcomes.
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
+#include "server/lab/soak/indoor_world.hpp"
+#include "server/lab/soak/operator_study.hpp"
 #include "server/lab/soak/random_world.hpp"
 #include "server/lab/soak/soak.hpp"
 #include "server/run/scenario_json.hpp"
@@ -19,7 +22,15 @@ struct SoakCommand {
   bool list = false;
   std::string rows{};
   soak::Options options{};
+
+  bool by_hand = false;
+  double seconds = 10'000;
+  std::string physics = "bullet";
+  std::string robot{};
 };
+
+constexpr std::uint64_t kWorlds = 1000;
+constexpr std::uint64_t kOperatorWorlds = 100;
 
 /// Prints faults, or with `all` every run that did not reach its goal.
 void print_worlds(const std::vector<soak::World>& worlds, bool all) {
@@ -46,7 +57,64 @@ void print_table(const std::vector<soak::World>& worlds) {
       "least clearance {:.3f} m, in world {}\n", nearest->row["min_clearance_m"], nearest->seed);
 }
 
+/// The robots of the study, or the one of that name. Throws std::invalid_argument.
+std::vector<soak::Driven> robots_named(const std::string& name) {
+  std::vector<soak::Driven> robots = soak::driven_robots();
+  if (name.empty()) return robots;
+  std::erase_if(robots, [&](const soak::Driven& driven) { return driven.name != name; });
+  if (robots.empty()) {
+    throw std::invalid_argument(fmt::format("No robot '{}' is in the operator's study.", name));
+  }
+  return robots;
+}
+
+int execute_operator(const SoakCommand& command) {
+  soak::OperatorOptions options{
+      .worlds = command.options.worlds > 0 ? command.options.worlds : kOperatorWorlds,
+      .first_seed = command.options.first_seed,
+      .seconds = command.seconds,
+      .physics =
+          command.physics == "kinematic" ? sim::PhysicsKind::Kinematic : sim::PhysicsKind::Bullet,
+      .robots = robots_named(command.robot),
+      .pool = command.options.pool};
+  if (!command.scenario.empty()) {
+    sim::Scenario world =
+        soak::indoor_world(options.first_seed, options.robots.front().robot.radius);
+    world.robot = options.robots.front().robot;
+    world.controller = options.robots.front().controller;
+    world.physics = options.physics;
+    write_text(command.scenario, to_json(world).dump(1) + "\n");
+    return kReached;
+  }
+  soak::OperatorStudy study;
+  {
+    ProgressLine progress;
+    options.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} worlds", done, all));
+    };
+    study = run_operator(options);
+  }
+  if (!command.rows.empty()) write_table(operator_rows(study), command.rows);
+  for (const soak::DrivenWorld& world : study.worlds) {
+    for (std::size_t hand = 0; hand < soak::kHands.size(); ++hand) {
+      if (soak::kHands.at(hand) == soak::Hand::Raw) continue;
+      for (const std::string& text : world.drives.at(hand).seen) {
+        fmt::print("world {}, {}, {}: {}\n",
+                   world.seed,
+                   world.robot,
+                   soak::name(soak::kHands.at(hand)),
+                   text);
+      }
+    }
+  }
+  fmt::print("{}", to_text(operator_table(study)));
+  if (!study.places.empty()) fmt::print("\n{}", to_text(places_table(study)));
+  return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
+}
+
 int execute(SoakCommand command) {
+  if (command.by_hand) return execute_operator(command);
+  if (command.options.worlds == 0) command.options.worlds = kWorlds;
   if (!command.scenario.empty()) {
     const sim::Scenario world =
         soak::random_world(command.options.first_seed, command.options.controller);
@@ -73,11 +141,14 @@ int execute(SoakCommand command) {
 
 void add_soak_command(Command app, int& status) {
   auto command = std::make_shared<SoakCommand>();
+  command->options.worlds = 0;  // by the kind of study
   const Command soak = app.add_subcommand(
       "soak",
       "Drive to random goals in random worlds. Exit status 3 after a collision, a NaN, or a stop "
       "without a reason given");
-  soak.add_option("--worlds", command->options.worlds, "Number of worlds (default 1000)")
+  soak.add_option("--worlds",
+                  command->options.worlds,
+                  "Number of worlds (default 1000, with --operator 100)")
       .range(1, 1'000'000);
   add_first_seed_option(soak, command->options.first_seed, "The first world (default 1)");
   soak.add_option("--controller", command->options.controller, "Default: strip");
@@ -88,6 +159,17 @@ void add_soak_command(Command app, int& status) {
                   command->scenario,
                   "Run nothing: write the first world to this file as a scenario for the page")
       .type_name("FILE");
+  soak.add_flag("--operator",
+                command->by_hand,
+                "Instead, drive by hand as an operator who tries to hit something, guarded, with "
+                "changing modes, and raw. Exit status 3 after a contact with what was seen");
+  soak.add_option("--seconds",
+                  command->seconds,
+                  "With --operator: of each robot and mode, in all worlds together (default 10000)")
+      .range(1.0, 1e7);
+  soak.add_option("--physics", command->physics, "With --operator (default: bullet)")
+      .one_of({"bullet", "kinematic"});
+  soak.add_option("--robot", command->robot, "With --operator: only this robot");
   soak.callback([command, &status] { status = execute(*command); });
 }
 

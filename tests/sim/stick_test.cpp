@@ -1,4 +1,5 @@
-// tests/sim/stick_test.cpp: minutes of random stick motion; stick_trial drives for any time.
+// tests/sim/stick_test.cpp: minutes of random stick motion; `tautline soak --operator` drives for
+// any time.
 #include "tests/sim/stick_drive.hpp"
 #include <gtest/gtest.h>
 
