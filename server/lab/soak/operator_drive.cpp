@@ -52,7 +52,8 @@ algo::Joystick AdversarialStick::at(double stamp) {
   }
   stick_.mode = algo::StickMode::Guarded;
   if (hand_ == Hand::Raw) stick_.mode = algo::StickMode::Raw;
-  if (hand_ == Hand::Changing && mode < 0.5) stick_.mode = algo::StickMode::Wall;
+  if (hand_ == Hand::Changing && mode < 0.4) stick_.mode = algo::StickMode::Wall;
+  if (hand_ == Hand::Changing && mode >= 0.4 && mode < 0.8) stick_.mode = algo::StickMode::Elastic;
   return stick_;
 }
 
