@@ -14,7 +14,7 @@
 
 namespace server::soak {
 
-/// The modes that the operator uses. Changing: guarded and wall in turn, at random.
+/// The modes that the operator uses. Changing: guarded, wall and elastic, at random.
 enum class Hand : std::uint8_t { Guarded, Changing, Raw };
 inline constexpr std::array kHands{Hand::Guarded, Hand::Changing, Hand::Raw};
 /// "guarded", "changing", "raw"
