@@ -83,19 +83,6 @@ export function frame_word(frame: Frame | null): Word {
   return manual ? { word: "Manual", tone: "info" } : kMissions[frame.mission];
 }
 
-const kLimits: Record<string, { what: string; why: string }> = {
-  crowded: { what: "Slower in a crowded place", why: "Things are near on several sides, so less speed ahead is allowed." },
-  obstacle_ahead: { what: "Slower before an obstacle", why: "Something is near ahead." },
-  wall: { what: "Following the wall", why: "The robot turns so that it keeps its distance to the wall beside it." },
-  guard: { what: "The guard holds back", why: "The robot could not stop before what it sees." },
-  link: { what: "Slower over a slow link", why: "Your answer to what you see would come too late for more." },
-  elastic: { what: "The robot finds the way", why: "Your stick pulls its goal along; it goes round what is in between." },
-};
-/** Why the command is below the wanted one; null: nothing limits it. */
-export function limit_words(limit: string): { what: string; why: string } | null {
-  return limit === "" ? null : kLimits[limit] ?? { what: titled(limit), why: "" };
-}
-
 const kMissions: Record<Frame["mission"], Word> = {
   idle: { word: "Idle", tone: "muted" },
   driving: { word: "Driving", tone: "ok" },

@@ -3,7 +3,20 @@ import { degrees } from "../geometry";
 import { Words } from "../link/frame";
 import { measure, wall_of } from "../state/driven";
 import { SceneState } from "../state/scene";
-import { fixed, limit_words } from "../words";
+import { fixed, titled } from "../words";
+
+const kLimits: Record<string, { what: string; why: string }> = {
+  crowded: { what: "Slower in a crowded place", why: "Things are near on several sides, so less speed ahead is allowed." },
+  obstacle_ahead: { what: "Slower before an obstacle", why: "Something is near ahead." },
+  wall: { what: "Following the wall", why: "The robot turns so that it keeps its distance to the wall beside it." },
+  guard: { what: "The guard holds back", why: "The robot could not stop before what it sees." },
+  link: { what: "Slower over a slow link", why: "Your answer to what you see would come too late for more." },
+  elastic: { what: "The robot finds the way", why: "Your stick pulls its goal along; it goes round what is in between." },
+};
+/** Why the command is below the wanted one; null: nothing limits it. */
+function limit_words(limit: string): { what: string; why: string } | null {
+  return limit === "" ? null : kLimits[limit] ?? { what: titled(limit), why: "" };
+}
 
 /** `tone`: the colour of its cause. */
 export interface Reason { head: string; tail: string; tone: "external" | "internal" | "muted" }
