@@ -24,6 +24,7 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
 
 Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/) {
   guard_.sense(in);
+  own_ring_.take(*in.observation);
   const bool shared = in.manual && in.joystick.mode == StickMode::Wall;
   if (!shared) shared_.reset();
   if (!in.manual) return {};
@@ -31,7 +32,7 @@ Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/)
   const Twist2 wanted{in.joystick.forward * full.v, in.joystick.turn * full.omega};
   Proposal out{.active = true, .twist = wanted, .limits = {}, .limit = {}};
   if (in.joystick.mode == StickMode::Raw) return out;
-  if (shared) out.twist = shared_.share(in, wanted, out.limit);
+  if (shared) out.twist = shared_.share(in, own_ring_, wanted, out.limit);
   const Twist2 safe = guard_.limit(in, out.twist);
   if (safe != out.twist) out.limit = limits::kGuard;
   out.twist = safe;
@@ -40,6 +41,7 @@ Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& /*output*/)
 
 void ManualBehaviour::reset(const Pose2& start_W) {
   guard_.reset(start_W);
+  own_ring_.reset();
   shared_.reset();
 }
 

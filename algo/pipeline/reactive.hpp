@@ -95,6 +95,7 @@ class ManualBehaviour final : public Behaviour {
 
  private:
   StickGuard guard_{};
+  OwnRing own_ring_{};
   SharedControl shared_{};  // at rest unless a stick in mode Wall is active
 };
 
