@@ -16,6 +16,13 @@ struct Hull {
   bool is_disc() const { return !(half_length > 0); }
 };
 
+/// [m] Distance from the centre to the outline of `hull` at `bearing` [rad, in R].
+inline double outline_at(const Hull& hull, double bearing) {
+  if (hull.is_disc()) return hull.radius;
+  const Vec2 way = direction(bearing).cwiseAbs();
+  return std::min(hull.half_length / way.x(), hull.half_width / way.y());
+}
+
 /// [m] Distance from `p` to the outline of a rectangle about the origin; negative inside.
 inline double to_rectangle(const Vec2& p, double half_length, double half_width) {
   const double dx = std::abs(p.x()) - half_length;

@@ -30,14 +30,18 @@ Echo& echo_of(Recycled<Echo>& ring, const Pose2& mount_R) {
 
 }  // namespace
 
-void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene) {
+void hear(const Pose2& pose_W, const Recycled<RangeReading>& readings, Recycled<Echo>& ring) {
   for (const RangeReading& reading : readings) {
     if (reading.status == Beam::Invalid) continue;
-    Echo& echo = echo_of(scene.echoes, reading.mount_R);
+    Echo& echo = echo_of(ring, reading.mount_R);
     echo.stamp = reading.stamp;
     echo.hit = reading.status == Beam::Ok;
     if (echo.hit) echo.point_W = beam_point_W(pose_W, reading.mount_R, 0, reading.range);
   }
+}
+
+void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene) {
+  hear(pose_W, readings, scene.echoes);
   scene.left.reset();
   scene.right.reset();
   for (std::size_t k = 0; k < scene.echoes.size(); ++k) {

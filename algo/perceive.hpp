@@ -11,8 +11,11 @@ namespace algo {
 /// side without a return below range_max is empty (equations.md C).
 void perceive(const Pose2& pose_W, Scene& scene);
 
-/// The same from a sonar ring: takes the new `readings` into scene.echoes, then the nearest echo of
-/// the used field on either side.
+/// Enters the new `readings` of a robot at `pose_W` into `ring`, which has an echo for each sonar.
+void hear(const Pose2& pose_W, const Recycled<RangeReading>& readings, Recycled<Echo>& ring);
+
+/// The same as the scan's from a sonar ring: hears the new `readings`, then finds the nearest echo
+/// of the used field on either side.
 void perceive(const Pose2& pose_W, const Recycled<RangeReading>& readings, Scene& scene);
 
 /// This tick's scan of a scanner that looks ahead; null if there is no new one. A scanner that

@@ -47,6 +47,7 @@ struct RobotSpec {
   double max_angular_acceleration = 0;  // [rad/s2]
   double command_delay = 0;             // [s] from a command's tick until it acts
   bool has_laser = true;   // has a scanner that looks ahead; if not, the sonar ring replaces it
+  bool has_ring = false;   // has the sonars that the laws for driving by hand read
   bool drives = false;     // commands move it; a recorded log does not
   bool raw_stick = false;  // its stick may be obeyed without a guard
   std::vector<ChannelInfo> channels{};  // of further sensors

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "algo/ring_axes.hpp"
 #include "algo/types.hpp"
+#include "sim/sonar_model.hpp"
 
 namespace sim {
 namespace {
@@ -13,6 +15,7 @@ namespace {
 constexpr double kCasterTouching = 0.005;  // [m] a caster raised by more carries no load
 constexpr double kFirmly = 0.01;  // [m] from the centre of mass to the line of two supports
 constexpr int kDirections = 72;
+constexpr double kRoundOff = 1e-9;  // [s] of a product of periods
 
 /// True if the supports extend beyond R in every direction.
 bool stands(const RobotModel& robot) {
@@ -49,6 +52,17 @@ bool Sensors::has_laser() const {
     return std::abs(laser.mount_R.heading) <= std::numbers::pi / 2;
   });
   return looks_ahead || !sonar;
+}
+
+bool Sensors::has_ring() const {
+  if (!sonar || sonar->count * sonar->ping > algo::kOldestEcho + kRoundOff) return false;
+  constexpr auto kBearings = algo::ring_bearings();
+  return std::ranges::all_of(kBearings, [this](double bearing) {
+    for (std::uint32_t k = 0; k < sonar->count; ++k) {
+      if (algo::in_cone(axis(*sonar, k), bearing)) return true;
+    }
+    return false;
+  });
 }
 
 double Sensors::height() const {
@@ -102,7 +116,8 @@ algo::RobotSpec spec_of(const RobotModel& robot, double period) {
           .max_omega = robot.max_omega,
           .max_acceleration = robot.max_acceleration,
           .max_angular_acceleration = robot.max_angular_acceleration,
-          .has_laser = robot.sensors.has_laser()};
+          .has_laser = robot.sensors.has_laser(),
+          .has_ring = robot.sensors.has_ring()};
 }
 
 Hull hull_of(const RobotModel& robot) {

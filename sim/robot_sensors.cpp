@@ -37,7 +37,7 @@ std::vector<std::unique_ptr<Sensor>> make_sensors(const RobotModel& robot, std::
     sensors.push_back(std::make_unique<LaserModel>(made_of.lasers[i], seed, i));
   }
   if (made_of.sonar) {
-    sensors.push_back(std::make_unique<SonarModel>(*made_of.sonar, robot.radius, seed));
+    sensors.push_back(std::make_unique<SonarModel>(*made_of.sonar, hull_of(robot), seed));
   }
   for (std::uint32_t i = 0; i < made_of.infrared.size(); ++i) {
     sensors.push_back(std::make_unique<InfraredModel>(made_of.infrared[i], seed, i));

@@ -54,7 +54,8 @@ struct SonarConfig {
   double range_max = 5.0;                   // [m] Free if nothing is within it
   double noise = 0.01;                      // [m] standard deviation
   double incidence = std::numbers::pi / 3;  // [rad] more oblique surfaces give no echo
-  double height = 0.30;                     // [m] of the ring
+  bool crosstalk = false;  // a late echo of the neighbour's ping before counts as an own one
+  double height = 0.30;    // [m] of the ring
 };
 
 /// An infrared range scanner with the figures of the PBS-03JN (sensors.md 2): a fan of narrow beams
@@ -109,6 +110,9 @@ struct Sensors {
 
   /// True if a scanner looks ahead. If none does, a sonar ring replaces it.
   bool has_laser() const;
+  /// True if the ring has a sonar for each axis that the laws for driving by hand read, and a round
+  /// of its pings is short enough for them (algo/ring_axes.hpp).
+  bool has_ring() const;
   /// [m] Height above the floor of the highest scanner, ring or fan.
   double height() const;
 };

@@ -14,16 +14,16 @@ constexpr std::size_t kRays = 31;                      // per cone
 constexpr double kRounding = 1e-9;                     // [rad] error of degrees to radians and back
 constexpr double kSonarOnTime = 1e-9;                  // [s] below any period, above rounding
 
-/// Axis of sensor `k` [rad], spaced evenly over the field. A whole turn: from straight ahead
-/// leftwards, without its end. Part of a turn: from its right to its left border.
+constexpr double kSound = 343;  // [m/s] in air
+
+}  // namespace
+
 double axis(const SonarConfig& config, std::uint32_t k) {
   const double turn = 2 * std::numbers::pi;
   if (config.field >= turn - kRounding) return algo::wrap_angle(turn * k / config.count);
   if (config.count == 1) return 0;
   return -config.field / 2 + config.field * k / (config.count - 1);
 }
-
-}  // namespace
 
 std::optional<std::string> defect(const SonarConfig& config) {
   if (config.count < 1 || config.count > 64) return "count must be 1 to 64";
@@ -40,7 +40,7 @@ std::optional<std::string> defect(const SonarConfig& config) {
   return std::nullopt;
 }
 
-SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t seed)
+SonarModel::SonarModel(const SonarConfig& config, const algo::Hull& hull, std::uint64_t seed)
     : CastingSensor(config.height),
       config_(checked(config, "Sonar")),
       cone_{-config.cone / 2, config.cone / (kRays - 1), kRays},
@@ -49,18 +49,24 @@ SonarModel::SonarModel(const SonarConfig& config, double radius, std::uint64_t s
       hits_(kRays) {
   for (std::uint32_t k = 0; k < config_.count; ++k) {
     const double heading = axis(config_, k);
-    const algo::Vec2 place = radius * algo::direction(heading);
+    const algo::Vec2 place = algo::outline_at(hull, heading) * algo::direction(heading);
     mounts_R_.push_back({place.x(), place.y(), heading});
   }
 }
 
-/// [m] Distance of the nearest surface in the cone that is not more oblique than config_.incidence.
-std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
+const algo::Pose2& SonarModel::mount_of(std::uint64_t ping) const {
+  return mounts_R_[ping % mounts_R_.size()];
+}
+
+/// [m] Distance of the nearest surface in the cone, farther than `beyond` [m], that is not more
+/// oblique than config_.incidence.
+std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W, double beyond) {
   caster().cast(sensor_W, cone_, config_.range_max, ranges_, hits_);
   const double least_cosine = std::cos(config_.incidence) - 1e-9;
   std::optional<double> nearest;
   for (std::size_t i = 0; i < kRays; ++i) {
     if (hits_[i] == RangeCaster::kNothing || (nearest && ranges_[i] >= *nearest)) continue;
+    if (ranges_[i] < beyond) continue;
     const double right = sensor_W.heading + cone_.angle_min;
     const algo::Vec2 ray = algo::direction(right + static_cast<double>(i) * cone_.angle_increment);
     const algo::Vec2 normal = caster().normal_W(hits_[i], sensor_W.position() + ranges_[i] * ray);
@@ -69,14 +75,31 @@ std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W) {
   return nearest;
 }
 
+/// [m] Distance that the next ping's sensor takes the echo of the ping before for.
+std::optional<double> SonarModel::late_echo(const PoseTrail& trail) {
+  if (!config_.crosstalk || pings_ == 0 || mounts_R_.size() == 1) return std::nullopt;
+  const algo::Pose2& before = mount_of(pings_ - 1);
+  const double apart = algo::wrap_angle(mount_of(pings_).heading - before.heading);
+  if (std::abs(apart) > config_.cone) return std::nullopt;
+  const double head_start = kSound * config_.ping / 2;
+  if (head_start + config_.range_min >= config_.range_max) return std::nullopt;
+  const double fired = static_cast<double>(pings_ - 1) * config_.ping;
+  const auto echo =
+      nearest_echo(algo::compose(trail.at(fired), before), head_start + config_.range_min);
+  if (!echo) return std::nullopt;
+  return *echo - head_start;
+}
+
 void SonarModel::sense(double now,
                        const PoseTrail& trail,
                        algo::Recycled<algo::RangeReading>& readings) {
   for (;; ++pings_) {
     const double fired = static_cast<double>(pings_) * config_.ping;
     if (fired > now + kSonarOnTime) return;
-    const algo::Pose2& mount = mounts_R_[pings_ % mounts_R_.size()];
-    const auto echo = nearest_echo(algo::compose(trail.at(fired), mount));
+    const algo::Pose2& mount = mount_of(pings_);
+    auto echo = nearest_echo(algo::compose(trail.at(fired), mount), 0);
+    const auto late = late_echo(trail);
+    if (late && (!echo || *late < *echo)) echo = late;
     double error = 0;
     noise_.fill_normal(std::span(&error, 1));
     algo::RangeReading& reading = readings.append();

@@ -47,6 +47,7 @@ bool pulls_goal(const Resource& in) {
 
 Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& output) {
   guard_.sense(in);
+  own_ring_.take(*in.observation);
   pull_W_.reset();
   const bool shared = in.manual && in.joystick.mode == StickMode::Wall;
   if (!shared) shared_.reset();
@@ -62,7 +63,7 @@ Proposal ManualBehaviour::propose(const Resource& in, ControlOutput& output) {
     if (out.twist != wanted) out.limit = limits::kLink;
     return out;
   }
-  if (shared) out.twist = shared_.share(in, wanted, out.limit);
+  if (shared) out.twist = shared_.share(in, own_ring_, wanted, out.limit);
   if (!pulls_goal(in)) course_.reset();
   if (pulls_goal(in)) {
     out.twist = pulled(in, full, output);
@@ -103,6 +104,7 @@ void ManualBehaviour::show(Telemetry& t) const {
 
 void ManualBehaviour::reset(const Pose2& start_W) {
   guard_.reset(start_W);
+  own_ring_.reset();
   shared_.reset();
   course_.reset();
 }

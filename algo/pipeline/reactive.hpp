@@ -107,6 +107,7 @@ class ManualBehaviour final : public Behaviour {
 
   AvoidBehaviour& avoid_;
   StickGuard guard_{};
+  OwnRing own_ring_{};
   SharedControl shared_{};          // at rest unless a stick in mode Wall is active
   std::optional<double> course_{};  // [rad] in W, while the stick pulls a goal along
   std::optional<Vec2> pull_W_{};    // this tick's pulled goal

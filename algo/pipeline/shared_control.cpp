@@ -7,15 +7,13 @@
 
 #include "algo/geometry.hpp"
 #include "algo/pipeline/reactive.hpp"
-#include "algo/teleop/reflected_force.hpp"
 #include "algo/teleop/teleop_parameters.hpp"
 
 namespace algo {
 namespace {
 
-constexpr double kOldestEcho = 0.1;  // [s] all sonars of the ring have measured within this time
-constexpr double kSlack = 1e-9;      // [s], [m/s] of sums
-constexpr double kAsGood = 0.99;     // of a speed; Eq. 4 never gives all of it, even in the open
+constexpr double kSlack = 1e-9;   // [s], [m/s] of sums
+constexpr double kAsGood = 0.99;  // of a speed; Eq. 4 never gives all of it, even in the open
 
 constexpr LayerInfo kRing{.name = "teleop.ring",
                           .label = "Nearest in each sonar's sector",
@@ -30,23 +28,29 @@ constexpr double kHalfWall = 1.5;  // [m] drawn to either side of its foot
 
 }  // namespace
 
-Twist2 full_stick(const Resource& in) {
-  const Parameters& p = *in.parameters;
-  return {std::min(in.spec->max_v, p[kStickSpeed]),
-          std::min(in.spec->max_omega, p[kStickTurnRate])};
+Twist2 full_stick(const RobotSpec& spec, const Parameters& parameters) {
+  return {std::min(spec.max_v, parameters[kStickSpeed]),
+          std::min(spec.max_omega, parameters[kStickTurnRate])};
 }
 
-Twist2 SharedControl::share(const Resource& in, const Twist2& wanted, Limit& limit) {
+Twist2 full_stick(const Resource& in) {
+  return full_stick(*in.spec, *in.parameters);
+}
+
+Twist2 SharedControl::share(const Resource& in,
+                            const OwnRing& own_ring,
+                            const Twist2& wanted,
+                            Limit& limit) {
   const Parameters& p = *in.parameters;
   const Twist2 full = full_stick(in);
-  if (!next_ || in.stamp >= *next_ - kSlack) sample(in, full.v);
+  if (!next_ || in.stamp >= *next_ - kSlack) sample(in, own_ring, full.v);
 
   Twist2 out = wanted;
   out.v = slowed_speed(wanted.v, step_.speed, ring_.distances, full.v, p);
   turn_.reset();
   if (wall_ && follows_wall(*wall_, wanted.v, full.v, p)) {
-    turn_ = follow_wall(*wall_, full.omega, p);
-    out.omega = turn_->omega;
+    turn_ = follow_wall(*wall_, full.omega, p, wall_law(p));
+    out.omega = std::clamp(turn_->omega, -full.omega, full.omega);
     if (std::abs(out.omega - wanted.omega) > kSlack) limit = limits::kWallBeside;
   }
   if (out.v < kAsGood * wanted.v) {
@@ -58,48 +62,29 @@ Twist2 SharedControl::share(const Resource& in, const Twist2& wanted, Limit& lim
   return out;
 }
 
-void SharedControl::sample(const Resource& in, double v_max) {
+void SharedControl::sample(const Resource& in, const OwnRing& own_ring, double v_max) {
   const Parameters& p = *in.parameters;
   next_ = (next_ && in.stamp < *next_ + kTeleopPeriod ? *next_ : in.stamp) + kTeleopPeriod;
-  ring_ = listen(in);
+  const bool virtual_ring = in.spec->has_laser && !in.spec->has_ring;
+  ring_ = virtual_ring ? virtual_sonars(in.scene->scan, p)
+                       : own_ring.read(in.odometry.pose, in.stamp, p);
   step_ = sparseness_step(sparseness_, ring_.distances, v_max, p);
   sparseness_ = step_.next;
-  wall_ = side_.follow(wall_of_ring(ring_, p), in.stamp);
-}
-
-/// Of the laser, or, for a robot without one, of its sonars.
-Ring SharedControl::listen(const Resource& in) {
-  const Parameters& p = *in.parameters;
-  if (in.spec->has_laser) return virtual_sonars(in.scene->scan, p);
-  constexpr std::array<double, kRingSonars> kBearings = ring_bearings();
-  Ring ring;
-  RingReadings& out = ring.distances;
-  out.fill(p[kRingReach]);
-  for (const Echo& echo : in.scene->echoes) {
-    const double bearing = echo.mount_R.heading;
-    for (std::size_t n = 0; n < kRingSonars; ++n) {
-      if (std::abs(wrap_angle(bearing - kBearings[n])) > kRingHalfCone) continue;
-      const bool old = in.stamp - echo.stamp > kOldestEcho + kSlack;
-      const double d = (echo.point_W - in.odometry.pose.position()).norm();
-      if (old) out[n] = std::numeric_limits<double>::quiet_NaN();
-      if (!old && echo.hit) out[n] = std::min(out[n], d);  // NaN stays
-    }
-  }
-  return ring;
+  seen_ = wall_of_ring(ring_, p);
+  wall_ = wall_law(p) == WallLaw::Corrected ? side_.follow(seen_, in.stamp) : seen_;
 }
 
 void SharedControl::reflect(const Resource& in, const Twist2& wanted, const Twist2& full) {
   const Parameters& p = *in.parameters;
-  const auto force = [&p](double q, const ForceBand& band, const ForceLevels& levels) {
-    return reflected_force(q, band, levels, p[kForceRamp]) / kFullStick;
+  const double v_limit =
+      forward_limit(wanted.v, step_.speed, ring_.distances, full.v, p, forward_force(p));
+  forward_.band = forward_band(v_limit, full.v);
+  left_.band = turn_ ? wall_band(turn_->omega, full.omega) : ForceBand{};
+  const auto push = [ramp = p[kForceRamp]](Axis& axis, double q, const ForceLevels& levels) {
+    axis.force = reflected_force(q, axis.band, levels, ramp);
   };
-  const double v_limit = forward_limit(wanted.v, step_.speed, ring_.distances, full.v, p);
-  force_forward_ =
-      force(kFullStick * wanted.v / full.v, forward_band(v_limit, full.v), kForwardLevels);
-  force_left_ = 0;
-  if (!turn_) return;
-  force_left_ =
-      force(kFullStick * wanted.omega / full.omega, wall_band(turn_->omega, full.omega), {});
+  push(forward_, kFullStick * wanted.v / full.v, kForwardLevels);
+  push(left_, kFullStick * wanted.omega / full.omega, {});
 }
 
 void SharedControl::show(Telemetry& t) const {
@@ -122,13 +107,24 @@ void SharedControl::show(Telemetry& t) const {
   }
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   auto& out = t.output.measures;
+  const auto put_wall =
+      [&out](const std::optional<WallModel>& wall, std::string_view rho, std::string_view theta) {
+        out.push_back({rho, "m", wall ? wall->rho : kNone});
+        out.push_back({theta, "rad", wall ? wall->theta : kNone});
+      };
+  const auto put_share = [&out](std::string_view name, double of_full_stick) {
+    out.push_back({name, "", of_full_stick / kFullStick});
+  };
   out.push_back({"teleop.v_sprs", "m/s", step_.speed});
   out.push_back({"teleop.nearest", "m", nearest});
-  out.push_back({"teleop.wall_rho", "m", wall_ ? wall_->rho : kNone});
-  out.push_back({"teleop.wall_theta", "rad", wall_ ? wall_->theta : kNone});
+  put_wall(seen_, "teleop.seen_rho", "teleop.seen_theta");
+  put_wall(wall_, "teleop.wall_rho", "teleop.wall_theta");
   out.push_back({"teleop.w_d", "rad/s", turn_ ? turn_->omega : kNone});
-  out.push_back({"teleop.force_forward", "", force_forward_});
-  out.push_back({"teleop.force_left", "", force_left_});
+  put_share("teleop.q_offset_forward", forward_.band.offset);
+  put_share("teleop.q_offset_left", left_.band.offset);
+  put_share("teleop.dead_band_left", left_.band.half_width);
+  put_share("teleop.force_forward", forward_.force);
+  put_share("teleop.force_left", left_.force);
 }
 
 }  // namespace algo

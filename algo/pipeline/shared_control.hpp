@@ -10,6 +10,8 @@
 #include <optional>
 
 #include "algo/telemetry.hpp"
+#include "algo/teleop/own_ring.hpp"
+#include "algo/teleop/reflected_force.hpp"
 #include "algo/teleop/sonar_ring.hpp"
 #include "algo/teleop/speed_limit.hpp"
 #include "algo/teleop/wall_following.hpp"
@@ -32,6 +34,7 @@ inline constexpr Limit kPulled{"elastic", "The robot finds its own way to where 
 }  // namespace limits
 
 /// [m/s, rad/s] At full stick: the smaller of the robot's limit and the parameter.
+Twist2 full_stick(const RobotSpec& spec, const Parameters& parameters);
 Twist2 full_stick(const Resource& in);
 
 /// The laws of Park et al. for one driver. They are sampled every kTeleopPeriod, since the
@@ -40,15 +43,21 @@ Twist2 full_stick(const Resource& in);
 class SharedControl {
  public:
   void reset() { *this = {}; }
-  /// The motion made of the driver's `wanted`, both within full_stick(). `limit` gets the reason if
-  /// they differ; where there are several, the stronger one.
-  Twist2 share(const Resource& in, const Twist2& wanted, Limit& limit);
+  /// The motion made of the driver's `wanted`, both within full_stick(). A robot with a ring of its
+  /// own (RobotSpec::has_ring), or without a laser, is heard by `own_ring`; for any other, virtual
+  /// sonars are made of its scan. `limit` gets the reason if they differ; where there are several,
+  /// the stronger one.
+  Twist2 share(const Resource& in, const OwnRing& own_ring, const Twist2& wanted, Limit& limit);
   /// Adds the readings, the wall and the force of this tick to `t`.
   void show(Telemetry& t) const;
 
  private:
-  void sample(const Resource& in, double v_max);
-  static Ring listen(const Resource& in);
+  /// One axis of the stick.
+  struct Axis {
+    ForceBand band{};
+    double force = 0;  // positive pushes ahead or to the left
+  };
+  void sample(const Resource& in, const OwnRing& own_ring, double v_max);
   void reflect(const Resource& in, const Twist2& wanted, const Twist2& full);
 
   std::optional<double> next_{};  // [s] run clock; of the next sample
@@ -56,10 +65,11 @@ class SharedControl {
   double sparseness_ = 1;
   SparsenessStep step_{};
   FollowedSide side_{};
+  std::optional<WallModel> seen_{};  // of the newest sample
   std::optional<WallModel> wall_{};  // the followed one
   std::optional<WallTurn> turn_{};   // while it is followed
-  double force_forward_ = 0;         // of full force; positive pushes the stick ahead
-  double force_left_ = 0;            // the same to the left
+  Axis forward_{};
+  Axis left_{};
 };
 
 }  // namespace algo

@@ -29,6 +29,10 @@ ForceBand band_between(double w_lb, double w_ub, double w_max) {
           .half_width = std::clamp(half_width, 0.0, kFullStick)};
 }
 
+ForwardForce forward_force(const Parameters& parameters) {
+  return static_cast<ForwardForce>(parameters[kForwardForce]);
+}
+
 double forward_limit(double v_cmd,
                      double v_sprs,
                      std::span<const double> distances,

@@ -49,12 +49,26 @@ ForceBand band_between(double w_lb, double w_ub, double w_max);
 
 /// Which speed the force about Y pushes back to. The paper contradicts itself.
 enum class ForwardForce : std::uint8_t {
+  FullStick,   // ours: Eq. 4's speed at full stick. Section 3's force, with a limit that does not
+               // move with the hand.
   Sparseness,  // section 2.3: the limit v_sprs
   Executed,    // section 3, "whenever v_cmd was greater than v": Eq. 4's speed for the hand's own
                // command. As Eq. 4 scales any command, it pushes until the stick is at rest.
-  FullStick,   // ours: Eq. 4's speed at full stick. Section 3's force, with a limit that does not
-               // move with the hand.
 };
+
+// The order of the values is that of ForwardForce's enumerators.
+inline constexpr ParameterInfo kForwardForce{
+    .name = "teleop.forward_force",
+    .label = "Forward force",
+    .unit = "",
+    .min = 0,
+    .max = 2,
+    .step = 1,
+    .initial = 0,
+    .help =
+        "The speed above which the stick is pushed back: 0 that of full stick, 1 v_sprs (Park "
+        "et al., section 2.3), 2 that of the stick itself (section 3)."};
+ForwardForce forward_force(const Parameters& parameters);
 
 /// [m/s] The speed for `reading`; the arguments are those of slowed_speed().
 double forward_limit(double v_cmd,

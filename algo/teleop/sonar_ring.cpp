@@ -24,7 +24,7 @@ struct Cone {
 template <typename See>
 void each_cone(std::array<Cone, kRingSonars>& cones, double bearing, See&& see) {
   for (std::size_t n = 0; n < kRingSonars; ++n) {
-    if (std::abs(wrap_angle(bearing - kBearings[n])) <= kRingHalfCone) see(cones[n]);
+    if (in_cone(kBearings[n], bearing)) see(cones[n]);
   }
 }
 

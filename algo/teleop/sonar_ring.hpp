@@ -6,13 +6,11 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
-#include <numbers>
 #include <span>
 
 #include "algo/laser_scan.hpp"
 #include "algo/parameters.hpp"
-#include "algo/units.hpp"
+#include "algo/ring_axes.hpp"
 
 namespace algo {
 
@@ -37,21 +35,8 @@ inline constexpr ParameterInfo kStopDistance{
     .initial = 0.5,
     .help = "No speed ahead is left when an obstacle is this near to the robot's centre."};
 
-constexpr std::size_t kRingSonars = 8;
-constexpr double kRingHalfCone = 15 * units::kRadiansPerDegree;  // [rad]
-
 /// Readings D_n [m], from right to left.
 using RingReadings = std::array<double, kRingSonars>;
-
-/// theta_n [rad] in R: the axes, evenly over the half circle ahead, from right to left.
-constexpr std::array<double, kRingSonars> ring_bearings() {
-  std::array<double, kRingSonars> bearings{};
-  for (std::size_t n = 0; n < kRingSonars; ++n) {
-    const double share = static_cast<double>(n) / static_cast<double>(kRingSonars - 1);
-    bearings[n] = (share - 0.5) * std::numbers::pi;
-  }
-  return bearings;
-}
 
 /// The distance that the laws take for a reading `d` [m]: within [0, D_max]; D_min for NaN, since a
 /// sensor that fails must not open the way (equations.md G).

@@ -41,6 +41,8 @@ inline constexpr auto kTeleopParameters = std::to_array<const ParameterInfo*>({&
                                                                                &kSlowingGain,
                                                                                &kWallSector,
                                                                                &kWallDistance,
+                                                                               &kWallLaw,
+                                                                               &kForwardForce,
                                                                                &kForceRamp});
 
 /// Why these values do not go together for a robot of `radius` [m, of the hull's circle about R],

@@ -14,6 +14,10 @@ constexpr double kPeriodRounding = 1e-9;  // [s] of sums of periods
 
 }  // namespace
 
+WallLaw wall_law(const Parameters& parameters) {
+  return static_cast<WallLaw>(parameters[kWallLaw]);
+}
+
 WallTurn follow_wall(const WallModel& wall,
                      double w_max,
                      const Parameters& parameters,

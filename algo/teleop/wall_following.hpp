@@ -33,6 +33,19 @@ enum class WallLaw : std::uint8_t {
   Literal,
 };
 
+inline constexpr ParameterInfo kWallLaw{
+    .name = "teleop.wall_law",
+    .label = "Wall law",
+    .unit = "",
+    .min = 0,
+    .max = 1,
+    .step = 1,
+    .initial = 0,
+    .help =
+        "0: Eq. 8-10 of Park et al. corrected, and patience before the followed side changes. 1: "
+        "as printed."};
+WallLaw wall_law(const Parameters& parameters);
+
 /// Eq. 6-10 for one wall; positive turns to the left.
 struct WallTurn {
   double offset = 0;  // [m] D_diff = sign(theta') (rho' - D_ref)

@@ -242,6 +242,7 @@ constexpr Field<Robot> kRobot[] = {
     required("max_angular_acceleration", &Robot::max_angular_acceleration),
     {"command_delay", &Robot::command_delay},
     {"has_laser", &Robot::has_laser},
+    {"has_ring", &Robot::has_ring},
     {"drives", &Robot::drives},
     {"channels"},
 };

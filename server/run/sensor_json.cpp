@@ -34,6 +34,7 @@ constexpr Field<Sonar> kSonar[] = {
     {"range_max", &Sonar::range_max},
     {"noise", &Sonar::noise},
     {"incidence_deg", &Sonar::incidence, {0, 360}, kDegree},
+    {"crosstalk", &Sonar::crosstalk},
     {"height", &Sonar::height},
 };
 

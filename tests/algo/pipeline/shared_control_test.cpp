@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "tests/algo/allocations.hpp"
 #include "tests/algo/pipeline/by_hand.hpp"
@@ -120,6 +121,98 @@ TEST(SharedControl, ASonarThatFailsCountsAsAnObstacle) {
   robot.sonars.clear();
   robot.hold({0.8, 0, StickMode::Wall}, 1);
   EXPECT_EQ(robot.twist.v, 0);
+}
+
+/// A robot beside a wall, with a laser and a ring of its own.
+ByHand with_ring(double beside) {
+  ByHand robot = beside_wall(beside);
+  robot.spec.has_ring = true;
+  for (const double bearing : algo::ring_bearings()) robot.sonars.push_back(bearing);
+  robot.start();
+  return robot;
+}
+
+/// The first and last axis look straight to the sides; the hull's circle is 0.35 m.
+TEST(SharedControl, ARobotWithARingOfItsOwnIsHeardByIt) {
+  ByHand robot = with_ring(1.2);
+  robot.hold({0.5, 0, StickMode::Wall}, 0.5);
+  EXPECT_NEAR(value(robot, "teleop.nearest"), 1.2, 1e-9);
+  robot.sonars.clear();
+  robot.hold({0.5, 0, StickMode::Wall}, 0.5);
+  EXPECT_EQ(robot.t.command.base.v, 0) << "a ring that fails must not open the way";
+  robot.spec.has_ring = false;
+  robot.start();
+  robot.hold({0.5, 0, StickMode::Wall}, 0.5);
+  EXPECT_GT(robot.t.command.base.v, 0) << "by virtual sonars";
+}
+
+/// The ring is heard in every mode, so the first tick of mode wall knows the wall.
+TEST(SharedControl, TheRingIsKnownFromTheFirstTick) {
+  ByHand robot = with_ring(1.2);
+  robot.hold({0.1, 0, StickMode::Guarded}, 0.5);
+  robot.tick({0.1, 0, StickMode::Wall});
+  EXPECT_NEAR(value(robot, "teleop.nearest"), 1.2, 1e-9);
+}
+
+void set(ByHand& robot, const algo::ParameterInfo& parameter, double to) {
+  robot.sense();
+  robot.t.requests.clear();
+  robot.t.requests.push_back(algo::SetParameter{&parameter, to});
+  robot.pipeline->tick(robot.t);
+}
+
+TEST(SharedControl, ShowsTheBandsOfBothAxes) {
+  ByHand robot = beside_wall(1.2);
+  robot.hold(kAhead, 1);
+  const double w_d = value(robot, "teleop.w_d");
+  EXPECT_GT(w_d, 0);
+  EXPECT_DOUBLE_EQ(value(robot, "teleop.q_offset_left"), w_d);  // w_max is 1
+  EXPECT_DOUBLE_EQ(value(robot, "teleop.dead_band_left"), 0.01);
+  robot.hold({0.8, 0, StickMode::Wall}, 0.1);
+  EXPECT_EQ(value(robot, "teleop.q_offset_left"), 0);
+  EXPECT_EQ(value(robot, "teleop.dead_band_left"), 1);
+}
+
+/// The wall 1.2 m beside leaves 1 - exp(-3 (1.2 - 0.5)) of the smaller of v and v_sprs.
+TEST(SharedControl, TheForwardForceHasThreeReadings) {
+  const double slowed = 1 - std::exp(-3 * 0.7);
+  for (const auto& [reading, of_v_sprs] :
+       {std::pair{0.0, slowed}, std::pair{1.0, 1.0}, std::pair{2.0, 0.0}}) {
+    ByHand robot = beside_wall(1.2);
+    set(robot, algo::kForwardForce, reading);
+    robot.hold({0.1, 0, StickMode::Wall}, 1);
+    const double v_sprs = value(robot, "teleop.v_sprs") / 0.5;
+    const double expected = reading == 2 ? 0.1 * slowed : v_sprs * of_v_sprs;
+    EXPECT_NEAR(value(robot, "teleop.q_offset_forward"), expected, 2e-3) << reading;
+  }
+}
+
+/// Farther than D_ref on the right the printed factor of xi_2 is 1 + x, the corrected one 1 - x;
+/// the nose points to the wall, so xi_2 turns left.
+TEST(SharedControl, TheWallLawHasTheLiteralReading) {
+  const auto turn_at = [](double law) {
+    ByHand robot = beside_wall(-1.2);
+    robot.pose.heading = -0.3;
+    set(robot, algo::kWallLaw, law);
+    robot.hold(kAhead, 0.3);
+    return value(robot, "teleop.w_d");
+  };
+  EXPECT_GT(turn_at(1), turn_at(0) + 0.2);
+}
+
+/// As printed, the followed wall is the newest; ours waits half a second on the other side.
+TEST(SharedControl, ThePatienceWithSidesIsOursAlone) {
+  for (const double law : {0.0, 1.0}) {
+    ByHand robot = beside_wall(1.2);
+    set(robot, algo::kWallLaw, law);
+    robot.hold({0.5, 0, StickMode::Wall}, 1);
+    ASSERT_GT(value(robot, "teleop.wall_theta"), 0);
+    robot.world.polygons.clear();
+    robot.world.polygons.push_back(box({-5, -1.4}, {30, -1.2}));
+    robot.hold({0.5, 0, StickMode::Wall}, 0.2);
+    EXPECT_LT(value(robot, "teleop.seen_theta"), 0);
+    EXPECT_EQ(value(robot, "teleop.wall_theta") < 0, law == 1) << law;
+  }
 }
 
 TEST(StickModes, TheGuardSaysThatItLimits) {

@@ -66,6 +66,25 @@ class RobotFolder : public testing::Test {
       ("robots-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
+/// Park et al. 2005: eight sonars in a front semicircle, all within 100 ms; the mass at 0.25 or 0.9
+/// m.
+TEST(RobotJson, TheRobhazCarriesItsRingAtEitherHeight) {
+  for (const auto& [name, height] : {std::pair{"robhaz", 0.25}, std::pair{"robhaz_tall", 0.90}}) {
+    const sim::RobotModel robot = builtin_robot(name);
+    EXPECT_EQ(robot.mass_height, height);
+    ASSERT_TRUE(robot.sensors.sonar);
+    EXPECT_EQ(robot.sensors.sonar->count, 8U);
+    EXPECT_FALSE(robot.sensors.sonar->crosstalk);
+    const algo::RobotSpec spec = spec_of(robot, 0.02);
+    EXPECT_TRUE(spec.has_ring);
+    EXPECT_TRUE(robot_spec_from_json(to_json(spec)).has_ring);
+  }
+  json noisy = robot_document(builtin_robot("robhaz"));
+  noisy["sonar"]["crosstalk"] = true;
+  EXPECT_TRUE(read_robot(noisy).sensors.sonar->crosstalk);
+  EXPECT_EQ(robot_document(read_robot(noisy))["sonar"]["crosstalk"], true);
+}
+
 TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
   const std::vector<RobotEntry> entries = RobotLibrary().list();
   EXPECT_EQ(entries.size(), 4U);
@@ -182,10 +201,10 @@ TEST_F(RobotFolder, InvalidFilesAreListedWithTheReasonAndNotLoaded) {
     library.load("tank");
     ADD_FAILURE() << "there is no tank";
   } catch (const LibraryError& e) {
-    EXPECT_STREQ(
-        e.what(),
-        "'tank' is unknown; known are jackal, masuda, robhaz, silvermate, broken, carrier, "
-        "other");
+    EXPECT_STREQ(e.what(),
+                 "'tank' is unknown; known are jackal, masuda, robhaz, robhaz_tall, silvermate, "
+                 "broken, carrier, "
+                 "other");
   }
   EXPECT_EQ(library.load_file_or_name((folder / "other.json").string()).name, "carrier");
 }
