@@ -5,11 +5,10 @@
 #include <string>
 
 #include "tests/server/serve/app_fixture.hpp"
+#include "tests/server/serve/foxglove_hub_fixture.hpp"
 #include "tests/server/serve/viewer.hpp"
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "server/serve/foxglove/protocol.hpp"
 
 namespace server {
 namespace {
@@ -39,23 +38,12 @@ class DrivingTest : public AppTest {
   double now() const { return get("/session/clock").at("now"); }
 };
 
-std::string service_request(std::uint32_t service, std::uint32_t call, const std::string& body) {
-  // Same layout as the response, another opcode.
-  std::string bytes = foxglove::service_response(service, call, "json", body);
-  bytes[0] = 2;
-  return bytes;
-}
-
-std::string client_message(std::uint32_t channel, const std::string& body) {
-  return std::string("\x01") + static_cast<char>(channel) + std::string(3, '\0') + body;
-}
-
 /// A WebSocket client that calls services and publishes a Twist.
 class Driver : public Viewer {
  public:
   using Viewer::Viewer;
   void call(const std::string& service, const json& body) {
-    client.send_binary(service_request(services.at(service), ++calls_, body.dump()));
+    client.send_binary(foxglove::service_request(services.at(service), ++calls_, body.dump()));
   }
   /// The answer of the last call, or its failure's sentence.
   json answer() {
@@ -89,7 +77,7 @@ class Driver : public Viewer {
   void publish(double v) {
     const json twist = {{"linear", {{"x", v}, {"y", 0}, {"z", 0}}},
                         {"angular", {{"x", 0}, {"y", 0}, {"z", 0}}}};
-    client.send_binary(client_message(9, twist.dump()));
+    client.send_binary(foxglove::client_message(9, twist.dump()));
   }
 
  private:
