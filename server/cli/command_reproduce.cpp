@@ -1,5 +1,5 @@
 // server/cli/command_reproduce.cpp: `tautline reproduce`: checks the claims of the sources by their
-// scenarios and their filter chapter.
+// scenarios, their filter chapter and their drive by hand.
 #include <algorithm>
 #include <memory>
 
@@ -9,6 +9,7 @@
 #include "server/cli/pool_options.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/markdown.hpp"
+#include "server/lab/reproduce/robhaz_study.hpp"
 
 namespace server {
 namespace {
@@ -22,6 +23,8 @@ struct ReproduceCommand {
   reproduce::StudyOptions study{};
   bool filter = false;
   std::string logs{};
+  bool robhaz = false;
+  std::string course{};
 };
 
 /// Only chapter 3. Its verdicts are findings, not limits.
@@ -36,6 +39,21 @@ int execute_filter_study(const ReproduceCommand& options) {
   }
   if (!options.markdown.empty()) write_markdown(study, options.markdown);
   return kReached;
+}
+
+/// Only Park et al.'s course. A finding of the corrected reading that fails is a failure.
+int execute_robhaz_study(const ReproduceCommand& options) {
+  const reproduce::RobhazCourse course = options.course.empty()
+                                             ? reproduce::embedded_robhaz_course()
+                                             : reproduce::read_robhaz_course(options.course);
+  const reproduce::RobhazStudy study = reproduce::study_robhaz(course);
+  if (options.as_json) {
+    fmt::print("{}\n", to_json(study).dump(2));
+  } else {
+    fmt::print("{}", to_text(study));
+  }
+  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  return all_hold(study) ? kReached : kNotHeld;
 }
 
 /// More seeds would take an hour and change no verdict.
@@ -108,14 +126,25 @@ void add_reproduce_command(Command app, int& status) {
   command.add_option("--logs", options->logs, "Folder of CARMEN logs of a real scanner")
       .type_name("DIR")
       .needs(filter);
+  const Option robhaz = command.add_flag(
+      "--robhaz",
+      options->robhaz,
+      "Drive the course of Park et al. 2005 (Fig. 10, 11) by a simulated hand instead");
+  command.add_option("--course", options->course, "Another file with course, script and hand")
+      .type_name("FILE")
+      .needs(robhaz);
+  robhaz.excludes(filter);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
     filter.excludes(command.get_option(tables));
+    robhaz.excludes(command.get_option(tables));
   }
   command.add_flag("--json", options->as_json, "Print JSON");
-  command.footer("Exit status: 0 every limit of the file held, 1 bad input, 3 a limit failed.");
+  command.footer("Exit status: 0 every limit or asserted finding held, 1 bad input, 3 one failed.");
   command.callback([options, &status] {
-    status = options->filter ? execute_filter_study(*options) : execute(*options);
+    status = options->filter   ? execute_filter_study(*options)
+             : options->robhaz ? execute_robhaz_study(*options)
+                               : execute(*options);
   });
 }
 

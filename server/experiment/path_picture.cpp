@@ -38,7 +38,7 @@ constexpr std::string_view kStyle =
 
 Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const DrawnPath> paths) {
   Eigen::AlignedBox2d bounds(scenario.start.position());
-  bounds.extend(scenario.goal->position_W);
+  if (scenario.goal) bounds.extend(scenario.goal->position_W);
   for (const algo::Obstacle& obstacle : scenario.obstacles) bounds.extend(bounds_W(obstacle));
   for (const DrawnPath& path : paths) {
     for (const Vec2& p_W : path.track_W) bounds.extend(p_W);
@@ -58,8 +58,9 @@ void draw_world(const sim::Scenario& scenario, double goal_radius, SvgPlot& plot
   const double radius = scenario.robot.radius;
   const Vec2 start_W = scenario.start.position();
   plot.circle(start_W, radius, "class=\"outline\" stroke-dasharray=\"3 3\"");
-  plot.circle(scenario.goal->position_W, goal_radius, "class=\"outline\"");
   plot.text(start_W + Vec2(0, -radius - 0.15), "start");
+  if (!scenario.goal) return;
+  plot.circle(scenario.goal->position_W, goal_radius, "class=\"outline\"");
   plot.text(scenario.goal->position_W + Vec2(0.15, 0.15), "goal");
 }
 

@@ -21,8 +21,8 @@ struct DrawnPath {
   std::size_t stroke = 0;  // below kMostPaths: a colour and a dash
 };
 
-/// The obstacles where they are at the start, the robot's circle at the start, the goal with a ring
-/// of `goal_radius` [m], and the paths with their legend.
+/// The obstacles where they are at the start, the robot's circle at the start, the goal, if
+/// there is one, with a ring of `goal_radius` [m], and the paths with their legend.
 std::string draw_paths(std::string_view title,
                        const sim::Scenario& scenario,
                        double goal_radius,
