@@ -18,11 +18,12 @@ constexpr double kIdleEvery = 1.0;
 constexpr double kIdleBesideEvery = 0.25;
 constexpr double kStep = 0.02;  // [s] largest step of a roll-out
 constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
-constexpr double kRounding = 1e-9;   // [m]
-constexpr double kNoMotion = 0.015;  // [m/s] so slow that it could back into the unseen unnoticed
-constexpr double kSwerve = 1.0;      // [m/s2] by which what moves may depart from its course
-constexpr double kBlur = 0.05;       // [m] error of the outline of what moves
-constexpr double kTowards = 0.02;    // [m/s] below it the robot does not approach what moves
+constexpr double kRounding = 1e-9;     // [m]
+constexpr double kNoMotion = 0.015;    // [m/s] so slow that it could back into the unseen unnoticed
+constexpr double kSwerve = 1.0;        // [m/s2] by which what moves may depart from its course
+constexpr double kBlur = 0.05;         // [m] error of the outline of what moves
+constexpr double kTowards = 0.02;      // [m/s] below it the robot does not approach what moves
+constexpr double kNearestEcho = 0.15;  // [m] a sonar reads nothing nearer: so far away it must stay
 constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
 constexpr std::size_t kMostBeside = 1024;
 constexpr std::size_t kMostMovers = 64;
@@ -125,10 +126,13 @@ void StickGuard::prepare(const Resource& in) {
   }
 }
 
-/// [m] Distance from the hull at `pose_W` to the nearest known obstacle.
+/// [m] Distance from the hull at `pose_W` to the nearest known obstacle; to an echo, less what a
+/// sonar cannot tell.
 double StickGuard::room(const Pose2& pose_W) const {
   double least = hull_.clearance(map_, pose_W);
-  for (const Vec2& point_W : beside_W_) least = std::min(least, hull_.distance(pose_W, point_W));
+  for (const Vec2& point_W : beside_W_) {
+    least = std::min(least, hull_.distance(pose_W, point_W) - kNearestEcho);
+  }
   return least;
 }
 

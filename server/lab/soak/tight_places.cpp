@@ -19,6 +19,9 @@ constexpr double kDoorTime = 30;     // [s]
 constexpr double kFarther = 0.5;     // [m] farther from the wall: it has been left
 constexpr double kLeaveTime = 60;    // [s]
 constexpr double kPhase = 1.0;       // [s] of one deflection
+constexpr double kMostSlant = 1.2;   // [rad] of the robot's way off the wall's normal
+constexpr double kComesFrom = 0.8;   // [m] of the hull's circle from the wall at the start
+constexpr double kStopped = 1.0;     // [s] without motion
 constexpr double kFacesAway = 1.0;   // [rad] off the way from the wall: ahead leads away
 constexpr std::uint64_t kWallPurpose = 0x3A11;
 
@@ -46,20 +49,25 @@ bool passes_door(sim::Scenario scenario, double off) {
   return false;
 }
 
-/// A wall along y = 0, with the robot above it.
+/// A wall along y = 0. The robot comes from above, until the guard stops it.
 bool leaves_wall(sim::Scenario scenario, int pose) {
   sim::Random random(static_cast<std::uint64_t>(pose), kWallPurpose);
-  constexpr double kLength = 8;
+  constexpr double kLength = 16;
   add_wall(scenario, {0, -kPlaceWall / 2, 0}, kLength);
-  const double heading = random.uniform(-std::numbers::pi, std::numbers::pi);
-  const sim::Hull hull = sim::hull_of(scenario.robot);
-  const double reach = hull.is_disc() ? hull.radius
-                                      : hull.half_length * std::abs(std::sin(heading)) +
-                                            hull.half_width * std::abs(std::cos(heading));
-  scenario.start = {0, reach + random.uniform(0.01, 0.08), heading};
+  const double heading = -kAcross + random.uniform(-kMostSlant, kMostSlant);
+  scenario.start = {0, sim::hull_of(scenario.robot).radius + kComesFrom, algo::wrap_angle(heading)};
   HandDrive robot(scenario, 1);
-  const double left = scenario.start.y + kFarther;
-  for (int phase = 0; robot.observation().stamp < kLeaveTime; ++phase) {
+  double newest = 0;  // [s] of motion
+  algo::Pose2 before_W = robot.truth().pose;
+  while (robot.observation().stamp - newest < kStopped) {
+    robot.tick({1, 0});
+    if (robot.truth().pose.position() != before_W.position()) newest = robot.observation().stamp;
+    if (robot.observation().stamp > kLeaveTime) return false;  // it has not met the wall
+    before_W = robot.truth().pose;
+  }
+  const double end = robot.observation().stamp + kLeaveTime;
+  const double left = robot.truth().pose.y + kFarther;
+  for (int phase = 0; robot.observation().stamp < end; ++phase) {
     const double off = algo::wrap_angle(kAcross - robot.truth().pose.heading);  // from the way out
     const double turn = off < 0 ? -1 : 1;
     const bool faces_away = std::abs(off) < kFacesAway;

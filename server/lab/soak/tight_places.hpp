@@ -7,7 +7,7 @@ namespace server::soak {
 
 inline constexpr double kDoor = 0.9;    // [m] wide
 inline constexpr int kDoorPoses = 10;   // before the door, up to 2 cm off its middle
-inline constexpr int kWallPoses = 100;  // of every heading, 1 to 8 cm from the wall
+inline constexpr int kWallPoses = 100;  // at a wall to which it drove, up to 69 degrees aslant
 
 struct TightPlaces {
   int doors_passed = 0;  // of kDoorPoses, with full stick ahead in mode guarded

@@ -264,8 +264,8 @@ TEST(StickGuard, SonarsLetItBackFastAndStopIt) {
   robot.start();
   robot.hold({-1, 0}, 8);
   EXPECT_GT(robot.fastest_back, 0.45);
-  EXPECT_GT(robot.least, 0.03);
-  EXPECT_LT(robot.least, 0.15);
+  EXPECT_GT(robot.least, 0.16) << "a sonar reads nothing nearer than 0.15 m";
+  EXPECT_LT(robot.least, 0.3);
 }
 
 TEST(StickGuard, ADriverCanLeaveATightPlace) {
