@@ -23,7 +23,8 @@ constexpr double kNoMotion = 0.015;    // [m/s] so slow that it could back into 
 constexpr double kSwerve = 1.0;        // [m/s2] by which what moves may depart from its course
 constexpr double kBlur = 0.05;         // [m] error of the outline of what moves
 constexpr double kTowards = 0.02;      // [m/s] below it the robot does not approach what moves
-constexpr double kNearestEcho = 0.15;  // [m] a sonar reads nothing nearer: so far away it must stay
+constexpr double kNearestEcho = 0.15;  // [m] a sonar reads nothing nearer
+constexpr double kSamePlace = 0.15;    // [m] a sonar does not know its echo's bearing better
 constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
 constexpr std::size_t kMostBeside = 1024;
 constexpr std::size_t kMostMovers = 64;
@@ -116,7 +117,9 @@ void StickGuard::prepare(const Resource& in) {
   beside_W_.clear();
   const Pose2& here = seen.odometry.pose;
   in.merge->each_beside(here, seen.stamp, in.scene->scan, [&](const Vec2& point_W) {
-    if (beside_W_.size() < kMostBeside) beside_W_.push_back(point_W);
+    bool mapped = false;  // a scanner has seen it too, and knows better where it is
+    map_.each_near(point_W, kSamePlace, [&](const Vec2&) { mapped = true; });
+    if (!mapped && beside_W_.size() < kMostBeside) beside_W_.push_back(point_W);
   });
   movers_.clear();
   for (MoverWatch* watch : {&ahead_, &beside_}) {

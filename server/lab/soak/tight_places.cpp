@@ -22,7 +22,7 @@ constexpr double kPhase = 1.0;       // [s] of one deflection
 constexpr double kMostSlant = 1.2;   // [rad] of the robot's way off the wall's normal
 constexpr double kComesFrom = 0.8;   // [m] of the hull's circle from the wall at the start
 constexpr double kStopped = 1.0;     // [s] without motion
-constexpr double kFacesAway = 1.0;   // [rad] off the way from the wall: ahead leads away
+constexpr double kFacesAway = 1.3;   // [rad] off the way from the wall: ahead still leads away
 constexpr std::uint64_t kWallPurpose = 0x3A11;
 
 void add_wall(sim::Scenario& scenario, const algo::Pose2& pose_W, double length) {
