@@ -38,7 +38,7 @@ StickStamp take_stamp(json& body) {
   return stamp;
 }
 
-void heed(const ControlLease::Refusal& refusal) {
+void refuse_if(const ControlLease::Refusal& refusal) {
   if (refusal) throw LeaseRefusal(*refusal);
 }
 
@@ -86,19 +86,19 @@ json lease_action(Session& session, const Sender& sender, const json& body) {
   if (action == "take") {
     const bool force = in.flag_or("force", false);
     if (!lease.holds(sender.who, sender.key)) {
-      heed(lease.take(sender.who, force, now));
+      refuse_if(lease.take(sender.who, force, now));
       took = true;
       session.pass_controls();
       tell_deed(session, who, force ? "takes the controls by force" : "takes the controls");
     }
     lease.touch(now);
   } else if (action == "ask") {
-    heed(lease.ask(sender.who, now));
+    refuse_if(lease.ask(sender.who, now));
     session.tell();
     tell_deed(session, who, "asks for the controls");
   } else if (action == "give") {
     require_holder(lease, sender);
-    heed(lease.give(in.whole("to", UINT32_MAX), now));
+    refuse_if(lease.give(in.whole("to", UINT32_MAX), now));
     session.pass_controls();
     tell_deed(session, who, "hands the controls over");
   } else if (action == "release") {
