@@ -148,13 +148,13 @@ void ContactWitness::take_return(const algo::Vec2& point_W, double stamp) {
 
 bool ContactWitness::was_seen(const algo::Vec2& point_W, double now) const {
   constexpr int kReach = static_cast<int>(kSamePlace / kPatch) + 1;
+  constexpr int kHalf = kPatches / 2;
   const int column = cell_of(point_W.x());
   const int row = cell_of(point_W.y());
   for (int y = row - kReach; y <= row + kReach; ++y) {
     for (int x = column - kReach; x <= column + kReach; ++x) {
       if (x < 0 || y < 0 || x >= kPatches || y >= kPatches) continue;
-      const algo::Vec2 middle_W((x - kPatches / 2 + 0.5) * kPatch,
-                                (y - kPatches / 2 + 0.5) * kPatch);
+      const algo::Vec2 middle_W((x - kHalf + 0.5) * kPatch, (y - kHalf + 0.5) * kPatch);
       if ((middle_W - point_W).norm() > kSamePlace) continue;
       const float at =
           returned_[static_cast<std::size_t>(y) * kPatches + static_cast<std::size_t>(x)];
