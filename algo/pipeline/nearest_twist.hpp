@@ -25,7 +25,7 @@ Twist2 nearest_twist(const Twist2& wanted,
                      const Twist2& full,
                      Admits&& admits) {
   constexpr int kCells = 4;
-  constexpr double kFinest = 1.0 / 128;
+  constexpr int kHalvings = 5;  // to a 128th
   struct Place {
     double v = 0, omega = 0;  // shares of `most`
     double far = 0;           // squared distance from `wanted`
@@ -42,7 +42,8 @@ Twist2 nearest_twist(const Twist2& wanted,
   if (most == Twist2{} || admits(most)) return most;
   int checks = 1;
 
-  std::array<Place, (kCells + 1) * (kCells + 1)> grid{};
+  constexpr std::size_t kPlaces = kCells + 1;
+  std::array<Place, kPlaces * kPlaces> grid{};
   std::size_t count = 0;
   const int from_v = most.v == 0 ? kCells : 0;  // a zero has no shares
   const int from_omega = most.omega == 0 ? kCells : 0;
@@ -62,7 +63,9 @@ Twist2 nearest_twist(const Twist2& wanted,
     break;
   }
 
-  for (double step = 0.5 / kCells; step >= kFinest; step /= 2) {
+  double step = 1.0 / kCells;
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    step /= 2;
     const double v = std::min(1.0, best.v + step);
     const double omega = std::min(1.0, best.omega + step);
     std::array<Place, 3> next{place(v, omega), place(v, best.omega), place(best.v, omega)};

@@ -98,9 +98,9 @@ void StickGuard::look_around(const Resource& in) {
   }
   if (!looks_beside) return;
   MoverWatch* movers = in.manual ? &beside_ : nullptr;
-  for (const LaserScan& scan : seen.scans) {
-    if (&scan == ahead) continue;
-    look(in, scan, movers);
+  for (std::size_t i = 0; i < seen.scans.size(); ++i) {
+    if (&seen.scans[i] == ahead) continue;
+    look(in, seen.scans[i], movers);
     movers = nullptr;  // a tracker follows one scanner
   }
   next_look_beside_ = seen.stamp + kIdleBesideEvery;
