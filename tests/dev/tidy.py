@@ -49,12 +49,16 @@ def key(group, files, rules):
     return digest.hexdigest()[:32]
 
 
+def sources_of(group, files):
+    """The sources of ours that a group compiles; none if all of them are generated."""
+    return [path for path in files if path.suffix == ".cpp"] if "/Unity/" in str(group) else [group]
+
+
 def joined(group, files, root, folder):
     """The sources of a group as one file, and for each of its lines the line it comes from. Included ones would
     not do: the analyzer passes over all that is not in the main file."""
-    sources = [path for path in files if path.suffix == ".cpp"] if "/Unity/" in str(group) else [group]
     lines, origins = [], []
-    for source in sources:
+    for source in sources_of(group, files):
         for number, line in enumerate(source.read_text(encoding="utf-8").split("\n"), 1):
             lines.append(line)
             origins.append(f"{source.relative_to(root)}:{number}")
@@ -92,6 +96,8 @@ def main():
         if not relative.startswith(FOLDERS) and "/Unity/" not in relative:
             continue  # generated
         files = ours(group, root)
+        if not sources_of(group, files):
+            continue  # generated
         mark = cache / (key(group, files, rules) + ".ok")
         if not mark.exists():
             todo.append((group.stat().st_size + sum(path.stat().st_size for path in files), entry, files, mark))
