@@ -8,7 +8,6 @@ import "./style/names.css";
 import "./style/runs.css";
 import "./style/hardware.css";
 import "./style/timeline.css";
-import "./style/world.css";
 import "./style/people.css";
 import "./style/narrow.css";
 import "./style/short.css";

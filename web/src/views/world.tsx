@@ -1,13 +1,17 @@
 // web/src/views/world.tsx: the World tab: the world's name, its files, start and goals, what was changed.
 import { JSX } from "preact";
+import css from "../style/world.css?text";
 import { use_app, use_ui } from "../app";
 import { reordered } from "../edit/edits";
 import { degrees } from "../geometry";
 import { is_robot } from "../obstacle";
 import { use_pulse } from "../state/store";
 import { icons } from "../ui/icons";
+import { adopt } from "../ui/sheet";
 import { fixed } from "../words";
 import { WorldFiles } from "./world_files";
+
+adopt(css);
 
 const kPulse = 300; // [ms]
 
