@@ -20,9 +20,9 @@ constexpr double kStep = 0.02;  // [s] largest step of a roll-out
 constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
 constexpr double kRounding = 1e-9;     // [m]
 constexpr double kNoMotion = 0.015;    // [m/s] so slow that it could back into the unseen unnoticed
-constexpr double kSwerve = 1.0;        // [m/s2] by which what moves may depart from its course
-constexpr double kBlur = 0.05;         // [m] error of the outline of what moves
-constexpr double kTowards = 0.02;      // [m/s] below it the robot does not approach what moves
+constexpr double kSwerve = 1.0;        // [m/s2] a moving obstacle may leave its course by it
+constexpr double kBlur = 0.05;         // [m] error of a moving obstacle's outline
+constexpr double kTowards = 0.02;      // [m/s] a slower motion is no approach
 constexpr double kNearestEcho = 0.15;  // [m] a sonar reads nothing nearer
 constexpr double kSamePlace = 0.15;    // [m] a sonar does not know its echo's bearing better
 constexpr std::uint16_t kMemory = 4500;  // scans: two minutes of an LMS200
@@ -53,7 +53,7 @@ void StickGuard::reset(const Pose2& start_W) {
   mapped_.reset();
 }
 
-/// `movers` follows what moves in this scanner's scans; null: nobody does.
+/// `movers` tracks the moving obstacles in this scanner's scans; null: they are not tracked.
 void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* movers) {
   // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;

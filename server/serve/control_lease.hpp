@@ -31,8 +31,8 @@ class ControlLease {
   using Time = Clock::time_point;
   static constexpr std::chrono::seconds kSilent{5};      // without a control: others may take over
   static constexpr std::chrono::seconds kForgotten{60};  // without a control: it ends
-  static constexpr std::chrono::seconds kPublisher{
-      2};                                           // the same of one who only publishes a Twist
+  /// The same of a client that only publishes a Twist.
+  static constexpr std::chrono::seconds kPublisher{2};
   static constexpr std::chrono::seconds kAsks{30};  // a question is forgotten
   static constexpr std::size_t kMostAsking = 16;
 

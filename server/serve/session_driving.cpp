@@ -50,7 +50,8 @@ void Session::count_unreadable_stick() {
 void Session::watch_lease() {
   const auto now = ControlLease::Clock::now();
   after([&] { return lease_.expire(now); });
-  if (std::exchange(told_silent_, lease_.silent(now)) != lease_.silent(now)) changed();
+  const bool silent = lease_.silent(now);
+  if (std::exchange(told_silent_, silent) != silent) changed();
 }
 
 }  // namespace server

@@ -1,5 +1,5 @@
-// server/serve/stick_watch.hpp: judges the sticks that come over a link: none that is late, out of
-// order, or pushed by nobody's hand reaches the robot.
+// server/serve/stick_watch.hpp: judges the sticks that come over a link. A stick that is late, out
+// of order, or held since before the link worked does not reach the robot.
 #pragma once
 
 #include <chrono>
