@@ -100,7 +100,7 @@ void Experiments::make_room(std::uint64_t bytes) {
     if (!rules_.evict_oldest || !oldest) throw net::HttpError(503, reason + " Delete one.");
     spdlog::info("{} The oldest that has ended is deleted: {}.", reason, oldest->info().name);
     bytes -= std::min(bytes, bytes_in(oldest->folder()));
-    drop(oldest);
+    drop(oldest->info().id);
   }
 }
 
@@ -188,16 +188,17 @@ void Experiments::cancel(const std::string& id) {
 
 void Experiments::remove(const std::string& id) {
   const std::lock_guard lock(mutex_);
-  const auto it = all_.find(id);
-  if (it == all_.end()) not_found(id);
-  drop(it->second);
+  drop(id);
 }
 
 /// Holds mutex_.
-void Experiments::drop(const std::shared_ptr<Experiment>& experiment) {
+void Experiments::drop(const std::string& id) {
+  const auto found = all_.find(id);
+  if (found == all_.end()) not_found(id);
+  const std::shared_ptr<Experiment> experiment = std::move(found->second);
+  all_.erase(found);
   experiment->cancel();
   std::erase(looked_at_, experiment);
-  all_.erase(experiment->info().id);
   if (experiment->at_work()) {
     removed_.push_back(experiment);
   } else {

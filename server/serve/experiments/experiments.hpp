@@ -79,7 +79,7 @@ class Experiments {
   experiment::Pool::Job take(const std::stop_token& stop);
   void work(const Turn& turn, const std::stop_token& stop);
   void ring();
-  void drop(const std::shared_ptr<Experiment>& experiment);
+  void drop(const std::string& id);
   static void delete_files(const Experiment& experiment);
 
   const ExperimentRules rules_;
