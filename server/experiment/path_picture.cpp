@@ -12,9 +12,9 @@ namespace {
 
 using algo::Vec2;
 
-constexpr double kPictureWidth = 560;  // [px]
-constexpr double kEdge = 0.6;          // [m] of margin around the drawing
-constexpr double kSpacing = 0.03;      // [m] between the drawn points of a path
+constexpr double kPictureWidth = 560;   // [px]
+constexpr double kEdge = 0.6;           // [m] of margin around the drawing
+constexpr double kDrawnSpacing = 0.03;  // [m] between the drawn points of a path
 // Dashes as well, for colour-blind readers.
 constexpr std::array<const char*, kMostPaths> kStrokes{
     "stroke=\"#d1495b\" stroke-width=\"2\"",
@@ -75,7 +75,7 @@ std::string draw_paths(std::string_view title,
   draw_world(scenario, goal_radius, plot);
   for (const DrawnPath& path : paths) {
     const char* const stroke = kStrokes.at(path.stroke);
-    plot.polyline(thinned(path.track_W, kSpacing), stroke);
+    plot.polyline(thinned(path.track_W, kDrawnSpacing), stroke);
     plot.legend(stroke, path.words);
   }
   return plot.document(title);

@@ -9,8 +9,8 @@ namespace {
 
 using algo::Vec2;
 
-constexpr double kSpacing = 0.05;    // [m]
-constexpr double kMostPoints = 400;  // of a coarse track
+constexpr double kKeptSpacing = 0.05;  // [m]
+constexpr double kMostPoints = 400;    // of a coarse track
 
 double length(std::span<const Vec2> track_W) {
   double sum = 0;
@@ -29,7 +29,8 @@ std::vector<Vec2> thinned(std::span<const Vec2> track_W, double spacing) {
 }
 
 std::vector<Vec2> coarse(std::span<const Vec2> track_W) {
-  std::vector<Vec2> kept_W = thinned(track_W, std::max(kSpacing, length(track_W) / kMostPoints));
+  std::vector<Vec2> kept_W =
+      thinned(track_W, std::max(kKeptSpacing, length(track_W) / kMostPoints));
   if (!kept_W.empty() && kept_W.back() != track_W.back()) kept_W.push_back(track_W.back());
   for (Vec2& p_W : kept_W) {
     p_W = {std::round(100 * p_W.x()) / 100, std::round(100 * p_W.y()) / 100};

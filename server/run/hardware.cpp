@@ -41,7 +41,7 @@ double scan_timeout(const drivers::RobotFile& file) {
   return longest;
 }
 
-json to_json(const algo::DeviceReport& device) {
+json device_json(const algo::DeviceReport& device) {
   json facts = json::object();
   for (const auto& [name, value] : device.facts) facts[name] = value;
   return {{"name", device.name},
@@ -134,7 +134,7 @@ json to_json(const algo::LatenessHistogram& lateness) {
 
 json to_json(const algo::HealthReport& report) {
   json devices = json::array();
-  for (const algo::DeviceReport& device : report.devices) devices.push_back(to_json(device));
+  for (const algo::DeviceReport& device : report.devices) devices.push_back(device_json(device));
   return {{"armed", report.armed},
           {"halt", algo::name(report.halt)},
           {"trouble", report.trouble},

@@ -57,20 +57,21 @@ verb_fmt() {
 
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
-# ThreadSanitizer runs only the tests of rooms that start threads; the others would only take time.
+# Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
+# the others would only take time.
 verb_sanitize() {
-  local targets=() only=()
+  local rooms
   case "${1:-}" in
-    asan) targets=(tests_algo tests_sim tests_drivers tests_db tests_server fuzz) only=(-E '_NOT_BUILT$|^Dev\.|^Docs\.|^Bench\.') ;;
-    tsan) targets=(test_server_{run,record,experiment,external,serve,emulate} tests_db) only=(-E '_NOT_BUILT$|^Dev\.|^Bench\.|^fuzz_') ;;
+    asan) rooms=(algo sim drivers db server_{run,record,experiment,lab,external,serve,emulate,cli}) ;;
+    tsan) rooms=(db server_{run,record,experiment,external,serve,emulate}) ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac
   need clang-16 libclang-rt-16-dev
-  build_all "$1" "${targets[@]}"
+  build_all "$1" "${rooms[@]/#/test_}"
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1:second_deadlock_stack=1:suppressions=$root/tests/dev/tsan.supp}
-  run_ctest "$1" "${only[@]}"
+  run_ctest "$1" -R "^test_($(IFS='|' && printf '%s' "${rooms[*]}"))[.]"
   closing_line
 }
 

@@ -16,10 +16,10 @@ using algo::Twist2;
 
 double g_now = 0;  // NOLINT: the base takes a plain function for its clock
 
-constexpr double kTick = 0.05;  // [s]
+constexpr double kAnalogTick = 0.05;  // [s]
 constexpr Volts kNone{0, 0};
 
-AnalogSetup setup() {
+AnalogSetup analog_setup() {
   AnalogSetup out;
   out.wheel_radius = 0.1;
   out.half_track = 0.25;
@@ -30,7 +30,7 @@ AnalogSetup setup() {
 }
 
 struct Bench {
-  explicit Bench(const AnalogSetup& with = setup())
+  explicit Bench(const AnalogSetup& with = analog_setup())
       : base(
             "card",
             with,
@@ -48,7 +48,7 @@ struct Bench {
   }
   void drive(const Twist2& twist, int ticks) {
     for (int i = 0; i < ticks; ++i) {
-      g_now += kTick;
+      g_now += kAnalogTick;
       base.drive(twist);
     }
   }
@@ -103,7 +103,7 @@ TEST(AnalogBase, OnlyTicksToggleTheRelay) {
   bench.drive({0.1, 0}, 4);
   EXPECT_EQ(bench.wiring.relay_changes, before + 4);
   for (int i = 0; i < 20; ++i) {
-    g_now += kTick;
+    g_now += kAnalogTick;
     bench.base.state();
     bench.base.report();
   }
@@ -127,12 +127,12 @@ TEST(AnalogBase, SwitchingOffBrakesWithPowerThenOpensTheRelay) {
   bench.base.enable(false);
   EXPECT_EQ(bench.wiring.volts, kNone);
   bench.roll(16);
-  g_now += kTick;
+  g_now += kAnalogTick;
   bench.base.stop();
   EXPECT_TRUE(bench.base.state().motors_on)
       << "it rolls: an amplifier without power does not brake";
   for (int i = 0; i < 6; ++i) {
-    g_now += kTick;
+    g_now += kAnalogTick;
     bench.base.state();
     bench.base.stop();
   }
@@ -152,7 +152,7 @@ TEST(AnalogBase, OdometryContinuesOverTheCounterWrap) {
 TEST(AnalogBase, ACounterResetAddsNoTravel) {
   Bench bench;
   ASSERT_TRUE(bench.comes_to(true));
-  g_now += kTick;
+  g_now += kAnalogTick;
   bench.wiring.inputs.counts = {1'000'000'000, 0};
   EXPECT_EQ(bench.base.state().pose, algo::Pose2{});
   g_now += 1;
@@ -161,7 +161,7 @@ TEST(AnalogBase, ACounterResetAddsNoTravel) {
 }
 
 TEST(AnalogBase, NothingCreepsAtRest) {
-  AnalogSetup with = setup();
+  AnalogSetup with = analog_setup();
   with.gain = 5;
   Bench bench(with);
   ASSERT_TRUE(bench.comes_to(true));
@@ -172,7 +172,7 @@ TEST(AnalogBase, NothingCreepsAtRest) {
 }
 
 TEST(AnalogBase, TheProportionalTermSpeedsUpASlowWheel) {
-  AnalogSetup with = setup();
+  AnalogSetup with = analog_setup();
   with.gain = 5;  // [V s/m]
   Bench bench(with);
   ASSERT_TRUE(bench.comes_to(true));
@@ -189,7 +189,7 @@ TEST(AnalogBase, ReportsTheDigitalLines) {
   ASSERT_TRUE(bench.comes_to(true));
   bench.wiring.inputs.stop_button = true;
   bench.wiring.inputs.bumper_front = true;
-  g_now += kTick;
+  g_now += kAnalogTick;
   EXPECT_TRUE(bench.base.state().stop_button);
   EXPECT_TRUE(bench.base.state().bumper_front);
   EXPECT_FALSE(bench.base.report().well);
@@ -198,7 +198,7 @@ TEST(AnalogBase, ReportsTheDigitalLines) {
   bench.wiring.inputs.fault = true;
   bench.wiring.inputs.relay_closed = false;
   bench.base.enable(true);
-  g_now += kTick;
+  g_now += kAnalogTick;
   EXPECT_TRUE(bench.base.state().faulty);
   EXPECT_FALSE(bench.base.state().motors_on) << "told to close, the relay is open";
   EXPECT_NE(bench.base.report().sentence.find("fault"), std::string::npos);
@@ -225,7 +225,7 @@ TEST(AnalogBase, ALostCardIsReopenedWithMotorsOff) {
 TEST(AnalogBase, ACardThatOpensAndFailsIsNotOpenedWithoutPause) {
   Wiring wiring;
   wiring.refuses_volts = true;
-  AnalogBase base("card", setup(), [&] { return std::make_unique<FakeCard>(wiring); });
+  AnalogBase base("card", analog_setup(), [&] { return std::make_unique<FakeCard>(wiring); });
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_LE(wiring.opened, 2U);
   EXPECT_FALSE(base.state().running);
@@ -236,13 +236,13 @@ TEST(AnalogBase, LeavesZeroVoltsBehind) {
   Wiring wiring;
   {
     AnalogBase base(
-        "card", setup(), [&] { return std::make_unique<FakeCard>(wiring); }, [] { return g_now; });
+        "card", analog_setup(), [&] { return std::make_unique<FakeCard>(wiring); }, [] { return g_now; });
     for (int i = 0; i < 500 && !base.state().running; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     base.enable(true);
     for (int i = 0; i < 5; ++i) {
-      g_now += kTick;
+      g_now += kAnalogTick;
       base.drive({0.3, 0});
     }
     EXPECT_GT(wiring.volts[0], 0);

@@ -11,7 +11,7 @@
 namespace sim {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kTurnedMount = std::numbers::pi;
 
 std::string scan(const std::string& readings,
                  const std::string& poses,
@@ -115,7 +115,7 @@ TEST(Replay, MountsComeFromTheTwoPoses) {
   EXPECT_NEAR(seen.scans[0].mount_R.heading, 0, 1e-9);
   ASSERT_TRUE(robot->step({}, seen));
   EXPECT_NEAR(seen.scans[0].mount_R.x, -0.3, 1e-9);
-  EXPECT_NEAR(std::abs(seen.scans[0].mount_R.heading), kPi, 1e-9);
+  EXPECT_NEAR(std::abs(seen.scans[0].mount_R.heading), kTurnedMount, 1e-9);
 }
 
 TEST(Replay, MillimetreLogsKeepTheirMillimetres) {

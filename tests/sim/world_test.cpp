@@ -16,7 +16,7 @@ namespace {
 using algo::Observation;
 using algo::Pose2;
 
-algo::Obstacle cylinder(std::uint32_t id, double x, double y, double radius = 0.3) {
+algo::Obstacle cylinder_at(std::uint32_t id, double x, double y, double radius = 0.3) {
   return {.id = id, .pose_W = {x, y, 0}, .shape = algo::Cylinder{radius}};
 }
 
@@ -47,11 +47,11 @@ TEST(World, RefusesScenariosInASentence) {
   scenario.start.x = std::nan("");
   EXPECT_EQ(failure(scenario), "The scenario's start must be finite numbers.");
   scenario = {};
-  scenario.obstacles = {cylinder(4, 0.53, 0)};  // 0.53 - 0.3 - 0.35 = -0.12
+  scenario.obstacles = {cylinder_at(4, 0.53, 0)};  // 0.53 - 0.3 - 0.35 = -0.12
   EXPECT_EQ(failure(scenario), "Obstacle 4 would overlap the robot: 0.12 m too close.");
-  scenario.obstacles = {cylinder(4, 2, 0), cylinder(4, 3, 0)};
+  scenario.obstacles = {cylinder_at(4, 2, 0), cylinder_at(4, 3, 0)};
   EXPECT_EQ(failure(scenario), "There is an obstacle 4 already.");
-  scenario.obstacles = {cylinder(4, 2, 0, -1)};
+  scenario.obstacles = {cylinder_at(4, 2, 0, -1)};
   EXPECT_NE(failure(scenario), "");
   scenario = {};
   scenario.robot.sensors.lasers.front().noise = -1;
@@ -66,10 +66,10 @@ TEST(World, EditsAreCarriedOutOrRefusedWithTheReason) {
     Observation seen;
     world->reset(seen);
     EXPECT_TRUE(std::isinf(world->ground_truth()->obstacle_distance));
-    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder(1, 2, 0)}), std::nullopt);
+    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 2, 0)}), std::nullopt);
     EXPECT_NEAR(world->ground_truth()->obstacle_distance, 1.7, 1e-12);
-    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder(1, 4, 0)}), "There is an obstacle 1 already.");
-    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder(2, 0.4, 0)}),
+    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 4, 0)}), "There is an obstacle 1 already.");
+    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(2, 0.4, 0)}),
               "Obstacle 2 would overlap the robot: 0.25 m too close.");
     EXPECT_EQ(world->edit(algo::MoveObstacle{9, {}}), "There is no obstacle 9.");
     EXPECT_EQ(world->edit(algo::MoveObstacle{1, {0.1, 0, 0}}),
@@ -95,7 +95,7 @@ TEST(World, AnAddedObstacleIsSeenAndBlocks) {
     world->reset(seen);
     ASSERT_EQ(seen.scans.size(), 1u);  // a flat-time scan is available from the start
     EXPECT_EQ(seen.scans[0].status[180], algo::Beam::Free);
-    ASSERT_EQ(world->edit(algo::AddObstacle{cylinder(1, 1.5, 0)}), std::nullopt);
+    ASSERT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 1.5, 0)}), std::nullopt);
     ASSERT_TRUE(world->step({{0.5, 0}}, seen));
     EXPECT_NEAR(seen.scans[0].ranges[180], 1.2 - world->ground_truth()->pose.x, 0.0006);
     bool pressed = false;
@@ -205,7 +205,7 @@ TEST(World, EditsAtTheSameTickGiveTheSameRun) {
     std::vector<double> all;
     for (int tick = 0; tick < 150; ++tick) {
       if (tick == edit_tick) {
-        EXPECT_EQ(world->edit(algo::AddObstacle{cylinder(77, 1.0, 1.0)}), std::nullopt);
+        EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(77, 1.0, 1.0)}), std::nullopt);
       }
       EXPECT_TRUE(world->step({{0.4, 0.35}}, seen));
       all.push_back(seen.odometry.pose.x);

@@ -16,13 +16,13 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-json document() {
+json pictured() {
   return {{"name", "pictured"},
           {"scenarios", {{{"name", "free"}, {"goal", {{"x", 1}, {"y", 0}}}}}},
           {"controllers", {{{"name", "original"}, {"label", "<b>&amp"}}, "strip"}}};
 }
 
-Plan plan_of(const json& source) {
+Plan plan_from(const json& source) {
   return Plan(document_from_json(source, ScenarioLibrary("", "")));
 }
 
@@ -45,13 +45,13 @@ std::string html_of(const Plan& plan, const Rows& rows) {
 }
 
 std::string html_of(const json& source) {
-  const Plan plan = plan_of(source);
+  const Plan plan = plan_from(source);
   const Rows rows = rows_of(plan);
   return html_of(plan, rows);
 }
 
 std::vector<std::string> pictures_for(const json& source) {
-  const Plan plan = plan_of(source);
+  const Plan plan = plan_from(source);
   const Rows rows = rows_of(plan);
   std::vector<std::string> files;
   for (const Picture& each : pictures_of(plan, rows, results_of(plan, rows))) {
@@ -61,7 +61,7 @@ std::vector<std::string> pictures_for(const json& source) {
 }
 
 TEST(SweepHtml, LoadsNothingAndEscapesLabels) {
-  const std::string html = html_of(document());
+  const std::string html = html_of(pictured());
   EXPECT_THAT(html, HasSubstr("<td>&lt;b&gt;&amp;amp</td>"));
   EXPECT_THAT(html, Not(HasSubstr("<b>")));
   for (const char* const outside : {"src=", "href=", "@import", "url("}) {
@@ -72,7 +72,7 @@ TEST(SweepHtml, LoadsNothingAndEscapesLabels) {
 }
 
 TEST(SweepHtml, AnIncompleteExperimentSaysSoFirst) {
-  const Plan plan = plan_of(document());
+  const Plan plan = plan_from(pictured());
   const Rows rows(plan.size());
   const std::string html = html_of(plan, rows);
   EXPECT_LT(html.find("INCOMPLETE: of 2 runs, 2 are missing"), html.find("<table>"));
@@ -80,7 +80,7 @@ TEST(SweepHtml, AnIncompleteExperimentSaysSoFirst) {
 }
 
 TEST(SweepHtml, TheTableOfRunsIsBounded) {
-  json source = document();
+  json source = pictured();
   source["repeats"] = kMostListed / 2;
   EXPECT_THAT(html_of(source), HasSubstr("Press a heading to sort."));
   source["repeats"] = kMostListed / 2 + 1;
@@ -88,7 +88,7 @@ TEST(SweepHtml, TheTableOfRunsIsBounded) {
 }
 
 TEST(SweepFigures, AGridOverTwoParametersHasAHeatMapOfEachController) {
-  json source = document();
+  json source = pictured();
   EXPECT_THAT(
       pictures_for(source),
       testing::ElementsAre("success.svg", "time_s.svg", "path_m.svg", "min_clearance_m.svg"));
@@ -100,7 +100,7 @@ TEST(SweepFigures, AGridOverTwoParametersHasAHeatMapOfEachController) {
 }
 
 TEST(SweepFigures, MoreArmsThanFitAreNotDrawn) {
-  json source = document();
+  json source = pictured();
   source["sweep"] = {{"random", {{"count", kMostDrawn}, {"parameters", {{"v_max", {0.1, 0.3}}}}}}};
   EXPECT_THAT(pictures_for(source), testing::IsEmpty());
 }

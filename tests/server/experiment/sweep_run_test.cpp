@@ -33,7 +33,7 @@ constexpr const char* kFiles[] = {"results.json",
                                   "pictures/paths_post.svg"};
 
 /// 1 m to the goal past a post: some hundredths of a second a run.
-json document() {
+json short_document() {
   return {{"name", "short"},
           {"scenarios",
            {{{"name", "post"},
@@ -47,7 +47,7 @@ json document() {
           {"comparisons", {{"baseline", "go_to_goal"}}}};
 }
 
-Plan plan_of(const json& source) {
+Plan short_plan(const json& source) {
   return Plan(document_from_json(source, ScenarioLibrary("", "")));
 }
 
@@ -82,7 +82,7 @@ std::vector<std::string> outcomes_in(const fs::path& store) {
 class SweepRun : public testing::Test {
  protected:
   fs::path folder(const char* name) const { return root_.path() / name; }
-  const Plan plan = plan_of(document());
+  const Plan plan = short_plan(short_document());
 
  private:
   tests::TemporaryFolder root_{};
@@ -136,10 +136,10 @@ TEST_F(SweepRun, SaysWhichLineOfItsLogIsDamaged) {
 TEST_F(SweepRun, RefusesTheFolderOfAnotherDocumentAndSaysHowItDiffers) {
   run_and_write(plan, folder("out"));
   const auto refusal = [&](const char* patch) {
-    json other = document();
+    json other = short_document();
     other.merge_patch(json::parse(patch));
     try {
-      run_sweep(plan_of(other), folder("out"), {});
+      run_sweep(short_plan(other), folder("out"), {});
     } catch (const std::runtime_error& e) {
       return std::string(e.what());
     }
@@ -252,19 +252,19 @@ TEST_F(SweepRun, PairsRunsOfTheSameScenarioSeedAndSetting) {
 }
 
 TEST_F(SweepRun, TheReportOfManyScenariosHasNoTableByScenario) {
-  json source = document();
+  json source = short_document();
   source["scenarios"] = {{{"random_layouts", {{"count", 150}}}}};
   const auto report = [](const Plan& each) {
     return to_markdown(each, results_of(each, Rows(each.size())));
   };
-  EXPECT_THAT(report(plan_of(source)), Not(HasSubstr("## By scenario")));
+  EXPECT_THAT(report(short_plan(source)), Not(HasSubstr("## By scenario")));
   EXPECT_THAT(report(plan), HasSubstr("## By scenario"));
 }
 
 TEST_F(SweepRun, TheRunsAreWrittenInBlocksAsOneTable) {
-  json source = document();
+  json source = short_document();
   source["repeats"] = 300;  // 2400 runs
-  const Plan many = plan_of(source);
+  const Plan many = short_plan(source);
   Rows rows(many.size());
   for (std::size_t i = 0; i < rows.size(); i += 2) {
     rows.set(i, experiment::Row{.outcome = algo::Outcome::Failed, .reason = "No, \"it\" broke."});
@@ -275,10 +275,10 @@ TEST_F(SweepRun, TheRunsAreWrittenInBlocksAsOneTable) {
 }
 
 TEST_F(SweepRun, SaysWhichControllerAndScenarioDoNotGoTogether) {
-  json source = document();
+  json source = short_document();
   source["scenarios"][0]["obstacles"][0]["x"] = 0;
   source["scenarios"][0]["obstacles"][0]["y"] = 0;
-  EXPECT_THAT([&] { plan_of(source).check(); },
+  EXPECT_THAT([&] { short_plan(source).check(); },
               ThrowsMessage<DocumentError>(StartsWith("scenarios: 'post': ")));
   EXPECT_NO_THROW(plan.check());
 }
@@ -291,7 +291,7 @@ TEST_F(SweepRun, EstimatesFromTheFirstSeconds) {
 }
 
 TEST_F(SweepRun, StoresWholeRunsOfAllOrOfThoseThatDoNotReach) {
-  json source = document();
+  json source = short_document();
   source.erase("sweep");
   source["repeats"] = 1;
   source["controllers"] = {"original", "go_to_goal"};
@@ -300,7 +300,7 @@ TEST_F(SweepRun, StoresWholeRunsOfAllOrOfThoseThatDoNotReach) {
       {{"name", "post"},
        {"goal", {{"x", 3}, {"y", 0}}},
        {"obstacles", {{{"type", "cylinder"}, {"x", 1.5}, {"y", 0.2}, {"radius", 0.1}}}}}};
-  const Plan few = plan_of(source);
+  const Plan few = short_plan(source);
   for (const bool failures_only : {false, true}) {
     const fs::path out = folder(failures_only ? "failures" : "all");
     make_folder(out);

@@ -10,30 +10,30 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const OperatorWatch::Time kStart{seconds(1000)};
+const OperatorWatch::Time kWatchStart{seconds(1000)};
 
 TEST(OperatorWatchTest, AMovingRobotIsDisarmed1500MsAfterTheLastSign) {
   OperatorWatch watch;
-  watch.page_sign(7, kStart);
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(1500)), nullptr);
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(1501)), OperatorWatch::kGone);
+  watch.page_sign(7, kWatchStart);
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart + milliseconds(1500)), nullptr);
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart + milliseconds(1501)), OperatorWatch::kGone);
   // WHEN another sign comes THEN the time restarts.
-  watch.script_sign(kStart + milliseconds(1600));
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(3000)), nullptr);
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart + milliseconds(3200)), OperatorWatch::kGone);
+  watch.script_sign(kWatchStart + milliseconds(1600));
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart + milliseconds(3000)), nullptr);
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart + milliseconds(3200)), OperatorWatch::kGone);
 }
 
 TEST(OperatorWatchTest, WithoutAnySignThereIsNoOperator) {
   OperatorWatch watch;
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart), OperatorWatch::kGone);
-  EXPECT_STREQ(watch.why_disarm(1, false, kStart), nullptr);
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart), OperatorWatch::kGone);
+  EXPECT_STREQ(watch.why_disarm(1, false, kWatchStart), nullptr);
 }
 
 TEST(OperatorWatchTest, AnArmedRobotAtRestIsDisarmedAfterAMinute) {
   OperatorWatch watch;
-  watch.script_sign(kStart);
+  watch.script_sign(kWatchStart);
   // GIVEN a robot armed long after the last sign, as by --armed THEN the time starts at the arming.
-  const auto armed = kStart + seconds(500);
+  const auto armed = kWatchStart + seconds(500);
   EXPECT_STREQ(watch.why_disarm(0, false, armed - seconds(1)), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, false, armed), nullptr);
   EXPECT_STREQ(watch.why_disarm(1, false, armed + seconds(60)), nullptr);
@@ -45,25 +45,25 @@ TEST(OperatorWatchTest, AnArmedRobotAtRestIsDisarmedAfterAMinute) {
 
 TEST(OperatorWatchTest, DisarmedAndUnattendedRobotsAreNotDisarmed) {
   OperatorWatch watch;
-  EXPECT_STREQ(watch.why_disarm(0, true, kStart), nullptr);
+  EXPECT_STREQ(watch.why_disarm(0, true, kWatchStart), nullptr);
   watch.need_nobody();
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart), nullptr);
-  EXPECT_STREQ(watch.why_disarm(1, false, kStart + seconds(3600)), nullptr);
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart), nullptr);
+  EXPECT_STREQ(watch.why_disarm(1, false, kWatchStart + seconds(3600)), nullptr);
 }
 
 TEST(OperatorWatchTest, WatchersArePagesAndScriptsWithARecentSign) {
   OperatorWatch watch;
-  EXPECT_EQ(watch.watchers(kStart), (Watchers{0, false}));
-  watch.page_sign(1, kStart);
-  watch.page_sign(2, kStart);
-  watch.page_sign(2, kStart + seconds(1));
-  watch.script_sign(kStart);
-  EXPECT_EQ(watch.watchers(kStart + seconds(1)), (Watchers{2, true}));
-  EXPECT_EQ(watch.watchers(kStart + seconds(2)), (Watchers{1, false}));
+  EXPECT_EQ(watch.watchers(kWatchStart), (Watchers{0, false}));
+  watch.page_sign(1, kWatchStart);
+  watch.page_sign(2, kWatchStart);
+  watch.page_sign(2, kWatchStart + seconds(1));
+  watch.script_sign(kWatchStart);
+  EXPECT_EQ(watch.watchers(kWatchStart + seconds(1)), (Watchers{2, true}));
+  EXPECT_EQ(watch.watchers(kWatchStart + seconds(2)), (Watchers{1, false}));
   // WHEN a page is closed THEN it no longer counts as watcher, but its last sign still counts.
   watch.page_gone(2);
-  EXPECT_EQ(watch.watchers(kStart + seconds(2)), (Watchers{0, false}));
-  EXPECT_STREQ(watch.why_disarm(1, true, kStart + seconds(2)), nullptr);
+  EXPECT_EQ(watch.watchers(kWatchStart + seconds(2)), (Watchers{0, false}));
+  EXPECT_STREQ(watch.why_disarm(1, true, kWatchStart + seconds(2)), nullptr);
 }
 
 TEST(OperatorWatchTest, AGoalACommandOrTurningWheelsMeanMoving) {
