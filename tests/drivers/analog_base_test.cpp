@@ -236,7 +236,10 @@ TEST(AnalogBase, LeavesZeroVoltsBehind) {
   Wiring wiring;
   {
     AnalogBase base(
-        "card", analog_setup(), [&] { return std::make_unique<FakeCard>(wiring); }, [] { return g_now; });
+        "card",
+        analog_setup(),
+        [&] { return std::make_unique<FakeCard>(wiring); },
+        [] { return g_now; });
     for (int i = 0; i < 500 && !base.state().running; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }

@@ -68,7 +68,8 @@ TEST(World, EditsAreCarriedOutOrRefusedWithTheReason) {
     EXPECT_TRUE(std::isinf(world->ground_truth()->obstacle_distance));
     EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 2, 0)}), std::nullopt);
     EXPECT_NEAR(world->ground_truth()->obstacle_distance, 1.7, 1e-12);
-    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 4, 0)}), "There is an obstacle 1 already.");
+    EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(1, 4, 0)}),
+              "There is an obstacle 1 already.");
     EXPECT_EQ(world->edit(algo::AddObstacle{cylinder_at(2, 0.4, 0)}),
               "Obstacle 2 would overlap the robot: 0.25 m too close.");
     EXPECT_EQ(world->edit(algo::MoveObstacle{9, {}}), "There is no obstacle 9.");

@@ -51,20 +51,24 @@ TEST(StickWatchTest, ASecondOfSilenceIsTheMiddle) {
 
 TEST(StickWatchTest, NoneOlderThanHalfASecondIsObeyed) {
   StickWatch sticks = watch();
-  EXPECT_FALSE(sticks.refusal(kAnnsLink, kPushed, at(1, kStickStart), kStickStart + milliseconds(500)));
-  const auto late = sticks.refusal(kAnnsLink, kPushed, at(2, kStickStart), kStickStart + milliseconds(601));
+  EXPECT_FALSE(
+      sticks.refusal(kAnnsLink, kPushed, at(1, kStickStart), kStickStart + milliseconds(500)));
+  const auto late =
+      sticks.refusal(kAnnsLink, kPushed, at(2, kStickStart), kStickStart + milliseconds(601));
   EXPECT_THAT(late.value_or(""), HasSubstr("0.6 s old"));
   EXPECT_EQ(sticks.dropped().late, 1U);
   // Those behind it are young, but the hand has not let go since.
   const auto now = kStickStart + milliseconds(650);
-  EXPECT_THAT(sticks.refusal(kAnnsLink, kPushed, at(3, now), now).value_or(""), HasSubstr("middle"));
+  EXPECT_THAT(sticks.refusal(kAnnsLink, kPushed, at(3, now), now).value_or(""),
+              HasSubstr("middle"));
   EXPECT_FALSE(sticks.refusal(kAnnsLink, kMiddle, at(4, now), now));
   EXPECT_FALSE(sticks.refusal(kAnnsLink, kPushed, at(5, now), now));
 }
 
 TEST(StickWatchTest, OneFromTheFutureSaysThatTheClocksDiffer) {
   StickWatch sticks = watch();
-  EXPECT_FALSE(sticks.refusal(kAnnsLink, kPushed, at(1, kStickStart + milliseconds(90)), kStickStart));
+  EXPECT_FALSE(
+      sticks.refusal(kAnnsLink, kPushed, at(1, kStickStart + milliseconds(90)), kStickStart));
   const auto why = sticks.refusal(kAnnsLink, kPushed, at(2, kStickStart + seconds(3)), kStickStart);
   EXPECT_THAT(why.value_or(""), HasSubstr("clock"));
 }
