@@ -57,21 +57,27 @@ verb_fmt() {
 
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
+# Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
+long_tests=(Determinism.SeveralRobots\* FleetRobot.{EachRobot,SoItDoes}\* MapData.\* Operator.IsTheSame\*
+  Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\* TightPlaces.\*)
+
 # Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
 # the others would only take time.
 verb_sanitize() {
-  local rooms
+  local targets
   case "${1:-}" in
-    asan) rooms=(algo sim drivers db server_{run,record,experiment,lab,external,serve,emulate,cli}) ;;
-    tsan) rooms=(db server_{run,record,experiment,external,serve,emulate}) ;;
+    asan) targets=(test_{algo,sim,drivers,db} test_server_{run,record,experiment,lab,external,serve,emulate,cli} fuzz) ;;
+    tsan) targets=(test_db test_server_{run,record,experiment,external,serve,emulate}) ;;
     *) fail "sanitize asan or sanitize tsan" ;;
   esac
   need clang-16 libclang-rt-16-dev
-  build_all "$1" "${rooms[@]/#/test_}" fuzz
+  build_all "$1" "${targets[@]}"
   export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1}
   export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
   export TSAN_OPTIONS=${TSAN_OPTIONS:-halt_on_error=1:second_deadlock_stack=1:suppressions=$root/tests/dev/tsan.supp}
-  run_ctest "$1" -R "^test_($(IFS='|' && printf '%s' "${rooms[*]}"))[.]|^fuzz_seeds_"
+  GTEST_FILTER="-$(IFS=: && printf '%s' "${long_tests[*]}")"
+  export GTEST_FILTER
+  run_ctest "$1" -R "^($(IFS='|' && printf '%s' "${targets[*]}"))[._]"
   closing_line
 }
 
