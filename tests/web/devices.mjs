@@ -5,11 +5,12 @@ import { join } from "node:path";
 import { binary, until } from "./program.mjs";
 
 /**
- * The devices on pseudo-terminals in `folder`, and the robot's file beside them; with `named` the file says that
- * they are emulated.
+ * The devices on pseudo-terminals in `folder`, in the world `scenario`, and the robot's file beside them; with `named`
+ * the file says that they are emulated. `record`: a file for the true poses. `speed` [m/s] of the robot at most.
  */
-export async function devices(folder, named = false) {
-  const emulator = spawn(binary, ["emulate", "robot", "--scenario", "demo", "--links", folder],
+export async function devices(folder, { named = false, scenario = "demo", record = "", speed = 0.1 } = {}) {
+  const emulator = spawn(binary,
+    ["emulate", "robot", "--scenario", scenario, "--links", folder, ...(record ? ["--record", record] : [])],
     { stdio: ["pipe", "ignore", "inherit"] });
   const there = () => existsSync(join(folder, "scanner")) && existsSync(join(folder, "base"));
   await until("the emulated devices", 20, async () => there(), (yes) => yes);
@@ -20,7 +21,7 @@ period = 0.026
 [hull]
 radius = 0.35
 [limits]
-speed = 0.1
+speed = ${speed}
 [[laser]]
 name = "front laser"
 port = "${folder}/scanner"

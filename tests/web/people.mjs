@@ -133,7 +133,7 @@ test("without a token everybody is an admin, and the page says why there is no l
 
 test("emulated devices are called so, and a disarmed robot says why and when", { timeout: 120_000 }, async () => {
   const place = scratch();
-  const robot = await devices(place.folder, true);
+  const robot = await devices(place.folder, { named: true });
   const server = await serve({ database: place.database, scenario: null, more: ["--robot", robot.file] });
   try {
     const session = () => json(server.base, "/session");
