@@ -58,8 +58,8 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(Determinism.SeveralRobots\* FleetRobot.{EachRobot,SoItDoes}\* MapData.\* Operator.IsTheSame\*
-  Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\* TightPlaces.\*)
+long_tests=(AppTest.ABatchOfTenThousand\* Determinism.SeveralRobots\* FleetRobot.{EachRobot,SoItDoes}\* MapData.\*
+  Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\* TightPlaces.\*)
 
 # Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
 # the others would only take time.
