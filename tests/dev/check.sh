@@ -21,12 +21,14 @@ format_check() {
   return 1
 }
 
-# tidy_all: clang-tidy over the sources in groups, from a build folder of its own that compiles nothing.
+# tidy_all: clang-tidy over the sources in groups, from a build folder of its own. Of the build only the commands
+# that make headers and sources run: asked for these files, ninja would first compile the rooms below them.
 tidy_all() {
-  local made
-  mapfile -t made < <(ninja -C build/lint -t targets rule CUSTOM_COMMAND | grep -E '\.(cpp|h|bfbs)$')
-  ninja -C build/lint "${made[@]}" && # the generated headers and sources
-    python3 -B tests/dev/tidy.py build/lint "$work/tidy" "$(job_count)"
+  local made command
+  while read -r made; do
+    command=$(ninja -C build/lint -t commands -s "$made") && bash -c "$command" || return
+  done < <(ninja -C build/lint -t targets rule CUSTOM_COMMAND | grep -E '^/.*\.(cpp|h|bfbs)$')
+  python3 -B tests/dev/tidy.py build/lint "$work/tidy" "$(job_count)"
 }
 
 # types_of_page: type-checks the page when it has changed.
