@@ -35,9 +35,7 @@ struct Bench {
             "card",
             with,
             [this] { return std::make_unique<FakeCard>(wiring); },
-            [] { return g_now; }) {
-    wiring.inputs.counts = {4294967290U, 4294967290U};  // shortly before the wrap
-  }
+            [] { return g_now; }) {}
 
   /// Waits for the thread that opens the card.
   bool comes_to(bool running) {
@@ -56,7 +54,8 @@ struct Bench {
     for (std::uint32_t& count : wiring.inputs.counts) count += counts;
   }
 
-  Wiring wiring{};
+  // Counts shortly before the wrap. Before the base, whose thread reads them.
+  Wiring wiring{.inputs = {.counts = {4294967290U, 4294967290U}}};
   AnalogBase base;
 };
 
