@@ -58,7 +58,7 @@ void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* mov
   // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
   const Pose2 sensor_W = points_.map(scan);
-  if (movers != nullptr) movers->take(scan, sensor_W, points_.points_W(), map_);
+  if (movers != nullptr) movers->take(scan, sensor_W, points_.points_W());
   map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
   // No obstacle can be inside the hull.
   const Pose2& here = in.observation->odometry.pose;

@@ -149,6 +149,16 @@ TEST(Operator, DrivesAgainstNothingThatTheRobotHasSeen) {
   EXPECT_TRUE(study.places.empty());
 }
 
+/// The end of a wall, whose visible part grows as the robot passes, looks as if it moved. It must
+/// stay in the map: a corner of the hull turns past it later, where no scanner looks.
+TEST(Operator, KnowsAWallThatSeemedToMove) {
+  sim::Scenario scenario = indoor_world(29, builtin_robot("jackal").radius);
+  scenario.robot = builtin_robot("jackal");
+  const Drive drive = drive_adversarially(scenario, 29, 24, Hand::Guarded);
+  EXPECT_EQ(drive.touched(Touch::Seen), 0) << (drive.seen.empty() ? "" : drive.seen[0]);
+  EXPECT_GT(drive.ahead, 3);
+}
+
 TEST(TightPlaces, EveryDoorIsPassedAndEveryWallLeft) {
   for (const char* robot : {"silvermate", "jackal", "robhaz"}) {
     sim::Scenario scenario;
