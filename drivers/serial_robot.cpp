@@ -431,7 +431,8 @@ algo::HealthReport SerialRobot::health() const {
 
 /// The sentence of the device at fault, if there is one.
 std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>& devices) const {
-  if (halt == Halt::None) return "";
+  // Between a disarming and the next tick nothing else says why.
+  if (halt == Halt::None) return armed_ ? "" : disarmed_because_;
   const bool waits_for_a_person = halt == Halt::Disarmed || (halt == Halt::LateTick && !armed_);
   if (waits_for_a_person && !disarmed_because_.empty()) return disarmed_because_;
   const bool of_base = halt == Halt::BaseLost || halt == Halt::StopButton ||
