@@ -270,8 +270,15 @@ test("the world is seen from above, from behind the robot, and freely; the choic
   await p.page.locator(".follow").waitFor();
   await p.page.reload();
   await p.get("scene-3d").locator("canvas").waitFor();
-  await p.pick_radio("eye", "above");
+  // The small map shows the room, and becomes the large view.
+  const colours = () => p.get("corner-map").locator("canvas").evaluate((canvas) => {
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    return new Set(new Uint32Array(data.buffer)).size;
+  });
+  await until("a small map", 10, colours, (count) => count > 20);
+  await p.get("corner-map").click();
   await p.get("scene").waitFor();
+  assert.equal(await p.get("corner-map").count(), 0);
   assert.deepEqual(await p.accessibility(), []);
   await p.close();
 });

@@ -3,17 +3,16 @@ import { JSX } from "preact";
 import { useMemo, useRef, useState } from "preact/hooks";
 import { use_app } from "../app";
 import { Insets, View } from "../draw/view";
-import { Bounds } from "../geometry";
 import { SceneState } from "../state/scene";
 import { keep, kept, use_latest } from "../state/store";
 import { SceneCanvas } from "../ui/canvas";
 import { Segments } from "../ui/controls";
 import { lazy } from "../ui/lazy";
 import { make_hand } from "../views/drive";
+import { CornerMap, about } from "./corner";
 
 const SceneThree = lazy(async () => (await import("../three/view")).SceneThree);
 
-const kAround = 3;  // [m] shown about the robot
 const kFarOff = 0.8; // [m] from the middle, until the view follows
 const kInsets = { left: 12, top: 12, right: 12, bottom: 12 };
 
@@ -33,9 +32,11 @@ export function DriverView(props: { sets_goal: boolean }): JSX.Element {
     keep(kEye, name);
     set_eye(name as Eye);
   };
+  const above = eye === "above" || props.sets_goal;
   return (
     <>
-      {eye === "above" || props.sets_goal ? <FromAbove sets_goal={props.sets_goal} /> : <SceneThree insets={() => kInsets} chase={eye === "follow"} on_above={() => look("above")} />}
+      {above ? <FromAbove sets_goal={props.sets_goal} /> : <SceneThree insets={() => kInsets} chase={eye === "follow"} on_above={() => look("above")} />}
+      {!above && <CornerMap on_press={() => look("above")} />}
       <div class="eye"><Segments label="View" name="eye" choices={kEyes} value={eye} on_pick={look} /></div>
     </>
   );
@@ -67,12 +68,6 @@ function free_of(view: HTMLElement): Insets {
   const say = view.querySelector(".say")?.getBoundingClientRect(), all = view.getBoundingClientRect();
   const covers = say && say.width > kSpans * all.width;
   return { ...kInsets, top: covers ? say.bottom - all.top : kInsets.top };
-}
-
-/** The bounds of what the driver needs to see. */
-function about(scene: SceneState): Bounds {
-  const at = scene.frame?.pose ?? { x: 0, y: 0 };
-  return { min_x: at.x - kAround, max_x: at.x + kAround, min_y: at.y - kAround, max_y: at.y + kAround };
 }
 
 function strayed(view: View, scene: SceneState): boolean {

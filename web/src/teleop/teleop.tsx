@@ -8,6 +8,7 @@ import { SceneState } from "../state/scene";
 import { use_pulse } from "../state/store";
 import { Segments, Slider } from "../ui/controls";
 import { use_me } from "../ui/guard";
+import { Legend } from "./corner";
 import { Deck } from "./deck";
 import { Devices } from "./devices";
 import { DriverView } from "./eye";
@@ -42,6 +43,7 @@ export function Teleop(): JSX.Element {
     <>
       <main class="scene" aria-label="The world about the robot">
         <DriverView sets_goal={mode === "goal" && drives} />
+        <Legend />
         <Reason scene={app.scene} hand={hand} drives={drives} stopped={session?.stop ?? false} />
       </main>
       <Deck scene={app.scene} wish={seat.idle ? null : seat.wish} barred={seat.barred}
