@@ -167,7 +167,7 @@ async function all_links(browser, links, seconds, emulated) {
   const world = join(place.folder, "bad_links.json");
   writeFileSync(world, JSON.stringify(room));
   const path = join(place.folder, "truth");
-  const robot = emulated ? await devices(place.folder, { scenario: world, record: path, speed: 0.4 }) : null;
+  const robot = emulated ? await devices(place.folder, { scenario: world, record: path, speed: 0.3 }) : null;
   const server = await serve({
     database: place.database, scenario: emulated ? null : world, more: emulated ? ["--robot", robot.file] : [],
   });
