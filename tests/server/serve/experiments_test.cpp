@@ -198,7 +198,7 @@ TEST_F(ExperimentsTest, IsReadWhileItsMemoryIsGivenBack) {
   const std::jthread giver([&](const std::stop_token& stop) {
     while (!stop.stop_requested()) experiment.unload();
   });
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     EXPECT_EQ(experiment.plan()->size(), 4U);
     experiment.look(
         [](const sweep::Plan&, const sweep::Rows& rows) { EXPECT_EQ(rows.size(), 4U); });
