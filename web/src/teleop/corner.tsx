@@ -4,8 +4,8 @@ import { JSX } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { Palette, read_palette } from "../draw/palette";
-import { draw_scene } from "../draw/scene";
-import { View } from "../draw/view";
+import { Overlay, draw_scene } from "../draw/scene";
+import { Insets, View } from "../draw/view";
 import { Bounds } from "../geometry";
 import { SceneState } from "../state/scene";
 
@@ -16,6 +16,15 @@ const kNoInsets = { left: 0, top: 0, right: 0, bottom: 0 };
 export function about(scene: SceneState): Bounds {
   const at = scene.frame?.pose ?? { x: 0, y: 0 };
   return { min_x: at.x - kAround, max_x: at.x + kAround, min_y: at.y - kAround, max_y: at.y + kAround };
+}
+
+/** Nothing is selected, drafted or edited at the seat. */
+export function seat_overlay(shown: Pick<Overlay, "force_scale" | "hidden">, insets: Insets): Overlay {
+  const { force_scale, hidden } = shown;
+  return {
+    selection: null, hovered: null, draft: {}, handles: false, force_scale, hidden, ghosts: [], future: false, insets,
+    preview: null,
+  };
 }
 
 /** Drawn whenever the view is rendered, which is ten times a second. A press makes it the large one. */
@@ -37,10 +46,7 @@ export function CornerMap(props: { on_press: () => void }): JSX.Element {
     view.approach(view.fit_target(about(app.shown), kNoInsets), 1);
     const g = canvas.current!.getContext("2d")!;
     g.setTransform(ratio, 0, 0, ratio, 0, 0);
-    draw_scene(g, view, palette.current.colours, app.shown, {
-      selection: null, hovered: null, draft: {}, handles: false, force_scale, hidden, ghosts: [], future: false,
-      insets: kNoInsets, preview: null,
-    });
+    draw_scene(g, view, palette.current.colours, app.shown, seat_overlay({ force_scale, hidden }, kNoInsets));
   });
   return (
     <button class="corner-map" data-testid="corner-map" aria-label="The robot from above: make this the large view"

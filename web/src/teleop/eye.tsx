@@ -9,7 +9,7 @@ import { SceneCanvas } from "../ui/canvas";
 import { Segments } from "../ui/controls";
 import { lazy } from "../ui/lazy";
 import { make_hand } from "../views/drive";
-import { CornerMap, about } from "./corner";
+import { CornerMap, about, seat_overlay } from "./corner";
 
 const SceneThree = lazy(async () => (await import("../three/view")).SceneThree);
 
@@ -54,10 +54,7 @@ function FromAbove(props: { sets_goal: boolean }): JSX.Element {
       label="The robot and its surroundings from above" bounds={() => about(app.shown)}
       insets={() => free_of(box.current!.parentElement!)} lost={() => strayed(view, app.shown)}
       on_ready={(redraw) => (app.redraw = redraw)}
-      overlay={() => ({
-        selection: null, hovered: null, draft: {}, handles: false, force_scale: app.ui.value.force_scale,
-        hidden: app.ui.value.hidden, ghosts: [], future: false, insets: kInsets, preview: null,
-      })} /></div>
+      overlay={() => seat_overlay(app.ui.value, kInsets)} /></div>
   );
 }
 
