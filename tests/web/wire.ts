@@ -235,3 +235,8 @@ export function framed(frames: Uint8Array[]): Uint8Array {
   }
   return out;
 }
+
+/** Parts of frames in more than one suite. */
+export const grid = (byte: number): LayerSpec => ({ name: "grid", kind: wire.LayerKind.Grid, values: [0, 0, 0.1, 1], cells: [byte] });
+export const line: LayerSpec = { name: "strip", label: "Strip", kind: wire.LayerKind.Polyline, values: [0, 0, 1, 1] };
+export const goal: [number, number, null] = [1, 0, null];
