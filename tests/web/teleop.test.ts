@@ -8,6 +8,7 @@ import { force_of, full_stick, ring_sectors, wall_of, way_of } from "../../web/s
 import { fold_frame, new_scene, show_frame } from "../../web/src/state/scene";
 import { Pad, PadEar, PadMap, curved, find_pad, fits, is_map, read_maps, read_pad } from "../../web/src/teleop/pads";
 import { push_words } from "../../web/src/teleop/drawn_stick";
+import { OperatorLink } from "../../web/src/teleop/operator_link";
 import { Seat } from "../../web/src/teleop/seat";
 import * as wire from "../../web/src/wire/telemetry_generated";
 import { frame_bytes, push_stick } from "./wire";
@@ -191,6 +192,28 @@ test("a frame brings its stick, which holds while somebody drives", () => {
 test("full stick asks for the robot's limit or the parameter, whichever is lower", () => {
   assert.deepEqual(full_stick(driven_scene()), { v: 0.5, omega: 0.8 });
   assert.deepEqual(full_stick(new_scene()), { v: 1, omega: 1 });
+});
+
+test("a hand is cut off when its socket stays full, not when the page stood still", (t) => {
+  let now = 0;
+  t.mock.method(performance, "now", () => now);
+  const socket = { is_open: true, is_clear: true, call: async <T,>() => ({ now: now / 1000 }) as T };
+  const link = new OperatorLink(socket);
+  const beat = (after: number, is_clear: boolean) => {
+    now += after;
+    socket.is_clear = is_clear;
+    return link.beat();
+  };
+  for (let i = 0; i < 30; ++i) assert.ok(beat(50, true));
+  assert.ok(link.takes_sticks);
+  assert.ok(beat(3000, false), "the picture took three seconds to draw");
+  assert.ok(!link.takes_sticks, "a stick would wait behind the rest");
+  assert.ok(beat(50, true));
+  for (let i = 0; i < 9; ++i) assert.ok(beat(50, false));
+  assert.ok(!beat(50, false), "full for half a second");
+  assert.ok(beat(50, true));
+  socket.is_open = false;
+  assert.ok(!beat(50, false));
 });
 
 test("the ring's sectors lie about their axes; the nearest one slows the robot", () => {

@@ -57,6 +57,11 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
     told.current = performance.now();
     app.toast("warn", sentence_of(error));
   };
+  /** A lost connection is told elsewhere. */
+  const cut_off = () => {
+    if (app.link.is_open && !seat.idle) refused(new Error("Your stick waits half a second before it leaves this computer. Take it again."));
+    else let_go();
+  };
   const hear = () => {
     const pad = gamepad();
     const wish = read_pad(pad, pad && map_of(pad.id));
@@ -72,7 +77,7 @@ export function use_hand(drives: boolean, mode: Mode): Hand {
     if (!drives) return;
     const beat = setInterval(() => {
       hear();
-      if (!link.beat()) let_go();
+      if (!link.beat()) cut_off();
       const next = seat.next();
       const { forward, left } = felt(app, seat);
       for (const device of [rumble, force.held.current]) device?.set_force(forward, left);

@@ -1,10 +1,10 @@
 // web/src/teleop/operator_link.ts: the link of a driver: how slow it is, and the stamp of each stick.
 import { ServerClock } from "../link/clock";
 import { LiveLink } from "../link/live";
-import { Stick } from "./seat";
+import { Stick, kSendEvery } from "./seat";
 
 const kAskEvery = 500;   // [ms]
-const kStuck = 500;      // [ms] a stick older than this is not obeyed
+const kStuckBeats = 500 / kSendEvery; // a stick that waits longer is not obeyed
 export const kGood = 0.1;       // [s] of round trip
 export const kTooSlow = 0.5;    // [s] beyond it the server accepts only Stop
 const kSettles = 1100;          // [ms] after a connection: the server takes a stick that comes at once for one that is stuck
@@ -18,25 +18,25 @@ export class OperatorLink {
   private sequence_ = 0;
   private asked_ = -Infinity;
   private answered_ = true;
-  private clear_at_ = performance.now();
+  private blocked_ = 0; // beats on end: time would also count a page that stood still, whose hand is well heard
   private opened_: number | null = null;
 
-  constructor(private readonly link_: LiveLink) {}
+  constructor(private readonly link_: Pick<LiveLink, "is_open" | "is_clear" | "call">) {}
 
-  /** Call it often. Returns false when a hand's stick no longer reaches the robot: it must be let go. */
+  /** Call it every kSendEvery. Returns false when a hand's stick no longer reaches the robot: it must be let go. */
   beat(): boolean {
     const now = performance.now();
     if (!this.link_.is_open) {
       this.clock_.clear();
       this.answered_ = true;
-      this.clear_at_ = now;
+      this.blocked_ = 0;
       this.opened_ = null;
       return false;
     }
     this.opened_ ??= now;
-    if (this.link_.is_clear) this.clear_at_ = now;
+    this.blocked_ = this.link_.is_clear ? 0 : this.blocked_ + 1;
     if (now - this.asked_ >= kAskEvery && (this.answered_ || now - this.asked_ > kUnanswered)) this.ask(now);
-    return now - this.clear_at_ < kStuck;
+    return this.blocked_ < kStuckBeats;
   }
 
   /** Whether a stick may be sent now: none waits in the socket, where it would grow old. */
