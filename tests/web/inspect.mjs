@@ -59,6 +59,7 @@ const row = (p, label) => card(p).locator(`[data-row="${label}"] dd`).innerText(
 /** Moves the mouse to a place of the world; the thing whose card opens there, or null. */
 async function hover(p, at) {
   const px = await p.pixels(at.x, at.y);
+  await p.page.mouse.move(px.x + 3, px.y); // a mouse that rests picks nothing anew
   await p.page.mouse.move(px.x, px.y);
   await p.page.waitForTimeout(250);
   if ((await card(p).count()) === 0) await p.page.waitForTimeout(600); // its code comes with the first card
