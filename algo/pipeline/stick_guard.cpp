@@ -45,6 +45,7 @@ void StickGuard::reset(const Pose2& start_W) {
   map_.reset(start_W.position());
   ahead_.reset();
   beside_.reset();
+  shove_.reset();
   points_.reset();
   rear_.reset();
   placed_ = false;
@@ -58,6 +59,10 @@ void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* mov
   // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
   const Pose2 sensor_W = points_.map(scan);
+  const bool ahead = &scan == &in.scene->scan;
+  if (ahead && shove_.take(scan, sensor_W, points_.points_W())) {
+    forget_surroundings(in.observation->odometry.pose);
+  }
   if (movers != nullptr) movers->take(scan, sensor_W, points_.points_W());
   map_.insert(scan, sensor_W, points_.points_W(), nothing_moves_);
   // No obstacle can be inside the hull.
@@ -65,6 +70,14 @@ void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* mov
   map_.erase_near(here.position(), in.spec->radius, [&](const Vec2& point_W) {
     return hull_.covers(here, point_W);
   });
+}
+
+/// The room to turn in is not known either: no place is taken as at the start.
+void StickGuard::forget_surroundings(const Pose2& here_W) {
+  map_.reset(here_W.position());
+  hull_.stand_on(map_.seen(), here_W);
+  ahead_.reset();
+  beside_.reset();
 }
 
 void StickGuard::sense(const Resource& in) {

@@ -10,6 +10,7 @@
 #include "algo/full_strip/scan_points.hpp"
 #include "algo/pipeline/mover_watch.hpp"
 #include "algo/pipeline/rear_watch.hpp"
+#include "algo/pipeline/shove_watch.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
@@ -22,7 +23,8 @@ struct Resource;
 /// acts and while the robot brakes, and includes commands that do not act yet. What was seen moving
 /// is predicted along that arc: the robot moves no closer to it than kMargin, but may stand, turn
 /// or drive away while it comes. The rear half of the hull never moves into unseen space. Where no
-/// sensor looks back at that time, it backs at kBlindSpeed at most.
+/// sensor looks back at that time, it backs at kBlindSpeed at most. After a shove, it forgets all
+/// that lies elsewhere now.
 class StickGuard {
  public:
   static constexpr double kMargin = 0.05;     // [m] three times the scanner's error
@@ -44,6 +46,7 @@ class StickGuard {
   enum class Answer : std::uint8_t { Ramped, AtOnce };
   void look(const Resource& in, const LaserScan& scan, MoverWatch* movers);
   void look_around(const Resource& in);
+  void forget_surroundings(const Pose2& here_W);
   void prepare(const Resource& in);
   double room(const Pose2& pose_W) const;
   bool approaches(const Pose2& from_W, const Pose2& to_W, double after, double step) const;
@@ -54,6 +57,7 @@ class StickGuard {
   const Tracker nothing_moves_{};            // this map holds the hits on moving obstacles too
   MoverWatch ahead_{};                       // of the scanner ahead,
   MoverWatch beside_{};                      // and of the first other one
+  ShoveWatch shove_{};                       // in the scans of the scanner ahead
   ScanPoints points_{};
   RearWatch rear_{};
   bool placed_ = false;             // the start pose is entered into the map

@@ -44,13 +44,14 @@ struct ByHand {
 
   void start() {
     pipeline = std::make_unique<algo::Pipeline>(algo::PipelineConfig{}, spec);
+    odometry = pose;
     pipeline->reset(pose);
   }
 
   void sense() {
     t.observation.clear_sensors();
     t.observation.stamp = stamp;
-    t.observation.odometry = {stamp, pose, twist};
+    t.observation.odometry = {stamp, odometry, twist};
     if (scans) add_scan({});
     if (rear_scanner) add_scan({0, 0, std::numbers::pi});
     for (const double bearing : sonars) {
@@ -99,6 +100,7 @@ struct ByHand {
                twist.omega + std::clamp(wanted.omega - twist.omega, -dw, dw)};
     }
     pose = integrate_arc(pose, twist, spec.period);
+    odometry = integrate_arc(odometry, twist, spec.period);
     stamp += spec.period;
     least = std::min(least, clearance());
     fastest_back = std::max(fastest_back, -twist.v);
@@ -136,6 +138,7 @@ struct ByHand {
   std::unique_ptr<algo::Pipeline> pipeline{};
   algo::Telemetry t{};
   Pose2 pose{};
+  Pose2 odometry{};  // the same, until somebody moves the robot
   algo::Twist2 twist{};
   double stamp = 0;
   double least = 10;        // [m]

@@ -103,6 +103,26 @@ TEST(StickGuard, NeverBacksIntoUnseenSpace) {
   EXPECT_LE(robot.fastest_back, 0.1 + 1e-9);
 }
 
+/// It has seen the wall beside it. Then somebody turns it by a third of a turn, and its odometry
+/// does not tell: the wall lies behind now, where no scanner looks.
+TEST(StickGuard, AfterAShoveItDoesNotBackIntoSomethingItKnewElsewhere) {
+  ByHand robot;
+  robot.world.polygons.push_back(box({-4, -4}, {9, 4}));
+  robot.world.polygons.push_back(box({-2, 0.45}, {3, 0.6}));
+  robot.start();
+  robot.hold({0.5, 0}, 4);
+  robot.hold({0, 0}, 1.5);
+  for (int k = 0; k < 12; ++k) {
+    robot.pose.heading -= 0.15;
+    robot.tick({0, 0});
+  }
+  robot.hold({0, 0}, 1);
+  ASSERT_GT(robot.clearance(), 0.05);
+  robot.least = 10;
+  robot.hold({-1, 0}, 6);
+  EXPECT_GT(robot.least, 0.03);
+}
+
 /// Drives towards a wall while a person comes: the first circle of the world, at `velocity_W`.
 struct Encounter {
   explicit Encounter(const Vec2& from_W, const Vec2& velocity, bool rectangle = false)
