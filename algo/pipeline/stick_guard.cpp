@@ -20,7 +20,8 @@ constexpr double kStep = 0.02;  // [s] largest step of a roll-out
 constexpr double kActs = 4;  // ticks a command is assumed to act: bases answer up to two ticks late
 constexpr double kRounding = 1e-9;     // [m]
 constexpr double kNoMotion = 0.015;    // [m/s] so slow that it could back into the unseen unnoticed
-constexpr double kSwerve = 1.0;        // [m/s2] a moving obstacle may leave its course by it
+constexpr double kSwerve = 1.0;        // [m/s2] a moving obstacle may leave its course by it,
+constexpr double kWalk = 1.4;          // [m/s] and a slow one may walk off at once
 constexpr double kBlur = 0.05;         // [m] error of a moving obstacle's outline
 constexpr double kTowards = 0.02;      // [m/s] a slower motion is no approach
 constexpr double kNearestEcho = 0.15;  // [m] a sonar reads nothing nearer
@@ -153,7 +154,8 @@ double StickGuard::room(const Pose2& pose_W) const {
 }
 
 /// True if the step of `step` [s] from one pose to another brings the hull nearer to something that
-/// moves and may be within kMargin by then, `after` [s] from now: it may swerve meanwhile.
+/// moves and may be within kMargin by then, `after` [s] from now: it may swerve meanwhile, and
+/// somebody who has stopped may go on.
 bool StickGuard::approaches(const Pose2& from_W,
                             const Pose2& to_W,
                             double after,
@@ -161,7 +163,9 @@ bool StickGuard::approaches(const Pose2& from_W,
   for (const Track& track : movers_) {
     const Vec2 then_W = track.position_W + after * track.velocity_W;
     const double far = hull_.distance(to_W, then_W);
-    const double reach = kMargin + kBlur + kSwerve * after * after / 2;
+    const double swerve = kSwerve * after * after / 2;
+    const double start = (kWalk - track.velocity_W.norm()) * after;
+    const double reach = kMargin + kBlur + std::max(swerve, start);
     if (far - track.radius > reach) continue;
     if (hull_.distance(from_W, then_W) - far > kTowards * step) return true;
   }

@@ -163,6 +163,21 @@ TEST(StickGuard, BrakesEarlierForAPersonWhoComes) {
   }
 }
 
+TEST(StickGuard, SomebodyWhoHasStoppedMayGoOn) {
+  for (const bool rectangle : {false, true}) {
+    for (const double near : {1.2, 1.6, 2.0}) {
+      Encounter meeting({near + 2.6, 0}, {-1.3, 0}, rectangle);
+      meeting.hold({0, 0}, 2);
+      meeting.velocity_W = {0, 0};
+      meeting.hold({1, 0}, 1.2);
+      meeting.velocity_W = {-1.3, 0};
+      meeting.hold({1, 0}, 3);
+      EXPECT_GT(meeting.least_moving, 0.05) << rectangle << " " << near;
+      EXPECT_GT(meeting.robot.pose.x, 0.1) << rectangle << " " << near;
+    }
+  }
+}
+
 TEST(StickGuard, MayStandTurnAndBackAwayWhileAPersonComes) {
   Encounter meeting({5, 0}, {-0.6, 0});
   meeting.hold({1, 0}, 2.5);
