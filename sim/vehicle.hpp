@@ -1,6 +1,7 @@
 // sim/vehicle.hpp: the base of a simulated robot.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 
 #include "algo/obstacle.hpp"
@@ -20,6 +21,8 @@ struct VehicleState {
   bool contact = false;  // the hull touched an obstacle in this tick
   double roll = 0;       // [rad] left side up positive
   double pitch = 0;      // [rad] nose down positive
+  /// True if it leans by more than 60 degrees: it no longer stands on its wheels.
+  bool overturned() const { return std::cos(roll) * std::cos(pitch) < 0.5; }
 };
 
 /// Divides a tick into equal physics steps, at 240 Hz or slightly faster.

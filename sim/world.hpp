@@ -67,6 +67,8 @@ class World final : public algo::Robot, public algo::Editing {
   void touch() { bumped_ = true; }
   const algo::Pose2& pose_W() const { return vehicle_->state().pose_W; }
   const Hull& hull() const { return hull_; }
+  /// True if the robot lies on its side or its back.
+  bool overturned() const { return vehicle_->state().overturned(); }
 
   void stop() noexcept override { vehicle_->halt(); }
   algo::Editing* editing() override { return this; }

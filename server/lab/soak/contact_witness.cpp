@@ -23,6 +23,7 @@ constexpr double kTowards = 0.05;       // [m/s] towards a person,
 constexpr double kTowardsStill = 0.01;  // and towards all else
 constexpr double kApart = 0.5;          // [s] without contact, after which the next is another
 constexpr double kPush = 0.5;           // [s] after a person's touch, in which the robot was pushed
+constexpr double kReaction = 0.3;       // [s] from a person's touch until the robot must stand
 constexpr double kLaserMemory = 110;    // [s] a little less than the guard's
 constexpr double kSonarMemory = 0.5;    // [s]
 constexpr std::size_t kTrail = 12;      // poses
@@ -91,7 +92,7 @@ void ContactWitness::see(const algo::Observation& observation, const algo::Groun
     mover.at_W = scenario_.obstacles[mover.index].path->at(now);
     set_.move(mover.index, {mover.at_W.x(), mover.at_W.y(), 0});
   }
-  trail_.push_back({now, truth.pose});
+  trail_.push_back({now, truth.pose, observation.odometry.pose});
   if (trail_.size() > kTrail) trail_.pop_front();
   const bool touches = truth.collided || truth.clearance < 0;
   if (touches) judge(now, truth.pose);
@@ -179,15 +180,20 @@ algo::Vec2 ContactWitness::touched_point(std::size_t obstacle, const algo::Pose2
 }
 
 /// [m/s] The fastest at which the place of the hull at `point_W` neared the obstacle, as that
-/// stands now, in the last few ticks.
-double ContactWitness::approach(std::size_t obstacle, const algo::Vec2& point_W) const {
+/// stands now, in the last few ticks: by its true motion, or by its wheels alone.
+double ContactWitness::approach(std::size_t obstacle,
+                                const algo::Vec2& point_W,
+                                Motion motion) const {
   double fastest = 0;
   const algo::Vec2 p_R = algo::to_child(trail_.back().pose_W, point_W);
   const std::size_t from = trail_.size() - std::min(trail_.size(), kRecent);
   for (std::size_t i = from; i + 1 < trail_.size(); ++i) {
     const Place& a = trail_[i];
     const Place& b = trail_[i + 1];
-    const algo::Vec2 step_W = algo::to_parent(b.pose_W, p_R) - algo::to_parent(a.pose_W, p_R);
+    const algo::Pose2 rolled_W =
+        algo::compose(a.pose_W, algo::pose_step(a.odometry_W, b.odometry_W));
+    const algo::Pose2& to_W = motion == Motion::True ? b.pose_W : rolled_W;
+    const algo::Vec2 step_W = algo::to_parent(to_W, p_R) - algo::to_parent(a.pose_W, p_R);
     const double nearer =
         set_.distance(obstacle, point_W) - set_.distance(obstacle, point_W + step_W);
     fastest = std::max(fastest, nearer / (b.stamp - a.stamp));
@@ -207,14 +213,18 @@ void ContactWitness::judge(double now, const algo::Pose2& pose_W) {
   }
   if (!std::isfinite(least)) return;
   const algo::Vec2 at_W = touched_point(nearest, pose_W);
-  const double speed = approach(nearest, at_W);
+  if (!touching_) touching_since_ = now;
+  // A robot that a person pushes moves towards them by its wheels only, if these do not stop.
+  const bool pushed = now - person_touched_ < kPush;
+  const double speed = approach(nearest, at_W, pushed ? Motion::OfWheels : Motion::True);
+  const bool stopping = pushed && now - touching_since_ < kReaction;
   const auto mover = std::ranges::find(movers_, nearest, &Mover::index);
   Touch touch = Touch::Unseen;
   if (mover != movers_.end()) {
     const bool known = now - mover->last < kSightGap && mover->last - mover->since >= kKnown;
-    touch = known && speed > kTowards ? Touch::Seen : Touch::Came;
+    touch = known && speed > kTowards && !stopping ? Touch::Seen : Touch::Came;
     person_touched_ = now;
-  } else if (now - person_touched_ < kPush || speed < kTowardsStill) {
+  } else if (pushed || speed < kTowardsStill) {
     touch = Touch::Pushed;
   } else if (was_seen(at_W, now)) {
     touch = Touch::Seen;

@@ -45,7 +45,9 @@ class ContactWitness {
   struct Place {
     double stamp = 0;  // [s]
     algo::Pose2 pose_W{};
+    algo::Pose2 odometry_W{};
   };
+  enum class Motion : std::uint8_t { True, OfWheels };
   struct Mover {
     std::size_t index = 0;  // in the set
     algo::Vec2 at_W{0, 0};
@@ -56,7 +58,7 @@ class ContactWitness {
   void take_return(const algo::Vec2& point_W, double stamp);
   algo::Pose2 pose_at(double stamp) const;
   bool was_seen(const algo::Vec2& point_W, double now) const;
-  double approach(std::size_t obstacle, const algo::Vec2& point_W) const;
+  double approach(std::size_t obstacle, const algo::Vec2& point_W, Motion motion) const;
   algo::Vec2 touched_point(std::size_t obstacle, const algo::Pose2& pose_W) const;
   void judge(double now, const algo::Pose2& pose_W);
 
@@ -70,6 +72,7 @@ class ContactWitness {
   std::vector<algo::Vec2> rim_R_{};  // places on the outline
 
   bool touching_ = false;
+  double touching_since_ = 0;    // [s]
   double free_since_ = 0;        // [s]
   double person_touched_ = -10;  // [s]
   Touch worst_ = Touch::Came;

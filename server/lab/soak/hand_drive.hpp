@@ -24,6 +24,7 @@ class HandDrive {
   const algo::RobotSpec& spec() const { return world_.spec(); }
   const algo::Observation& observation() const { return t_.observation; }
   const algo::GroundTruth& truth() const { return truth_; }
+  bool overturned() const { return world_.overturned(); }
 
  private:
   sim::World world_;

@@ -67,7 +67,7 @@ Drive drive_adversarially(const sim::Scenario& scenario,
   Drive drive;
   algo::Pose2 before_W = robot.truth().pose;
   witness.see(robot.observation(), robot.truth());
-  while (robot.observation().stamp < seconds) {
+  while (robot.observation().stamp < seconds && !robot.overturned()) {
     robot.tick(stick.at(robot.observation().stamp));
     witness.see(robot.observation(), robot.truth());
     const algo::Pose2& now_W = robot.truth().pose;
@@ -79,6 +79,7 @@ Drive drive_adversarially(const sim::Scenario& scenario,
     before_W = now_W;
   }
   drive.seconds = robot.observation().stamp;
+  drive.overturned = robot.overturned() ? 1 : 0;
   for (std::size_t k = 0; k < kTouches; ++k) {
     drive.touches.at(k) = witness.count(static_cast<Touch>(k));
   }

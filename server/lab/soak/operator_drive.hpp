@@ -43,11 +43,13 @@ struct Drive {
   double turned = 0;        // [rad]
   double fastest_back = 0;  // [m/s]
   std::array<int, kTouches> touches{};
+  int overturned = 0;               // 1: somebody turned the robot over, which ended the drive
   std::vector<std::string> seen{};  // a text for each contact that must not happen
   int touched(Touch touch) const { return touches.at(static_cast<std::size_t>(touch)); }
 };
 
-/// Drives `scenario`, which has no goal, for `seconds`, with a word of the stick every 0.1 s.
+/// Drives `scenario`, which has no goal, for `seconds`, with a word of the stick every 0.1 s. Ends
+/// earlier if the robot is turned over: a simulated person is as strong as a lorry.
 /// Throws std::invalid_argument with a sentence if there can be no such world.
 Drive drive_adversarially(const sim::Scenario& scenario,
                           std::uint64_t seed,

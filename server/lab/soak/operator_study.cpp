@@ -24,6 +24,7 @@ Drive sum_of(const OperatorStudy& study, const std::string& robot, std::size_t h
     sum.back += drive.back;
     sum.turned += drive.turned;
     sum.fastest_back = std::max(sum.fastest_back, drive.fastest_back);
+    sum.overturned += drive.overturned;
     for (std::size_t k = 0; k < kTouches; ++k) sum.touches.at(k) += drive.touches.at(k);
   }
   return sum;
@@ -45,7 +46,8 @@ const std::vector<std::string> kDriveTitles{"seconds",
                                             "seen",
                                             "unseen",
                                             "came",
-                                            "pushed"};
+                                            "pushed",
+                                            "overturned"};
 
 void add_drive(std::vector<std::string>& line, const Drive& drive) {
   line.push_back(fmt::format("{:.0f}", drive.seconds));
@@ -54,6 +56,7 @@ void add_drive(std::vector<std::string>& line, const Drive& drive) {
   line.push_back(fmt::format("{:.0f}", drive.turned));
   line.push_back(fmt::format("{:.2f}", drive.fastest_back));
   for (const int touches : drive.touches) line.push_back(fmt::format("{}", touches));
+  line.push_back(fmt::format("{}", drive.overturned));
 }
 
 }  // namespace

@@ -114,6 +114,20 @@ TEST(ContactWitness, APersonCountsIfTheRobotDroveTowardsThem) {
   }
 }
 
+TEST(ContactWitness, ARobotThatAPersonPushesCountsIfItsWheelsDriveTowardsThem) {
+  for (const bool by_wheels : {false, true}) {
+    Staged staged;
+    staged.sees_person = true;
+    for (int k = 0; k < 52; ++k) staged.tick(0, 0, k == 51);
+    for (int k = 1; k <= 5; ++k) {
+      if (by_wheels) staged.observation.odometry.pose.y = 0.02 * k;
+      staged.tick(0, 0.02 * k, true);
+    }
+    EXPECT_EQ(staged.witness.count(Touch::Seen), by_wheels ? 1 : 0);
+    EXPECT_EQ(staged.witness.count(Touch::Came), by_wheels ? 0 : 1);
+  }
+}
+
 TEST(ContactWitness, APersonSeenForLessThanASecondDoesNotCount) {
   Staged staged;
   for (int k = 0; k < 50; ++k) {
