@@ -34,7 +34,11 @@ test("two pages add, move and undo in one world", { timeout: kTime + 120_000 }, 
     const is = async (what) => {
       const list = await until(`${kind}: ${what} ${JSON.stringify(own)}`, 10,
         async () => (await obstacles()).filter((o) => o.type === kind),
-        (all) => all.length === own.length && own.every((at) => all.some((o) => near(o, at))));
+        (all) => all.length === own.length && own.every((at) => all.some((o) => near(o, at)))).catch(async (error) => {
+        error.message += `; the page says ${JSON.stringify(await p.page.locator(".toast").allInnerTexts())}`;
+        await p.shot(`together-${kind}`);
+        throw error;
+      });
       own = list.map(({ x, y }) => ({ x, y })); // as they snapped
       await p.page.waitForTimeout(250); // the page hears of it a little later than this test
     };
