@@ -2,12 +2,23 @@
 // while the robot moves.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "algo/laser_scan.hpp"
 #include "algo/types.hpp"
 
 namespace algo {
+
+/// The index of the beam that looks at the point, for a scanner at `sensor_W`; it may lie between
+/// two beams or outside the scan. `angle_min` and `increment` are the scan's [rad].
+inline double beam_at(const Pose2& sensor_W,
+                      const Vec2& point_W,
+                      double angle_min,
+                      double increment) {
+  const Vec2 p = to_child(sensor_W, point_W);
+  return (std::atan2(p.y(), p.x()) - angle_min) / increment;
+}
 
 /// Remembers the robot's poses, and maps each beam of a scan from the pose at which it was fired.
 class ScanPoints {

@@ -8,6 +8,8 @@
 
 #include <Eigen/Dense>
 
+#include "algo/full_strip/scan_points.hpp"
+
 namespace algo {
 namespace {
 
@@ -81,12 +83,6 @@ double middle_time(const LaserScan& scan, std::size_t first, std::size_t last) {
   double sum = 0;
   for (std::size_t i = from; i < from + turns; ++i) sum += scan.beam_time(i);
   return sum / static_cast<double>(turns);
-}
-
-/// The index of the beam that looks at the point, for a scanner at `sensor_W`.
-double beam_at(const Pose2& sensor_W, const Vec2& point_W, double angle_min, double increment) {
-  const Vec2 p = to_child(sensor_W, point_W);
-  return (std::atan2(p.y(), p.x()) - angle_min) / increment;
 }
 
 /// The deepest dent of the outline first..last, seen from `eye_W`.

@@ -55,13 +55,16 @@ void StickGuard::reset(const Pose2& start_W) {
   mapped_.reset();
 }
 
-/// `movers` tracks the moving obstacles in this scanner's scans; null: they are not tracked.
-void StickGuard::look(const Resource& in, const LaserScan& scan, MoverWatch* movers) {
+/// `movers` tracks the moving obstacles in this scanner's scans, `shove` notices shoves in them;
+/// null: nothing does.
+void StickGuard::look(const Resource& in,
+                      const LaserScan& scan,
+                      MoverWatch* movers,
+                      ShoveWatch* shove) {
   // NaN must not enter the map.
   if (scan.size() == 0 || !std::isfinite(scan.stamp) || !all_finite(scan.ranges)) return;
   const Pose2 sensor_W = points_.map(scan);
-  const bool ahead = &scan == &in.scene->scan;
-  if (ahead && shove_.take(scan, sensor_W, points_.points_W())) {
+  if (shove != nullptr && shove->take(scan, sensor_W, points_.points_W())) {
     forget_surroundings(in.observation->odometry.pose);
   }
   if (movers != nullptr) movers->take(scan, sensor_W, points_.points_W());
@@ -106,7 +109,7 @@ void StickGuard::look_around(const Resource& in) {
   placed_ = true;
   hull_.stand_on(map_.seen(), here);
   if (looks) {
-    look(in, newest, in.manual ? &ahead_ : nullptr);
+    look(in, newest, in.manual ? &ahead_ : nullptr, &shove_);
     mapped_ = newest.stamp;
     next_look_ = seen.stamp + kIdleEvery;
   }
@@ -114,7 +117,7 @@ void StickGuard::look_around(const Resource& in) {
   MoverWatch* movers = in.manual ? &beside_ : nullptr;
   for (std::size_t i = 0; i < seen.scans.size(); ++i) {
     if (&seen.scans[i] == ahead) continue;
-    look(in, seen.scans[i], movers);
+    look(in, seen.scans[i], movers, nullptr);
     movers = nullptr;  // a tracker follows one scanner
   }
   next_look_beside_ = seen.stamp + kIdleBesideEvery;

@@ -44,7 +44,7 @@ class StickGuard {
  private:
   /// The base's assumed answer: within its limits, or faster than they say.
   enum class Answer : std::uint8_t { Ramped, AtOnce };
-  void look(const Resource& in, const LaserScan& scan, MoverWatch* movers);
+  void look(const Resource& in, const LaserScan& scan, MoverWatch* movers, ShoveWatch* shove);
   void look_around(const Resource& in);
   void forget_surroundings(const Pose2& here_W);
   void prepare(const Resource& in);
