@@ -36,9 +36,13 @@ WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twis
   return {sides.left / geometry.wheel_radius, sides.right / geometry.wheel_radius};
 }
 
-Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt) {
+Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt, double axle) {
   if (!(std::isfinite(dt) && dt >= 0)) {
     throw std::invalid_argument("dt must be 0 or above, not " + std::to_string(dt));
+  }
+  if (axle != 0) {
+    const Pose2 middle_W = compose(pose, {axle, 0, 0});
+    return compose(integrate_arc(middle_W, twist, dt), {-axle, 0, 0});
   }
   const double turn = twist.omega * dt;
   Pose2 moved = pose;
@@ -65,7 +69,7 @@ Pose2 integrate_counts(const DriveGeometry& geometry,
   const double per_count = 2 * std::numbers::pi * geometry.wheel_radius / counts_per_turn;
   const SideMotion rolled{per_count * static_cast<double>(counts.left),
                           per_count * static_cast<double>(counts.right)};
-  return integrate_arc(pose, twist_of(rolled, geometry.half_track), 1.0);
+  return integrate_arc(pose, twist_of(rolled, geometry.half_track), 1.0, geometry.axle);
 }
 
 std::int64_t count_difference(std::uint32_t now, std::uint32_t before, unsigned bits) {

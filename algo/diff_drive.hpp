@@ -13,6 +13,7 @@ namespace algo {
 struct DriveGeometry {
   double wheel_radius = 0;  // [m] r, > 0
   double half_track = 0;    // [m] l, centre to wheel, > 0: the track is 2 l
+  double axle = 0;          // [m] x of the axle in R
 };
 
 struct WheelSpeeds {
@@ -49,9 +50,10 @@ Twist2 forward_kinematics(const DriveGeometry& geometry, const WheelSpeeds& spee
 /// q_l = (v - w l) / r, q_r = (v + w l) / r. Throws std::invalid_argument as above.
 WheelSpeeds inverse_kinematics(const DriveGeometry& geometry, const Twist2& twist);
 
-/// The pose after `dt` [s] at constant `twist`; exact along the arc.
-/// Throws std::invalid_argument when dt is below 0 or not finite.
-Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt);
+/// The pose of R after `dt` [s] at constant `twist`; exact along the arc. `axle` [m]: x of the
+/// drive axle in R. Its middle moves straight along the heading; R swings about it. Throws
+/// std::invalid_argument when dt is below 0 or not finite.
+Pose2 integrate_arc(const Pose2& pose, const Twist2& twist, double dt, double axle = 0);
 
 /// The pose after the wheels have moved by `counts` of `counts_per_turn`. Each wheel rolls
 /// s = 2 pi r n / counts_per_turn; the motion is taken as one arc.

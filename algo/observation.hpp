@@ -51,6 +51,30 @@ struct Inclinometer {
   bool operator==(const Inclinometer&) const = default;
 };
 
+/// A point of the laser's line in the camera's image (algo/ground_sense.hpp).
+struct LinePixel {
+  float u = 0;  // [pixels] to the left of the middle
+  float v = 0;  // [pixels] from the middle towards the laser
+  bool operator==(const LinePixel&) const = default;
+};
+
+/// An image of the laser's line. Columns without a visible point are left out.
+struct LineImage {
+  double stamp = 0;    // [s] run clock
+  bool fresh = false;  // came in this tick; otherwise `pixels` is empty
+  Recycled<LinePixel> pixels{};
+};
+
+/// Distances along the four beams of FloorSensors; NaN where nothing is within range.
+struct FloorRanges {
+  double stamp = 0;       // [s] run clock
+  double far_left = 0;    // [m] the paper's X1
+  double far_right = 0;   // [m]
+  double near_left = 0;   // [m] the paper's X2
+  double near_right = 0;  // [m]
+  bool operator==(const FloorRanges&) const = default;
+};
+
 /// Raw counts since reset. Take a difference modulo 2^32, as signed.
 struct Encoders {
   double stamp = 0;
@@ -108,6 +132,8 @@ struct Observation {
   std::optional<YawGyro> gyro{};
   std::optional<Inclinometer> inclinometer{};
   std::optional<Encoders> encoders{};
+  LineImage line{};
+  std::optional<FloorRanges> floor{};   // only if new in this tick
   Recycled<ChannelReading> channels{};  // only those new in this tick
 
   bool bumper_pressed() const {
@@ -124,6 +150,9 @@ struct Observation {
     gyro.reset();
     inclinometer.reset();
     encoders.reset();
+    line.fresh = false;
+    line.pixels.clear();
+    floor.reset();
     channels.clear();
   }
 };

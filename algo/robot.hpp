@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "algo/ground_sense.hpp"
 #include "algo/health.hpp"
 #include "algo/observation.hpp"
 #include "algo/recycled.hpp"
@@ -51,9 +52,15 @@ struct RobotSpec {
   bool drives = false;     // commands move it; a recorded log does not
   bool raw_stick = false;  // its stick may be obeyed without a guard
   std::vector<ChannelInfo> channels{};  // of further sensors
+  double axle = 0;                      // [m] x of the drive axle in R
+  std::optional<Stance> stance{};       // if the robot may turn over: it then needs an inclinometer
+  std::optional<LineCamera> line{};
+  std::optional<FloorSensors> floor{};
+  std::optional<ClimbLimits> climbs{};  // if they were measured
 };
 
-/// The robot's height and inclination on ground that is not level.
+/// The robot's height and inclination on ground that is not level. R in W is turned by the heading
+/// about z, then by the pitch about its y axis, then by the roll about its x axis.
 struct Tilt {
   double z = 0;      // [m] of R above the level z = 0
   double roll = 0;   // [rad] left side up positive

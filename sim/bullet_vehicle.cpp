@@ -82,12 +82,10 @@ void BulletVehicle::build_chassis() {
   chassis_->setActivationState(DISABLE_DEACTIVATION);             // this class does the parking
   physics_.world().addRigidBody(chassis_.get());
 
-  double axle_x = 0;
-  for (const double x : p.wheels) axle_x += x / static_cast<double>(p.wheels.size());
   drive_ = make_bullet<DriveConstraint>(
       *chassis_,
       physics_.floor(),
-      DriveConstraint::Layout{axle_x, p.half_track, p.mass_height, p.friction});
+      DriveConstraint::Layout{axle_of(p), p.half_track, p.mass_height, p.friction});
   physics_.world().addConstraint(drive_.get());
 }
 

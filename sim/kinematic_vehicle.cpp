@@ -10,6 +10,7 @@ KinematicVehicle::KinematicVehicle(const RobotModel& robot, double period, bool 
       hull_(hull_of(robot)),
       period_(period),
       substeps_(period),
+      axle_(axle_of(robot)),
       with_ramps_(with_ramps) {}
 
 void KinematicVehicle::reset(const algo::Pose2& start) {
@@ -25,7 +26,7 @@ void KinematicVehicle::drive(const algo::Twist2& command,
   target_ = with_ramps_ ? ramped(target_, wanted, robot_, period_) : wanted;
   const algo::Pose2 from = state_.pose_W;
   algo::Twist2 twist = target_;
-  algo::Pose2 to = algo::integrate_arc(from, twist, period_);
+  algo::Pose2 to = algo::integrate_arc(from, twist, period_, axle_);
   state_.contact = false;
   // A robot that already overlaps an obstacle may leave it. A rectangle may leave in any direction,
   // since the depth of its overlap is unknown.
@@ -37,10 +38,10 @@ void KinematicVehicle::drive(const algo::Twist2& command,
     state_.contact = true;
     twist.v = 0;
     target_.v = 0;
-    to = algo::integrate_arc(from, twist, period_);
+    to = algo::integrate_arc(from, twist, period_, axle_);
   }
   for (std::size_t k = 1; k < substeps_.count; ++k) {
-    trail.push(algo::integrate_arc(from, twist, static_cast<double>(k) * substeps_.length));
+    trail.push(algo::integrate_arc(from, twist, static_cast<double>(k) * substeps_.length, axle_));
   }
   trail.push(to);
   state_.pose_W = to;

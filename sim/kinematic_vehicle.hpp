@@ -22,6 +22,7 @@ class KinematicVehicle final : public VehicleModel {
   Hull hull_{};
   double period_ = 0;  // [s]
   Substeps substeps_;
+  double axle_ = 0;  // [m] x of the drive axle in R
   bool with_ramps_ = false;
   algo::Twist2 target_{};
   VehicleState state_{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "algo/ring_axes.hpp"
 #include "algo/types.hpp"
@@ -117,7 +118,13 @@ algo::RobotSpec spec_of(const RobotModel& robot, double period) {
           .max_acceleration = robot.max_acceleration,
           .max_angular_acceleration = robot.max_angular_acceleration,
           .has_laser = robot.sensors.has_laser(),
-          .has_ring = robot.sensors.has_ring()};
+          .has_ring = robot.sensors.has_ring(),
+          .axle = axle_of(robot)};
+}
+
+double axle_of(const RobotModel& robot) {
+  const double sum = std::accumulate(robot.wheels.begin(), robot.wheels.end(), 0.0);
+  return sum / static_cast<double>(robot.wheels.size());
 }
 
 Hull hull_of(const RobotModel& robot) {

@@ -61,6 +61,9 @@ std::optional<std::string> defect(const RobotModel& robot);
 /// The port's spec of the robot, with ticks of `period` [s] and `drives` false.
 algo::RobotSpec spec_of(const RobotModel& robot, double period);
 
+/// [m] x of the drive axle in R: the middle of the wheels.
+double axle_of(const RobotModel& robot);
+
 /// The outline in the plane.
 Hull hull_of(const RobotModel& robot);
 

@@ -195,7 +195,7 @@ void World::sense_motion(algo::Observation& observation) {
     odometry_.pose = state.pose_W;
     odometry_.twist = state.twist;
   } else {
-    const algo::DriveGeometry geometry{robot_.wheel_radius, robot_.half_track};
+    const algo::DriveGeometry geometry{robot_.wheel_radius, robot_.half_track, spec_.axle};
     const algo::WheelCounts moved{algo::count_difference(left, encoders_.left),
                                   algo::count_difference(right, encoders_.right)};
     odometry_.pose =

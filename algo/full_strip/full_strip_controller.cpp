@@ -114,10 +114,9 @@ double FullStripController::least_clearance() const {
 
 void FullStripController::prepare(const ControlInput& in, const Parameters& parameters) {
   if (!stage_.hull().is_of(*in.spec)) stage_.set_hull(HullCheck(*in.spec));
-  limits_ = {std::min(parameters[kMaxSpeed], in.spec->max_v),
-             std::min(parameters[kMaxTurnRate], in.spec->max_omega),
-             in.spec->max_acceleration,
-             in.spec->max_angular_acceleration};
+  limits_ = limits_of(*in.spec);
+  limits_.max_v = std::min(parameters[kMaxSpeed], limits_.max_v);
+  limits_.max_omega = std::min(parameters[kMaxTurnRate], limits_.max_omega);
   settings_.contraction = parameters[kContractionGain];
   settings_.repulsion = parameters[kRepulsionGain];
   settings_.rest_distance = std::min(parameters[kSafetyDistance], LocalMap::kReach);

@@ -16,7 +16,7 @@ constexpr double kRimApart = 0.8;  // of a cell, between two places to check
 }  // namespace
 
 HullCheck::HullCheck(const RobotSpec& spec)
-    : disc_(spec.radius), radius_(spec.radius), half_width_(spec.radius) {
+    : disc_(spec.radius), radius_(spec.radius), half_width_(spec.radius), axle_(spec.axle) {
   // Places along `length` [m] of outline; a large hull's lie farther apart.
   const auto places = [](double length, std::size_t most) {
     const double count = std::ceil(length / (kRimApart * SeenSpace::kCell));
@@ -60,7 +60,7 @@ HullCheck::HullCheck(const RobotSpec& spec)
 bool HullCheck::is_of(const RobotSpec& spec) const {
   const bool disc = spec.half_length <= 0 || spec.half_width <= 0;
   return radius_ == spec.radius && half_length_ == (disc ? 0 : spec.half_length) &&
-         half_width_ == (disc ? spec.radius : spec.half_width);
+         half_width_ == (disc ? spec.radius : spec.half_width) && axle_ == spec.axle;
 }
 
 void HullCheck::add_rim(const Vec2& point_R, const Vec2& normal_R) {
@@ -75,7 +75,8 @@ bool HullCheck::enters_unseen(const SeenSpace& seen,
   const Vec2 left(-ahead.y(), ahead.x());
   for (std::size_t i = 0; i < rim_count_; ++i) {
     const Rim& rim = rims_[i];
-    const Vec2 velocity_R(twist.v - twist.omega * rim.point_R.y(), twist.omega * rim.point_R.x());
+    const Vec2 velocity_R(twist.v - twist.omega * rim.point_R.y(),
+                          twist.omega * (rim.point_R.x() - axle_));
     if (velocity_R.dot(rim.normal_R) < kStill) continue;
     const Vec2 at_W = pose_W.position() + rim.point_R.x() * ahead + rim.point_R.y() * left;
     if (!seen.seen(at_W)) return true;
@@ -140,6 +141,11 @@ bool HullCheck::covers(const Pose2& pose_W, const Vec2& point_W) const {
   return distance(pose_W, point_W) < -kDepth;
 }
 
+MotionLimits limits_of(const RobotSpec& spec) {
+  return {
+      spec.max_v, spec.max_omega, spec.max_acceleration, spec.max_angular_acceleration, spec.axle};
+}
+
 MotionState advanced(const MotionState& state,
                      const Twist2& command,
                      const MotionLimits& limits,
@@ -149,7 +155,7 @@ MotionState advanced(const MotionState& state,
   MotionState next;
   next.twist = {state.twist.v + std::clamp(command.v - state.twist.v, -dv, dv),
                 state.twist.omega + std::clamp(command.omega - state.twist.omega, -dw, dw)};
-  next.pose_W = integrate_arc(state.pose_W, next.twist, dt);
+  next.pose_W = integrate_arc(state.pose_W, next.twist, dt, limits.axle);
   return next;
 }
 

@@ -54,6 +54,7 @@ class HullCheck {
   double radius_ = 0;       // [m] of the circle about the hull
   double half_length_ = 0;  // [m] 0: the hull is a disc
   double half_width_ = 0;
+  double axle_ = 0;                // [m] x of the drive axle in R
   std::array<Rim, kRims> rims_{};  // of the rear half
   std::size_t rim_count_ = 0;
 };
@@ -61,7 +62,10 @@ class HullCheck {
 struct MotionLimits {
   double max_v = 0, max_omega = 0;                    // [m/s], [rad/s]
   double acceleration = 0, angular_acceleration = 0;  // [m/s2], [rad/s2]
+  double axle = 0;                                    // [m] x of the drive axle in R
 };
+/// Those of the robot itself.
+MotionLimits limits_of(const RobotSpec& spec);
 
 struct MotionState {
   Pose2 pose_W{};

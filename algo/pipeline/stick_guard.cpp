@@ -126,10 +126,7 @@ void StickGuard::look_around(const Resource& in) {
 /// Collects all that the roll-outs of this tick compare with.
 void StickGuard::prepare(const Resource& in) {
   const Observation& seen = *in.observation;
-  limits_ = {in.spec->max_v,
-             in.spec->max_omega,
-             in.spec->max_acceleration,
-             in.spec->max_angular_acceleration};
+  limits_ = limits_of(*in.spec);
   may_back_ = rear_.looks(seen.stamp);
   beside_W_.clear();
   const Pose2& here = seen.odometry.pose;
@@ -180,7 +177,7 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
   const double step = in.dt / pieces;
   const auto on = [&](const MotionState& state, const Twist2& wanted) {
     if (answer == Answer::Ramped) return advanced(state, wanted, limits_, step);
-    return MotionState{integrate_arc(state.pose_W, wanted, step), wanted};
+    return MotionState{integrate_arc(state.pose_W, wanted, step, limits_.axle), wanted};
   };
   MotionState state{in.observation->odometry.pose, in.observation->odometry.twist};
   for (const Twist2& given : in.under_way) {
@@ -197,7 +194,8 @@ bool StickGuard::safe(const Resource& in, const Twist2& command, Answer answer) 
     if (approaches(before_W, next.pose_W, after, step)) return false;
     before_W = next.pose_W;
     // No point of the hull has come nearer than it has moved.
-    left -= step * (std::abs(next.twist.v) + std::abs(next.twist.omega) * in.spec->radius);
+    const double farthest = in.spec->radius + std::abs(limits_.axle);  // of the hull, from the axle
+    left -= step * (std::abs(next.twist.v) + std::abs(next.twist.omega) * farthest);
     if (left < kMargin) left = room(next.pose_W);
     if (left < margin - kRounding) return false;
     margin = std::max(margin, std::min(kMargin, left));

@@ -98,8 +98,7 @@ Contact judge_contact(const sim::Scenario& scenario,
   if (jumped(scenario, spec, contact)) return Contact::Jumped;
   const auto from = std::ranges::find_if(
       trail, [&](const Moment& m) { return m.stamp >= contact.stamp - kBefore - 1e-9; });
-  const algo::MotionLimits limits{
-      spec.max_v, spec.max_omega, spec.max_acceleration, spec.max_angular_acceleration};
+  const algo::MotionLimits limits = algo::limits_of(spec);
   Truth truth(scenario);
   const bool avoidable = std::ranges::any_of(motions(limits), [&](const algo::Twist2& motion) {
     return stays_clear(truth, spec, limits, *from, contact.stamp + kAfter, motion);

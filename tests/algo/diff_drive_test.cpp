@@ -45,6 +45,16 @@ TEST(DiffDrive, TwoHalvesEqualTheWhole) {
   EXPECT_NEAR(whole.heading, halves.heading, 1e-12);
 }
 
+/// An axle 0.1 m behind R: in a half turn on the spot, R swings about it to the other side.
+TEST(DiffDrive, SwingsAboutTheAxle) {
+  const Pose2 out = algo::integrate_arc({}, {0, 0.5}, 2 * std::numbers::pi, -0.1);
+  EXPECT_NEAR(out.x, -0.2, 1e-12);
+  EXPECT_NEAR(out.y, 0, 1e-12);
+  const Pose2 straight = algo::integrate_arc({1, 2, 0}, {0.3, 0}, 2, -0.1);
+  EXPECT_NEAR(straight.x, 1.6, 1e-12);
+  EXPECT_NEAR(straight.y, 2, 1e-12);
+}
+
 TEST(DiffDrive, InverseUndoesForward) {
   const Twist2 twist = algo::forward_kinematics(kGeometry, {3, 7});
   EXPECT_NEAR(twist.v, 0.5, 1e-12);      // (0.3 + 0.7) / 2

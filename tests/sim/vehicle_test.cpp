@@ -11,6 +11,7 @@
 #include "server/run/robot_library.hpp"
 #include "sim/bullet_vehicle.hpp"
 #include "sim/kinematic_vehicle.hpp"
+#include "sim/world.hpp"
 
 namespace sim {
 namespace {
@@ -111,6 +112,25 @@ INSTANTIATE_TEST_SUITE_P(Robots,
                                          Speed{"masuda", {0.3, 0.5}},
                                          Speed{"jackal", {1.0, 1.0}},
                                          Speed{"robhaz", {0.8, 0.5}}));
+
+/// The drive wheels of masuda are 9 cm behind R, so that R swings to a side in a turn.
+TEST(BulletVehicle, OdometryKnowsWhereTheAxleIs) {
+  for (const PhysicsKind physics : {PhysicsKind::Bullet, PhysicsKind::Kinematic}) {
+    Scenario scenario;
+    scenario.robot = server::builtin_robot("masuda");
+    scenario.physics = physics;
+    World world(scenario, 1);
+    algo::Observation observation;
+    world.reset(observation);
+    for (int k = 0; k < 300; ++k) world.step({.base = {0.1, 0.4}}, observation);
+    const Pose2 truth = world.pose_W();
+    EXPECT_LT((observation.odometry.pose.position() - truth.position()).norm(), 0.02);
+    EXPECT_LT(truth.position().norm(), 0.6);
+    // The axle's middle moves without slip: on a circle of 0.25 m about its left.
+    const algo::Vec2 axle_W = algo::to_parent(truth, {-0.09, 0});
+    EXPECT_NEAR((axle_W - algo::Vec2(-0.09, 0.25)).norm(), 0.25, 0.01);
+  }
+}
 
 TEST(BulletVehicle, AcceleratesWithinItsLimits) {
   Track track("silvermate");
