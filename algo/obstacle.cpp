@@ -31,6 +31,12 @@ struct OutlineInOwnFrame {
   std::vector<Vec2> operator()(const Wall& wall) const {
     return rectangle(wall.length, wall.thickness);
   }
+  std::vector<Vec2> operator()(const Ramp& ramp) const {
+    return rectangle(ramp.length, ramp.width);
+  }
+  std::vector<Vec2> operator()(const Trench& trench) const {
+    return rectangle(trench.length, trench.width);
+  }
 };
 
 struct DistanceInOwnFrame {
@@ -39,6 +45,12 @@ struct DistanceInOwnFrame {
   double operator()(const Box& box) const { return to_rectangle(p, box.length / 2, box.width / 2); }
   double operator()(const Wall& wall) const {
     return to_rectangle(p, wall.length / 2, wall.thickness / 2);
+  }
+  double operator()(const Ramp& ramp) const {
+    return to_rectangle(p, ramp.length / 2, ramp.width / 2);
+  }
+  double operator()(const Trench& trench) const {
+    return to_rectangle(p, trench.length / 2, trench.width / 2);
   }
   double operator()(const Polygon& polygon) const {
     double nearest = std::numeric_limits<double>::infinity();  // squared
@@ -155,6 +167,14 @@ struct ShapeDefect {
   Answer operator()(const Wall& wall) const {
     return size_defect("length", wall.length, "thickness", wall.thickness);
   }
+  Answer operator()(const Ramp& ramp) const {
+    if (!(ramp.low >= 0 && ramp.low <= kMaxSize)) return "low must be from 0 to 1000 m";
+    return size_defect("length", ramp.length, "width", ramp.width);
+  }
+  Answer operator()(const Trench& trench) const {
+    if (auto wrong = size_defect("depth", trench.depth)) return wrong;
+    return size_defect("length", trench.length, "width", trench.width);
+  }
 };
 
 }  // namespace
@@ -165,6 +185,19 @@ double squared_distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const double square = edge.squaredNorm();
   const double along = square > 0 ? std::clamp(edge.dot(to_p) / square, 0.0, 1.0) : 0;
   return (to_p - along * edge).squaredNorm();
+}
+
+bool is_ground(const Obstacle& obstacle) {
+  return std::holds_alternative<Ramp>(obstacle.shape) ||
+         std::holds_alternative<Trench>(obstacle.shape);
+}
+
+double top_at(const Obstacle& ground, const Vec2& p_W) {
+  if (const auto* trench = std::get_if<Trench>(&ground.shape)) return -trench->depth;
+  const auto* ramp = std::get_if<Ramp>(&ground.shape);
+  if (ramp == nullptr) return ground.height;
+  const double share = to_child(ground.pose_W, p_W).x() / ramp->length + 0.5;
+  return std::lerp(ramp->low, ground.height, share);
 }
 
 bool any_moves(const std::vector<Obstacle>& obstacles) {
@@ -191,6 +224,7 @@ std::optional<std::string> defect(const Obstacle& obstacle) {
   if (obstacle.path && (!(obstacle.path->period > 0) || obstacle.path->keys.empty())) {
     return "path must have a period above 0 and one key at least";
   }
+  if (obstacle.path && is_ground(obstacle)) return "path: a ramp or a trench cannot move";
   return std::visit(ShapeDefect{}, obstacle.shape);
 }
 

@@ -1,4 +1,5 @@
-// algo/obstacle.hpp: the planar shapes of a world's obstacles. Pure geometry, no physics.
+// algo/obstacle.hpp: the shapes of a world's obstacles and of its ground. Pure geometry, no
+// physics.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,22 @@ struct Wall {
   double thickness = 0;  // [m]
   bool operator==(const Wall&) const = default;
 };
-using Shape = std::variant<Cylinder, Box, Polygon, Wall>;
+/// Ground whose top rises evenly from `low` at x = -length/2 of its frame to the obstacle's height
+/// at x = length/2. Equal heights make a step.
+struct Ramp {
+  double length = 0;  // [m] on the map
+  double width = 0;   // [m] along its y axis
+  double low = 0;     // [m] above the floor
+  bool operator==(const Ramp&) const = default;
+};
+/// A hole in the floor with upright sides. Its obstacle has no height.
+struct Trench {
+  double length = 0;  // [m] along its x axis
+  double width = 0;   // [m] along its y axis
+  double depth = 0;   // [m] below the floor
+  bool operator==(const Trench&) const = default;
+};
+using Shape = std::variant<Cylinder, Box, Polygon, Wall, Ramp, Trench>;
 
 struct Obstacle {
   std::uint32_t id = 0;  // unique in its world
@@ -46,10 +62,17 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// True for ramps and trenches: a robot drives over them, so no distance to an obstacle counts
+/// them.
+bool is_ground(const Obstacle& obstacle);
+
+/// [m] Height of the top of `ground` at `p_W`, which lies within its outline; below 0 in a trench.
+double top_at(const Obstacle& ground, const Vec2& p_W);
+
 /// True if one of `obstacles` moves by itself.
 bool any_moves(const std::vector<Obstacle>& obstacles);
 
-/// Vertices in W, counter-clockwise; empty for a cylinder. B = 4 for a box or wall.
+/// Vertices in W, counter-clockwise; empty for a cylinder. Four for all others but a polygon.
 std::vector<Vec2> outline_W(const Obstacle& obstacle);
 
 /// [m2] Squared distance from `p` to the segment from `a` to `b`.

@@ -15,6 +15,7 @@
 namespace algo {
 
 using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
 
 /// `angle` [rad] wrapped to (-pi, pi].
 inline double wrap_angle(double angle) {

@@ -75,6 +75,12 @@ algo::Obstacle read_obstacle(const fb::Obstacle* o) {
     case fb::ShapeKind_Wall:
       out.shape = algo::Wall{a, c};
       break;
+    case fb::ShapeKind_Ramp:
+      out.shape = algo::Ramp{a, c, o->low()};
+      break;
+    case fb::ShapeKind_Trench:
+      out.shape = algo::Trench{a, c, -o->low()};
+      break;
     case fb::ShapeKind_Polygon: {
       algo::Polygon polygon;
       if (o->points() != nullptr) {
@@ -185,6 +191,17 @@ void check_enum(T value, T max, const char* what) {
   if (value > max) throw WireError(std::string("The frame has an unknown ") + what + ".");
 }
 
+void read_line(const fb::LaserLine& line, algo::Observation& o) {
+  o.line.fresh = true;
+  o.line.stamp = line.stamp();
+  if (line.pixels() == nullptr) return;
+  check_alignment(*line.pixels());
+  if (line.pixels()->size() % 2 != 0) throw WireError("The laser line in the frame is not whole.");
+  for (unsigned i = 0; i < line.pixels()->size(); i += 2) {
+    o.line.pixels.push_back({line.pixels()->Get(i), line.pixels()->Get(i + 1)});
+  }
+}
+
 void read_observation(const fb::Frame& f, algo::Observation& o) {
   o.clear_sensors();
   o.stamp = f.clock()->stamp();
@@ -221,6 +238,10 @@ void read_observation(const fb::Frame& f, algo::Observation& o) {
   if (const auto* i = f.inclinometer()) {
     o.inclinometer = {f.inclinometer_stamp().value_or(o.stamp), i->roll(), i->pitch()};
   }
+  if (const auto* r = f.floor()) {
+    o.floor = {r->stamp(), r->far_left(), r->far_right(), r->near_left(), r->near_right()};
+  }
+  if (f.line() != nullptr) read_line(*f.line(), o);
   if (const auto* e = f.encoders()) {
     o.encoders = {f.encoders_stamp().value_or(o.stamp), e->left(), e->right()};
   }

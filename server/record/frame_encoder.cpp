@@ -59,6 +59,7 @@ Offset<fb::ObstaclePath> write_path(Builder& b, const algo::ObstaclePath& path) 
 Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
   fb::ShapeKind kind{};
   fb::Vec2 size{};
+  double low = 0;
   std::vector<fb::Vec2> points;
   std::visit(
       [&](const auto& shape) {
@@ -72,9 +73,17 @@ Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
         } else if constexpr (std::is_same_v<S, algo::Polygon>) {
           kind = fb::ShapeKind_Polygon;
           for (const algo::Vec2& p : shape.points) points.push_back(to_wire(p));
-        } else {
+        } else if constexpr (std::is_same_v<S, algo::Wall>) {
           kind = fb::ShapeKind_Wall;
           size = {shape.length, shape.thickness};
+        } else if constexpr (std::is_same_v<S, algo::Ramp>) {
+          kind = fb::ShapeKind_Ramp;
+          size = {shape.length, shape.width};
+          low = shape.low;
+        } else {
+          kind = fb::ShapeKind_Trench;
+          size = {shape.length, shape.width};
+          low = -shape.depth;
         }
       },
       o.shape);
@@ -83,7 +92,7 @@ Offset<fb::Obstacle> write_obstacle(Builder& b, const algo::Obstacle& o) {
   const auto path = o.path ? write_path(b, *o.path) : 0;
   const fb::Pose2 pose = to_wire(o.pose_W);
   return fb::CreateObstacle(
-      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular, path);
+      b, o.id, &pose, kind, &size, point_vector, o.height, o.reflectivity, o.specular, path, low);
 }
 
 Offset<fb::SetGoal> write_goal(Builder& b, const algo::SetGoal& goal) {
@@ -173,6 +182,17 @@ Offset<flatbuffers::String> write_name(Builder& b, const algo::Name& name) {
   return b.CreateString(name.view().data(), name.view().size());
 }
 
+Offset<fb::LaserLine> write_line(Builder& b, const algo::LineImage& line) {
+  if (!line.fresh) return 0;
+  float* to = nullptr;
+  const auto pixels = b.CreateUninitializedVector(2 * line.pixels.size(), &to);
+  for (const algo::LinePixel& pixel : line.pixels) {
+    *to++ = pixel.u;
+    *to++ = pixel.v;
+  }
+  return fb::CreateLaserLine(b, pixels, line.stamp);
+}
+
 Offset<flatbuffers::Vector<Offset<fb::Reading>>> write_channels(Builder& b,
                                                                 const algo::Observation& o) {
   if (o.channels.empty()) return 0;
@@ -228,6 +248,11 @@ void FrameWriter::doubles() {
     const fb::Inclinometer inclinometer(o.inclinometer->roll, o.inclinometer->pitch);
     frame.add_inclinometer(&inclinometer);
     if (o.inclinometer->stamp != o.stamp) frame.add_inclinometer_stamp(o.inclinometer->stamp);
+  }
+  if (o.floor) {
+    const algo::FloorRanges& r = *o.floor;
+    const fb::FloorRanges floor(r.stamp, r.far_left, r.far_right, r.near_left, r.near_right);
+    frame.add_floor(&floor);
   }
   if (o.encoders && o.encoders->stamp != o.stamp) frame.add_encoders_stamp(o.encoders->stamp);
   if (t.hold == algo::holds::kStaleScan && t.scene.scan.size() > 0) {
@@ -290,6 +315,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   const auto moved = write_structs<fb::Moved>(b, t.moved);
   const auto goals_ahead = write_structs<fb::Vec2f>(b, t.goals_ahead);
   const auto channels = write_channels(b, o);
+  const auto line = write_line(b, o.line);
   const auto rates =
       t.command.joints == 0 ? 0 : b.CreateVector(t.command.joint_rates.data(), t.command.joints);
   const auto hold = write_name(b, t.hold.name);
@@ -319,6 +345,7 @@ std::span<const std::byte> FrameEncoder::encode(const algo::Telemetry& t) {
   frame.add_hold(hold);
   frame.add_limit(limit);
   frame.add_channels(channels);
+  frame.add_line(line);
   frame.add_joint_rates(rates);
   frame.add_goals_ahead(goals_ahead);
   frame.add_moved(moved);

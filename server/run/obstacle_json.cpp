@@ -76,6 +76,32 @@ void read_polygon(const JsonReader& in, algo::Obstacle& obstacle) {
   obstacle.shape = std::move(polygon);
 }
 
+/// A step is a ramp of one height.
+void read_ramp(const JsonReader& in, bool step, algo::Obstacle& obstacle) {
+  in.only({"id",
+           "type",
+           "x",
+           "y",
+           "heading",
+           "length",
+           "width",
+           step ? "height" : "low",
+           "height",
+           "reflectivity",
+           "specular"});
+  obstacle.pose_W = pose_from_json(in, 0);
+  const double height = in.number("height");
+  obstacle.shape =
+      algo::Ramp{in.number("length"), in.number("width"), step ? height : in.number_or("low", 0)};
+}
+
+void read_trench(const JsonReader& in, algo::Obstacle& obstacle) {
+  in.only(
+      {"id", "type", "x", "y", "heading", "length", "width", "depth", "reflectivity", "specular"});
+  obstacle.pose_W = pose_from_json(in, 0);
+  obstacle.shape = algo::Trench{in.number("length"), in.number("width"), in.number("depth")};
+}
+
 }  // namespace
 
 algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
@@ -114,8 +140,15 @@ algo::Obstacle obstacle_from_json(const json& value, const std::string& path) {
     read_polygon(in, obstacle);
   } else if (type == "wall") {
     read_wall(in, obstacle);
+  } else if (type == "ramp" || type == "step") {
+    read_ramp(in, type == "step", obstacle);
+  } else if (type == "trench") {
+    read_trench(in, obstacle);
   } else {
-    in.fail("type", fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall", type));
+    in.fail(
+        "type",
+        fmt::format("'{}' is unknown; known are cylinder, box, polygon, wall, ramp, step, trench",
+                    type));
   }
   obstacle.height = in.number_or("height", obstacle.height);
   obstacle.reflectivity = in.number_or("reflectivity", obstacle.reflectivity);
@@ -147,10 +180,22 @@ json to_json(const algo::Obstacle& o) {
           out["type"] = "polygon";
           out["points"] = json::array();
           for (const algo::Vec2& p : shape.points) out["points"].push_back({p.x(), p.y()});
-        } else {
+        } else if constexpr (std::is_same_v<S, algo::Wall>) {
           out["type"] = "wall";
           out["length"] = shape.length;
           out["thickness"] = shape.thickness;
+        } else if constexpr (std::is_same_v<S, algo::Ramp>) {
+          const bool step = shape.low == o.height;
+          out["type"] = step ? "step" : "ramp";
+          out["length"] = shape.length;
+          out["width"] = shape.width;
+          if (!step) out["low"] = shape.low;
+        } else {
+          out["type"] = "trench";
+          out["length"] = shape.length;
+          out["width"] = shape.width;
+          out["depth"] = shape.depth;
+          out.erase("height");
         }
       },
       o.shape);
