@@ -384,6 +384,20 @@ test("a first visit: three steps that lead on, are dismissed and remembered; hel
     await until("they can be read again", 10, () => p.get("steps").textContent(), (w) => /^1\/3/.test(w));
   }));
 
+test("a new experiment is checked and started without scrolling", { timeout: 120_000 }, () =>
+  at_each_size({ scenario: "demo" }, async (p, size) => {
+    await p.page.evaluate(() => (location.hash = "#/experiments"));
+    await p.get("new-experiment").click();
+    for (const act of ["experiment-check", "experiment-start"]) {
+      const hidden = await p.get(act).evaluate((e) => {
+        const b = e.getBoundingClientRect();
+        return ![0.1, 0.5, 0.9].every((share) => e.contains(document.elementFromPoint(b.left + b.width / 2, b.top + share * b.height)));
+      });
+      assert.equal(hidden, false, `${size}: ${act} is out of reach`);
+    }
+    await shot(p, size, "new-experiment");
+  }));
+
 test("an unknown address says so and offers the way back", { timeout: 60_000 }, () =>
   at_each_size({ scenario: "demo" }, async (p, size) => {
     for (const hash of ["#/nonsense", "#/runs/seven"]) {
