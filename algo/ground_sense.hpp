@@ -2,17 +2,20 @@
 // of a robot on ground that is not level.
 #pragma once
 
+#include <cmath>
+
 namespace algo {
 
 /// A laser that draws a line across the ground ahead, and the camera that sees it (Park et al.
 /// 2005, Eq. 11, 12). The camera is the origin of frame C, which looks ahead and down by `pitch`.
-/// The laser is `baseline` above it, along C's z axis, and shines down by `angle` from C's x axis.
+/// The laser is `baseline` above it, along C's z axis, from which its plane leans by `angle`:
+/// th_lp.
 struct LineCamera {
   double x = 0;         // [m] of the camera in R; not in the paper
   double height = 0;    // [m] of the camera above the floor
   double pitch = 0;     // [rad] down positive
   double baseline = 0;  // [m]
-  double angle = 0;     // [rad] of the laser's plane, in (0, pi/2)
+  double angle = 0;     // [rad] from C's z axis, in (0, pi/2)
   double focal = 0;     // [pixels]
   int columns = 0;      // [pixels] of the image; u is positive to the left,
   int rows = 0;         // [pixels] v towards the laser; both count from the middle
@@ -47,5 +50,11 @@ struct ClimbLimits {
   double slope_down = 0;  // [rad] positive
   bool operator==(const ClimbLimits&) const = default;
 };
+
+/// True if a robot with this roll and pitch [rad] leans by more than 60 degrees: it lies on its
+/// side or its back.
+inline bool is_overturned(double roll, double pitch) {
+  return std::cos(roll) * std::cos(pitch) < 0.5;
+}
 
 }  // namespace algo
