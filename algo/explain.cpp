@@ -110,6 +110,9 @@ void explain(const Telemetry& t, const Controller& controller, Explanation& word
     say_surroundings(t, words.why);
   } else if (t.mission == Mission::Arrived) {
     explain_arrived(t, t.goal->position_W, words);
+  } else if (t.behaviour == behaviours::kGround) {
+    words.what = "Surveying the ground ahead";
+    words.why = t.limit.why;
   } else {
     controller.explain(t, words);
     if (t.limit) say(words.why, " %s", std::string(t.limit.why).c_str());

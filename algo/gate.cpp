@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "algo/ground_sense.hpp"
+
 namespace algo {
 namespace {
 
@@ -25,8 +27,11 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
       !finite(command.base)) {
     return holds::kNotFinite;
   }
+  const auto& tilt = observation.inclinometer;
+  if (tilt && is_overturned(tilt->roll, tilt->pitch)) return holds::kOverturned;
   const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);
   if (observation.bumper_pressed() && !leaves) return holds::kBumper;
+  if (in.tilt_stale) return holds::kStaleTilt;
   // Written so that a NaN stamp counts as stale.
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
   if (!fresh) return in.blinded ? holds::kDazzled : holds::kStaleScan;

@@ -17,13 +17,25 @@ inline constexpr ParameterInfo kScanTimeout{
     .help = "The robot is held when its newest scan is older than this.",
     .alias = "scan_timeout"};
 
+inline constexpr ParameterInfo kTiltTimeout{
+    .name = "gate.tilt_timeout",
+    .label = "Inclinometer timeout",
+    .unit = "s",
+    .min = 0.05,
+    .max = 2.0,
+    .step = 0.05,
+    .initial = 0.2,
+    .help =
+        "A robot that may turn over is held when its inclinometer's reading is older than this."};
+
 struct GateInput {
   bool stopped = false;                // Stop is latched
   double scan_timeout = 0;             // [s]
   std::optional<double> scan_stamp{};  // [s] of the newest scan; empty before the first
-  bool blinded = false;  // most beams of the newest scan measured nothing: it is ignored
-  bool hidden = false;   // the command leads into a dazzled scanner's blind cone
-  bool by_hand = false;  // a person drives, and may back away from a contact
+  bool blinded = false;     // most beams of the newest scan measured nothing: it is ignored
+  bool hidden = false;      // the command leads into a dazzled scanner's blind cone
+  bool by_hand = false;     // a person drives, and may back away from a contact
+  bool tilt_stale = false;  // the robot may turn over, and its inclination is not known
 };
 
 namespace holds {
@@ -32,10 +44,18 @@ inline constexpr Hold kStopped{
     "stopped", "Stopped", "Stop is engaged. The robot stays here until it is released."};
 inline constexpr Hold kBumper{
     "bumper", "Touching something", "The bumper is pressed. Back away by hand, or reset."};
+inline constexpr Hold kOverturned{
+    "overturned",
+    "Lying on its side",
+    "The inclinometer says that the robot has turned over. Reset sets a simulated one upright."};
 inline constexpr Hold kStaleScan{
     "stale_scan", "Waiting for the laser", "The newest scan is too old. The robot waits."};
 inline constexpr Hold kDazzled{
     "dazzled", "Waiting for the laser", "It is blinded or dazzled: beams ahead tell nothing."};
+inline constexpr Hold kStaleTilt{
+    "stale_tilt",
+    "Waiting for the inclinometer",
+    "Its newest reading is too old. Without it the robot could turn over."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
 /// The robot holds itself; observation.halt says why.

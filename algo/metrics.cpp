@@ -14,9 +14,17 @@ constexpr double kResample = 0.050;    // [m] between kept positions
 constexpr double kViaSpacing = 0.500;  // [m] of the pass point, per axis
 
 // In the order of their enumerators.
-constexpr std::array<std::string_view, 8> kOutcomes{
-    "running", "reached", "stuck", "out_of_time", "collided", "stopped", "end_of_log", "failed"};
-static_assert(kOutcomes.size() == static_cast<std::size_t>(Outcome::Failed) + 1);
+constexpr std::array<std::string_view, 10> kOutcomes{"running",
+                                                     "reached",
+                                                     "stuck",
+                                                     "out_of_time",
+                                                     "collided",
+                                                     "stopped",
+                                                     "end_of_log",
+                                                     "failed",
+                                                     "overturned",
+                                                     "fallen"};
+static_assert(kOutcomes.size() == static_cast<std::size_t>(Outcome::Fallen) + 1);
 
 }  // namespace
 

@@ -19,7 +19,9 @@ enum class Outcome : std::uint8_t {
   Collided,
   Stopped,  // ended by a person: reset, another scenario, shutdown
   EndOfLog,
-  Failed,  // the link was lost or a fault occurred
+  Failed,      // the link was lost or a fault occurred
+  Overturned,  // it lies on its side or its back
+  Fallen,      // it drove off an edge
 };
 /// "out_of_time", as REST, the database and the command line spell it.
 std::string_view name(Outcome outcome);

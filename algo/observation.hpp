@@ -96,8 +96,10 @@ enum class Halt : std::uint8_t {
   BaseFault,     // the motor controller reports a fault
   OverCurrent,   // a motor draws more than its limit
   BatteryLow,
-  MotorsOff,  // armed, but the base has not switched its motors on
-  LateTick,   // the control loop came too late for its own deadlines
+  MotorsOff,   // armed, but the base has not switched its motors on
+  LateTick,    // the control loop came too late for its own deadlines
+  FloorLost,   // no reading of the sensors that look at the floor, for three of their periods
+  FloorFault,  // their readings are not to be trusted
 };
 
 constexpr std::size_t kMostChannels = 256;

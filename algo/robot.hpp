@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -57,6 +58,7 @@ struct RobotSpec {
   std::optional<LineCamera> line{};
   std::optional<FloorSensors> floor{};
   std::optional<ClimbLimits> climbs{};  // if they were measured
+  bool uneven = false;                  // it is known to drive where there are ramps or trenches
 };
 
 /// The robot's height and inclination on ground that is not level. R in W is turned by the heading
@@ -75,6 +77,8 @@ struct GroundTruth {
   double clearance = 0;          // [m] from the hull's outline to it, negative inside
   bool collided = false;
   std::optional<Tilt> tilt{};  // if the ground is not level
+  bool overturned = false;     // it lies on its side or its back
+  bool fallen = false;         // it came down an edge higher than it can climb
   bool operator==(const GroundTruth&) const = default;
 };
 
@@ -98,6 +102,18 @@ class Arming {
   /// are off.
   virtual std::uint32_t epoch() const = 0;
   virtual HealthReport health() const = 0;
+};
+
+/// Readings of sensors that no driver of ours reads: a process beside the robot publishes them.
+/// Callable from any thread.
+class Publishing {
+ public:
+  virtual ~Publishing() = default;
+  /// Takes a reading of `age` [s], counted from its measurement to this call. Returns the reason
+  /// for a refusal as a sentence, also if a newer reading has come already.
+  virtual std::optional<std::string> publish_tilt(double roll, double pitch, double age) = 0;
+  virtual std::optional<std::string> publish_line(std::span<const LinePixel> pixels,
+                                                  double age) = 0;
 };
 
 /// Adds, moves and removes obstacles. Call from the robot's thread only.
@@ -136,6 +152,8 @@ class Robot {
   virtual std::optional<GroundTruth> ground_truth() const { return std::nullopt; }
   /// Lists the obstacles that move by themselves. Overwrites `moved` but keeps its buffers.
   virtual void find_moved(Recycled<Moved>& moved) const { moved.clear(); }
+  /// Null if no sensor of the robot is published.
+  virtual Publishing* publishing() { return nullptr; }
 };
 
 }  // namespace algo

@@ -7,7 +7,7 @@ namespace algo {
 namespace {
 
 // In the order of their enumerators.
-constexpr std::array<HaltInfo, 12> kHalts{
+constexpr std::array<HaltInfo, 14> kHalts{
     {{"none", "Holding still", "The robot holds its wheels still."},
      {"disarmed",
       "The motors are off",
@@ -29,8 +29,14 @@ constexpr std::array<HaltInfo, 12> kHalts{
       "A motor took more current than it may: is a wheel blocked?"},
      {"battery_low", "Battery low", "The battery is below its limit. Charge it."},
      {"motors_off", "Waiting for the motors", "The robot is armed, but its motors are not on yet."},
-     {"late_tick", "Holding still", "The control loop came too late; the wheels were stopped."}}};
-static_assert(kHalts.size() == static_cast<std::size_t>(Halt::LateTick) + 1);
+     {"late_tick", "Holding still", "The control loop came too late; the wheels were stopped."},
+     {"floor_lost",
+      "Waiting for the floor sensors",
+      "The sensors that look at the floor are silent. The wheels are held still."},
+     {"floor_fault",
+      "Holding still",
+      "The readings of the sensors that look at the floor are not to be trusted."}}};
+static_assert(kHalts.size() == static_cast<std::size_t>(Halt::FloorFault) + 1);
 constexpr std::array<std::string_view, 5> kMissions{"idle", "driving", "arrived", "stuck", "held"};
 static_assert(kMissions.size() == static_cast<std::size_t>(Mission::Held) + 1);
 

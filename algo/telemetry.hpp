@@ -98,6 +98,7 @@ namespace behaviours {
 inline constexpr Name kRest = "rest";  // no behaviour wants the base
 inline constexpr Name kAvoid = "avoid";
 inline constexpr Name kManual = "manual";
+inline constexpr Name kGround = "ground";  // surveys the ground ahead
 
 }  // namespace behaviours
 

@@ -1,6 +1,8 @@
 // algo/pipeline/narrator.cpp: makes words twice a second, not forty times.
 #include "algo/pipeline/narrator.hpp"
 
+#include <string_view>
+
 #include "algo/explain.hpp"
 
 namespace algo {
@@ -8,9 +10,10 @@ namespace {
 
 constexpr double kNarrationPeriod = 0.5;  // [s]
 constexpr double kLegendPeriod = 2.0;     // [s] longest wait of a viewer who missed a frame
+constexpr std::string_view kRamps = " A scanner that looks level sees a ramp as a wall.";
 // Room for the longest words, so that words longer than all before do not allocate.
 constexpr std::size_t kLongestWhat = 60;
-constexpr std::size_t kLongestWhy = 250;
+constexpr std::size_t kLongestWhy = 350;
 
 void make_room(Explanation& words) {
   words.what.reserve(kLongestWhat);
@@ -24,7 +27,7 @@ bool Narrator::Said::same_state(const Said& other) const {
          mission == other.mission && behaviour == other.behaviour && state == other.state;
 }
 
-void Narrator::tell(const Controller& controller, Telemetry& t) {
+void Narrator::tell(const Controller& controller, bool by_ramps, Telemetry& t) {
   show_legend(t);
   const Said now{.stamp = t.observation.stamp,
                  .hold = t.hold,
@@ -40,6 +43,7 @@ void Narrator::tell(const Controller& controller, Telemetry& t) {
   if (t.words_fresh) {
     make_room(words_);
     explain(t, controller, words_);
+    if (by_ramps && t.mission == Mission::Stuck && !t.hold) words_.why += kRamps;
     said_ = now;
   }
   t.words = words_;

@@ -17,7 +17,8 @@ class Narrator {
   /// Fills t.words: new words if hold, limit, mission, behaviour or the controller's state has
   /// changed, else twice a second; otherwise the words of the previous tick. Fills t.legend, which
   /// is fresh when it has changed, and every two seconds.
-  void tell(const Controller& controller, Telemetry& t);
+  /// `by_ramps`: there are ramps, and no sensor tells them from walls.
+  void tell(const Controller& controller, bool by_ramps, Telemetry& t);
 
  private:
   /// The facts that the words explain.

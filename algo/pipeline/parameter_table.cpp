@@ -9,8 +9,10 @@
 #include "algo/gate.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/reactive.hpp"
+#include "algo/pipeline/turnover_guard.hpp"
 #include "algo/strip/strip_law.hpp"
 #include "algo/teleop/teleop_parameters.hpp"
+#include "algo/terrain/ground_survey.hpp"
 
 namespace algo {
 namespace {
@@ -30,6 +32,8 @@ std::vector<const ParameterInfo*> all_parameters() {
   }
   add(kCommon);
   add(kTeleopParameters);
+  add(kTurnoverParameters);
+  add(kGroundParameters);
   return all;
 }
 

@@ -64,9 +64,19 @@ Pipeline::Pipeline(const PipelineConfig& config,
       controller_(controllers.at(config.controller)),
       initial_parameters_(config.parameters),
       sensing_(config.filter) {
+  if (spec.drives && spec.stance) {
+    auto turnover = std::make_unique<TurnoverGuard>(spec);
+    turnover_ = turnover.get();
+    coordinator_.add(std::move(turnover));
+  }
   auto avoid = std::make_unique<AvoidBehaviour>(controller_.make());
   avoid->begin(config.run);
   avoiding_ = &avoid->controller();
+  if (spec.drives && spec.floor) {
+    auto ground = std::make_unique<GroundBehaviour>(spec);
+    ground_ = ground.get();
+    coordinator_.add(std::move(ground));
+  }
   if (spec.drives && by_hand_) {
     auto manual = std::make_unique<ManualBehaviour>(*avoid);
     manual_ = manual.get();
@@ -93,6 +103,7 @@ void Pipeline::reset(const Pose2& start_W) {
   std::ranges::fill(under_way_, Twist2{});
   grids_.reset();
   narrator_.reset();
+  by_ramps_ = spec_.uneven && !spec_.line && !spec_.floor;
   tick_ = 0;
 }
 
@@ -167,14 +178,25 @@ void Pipeline::look(Telemetry& t) {
 }
 
 void Pipeline::decide(Telemetry& t) {
-  control(t);  // let behaviours propose, pick one
-  hold(t);     // the gate has the last word
+  control(t);                  // let behaviours propose, pick one
+  hold(t);                     // the gate has the last word
+  if (turnover_ != nullptr) {  // even a stop brakes no harder than the robot stands
+    t.command.base.v = turnover_->eased(t.command.base.v, t.observation.odometry);
+  }
   remember(t.command.base);
-  narrator_.tell(*avoiding_, t);  // explains the tick, now and then
+  narrator_.tell(*avoiding_, by_ramps_, t);  // explains the tick, now and then
+}
+
+void Pipeline::notice_ramp(const Request& edit) {
+  const auto* const add = std::get_if<AddObstacle>(&edit);
+  const auto* const change = std::get_if<ChangeObstacle>(&edit);
+  const bool ramp = (add != nullptr && is_ground(add->obstacle)) ||
+                    (change != nullptr && is_ground(change->obstacle));
+  by_ramps_ = by_ramps_ || (ramp && !spec_.line && !spec_.floor);
 }
 
 void Pipeline::apply(const Request& request) {
-  if (is_edit(request)) return;  // carried out by the robot
+  if (is_edit(request)) return notice_ramp(request);  // carried out by the robot
   if (intent_.apply(request)) sequencer_.begin(intent_);
   if (std::holds_alternative<Joystick>(request)) {
     joystick_ticks_ = static_cast<std::uint64_t>(
@@ -188,6 +210,7 @@ void Pipeline::sense(Telemetry& t) {
   if (front != nullptr) {
     blinded_ = blinded(*front);
     if (!blinded_) scan_stamp_ = front->stamp;
+    if (ground_ != nullptr) ground_->enter_edges(t.observation.odometry.pose, scene_.scan);
     perceive(t.observation.odometry.pose, scene_);
     t.scene.scan = scene_.scan;
   } else {
@@ -252,7 +275,7 @@ void Pipeline::control(Telemetry& t) {
   resource.merge = &sensing_.merge();
   resource.under_way = under_way_;
   resource.parameters = &intent_.parameters;
-  resource.spec = &spec_;
+  resource.spec = turnover_ != nullptr ? &turnover_->spec() : &spec_;
   resource.goal = t.goal;
   resource.mission = t.mission;
   resource.joystick = intent_.stick;
@@ -261,6 +284,8 @@ void Pipeline::control(Telemetry& t) {
   const Decision decision = coordinator_.decide(resource, t.output);
   if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);
   if (manual_ != nullptr) manual_->show(t);
+  if (turnover_ != nullptr) turnover_->show(t);
+  if (ground_ != nullptr) ground_->show(t);
   t.behaviour = decision.winner;
   t.limit = decision.limit;
   t.command = actuate(decision.twist, spec_);
@@ -274,6 +299,7 @@ void Pipeline::hold(Telemetry& t) {
   in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
   in.by_hand = t.behaviour == behaviours::kManual;
+  in.tilt_stale = turnover_ != nullptr && turnover_->stale(t.observation.stamp, intent_.parameters);
   t.hold = gate(in, t.observation, t.command);
   if (!t.hold) return;
   t.command = {};

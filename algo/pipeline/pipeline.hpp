@@ -9,10 +9,12 @@
 #include "algo/intent.hpp"
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/grid_thinning.hpp"
+#include "algo/pipeline/ground_behaviour.hpp"
 #include "algo/pipeline/narrator.hpp"
 #include "algo/pipeline/reactive.hpp"
 #include "algo/pipeline/sensing.hpp"
 #include "algo/pipeline/sequencing.hpp"
+#include "algo/pipeline/turnover_guard.hpp"
 #include "algo/telemetry.hpp"
 
 namespace algo {
@@ -64,6 +66,7 @@ class Pipeline {
   std::optional<std::string> refusal_of(const SetGoal& goal) const;
   std::optional<std::string> refusal_of(const SetGoals& list) const;
   void apply(const Request& request);
+  void notice_ramp(const Request& edit);
   void sense(Telemetry& t);
   void sense_sonar(Telemetry& t);
   void sequence(Telemetry& t);
@@ -81,6 +84,8 @@ class Pipeline {
   BehaviourCoordinator coordinator_{};
   const ManualBehaviour* manual_ =
       nullptr;                            // one of its behaviours, if a person may take the stick
+  TurnoverGuard* turnover_ = nullptr;     // another one, if the robot may turn over
+  GroundBehaviour* ground_ = nullptr;     // one of its behaviours, if the robot has floor sensors
   const Controller* avoiding_ = nullptr;  // the controller of one of its behaviours
   Sequencer sequencer_{};
   Scene scene_{};
@@ -93,6 +98,7 @@ class Pipeline {
   GridThinning grids_{};
   bool grids_wanted_ = false;
   Narrator narrator_{};
+  bool by_ramps_ = false;  // there are ramps or trenches, and no sensor looks at the ground
   std::uint64_t tick_ = 0;
 };
 

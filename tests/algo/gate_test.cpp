@@ -51,6 +51,18 @@ TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
   }
 }
 
+TEST_F(GateTest, HoldsARobotThatLiesOnItsSide) {
+  for (const double angle : {0.0, 0.5, 1.0, 1.1, 1.6, 3.1}) {
+    const Hold expected = angle > 1.05 ? holds::kOverturned : Hold{};  // 60 degrees
+    for (const double sign : {-1.0, 1.0}) {
+      observation.inclinometer = Inclinometer{10, sign * angle, 0};
+      EXPECT_EQ(gate(input, observation, command), expected) << angle;
+      observation.inclinometer = Inclinometer{10, 0, sign * angle / 2};
+      EXPECT_EQ(gate(input, observation, command), angle > 2.1 ? holds::kOverturned : Hold{});
+    }
+  }
+}
+
 TEST_F(GateTest, ABumperHoldsUnlessTheDriverBacksOff) {
   const BumperReading front{.mount_R = {0.35, 0, 0}, .stamp = 10, .pressed = true};
   const BumperReading rear{.mount_R = {-0.35, 0, 3.14}, .stamp = 10, .pressed = true};
