@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "algo/diff_drive.hpp"
 
 namespace sim {
@@ -17,6 +19,10 @@ constexpr double kStillTime = 0.5;         // [s]
 constexpr double kSettleTime = 0.5;        // [s] for the wheels to settle on the floor
 constexpr double kContactTouching = 1e-4;  // [m] Bullet keeps contact points up to 0.02 m apart
 constexpr int kHullPart = 0;
+constexpr double kSlowTilt = 0.02;    // [rad/s] a robot that tips over does so faster before long
+constexpr double kSlowSlide = 0.005;  // [m/s]
+constexpr double kDropUnmeasured = 0.05;  // [m] down an edge is a fall if its limit is not known
+constexpr double kSetDown = 1e-3;         // [m] above the ground, to settle from
 
 /// The wheel side of a part of the chassis, by sign.
 int side_of(const btCompoundShape& chassis, int part, std::size_t wheels) {
@@ -60,14 +66,17 @@ void BulletVehicle::build_chassis() {
   }
   hull->setMargin(Physics::kMargin);
   add(std::move(hull), 0, 0, p.hull_low + hull_half);
+  supports_.clear();
+  const auto support = [&](double x, double y, double z, double radius) {
+    add(make_bullet<btSphereShape>(radius), x, y, z);
+    supports_.push_back({btVector3(x, y, z - p.mass_height), radius});
+  };
   for (const double x : p.wheels) {
     for (const double y : {p.half_track, -p.half_track}) {
-      add(make_bullet<btSphereShape>(p.wheel_radius), x, y, p.wheel_radius);
+      support(x, y, p.wheel_radius, p.wheel_radius);
     }
   }
-  for (const Caster& c : p.casters) {
-    add(make_bullet<btSphereShape>(c.radius), c.x, c.y, c.radius + c.raised);
-  }
+  for (const Caster& c : p.casters) support(c.x, c.y, c.radius + c.raised, c.radius);
 
   // The inertia of a solid box of the hull's size; the compound's own inertia is meaningless.
   const double xx = p.hull_length * p.hull_length;
@@ -119,6 +128,86 @@ void BulletVehicle::reset(const algo::Pose2& start) {
   still_for_ = 0;
 }
 
+/// Places the body with its z axis along `normal` and R at `height` [m]; at rest.
+void BulletVehicle::set_on(const algo::Pose2& pose_W, const btVector3& normal, double height) {
+  const btVector3 heading(std::cos(pose_W.heading), std::sin(pose_W.heading), 0);
+  // The x axis keeps its heading on the map.
+  const btVector3 left = normal.cross(heading).normalized();
+  const btVector3 ahead = left.cross(normal);
+  const btMatrix3x3 basis(ahead.x(),
+                          left.x(),
+                          normal.x(),
+                          ahead.y(),
+                          left.y(),
+                          normal.y(),
+                          ahead.z(),
+                          left.z(),
+                          normal.z());
+  const btVector3 ground(pose_W.x, pose_W.y, height);
+  const btTransform at(basis, ground + normal * robot_.mass_height);
+  chassis_->setWorldTransform(at);
+  chassis_->setInterpolationWorldTransform(at);
+  chassis_->setLinearVelocity(btVector3(0, 0, 0));
+  chassis_->setAngularVelocity(btVector3(0, 0, 0));
+  physics_.set_down(*chassis_);
+}
+
+/// The plane through the ground under the wheels and casters, by least squares; then raised until
+/// the ground is nowhere above it, so that the vehicle settles from above.
+void BulletVehicle::stand_on(const ObstacleSet& ground) {
+  level_ = !ground.has_ground();
+  if (level_) return;
+  const algo::Pose2 start = state_.pose_W;
+  Eigen::Matrix3d sums = Eigen::Matrix3d::Identity() * 1e-9;  // a single line of supports has none
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  std::vector<algo::Vec3> under;  // x and y from R, along W's axes; height
+  for (const Support& support : supports_) {
+    const algo::Vec2 at_W = algo::to_parent(start, {support.centre.x(), support.centre.y()});
+    under.emplace_back(at_W.x() - start.x, at_W.y() - start.y, ground.ground_at(at_W));
+    const Eigen::Vector3d row(under.back().x(), under.back().y(), 1);
+    sums += row * row.transpose();
+    right += row * under.back().z();
+  }
+  const Eigen::Vector3d plane = sums.ldlt().solve(right);
+  double height = plane.z();
+  for (const algo::Vec3& p : under) {
+    height = std::max(height, p.z() - plane.x() * p.x() - plane.y() * p.y());
+  }
+  set_on(start, btVector3(-plane.x(), -plane.y(), 1).normalized(), height + kSetDown);
+  physics_.gather(ground, start.position(), robot_.radius + kNear);
+  settle();
+  read_state();
+  // It may have slid a little while it settled.
+  const algo::Vec2 slid = start.position() - state_.pose_W.position();
+  const btVector3 n = chassis_->getWorldTransform().getBasis().getColumn(2);
+  const double rise = -(n.x() * slid.x() + n.y() * slid.y()) / n.z();
+  set_on(start, n, state_.z + rise);
+  state_ = {};
+  read_state();
+  state_.pose_W = start;
+  state_.twist = {};
+  parked_ = false;  // it may slide or turn over by itself
+  for (Support& support : supports_) {
+    support.ground =
+        ground.ground_at(algo::to_parent(start, {support.centre.x(), support.centre.y()}));
+    support.edge.reset();
+  }
+}
+
+/// A wheel or caster has fallen once it is lower than an edge that it passed, by more than the
+/// robot can come down. Over a narrow trench it keeps its height, and the far edge ends the matter.
+void BulletVehicle::watch_falls(const ObstacleSet& obstacles) {
+  const double most = robot_.climbs ? robot_.climbs->step_down : kDropUnmeasured;
+  for (Support& support : supports_) {
+    const btVector3 centre = chassis_->getWorldTransform() * support.centre;
+    const double ground = obstacles.ground_at({centre.x(), centre.y()});
+    if (!support.edge && ground < support.ground - most) support.edge = support.ground;
+    if (support.edge && ground >= *support.edge - most) support.edge.reset();
+    if (support.edge && centre.z() - support.radius < *support.edge - most) state_.fallen = true;
+    support.ground = ground;
+  }
+}
+
 void BulletVehicle::settle() {
   const auto steps = static_cast<std::size_t>(std::ceil(kSettleTime / substeps_.length));
   for (std::size_t k = 0; k < steps; ++k) substep();
@@ -134,7 +223,10 @@ void BulletVehicle::drive(const algo::Twist2& command,
     parked_ = false;
     still_for_ = 0;
   }
+  level_ = !obstacles.has_ground();
   if (!parked_) state_.contact = false;
+  if (!parked_) state_.scrape = false;
+  if (!parked_) state_.ground_contact.reset();
   for (std::size_t k = 0; k < substeps_.count; ++k) {
     if (!parked_) {
       physics_.gather(obstacles, state_.pose_W.position(), robot_.radius + kNear);
@@ -145,9 +237,11 @@ void BulletVehicle::drive(const algo::Twist2& command,
       state_.left_angle += sides.left * per_step;
       state_.right_angle += sides.right * per_step;
       read_state();
+      if (!level_) watch_falls(obstacles);
       update_parking();
     }
     trail.push(state_.pose_W);
+    if (!level_) trail.tilt(state_.tilt());
   }
 }
 
@@ -155,6 +249,12 @@ void BulletVehicle::drive(const algo::Twist2& command,
 void BulletVehicle::substep() {
   const algo::SideMotion sides = algo::sides_of(target_, robot_.half_track);
   drive_->set({sides.left, sides.right, left_load_, right_load_, normal_});
+  if (lean_ != 0) {
+    const double heading = pose().heading;
+    const btVector3 left(-std::sin(heading), std::cos(heading), 0);
+    const btVector3 down(0, 0, -std::cos(lean_));
+    chassis_->setGravity(Physics::kGravity * (down - std::sin(lean_) * left));
+  }
   physics_.step(substeps_.length);
   read_contacts();
 }
@@ -176,7 +276,15 @@ void BulletVehicle::read_contacts() {
       const double impulse = point.getAppliedImpulse();
       if (part == kHullPart) {
         const bool touching = impulse > 0 || point.getDistance() < kContactTouching;
-        if (touching && std::abs(up.z()) < 0.5) state_.contact = true;
+        state_.scrape = state_.scrape || touching;
+        if (touching && std::abs(up.z()) < 0.5) {
+          state_.contact = true;
+          if (Physics::is_ground(first ? *manifold.getBody1() : *manifold.getBody0())) {
+            const btVector3 at = chassis_->getWorldTransform().invXform(
+                first ? point.getPositionWorldOnA() : point.getPositionWorldOnB());
+            state_.ground_contact = std::atan2(at.y(), at.x());
+          }
+        }
         continue;
       }
       const int side = side_of(*chassis_shape_, part, robot_.wheels.size());
@@ -208,13 +316,17 @@ void BulletVehicle::read_state() {
                   chassis_->getAngularVelocity().z()};
   state_.roll = std::atan2(basis[2][1], basis[2][2]);
   state_.pitch = std::asin(std::clamp<double>(-basis[2][0], -1, 1));
+  const btVector3 ground = chassis_->getWorldTransform() * btVector3(0, 0, -robot_.mass_height);
+  state_.z = ground.z();
 }
 
 /// Counts the time at rest, and parks after enough of it.
 void BulletVehicle::update_parking() {
   const bool still = wanted_ == algo::Twist2{} && target_ == algo::Twist2{} &&
                      std::abs(state_.twist.v) < kStillSpeed &&
-                     std::abs(state_.twist.omega) < kStillTurn;
+                     std::abs(state_.twist.omega) < kStillTurn &&
+                     (level_ || (chassis_->getLinearVelocity().length() < kSlowSlide &&
+                                 chassis_->getAngularVelocity().length() < kSlowTilt));
   still_for_ = still ? still_for_ + substeps_.length : 0;
   if (still_for_ < kStillTime) return;
   parked_ = true;

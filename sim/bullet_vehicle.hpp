@@ -1,6 +1,7 @@
 // sim/bullet_vehicle.hpp: a base with mass, friction and contacts, in a Bullet world of its own.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <btBulletDynamicsCommon.h>
@@ -23,8 +24,14 @@ class BulletVehicle final : public VehicleModel {
   ~BulletVehicle() override;
 
   void reset(const algo::Pose2& start) override;
+  void stand_on(const ObstacleSet& ground) override;
   void drive(const algo::Twist2& command, const ObstacleSet& obstacles, PoseTrail& trail) override;
-  void halt() noexcept override { target_ = {}; }
+  void halt() noexcept override {
+    if (!robot_.sensors.inclinometer) target_ = {};
+  }
+  /// Turns gravity with the robot so that a level floor acts as a slope: at each heading the robot
+  /// feels the roll `roll` [rad]. For experiments.
+  void lean(double roll) { lean_ = roll; }
   const VehicleState& state() const override { return state_; }
 
   void added(const algo::Obstacle& obstacle) override { physics_.added(obstacle); }
@@ -34,6 +41,14 @@ class BulletVehicle final : public VehicleModel {
   void removed(std::size_t index) override { physics_.removed(index); }
 
  private:
+  /// A wheel or caster, and the ground that it has passed.
+  struct Support {
+    btVector3 centre{0, 0, 0};     // in the body's frame
+    double radius = 0;             // [m]
+    double ground = 0;             // [m] height of the ground under it
+    std::optional<double> edge{};  // [m] of the ground before a drop that it has not come back from
+  };
+
   void take_down();
   void build_chassis();
   void settle();
@@ -41,6 +56,8 @@ class BulletVehicle final : public VehicleModel {
   void read_contacts();
   void read_state();
   void update_parking();
+  void watch_falls(const ObstacleSet& obstacles);
+  void set_on(const algo::Pose2& pose_W, const btVector3& normal, double height);
   algo::Pose2 pose() const;
 
   RobotModel robot_{};
@@ -60,6 +77,9 @@ class BulletVehicle final : public VehicleModel {
   btVector3 normal_{0, 0, 1};
   double still_for_ = 0;  // [s]
   bool parked_ = false;
+  double lean_ = 0;                  // [rad]
+  bool level_ = true;                // no ramp or trench is in the world
+  std::vector<Support> supports_{};  // wheels, then casters
 };
 
 }  // namespace sim

@@ -23,8 +23,12 @@ double contact_bearing(const algo::Pose2& pose_W, const ObstacleSet& obstacles) 
 
 void BumperRing::sense(const Surroundings& around, algo::Observation& observation) {
   const double share = 2 * std::numbers::pi / count_;
-  const double bearing =
-      around.contact && count_ > 1 ? contact_bearing(around.vehicle.pose_W, around.obstacles) : 0;
+  double bearing = 0;
+  if (around.contact && around.vehicle.ground_contact) {
+    bearing = *around.vehicle.ground_contact;
+  } else if (around.contact && count_ > 1) {
+    bearing = contact_bearing(around.vehicle.pose_W, around.obstacles);
+  }
   const auto pressed = static_cast<std::uint32_t>(std::lround(bearing / share) + count_) % count_;
   for (std::uint32_t k = 0; k < count_; ++k) {
     const double heading = algo::wrap_angle(share * k);

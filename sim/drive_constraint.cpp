@@ -2,6 +2,11 @@
 #include "sim/drive_constraint.hpp"
 
 namespace sim {
+namespace {
+
+constexpr btScalar kUpright = 1e-6;  // square of the x axis along the ground
+
+}  // namespace
 
 DriveConstraint::DriveConstraint(btRigidBody& chassis, btRigidBody& ground, const Layout& layout)
     : btTypedConstraint(D6_CONSTRAINT_TYPE, chassis, ground), layout_(layout) {}
@@ -22,6 +27,9 @@ void DriveConstraint::getInfo2(btConstraintInfo2* info) {
   const btVector3& n = drive_.normal;
   const btVector3 ahead = basis.getColumn(0);
   btVector3 forward = ahead - n * n.dot(ahead);
+  const bool on_its_nose = forward.length2() < kUpright;  // its wheels drive it nowhere
+  if (on_its_nose) forward = basis.getColumn(2);
+  const btScalar friction = on_its_nose ? 0 : layout_.friction;
   forward.normalize();
   const btVector3 lateral = n.cross(forward);
   const btScalar load = drive_.left_load + drive_.right_load;
@@ -37,7 +45,7 @@ void DriveConstraint::getInfo2(btConstraintInfo2* info) {
       info->m_J2linearAxis[at + axis] = -along[axis];
       info->m_J2angularAxis[at + axis] = 0;
     }
-    const btScalar limit = layout_.friction * N / info->fps;
+    const btScalar limit = friction * N / info->fps;
     info->m_constraintError[at] = target;
     info->cfm[at] = 0;
     info->m_lowerLimit[at] = -limit;

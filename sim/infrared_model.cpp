@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/space_pose.hpp"
+
 namespace sim {
 namespace {
 
@@ -45,16 +47,31 @@ InfraredModel::InfraredModel(const InfraredConfig& config, std::uint64_t seed, s
   }
 }
 
+void InfraredModel::cast_in_space(double stamp, const PoseTrail& trail, const SolidCaster& solids) {
+  const SpacePose robot = space_pose(trail.at(stamp), trail.tilt_at(stamp));
+  const SpacePose sensor = mounted(robot, config_.mount_R, config_.height);
+  for (std::size_t i = 0; i < fan_.beams; ++i) {
+    const auto hit = solids.cast(sensor.origin_W, beam_W(sensor, fan_.angle(i)), config_.range_max);
+    hits_[i] = hit ? 0 : RangeCaster::kNothing;
+    ranges_[i] = hit ? hit->range : config_.range_max;
+  }
+}
+
 void InfraredModel::sense(double now,
                           const PoseTrail& trail,
-                          algo::Recycled<algo::RangeReading>& readings) {
+                          algo::Recycled<algo::RangeReading>& readings,
+                          const SolidCaster* solids) {
   const double taken = std::floor((now - phase_ + kInfraredOnTime) / config_.period) + 1;
   const auto scans = static_cast<std::int64_t>(std::max(0.0, taken));
   if (scans <= scans_) return;
   scans_ = scans;
   const double stamp = phase_ + static_cast<double>(scans - 1) * config_.period;
-  const algo::Pose2 sensor_W = algo::compose(trail.at(stamp), config_.mount_R);
-  caster().cast(sensor_W, fan_, config_.range_max, ranges_, hits_);
+  if (solids != nullptr) {
+    cast_in_space(stamp, trail, *solids);
+  } else {
+    const algo::Pose2 sensor_W = algo::compose(trail.at(stamp), config_.mount_R);
+    caster().cast(sensor_W, fan_, config_.range_max, ranges_, hits_);
+  }
   noise_.fill_normal(errors_);
   for (std::size_t i = 0; i < fan_.beams; ++i) {
     algo::RangeReading& reading = readings.append();

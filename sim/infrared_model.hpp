@@ -22,15 +22,20 @@ class InfraredModel final : public CastingSensor {
   InfraredModel(const InfraredConfig& config, std::uint64_t seed, std::uint32_t index);
 
   void sense(const Surroundings& around, algo::Observation& observation) override {
-    sense(around.stamp, around.trail, observation.infrared);
+    sense(around.stamp, around.trail, observation.infrared, around.solids);
   }
   double memory() const override { return config_.period; }
 
   /// Appends the readings of the newest scan taken by `now` [s, run clock], unless already
-  /// reported.
-  void sense(double now, const PoseTrail& trail, algo::Recycled<algo::RangeReading>& readings);
+  /// reported. With `solids`, the ground is not level, and the fan tilts with the robot.
+  void sense(double now,
+             const PoseTrail& trail,
+             algo::Recycled<algo::RangeReading>& readings,
+             const SolidCaster* solids = nullptr);
 
  private:
+  void cast_in_space(double stamp, const PoseTrail& trail, const SolidCaster& solids);
+
   InfraredConfig config_{};
   BeamPattern fan_{};
   Random noise_;

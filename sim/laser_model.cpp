@@ -84,10 +84,14 @@ void LaserModel::remove(std::uint32_t id) {
 }
 
 void LaserModel::sense(const Surroundings& around, algo::Observation& observation) {
-  if (!sense(around.stamp, around.trail, observation.scans.append())) observation.scans.pop_back();
+  algo::LaserScan& scan = observation.scans.append();
+  if (!sense(around.stamp, around.trail, scan, around.solids)) observation.scans.pop_back();
 }
 
-bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan) {
+bool LaserModel::sense(double now,
+                       const PoseTrail& trail,
+                       algo::LaserScan& scan,
+                       const SolidCaster* solids) {
   static thread_local LaserWorkspace workspace;
   work_ = &workspace;
   double end = now;
@@ -110,13 +114,26 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   scan.resize(pattern_.beams);
   work_->resize(pattern_.beams);
 
+  if (solids != nullptr) {
+    cast_in_space(end, trail, *solids);
+    report(scan, config_.reflectivity);
+  } else {
+    const bool surfaces = config_.reflectivity && !plain_;
+    cast_in_plane(end, trail, surfaces);
+    report(scan, surfaces);
+  }
+  spoil(scan);
+  return true;
+}
+
+/// Casts the beams at the slice of the world in the scan plane.
+void LaserModel::cast_in_plane(double end, const PoseTrail& trail, bool surfaces) {
   if (config_.rolling) {
     aim(end, trail);
   } else {
     reference_W_ = algo::compose(trail.at(end), config_.mount_R);
     if (config_.mixed_pixels) aim_still();
   }
-  const bool surfaces = config_.reflectivity && !plain_;
   const bool with_hits = config_.mixed_pixels || surfaces;
   const std::span<std::uint32_t> hits =
       with_hits ? std::span(work_->hits) : std::span<std::uint32_t>();
@@ -129,9 +146,6 @@ bool LaserModel::sense(double now, const PoseTrail& trail, algo::LaserScan& scan
   if (config_.mixed_pixels) mark_edges();
   if (surfaces) apply_surfaces(work_->rays, work_->ranges, hits);
   if (config_.mixed_pixels) mix_pixels();
-  report(scan);
-  spoil(scan);
-  return true;
 }
 
 /// The rays of a sweep that ends at `end`: each from the scanner's pose at its own instant, in the
@@ -215,7 +229,7 @@ void LaserModel::aim_still() {
 
 /// Applies bias, noise and rounding to the device's unit. A packed beam can hold every result
 /// (algo::quantise() would change nothing).
-void LaserModel::report(algo::LaserScan& scan) {
+void LaserModel::report(algo::LaserScan& scan, bool echoes) {
   if (config_.noise > 0 && config_.noise_shape == NoiseShape::Gaussian) {
     noise_.fill_normal(work_->draws);
   } else if (config_.noise > 0) {
@@ -223,7 +237,6 @@ void LaserModel::report(algo::LaserScan& scan) {
   }
   read_ranges(work_->ranges.data(), work_->draws.data(), work_->draws.size(), reading_);
   const double range_max = config_.range_max;
-  const bool echoes = config_.reflectivity && !plain_;
   static_assert(static_cast<int>(algo::Beam::Ok) == 0 && static_cast<int>(algo::Beam::Free) == 1 &&
                 static_cast<int>(algo::BeamCode::None) == 0);
   split_readings(work_->draws.data(),

@@ -1,6 +1,7 @@
 // sim/laser_model.hpp: the LMS200 model: when its beams are fired, and the errors of its readings.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,12 +9,22 @@
 
 #include "sim/random.hpp"
 #include "sim/sensor.hpp"
+#include "sim/space_pose.hpp"
+#include "sim/spot_kernel.hpp"
 
 namespace sim {
+
+/// A ray in W; `way_W` has length 1.
+struct SpaceRay {
+  algo::Vec3 from_W{0, 0, 0};
+  algo::Vec3 way_W{1, 0, 0};
+};
 
 /// Workspace of one sweep, one entry per beam unless noted. Nothing in it outlives the sweep. All
 /// scanners of a thread share one, which thus stays in the processor's cache.
 struct LaserWorkspace {
+  std::vector<SpaceRay> space{};  // on ground that is not level
+  std::vector<SpacePose> space_poses{};
   Rays way{};  // x and y, one mirror turn after another
   std::vector<double> way_turns{};
   Rays rays{};
@@ -58,12 +69,27 @@ class LaserModel final : public CastingSensor {
   void sense(const Surroundings& around, algo::Observation& observation) override;
 
   /// Fills `scan` with the newest sweep completed by `now` [s, run clock]. False if that sweep was
-  /// delivered before; `scan` is then meaningless.
-  bool sense(double now, const PoseTrail& trail, algo::LaserScan& scan);
+  /// delivered before; `scan` is then meaningless. With `solids`, the ground is not level: the
+  /// beams are cast in space, from the trail's tilts.
+  bool sense(double now,
+             const PoseTrail& trail,
+             algo::LaserScan& scan,
+             const SolidCaster* solids = nullptr);
 
  private:
   /// Marks in `hits` a surface that returned too little light.
   static constexpr std::uint32_t kNoEcho = RangeCaster::kNothing - 1;
+  /// Marks the floor in `hits`.
+  static constexpr std::uint32_t kFloor = RangeCaster::kNothing - 2;
+
+  enum class Echo : std::uint8_t { Returned, Reflected, Dark };
+  /// A ray of a spot, beside its middle one.
+  struct SpotRay {
+    double aside = 0;  // [m] to the left
+    algo::Vec2 way{1, 0};
+  };
+  static std::array<SpotRay, kSpotRays - 1> spot_rays();
+  static Echo echo_of(const algo::Obstacle& surface, double range, double cosine);
 
   void note_surfaces();
   void aim(double end, const PoseTrail& trail);
@@ -76,7 +102,14 @@ class LaserModel final : public CastingSensor {
   void mix_pixels();
   void mark_edges();
   void judge();
-  void report(algo::LaserScan& scan);
+  void cast_in_plane(double end, const PoseTrail& trail, bool surfaces);
+  void cast_in_space(double end, const PoseTrail& trail, const SolidCaster& solids);
+  void cast_one(const SpaceRay& ray,
+                const SolidCaster& solids,
+                double& range,
+                std::uint32_t& number) const;
+  void cast_spots(const SolidCaster& solids);
+  void report(algo::LaserScan& scan, bool echoes);
   void spoil(algo::LaserScan& scan);
 
   LaserConfig config_{};
@@ -100,6 +133,7 @@ class LaserModel final : public CastingSensor {
   // Of the present sweep.
   std::vector<algo::Pose2> motion_{};  // the scanner's poses at the physics steps
   algo::Pose2 reference_W_{};
+  algo::Vec3 up_W_{0, 0, 1};  // across the scan plane, where the ground is not level
   RaySpread spread_{};
   LaserWorkspace* work_ = nullptr;  // the thread's
 };

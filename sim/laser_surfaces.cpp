@@ -39,6 +39,22 @@ void LaserModel::allow_for_spot() {
   spread_.turn += kSpotHalfAngle;
 }
 
+std::array<LaserModel::SpotRay, kSpotRays - 1> LaserModel::spot_rays() {
+  std::array<SpotRay, kSubRays.size()> rays{};
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    rays[k] = {kSubRays[k] * kSpotHalfWidth, algo::direction(kSubRays[k] * kSpotHalfAngle)};
+  }
+  return rays;
+}
+
+/// `cosine` of the angle at which the ray meets the surface.
+LaserModel::Echo LaserModel::echo_of(const algo::Obstacle& surface, double range, double cosine) {
+  if (surface.specular) {
+    return cosine < std::cos(kSpecularCone) ? Echo::Reflected : Echo::Returned;
+  }
+  return range > reach(surface.reflectivity) ? Echo::Dark : Echo::Returned;
+}
+
 void LaserModel::note_surfaces() {
   plain_ = true;
   for (std::uint32_t k = 0; k < caster().size(); ++k) {

@@ -65,8 +65,9 @@ void ObstacleSet::measure(Item& item) {
 }
 
 void ObstacleSet::add(const algo::Obstacle& obstacle) {
-  items_.push_back({.obstacle = obstacle});
+  items_.push_back({.obstacle = obstacle, .ground = algo::is_ground(obstacle)});
   measure(items_.back());
+  if (items_.back().ground) ++grounds_;
 }
 
 void ObstacleSet::move(std::size_t index, const algo::Pose2& pose_W) {
@@ -77,6 +78,7 @@ void ObstacleSet::move(std::size_t index, const algo::Pose2& pose_W) {
 }
 
 void ObstacleSet::remove(std::size_t index) {
+  if (items_[index].ground) --grounds_;
   items_.erase(items_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
@@ -105,7 +107,7 @@ bool ObstacleSet::may_reach(std::size_t index, const algo::Vec2& p_W, double rea
 double ObstacleSet::distance(const algo::Vec2& p_W) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
-    if (items_[i].hidden) continue;
+    if (items_[i].hidden || items_[i].ground) continue;
     // No point of it is nearer than its circle. Inside a circle, every distance must be computed.
     if (nearest > 0 && !may_reach(i, p_W, nearest)) continue;
     nearest = std::min(nearest, distance(i, p_W));
@@ -138,11 +140,24 @@ double ObstacleSet::clearance(const Hull& hull, const algo::Pose2& pose_W) const
   if (hull.is_disc()) return distance(pose_W.position()) - hull.radius;
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < items_.size(); ++i) {
+    if (items_[i].ground) continue;
     // No point of it is nearer than its circle is to the rectangle's circle.
     if (!may_reach(i, pose_W.position(), std::max(nearest, 0.0) + hull.radius)) continue;
     nearest = std::min(nearest, clearance(items_[i], hull, pose_W));
   }
   return nearest;
+}
+
+double ObstacleSet::ground_at(const algo::Vec2& p_W) const {
+  double ramp = 0;
+  double trench = 0;
+  for (std::size_t i = 0; grounds_ > 0 && i < items_.size(); ++i) {
+    if (!items_[i].ground || !may_reach(i, p_W, 0) || distance(i, p_W) > 0) continue;
+    const double top = algo::top_at(items_[i].obstacle, p_W);
+    ramp = std::max(ramp, top);
+    trench = std::min(trench, top);
+  }
+  return ramp > 0 ? ramp : trench;
 }
 
 }  // namespace sim

@@ -15,7 +15,8 @@ namespace sim {
 using algo::Hull;
 
 /// Obstacles in the order of addition, each with its outline and bounding circle. A distance costs
-/// little even with a thousand of them, and allocates nothing.
+/// little even with a thousand of them, and allocates nothing. Distances to all of them leave out
+/// ramps and trenches, which a robot drives over; those to one of them do not.
 class ObstacleSet {
  public:
   std::size_t size() const { return items_.size(); }
@@ -28,7 +29,13 @@ class ObstacleSet {
   void remove(std::size_t index);
   /// Distances ignore obstacle `index` until it is moved again.
   void hide(std::size_t index) { items_[index].hidden = true; }
-  void clear() { items_.clear(); }
+  void clear() { *this = {}; }
+
+  /// True if a ramp or a trench is among them: the ground is not level.
+  bool has_ground() const { return grounds_ > 0; }
+  /// [m] Height of the ground at `p_W`: the top of the highest ramp there, else a trench's bottom,
+  /// else 0.
+  double ground_at(const algo::Vec2& p_W) const;
 
   /// [m] Distance from `p_W` to the nearest surface: negative inside, infinite without obstacles.
   /// Equals the smallest algo::signed_distance().
@@ -51,11 +58,13 @@ class ObstacleSet {
     double bound = 0;                     // [m] radius of the bounding circle
     std::vector<algo::Vec2> outline_W{};  // empty for a cylinder
     bool hidden = false;
+    bool ground = false;
   };
   static void measure(Item& item);
   double clearance(const Item& item, const Hull& hull, const algo::Pose2& pose_W) const;
 
   std::vector<Item> items_{};
+  std::size_t grounds_ = 0;  // of them, ramps and trenches
 };
 
 }  // namespace sim

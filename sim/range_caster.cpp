@@ -20,6 +20,21 @@ std::uint32_t round_up(double value) {
   return whole + (value > static_cast<double>(whole) ? 1 : 0);
 }
 
+/// `obstacle`, but of a ramp only the part that reaches up to the plane.
+algo::Obstacle slice(const algo::Obstacle& obstacle, double plane_height) {
+  algo::Obstacle part = obstacle;
+  auto* const ramp = std::get_if<algo::Ramp>(&part.shape);
+  if (ramp == nullptr || std::min(ramp->low, part.height) >= plane_height) return part;
+  const double share = (plane_height - ramp->low) / (part.height - ramp->low);  // of the length
+  const double cut = (share - 0.5) * ramp->length;
+  const double end = (part.height > ramp->low ? 0.5 : -0.5) * ramp->length;
+  const algo::Vec2 middle_W = algo::to_parent(part.pose_W, {(cut + end) / 2, 0});
+  part.pose_W.x = middle_W.x();
+  part.pose_W.y = middle_W.y();
+  ramp->length = std::abs(end - cut);
+  return part;
+}
+
 }  // namespace
 
 void BeamPattern::aim(std::vector<double>& ux, std::vector<double>& uy) const {
@@ -32,7 +47,10 @@ void BeamPattern::aim(std::vector<double>& ux, std::vector<double>& uy) const {
 }
 
 void RangeCaster::add(const algo::Obstacle& obstacle) {
-  if (obstacle.height < plane_height_) return;
+  if (std::holds_alternative<algo::Trench>(obstacle.shape)) return;  // below all planes
+  const auto* ramp = std::get_if<algo::Ramp>(&obstacle.shape);
+  const double top = ramp == nullptr ? obstacle.height : std::max(ramp->low, obstacle.height);
+  if (top < plane_height_) return;
   const std::size_t index = obstacles_.size();
   obstacles_.push_back(obstacle);
   ids_.push_back(obstacle.id);
@@ -78,7 +96,7 @@ void RangeCaster::place(std::size_t index) {
     bound_[index] = cylinder->radius;
     return;
   }
-  const std::vector<algo::Vec2> outline = algo::outline_W(obstacle);
+  const std::vector<algo::Vec2> outline = algo::outline_W(slice(obstacle, plane_height_));
   algo::Vec2 low = outline.front();
   algo::Vec2 high = outline.front();
   for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -105,6 +105,16 @@ std::optional<std::string> defect(const RobotModel& robot) {
   return std::nullopt;
 }
 
+namespace {
+
+std::optional<algo::FloorSensors> floor_of(const Sensors& sensors) {
+  if (!sensors.floor) return std::nullopt;
+  const FloorSensorConfig& f = *sensors.floor;
+  return algo::FloorSensors{f.x, f.height, f.half_spacing, f.angle, f.separation};
+}
+
+}  // namespace
+
 algo::RobotSpec spec_of(const RobotModel& robot, double period) {
   const Hull hull = hull_of(robot);
   return {.name = robot.name,
@@ -119,7 +129,25 @@ algo::RobotSpec spec_of(const RobotModel& robot, double period) {
           .max_angular_acceleration = robot.max_angular_acceleration,
           .has_laser = robot.sensors.has_laser(),
           .has_ring = robot.sensors.has_ring(),
-          .axle = axle_of(robot)};
+          .axle = axle_of(robot),
+          .stance = robot.sensors.inclinometer ? std::optional(stance_of(robot)) : std::nullopt,
+          .line = robot.sensors.line_camera,
+          .floor = floor_of(robot.sensors),
+          .climbs = robot.climbs};
+}
+
+algo::Stance stance_of(const RobotModel& robot) {
+  double front = -robot.hull_length;
+  double back = robot.hull_length;
+  const auto take = [&](double x) {
+    front = std::max(front, x);
+    back = std::min(back, x);
+  };
+  for (const double x : robot.wheels) take(x);
+  for (const Caster& caster : robot.casters) {
+    if (caster.raised <= kCasterTouching) take(caster.x);
+  }
+  return {robot.mass_height, 2 * robot.half_track, 2 * std::min(front, -back)};
 }
 
 double axle_of(const RobotModel& robot) {

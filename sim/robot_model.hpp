@@ -33,12 +33,13 @@ struct Machine {
   double wheel_radius = 0.10;                    // [m]
   std::vector<double> wheels{0};                 // [m] x of the wheels on each side
   std::vector<Caster> casters{{0.27, 0, 0.04, 0.001}, {-0.27, 0, 0.04, 0.001}};
-  double max_v = 0.5;                   // [m/s]
-  double max_omega = 1.0;               // [rad/s]
-  double max_acceleration = 0.5;        // [m/s2]
-  double max_angular_acceleration = 4;  // [rad/s2]
-  double friction = 0.8;                // of the drive wheels on the floor
-  double counts_per_turn = 40000;       // of a wheel's encoder
+  double max_v = 0.5;                         // [m/s]
+  double max_omega = 1.0;                     // [rad/s]
+  double max_acceleration = 0.5;              // [m/s2]
+  double max_angular_acceleration = 4;        // [rad/s2]
+  double friction = 0.8;                      // of the drive wheels on the floor
+  double counts_per_turn = 40000;             // of a wheel's encoder
+  std::optional<algo::ClimbLimits> climbs{};  // if they were measured
 
   /// Makes the hull a box; `radius` becomes that of the circle through its corners.
   void set_box(double length, double width);
@@ -58,8 +59,13 @@ constexpr std::size_t kMostCasters = 8;
 /// begins with the field. Each number must already be within its own limits.
 std::optional<std::string> defect(const RobotModel& robot);
 
-/// The port's spec of the robot, with ticks of `period` [s] and `drives` false.
+/// The port's spec of the robot, with ticks of `period` [s] and `drives` false. It has a stance if
+/// the robot has an inclinometer of its own.
 algo::RobotSpec spec_of(const RobotModel& robot, double period);
+
+/// What the robot stands on: the width between its tracks, and twice the distance from R to the
+/// nearer one of its foremost and hindmost supports.
+algo::Stance stance_of(const RobotModel& robot);
 
 /// [m] x of the drive axle in R: the middle of the wheels.
 double axle_of(const RobotModel& robot);

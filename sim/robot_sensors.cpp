@@ -2,8 +2,11 @@
 #include <utility>
 
 #include "sim/bumper_ring.hpp"
+#include "sim/floor_sensors.hpp"
+#include "sim/inclinometer_model.hpp"
 #include "sim/infrared_model.hpp"
 #include "sim/laser_model.hpp"
+#include "sim/line_camera_model.hpp"
 #include "sim/sensor.hpp"
 #include "sim/sonar_model.hpp"
 
@@ -42,8 +45,15 @@ std::vector<std::unique_ptr<Sensor>> make_sensors(const RobotModel& robot, std::
   for (std::uint32_t i = 0; i < made_of.infrared.size(); ++i) {
     sensors.push_back(std::make_unique<InfraredModel>(made_of.infrared[i], seed, i));
   }
+  if (made_of.floor) sensors.push_back(std::make_unique<FloorSensorModel>(*made_of.floor, seed));
   if (made_of.bumpers > 0) {
     sensors.push_back(std::make_unique<BumperRing>(made_of.bumpers, robot.radius));
+  }
+  if (made_of.inclinometer) {
+    sensors.push_back(std::make_unique<InclinometerModel>(*made_of.inclinometer, seed));
+  }
+  if (made_of.line_camera) {
+    sensors.push_back(std::make_unique<LineCameraModel>(*made_of.line_camera, seed));
   }
   for (std::size_t i = 0; i < made_of.further.size(); ++i) {
     sensors.push_back(std::make_unique<Channel>(static_cast<std::uint8_t>(i),

@@ -19,6 +19,7 @@
 #include "sim/range_caster.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/sensor_configs.hpp"
+#include "sim/solid_caster.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -29,7 +30,8 @@ struct Surroundings {
   const VehicleState& vehicle;
   const PoseTrail& trail;  // the robot's recent poses
   const ObstacleSet& obstacles;
-  bool contact = false;  // the robot was touched in this tick
+  bool contact = false;                 // the robot was touched in this tick
+  const SolidCaster* solids = nullptr;  // all obstacles, if the ground is not level
 };
 
 class Sensor {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "algo/ground_sense.hpp"
 #include "algo/types.hpp"
 
 namespace sim {
@@ -78,6 +79,37 @@ struct GyroConfig {
   double noise = 0;      // [rad/s] standard deviation of a reading
 };
 
+/// A laser's line on the ground ahead and its camera. The defaults are errors only.
+struct LineCameraConfig : algo::LineCamera {
+  double noise = 0.5;     // [pixels] standard deviation of v, before it becomes whole
+  double dropout = 0.02;  // probability that a column's pixel is missing
+  double period = 0.05;   // [s] between images
+};
+
+/// An inclinometer for roll and pitch. A robot that has one may turn over: its pipeline then keeps
+/// it from that (RobotSpec::stance).
+struct InclinometerConfig {
+  double noise = 0.2 * std::numbers::pi / 180;  // [rad] standard deviation
+  double lag = 0.05;                            // [s] time constant of its first-order answer
+  double period = 0;                            // [s] between readings; 0: every tick
+};
+
+/// Four Sharp GP2D12 that look down at the floor ahead (sensors.md 7, equations.md H).
+struct FloorSensorConfig {
+  double x = 0.14;                      // [m] in R, of the near sensors
+  double height = 0.14142136;           // [m] above the floor, of the near sensors
+  double half_spacing = 0.10;           // [m] from R's x axis to either side
+  double angle = std::numbers::pi / 4;  // [rad] of the beams, down from R's x axis
+  double separation = 0.08;             // [m] between the two beams of a side, at right angles
+  double noise = 0.006;                 // [V] standard deviation
+  double spot = 0.004;                  // [m] height of the light spot, at right angles to the beam
+  double glitches = 0.005;              // probability of a reading off by up to 10 cm
+  double period = 0.038;                // [s] between new readings
+  /// Noise grows by (cos 45 / cos incidence)^2: a calibration of ours on the spread of Tables
+  /// I-III.
+  bool grazing = false;
+};
+
 /// A sensor's setting in a scenario: a number or a list of numbers.
 struct Setting {
   std::string name{};
@@ -101,10 +133,14 @@ struct Sensors {
   std::vector<LaserConfig> lasers{LaserConfig::with_resolution(0.5)};
   std::optional<SonarConfig> sonar{};
   std::vector<InfraredConfig> infrared{};
+  std::optional<FloorSensorConfig> floor{};
   std::vector<SensorConfig> further{};  // each with a channel of its own
   /// Absent: an ideal gyro with dynamics, none without.
   std::optional<GyroConfig> gyro{};
   bool has_gyro = true;
+  std::optional<LineCameraConfig> line_camera{};
+  /// Absent: an ideal one with dynamics, none without.
+  std::optional<InclinometerConfig> inclinometer{};
   std::uint32_t bumpers = 1;  // evenly around the hull from straight ahead, with equal sectors
   bool encoders = true;
 

@@ -31,8 +31,13 @@ void SolidCaster::measure(Solid& solid) {
   }
   solid.outline_W = algo::outline_W(o);
   solid.bound = 0;
-  for (const algo::Vec2& p : solid.outline_W) {
-    solid.bound = std::max(solid.bound, (p - solid.centre_W).norm());
+  solid.outward_W.clear();
+  const algo::Vec2* a = &solid.outline_W.back();
+  for (const algo::Vec2& b : solid.outline_W) {
+    solid.bound = std::max(solid.bound, (b - solid.centre_W).norm());
+    const algo::Vec2 edge = b - *a;
+    solid.outward_W.push_back(algo::Vec2(edge.y(), -edge.x()).normalized());
+    a = &b;
   }
   if (const auto* ramp = std::get_if<algo::Ramp>(&o.shape)) {
     solid.slope_W = (o.height - ramp->low) / ramp->length * algo::direction(o.pose_W.heading);
@@ -98,11 +103,9 @@ std::optional<SolidCaster::Span> SolidCaster::over(const Solid& solid,
     span.normal_W = (span.from * along - to_centre).normalized();
     return span;
   }
-  const algo::Vec2* a = &solid.outline_W.back();
-  for (const algo::Vec2& b : solid.outline_W) {
-    const algo::Vec2 edge = b - *a;
-    const algo::Vec2 outward = algo::Vec2(edge.y(), -edge.x()).normalized();
-    const double distance = outward.dot(origin - *a);  // outside above 0
+  for (std::size_t k = 0; k < solid.outline_W.size(); ++k) {
+    const algo::Vec2& outward = solid.outward_W[k];
+    const double distance = outward.dot(origin - solid.outline_W[k]);  // outside above 0
     const double rate = outward.dot(along);
     if (std::abs(rate) < kAlong) {
       if (distance > 0) return std::nullopt;
@@ -114,10 +117,22 @@ std::optional<SolidCaster::Span> SolidCaster::over(const Solid& solid,
     } else {
       span.to = std::min(span.to, -distance / rate);
     }
-    a = &b;
   }
   if (span.from >= span.to) return std::nullopt;
   return span;
+}
+
+/// False if the ray passes the solid's circle, or ends before it.
+bool SolidCaster::may_meet(const Solid& solid,
+                           const algo::Vec3& from,
+                           const algo::Vec3& way,
+                           double within) {
+  const algo::Vec2 to_centre = solid.centre_W - from.head<2>();
+  const double reach = solid.bound + within;
+  const double aside = algo::cross(algo::Vec2(way.head<2>()), to_centre);
+  const double run = way.head<2>().squaredNorm();
+  return to_centre.squaredNorm() <= reach * reach &&
+         aside * aside <= solid.bound * solid.bound * run + kAlong;
 }
 
 /// Lowers `hit` to the ray's entry into `solid`, if that is nearer.
@@ -126,9 +141,7 @@ void SolidCaster::meet(const Solid& solid,
                        const algo::Vec3& way,
                        SolidHit& hit) const {
   if (std::holds_alternative<algo::Trench>(solid.obstacle.shape)) return;  // part of the floor
-  const algo::Vec2 to_centre = solid.centre_W - from.head<2>();
-  const double reach = solid.bound + hit.range;
-  if (to_centre.squaredNorm() > reach * reach) return;
+  if (!may_meet(solid, from, way, hit.range)) return;
   const auto span = over(solid, from, way);
   if (!span || span->to <= 0 || span->from >= hit.range) return;
   // Height above the top, along the ray.
@@ -147,6 +160,7 @@ void SolidCaster::meet(const Solid& solid,
     hit.normal_W = algo::Vec3(-solid.slope_W.x(), -solid.slope_W.y(), 1).normalized();
   }
   hit.of = &solid.obstacle;
+  hit.number = static_cast<std::uint32_t>(&solid - solids_.data());
 }
 
 void SolidCaster::meet_floor(const algo::Vec3& from, const algo::Vec3& way, SolidHit& hit) const {
@@ -164,6 +178,7 @@ void SolidCaster::meet_floor(const algo::Vec3& from, const algo::Vec3& way, Soli
     if (found >= hit.range) return;
     hit.range = found;
     hit.of = &solid.obstacle;
+    hit.number = static_cast<std::uint32_t>(&solid - solids_.data());
     if (at_side) {
       // The side is met from within: its normal looks back along the ray.
       const algo::Vec2 p = (from + found * way).head<2>() - solid.centre_W;

@@ -14,6 +14,7 @@ struct SolidHit {
   double range = 0;                    // [m] along the ray
   algo::Vec3 normal_W{0, 0, 1};        // of the surface, outward, of length 1
   const algo::Obstacle* of = nullptr;  // null: the floor
+  std::uint32_t number = 0;            // of that obstacle among all
 };
 
 /// A world of upright solids on the floor z = 0, with ramps and trenches. A planar scanner on level
@@ -40,6 +41,7 @@ class SolidCaster {
   struct Solid {
     algo::Obstacle obstacle{};
     std::vector<algo::Vec2> outline_W{};  // empty: a circle about `centre_W`
+    std::vector<algo::Vec2> outward_W{};  // of each edge, by its end
     algo::Vec2 centre_W{0, 0};
     double bound = 0;          // [m] radius of a circle about it all
     double top = 0;            // [m] at the origin of W
@@ -54,6 +56,10 @@ class SolidCaster {
   static std::optional<Span> over(const Solid& solid,
                                   const algo::Vec3& from,
                                   const algo::Vec3& way);
+  static bool may_meet(const Solid& solid,
+                       const algo::Vec3& from,
+                       const algo::Vec3& way,
+                       double within);
   void meet(const Solid& solid, const algo::Vec3& from, const algo::Vec3& way, SolidHit& hit) const;
   void meet_floor(const algo::Vec3& from, const algo::Vec3& way, SolidHit& hit) const;
   std::size_t find(std::uint32_t id) const;

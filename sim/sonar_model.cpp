@@ -75,8 +75,35 @@ std::optional<double> SonarModel::nearest_echo(const algo::Pose2& sensor_W, doub
   return nearest;
 }
 
+/// The same in space. The fan of rays lies in the ring's plane, as if it were level.
+std::optional<double> SonarModel::nearest_echo(const SpacePose& sensor,
+                                               double beyond,
+                                               const SolidCaster& solids) const {
+  const double least_cosine = std::cos(config_.incidence) - 1e-9;
+  std::optional<double> nearest;
+  for (std::size_t i = 0; i < kRays; ++i) {
+    const algo::Vec3 way_W = beam_W(sensor, cone_.angle(i));
+    const auto hit = solids.cast(sensor.origin_W, way_W, nearest.value_or(config_.range_max));
+    if (!hit || hit->range < beyond) continue;
+    if (-way_W.dot(hit->normal_W) >= least_cosine) nearest = hit->range;
+  }
+  return nearest;
+}
+
+/// The echo of the ping that the sensor at `mount_R` fired at `fired` [s].
+std::optional<double> SonarModel::echo_at(double fired,
+                                          const algo::Pose2& mount_R,
+                                          double beyond,
+                                          const PoseTrail& trail,
+                                          const SolidCaster* solids) {
+  const algo::Pose2 robot_W = trail.at(fired);
+  if (solids == nullptr) return nearest_echo(algo::compose(robot_W, mount_R), beyond);
+  const SpacePose robot = space_pose(robot_W, trail.tilt_at(fired));
+  return nearest_echo(mounted(robot, mount_R, config_.height), beyond, *solids);
+}
+
 /// [m] Distance that the next ping's sensor takes the echo of the ping before for.
-std::optional<double> SonarModel::late_echo(const PoseTrail& trail) {
+std::optional<double> SonarModel::late_echo(const PoseTrail& trail, const SolidCaster* solids) {
   if (!config_.crosstalk || pings_ == 0 || mounts_R_.size() == 1) return std::nullopt;
   const algo::Pose2& before = mount_of(pings_ - 1);
   const double apart = algo::wrap_angle(mount_of(pings_).heading - before.heading);
@@ -84,21 +111,21 @@ std::optional<double> SonarModel::late_echo(const PoseTrail& trail) {
   const double head_start = kSound * config_.ping / 2;
   if (head_start + config_.range_min >= config_.range_max) return std::nullopt;
   const double fired = static_cast<double>(pings_ - 1) * config_.ping;
-  const auto echo =
-      nearest_echo(algo::compose(trail.at(fired), before), head_start + config_.range_min);
+  const auto echo = echo_at(fired, before, head_start + config_.range_min, trail, solids);
   if (!echo) return std::nullopt;
   return *echo - head_start;
 }
 
 void SonarModel::sense(double now,
                        const PoseTrail& trail,
-                       algo::Recycled<algo::RangeReading>& readings) {
+                       algo::Recycled<algo::RangeReading>& readings,
+                       const SolidCaster* solids) {
   for (;; ++pings_) {
     const double fired = static_cast<double>(pings_) * config_.ping;
     if (fired > now + kSonarOnTime) return;
     const algo::Pose2& mount = mount_of(pings_);
-    auto echo = nearest_echo(algo::compose(trail.at(fired), mount), 0);
-    const auto late = late_echo(trail);
+    auto echo = echo_at(fired, mount, 0, trail, solids);
+    const auto late = late_echo(trail, solids);
     if (late && (!echo || *late < *echo)) echo = late;
     double error = 0;
     noise_.fill_normal(std::span(&error, 1));

@@ -10,6 +10,7 @@
 #include "algo/hull.hpp"
 #include "sim/random.hpp"
 #include "sim/sensor.hpp"
+#include "sim/space_pose.hpp"
 
 namespace sim {
 
@@ -33,18 +34,29 @@ class SonarModel final : public CastingSensor {
   SonarModel(const SonarConfig& config, const algo::Hull& hull, std::uint64_t seed);
 
   void sense(const Surroundings& around, algo::Observation& observation) override {
-    sense(around.stamp, around.trail, observation.sonar);
+    sense(around.stamp, around.trail, observation.sonar, around.solids);
   }
   double memory() const override { return (config_.crosstalk ? 2 : 1) * config_.ping; }
 
   /// Appends the readings of all pings up to `now` [s, run clock] that were not reported before,
-  /// oldest first.
-  void sense(double now, const PoseTrail& trail, algo::Recycled<algo::RangeReading>& readings);
+  /// oldest first. With `solids`, the ground is not level, and the cone tilts with the robot.
+  void sense(double now,
+             const PoseTrail& trail,
+             algo::Recycled<algo::RangeReading>& readings,
+             const SolidCaster* solids = nullptr);
 
  private:
   const algo::Pose2& mount_of(std::uint64_t ping) const;
+  std::optional<double> echo_at(double fired,
+                                const algo::Pose2& mount_R,
+                                double beyond,
+                                const PoseTrail& trail,
+                                const SolidCaster* solids);
   std::optional<double> nearest_echo(const algo::Pose2& sensor_W, double beyond);
-  std::optional<double> late_echo(const PoseTrail& trail);
+  std::optional<double> nearest_echo(const SpacePose& sensor,
+                                     double beyond,
+                                     const SolidCaster& solids) const;
+  std::optional<double> late_echo(const PoseTrail& trail, const SolidCaster* solids);
 
   SonarConfig config_{};
   BeamPattern cone_{};

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <optional>
 
 #include "algo/obstacle.hpp"
+#include "algo/robot.hpp"
 #include "algo/types.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/pose_trail.hpp"
@@ -21,8 +23,14 @@ struct VehicleState {
   bool contact = false;  // the hull touched an obstacle in this tick
   double roll = 0;       // [rad] left side up positive
   double pitch = 0;      // [rad] nose down positive
-  /// True if it leans by more than 60 degrees: it no longer stands on its wheels.
-  bool overturned() const { return std::cos(roll) * std::cos(pitch) < 0.5; }
+  double z = 0;          // [m] of R above z = 0
+  bool fallen = false;   // since reset, a wheel or caster came down an edge too high for the robot
+  /// [rad] Bearing in R of the newest contact with the upright end of a ramp or trench, in this
+  /// tick.
+  std::optional<double> ground_contact{};
+  bool scrape = false;  // the hull touched the ground or an obstacle, in whatever direction
+  algo::Tilt tilt() const { return {z, roll, pitch}; }
+  bool overturned() const { return algo::is_overturned(roll, pitch); }
 };
 
 /// Divides a tick into equal physics steps, at 240 Hz or slightly faster.
@@ -50,11 +58,14 @@ class VehicleModel {
 
   /// Places the vehicle at rest at `start`.
   virtual void reset(const algo::Pose2& start) = 0;
+  /// Sets the vehicle, at rest since reset(), on the ramps and trenches under it.
+  virtual void stand_on(const ObstacleSet& /*ground*/) {}
   /// Drives for one tick under `command` and records the pose after each physics step in `trail`.
   virtual void drive(const algo::Twist2& command,
                      const ObstacleSet& obstacles,
                      PoseTrail& trail) = 0;
-  /// Stops driving at once, without the ramp.
+  /// Stops driving at once, without the ramp. A vehicle that would turn over by that only stops
+  /// wanting to drive: it brakes by its ramp.
   virtual void halt() noexcept = 0;
 
   /// Changes of the obstacles; `index` is the index in the ObstacleSet.

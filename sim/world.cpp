@@ -46,7 +46,10 @@ World::World(const Scenario& scenario, std::uint64_t seed)
   spec_ = spec_of(robot_, scenario_.period);
   spec_.command_delay = scenario_.period * scenario_.drive.delay_ticks;
   spec_.drives = true;
+  // Without dynamics nothing turns over.
+  if (scenario_.physics != PhysicsKind::Bullet) spec_.stance.reset();
   spec_.raw_stick = true;
+  spec_.uneven = std::ranges::any_of(scenario_.obstacles, algo::is_ground);
   for (const SensorConfig& config : robot_.sensors.further) {
     spec_.channels.push_back(channel_of(config));
   }
@@ -83,7 +86,9 @@ void World::check() const {
 
 /// Sets everything to the scenario's state at time 0.
 void World::start() {
+  starting_ = true;
   obstacles_.clear();
+  solids_.reset();
   movers_.clear();
   if (scenario_.physics == PhysicsKind::Bullet) {
     vehicle_ = std::make_unique<BulletVehicle>(robot_, scenario_.period);
@@ -112,7 +117,12 @@ void World::start() {
     }
     insert(obstacle);
   }
+  if (solids_) {
+    vehicle_->stand_on(obstacles_);
+    trail_->tilt(vehicle_->state().tilt());
+  }
   follow_paths(0);
+  starting_ = false;
   tick_ = 0;
   command_ = {};
   touched_.reset();
@@ -180,7 +190,7 @@ void World::sense(algo::Observation& observation) {
   observation.clear_sensors();
   observation.stamp = now;
   sense_motion(observation);
-  const Surroundings around{now, vehicle_->state(), *trail_, obstacles_, contact()};
+  const Surroundings around{now, vehicle_->state(), *trail_, obstacles_, contact(), solids_.get()};
   for (const auto& sensor : sensors_) sensor->sense(around, observation);
 }
 
@@ -195,7 +205,12 @@ void World::sense_motion(algo::Observation& observation) {
     odometry_.pose = state.pose_W;
     odometry_.twist = state.twist;
   } else {
-    const algo::DriveGeometry geometry{robot_.wheel_radius, robot_.half_track, spec_.axle};
+    observation.inclinometer = algo::Inclinometer{now, state.roll, state.pitch};
+    // On a slope the wheels roll a longer way than the map shows: all lengths are scaled, which
+    // leaves the turns as they are.
+    const double level = solids_ ? std::cos(observation.inclinometer->pitch) : 1;
+    const algo::DriveGeometry geometry{
+        robot_.wheel_radius * level, robot_.half_track * level, spec_.axle * level};
     const algo::WheelCounts moved{algo::count_difference(left, encoders_.left),
                                   algo::count_difference(right, encoders_.right)};
     odometry_.pose =
@@ -204,7 +219,6 @@ void World::sense_motion(algo::Observation& observation) {
     odometry_.twist = algo::forward_kinematics(
         geometry,
         {static_cast<double>(moved.left) * radians, static_cast<double>(moved.right) * radians});
-    observation.inclinometer = algo::Inclinometer{now, state.roll, state.pitch};
   }
   odometry_.stamp = now;
   encoders_ = {now, left, right};
@@ -242,7 +256,10 @@ std::optional<algo::GroundTruth> World::ground_truth() const {
   return algo::GroundTruth{.pose = state.pose_W,
                            .obstacle_distance = distance,
                            .clearance = clearance,
-                           .collided = contact() || clearance < 0};
+                           .collided = contact() || clearance < 0,
+                           .tilt = solids_ ? std::optional(state.tilt()) : std::nullopt,
+                           .overturned = state.overturned(),
+                           .fallen = state.fallen};
 }
 
 }  // namespace sim

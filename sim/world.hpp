@@ -18,6 +18,7 @@
 #include "sim/pose_trail.hpp"
 #include "sim/scenario.hpp"
 #include "sim/sensor.hpp"
+#include "sim/solid_caster.hpp"
 #include "sim/vehicle.hpp"
 
 namespace sim {
@@ -69,6 +70,7 @@ class World final : public algo::Robot, public algo::Editing {
   const Hull& hull() const { return hull_; }
   /// True if the robot lies on its side or its back.
   bool overturned() const { return vehicle_->state().overturned(); }
+  const VehicleState& state() const { return vehicle_->state(); }
 
   void stop() noexcept override { vehicle_->halt(); }
   algo::Editing* editing() override { return this; }
@@ -84,6 +86,8 @@ class World final : public algo::Robot, public algo::Editing {
   void start_localization(const algo::Pose2& pose_W);
   std::optional<std::string> objection(const algo::MoveObstacle& move) const;
   std::optional<std::string> refusal(const algo::Obstacle& obstacle) const;
+  std::optional<std::string> carried(std::uint32_t id) const;
+  bool under_robot(const algo::Obstacle& obstacle) const;
   void insert(const algo::Obstacle& obstacle);
   void remove(std::uint32_t id);
   void follow_paths(double now);
@@ -116,7 +120,8 @@ class World final : public algo::Robot, public algo::Editing {
   algo::RobotSpec spec_{};
 
   ObstacleSet obstacles_{};
-  std::vector<std::uint32_t> movers_{};  // ids of the obstacles that follow a path
+  std::unique_ptr<SolidCaster> solids_{};  // all obstacles, while the ground is not level
+  std::vector<std::uint32_t> movers_{};    // ids of the obstacles that follow a path
   std::unique_ptr<VehicleModel> vehicle_{};
   std::vector<std::unique_ptr<Sensor>> sensors_{};
   std::optional<GyroModel> gyro_{};
@@ -137,6 +142,7 @@ class World final : public algo::Robot, public algo::Editing {
   std::optional<std::size_t> touched_{};
   bool bumped_ = false;  // touched by another robot in this tick
   bool used_ = false;    // changed since start()
+  bool starting_ = false;
 };
 
 /// `robot` as others perceive it: its hull, raised to its highest sensor if that is higher.

@@ -46,18 +46,41 @@ std::optional<std::string> World::objection(const algo::Request& request) const 
   }
   if (const auto* change = std::get_if<algo::ChangeObstacle>(&request)) {
     const std::uint32_t id = change->obstacle.id;
-    return obstacles_.find(id) ? refusal(change->obstacle) : there_is_none(id);
+    if (!obstacles_.find(id)) return there_is_none(id);
+    if (auto problem = carried(id)) return problem;
+    return refusal(change->obstacle);
   }
   if (const auto* move = std::get_if<algo::MoveObstacle>(&request)) return objection(*move);
   const auto* gone = std::get_if<algo::RemoveObstacle>(&request);
-  if (gone != nullptr && !obstacles_.find(gone->id)) return there_is_none(gone->id);
-  return std::nullopt;
+  if (gone == nullptr) return std::nullopt;
+  return obstacles_.find(gone->id) ? carried(gone->id) : there_is_none(gone->id);
+}
+
+bool World::under_robot(const algo::Obstacle& obstacle) const {
+  ObstacleSet alone;
+  alone.add(obstacle);
+  return alone.clearance(0, hull_, vehicle_->state().pose_W) < 0;
+}
+
+/// Why the ground `id` cannot be changed now: the robot stands on it.
+std::optional<std::string> World::carried(std::uint32_t id) const {
+  const algo::Obstacle& ground = obstacles_[*obstacles_.find(id)];
+  if (!algo::is_ground(ground) || !under_robot(ground)) return std::nullopt;
+  return name_of(ground) + " is under the robot.";
 }
 
 /// Why `obstacle` cannot stand at its pose.
 std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const {
   if (const auto problem = algo::defect(obstacle)) {
     return name_of(obstacle) + ": " + *problem + ".";
+  }
+  if (algo::is_ground(obstacle)) {
+    if (scenario_.physics == PhysicsKind::Kinematic) {
+      return name_of(obstacle) + ": a ramp or trench needs physics bullet.";
+    }
+    // A robot may start on a ramp.
+    if (starting_ || !under_robot(obstacle)) return std::nullopt;
+    return name_of(obstacle) + " would be under the robot.";
   }
   ObstacleSet alone;
   alone.add(obstacle);
@@ -71,6 +94,7 @@ std::optional<std::string> World::refusal(const algo::Obstacle& obstacle) const 
 std::optional<std::string> World::objection(const algo::MoveObstacle& move) const {
   const auto index = obstacles_.find(move.id);
   if (!index) return there_is_none(move.id);
+  if (auto problem = carried(move.id)) return problem;
   algo::Obstacle obstacle = obstacles_[*index];
   obstacle.pose_W = move.pose_W;
   if (auto problem = refusal(obstacle)) return problem;
@@ -83,6 +107,12 @@ void World::insert(const algo::Obstacle& obstacle) {
   if (obstacle.path) movers_.push_back(obstacle.id);
   vehicle_->added(obstacle);
   for (const auto& sensor : sensors_) sensor->add(obstacle);
+  if (solids_) {
+    solids_->add(obstacle);
+  } else if (algo::is_ground(obstacle)) {
+    solids_ = std::make_unique<SolidCaster>();
+    for (std::size_t k = 0; k < obstacles_.size(); ++k) solids_->add(obstacles_[k]);
+  }
 }
 
 void World::place(std::size_t index, const algo::Pose2& pose_W) {
@@ -94,6 +124,7 @@ void World::place(std::size_t index, const algo::Pose2& pose_W) {
 /// Moves obstacle `id` for the sensors.
 void World::show(std::uint32_t id, const algo::Pose2& pose_W) {
   for (const auto& sensor : sensors_) sensor->move(id, pose_W);
+  if (solids_) solids_->move(id, pose_W);
 }
 
 void World::remove(std::uint32_t id) {
@@ -102,6 +133,11 @@ void World::remove(std::uint32_t id) {
   std::erase(movers_, id);
   vehicle_->removed(index);
   for (const auto& sensor : sensors_) sensor->remove(id);
+  if (solids_) solids_->remove(id);
+  if (solids_ && !obstacles_.has_ground()) {
+    solids_.reset();
+    trail_->level();
+  }
   find_slots();
 }
 
