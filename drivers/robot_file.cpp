@@ -16,7 +16,10 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/units.hpp"
 #include "drivers/lms200_scan.hpp"
+#include "drivers/psd_device.hpp"
+#include "drivers/published_senses.hpp"
 #include "drivers/robot_file_base.hpp"
+#include "drivers/robot_file_ground.hpp"
 #include "drivers/robot_section.hpp"
 #include "drivers/scanner.hpp"
 
@@ -196,7 +199,11 @@ void check(const Section& top, const RobotFile& robot) {
             robot.base.watchdog));
   }
   std::set<std::string> ports{robot.base.port};
-  std::set<std::string> names{"base"};
+  std::set<std::string> names{
+      "base", psd::kDeviceName, PublishedSenses::kInclinometer, PublishedSenses::kCamera};
+  if (robot.floor && !ports.insert(robot.floor->port).second) {
+    top.fail("psd", "port " + robot.floor->port + " is used by two devices");
+  }
   for (const LaserEntry& laser : robot.lasers) {
     if (!ports.insert(laser.port).second) {
       top.fail("laser", "port " + laser.port + " is used by two devices");
@@ -221,6 +228,7 @@ void check_emulated(const RobotFile& robot) {
     if (error || !device.starts_with("/dev/pts/")) refuse(port, "is no pseudo-terminal");
   };
   for (const LaserEntry& laser : robot.lasers) pseudo_terminal(laser.port);
+  if (robot.floor) pseudo_terminal(robot.floor->port);
   if (const auto* analog = std::get_if<AnalogEntry>(&robot.base.setup)) {
     const std::filesystem::path library = analog->card.library;
     if (library.filename() != "libemulated_comedi.so") {
@@ -257,6 +265,7 @@ RobotFile read(const toml::table& table, const std::string& name) {
   Section base = top.table("base");
   read_base(base, robot);
   judge_watchdog(base, robot);
+  read_ground(top, robot);
   robot.emulated = top.flag_or("emulated", false);
   top.done();
   check(top, robot);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "drivers/comedi_card.hpp"
 #include "drivers/lms200_machine.hpp"
 #include "drivers/p2os_machine.hpp"
+#include "drivers/psd_machine.hpp"
 #include "drivers/roboteq_machine.hpp"
 
 namespace drivers {
@@ -29,6 +31,17 @@ struct LaserEntry {
   std::string port{};
   algo::Pose2 mount_R{};
   lms200::LaserSetup setup{};
+};
+
+struct FloorEntry {
+  std::string port{};
+  psd::PsdSetup setup{};
+};
+
+/// The sensors that a process beside the robot publishes.
+struct PublishedEntry {
+  bool inclinometer = false;
+  bool line = false;  // of the laser, as a camera sees it
 };
 
 struct AnalogEntry {
@@ -54,6 +67,8 @@ struct RobotFile {
   std::string external_controller{};
   std::string filter = "pseudomedian";
   std::vector<LaserEntry> lasers{};
+  std::optional<FloorEntry> floor{};  // the sensors that look at the floor ahead
+  PublishedEntry published{};
   BaseEntry base{};
   std::vector<std::string> warnings{};  // for the user; no errors
 };

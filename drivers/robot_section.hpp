@@ -136,6 +136,23 @@ class Section {
     }
     return out;
   }
+  /// A list of pairs of numbers, such as [[2.38, 0.1], [1.26, 0.2]].
+  std::vector<std::array<double, 2>> pairs(std::string_view key) {
+    std::vector<std::array<double, 2>> out;
+    const toml::node* node = find(key);
+    if (node == nullptr) return out;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) fail(key, "must be a list of pairs of numbers");
+    for (const toml::node& item : *list) {
+      const toml::array* pair = item.as_array();
+      if (pair == nullptr || pair->size() != 2 || !(*pair)[0].is_number() ||
+          !(*pair)[1].is_number()) {
+        fail(key, "must be a list of pairs of numbers");
+      }
+      out.push_back({(*pair)[0].value_or(0.0), (*pair)[1].value_or(0.0)});
+    }
+    return out;
+  }
   void done() const {
     for (const auto& [key, node] : table_) {
       const std::string name(key.str());

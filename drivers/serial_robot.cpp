@@ -10,6 +10,7 @@
 #include "algo/diff_drive.hpp"
 #include "algo/explain.hpp"
 #include "drivers/lms200_device.hpp"
+#include "drivers/psd_device.hpp"
 #include "drivers/serial_base.hpp"
 
 namespace drivers {
@@ -52,11 +53,14 @@ bool lasts(bool condition, double now, double time, double& since) {
 SerialRobot::SerialRobot(RobotFile file,
                          std::vector<std::unique_ptr<Scanner>> scanners,
                          std::unique_ptr<Base> base,
-                         std::unique_ptr<Clock> clock)
+                         std::unique_ptr<Clock> clock,
+                         std::unique_ptr<FloorSense> floor)
     : file_(std::move(file)),
       scanners_(std::move(scanners)),
       base_(std::move(base)),
       clock_(std::move(clock)),
+      floor_(std::move(floor)),
+      published_(file_.published, file_.spec.line, *clock_),
       wheels_(base_->dynamics(), file_.spec.half_track) {
   epoch_ = deadline_ = clock_->now();
 }
@@ -145,10 +149,21 @@ Halt SerialRobot::scanner_halt(double now) {
   return Halt::None;
 }
 
+Halt SerialRobot::floor_halt(double now) {
+  if (floor_ == nullptr) return Halt::None;
+  const FloorState state = floor_->state();
+  if (state.faulty) return Halt::FloorFault;
+  if (!state.running || now - state.last_reading > longest_gap(state.period)) {
+    return Halt::FloorLost;
+  }
+  return Halt::None;
+}
+
 /// The gravest reason to halt; Disarmed for a robot without faults that is not armed.
 Halt SerialRobot::judge(const BaseState& base, double now) {
   Halt halt = base_halt(base, now);
   if (halt == Halt::None) halt = scanner_halt(now);
+  if (halt == Halt::None) halt = floor_halt(now);
   if (halt == Halt::None && now < late_until_) halt = Halt::LateTick;
   bool armed = false;
   double armed_at = 0;
@@ -291,6 +306,15 @@ void SerialRobot::observe(algo::Observation& observation) {
     scan.stamp -= epoch_;
     algo::quantise(scan);
   }
+  observe_floor(observation);
+  published_.observe(epoch_, observation);
+}
+
+void SerialRobot::observe_floor(algo::Observation& observation) {
+  algo::FloorRanges ranges;
+  if (floor_ == nullptr || !floor_->take(ranges)) return;
+  ranges.stamp -= epoch_;
+  observation.floor = ranges;
 }
 
 void SerialRobot::observe_base(const BaseState& base,
@@ -413,6 +437,8 @@ void SerialRobot::note_memory_locked(bool locked) {
 algo::HealthReport SerialRobot::health() const {
   algo::HealthReport out;
   for (const auto& scanner : scanners_) out.devices.push_back(scanner->report());
+  if (floor_ != nullptr) out.devices.push_back(floor_->report());
+  published_.report(out.devices);
   out.devices.push_back(base_->report());
   out.warnings = file_.warnings;
   if (std::string warning = watchdog_warning(base_->state()); !warning.empty()) {
@@ -437,11 +463,15 @@ std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>&
   if (waits_for_a_person && !disarmed_because_.empty()) return disarmed_because_;
   const bool of_base = halt == Halt::BaseLost || halt == Halt::StopButton ||
                        halt == Halt::BaseFault || halt == Halt::OverCurrent;
+  const bool of_floor = halt == Halt::FloorLost || halt == Halt::FloorFault;
   const bool of_scanner =
       halt == Halt::ScannerLost || halt == Halt::ScannerFault || halt == Halt::BadLine;
   for (const algo::DeviceReport& device : devices) {
-    const bool base = device.name == "base";
-    if (device.well || !(base ? of_base : of_scanner)) continue;
+    const bool concerned = device.name == "base"                     ? of_base
+                           : device.name == psd::kDeviceName         ? of_floor
+                           : PublishedSenses::is_one_of(device.name) ? false
+                                                                     : of_scanner;
+    if (device.well || !concerned) continue;
     return "The " + device.name + " at " + device.port + ": " + device.sentence;
   }
   return algo::explain(halt).why;
@@ -472,8 +502,13 @@ std::shared_ptr<SerialRobot> open_robot(const RobotFile& file) {
   for (const LaserEntry& laser : file.lasers) {
     scanners.push_back(std::make_unique<lms200::Lms200Device>(laser.name, laser.port, laser.setup));
   }
-  return std::make_shared<SerialRobot>(
-      file, std::move(scanners), open_base(file.base), std::make_unique<SteadyClock>());
+  std::unique_ptr<FloorSense> floor;
+  if (file.floor) floor = std::make_unique<psd::PsdDevice>(file.floor->port, file.floor->setup);
+  return std::make_shared<SerialRobot>(file,
+                                       std::move(scanners),
+                                       open_base(file.base),
+                                       std::make_unique<SteadyClock>(),
+                                       std::move(floor));
 }
 
 }  // namespace drivers

@@ -12,6 +12,8 @@
 #include "algo/robot.hpp"
 #include "drivers/base.hpp"
 #include "drivers/clock.hpp"
+#include "drivers/floor_sense.hpp"
+#include "drivers/published_senses.hpp"
 #include "drivers/real_time.hpp"
 #include "drivers/robot_file.hpp"
 #include "drivers/scanner.hpp"
@@ -33,11 +35,12 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   static constexpr double kSlept = 0.5;           // [s] likewise; longer: the program stood still
   static constexpr double kRearm = 0.5;  // [s] longer than one or two lost scans of a fast line
 
-  /// Scanners in the order of the file, already running.
+  /// Scanners in the order of the file, already running. `floor` may be null.
   SerialRobot(RobotFile file,
               std::vector<std::unique_ptr<Scanner>> scanners,
               std::unique_ptr<Base> base,
-              std::unique_ptr<Clock> clock);
+              std::unique_ptr<Clock> clock,
+              std::unique_ptr<FloorSense> floor = nullptr);
   ~SerialRobot() override;
   SerialRobot(const SerialRobot&) = delete;
   SerialRobot& operator=(const SerialRobot&) = delete;
@@ -48,6 +51,7 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   bool step(const algo::Command& command, algo::Observation& observation) override;
   void stop() noexcept override;
   algo::Arming* arming() override { return this; }
+  algo::Publishing* publishing() override { return published_.any() ? &published_ : nullptr; }
 
   std::optional<std::string> arm() override;
   void disarm(const std::string& why) override;
@@ -67,6 +71,7 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   void become_real_time();
   algo::Halt base_halt(const BaseState& base, double now);
   algo::Halt scanner_halt(double now);
+  algo::Halt floor_halt(double now);
   double longest_gap(double scan_period) const;
   algo::Halt judge(const BaseState& base, double now);
   bool wheels_obey(const BaseState& base);
@@ -79,12 +84,15 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   void wait_for_deadline(double now);
   void observe(algo::Observation& observation);
   void observe_base(const BaseState& base, double now, algo::Observation& observation) const;
+  void observe_floor(algo::Observation& observation);
   std::string words(algo::Halt halt, const std::vector<algo::DeviceReport>& devices) const;
 
   RobotFile file_;
   std::vector<std::unique_ptr<Scanner>> scanners_;
   std::unique_ptr<Base> base_;
   std::unique_ptr<Clock> clock_;
+  std::unique_ptr<FloorSense> floor_;
+  PublishedSenses published_;
 
   double epoch_ = 0;              // [s] steady clock at the run's time 0
   algo::Pose2 origin_{};          // W in the base's own odometry frame

@@ -31,6 +31,13 @@ track = 0.5
 watchdog = {watchdog}
 {base}"""
 
+FLOOR = """[psd]
+port = "{folder}/psd"
+x = 0.35
+height = 0.1414
+half_spacing = 0.1
+"""
+
 BASE = {
     "roboteq": 'type = "roboteq"\nwheel_radius = 0.10\ngear = 20\nencoder_lines = 500\n'
     "full_speed_rpm = 1000\nbumper_inputs = [1]\nrear_bumper_inputs = [2]\nbattery_low = 22\n",
@@ -41,10 +48,13 @@ BASE = {
 }
 
 
-def robot_file(program, folder, base="roboteq", laser="rate = 500000", changes=()):
-    """The path of a robot's file for the devices in `folder`; `changes` are pairs of old and new text."""
+def robot_file(program, folder, base="roboteq", laser="rate = 500000", changes=(), floor=False):
+    """The path of a robot's file for the devices in `folder`; `changes` are pairs of old and new text.
+    `floor`: with floor sensors."""
     text = ROBOT.format(tick=TICK, folder=folder, laser=laser, watchdog=WATCHDOG[base],
                         base=BASE[base].replace("{library}", comedi(program)))
+    if floor:
+        text += FLOOR.format(folder=folder)
     for old, new in changes:
         text = text.replace(old, new)
     path = os.path.join(folder, "robot.toml")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""tests/dev/hardware_faults.py PROGRAM [roboteq|p2os|analog]: each fault of tests/hardware/faults.json while
-`tautline serve --robot` drives emulated devices, in real time; prints the table of docs/hardware.md.
+"""tests/dev/hardware_faults.py PROGRAM [floor] [roboteq|p2os|analog]: each fault of tests/hardware/faults.json
+(with `floor`: of floor_faults.json, on a robot with floor sensors) while `tautline serve --robot` drives
+emulated devices, in real time; prints the table of docs/hardware.md.
 
 "Zero command" and "wheels stand" come from the emulator's record, not from the server. Exit status 1
 when anything took longer than it may, or went on though it should not.
@@ -14,10 +15,14 @@ import time
 from emulated_robot import Devices, Server, TICK, WATCHDOG, robot_file
 
 PROGRAM = sys.argv[1]
-BASES = sys.argv[2:] or ["roboteq", "p2os", "analog"]
+FLOOR_ONLY = "floor" in sys.argv[2:]
+BASES = [base for base in sys.argv[2:] if base != "floor"] or ["roboteq", "p2os", "analog"]
+LIST = "floor_faults.json" if FLOOR_ONLY else "faults.json"
 HERE = os.path.dirname(os.path.abspath(__file__))
 AWAKE = 0.05  # [s] for threads to wake up on a busy machine
 SCANS = 3 * 0.0267 + 0.02 + 0.015  # [s] three scan periods, a USB chip, the line
+FLOOR = 3 * 0.0383 + 0.02 + 0.004  # [s] three of the floor sensors' periods, a USB chip, the line
+STUCK = 20 * 0.0383  # [s] readings until a count passes for stuck
 REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065, "analog": 0.026}  # [s] between two reports, plus the transfer
 SETTLED = 1.0  # [s] after the limit, without new motion
 
@@ -27,6 +32,8 @@ def limit(expected, base):
     return {
         "goes on": None,
         "scans": SCANS + TICK + AWAKE,
+        "floor": FLOOR + TICK + AWAKE,
+        "stuck": STUCK + FLOOR + TICK + AWAKE,
         "base": 0.3 + TICK + AWAKE,
         "report": REPORT[base] + TICK + AWAKE,
         "wheels": 0.3,
@@ -58,8 +65,9 @@ def goes_on(server):
 
 
 def trial(fault, base, folder):
-    devices = Devices(PROGRAM, folder, base)
-    server = Server(PROGRAM, folder, robot_file(PROGRAM, folder, base), "--unattended")
+    devices = Devices(PROGRAM, folder, base, *(["--psd"] if FLOOR_ONLY else []))
+    server = Server(PROGRAM, folder, robot_file(PROGRAM, folder, base, floor=FLOOR_ONLY),
+                    "--unattended")
     try:
         if fault.get("at_rest"):
             server.arm()
@@ -96,7 +104,7 @@ def trial(fault, base, folder):
 
 
 def main():
-    with open(os.path.join(HERE, "../hardware/faults.json"), encoding="utf-8") as file:
+    with open(os.path.join(HERE, "../hardware", LIST), encoding="utf-8") as file:
         faults = json.load(file)
     print("| fault | base | what the robot says | zero command after | at most | wheels stand after | "
           "goes on |\n|---|---|---|---|---|---|---|", flush=True)

@@ -5,6 +5,7 @@
 
 #include "drivers/lms200_scan.hpp"
 #include "drivers/p2os_protocol.hpp"
+#include "drivers/psd_machine.hpp"
 #include "drivers/roboteq_protocol.hpp"
 
 namespace drivers {
@@ -44,6 +45,24 @@ TEST(DriverAllocations, MotorControllersAllocateNothing) {
   });
   EXPECT_EQ(allocations::count(), before);
   EXPECT_TRUE(controller.counts);
+}
+
+TEST(DriverAllocations, FloorSensorsAllocateNothing) {
+  psd::PsdMachine machine{psd::PsdSetup{}};
+  machine.opened(100, 115'200);
+  algo::FloorRanges ranges;
+  const std::size_t before = allocations::count();
+  for (std::uint16_t i = 0; i < 100; ++i) {
+    const double now = 100 + i * psd::kPeriod;
+    const std::uint16_t count = static_cast<std::uint16_t>(1200 + i % 2);
+    machine.receive(
+        now,
+        psd::line_of({static_cast<std::uint32_t>(38 * i), {count, 1300, count, count}}).view());
+    machine.advance(now);
+    EXPECT_TRUE(machine.take(ranges));
+    EXPECT_EQ(machine.state(now).faulty, i >= psd::StuckWatch::kReadings);
+  }
+  EXPECT_EQ(allocations::count(), before);
 }
 
 }  // namespace

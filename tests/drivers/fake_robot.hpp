@@ -115,6 +115,34 @@ class FakeBase final : public Base {
   double& time_;
 };
 
+/// A reading in every tick while it runs.
+class FakeFloor final : public FloorSense {
+ public:
+  explicit FakeFloor(double& time) : time_(time) {}
+  bool silent = false;
+  bool faulty = false;
+
+  bool take(algo::FloorRanges& ranges) override {
+    if (silent) return false;
+    ranges = {time_ - 0.004, 0.28, 0.27, 0.2, 0.21};
+    return true;
+  }
+  FloorState state() override {
+    if (!silent) last_ = time_;
+    return {.running = true, .last_reading = last_, .period = 0.0383, .faulty = faulty};
+  }
+  algo::DeviceReport report() override {
+    return {.name = "floor sensors",
+            .port = "/dev/psd",
+            .well = !silent && !faulty,
+            .sentence = faulty ? "The near left sensor is stuck." : "It has been silent."};
+  }
+
+ private:
+  double& time_;
+  double last_ = 0;
+};
+
 inline RobotFile fake_robot_file() {
   RobotFile out;
   out.spec.name = "test";
@@ -128,7 +156,7 @@ inline RobotFile fake_robot_file() {
 
 /// A robot of fake devices, whose clock is `time`.
 struct FakeRobot {
-  FakeRobot() {
+  explicit FakeRobot(bool with_floor = false) {
     auto own_scanner = std::make_unique<FakeScanner>(time);
     auto own_base = std::make_unique<FakeBase>(time);
     auto own_clock = std::make_unique<FakeClock>(time);
@@ -137,8 +165,14 @@ struct FakeRobot {
     base = own_base.get();
     std::vector<std::unique_ptr<Scanner>> scanners;
     scanners.push_back(std::move(own_scanner));
-    robot = std::make_unique<SerialRobot>(
-        fake_robot_file(), std::move(scanners), std::move(own_base), std::move(own_clock));
+    std::unique_ptr<FakeFloor> own_floor;
+    if (with_floor) own_floor = std::make_unique<FakeFloor>(time);
+    floor = own_floor.get();
+    robot = std::make_unique<SerialRobot>(fake_robot_file(),
+                                          std::move(scanners),
+                                          std::move(own_base),
+                                          std::move(own_clock),
+                                          std::move(own_floor));
     robot->reset(seen);
   }
   FakeRobot(const FakeRobot&) = delete;
@@ -161,6 +195,7 @@ struct FakeRobot {
   FakeScanner* scanner = nullptr;
   FakeBase* base = nullptr;
   FakeClock* clock = nullptr;
+  FakeFloor* floor = nullptr;
   std::unique_ptr<SerialRobot> robot{};
   algo::Observation seen{};
 };
