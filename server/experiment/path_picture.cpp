@@ -32,9 +32,11 @@ constexpr std::array<const char*, kMostPaths> kStrokes{
 
 constexpr std::string_view kStyle =
     "rect{fill:#fff}text{fill:#17212b;font-size:13px}.obstacle{fill:#b8b8b8;stroke:#555}"
+    ".ground{fill:#e4ddcc;stroke:#8a7f62}"
     ".outline{fill:none;stroke:#4d5b68}"
     "@media(prefers-color-scheme:dark){rect{fill:#12181f}text{fill:#e7edf2}"
-    ".obstacle{fill:#46515c;stroke:#8794a0}.outline{stroke:#a5b1bc}}";
+    ".obstacle{fill:#46515c;stroke:#8794a0}.ground{fill:#2b2f2a;stroke:#7a7458}.outline{stroke:#"
+    "a5b1bc}}";
 
 Eigen::AlignedBox2d bounds_of(const sim::Scenario& scenario, std::span<const DrawnPath> paths) {
   Eigen::AlignedBox2d bounds(scenario.start.position());
@@ -52,7 +54,8 @@ void draw_world(const sim::Scenario& scenario, double goal_radius, SvgPlot& plot
     if (const auto* cylinder = std::get_if<algo::Cylinder>(&obstacle.shape)) {
       plot.circle(obstacle.pose_W.position(), cylinder->radius, "class=\"obstacle\"");
     } else {
-      plot.polygon(algo::outline_W(obstacle), "class=\"obstacle\"");
+      const bool ground = algo::is_ground(obstacle);
+      plot.polygon(algo::outline_W(obstacle), ground ? "class=\"ground\"" : "class=\"obstacle\"");
     }
   }
   const double radius = scenario.robot.radius;

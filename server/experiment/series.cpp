@@ -16,8 +16,12 @@ namespace {
 using algo::Outcome;
 
 /// The outcomes of a study's runs, in the order of the tables.
-constexpr std::array<Outcome, 4> kOutcomes{
-    Outcome::Reached, Outcome::Stuck, Outcome::OutOfTime, Outcome::Collided};
+constexpr std::array kOutcomes{Outcome::Reached,
+                               Outcome::Stuck,
+                               Outcome::OutOfTime,
+                               Outcome::Collided,
+                               Outcome::Overturned,
+                               Outcome::Fallen};
 
 const Outcome* find_outcome(std::string_view words) {
   const auto* const found =
@@ -128,7 +132,9 @@ std::string outcome_letters(const Series& series) {
   for (const auto& [outcome, letter] : {std::pair{Outcome::Reached, 'r'},
                                         std::pair{Outcome::Stuck, 's'},
                                         std::pair{Outcome::OutOfTime, 't'},
-                                        std::pair{Outcome::Collided, 'C'}}) {
+                                        std::pair{Outcome::Collided, 'C'},
+                                        std::pair{Outcome::Overturned, 'O'},
+                                        std::pair{Outcome::Fallen, 'F'}}) {
     const std::size_t runs = count(series, outcome);
     if (runs == series.runs.size()) return {letter};
     if (runs > 0) text += fmt::format("{}{}{}", text.empty() ? "" : " ", letter, runs);

@@ -104,6 +104,8 @@ class Worlds::World {
   }
 
   double outcome() const {
+    if (t_.ground_truth && t_.ground_truth->overturned) return 5;
+    if (t_.ground_truth && t_.ground_truth->fallen) return 6;
     if (t_.ground_truth && t_.ground_truth->collided) return 2;
     if (t_.mission == algo::Mission::Arrived) return 1;
     if (t_.mission == algo::Mission::Stuck) return 3;

@@ -25,7 +25,8 @@ struct WorldState {
   double v = 0, omega = 0;           // by odometry
   double goal_x = 0, goal_y = 0;     // in W; the robot's place if there is none
   double clearance = 0;              // [m] true distance of the hull to the nearest surface
-  double outcome = 0;                // 0 running, 1 reached, 2 collided, 3 stuck, 4 out of time
+  double outcome = 0;                // 0 running, 1 reached, 2 collided, 3 stuck, 4 out of time, 5
+                                     // overturned, 6 fallen
 };
 
 /// The twist of an action takes the way of a controller's answer: the same limits, the same gate.

@@ -2,6 +2,8 @@
 #include "server/record/frame_columns.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "server/record/csv_cells.hpp"
 
@@ -60,6 +62,13 @@ void put_tilt(Out& out, const T& t, const Get& get) {
   if (t.ground_truth && t.ground_truth->tilt) put_float(out, get(*t.ground_truth->tilt));
 }
 
+/// Appends a distance to the floor; "inf": nothing within range, as in the columns of sonars.
+void put_floor(Out& out, const T& t, double algo::FloorRanges::*which) {
+  if (!t.observation.floor) return;
+  const double range = (*t.observation.floor).*which;
+  put_number(out, std::isnan(range) ? std::numeric_limits<double>::infinity() : range);
+}
+
 constexpr auto kColumns = std::to_array<FrameColumn>({
     {"odometry.stamp", "s", [](Out& o, const T& t) { put_number(o, t.observation.odometry.stamp); }},
     {"odometry.v",
@@ -109,6 +118,16 @@ constexpr auto kColumns = std::to_array<FrameColumn>({
      [](Out& o, const T& t) {
        if (t.ground_truth) put_count(o, t.ground_truth->collided ? 1 : 0);
      }},
+    {"truth.overturned",
+     "",
+     [](Out& o, const T& t) {
+       if (t.ground_truth) put_count(o, t.ground_truth->overturned ? 1 : 0);
+     }},
+    {"truth.fallen",
+     "",
+     [](Out& o, const T& t) {
+       if (t.ground_truth) put_count(o, t.ground_truth->fallen ? 1 : 0);
+     }},
     {"truth.z", "m", [](Out& o, const T& t) { put_tilt(o, t, [](const auto& g) { return g.z; }); }},
     {"truth.roll",
      "rad",
@@ -141,6 +160,33 @@ constexpr auto kColumns = std::to_array<FrameColumn>({
      [](Out& o, const T& t) {
        if (t.observation.inclinometer) put_number(o, t.observation.inclinometer->pitch);
      }},
+    {"line.stamp",
+     "s",
+     [](Out& o, const T& t) {
+       if (t.observation.line.fresh) put_number(o, t.observation.line.stamp);
+     }},
+    {"line.points",
+     "",
+     [](Out& o, const T& t) {
+       if (t.observation.line.fresh) put_count(o, t.observation.line.pixels.size());
+     }},
+    {"floor.stamp",
+     "s",
+     [](Out& o, const T& t) {
+       if (t.observation.floor) put_number(o, t.observation.floor->stamp);
+     }},
+    {"floor.far_left",
+     "m",
+     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::far_left); }},
+    {"floor.far_right",
+     "m",
+     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::far_right); }},
+    {"floor.near_left",
+     "m",
+     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::near_left); }},
+    {"floor.near_right",
+     "m",
+     [](Out& o, const T& t) { put_floor(o, t, &algo::FloorRanges::near_right); }},
     {"encoders.stamp",
      "s",
      [](Out& o, const T& t) {

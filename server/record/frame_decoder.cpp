@@ -333,7 +333,9 @@ void decode_frame(std::span<const std::byte> bytes, algo::Telemetry& t) {
                       .obstacle_distance = g->obstacle_distance(),
                       .clearance = g->clearance(),
                       .collided = f.collided(),
-                      .tilt = read_tilt(f.tilt())};
+                      .tilt = read_tilt(f.tilt()),
+                      .overturned = f.overturned(),
+                      .fallen = f.fallen()};
   }
   t.moved.clear();
   if (f.moved() != nullptr) {

@@ -271,6 +271,8 @@ void FrameWriter::truth() {
       to_float(g.pose), static_cast<float>(g.obstacle_distance), static_cast<float>(g.clearance));
   frame.add_truth(&truth);
   frame.add_collided(g.collided);
+  frame.add_overturned(g.overturned);
+  frame.add_fallen(g.fallen);
   if (!g.tilt) return;
   const fb::Tilt tilt(static_cast<float>(g.tilt->z),
                       static_cast<float>(g.tilt->roll),

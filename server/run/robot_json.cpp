@@ -2,6 +2,7 @@
 #include "server/run/robot_json.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <string>
 
 #include "server/run/json_fields.hpp"
@@ -33,6 +34,17 @@ constexpr Field<Model> kLimits[] = {
     required("turn", &Model::max_omega, {1e-3, 20}),
     {"acceleration", &Model::max_acceleration, kChange},
     {"turn_acceleration", &Model::max_angular_acceleration, kChange},
+};
+
+constexpr double kDegrees = std::numbers::pi / 180;
+constexpr NumberRange kSlopeDegrees{0, 60};
+using Climbs = algo::ClimbLimits;
+constexpr Field<Climbs> kClimbs[] = {
+    required("step_up", &Climbs::step_up, {0, 1}),
+    required("step_down", &Climbs::step_down, {0, 1}),
+    required("trench", &Climbs::trench, {0, 2}),
+    {"slope_up_deg", &Climbs::slope_up, kSlopeDegrees, kDegrees, true},
+    {"slope_down_deg", &Climbs::slope_down, kSlopeDegrees, kDegrees, true},
 };
 
 void read_hull(const JsonReader& in, sim::RobotModel& robot) {
@@ -91,10 +103,11 @@ void read_wheels(const JsonReader& in, sim::RobotModel& robot) {
 }  // namespace
 
 sim::RobotModel robot_from_json(const JsonReader& in) {
-  in.only({"name",        "title",    "description", "hull",         "mass",
-           "mass_height", "track",    "wheels",      "wheel_radius", "casters",
-           "limits",      "friction", "lasers",      "sonar",        "infrared",
-           "sensors",     "gyro",     "bumpers",     "encoders",     "counts_per_turn"});
+  in.only({"name",        "title",        "description",   "hull",         "mass",
+           "mass_height", "track",        "wheels",        "wheel_radius", "casters",
+           "limits",      "friction",     "lasers",        "sonar",        "infrared",
+           "sensors",     "gyro",         "bumpers",       "encoders",     "counts_per_turn",
+           "line_camera", "inclinometer", "floor_sensors", "climbs"});
   sim::RobotModel robot;
   robot.name = in.text("name", 64);
   if (!valid_name(robot.name)) {
@@ -111,6 +124,9 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
       "mass_height", std::clamp(middle, kMassHeight.min, kMassHeight.max), kMassHeight);
   read_wheels(in, robot);
   read_only_fields(in.object("limits"), kLimits, robot);
+  if (in.has("climbs")) {
+    read_only_fields(in.object("climbs"), kClimbs, robot.climbs.emplace());
+  }
   read_sensors(in, robot.sensors);
   if (const auto problem = sim::defect(robot)) refuse(in, *problem);
   return robot;
@@ -126,17 +142,19 @@ json to_json(const sim::RobotModel& robot) {
   }
   json casters = json::array();
   for (const sim::Caster& caster : robot.casters) casters.push_back(written(kCaster, caster));
-  return {{"name", robot.name},
-          {"hull", std::move(hull)},
-          {"mass", robot.mass},
-          {"mass_height", robot.mass_height},
-          {"track", 2 * robot.half_track},
-          {"wheel_radius", robot.wheel_radius},
-          {"wheels", robot.wheels},
-          {"casters", std::move(casters)},
-          {"limits", written(kLimits, robot)},
-          {"friction", robot.friction},
-          {"counts_per_turn", robot.counts_per_turn}};
+  json out = {{"name", robot.name},
+              {"hull", std::move(hull)},
+              {"mass", robot.mass},
+              {"mass_height", robot.mass_height},
+              {"track", 2 * robot.half_track},
+              {"wheel_radius", robot.wheel_radius},
+              {"wheels", robot.wheels},
+              {"casters", std::move(casters)},
+              {"limits", written(kLimits, robot)},
+              {"friction", robot.friction},
+              {"counts_per_turn", robot.counts_per_turn}};
+  if (robot.climbs) out["climbs"] = written(kClimbs, *robot.climbs);
+  return out;
 }
 
 json robot_document(const sim::RobotModel& robot) {

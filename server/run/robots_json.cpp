@@ -43,8 +43,16 @@ std::optional<algo::SetGoal> first_goal(const sim::OtherRobot& robot,
 
 /// Whether the document of a robot lists its sensors.
 bool brings_sensors(const json& robot) {
-  constexpr std::array kSensors{
-      "lasers", "sonar", "infrared", "sensors", "gyro", "bumpers", "encoders"};
+  constexpr std::array kSensors{"lasers",
+                                "sonar",
+                                "infrared",
+                                "sensors",
+                                "gyro",
+                                "bumpers",
+                                "encoders",
+                                "line_camera",
+                                "inclinometer",
+                                "floor_sensors"};
   return robot.is_object() &&
          std::ranges::any_of(kSensors, [&](const char* key) { return robot.contains(key); });
 }

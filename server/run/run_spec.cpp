@@ -11,6 +11,7 @@
 #include "algo/pipeline/controllers.hpp"
 #include "algo/pipeline/parameter_table.hpp"
 #include "server/run/fleet_robot.hpp"
+#include "server/run/ground_json.hpp"
 #include "server/run/hardware.hpp"
 #include "server/run/io_thread.hpp"
 #include "server/run/json_fields.hpp"
@@ -275,6 +276,7 @@ json to_json(const algo::RobotSpec& robot) {
   json out = written(kRobot, robot);
   out["name"] = robot.name;
   out["channels"] = std::move(channels);
+  write_ground(robot, out);
   return out;
 }
 
@@ -287,6 +289,7 @@ algo::RobotSpec robot_spec_from_json(const json& value) {
     const json& list = in.array("channels", algo::kMostChannels);
     for (const json& each : list) robot.channels.push_back(channel_from_json({each, "robot"}));
   }
+  read_ground(in, robot);
   return robot;
 }
 

@@ -133,8 +133,9 @@ std::optional<Run::Next> Run::step() {
     return next_step();
   }
   const algo::Telemetry& t = frame_->telemetry;
-  // A real base brakes harder than by the ramp down to the zero command that follows.
-  if (t.hold && arming_ != nullptr) robot_.stop();
+  // A real base brakes harder than by the ramp down to the zero command that follows. One that
+  // could turn over by that gets commands on the way to zero.
+  if (t.hold && arming_ != nullptr && t.command == algo::Command{}) robot_.stop();
   if (!robot_.step(t.command, next->telemetry.observation)) {
     const std::string reason = fmt::format("The log ended after {} scans.", t.tick + 1);
     set_outcome(Outcome::EndOfLog, reason.c_str());
@@ -273,12 +274,22 @@ void Run::set_outcome(Outcome outcome, const char* reason) {
   if (links_.on_outcome) links_.on_outcome(outcome, reason, metrics_.metrics());
 }
 
+/// A robot that lies on its side or fell off an edge needs a reset, whatever comes after.
+bool Run::wrecked() const {
+  return result_.outcome == Outcome::Overturned || result_.outcome == Outcome::Fallen;
+}
+
 void Run::judge(const algo::Telemetry& t) {
+  if (wrecked()) return;
   for (const algo::Request& request : t.requests) {
     const bool new_goal = std::holds_alternative<algo::SetGoal>(request);
     if (new_goal && !metrics_.metrics().collided) set_outcome(Outcome::Running);
   }
-  if (metrics_.metrics().collided) {
+  if (t.ground_truth && t.ground_truth->overturned) {
+    set_outcome(Outcome::Overturned, "The robot turned over. Reset sets it on its wheels again.");
+  } else if (t.ground_truth && t.ground_truth->fallen) {
+    set_outcome(Outcome::Fallen, "The robot drove off an edge. Reset sets it back to its start.");
+  } else if (metrics_.metrics().collided) {
     set_outcome(Outcome::Collided, "The hull touched an obstacle.");
   } else if (t.mission == algo::Mission::Arrived) {
     set_outcome(Outcome::Reached);

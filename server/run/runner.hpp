@@ -58,7 +58,8 @@ class FrameSink {
 };
 
 struct RunPolicy {
-  bool until_outcome = false;  // headless: ends when reached, stuck, collided or out of time
+  bool until_outcome = false;  // headless: ends when reached, stuck, collided, overturned, fallen
+                               // or out of time
   double time_limit = 0;       // [s] run clock; 0 = none
   /// Longest wait of a tick for a record that cannot keep up; unset: no limit. After it, ticks are
   /// lost until the record accepts one again. A real robot never waits.
@@ -154,6 +155,7 @@ class Run {
   void show();
   void news() const;
   bool over() const;
+  bool wrecked() const;
 
   algo::Robot& robot_;
   algo::Arming* arming_;    // set for a real robot, which keeps its own time

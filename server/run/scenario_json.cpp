@@ -95,11 +95,11 @@ std::optional<sim::PhysicsKind> physics_from_json(const JsonReader& in) {
 
 sim::Scenario scenario_from_json(const json& document, const RobotLibrary& robots) {
   const JsonReader in(document, "");
-  in.only({"name",       "title",   "description", "robot",      "physics",   "period",
-           "start",      "goal",    "drive",       "obstacles",  "lasers",    "sonar",
-           "infrared",   "sensors", "gyro",        "bumpers",    "encoders",  "localization",
-           "controller", "filter",  "parameters",  "time_limit", "waypoints", "loop",
-           "robots",     "vehicle"});
+  in.only({"name",       "title",   "description", "robot",        "physics",      "period",
+           "start",      "goal",    "drive",       "obstacles",    "lasers",       "sonar",
+           "infrared",   "sensors", "gyro",        "bumpers",      "encoders",     "localization",
+           "controller", "filter",  "parameters",  "time_limit",   "waypoints",    "loop",
+           "robots",     "vehicle", "line_camera", "inclinometer", "floor_sensors"});
   sim::Scenario s;
   s.name = in.text("name", 64);
   if (!valid_name(s.name)) {

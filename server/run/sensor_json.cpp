@@ -12,8 +12,11 @@
 #include "server/run/json_fields.hpp"
 #include "server/run/laser_json.hpp"
 #include "server/run/pose_json.hpp"
+#include "sim/floor_sensors.hpp"
 #include "sim/gyro_model.hpp"
+#include "sim/inclinometer_model.hpp"
 #include "sim/infrared_model.hpp"
+#include "sim/line_camera_model.hpp"
 #include "sim/sensor.hpp"
 #include "sim/sonar_model.hpp"
 
@@ -50,10 +53,46 @@ constexpr Field<Infrared> kInfrared[] = {
     {"noise", &Infrared::noise},
 };
 
+using Floor = sim::FloorSensorConfig;
+constexpr Field<Floor> kFloor[] = {
+    {"x", &Floor::x},
+    {"height", &Floor::height},
+    {"half_spacing", &Floor::half_spacing},
+    {"angle_deg", &Floor::angle, {0, 90}, kDegree},
+    {"separation", &Floor::separation},
+    {"noise", &Floor::noise},
+    {"spot", &Floor::spot},
+    {"glitches", &Floor::glitches},
+    {"period", &Floor::period},
+    {"grazing", &Floor::grazing},
+};
+
 constexpr Field<sim::GyroConfig> kGyro[] = {
     {"bias", &sim::GyroConfig::bias},
     {"bias_walk", &sim::GyroConfig::bias_walk},
     {"noise", &sim::GyroConfig::noise},
+};
+
+using LineCamera = sim::LineCameraConfig;
+constexpr Field<LineCamera> kLineCamera[] = {
+    required<LineCamera>("x", &LineCamera::x, {}),
+    required<LineCamera>("height", &LineCamera::height, {}),
+    {"pitch_deg", &LineCamera::pitch, {0, 360}, kDegree, true},
+    required<LineCamera>("baseline", &LineCamera::baseline, {}),
+    {"angle_deg", &LineCamera::angle, {0, 360}, kDegree, true},
+    required<LineCamera>("focal", &LineCamera::focal, {}),
+    {"columns"},
+    {"rows"},
+    {"noise", &LineCamera::noise},
+    {"dropout", &LineCamera::dropout},
+    {"period", &LineCamera::period},
+};
+
+using Inclinometer = sim::InclinometerConfig;
+constexpr Field<Inclinometer> kInclinometer[] = {
+    {"noise_deg", &Inclinometer::noise, {0, 360}, kDegree},
+    {"lag", &Inclinometer::lag},
+    {"period", &Inclinometer::period},
 };
 
 algo::Pose2 mount_from_json(const JsonReader& in) {
@@ -73,6 +112,10 @@ Config config_from_json(const JsonReader& in,
   if constexpr (std::is_same_v<Config, Infrared>) {
     if (in.has("mount")) config.mount_R = mount_from_json(in.object("mount"));
   }
+  if constexpr (std::is_same_v<Config, LineCamera>) {
+    config.columns = static_cast<int>(in.whole("columns", 10000));
+    config.rows = static_cast<int>(in.whole("rows", 10000));
+  }
   if (const auto complaint = sim::defect(config)) throw DocumentError(path, *complaint);
   return config;
 }
@@ -81,6 +124,27 @@ json to_json(const Infrared& scanner) {
   json out = written(kInfrared, scanner);
   out["mount"] = server::to_json(scanner.mount_R);
   return out;
+}
+
+json to_json(const LineCamera& camera) {
+  json out = written(kLineCamera, camera);
+  out["columns"] = camera.columns;
+  out["rows"] = camera.rows;
+  return out;
+}
+
+/// What looks at the ground, and how the robot leans. `false` takes either away.
+void read_terrain(const JsonReader& in, sim::Sensors& sensors) {
+  const auto read = [&in](const char* key, auto& config, const auto& table) {
+    if (!in.has(key)) return;
+    if (in.raw()[key] == false) {
+      config.reset();
+    } else {
+      config = config_from_json(in.object(key), in.at(key), table);
+    }
+  };
+  read("line_camera", sensors.line_camera, kLineCamera);
+  read("inclinometer", sensors.inclinometer, kInclinometer);
 }
 
 /// `false`: no gyro; an object: a gyro with those errors; absent: the robot's own.
@@ -161,8 +225,14 @@ void read_sensors(const JsonReader& in, sim::Sensors& sensors) {
       sensors.infrared.push_back(config_from_json({value, at}, at, kInfrared));
     });
   }
+  if (in.has("floor_sensors") && in.raw()["floor_sensors"] == false) {
+    sensors.floor.reset();
+  } else if (in.has("floor_sensors")) {
+    sensors.floor = config_from_json(in.object("floor_sensors"), in.at("floor_sensors"), kFloor);
+  }
   read_channels(in, sensors);
   read_gyro(in, sensors);
+  read_terrain(in, sensors);
   sensors.bumpers = static_cast<std::uint32_t>(in.whole_or("bumpers", sensors.bumpers, 8));
   sensors.encoders = in.flag_or("encoders", sensors.encoders);
 }
@@ -172,9 +242,12 @@ void write_sensors(const sim::Sensors& s, nlohmann::json& out) {
   for (const sim::LaserConfig& laser : s.lasers) out["lasers"].push_back(to_json(laser));
   if (s.sonar) out["sonar"] = written(kSonar, *s.sonar);
   for (const sim::InfraredConfig& scanner : s.infrared) out["infrared"].push_back(to_json(scanner));
+  if (s.floor) out["floor_sensors"] = written(kFloor, *s.floor);
   for (const sim::SensorConfig& sensor : s.further) out["sensors"].push_back(to_json(sensor));
   if (!s.has_gyro) out["gyro"] = false;
   if (s.has_gyro && s.gyro) out["gyro"] = written(kGyro, *s.gyro);
+  if (s.line_camera) out["line_camera"] = to_json(*s.line_camera);
+  if (s.inclinometer) out["inclinometer"] = written(kInclinometer, *s.inclinometer);
   if (s.bumpers != 1) out["bumpers"] = s.bumpers;
   if (!s.encoders) out["encoders"] = false;
 }

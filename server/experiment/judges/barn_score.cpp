@@ -39,7 +39,11 @@ class BarnScore final : public Judge {
     const double stamp = t.observation.stamp;
     if (!moved_at_ && (at_W - start_W_).norm() > kMoved) moved_at_ = stamp;
     time_ = moved_at_ ? stamp - *moved_at_ : 0;
-    if (t.ground_truth->collided) {
+    if (t.ground_truth->overturned) {
+      ending_ = Ending{algo::Outcome::Overturned, "The robot turned over."};
+    } else if (t.ground_truth->fallen) {
+      ending_ = Ending{algo::Outcome::Fallen, "The robot drove off an edge."};
+    } else if (t.ground_truth->collided) {
       ending_ = Ending{algo::Outcome::Collided, "The hull touched an obstacle."};
     } else if ((at_W - *goal_W_).norm() < goal_radius_) {
       ending_ = Ending{algo::Outcome::Reached, ""};

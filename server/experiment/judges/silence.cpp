@@ -59,6 +59,8 @@ class Silence final : public Judge {
     reason_ = gives_reason(t) ? stamp : reason_;
     not_finite_ = !finite(t);
     if (not_finite_) return end(algo::Outcome::Failed, t);
+    if (t.ground_truth->overturned) return end(algo::Outcome::Overturned, t);
+    if (t.ground_truth->fallen) return end(algo::Outcome::Fallen, t);
     if (t.ground_truth->collided) return end(algo::Outcome::Collided, t);
     if (t.mission == algo::Mission::Arrived) return end(algo::Outcome::Reached, t);
     if (stand_.seconds(t.ground_truth->pose, stamp) > kStands) {

@@ -28,7 +28,9 @@ constexpr algo::Outcome kLoggedOutcomes[] = {algo::Outcome::Reached,
                                              algo::Outcome::Stuck,
                                              algo::Outcome::OutOfTime,
                                              algo::Outcome::Collided,
-                                             algo::Outcome::Failed};
+                                             algo::Outcome::Failed,
+                                             algo::Outcome::Overturned,
+                                             algo::Outcome::Fallen};
 
 algo::Outcome outcome_named(const std::string& name) {
   for (const algo::Outcome outcome : kLoggedOutcomes) {

@@ -26,8 +26,22 @@ constexpr std::array<Figure, 12> kFigures{{{"time_s", true},
 
 constexpr std::array kOutcomes{
     Outcome::Reached, Outcome::Collided, Outcome::Stuck, Outcome::OutOfTime, Outcome::Failed};
+constexpr std::array kOnlyWithGround{Outcome::Overturned, Outcome::Fallen};
 
 using Runs = std::vector<std::size_t>;  // numbers of runs that have ended
+
+/// The outcomes to list; the rare ones only if a run of the sweep had them.
+std::vector<Outcome> outcomes_of(const Rows& rows) {
+  std::vector<Outcome> listed(kOutcomes.begin(), kOutcomes.end());
+  for (const Outcome outcome : kOnlyWithGround) {
+    for (std::size_t run = 0; run < rows.size(); ++run) {
+      if (!rows.has(run) || rows.outcome(run) != outcome) continue;
+      listed.push_back(outcome);
+      break;
+    }
+  }
+  return listed;
+}
 
 /// The finite values of a figure; a broken run may have none.
 std::vector<double> values_of(const Rows& rows, const Runs& runs, const Figure& figure) {
@@ -67,8 +81,9 @@ Group group_of(
       ++(rows.has(run) ? group.runs : group.missing);
     }
   }
-  for (const Outcome outcome : kOutcomes)
+  for (const Outcome outcome : outcomes_of(rows)) {
     group.rates.push_back(rate_of(rows, by_scenario, outcome));
+  }
   for (const Figure& figure : kFigures) {
     std::vector<std::vector<double>> values;
     values.reserve(by_scenario.size());

@@ -68,7 +68,9 @@ algo::Telemetry full_telemetry() {
   for (const algo::Shape& shape : {algo::Shape{algo::Cylinder{0.3}},
                                    algo::Shape{algo::Box{0.5, 0.25}},
                                    algo::Shape{algo::Polygon{{{0, 0}, {1, 0}, {0, 1}}}},
-                                   algo::Shape{algo::Wall{4, 0.1}}}) {
+                                   algo::Shape{algo::Wall{4, 0.1}},
+                                   algo::Shape{algo::Ramp{2, 1, 0.1}},
+                                   algo::Shape{algo::Trench{0.3, 1, 0.05}}}) {
     t.requests.push_back(algo::AddObstacle{{7, {1, 2, 3}, shape, 0.9, 0.4, true}});
   }
   algo::Obstacle walker{7, {1, 2, 3}, algo::Cylinder{0.25}};
@@ -105,6 +107,13 @@ algo::Telemetry full_telemetry() {
   t.command.joints = 2;
   t.command.joint_rates[1] = -0.1 / 3;
   t.ground_truth->tilt = algo::Tilt{0.25, -0.5, 0.125};
+  o.line.fresh = true;
+  o.line.stamp = 12.32;
+  o.line.pixels.push_back({-319.5F, 1.0F / 3.0F});
+  o.line.pixels.push_back({0, -17});
+  o.floor = {12.31, 1.0 / 3.0, 0.28, 0.2, 0.2000000001};
+  t.ground_truth->overturned = true;
+  t.ground_truth->fallen = true;
   o.channels.append() = {.channel = 3, .stamp = 12.1, .values = {1.0 / 3.0, -7}};
   o.channels.append() = {.channel = 0, .stamp = o.stamp, .values = {}};
   return t;
@@ -140,6 +149,10 @@ TEST(FrameCodec, ObservationRequestsAndCommandComeBackBitForBit) {
   EXPECT_EQ(back.observation.gyro, t.observation.gyro);
   EXPECT_EQ(back.observation.inclinometer, t.observation.inclinometer);
   EXPECT_EQ(back.observation.encoders, t.observation.encoders);
+  EXPECT_TRUE(back.observation.line.fresh);
+  EXPECT_EQ(back.observation.line.stamp, t.observation.line.stamp);
+  EXPECT_TRUE(std::ranges::equal(back.observation.line.pixels, t.observation.line.pixels));
+  EXPECT_EQ(back.observation.floor, t.observation.floor);
   ASSERT_EQ(back.requests.size(), t.requests.size());
   for (std::size_t i = 0; i < t.requests.size(); ++i) EXPECT_EQ(back.requests[i], t.requests[i]);
   EXPECT_EQ(back.command, t.command);
@@ -180,6 +193,45 @@ TEST(FrameCodec, OwnStampsAndFrameStampsComeBack) {
   }
 }
 
+TEST(FrameCodec, AnEmptyImageAndADistanceOutOfRangeComeBack) {
+  algo::Telemetry t;
+  t.observation.line.fresh = true;
+  t.observation.line.stamp = 3;
+  t.observation.floor = {3, std::nan(""), 0.28, 0.2, std::nan("")};
+  FrameEncoder encoder;
+  algo::Telemetry back = full_telemetry();
+  decode_frame(encoder.encode(t), back);
+  EXPECT_TRUE(back.observation.line.fresh);
+  EXPECT_EQ(back.observation.line.stamp, 3);
+  EXPECT_TRUE(back.observation.line.pixels.empty());
+  ASSERT_TRUE(back.observation.floor);
+  EXPECT_TRUE(std::isnan(back.observation.floor->far_left));
+  EXPECT_EQ(back.observation.floor->far_right, 0.28);
+  EXPECT_TRUE(std::isnan(back.observation.floor->near_right));
+  // The next frame brings neither.
+  decode_frame(encoder.encode(algo::Telemetry{}), back);
+  EXPECT_FALSE(back.observation.line.fresh);
+  EXPECT_FALSE(back.observation.floor);
+}
+
+TEST(FrameCodec, AFrameBetweenTwoImagesIsAsLargeAsWithoutACamera) {
+  const auto size_of = [](const algo::Telemetry& t) {
+    FrameEncoder encoder;
+    return encoder.encode(t).size();
+  };
+  algo::Telemetry t = full_telemetry();
+  t.command.joints = 0;
+  t.command.joint_rates = {};
+  t.ground_truth->tilt.reset();
+  t.observation.line.fresh = false;
+  t.observation.floor.reset();
+  const std::size_t between = size_of(t);
+  t.observation.line.pixels.clear();
+  EXPECT_EQ(size_of(t), between);
+  t.observation.floor.emplace();
+  EXPECT_GE(size_of(t), between + sizeof(double) * 5);
+}
+
 TEST(FrameCodec, AbsentSensorsTakeNoByte) {
   algo::Telemetry t = full_telemetry();
   FrameEncoder encoder;
@@ -188,12 +240,16 @@ TEST(FrameCodec, AbsentSensorsTakeNoByte) {
   t.command.joint_rates = {};
   t.ground_truth->tilt.reset();
   t.observation.channels.clear();
+  t.observation.line.fresh = false;
+  t.observation.floor.reset();
   t.limit = {};
   t.hold = {};
   const wire::Frame& frame = read(encoder, t);
   EXPECT_EQ(frame.joint_rates(), nullptr);
   EXPECT_EQ(frame.tilt(), nullptr);
   EXPECT_EQ(frame.channels(), nullptr);
+  EXPECT_EQ(frame.line(), nullptr);
+  EXPECT_EQ(frame.floor(), nullptr);
   EXPECT_EQ(frame.limit(), nullptr);
   EXPECT_EQ(frame.hold(), nullptr);
   EXPECT_GT(whole, encoder.encode(t).size() + 100);
@@ -457,6 +513,8 @@ TEST(FrameCodec, ATickOfDrivingStaysSmall) {
   t.moved.clear();
   t.words_fresh = t.legend_fresh = false;
   t.observation.channels.clear();
+  t.observation.line.fresh = false;
+  t.observation.floor.reset();
   t.command.joints = 0;
   t.hold = {};
   t.limit = {};

@@ -151,10 +151,16 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
                     .obstacle_distance = 1.5,
                     .clearance = -0.05,
                     .collided = true,
-                    .tilt = algo::Tilt{0.01, 0.02, 0.03}};
+                    .tilt = algo::Tilt{0.01, 0.02, 0.03},
+                    .fallen = true};
   t.observation.gyro = {0.01, 0.125};
   t.observation.inclinometer = {0.02, 0.25, -0.5};
   t.observation.encoders = {0.03, 7, 4294967295U};
+  t.observation.line.fresh = true;
+  t.observation.line.stamp = 0.04;
+  t.observation.line.pixels.push_back({-12.5F, 3.0F});
+  t.observation.line.pixels.push_back({7.0F, 2.25F});
+  t.observation.floor = {0.05, 0.28, std::nan(""), 0.2, 0.205};
   t.requests.push_back(algo::ClearGoal{});
   t.requests.push_back(algo::Stop{false});
   t.requests.push_back(algo::SetGoals{});
@@ -179,6 +185,8 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
       {"truth.obstacle_distance", {"", "1.5"}},
       {"truth.clearance", {"", "-0.05"}},
       {"truth.collided", {"", "1"}},
+      {"truth.overturned", {"", "0"}},
+      {"truth.fallen", {"", "1"}},
       {"truth.z", {"", "0.01"}},
       {"truth.roll", {"", "0.02"}},
       {"truth.pitch", {"", "0.03"}},
@@ -190,6 +198,13 @@ TEST_F(RunCsvTest, EverySingleValueOfAFrameHasItsColumn) {
       {"encoders.stamp", {"", "0.03"}},
       {"encoders.left", {"", "7"}},
       {"encoders.right", {"", "4294967295"}},
+      {"line.stamp", {"", "0.04"}},
+      {"line.points", {"", "2"}},
+      {"floor.stamp", {"", "0.05"}},
+      {"floor.far_left", {"", "0.28"}},
+      {"floor.far_right", {"", "inf"}},
+      {"floor.near_left", {"", "0.2"}},
+      {"floor.near_right", {"", "0.205"}},
       {"requests", {"", "clear_goal stop set_goals change_obstacle joystick"}},
       {"stick.forward", {"", "0.5"}},
       {"stick.turn", {"", "-0.25"}},

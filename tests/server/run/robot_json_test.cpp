@@ -95,9 +95,10 @@ TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
     const sim::RobotModel again = read_robot(robot_document(robot));
     EXPECT_TRUE(static_cast<const sim::Machine&>(robot) == again);
     EXPECT_EQ(robot_document(robot), robot_document(again));
-    // A name implies the default sensors; a robot with a ring of its own is written out.
+    // A name implies the default sensors; a robot with a ring or floor sensors is written out.
     const json reference = robot_reference(robot);
-    EXPECT_EQ(reference.is_string(), !robot.sensors.sonar);
+    const bool own = robot.sensors.sonar || robot.sensors.floor;
+    EXPECT_EQ(reference.is_string(), !own);
     EXPECT_EQ(reference.is_string() ? reference : reference["name"], entry.name);
   }
 }

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "server/run/json_reader.hpp"
@@ -76,7 +77,12 @@ TEST(ScenarioJson, HandWrittenOnesComeBackFromTheirText) {
        R"({"name":"g","obstacles":[{"type":"box","x":1,"y":1,"heading":0.3,"length":0.6,)"
        R"("width":0.4,"height":0.2,"reflectivity":0.5,"specular":true},)"
        R"({"type":"polygon","points":[[0.1,0],[1.3,0.1],[1,1.7]]},)"
-       R"({"type":"wall","from":[0.1,2],"to":[3.3,4],"thickness":0.2}]})"}) {
+       R"({"type":"wall","from":[0.1,2],"to":[3.3,4],"thickness":0.2}]})",
+       R"({"name":"h","physics":"bullet","obstacles":[)"
+       R"({"type":"ramp","x":1,"y":2,"heading":0.3,"length":2,"width":1.5,"low":0.1,"height":0.3},)"
+       R"({"type":"ramp","x":4,"y":2,"length":2,"width":1.5,"height":0.3},)"
+       R"({"type":"step","x":6,"y":2,"length":2,"width":1.5,"height":0.013},)"
+       R"({"type":"trench","x":8,"y":2,"heading":1,"length":0.02,"width":3,"depth":0.1}]})"}) {
     SCOPED_TRACE(text);
     const sim::Scenario scenario = read(text);
     expect_same(scenario, read(to_json(scenario).dump()));
@@ -90,6 +96,45 @@ TEST(ScenarioJson, AWallBetweenTwoPointsIsTheWallOfThatLength) {
       json::parse(R"({"type":"wall","x":1,"y":4,"heading":1.5707963267948966,"length":4})"), "");
   EXPECT_EQ(ends, middle);
   EXPECT_EQ(std::get<algo::Wall>(ends.shape).thickness, 0.1);
+}
+
+TEST(ScenarioJson, AStepIsARampOfOneHeight) {
+  const auto step = obstacle_from_json(
+      json::parse(R"({"type":"step","x":1,"y":0,"length":2,"width":1,"height":0.1})"), "");
+  const auto ramp = obstacle_from_json(
+      json::parse(R"({"type":"ramp","x":1,"y":0,"length":2,"width":1,"low":0.1,"height":0.1})"),
+      "");
+  EXPECT_EQ(step, ramp);
+  EXPECT_EQ(to_json(ramp)["type"], "step");
+}
+
+TEST(ScenarioJson, MalformedGroundIsRefusedWithTheField) {
+  const auto complaint = [](const char* text) -> std::string {
+    try {
+      obstacle_from_json(json::parse(text), "obstacles/0");
+    } catch (const DocumentError& e) {
+      return e.what();
+    }
+    return "none";
+  };
+  EXPECT_THAT(complaint(R"({"type":"ramp","x":0,"y":0,"length":2,"width":1})"),
+              testing::HasSubstr("obstacles/0/height"));
+  EXPECT_THAT(complaint(R"({"type":"ramp","x":0,"y":0,"width":1,"height":0.1})"),
+              testing::HasSubstr("obstacles/0/length"));
+  EXPECT_THAT(
+      complaint(R"({"type":"ramp","x":0,"y":0,"length":2,"width":1,"height":0.1,"low":-1})"),
+      testing::HasSubstr("low"));
+  EXPECT_THAT(complaint(R"({"type":"step","x":0,"y":0,"length":2,"width":1,"height":1,"low":0})"),
+              testing::HasSubstr("unknown field 'low'"));
+  EXPECT_THAT(complaint(R"({"type":"trench","x":0,"y":0,"length":2,"width":1})"),
+              testing::HasSubstr("obstacles/0/depth"));
+  EXPECT_THAT(complaint(R"({"type":"trench","x":0,"y":0,"length":2,"width":1,"depth":0})"),
+              testing::HasSubstr("depth"));
+  EXPECT_THAT(complaint(R"({"type":"trench","x":0,"y":0,"length":2,"width":1,"depth":1,)"
+                        R"("path":{"period":1,"keys":[[0,0,0]]}})"),
+              testing::HasSubstr("path"));
+  EXPECT_THAT(complaint(R"({"type":"slope","x":0,"y":0})"),
+              testing::HasSubstr("ramp, step, trench"));
 }
 
 TEST(ScenarioJson, PolygonPointsAreInWorldFrameOrInThatOfAGivenPose) {
