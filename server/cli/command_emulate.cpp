@@ -50,6 +50,7 @@ struct EmulateCommand {
   double boot = 0;
   bool rs232 = false;
   unsigned address = 0;
+  bool psd = false;
 };
 
 /// SIGINT, SIGTERM and SIGHUP as a file to read. It blocks them in all later threads, so make it
@@ -126,6 +127,9 @@ void emulate_devices(EmulateCommand& options) {
   for (const auto& link : emulation.scanner_links) fmt::print("LMS200 at {}\n", link.string());
   if (emulation.base != BaseKind::None) {
     fmt::print("{} at {}\n", row_of(emulation.base).words, emulation.base_link.string());
+  }
+  if (!emulation.psd_link.empty()) {
+    fmt::print("Floor sensors at {}\n", emulation.psd_link.string());
   }
   if (emulation.base == BaseKind::Analog) {
     fmt::print("library = \"{}\"\n", emulate::emulated_comedi().string());
@@ -236,6 +240,17 @@ void add_emulate_command(Command app, int& status) {
   single("roboteq", "A Roboteq motor controller with two motors", BaseKind::Roboteq);
   single("analog", "An acquisition card wired to two motor amplifiers", BaseKind::Analog);
 
+  auto floor = std::make_shared<EmulateCommand>();
+  const Command psd = command.add_subcommand(
+      "psd", "The adapter of four distance sensors that look at the floor, of a robot that stands");
+  psd.add_option("--link", floor->link, "Path of the port").type_name("PATH").required();
+  add_common_flags(psd, *floor);
+  psd.callback([floor, &status] {
+    floor->emulation.psd_link = floor->link;
+    emulate_devices(*floor);
+    status = 0;
+  });
+
   auto options = std::make_shared<EmulateCommand>();
   const Command robot = command.add_subcommand(
       "robot", "A base and the scenario's scanners in one world: DIR/base, DIR/scanner, ...");
@@ -243,6 +258,8 @@ void add_emulate_command(Command app, int& status) {
   robot.add_option("--base", options->base, "p2os, roboteq or analog")
       .one_of({"p2os", "roboteq", "analog"})
       .show_default();
+  robot.add_flag(
+      "--psd", options->psd, "Also four distance sensors that look at the floor: DIR/psd");
   add_common_flags(robot, *options);
   add_scanner_flags(robot, *options);
   add_base_flags(robot, *options);
@@ -256,6 +273,7 @@ void add_emulate_command(Command app, int& status) {
     }
     emulation.base = std::ranges::find(kBases, options->base, &BaseRow::name)->kind;
     emulation.base_link = options->links / "base";
+    if (options->psd) emulation.psd_link = options->links / "psd";
     emulate_devices(*options);
     status = 0;
   });

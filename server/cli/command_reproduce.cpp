@@ -1,5 +1,5 @@
 // server/cli/command_reproduce.cpp: `tautline reproduce`: checks the claims of the sources by their
-// scenarios, their filter chapter and their drive by hand.
+// scenarios, their filter chapter, their drive by hand and their tables of the ground.
 #include <algorithm>
 #include <memory>
 
@@ -9,6 +9,7 @@
 #include "server/cli/pool_options.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/markdown.hpp"
+#include "server/lab/reproduce/masuda_study.hpp"
 #include "server/lab/reproduce/robhaz_study.hpp"
 
 namespace server {
@@ -24,6 +25,7 @@ struct ReproduceCommand {
   bool filter = false;
   std::string logs{};
   bool robhaz = false;
+  bool masuda = false;
   std::string course{};
 };
 
@@ -47,6 +49,18 @@ int execute_robhaz_study(const ReproduceCommand& options) {
                                              ? reproduce::embedded_robhaz_course()
                                              : reproduce::read_robhaz_course(options.course);
   const reproduce::RobhazStudy study = reproduce::study_robhaz(course);
+  if (options.as_json) {
+    fmt::print("{}\n", to_json(study).dump(2));
+  } else {
+    fmt::print("{}", to_text(study));
+  }
+  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  return all_hold(study) ? kReached : kNotHeld;
+}
+
+/// Only Masuda et al.'s tables. A value outside its band is a failure.
+int execute_masuda_study(const ReproduceCommand& options) {
+  const reproduce::MasudaStudy study = reproduce::study_masuda();
   if (options.as_json) {
     fmt::print("{}\n", to_json(study).dump(2));
   } else {
@@ -134,16 +148,24 @@ void add_reproduce_command(Command app, int& status) {
       .type_name("FILE")
       .needs(robhaz);
   robhaz.excludes(filter);
+  const Option masuda = command.add_flag(
+      "--masuda",
+      options->masuda,
+      "Detect the slopes, steps and trenches of Masuda et al. 2008 (Tables I to VI) instead");
+  masuda.excludes(filter);
+  masuda.excludes(robhaz);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
     filter.excludes(command.get_option(tables));
     robhaz.excludes(command.get_option(tables));
+    masuda.excludes(command.get_option(tables));
   }
   command.add_flag("--json", options->as_json, "Print JSON");
   command.footer("Exit status: 0 every limit or asserted finding held, 1 bad input, 3 one failed.");
   command.callback([options, &status] {
     status = options->filter   ? execute_filter_study(*options)
              : options->robhaz ? execute_robhaz_study(*options)
+             : options->masuda ? execute_masuda_study(*options)
                                : execute(*options);
   });
 }

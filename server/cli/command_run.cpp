@@ -31,6 +31,8 @@ int exit_status(algo::Outcome outcome) {
     case algo::Outcome::EndOfLog:
       return kReached;
     case algo::Outcome::Collided:
+    case algo::Outcome::Overturned:
+    case algo::Outcome::Fallen:
       return kCollided;
     case algo::Outcome::Failed:
       return kBadInput;

@@ -10,6 +10,7 @@
 #include "server/lab/soak/indoor_world.hpp"
 #include "server/lab/soak/operator_study.hpp"
 #include "server/lab/soak/random_world.hpp"
+#include "server/lab/soak/slope_study.hpp"
 #include "server/lab/soak/soak.hpp"
 #include "server/run/scenario_json.hpp"
 #include "server/run/text_file.hpp"
@@ -23,14 +24,16 @@ struct SoakCommand {
   std::string rows{};
   soak::Options options{};
 
+  bool slopes = false;
   bool by_hand = false;
-  double seconds = 10'000;
+  double seconds = 0;  // 0: by the kind of study
   std::string physics = "bullet";
   std::string robot{};
 };
 
 constexpr std::uint64_t kWorlds = 1000;
 constexpr std::uint64_t kOperatorWorlds = 100;
+constexpr double kOperatorSeconds = 10'000;  // of each robot and mode, in all worlds together
 
 /// Prints faults, or with `all` every run that did not reach its goal.
 void print_worlds(const std::vector<soak::World>& worlds, bool all) {
@@ -72,7 +75,7 @@ int execute_operator(const SoakCommand& command) {
   soak::OperatorOptions options{
       .worlds = command.options.worlds > 0 ? command.options.worlds : kOperatorWorlds,
       .first_seed = command.options.first_seed,
-      .seconds = command.seconds,
+      .seconds = command.seconds > 0 ? command.seconds : kOperatorSeconds,
       .physics =
           command.physics == "kinematic" ? sim::PhysicsKind::Kinematic : sim::PhysicsKind::Bullet,
       .robots = robots_named(command.robot),
@@ -112,7 +115,35 @@ int execute_operator(const SoakCommand& command) {
   return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
 }
 
+int execute_slopes(const SoakCommand& command) {
+  soak::SlopeOptions options{.first_seed = command.options.first_seed,
+                             .pool = command.options.pool};
+  if (command.options.worlds > 0) options.worlds = command.options.worlds;
+  if (command.seconds > 0) options.seconds = command.seconds;
+  if (!command.scenario.empty()) {
+    const sim::Scenario world = soak::slope_world(options.first_seed).scenario;
+    write_text(command.scenario, to_json(world).dump(1) + "\n");
+    return kReached;
+  }
+  std::vector<soak::SlopeRow> rows;
+  {
+    ProgressLine progress;
+    options.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} worlds", done, all));
+    };
+    rows = run_slopes(options);
+  }
+  if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
+  for (const soak::SlopeRow& row : rows) {
+    if (!row.counts() || !row.guarded.overturned) continue;
+    fmt::print("world {}: turned over after {:.1f} s\n", row.seed, row.guarded.seconds);
+  }
+  fmt::print("{}", to_text(slopes_table(rows)));
+  return soak::turned_over(rows) > 0 ? kNotHeld : kReached;
+}
+
 int execute(SoakCommand command) {
+  if (command.slopes) return execute_slopes(command);
   if (command.by_hand) return execute_operator(command);
   if (command.options.worlds == 0) command.options.worlds = kWorlds;
   if (!command.scenario.empty()) {
@@ -148,7 +179,7 @@ void add_soak_command(Command app, int& status) {
       "without a reason given");
   soak.add_option("--worlds",
                   command->options.worlds,
-                  "Number of worlds (default 1000, with --operator 100)")
+                  "Number of worlds (default 1000, with --operator 100, with --slopes 200)")
       .range(1, 1'000'000);
   add_first_seed_option(soak, command->options.first_seed, "The first world (default 1)");
   soak.add_option("--controller", command->options.controller, "Default: strip");
@@ -163,9 +194,18 @@ void add_soak_command(Command app, int& status) {
                 command->by_hand,
                 "Instead, drive by hand as an operator who tries to hit something, guarded, with "
                 "changing modes, and raw. Exit status 3 after a contact with what was seen");
-  soak.add_option("--seconds",
-                  command->seconds,
-                  "With --operator: of each robot and mode, in all worlds together (default 10000)")
+  const Option slopes =
+      soak.add_flag("--slopes",
+                    command->slopes,
+                    "Instead, drive a robot with a high centre of mass over random slopes at full "
+                    "stick, with its "
+                    "turnover guard and without. Exit status 3 if it turns over with it");
+  slopes.excludes(soak.get_option("--operator"));
+  soak.add_option(
+          "--seconds",
+          command->seconds,
+          "With --operator: of each robot and mode, in all worlds together (default 10000). "
+          "With --slopes: of each drive (default 30)")
       .range(1.0, 1e7);
   soak.add_option("--physics", command->physics, "With --operator (default: bullet)")
       .one_of({"bullet", "kinematic"});

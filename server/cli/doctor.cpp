@@ -14,6 +14,7 @@
 #include "algo/dazzle.hpp"
 #include "algo/perceive.hpp"
 #include "drivers/lms200_device.hpp"
+#include "drivers/psd_device.hpp"
 #include "drivers/real_time.hpp"
 #include "drivers/serial_port.hpp"
 #include "drivers/serial_robot.hpp"
@@ -202,6 +203,58 @@ bool look_at_laser(const drivers::LaserEntry& entry,
   return notes.all_well();
 }
 
+bool look_at_floor_sensors(const drivers::FloorEntry& entry,
+                           const DoctorOptions& options,
+                           const Found& found) {
+  Notes notes(drivers::psd::kDeviceName, found);
+  if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
+  drivers::psd::PsdDevice device(entry.port, entry.setup);
+  const double until = steady_now() + options.patience;
+  while (!device.state().running && steady_now() < until) pause();
+  if (!device.state().running) {
+    notes.bad(device.report().sentence,
+              "docs/hardware.md describes the line that the adapter must send.");
+    return false;
+  }
+  const std::uint64_t before = device.readings();
+  const double begun = steady_now();
+  // At least as long as a stuck count takes to be found.
+  const double measuring = std::max(
+      options.measuring, 1.5 * drivers::psd::StuckWatch::kReadings * drivers::psd::kPeriod);
+  while (steady_now() < begun + measuring) pause();
+  const double rate = static_cast<double>(device.readings() - before) / (steady_now() - begun);
+  const double wanted = 1 / drivers::psd::kPeriod;
+  const algo::DeviceReport report = device.report();
+  if (rate < 0.9 * wanted) {
+    notes.bad(fmt::format("{:.1f} readings a second arrive instead of {:.1f}.", rate, wanted),
+              "Look at the adapter, its cable and the shield.");
+  } else {
+    notes.well(fmt::format("{:.1f} readings a second arrive.", rate));
+  }
+  if (!report.well) notes.bad(report.sentence, "Clear its cause, then look again.");
+  for (const auto& [name, value] : report.facts) {
+    if (value.find(" V)") == std::string::npos) continue;
+    if (value.starts_with("nothing")) {
+      notes.note(fmt::format("The {} sensor sees {}.", name, value),
+                 "On a flat floor each sensor sees it; nearer than 0.1 m it sees nothing.");
+    } else {
+      notes.well(fmt::format("The {} sensor sees the floor at {}.", name, value));
+    }
+  }
+  return notes.all_well();
+}
+
+void look_at_published(const drivers::PublishedEntry& published, const Found& found) {
+  const auto tell = [&](const char* name) {
+    Notes(name, found)
+        .note(
+            "A process beside the robot publishes its readings to the server, where the page "
+            "shows how old they are; they cannot be checked here.");
+  };
+  if (published.inclinometer) tell(drivers::PublishedSenses::kInclinometer);
+  if (published.line) tell(drivers::PublishedSenses::kCamera);
+}
+
 /// [bit/s] 0 where the base has no serial line.
 unsigned baud_of(const drivers::BaseEntry& entry) {
   if (const auto* pioneer = std::get_if<drivers::p2os::PioneerSetup>(&entry.setup)) {
@@ -371,6 +424,8 @@ bool examine(const drivers::RobotFile& file, const DoctorOptions& options, const
   for (const drivers::LaserEntry& laser : file.lasers) {
     well = look_at_laser(laser, options, found) && well;
   }
+  if (file.floor) well = look_at_floor_sensors(*file.floor, options, found) && well;
+  look_at_published(file.published, found);
   return look_at_base(file, options, found) && well;
 }
 

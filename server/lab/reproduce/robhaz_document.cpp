@@ -171,6 +171,9 @@ std::string to_text(const RobhazStudy& study) {
                        to_text(findings_table(run, study.findings[k])));
   }
   out += fmt::format("\nThe hand\n{}", to_text(force_table(study)));
+  out += fmt::format("\nFig. 12 and 13: turnover on a slope\n{}\n{}",
+                     to_text(runs_table(study.turnover)),
+                     to_text(findings_table(study.turnover)));
   out += all_hold(study) ? "\nEach asserted finding holds.\n" : "\nAn asserted finding FAILS.\n";
   return out;
 }
@@ -199,6 +202,7 @@ json to_json(const RobhazStudy& study) {
                            {"findings", std::move(findings)},
                            {"samples", std::move(samples)}});
   }
+  out["turnover"] = to_json(study.turnover);
   return out;
 }
 
@@ -223,6 +227,7 @@ std::string to_markdown(const RobhazStudy& study, const std::string& pictures) {
                      to_markdown(force_table(study)),
                      to_markdown(constants_table(study.course)),
                      to_markdown(script_table(study.course)));
+  out += "\n" + to_markdown(study.turnover, pictures);
   while (out.ends_with("\n\n")) out.pop_back();
   out += kRobhazMarks.end;
   return out;

@@ -10,46 +10,17 @@
 #include "server/experiment/path_picture.hpp"
 #include "server/experiment/svg_canvas.hpp"
 #include "server/lab/reproduce/robhaz_study.hpp"
+#include "server/lab/reproduce/time_panels.hpp"
 
 namespace server::reproduce {
 namespace {
 
 using experiment::SvgCanvas;
 
-constexpr double kWide = 760;    // [px]
-constexpr double kHigh = 130;    // [px] of a panel
-constexpr double kHeading = 64;  // [px] above the panels
-constexpr double kLeftEdge = 56;
-constexpr double kRightEdge = 12;
-constexpr double kPanelHead = 22;
-constexpr double kPanelFoot = 12;
 constexpr double kPer_s = 5;  // [s] between vertical lines
 using algo::units::kRadiansPerDegree;
 
-constexpr std::string_view kPanelStyle =
-    "text{font:12px system-ui,sans-serif;fill:#555}.head{font-size:15px;font-weight:600;fill:#222}"
-    ".end{text-anchor:end}.middle{text-anchor:middle}path{fill:none;stroke-width:1.5}"
-    ".grid{stroke:#e6e6e6}.one{stroke:#d1495b;fill:none}.two{stroke:#3f88c5;fill:none}"
-    ".three{stroke:#2e8b47;fill:none}text.one{fill:#d1495b;stroke:none}text.two{fill:#3f88c5;"
-    "stroke:"
-    "none}text.three{fill:#2e8b47;stroke:none}.section{stroke:#84897a;stroke-width:2}rect{fill:#"
-    "fff}"
-    "@media(prefers-color-scheme:dark){rect{fill:#12181f}text{fill:#a5b1bc}.head{fill:#e7edf2}"
-    ".grid{stroke:#2b3640}}";
-
-/// One quantity: its words in the panel's head and its value in the panel's unit.
-struct Curve {
-  const char* words = "";
-  double (*value)(const CourseSample& s) = nullptr;
-};
-
-struct PanelPlan {
-  const char* title = "";
-  double low = 0, high = 1, step = 1;
-  std::vector<Curve> curves{};
-};
-
-std::vector<PanelPlan> panels() {
+std::vector<PanelPlan<CourseSample>> panels() {
   return {
       {"rho' [m]",
        0,
@@ -92,64 +63,8 @@ std::vector<PanelPlan> panels() {
   };
 }
 
-constexpr std::array<const char*, 3> kCurveClasses{"one", "two", "three"};
-
-/// Maps time and value of one panel to pixels.
-struct Place {
-  double top = 0;  // [px]
-  double seconds = 30;
-  const PanelPlan* plan = nullptr;
-  double x(double stamp) const {
-    return kLeftEdge + stamp / seconds * (kWide - kLeftEdge - kRightEdge);
-  }
-  double y(double value) const {
-    const double part = (value - plan->low) / (plan->high - plan->low);
-    return top + kHigh - kPanelFoot -
-           std::clamp(part, 0.0, 1.0) * (kHigh - kPanelHead - kPanelFoot);
-  }
-};
-
-void draw_curve(const Place& place,
-                const Curve& curve,
-                const char* style,
-                const CourseRun& run,
-                SvgCanvas& canvas) {
-  std::string steps;
-  bool down = false;
-  for (const CourseSample& s : run.samples) {
-    const double value = curve.value(s);
-    if (std::isfinite(value)) {
-      steps += fmt::format("{}{:.1f} {:.1f}", down ? "L" : "M", place.x(s.stamp), place.y(value));
-    }
-    down = std::isfinite(value);
-  }
-  canvas.path(steps, fmt::format("class=\"{}\"", style));
-}
-
-void draw_panel(const Place& place, const CourseRun& run, SvgCanvas& canvas) {
-  const PanelPlan& plan = *place.plan;
-  for (double value = plan.low; value <= plan.high + plan.step / 2; value += plan.step) {
-    canvas.line(
-        {place.x(0), place.y(value)}, {place.x(place.seconds), place.y(value)}, "class=\"grid\"");
-    canvas.text({place.x(0) - 5, place.y(value) + 4}, fmt::format("{:g}", value), "class=\"end\"");
-  }
-  for (double stamp = 0; stamp <= place.seconds; stamp += kPer_s) {
-    canvas.line({place.x(stamp), place.y(plan.low)},
-                {place.x(stamp), place.y(plan.high)},
-                "class=\"grid\"");
-  }
-  canvas.text({place.x(0), place.top + kPanelHead - 8}, plan.title);
-  for (std::size_t k = 0; k < plan.curves.size(); ++k) {
-    const char* const style = kCurveClasses.at(k);
-    canvas.text({place.x(0) + 90 + 80 * static_cast<double>(k), place.top + kPanelHead - 8},
-                plan.curves[k].words,
-                fmt::format("class=\"{}\"", style));
-    draw_curve(place, plan.curves[k], style, run, canvas);
-  }
-}
-
 /// A bar for each section, above the panels, on the line of its letter.
-void draw_sections(const Place& place,
+void draw_sections(const PanelPlace& place,
                    const std::vector<CourseFinding>& findings,
                    SvgCanvas& canvas) {
   for (std::size_t k = 0; k < findings.size(); ++k) {
@@ -163,22 +78,13 @@ void draw_sections(const Place& place,
 
 std::string draw_run(const RobhazStudy& study, std::size_t index) {
   const CourseRun& run = study.runs[index];
-  const std::vector<PanelPlan> plans = panels();
+  const auto plans = panels();
   const std::string title =
       fmt::format("{}: the quantities of Fig. 10 and 11 over time", run.reading);
-  SvgCanvas canvas(kWide, kHeading + static_cast<double>(plans.size()) * kHigh + 20, kPanelStyle);
+  SvgCanvas canvas(kWide, picture_height(plans.size()), kPanelStyle);
   canvas.text({kLeftEdge, 20}, title, "class=\"head\"");
-  Place place{.seconds = study.course.seconds};
-  draw_sections(place, study.findings[index], canvas);
-  for (std::size_t k = 0; k < plans.size(); ++k) {
-    place.top = kHeading + static_cast<double>(k) * kHigh;
-    place.plan = &plans[k];
-    draw_panel(place, run, canvas);
-  }
-  for (double stamp = 0; stamp <= place.seconds; stamp += kPer_s) {
-    canvas.text(
-        {place.x(stamp), place.top + kHigh + 6}, fmt::format("{:g} s", stamp), "class=\"middle\"");
-  }
+  draw_sections({.seconds = study.course.seconds}, study.findings[index], canvas);
+  draw_panels(plans, run.samples, study.course.seconds, kPer_s, canvas);
   return canvas.document(title);
 }
 
@@ -209,6 +115,7 @@ std::vector<Picture> draw(const RobhazStudy& study) {
   for (std::size_t k = 0; k < study.runs.size(); ++k) {
     out.push_back({.file = picture_of(study.runs[k]), .svg = draw_run(study, k)});
   }
+  out.push_back({.file = std::string(kTurnoverPicture), .svg = draw(study.turnover)});
   return out;
 }
 

@@ -47,6 +47,7 @@ RobhazStudy study_robhaz(const RobhazCourse& course) {
       "stiff hand",
       "as corrected, by a hand that does not give way: the force alone moves the hand in G",
       false);
+  study.turnover = study_turnover();
   return study;
 }
 
@@ -56,7 +57,7 @@ bool all_hold(const RobhazStudy& study) {
       return false;
     }
   }
-  return true;
+  return all_hold(study.turnover);
 }
 
 }  // namespace server::reproduce

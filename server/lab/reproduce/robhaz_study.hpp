@@ -1,5 +1,6 @@
 // server/lab/reproduce/robhaz_study.hpp: reproduces Fig. 10 and 11 of Park et al. 2005: a hand on a
-// stick drives an indoor course, and eight findings that the paper marks A to H in its plots.
+// stick drives an indoor course, and eight findings that the paper marks A to H in its plots. Fig.
+// 12 and 13 stand beside them.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/robhaz_course.hpp"
+#include "server/lab/reproduce/robhaz_turnover.hpp"
 
 namespace server::reproduce {
 
@@ -29,12 +31,14 @@ struct RobhazStudy {
   RobhazCourse course{};
   std::vector<CourseRun> runs{};
   std::vector<std::vector<CourseFinding>> findings{};  // one list a run
+  TurnoverStudy turnover{};
 };
 
-/// Drives `course` with every reading. The same course gives the same study bit for bit.
+/// Drives `course` with every reading, and the path of Fig. 12. The same course gives the same
+/// study bit for bit.
 RobhazStudy study_robhaz(const RobhazCourse& course);
 
-/// True if each finding holds in every run that asserts them.
+/// True if each finding holds in every run that asserts them, and all of Fig. 12 and 13.
 bool all_hold(const RobhazStudy& study);
 
 // ---- the study as a document ----

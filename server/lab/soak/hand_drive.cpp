@@ -2,11 +2,32 @@
 #include "server/lab/soak/hand_drive.hpp"
 
 namespace server::soak {
+namespace {
+
+algo::RobotSpec with_stance(algo::RobotSpec spec, const std::optional<algo::Stance>& stance) {
+  spec.stance = stance;
+  return spec;
+}
+
+}  // namespace
 
 HandDrive::HandDrive(const sim::Scenario& scenario, std::uint64_t seed)
     : world_(scenario, seed),
       pipeline_({.controller = scenario.controller, .parameters = scenario.parameters},
                 world_.spec()) {
+  begin();
+}
+
+HandDrive::HandDrive(const sim::Scenario& scenario,
+                     std::uint64_t seed,
+                     const std::optional<algo::Stance>& believed)
+    : world_(scenario, seed),
+      pipeline_({.controller = scenario.controller, .parameters = scenario.parameters},
+                with_stance(world_.spec(), believed)) {
+  begin();
+}
+
+void HandDrive::begin() {
   world_.reset(t_.observation);
   pipeline_.reset(t_.observation.odometry.pose);
   truth_ = *world_.ground_truth();

@@ -43,6 +43,8 @@ std::string_view ending(const Row& row) {
     case Outcome::Stuck:
       return "gave a reason";
     case Outcome::Collided:
+    case Outcome::Overturned:
+    case Outcome::Fallen:
       return kCollision;
     default:
       return "out of time";

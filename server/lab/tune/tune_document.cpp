@@ -15,15 +15,16 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 4> kRates{"reached", "collided", "stuck", "out_of_time"};
+constexpr std::array<std::string_view, 6> kRates{
+    "reached", "collided", "stuck", "out_of_time", "overturned", "fallen"};
 
 Goal goal_from_json(const JsonReader& in, const std::string& field, bool maximize) {
   Goal goal{.metric = in.text(field, 64), .maximize = maximize};
   goal.is_rate = std::ranges::count(kRates, goal.metric) > 0;
   if (!goal.is_rate && experiment::find_column(goal.metric) == nullptr) {
     in.fail(field,
-            fmt::format("'{}' is neither reached, collided, stuck or out_of_time nor a figure of a "
-                        "run (docs/experiments.md)",
+            fmt::format("'{}' is neither reached, collided, stuck, out_of_time, overturned or "
+                        "fallen nor a figure of a run (docs/experiments.md)",
                         goal.metric));
   }
   return goal;

@@ -75,6 +75,44 @@ TEST(Doctor, ADazzledScannerIsAlwaysBad) {
   EXPECT_THAT(bad_words_after("cone 20"), HasSubstr("It is dazzled"));
 }
 
+/// The findings about emulated floor sensors after `command`.
+std::string floor_words_after(const std::string& command, bool well) {
+  namespace fs = std::filesystem;
+  const fs::path folder =
+      fs::temp_directory_path() / ("tautline_doctor_psd_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  emulate::EmulationOptions options;
+  options.psd_link = folder / "psd";
+  emulate::Emulation emulation(options);
+  emulation.start();
+  emulation.command(command);
+  const drivers::RobotFile file = drivers::parse_robot(
+      "name = \"a\"\nhull = { radius = 0.3 }\n[base]\ntype = \"pioneer\"\n"
+      "port = \"/dev/no_such_base\"\ntrack = 0.33\n[psd]\nx = 0.3\nheight = 0.1414\n"
+      "half_spacing = 0.1\nport = \"" +
+          options.psd_link.string() + "\"\n",
+      "a.toml");
+  std::string words;
+  bool bad = false;
+  const auto listen = [&](const Finding& f) {
+    if (f.device != "floor sensors") return;
+    words += f.sentence + "\n";
+    bad = bad || f.verdict == Finding::Verdict::Bad;
+  };
+  EXPECT_FALSE(examine(file, {.patience = 4, .measuring = 0.5}, listen));  // it has no base
+  EXPECT_EQ(bad, !well) << words;
+  fs::remove_all(folder);
+  return words;
+}
+
+TEST(Doctor, FloorSensorsAreReadAndTheirFaultsAreBad) {
+  const std::string well = floor_words_after("truth", true);
+  EXPECT_THAT(well, HasSubstr("readings a second arrive."));
+  EXPECT_THAT(well, HasSubstr("The far left sensor sees the floor at 0.2"));
+  EXPECT_THAT(floor_words_after("stick 2", false), HasSubstr("The far right sensor is stuck"));
+  EXPECT_THAT(floor_words_after("psd drop 0.5", false), HasSubstr("no whole line"));
+}
+
 TEST(Doctor, SpikesDifferFromBothNeighbours) {
   EXPECT_EQ(count_spikes({2, 2, 2, 2}), 0U);
   EXPECT_EQ(count_spikes({2, 1, 2, 2}), 1U);
