@@ -23,6 +23,12 @@ sim::Scenario bare(sim::Scenario scenario) {
   return scenario;
 }
 
+/// Those of the scenario's robot, or usual ones.
+algo::FloorSensors floor_sensors(const algo::RobotSpec& robot) {
+  const double front = robot.half_length > 0 ? robot.half_length : robot.radius;
+  return robot.floor.value_or(usual_floor_sensors(front));
+}
+
 constexpr double kMadeGood = 0.5;  // [s] of delayed steps to make up for on a busy computer
 
 double metres_per_count(const sim::RobotModel& robot) {
@@ -41,7 +47,8 @@ EmulatedWorld::EmulatedWorld(const sim::Scenario& scenario,
       metres_per_count_(metres_per_count(scenario.robot)),
       world_(bare(scenario), seed),
       trail_(sim::Substeps(scenario.period).length, Mirror::memory() + scenario.period),
-      sonars_(scenario) {
+      sonars_(scenario),
+      floor_(scenario, floor_sensors(world_.spec())) {
   if (!scenario.robots.empty()) {
     throw std::invalid_argument(
         "Devices can be emulated for one robot only; this scenario has several robots.");
@@ -80,6 +87,7 @@ void EmulatedWorld::run(const std::stop_token& stop) {
     trail_.push(truth.pose);
     feel(observation, truth.pose, due);
     look(observation.stamp);
+    look_at_floor(observation.stamp, truth);
     note(observation.stamp, truth);
   }
 }
@@ -132,6 +140,13 @@ void EmulatedWorld::look(double now) {
                         connection->wake();
                       });
   }
+}
+
+void EmulatedWorld::look_at_floor(double now, const algo::GroundTruth& truth) {
+  if (!links_.floor) return;
+  const auto metres = floor_.sense(now, truth.pose, truth.tilt.value_or(algo::Tilt{}));
+  const auto held = links_.floor->connection->lock();
+  links_.floor->device->sense(metres);
 }
 
 void EmulatedWorld::note(double now, const algo::GroundTruth& truth) {

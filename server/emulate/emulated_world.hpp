@@ -11,7 +11,9 @@
 
 #include "drivers/emulators/base.hpp"
 #include "drivers/emulators/lms200_emulator.hpp"
+#include "drivers/emulators/psd_emulator.hpp"
 #include "server/emulate/connection.hpp"
+#include "server/emulate/floor_rays.hpp"
 #include "server/emulate/mirror.hpp"
 #include "server/emulate/sonar_ring.hpp"
 #include "server/emulate/truth_record.hpp"
@@ -26,6 +28,7 @@ class EmulatedWorld {
   struct Links {
     std::vector<Served<drivers::lms200::Emulator>> scanners{};  // one per laser of the scenario
     std::optional<Served<drivers::emulators::Base>> base{};     // without a base the robot stands
+    std::optional<Served<drivers::psd::Emulator>> floor{};      // sensors that look at the floor
   };
   struct Truth {
     double time = 0;  // [s] of the run clock
@@ -51,6 +54,7 @@ class EmulatedWorld {
   algo::Command command();
   void feel(const algo::Observation& observation, const algo::Pose2& pose_W, double due);
   void look(double now);
+  void look_at_floor(double now, const algo::GroundTruth& truth);
   void note(double now, const algo::GroundTruth& truth);
 
   sim::Scenario scenario_{};
@@ -62,6 +66,7 @@ class EmulatedWorld {
   sim::PoseTrail trail_;
   std::vector<Mirror> mirrors_{};
   SonarRing sonars_;
+  FloorRays floor_;
 
   algo::Encoders encoders_{};
   drivers::emulators::BaseSenses senses_{};

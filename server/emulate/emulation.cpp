@@ -52,6 +52,14 @@ struct Emulation::Base {
   std::uint64_t commands = 0;  // motion commands; under the device's lock
 };
 
+/// The adapter of the floor sensors.
+struct Emulation::Psd {
+  Psd(const drivers::psd::EmulatorOptions& options, const std::filesystem::path& link)
+      : device(options), thread("psd", device, link) {}
+  drivers::psd::Emulator device;
+  DeviceThread thread;
+};
+
 namespace {
 
 /// The verbs of a fault line.
@@ -76,8 +84,10 @@ enum class Verb : std::uint8_t {
   Gain,
   Block,
   Encoder,
+  Stick,
+  Jump,
 };
-enum class Who : std::uint8_t { World, Any, Scanner, Base };
+enum class Who : std::uint8_t { World, Any, Scanner, Base, Psd };
 
 struct VerbRow {
   Verb verb = Verb::Truth;
@@ -86,7 +96,7 @@ struct VerbRow {
   std::string_view help{};
 };
 
-constexpr std::array<VerbRow, 20> kVerbs{{
+constexpr std::array<VerbRow, 22> kVerbs{{
     {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
     {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
     {Verb::Flip, "flip", Who::Any, "P: flip a bit of each byte with this probability"},
@@ -110,6 +120,11 @@ constexpr std::array<VerbRow, 20> kVerbs{{
     {Verb::Gain, "gain", Who::Base, "N: the wheels turn N times as fast as commanded"},
     {Verb::Block, "block", Who::Base, "on|off: the left wheel cannot turn"},
     {Verb::Encoder, "encoder", Who::Base, "on|off: connect or disconnect the left wheel's encoder"},
+    {Verb::Stick,
+     "stick",
+     Who::Psd,
+     "N: the count of floor sensor N stands still; 5: all; 0: none"},
+    {Verb::Jump, "jump", Who::Psd, "SECONDS: move the clock of the floor sensors' adapter"},
 }};
 
 const VerbRow& verb_of(const std::string& word) {
@@ -252,8 +267,24 @@ void inject_base(const VerbRow& row, double value, Base& base) {
   connection.wake();
 }
 
+void inject_psd(const VerbRow& row,
+                double value,
+                Connection& connection,
+                drivers::psd::Emulator& device) {
+  if (inject(row.verb, value, connection, device)) return;
+  const auto held = connection.lock();
+  if (row.verb == Verb::Restart) device.restart(machine_time(), value);
+  if (row.verb == Verb::Jump) device.jump(value);
+  if (row.verb != Verb::Stick) return;
+  constexpr double kAll = drivers::psd::kSensors + 1;
+  for (std::size_t i = 0; i < drivers::psd::kSensors; ++i) {
+    device.stick(i, value == kAll || value == static_cast<double>(i + 1));
+  }
+}
+
 /// The device for `row` when the line names none.
 std::string only(const VerbRow& row, std::size_t scanners, bool base) {
+  if (row.who == Who::Psd) return "psd";
   const bool scanner_verb = row.who != Who::Base;
   const bool base_verb = row.who != Who::Scanner;
   if (scanner_verb && scanners == 1 && !(base_verb && base)) return "scanner";
@@ -303,8 +334,9 @@ Emulation::Emulation(const EmulationOptions& options) : record_(options.record) 
   }
   for (std::size_t i = 0; i < options.scanner_links.size(); ++i) add_scanner(options, i);
   if (options.base != BaseKind::None) add_base(options);
+  if (!options.psd_link.empty()) add_psd(options);
   if (!options.log.empty()) {
-    if (scanners_.size() != 1 || base_) {
+    if (scanners_.size() != 1 || base_ || psd_) {
       throw std::invalid_argument("A log can be played to one scanner only.");
     }
     player_ = std::make_unique<LogPlayer>(
@@ -315,6 +347,7 @@ Emulation::Emulation(const EmulationOptions& options) : record_(options.record) 
   for (const auto& scanner : scanners_)
     links.scanners.push_back({&scanner->device, &scanner->thread});
   if (base_) links.base = Served<emulators::Base>{base_->device.get(), base_->connection.get()};
+  if (psd_) links.floor = Served<drivers::psd::Emulator>{&psd_->device, &psd_->thread};
   world_ = std::make_unique<EmulatedWorld>(options.scenario, options.seed, links, record_);
 }
 
@@ -341,9 +374,17 @@ void Emulation::add_base(const EmulationOptions& options) {
   };
 }
 
+void Emulation::add_psd(const EmulationOptions& options) {
+  drivers::psd::EmulatorOptions made;
+  made.seed = options.seed + 200;
+  psd_ = std::make_unique<Psd>(made, options.psd_link);
+  psd_->device.set_faults(options.faults);
+}
+
 void Emulation::start() {
   for (const auto& scanner : scanners_) scanner->thread.start();
   if (base_) base_->connection->start();
+  if (psd_) psd_->thread.start();
   if (world_) world_->start();
   if (player_) player_->start();
 }
@@ -355,7 +396,7 @@ std::string Emulation::command(std::string_view line) {
   std::string value;
   words >> word;
   if (word.empty() || word[0] == '#') return "";
-  if (word == "base" || word.starts_with("scanner")) {
+  if (word == "base" || word == "psd" || word.starts_with("scanner")) {
     device = word;
     words >> word;
   }
@@ -365,8 +406,18 @@ std::string Emulation::command(std::string_view line) {
   if (device.empty()) device = only(row, scanners_.size(), base_ != nullptr);
   const double number = value_of(value, row);
   record_.event(machine_time(), line);
+  if (device == "psd" && psd_ && (row.who == Who::Any || row.who == Who::Psd)) {
+    inject_psd(row, number, psd_->thread, psd_->device);
+    psd_->thread.wake();
+    return "";
+  }
+  if (device == "psd") {
+    throw std::invalid_argument(psd_
+                                    ? fmt::format("'{}' does not apply to floor sensors.", row.word)
+                                    : "There are no floor sensors here.");
+  }
   if (device == "base") {
-    if (!base_ || row.who == Who::Scanner) {
+    if (!base_ || row.who == Who::Scanner || row.who == Who::Psd) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to this base.", row.word));
     }
     inject_base(row, number, *base_);
@@ -374,7 +425,7 @@ std::string Emulation::command(std::string_view line) {
   }
   for (const auto& scanner : scanners_) {
     if (scanner->thread.name() != device) continue;
-    if (row.who == Who::Base) {
+    if (row.who == Who::Base || row.who == Who::Psd) {
       throw std::invalid_argument(fmt::format("'{}' does not apply to a scanner.", row.word));
     }
     inject_scanner(row.verb, number, scanner->thread, scanner->device);
@@ -409,6 +460,12 @@ std::string Emulation::truth() {
                                    {"memory_writes", device.memory_writes()},
                                    {"bad_telegrams", device.bad_telegrams()},
                                    {"overrun", scanner->thread.overrun()}};
+  }
+  if (psd_) {
+    const auto held = psd_->thread.lock();
+    out["psd"] = {{"listened_to", psd_->thread.listened_to()},
+                  {"lines", psd_->device.lines()},
+                  {"overrun", psd_->thread.overrun()}};
   }
   if (base_) {
     const auto held = base_->connection->lock();

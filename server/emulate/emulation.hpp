@@ -13,6 +13,7 @@
 #include "drivers/emulators/base.hpp"
 #include "drivers/emulators/lms200_emulator.hpp"
 #include "drivers/emulators/p2os_emulator.hpp"
+#include "drivers/emulators/psd_emulator.hpp"
 #include "drivers/emulators/roboteq_emulator.hpp"
 #include "server/emulate/card_slot.hpp"
 #include "server/emulate/device_thread.hpp"
@@ -38,6 +39,7 @@ struct EmulationOptions {
   BaseKind base = BaseKind::None;
   std::filesystem::path base_link{};
   drivers::emulators::CardChannels card{};  // of an analog base
+  std::filesystem::path psd_link{};         // of the floor sensors' adapter; empty: none
 };
 
 /// The commands of command(), one line each, for --help.
@@ -59,14 +61,17 @@ class Emulation {
  private:
   struct Scanner;
   struct Base;
+  struct Psd;
 
   void add_scanner(const EmulationOptions& options, std::size_t index);
   static std::unique_ptr<Base> make_base(const EmulationOptions& options);
   void add_base(const EmulationOptions& options);
+  void add_psd(const EmulationOptions& options);
 
   TruthRecord record_;
   std::vector<std::unique_ptr<Scanner>> scanners_{};
   std::unique_ptr<Base> base_{};
+  std::unique_ptr<Psd> psd_{};
   std::unique_ptr<EmulatedWorld> world_{};
   std::unique_ptr<LogPlayer> player_{};
 };

@@ -88,6 +88,7 @@ bool shut_off(double room,
   Floor floor(world, room);
   double looks = 0;
   for (const algo::Obstacle& obstacle : obstacles) {
+    if (algo::is_ground(obstacle)) continue;
     looks += floor.block(obstacle);
     if (looks > kMostLooks) return false;
   }
@@ -103,6 +104,7 @@ std::optional<std::string> goal_trouble(const algo::RobotSpec& spec,
   const double room = least_room(spec);
   double nearest = std::numeric_limits<double>::infinity();
   for (const algo::Obstacle& obstacle : obstacles) {
+    if (algo::is_ground(obstacle)) continue;  // the robot may well stand on it
     nearest = std::min(nearest, algo::signed_distance(obstacle, goal.position_W));
   }
   if (nearest <= 0) return "The goal lies inside an obstacle.";

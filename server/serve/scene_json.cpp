@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 using namespace scene;
 constexpr Colour kObstacle{0.55, 0.60, 0.66, 1};
+constexpr Colour kGround{0.60, 0.56, 0.46, 1};
 
 json transform_json(double stamp, const char* parent, const char* child, const algo::Pose2& pose) {
   return {{"timestamp", time_json(stamp)},
@@ -24,18 +25,23 @@ json transform_json(double stamp, const char* parent, const char* child, const a
           {"rotation", rotation_json(pose.heading)}};
 }
 
-/// A prism over a convex outline: a fan for the top, two triangles for each side.
-json prism_json(const std::vector<algo::Vec2>& outline, double height) {
+/// A solid between the floor and the obstacle's top, or its bottom if it is a trench, over a convex
+/// outline: a fan for the top, two triangles for each side.
+json prism_json(const algo::Obstacle& o) {
+  const std::vector<algo::Vec2> outline = algo::outline_W(o);
   std::vector<Point> points;
-  const auto add = [&](const algo::Vec2& p, double z) { points.push_back({p.x(), p.y(), z}); };
+  const auto at_top = [&](const algo::Vec2& p) {
+    points.push_back({p.x(), p.y(), algo::top_at(o, p)});
+  };
+  const auto on_floor = [&](const algo::Vec2& p) { points.push_back({p.x(), p.y(), 0}); };
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const algo::Vec2& a = outline[i];
     const algo::Vec2& b = outline[(i + 1) % outline.size()];
-    add(outline[0], height), add(a, height), add(b, height);
-    add(a, 0), add(b, 0), add(b, height);
-    add(a, 0), add(b, height), add(a, height);
+    at_top(outline[0]), at_top(a), at_top(b);
+    on_floor(a), on_floor(b), at_top(b);
+    on_floor(a), at_top(b), at_top(a);
   }
-  return triangles_json(points, kObstacle);
+  return triangles_json(points, algo::is_ground(o) ? kGround : kObstacle);
 }
 
 json obstacle_entity(double stamp, const algo::Obstacle& o) {
@@ -48,7 +54,7 @@ json obstacle_entity(double stamp, const algo::Obstacle& o) {
          {"top_scale", 1.0},
          {"color", to_json(kObstacle)}});
   } else {
-    entity["triangles"].push_back(prism_json(algo::outline_W(o), o.height));
+    entity["triangles"].push_back(prism_json(o));
   }
   return entity;
 }

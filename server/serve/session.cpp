@@ -221,6 +221,10 @@ std::optional<std::string> Session::arm(bool on, const std::string& who) {
   return refusal;
 }
 
+algo::Publishing* Session::publishing() const {
+  return state_.spec.hardware ? state_.spec.hardware->robot->publishing() : nullptr;
+}
+
 std::optional<std::string> Session::pace_refusal() const {
   if (state_.spec.hardware == nullptr) return std::nullopt;
   return "This robot is real: its time cannot be paused, stepped or sped up. Press Stop to stop "

@@ -99,6 +99,8 @@ class Session {
   /// Switches the motors of real hardware on or off, for `who`. Returns the reason for a refusal,
   /// as a sentence.
   std::optional<std::string> arm(bool on, const std::string& who = "Somebody");
+  /// Takes the readings that a process beside the robot publishes; null if the robot expects none.
+  algo::Publishing* publishing() const;
   /// Arms the robot as soon as its devices are ready for the first time.
   void arm_when_ready() { arm_when_ready_ = true; }
   /// Signs of life of the operators who could stop the robot.

@@ -119,13 +119,15 @@ json points_json(std::span<const algo::Vec2> points_W) {
   return points;
 }
 
-/// {"x", "y", "radius"} of a cylinder, or {"corners"}, at the start of the run.
+/// {"x", "y", "radius"} of a cylinder, or {"corners"}, at the start of the run; with "ground" for a
+/// ramp or trench, which is no obstacle.
 json outlines_json(const sim::Scenario& scenario) {
   json outlines = json::array();
   for (const algo::Obstacle& each : scenario.obstacles) {
     const auto* const cylinder = std::get_if<algo::Cylinder>(&each.shape);
     if (cylinder == nullptr) {
       outlines.push_back({{"corners", points_json(outline_W(each))}});
+      if (algo::is_ground(each)) outlines.back()["ground"] = true;
     } else {
       outlines.push_back(
           {{"x", each.pose_W.x}, {"y", each.pose_W.y}, {"radius", cylinder->radius}});

@@ -1,6 +1,8 @@
 // server/serve/api/session_routes.cpp: a session: goal, obstacles, parameters, control.
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -231,6 +233,48 @@ algo::Request edit_of(json body, std::uint32_t id) {
   return request_from_json(body);
 }
 
+std::vector<algo::LinePixel> pixels_from_json(const JsonReader& line) {
+  constexpr NumberRange kWithinAFloat{-1e6, 1e6};
+  std::vector<algo::LinePixel> pixels;
+  for (const json& point : line.array("pixels", SIZE_MAX)) {
+    if (!point.is_array() || point.size() != 2) line.fail("pixels", "must be pairs of numbers");
+    const auto coordinate = [&](std::size_t i) {
+      return static_cast<float>(finite_number(point[i], "line.pixels", kWithinAFloat));
+    };
+    pixels.push_back({coordinate(0), coordinate(1)});
+  }
+  return pixels;
+}
+
+/// {"inclinometer": {"roll", "pitch", "age"?}, "line": {"pixels": [[u, v], ...], "age"?}}, one of
+/// them at least. The robot knows the limits.
+void publish(Session& session, const json& body, const net::Responder& respond) {
+  const JsonReader in(body, "");
+  in.only({"inclinometer", "line"});
+  if (body.empty()) in.fail("inclinometer", "is missing, and so is 'line'");
+  algo::Publishing* const robot = session.publishing();
+  if (robot == nullptr) {
+    respond(net::problem(409,
+                         "Refused",
+                         "This robot takes no published readings: only one of real devices does, "
+                         "if its file says so."));
+    return;
+  }
+  std::optional<std::string> refusal;
+  if (in.has("inclinometer")) {
+    const JsonReader tilt = in.object("inclinometer");
+    tilt.only({"roll", "pitch", "age"});
+    refusal =
+        robot->publish_tilt(tilt.number("roll"), tilt.number("pitch"), tilt.number_or("age", 0));
+  }
+  if (in.has("line") && !refusal) {
+    const JsonReader line = in.object("line");
+    line.only({"pixels", "age"});
+    refusal = robot->publish_line(pixels_from_json(line), line.number_or("age", 0));
+  }
+  respond(refusal ? net::problem(409, "Refused", *refusal) : json_response(200, {{"ok", true}}));
+}
+
 using SessionHandler =
     std::function<void(OpenSession&, const net::Request&, const net::Responder&)>;
 
@@ -323,6 +367,14 @@ void add_session_routes(net::Router& router, ApiContext& context) {
     if (!request.body.empty()) JsonReader(body_json(request), "").only({});
     respond(json_response(200, {{"ok", true}}));
   });
+  // No sign of life: a process beside the robot cannot see whether it should stop.
+  routes.add(
+      "POST",
+      "/published",
+      [](OpenSession& open, const Request& request, const Responder& respond) {
+        publish(open.session(), body_json(request), respond);
+      },
+      Sign::None);
   routes.add(
       "POST", "/lease", [](OpenSession& open, const Request& request, const Responder& respond) {
         try {

@@ -20,6 +20,7 @@
 #include "drivers/comedi_card.hpp"
 #include "drivers/lms200_protocol.hpp"
 #include "drivers/lms200_scan.hpp"
+#include "drivers/psd_device.hpp"
 #include "drivers/roboteq_protocol.hpp"
 #include "drivers/serial_port.hpp"
 #include "server/emulate/emulation.hpp"
@@ -107,6 +108,54 @@ TEST_F(EmulationTest, AScannerAtAnotherRateIsUnreadable) {
   EXPECT_FALSE(host.ask(lms200::type_command(), lms200::Answer::Type, 300));
   host.port().set_baud(9600);
   EXPECT_TRUE(host.ask(lms200::type_command(), lms200::Answer::Type));
+}
+
+/// Waits until `done`; false if it is not within kPatience.
+template <class Done>
+bool comes(Done&& done) {
+  const auto end = std::chrono::steady_clock::now() + milliseconds(kPatience);
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(milliseconds(10));
+  }
+  return true;
+}
+
+TEST_F(EmulationTest, FloorSensorsSeeAFlatFloorAndTheirFaultsAreSaid) {
+  options_.psd_link = folder_ / "psd";
+  Emulation emulation(options_);
+  emulation.start();
+  drivers::psd::PsdDevice device(options_.psd_link.string(), {});
+  algo::FloorRanges ranges;
+  ASSERT_TRUE(comes([&] { return device.readings() > 30 && device.take(ranges); }));
+  EXPECT_NEAR(ranges.far_left, 0.28, 0.03);
+  EXPECT_NEAR(ranges.near_right, 0.20, 0.03);
+  EXPECT_TRUE(device.report().well) << device.report().sentence;
+  EXPECT_THAT(emulation.truth(), HasSubstr(R"("psd":{"listened_to":true)"));
+
+  const auto says = [&](const std::string& words) {
+    return comes([&] { return device.report().sentence.find(words) != std::string::npos; });
+  };
+  emulation.command("stick 3");
+  EXPECT_TRUE(says("The near left sensor is stuck"));
+  emulation.command("stick 5");
+  EXPECT_TRUE(says("its converter stands still"));
+  emulation.command("stick 0");
+  EXPECT_TRUE(says("Well."));
+  emulation.command("jump 3");
+  EXPECT_TRUE(says("Its clock jumped by 3.0 s"));
+  EXPECT_TRUE(says("Well."));
+  emulation.command("psd damage 1");
+  EXPECT_TRUE(says("of its lines are damaged"));
+  emulation.command("psd damage 0");
+  EXPECT_TRUE(says("Well."));
+  emulation.command("psd silence 1.5");
+  EXPECT_TRUE(says("It has been silent for"));
+  emulation.command("psd unplug 1");
+  EXPECT_TRUE(says("has gone"));
+  EXPECT_TRUE(says("Well."));
+  EXPECT_THROW(emulation.command("psd stop on"), std::invalid_argument);
+  EXPECT_THROW(emulation.command("base stick 1"), std::invalid_argument);
 }
 
 TEST_F(EmulationTest, ScansArriveAsTheyWereRecorded) {

@@ -148,6 +148,7 @@ class HardwareAppTest : public AppTest {
     file.spec.max_omega = file.limits.turn = 1;
     file.spec.max_acceleration = file.spec.max_angular_acceleration = 1;
     file.lasers.push_back({.name = "front laser", .port = "none"});
+    file.published.inclinometer = true;
     std::vector<std::unique_ptr<drivers::Scanner>> scanners;
     scanners.push_back(std::make_unique<OpenField>());
     return hardware_spec(
@@ -272,6 +273,38 @@ TEST_F(HardwareAppTest, StopsWithoutAnOperatorWhoCouldStopIt) {
   EXPECT_GT(after, std::chrono::milliseconds(1000));
   EXPECT_TRUE(eventually([&] { return hardware().at("trouble") == OperatorWatch::kGone; }));
   EXPECT_TRUE(eventually([&] { return way() == 0; }));
+}
+
+TEST_F(HardwareAppTest, AProcessBesideTheRobotPublishesItsInclination) {
+  const auto publish = [&](const std::string& body) {
+    return ask("POST", "/session/published", body);
+  };
+  const auto inclinometer = [&] {
+    const json all = hardware();
+    for (const json& device : all.at("devices")) {
+      if (device.at("name") == "inclinometer") return device;
+    }
+    return json();
+  };
+  ASSERT_TRUE(comes_to_halt("disarmed"));
+  ASSERT_TRUE(eventually([&] { return inclinometer().is_object(); }));
+  EXPECT_EQ(inclinometer().at("sentence"), "Nobody has published a reading yet.");
+  EXPECT_EQ(publish(R"({"inclinometer":{"roll":0.1,"pitch":-0.2,"age":0.01}})").status, 200);
+  EXPECT_TRUE(eventually([&] {
+    EXPECT_EQ(publish(R"({"inclinometer":{"roll":0.1,"pitch":-0.2}})").status, 200);
+    return inclinometer().at("well") == true;
+  }));
+  EXPECT_EQ(get("/session").at("watchers"), 0) << "it is no sign of life";
+  EXPECT_TRUE(eventually([&] { return inclinometer().at("well") == false; }));
+
+  expect_problem(publish(R"({"inclinometer":{"roll":0.1,"pitch":0,"age":5}})"), 409, "newer");
+  expect_problem(publish(R"({"line":{"pixels":[[1,2]]}})"), 409, "laser line is published");
+  expect_problem(publish(R"({"inclinometer":{"roll":2,"pitch":0}})"), 409, "Roll and pitch");
+  expect_problem(publish(R"({"inclinometer":{"roll":0}})"), 422, "pitch");
+  expect_problem(publish(R"({"inclinometer":{"roll":0,"pitch":0,"age":-1}})"), 409, "age");
+  expect_problem(publish(R"({"line":{"pixels":[[1]]}})"), 422, "pixels");
+  expect_problem(publish(R"({"line":{"pixels":[[1,1e300]]}})"), 422, "pixels");
+  expect_problem(publish("{}"), 422, "missing");
 }
 
 TEST_F(HardwareAppTest, ViewersAreCounted) {

@@ -55,6 +55,7 @@ TEST_F(RolesTest, AViewerReadsAndChangesNothing) {
         {"POST", "/session/requests", json{{"type", "clear_goal"}}},
         {"PATCH", "/session/parameters", json{{"k_r", 0.5}}},
         {"POST", "/session/watch", json()},
+        {"POST", "/session/published", json{{"inclinometer", {{"roll", 0}, {"pitch", 0}}}}},
         {"POST", "/runs", scenario},
         {"POST", "/sessions", scenario},
         {"GET", "/view_link", json()},

@@ -90,10 +90,11 @@ std::vector<Tick> ticks() {
                                  algo::holds::kBumper,
                                  algo::holds::kStaleScan,
                                  algo::holds::kNotFinite,
+                                 algo::holds::kOverturned,
                                  algo::holds::kDazzled}) {
     add().hold = hold;
   }
-  for (int halt = 1; halt <= static_cast<int>(algo::Halt::LateTick); ++halt) {
+  for (int halt = 1; halt <= static_cast<int>(algo::Halt::FloorFault); ++halt) {
     algo::Telemetry& t = add();
     t.hold = algo::holds::kHalted;
     t.observation.halt = static_cast<algo::Halt>(halt);
