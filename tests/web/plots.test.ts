@@ -17,7 +17,8 @@ import { decode_frame } from "../../web/src/link/frame";
 import { Legends } from "../../web/src/link/legend";
 import { Columns } from "../../web/src/state/columns";
 import { fold_frame, new_scene } from "../../web/src/state/scene";
-import { is_shown, kFrameSignals, plots_of, signals_of, signals_of_all } from "../../web/src/state/signals";
+import { is_shown, plots_of, signals_of, signals_of_all } from "../../web/src/state/measures";
+import { kFrameSignals } from "../../web/src/state/signals";
 import { FrameSpec, frame_bytes } from "./wire";
 
 const palette = new Proxy({}, { get: (_, name) => (name === "font" ? "sans-serif" : `#${String(name)}`) }) as Palette;

@@ -5,7 +5,7 @@ import { SessionState } from "../../web/src/contract";
 import { decode_frame, decode_frames, decode_sweep } from "../../web/src/link/frame";
 import { Legends } from "../../web/src/link/legend";
 import { Columns } from "../../web/src/state/columns";
-import { layer_groups } from "../../web/src/state/layers";
+import { layer_groups } from "../../web/src/state/layer_groups";
 import { begin_run, fold_frame, fold_session, goal_distance, new_scene, scene_bounds, take_robot } from "../../web/src/state/scene";
 import { FilteredScan, sweep_points } from "../../web/src/state/sweeps";
 import { LayerFrame, LayerKind, LayerStyle, Mission, Tone } from "../../web/src/wire/telemetry_generated";

@@ -23,6 +23,9 @@ export interface FrameSpec {
   truth?: [number, number, number, number, boolean];
   words?: Words | null; // null: no news, although there are layers
   legend?: number;
+  ends?: "overturned" | "fallen"; // with `truth`
+  tilt?: [number, number, number]; // z, roll, pitch
+  inclination?: [number, number];   // roll, pitch
   readings?: [number, number[], number?][]; // channel, values, stamp
   layers?: LayerSpec[];
   measures?: [string, string, number][];
@@ -119,6 +122,22 @@ export const add_cylinder = (id: number, x: number, y: number, radius: number) =
     return [wire.Request.AddObstacle, wire.AddObstacle.endAddObstacle(b)];
   };
 
+/** A shape with heights, at the origin; `size`: length and width. */
+export const add_shape = (id: number, kind: wire.ShapeKind, size: [number, number], low: number, height: number) =>
+  (b: flatbuffers.Builder): [wire.Request, number] => {
+    wire.Obstacle.startObstacle(b);
+    wire.Obstacle.addId(b, id);
+    wire.Obstacle.addPose(b, wire.Pose2.createPose2(b, 0, 0, 0));
+    wire.Obstacle.addKind(b, kind);
+    wire.Obstacle.addSize(b, wire.Vec2.createVec2(b, ...size));
+    wire.Obstacle.addHeight(b, height);
+    wire.Obstacle.addLow(b, low);
+    const obstacle = wire.Obstacle.endObstacle(b);
+    wire.AddObstacle.startAddObstacle(b);
+    wire.AddObstacle.addObstacle(b, obstacle);
+    return [wire.Request.AddObstacle, wire.AddObstacle.endAddObstacle(b)];
+  };
+
 export const move = (id: number, x: number, y: number) =>
   (b: flatbuffers.Builder): [wire.Request, number] => {
     wire.MoveObstacle.startMoveObstacle(b);
@@ -209,7 +228,11 @@ export function frame_bytes(spec: FrameSpec): Uint8Array {
     const [tx, ty, th, d, hit] = spec.truth;
     wire.Frame.addTruth(b, wire.GroundTruth.createGroundTruth(b, tx, ty, th, d, d - 0.5));
     wire.Frame.addCollided(b, hit);
+    if (spec.ends === "overturned") wire.Frame.addOverturned(b, true);
+    if (spec.ends === "fallen") wire.Frame.addFallen(b, true);
   }
+  if (spec.tilt) wire.Frame.addTilt(b, wire.Tilt.createTilt(b, ...spec.tilt));
+  if (spec.inclination) wire.Frame.addInclinometer(b, wire.Inclinometer.createInclinometer(b, ...spec.inclination));
   wire.Frame.addDecision(b, wire.Decision.createDecision(b, spec.clearance ?? 0, spec.legend ?? legend_of(spec), spec.mission ?? wire.Mission.Idle, 0, false));
   wire.Frame.addMoved(b, places);
   wire.Frame.addSonar(b, readings);

@@ -84,6 +84,14 @@ export function circles(layer: LayerView, robot: Pose): { at: Place; radius: num
   return out;
 }
 
+const kAtRobot = 0.01; // [m] from its origin
+
+/** The texts with their places. One at the robot itself belongs to no place of the world: cards show it. */
+export function texts(layer: LayerView, robot: Pose): { at: Place; text: string }[] {
+  return places(layer, robot).map((at, i) => ({ at, text: layer.text[i] ?? "" }))
+    .filter(({ at, text }) => text !== "" && Math.hypot(at.x - robot.x, at.y - robot.y) > kAtRobot);
+}
+
 /** Sizes that both views draw alike. */
 export const kRing = 0.1;    // [m] from the hull to the foot of a polar
 export const kTallest = 0.5; // [m] of a sector at twice the level and above

@@ -1,18 +1,21 @@
-// web/src/obstacle.ts: obstacles as the page holds them: a shape about a pose in W. In JSON,
+// web/src/obstacle.ts: obstacles and pieces of ground as the page holds them: a shape about a pose in W. In JSON,
 // polygons and walls have their coordinates in W; here every kind has a pose.
 import { Bounds, Point, Pose, distance, include, to_child, to_parent } from "./geometry";
 
-export type ObstacleKind = "cylinder" | "box" | "polygon" | "wall";
+export type ObstacleKind = "cylinder" | "box" | "polygon" | "wall" | GroundKind;
+/** Pieces of ground, over which a robot drives. A step is a ramp of one height. */
+export type GroundKind = "ramp" | "step" | "trench";
 
 export interface Obstacle {
   id: number;
   kind: ObstacleKind;
   pose: Pose;        // in W
   radius: number;    // [m] cylinder
-  length: number;    // [m] box, wall: along its x axis
-  width: number;     // [m] box; a wall's thickness
+  length: number;    // [m] box, wall, ground: along its x axis
+  width: number;     // [m] box, ground; a wall's thickness
   points: Point[];   // polygon, in its own frame
-  height: number;    // [m]
+  height: number;    // [m]; of a ramp at x = length / 2; of a trench 0
+  low: number;       // [m] top of the ground at x = -length / 2; below 0 in a trench
   path: PathJson | null; // of its reference point, if it moves by itself
   /** Optional fields of the JSON, as undo returns them; absent ones are undefined. */
   extra: Pick<ObstacleJson, "reflectivity" | "specular" | "height">;
@@ -36,6 +39,8 @@ export interface ObstacleJson {
   from?: [number, number];
   to?: [number, number];
   height?: number;
+  low?: number;
+  depth?: number;
   reflectivity?: number;
   specular?: boolean;
   path?: PathJson;
@@ -51,7 +56,8 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
     length: json.length ?? 0,
     width: json.width ?? json.thickness ?? 0,
     points: [],
-    height: height ?? 1,
+    height: json.type === "trench" ? 0 : height ?? 1,
+    low: json.type === "trench" ? -(json.depth ?? 0) : json.type === "step" ? height ?? 0 : json.low ?? 0,
     path: json.path ?? null,
     extra: { reflectivity, specular, height },
   };
@@ -71,23 +77,30 @@ export function obstacle_from_json(json: ObstacleJson): Obstacle {
 
 /** The JSON that adds this obstacle again, without its id. */
 export function obstacle_to_json(o: Obstacle): ObstacleJson {
-  return { ...shape_to_json(o), ...o.extra, ...(o.path && { path: o.path }) };
+  return { ...o.extra, ...shape_to_json(o), ...(o.path && { path: o.path }) };
 }
 
 function shape_to_json(o: Obstacle): ObstacleJson {
   const { x, y, heading } = o.pose;
-  switch (o.kind) {
+  const { kind: type, length, width, low, height } = o;
+  switch (type) {
     case "cylinder":
-      return { type: "cylinder", x, y, radius: o.radius };
+      return { type, x, y, radius: o.radius };
     case "box":
-      return { type: "box", x, y, heading, length: o.length, width: o.width };
+      return { type, x, y, heading, length, width };
+    case "trench":
+      return { type, x, y, heading, length, width, depth: -low };
+    case "ramp":
+    case "step": // as its heights say
+      return low === height ? { type: "step", x, y, heading, length, width, height }
+        : { type: "ramp", x, y, heading, length, width, low, height };
     case "wall": {
       const a = to_parent(o.pose, -o.length / 2, 0);
       const b = to_parent(o.pose, o.length / 2, 0);
-      return { type: "wall", from: [a.x, a.y], to: [b.x, b.y], thickness: o.width };
+      return { type, from: [a.x, a.y], to: [b.x, b.y], thickness: width };
     }
     case "polygon":
-      return { type: "polygon", points: outline(o).map((p) => [p.x, p.y]) };
+      return { type, points: outline(o).map((p) => [p.x, p.y]) };
   }
 }
 
@@ -125,6 +138,17 @@ export function covers(o: Obstacle, p: Point, slack: number): boolean {
   return inside && corners.length > 2;
 }
 
+/** The obstacle under `p` (W) on top: the last one drawn, and ground only where nothing stands on it. */
+export function topmost(obstacles: Obstacle[], p: Point, slack: number): Obstacle | null {
+  const hits = obstacles.filter((o) => covers(o, p, slack));
+  return hits.filter((o) => !is_ground(o)).at(-1) ?? hits.at(-1) ?? null;
+}
+
+/** True for ground: ramps, steps and trenches. */
+export function is_ground(o: Obstacle): boolean {
+  return o.kind === "ramp" || o.kind === "step" || o.kind === "trench";
+}
+
 export function include_obstacle(bounds: Bounds, o: Obstacle): void {
   if (o.kind === "cylinder") include(bounds, o.pose.x, o.pose.y, o.radius);
   for (const p of outline(o)) include(bounds, p.x, p.y);
@@ -144,5 +168,5 @@ export function obstacle_title(o: Obstacle): string {
 }
 
 export function obstacle_name(o: Obstacle): string {
-  return { cylinder: "Cylinder", box: "Box", polygon: "Polygon", wall: "Wall" }[o.kind];
+  return o.kind[0].toUpperCase() + o.kind.slice(1);
 }

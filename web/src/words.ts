@@ -96,6 +96,8 @@ const kOutcomes: Record<string, Word> = {
   stuck: { word: "Stuck", tone: "warn" },
   out_of_time: { word: "Out of time", tone: "warn" },
   collided: { word: "Collided", tone: "bad" },
+  overturned: { word: "Turned over", tone: "bad" },
+  fallen: { word: "Fallen", tone: "bad" },
   stopped: { word: "Stopped", tone: "muted" },
   end_of_log: { word: "End of log", tone: "info" },
   failed: { word: "Failed", tone: "bad" },
@@ -105,6 +107,12 @@ const kStatuses: Record<string, Word> = {
   recording: { word: "Recording", tone: "info" },
   interrupted: { word: "Interrupted", tone: "muted" },
   cancelled: { word: "Cancelled", tone: "muted" },
+};
+
+/** The question to which a trouble of a run is the answer, by its outcome. */
+export const kQuestions: Record<string, string> = {
+  stuck: "Why did it get stuck?", collided: "Why did it touch the obstacle?", overturned: "Why did it turn over?",
+  fallen: "Why did it fall?",
 };
 
 /** The result of a run: its outcome once it has one, else its status. */

@@ -2,7 +2,7 @@
 import { Point, Pose, distance } from "../geometry";
 import {
   LayerKind, LayerView, arcs, arrows, cells_by_grade, circles, grid_place, kGrades, kRing, kTallest, kAlpha, lines, places,
-  sectors,
+  sectors, texts,
 } from "../layer";
 import { is_scaled, is_sketched, token_of } from "../state/layers";
 import { Context, arrow, circle, dots, fill, stroke, trace, write } from "./marks";
@@ -131,8 +131,7 @@ function draw_polar(c: Canvas, layer: LayerView, colour: string): void {
 function draw_text(c: Canvas, layer: LayerView, colour: string): void {
   const { g, view } = c;
   const font = `600 12px ${c.palette.font}`;
-  places(layer, c.robot).forEach((p, i) =>
-    write(g, layer.text[i] ?? "", view.sx(p.x), view.sy(p.y), colour, font));
+  for (const { at, text } of texts(layer, c.robot)) write(g, text, view.sx(at.x), view.sy(at.y), colour, font);
 }
 
 const kDraw: Record<LayerKind, Draw> = {

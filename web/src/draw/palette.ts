@@ -2,7 +2,7 @@
 
 const kNames = ["bg", "panel", "text", "muted", "grid", "grid2", "line", "accent", "ok", "warn", "bad",
   "scan", "filtered", "internal", "external", "elastic", "path", "robot", "obst", "obstline",
-  "safe", "third", "fourth"] as const;
+  "safe", "third", "fourth", "high", "deep"] as const;
 export type Palette = Record<(typeof kNames)[number], string> & { font: string };
 
 export function read_palette(of: Element = document.documentElement): Palette {

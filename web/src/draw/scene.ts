@@ -1,11 +1,11 @@
 // web/src/draw/scene.ts: the whole scene from above, from the lowest drawing to the uppermost.
-import { Obstacle } from "../obstacle";
+import { Obstacle, is_ground } from "../obstacle";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import { Columns } from "../state/columns";
 import { sweep_age } from "../state/age";
 import { kOwn, visible_layers } from "../state/layers";
-import { SceneState, robot_pose } from "../state/scene";
+import { SceneState, robot_pose, senses_ground } from "../state/scene";
 import { kRing } from "../state/stick";
 import { sweep_points } from "../state/sweeps";
 import { draw_layer, stacked } from "./layers";
@@ -65,6 +65,21 @@ export function draw_for_driver(drawings: DriverDrawings): void {
   driver = drawings;
 }
 
+interface GroundDrawings {
+  draw_ground(g: Context, view: View, palette: Palette, ground: Obstacle[], selected: number | null, hovered: number | null): void;
+  draw_tilt(g: Context, view: View, palette: Palette, scene: SceneState): void;
+}
+let grounds: GroundDrawings | null = null;
+
+/** Draws ramps, steps and trenches from now on. */
+export function draw_on_ground(drawings: GroundDrawings): void {
+  grounds = drawings;
+}
+/** Whether something of `scene` needs drawings that draw/ground.ts has yet to bring. */
+export function lacks_ground(scene: SceneState): boolean {
+  return !grounds && (scene.obstacles.some(is_ground) || !!scene.frame?.tilt || senses_ground(scene));
+}
+
 export const kDrift = 0.03; // [m] of odometry from which the true pose is drawn as well
 
 export function draw_scene(g: Context, view: View, palette: Palette,
@@ -72,6 +87,8 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   g.fillStyle = palette.bg;
   g.fillRect(0, 0, view.width, view.height);
   if (!overlay.hidden.has(kOwn.mesh.name)) draw_grid(g, view, palette);
+  const solids: Obstacle[] = [], ground: Obstacle[] = [];
+  for (const o of held_obstacles(scene.obstacles, overlay.draft)) (is_ground(o) ? ground : solids).push(o);
   const pose = robot_pose(scene);
   const f = scene.frame;
   const on = (key: { name: string }) => !overlay.hidden.has(key.name);
@@ -81,10 +98,10 @@ export function draw_scene(g: Context, view: View, palette: Palette,
 
   const filtered = on(kOwn.filtered) ? scene.filtered.shown : null;
   const filtered_old = filtered !== null && sweep_age(scene, filtered) !== null;
-  if (filtered && !filtered_old) draw_fan(g, view, palette, filtered);
   const selected = overlay.selection?.kind === "obstacle" ? overlay.selection.id : null;
-  draw_obstacles(g, view, palette, held_obstacles(scene.obstacles, overlay.draft), selected,
-    overlay.hovered);
+  if (on(kOwn.ground)) grounds?.draw_ground(g, view, palette, ground, selected, overlay.hovered);
+  if (filtered && !filtered_old) draw_fan(g, view, palette, filtered);
+  draw_obstacles(g, view, palette, solids, selected, overlay.hovered);
   if (on(kOwn.ways)) draw_paths(g, view, palette, scene.obstacles, selected);
   if (on(kOwn.scan)) for (const sweep of scene.sweeps) dots(g, view, sweep_points(sweep).hits, palette.scan, 2.2);
   if (filtered) dots(g, view, sweep_points(filtered).hits, filtered_old ? palette.scan : palette.filtered, 1.4);
@@ -98,6 +115,7 @@ export function draw_scene(g: Context, view: View, palette: Palette,
   draw_goals(g, view, palette, scene, overlay);
   if (canvas) for (const layer of below) if (!grids.includes(layer)) draw_layer(canvas, layer);
   if (pose) draw_robot(g, view, palette, pose, scene.radius, scene.half_track, palette.robot, 1, scene.hull);
+  grounds?.draw_tilt(g, view, palette, scene);
   if (f) draw_bumpers(g, view, palette, f, scene.radius);
   if (f?.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
     draw_truth(g, view, palette, f.truth.pose, scene.radius, scene.hull);
@@ -162,8 +180,9 @@ function draw_ghost(g: Context, view: View, palette: Palette, ghost: Ghost): voi
 function draw_draft(g: Context, view: View, palette: Palette, draft: Draft): void {
   if (draft.sketch) draw_sketch(g, view, palette, draft.sketch);
   if (draft.obstacle) {
+    if (is_ground(draft.obstacle)) grounds?.draw_ground(g, view, palette, [draft.obstacle], null, null);
     trace_obstacle(g, view, draft.obstacle);
-    g.globalAlpha = 0.6;
+    g.globalAlpha = is_ground(draft.obstacle) ? 0 : 0.6;
     fill(g, palette.obst);
     g.globalAlpha = 1;
     stroke(g, palette.accent, 2, [5, 4]);

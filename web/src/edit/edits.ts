@@ -3,7 +3,7 @@ import { GoalJson, RequestJson } from "../contract";
 import { Point, Pose, distance } from "../geometry";
 import { Goal } from "../link/frame";
 import {
-  Obstacle, ObstacleJson, PathJson, obstacle_from_json, obstacle_name, obstacle_title, obstacle_to_json,
+  GroundKind, Obstacle, ObstacleJson, PathJson, obstacle_from_json, obstacle_name, obstacle_title, obstacle_to_json,
 } from "../obstacle";
 import { Route } from "../state/goals";
 import { Edit } from "./history";
@@ -94,6 +94,13 @@ export function remove_edit(obstacle: Obstacle): Edit {
 export const kUsualRadius = 0.3;
 export const kUsualSide = 0.6;
 export const kThickness = 0.1;  // [m] of a wall
+/** [m] Of a side of ground: a trench may be narrow. */
+export const kLeastGround = 0.005;
+/** [m] Ground that is not drawn to size: along and across the way over it, its height or depth. */
+export const kUsualGround: Record<GroundKind, { length: number; width: number; rise: number }> = {
+  ramp: { length: 1.5, width: 1.5, rise: 0.15 }, step: { length: 1, width: 1.5, rise: 0.02 },
+  trench: { length: 0.1, width: 1.5, rise: 0.1 },
+};
 export const kWalkerRadius = 0.25; // [m] of a person
 export const kWalkSpeed = 0.8;     // [m/s]
 
@@ -102,7 +109,7 @@ export function round_cm(v: number): number {
   return Math.round(v * 100) / 100;
 }
 
-const kBlank = { id: 0, radius: 0, length: 0, width: 0, points: [], height: 1, path: null, extra: {} };
+const kBlank = { id: 0, radius: 0, length: 0, width: 0, points: [], height: 1, low: 0, path: null, extra: {} };
 
 export function new_cylinder(x: number, y: number, radius: number): Obstacle {
   return { ...kBlank, kind: "cylinder", pose: { x, y, heading: 0 }, radius };
@@ -110,6 +117,13 @@ export function new_cylinder(x: number, y: number, radius: number): Obstacle {
 
 export function new_box(x: number, y: number, length: number, width: number, heading = 0): Obstacle {
   return { ...kBlank, kind: "box", pose: { x, y, heading }, length, width };
+}
+
+/** Ground about `pose` of the usual width and height; a ramp rises along the heading. */
+export function new_ground(kind: GroundKind, pose: Pose, length = kUsualGround[kind].length): Obstacle {
+  const { width, rise } = kUsualGround[kind];
+  const deep = kind === "trench";
+  return { ...kBlank, kind, pose, length, width, height: deep ? 0 : rise, low: deep ? -rise : kind === "step" ? rise : 0 };
 }
 
 export function new_wall(from: Point, to: Point, thickness: number): Obstacle {

@@ -4,6 +4,7 @@ import {
   LayerView, Place, arcs, arrows, circles, kGround, kScanHeight, kStripHeight, kUnknownCell, places, sectors,
 } from "../layer";
 import { kFree, kMaxRange } from "../link/frame";
+import { slope_of, tilt_of, top_at } from "../ground";
 import { Obstacle, obstacle_title } from "../obstacle";
 import { Token, is_scaled, token_of } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
@@ -44,13 +45,14 @@ export function card_of(scene: SceneState, thing: Thing): Card | null {
     case "path": return path_card(scene, thing.t);
     case "goal": return goal_card(scene, thing.index);
     case "obstacle": return obstacle_card(scene, thing.id);
+    case "ground": return ground_card(scene, thing.id, thing.at);
     case "robot": return robot_card(scene);
   }
 }
 
 /** A name that stays while the same thing is shown. */
 export function thing_key(thing: Thing): string {
-  return JSON.stringify(thing.kind === "cell" ? { ...thing, at: [thing.at.x.toFixed(1), thing.at.y.toFixed(1)] } : thing);
+  return JSON.stringify("at" in thing ? { ...thing, at: [thing.at.x.toFixed(1), thing.at.y.toFixed(1)] } : thing);
 }
 
 /** The card in one sentence. */
@@ -286,6 +288,17 @@ function obstacle_card(scene: SceneState, id: number): Card | null {
     long: o.kind === "wall" };
 }
 
+/** The ground at `at`: its height there, and its slope. */
+function ground_card(scene: SceneState, id: number, at: Point): Card | null {
+  const o = scene.obstacles.find((each) => each.id === id);
+  if (!o) return null;
+  const height = top_at(o, at);
+  const rows = [position(at), metres("Height here", height), turned("Slope", slope_of(o)),
+    ...(o.kind === "ramp" ? [metres("Height, low end", o.low), metres("Height, high end", o.height)] : []),
+    metres("Length", o.length), metres("Width", o.width), turned("Turned", o.pose.heading)];
+  return { title: obstacle_title(o), note: o.kind === "ramp" ? "rises along its arrow" : "", rows, law: null, at, height, radius: 0.05 };
+}
+
 function size_rows(o: Obstacle): Row[] {
   if (o.kind === "cylinder") return [metres("Radius", o.radius)];
   const turn = turned("Turned", o.pose.heading);
@@ -304,7 +317,9 @@ function robot_card(scene: SceneState): Card | null {
     ? { label: "Hull, length × width", value: `${fixed(2 * hull.half_length, 2)} × ${fixed(2 * hull.half_width, 2)}`, unit: "m" }
     : metres("Hull, radius", radius);
   const truth = f?.truth;
-  const rows = [position(pose), turned("Heading", pose.heading), ...(f ? [pair("Moves", f.twist), pair("Commanded", f.command)] : []),
+  const tilt = tilt_of(scene);
+  const stands = tilt ? [turned("Roll, left side up", tilt.roll), turned("Pitch, nose down", tilt.pitch)] : [];
+  const rows = [position(pose), turned("Heading", pose.heading), ...stands, ...(f ? [pair("Moves", f.twist), pair("Commanded", f.command)] : []),
     ...(truth ? [metres("Odometry off by", distance(truth.pose, pose)), metres("True clearance", truth.clearance)] : []), size,
     ...(scene.drives ? [metres("Safety circle, d_safe", scene.safety_distance, "safe")] : [])];
   return { title: "Robot", note: "by odometry", rows, law: null, at: pose, height: 0.2, radius };

@@ -4,7 +4,7 @@ import { Draft, Selection } from "../draw/scene";
 import { View } from "../draw/view";
 import { Point, Pose, distance, least } from "../geometry";
 import { Goal } from "../link/frame";
-import { Obstacle, covers, is_robot } from "../obstacle";
+import { Obstacle, is_ground, is_robot, topmost } from "../obstacle";
 import { SceneState } from "../state/scene";
 import { DragTool, Sketched, Tool, dragged_goal, dragged_obstacle, dragged_start, finished, is_sketch, sketched } from "./drawn";
 import { round_cm, shifted as with_path } from "./edits";
@@ -170,7 +170,8 @@ export class Gestures {
     if (is_sketch(tool)) return this.sketching(px); // also on an obstacle: walls meet
     const handle = this.handle_at(px);
     if (handle) return this.by_handle(px, handle);
-    const obstacle = this.obstacle_at(px);
+    const under = this.obstacle_at(px);
+    const obstacle = tool !== "pan" && under && is_ground(under) ? null : under; // goals and shapes are put on ground
     const selected = this.t_.selection();
     const held = obstacle && selected?.kind === "obstacle" && selected.id === obstacle.id;
     // The resting tool moves the selection alone: a view that is dragged moves nothing by mistake.
@@ -202,7 +203,8 @@ export class Gestures {
 
   /** An obstacle of one drag. */
   private drawing(px: Point, at: Point, tool: DragTool): Drawing {
-    const drawn = (to: Point, dragged: boolean) => dragged_obstacle(tool, this.t_.snap(at), this.t_.snap(to), dragged);
+    const { obstacles } = this.t_.scene;
+    const drawn = (to: Point, dragged: boolean) => dragged_obstacle(tool, this.t_.snap(at), this.t_.snap(to), dragged, obstacles);
     return {
       kind: "draw", px,
       draft: (to, dragged) => ({ obstacle: drawn(to, dragged) ?? undefined }),
@@ -365,9 +367,7 @@ export class Gestures {
 
   private obstacle_at(px: Point): Obstacle | null {
     const at = this.t_.view.to_world(px.x, px.y);
-    const slack = kGrabPixels / this.t_.view.scale;
-    const hits = this.t_.scene.obstacles.filter((o) => covers(o, at, slack));
-    return hits.at(-1) ?? null; // the last one drawn lies on top
+    return topmost(this.t_.scene.obstacles, at, kGrabPixels / this.t_.view.scale);
   }
 }
 

@@ -1,7 +1,7 @@
 // web/src/edit/handles.ts: the points by which a selected obstacle is turned and resized.
 import { Point, distance, to_child, to_parent } from "../geometry";
-import { Obstacle, is_robot, outline } from "../obstacle";
-import { corners_of, new_polygon, new_wall, polygon_defect, speed_of, walk } from "./edits";
+import { Obstacle, is_ground, is_robot, outline } from "../obstacle";
+import { corners_of, kLeastGround, new_polygon, new_wall, polygon_defect, speed_of, walk } from "./edits";
 
 export interface Handle {
   at: Point;                      // in W
@@ -30,6 +30,9 @@ function shape_handles(o: Obstacle): Handle[] {
     case "wall":
       return [...wall_ends(o), turn_handle(o, o.width / 2)];
     case "box":
+    case "ramp":
+    case "step":
+    case "trench":
       return [...box_corners(o), turn_handle(o, o.width / 2)];
     case "polygon":
       return [...polygon_corners(o), turn_handle(o, Math.max(0, ...o.points.map((p) => p.y)))];
@@ -61,14 +64,15 @@ function pick(wall: Obstacle): Pick<Obstacle, "pose" | "length"> {
 
 /** The opposite corner stays where it is. */
 function box_corners(o: Obstacle): Handle[] {
+  const least = is_ground(o) ? kLeastGround : kLeast;
   return [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([sx, sy]): Handle => {
     const fixed = { x: -sx * o.length / 2, y: -sy * o.width / 2 };
     return {
-      at: to_parent(o.pose, sx * o.length / 2, sy * o.width / 2), kind: "corner", label: "Resize box",
+      at: to_parent(o.pose, sx * o.length / 2, sy * o.width / 2), kind: "corner", label: `Resize ${o.kind}`,
       to: (p) => {
         const here = to_child(o.pose, p);
-        const length = Math.max(kLeast, sx * (here.x - fixed.x));
-        const width = Math.max(kLeast, sy * (here.y - fixed.y));
+        const length = Math.max(least, sx * (here.x - fixed.x));
+        const width = Math.max(least, sy * (here.y - fixed.y));
         const middle = to_parent(o.pose, fixed.x + sx * length / 2, fixed.y + sy * width / 2);
         return { ...o, pose: { ...middle, heading: o.pose.heading }, length, width };
       },

@@ -5,7 +5,7 @@ import {
   LayerView, arcs, arrows, circles, grade_of, grid_place, kGround, kRing, kScanHeight, kStripHeight, kTallest, kUnknownCell,
   lines, places, sectors,
 } from "../layer";
-import { covers } from "../obstacle";
+import { is_ground, topmost } from "../obstacle";
 import { is_scaled, is_sensed, is_sketched, kOwn, visible_layers } from "../state/layers";
 import { SceneState, robot_pose } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
@@ -19,6 +19,7 @@ export type Thing =
   | { kind: "path"; t: number }                      // where the robot was at that time
   | { kind: "goal"; index: number }                  // 0: the present one
   | { kind: "obstacle"; id: number }
+  | { kind: "ground"; id: number; at: Point }        // a ramp, step or trench, at a place on it
   | { kind: "robot" };
 
 /** How a pointer sees the scene. */
@@ -57,7 +58,8 @@ export function thing_at(scene: SceneState, shown: Shown, eye: Eye): Thing | nul
 function body_at(scene: SceneState, at: Point, slack: number): Thing | null {
   const pose = robot_pose(scene);
   if (pose && on_hull(scene, to_child(pose, at))) return { kind: "robot" };
-  const hit = scene.obstacles.filter((o) => covers(o, at, slack)).at(-1); // the last one drawn lies on top
+  const hit = topmost(scene.obstacles, at, slack);
+  if (hit && is_ground(hit)) return { kind: "ground", id: hit.id, at };
   return hit ? { kind: "obstacle", id: hit.id } : null;
 }
 

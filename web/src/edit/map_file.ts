@@ -1,7 +1,7 @@
 // web/src/edit/map_file.ts: occupancy maps of map_server (PGM and YAML) to and from obstacles.
 import { ScenarioDocument } from "../contract";
 import { Bounds, Point, empty_bounds } from "../geometry";
-import { Obstacle, ObstacleJson, covers, include_obstacle } from "../obstacle";
+import { Obstacle, ObstacleJson, covers, include_obstacle, is_ground } from "../obstacle";
 
 /** The fields of a map's YAML file that matter here. */
 export interface MapInfo { resolution: number; origin: Point; negate: boolean; occupied: number; free: number }
@@ -148,9 +148,9 @@ function free_place(taken: Uint8Array, picture: Picture, info: MapInfo): Point {
   return best;
 }
 
-/** The standing obstacles as a map: the bytes of the picture, and the YAML file. */
+/** The standing obstacles as a map: the bytes of the picture, and the YAML file. Ground is free on a map. */
 export function map_of_world(obstacles: Obstacle[], name: string): { pgm: Uint8Array; yaml: string } {
-  const standing = obstacles.filter((o) => !o.path);
+  const standing = obstacles.filter((o) => !o.path && !is_ground(o));
   if (standing.length === 0) throw new Error("Nothing stands in this world: there is no map to draw.");
   const b: Bounds = empty_bounds();
   for (const o of standing) include_obstacle(b, o);

@@ -1,6 +1,6 @@
 // web/src/edit/snap.ts: pulls a point to corners of the world and to round numbers.
 import { Point, distance } from "../geometry";
-import { Obstacle, outline } from "../obstacle";
+import { Obstacle, is_ground, outline } from "../obstacle";
 import { round_cm } from "./edits";
 
 const kGrid = 0.1; // [m]
@@ -19,11 +19,12 @@ export function snapped(p: Point, obstacles: Obstacle[], reach: number, on: bool
   return { x: round(p.x), y: round(p.y) };
 }
 
-/** The ends of a wall's middle line, the corners of another obstacle. */
+/** The ends of a wall's middle line, and the corners of another obstacle. Ground has both: one piece goes on at the next. */
 function corners(o: Obstacle): Point[] {
   if (o.path) return [];
   const all = outline(o);
-  if (o.kind !== "wall") return all;
+  if (o.kind !== "wall" && !is_ground(o)) return all;
   const middle = (a: Point, b: Point) => ({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
-  return [middle(all[0], all[3]), middle(all[1], all[2])];
+  const ends = [middle(all[0], all[3]), middle(all[1], all[2])];
+  return is_ground(o) ? [...all, ...ends] : ends;
 }

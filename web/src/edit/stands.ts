@@ -51,5 +51,5 @@ function same_obstacle(now: Obstacle, json: ObstacleJson): boolean {
   const then = obstacle_from_json(json);
   const place = now.path || (near(now.pose.x, then.pose.x) && near(now.pose.y, then.pose.y));
   return !!place && now.kind === then.kind && near(now.radius, then.radius) && near(now.length, then.length) &&
-    near(now.width, then.width) && now.points.length === then.points.length && !now.path === !then.path;
+    near(now.width, then.width) && near(now.low, then.low) && near(now.height, then.height) && now.points.length === then.points.length && !now.path === !then.path;
 }

@@ -1,4 +1,5 @@
 // web/src/experiments/experiments.tsx: the Experiments view: the list, and the open experiment.
+import "../ui/run_sheet"; // before the styles of the parts below
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";

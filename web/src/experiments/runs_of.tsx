@@ -13,7 +13,7 @@ import { ExperimentDetail, ExperimentRun } from "./contract";
 import { RunQuery, use_runs } from "./watch";
 import { count } from "./words";
 
-const kOutcomes = ["reached", "stuck", "collided", "out_of_time", "failed"];
+const kOutcomes = ["reached", "stuck", "collided", "overturned", "fallen", "out_of_time", "failed"];
 const kColumns: [string, string, string, number][] = [
   ["time_s", "Time", "s", 1], ["path_m", "Path", "m", 2], ["min_clearance_m", "Clearance", "m", 2], ["turning_rad", "Turning", "rad", 1],
 ];

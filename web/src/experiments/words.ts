@@ -76,4 +76,4 @@ export function p_words(p: number): string {
   return p < 0.0001 ? "p < 0.0001" : `p = ${p.toPrecision(2)}`;
 }
 
-export const outcome_tones: Record<string, Tone> = { reached: "ok", stuck: "warn", collided: "bad", out_of_time: "warn", failed: "bad" };
+export const outcome_tones: Record<string, Tone> = { reached: "ok", stuck: "warn", collided: "bad", overturned: "bad", fallen: "bad", out_of_time: "warn", failed: "bad" };

@@ -42,13 +42,21 @@ export type FrameRequest =
 
 /** Why real hardware stops its own wheels. */
 const kHalts = ["none", "disarmed", "base_lost", "scanner_lost", "bad_line", "scanner_fault",
-  "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick"] as const;
+  "stop_button", "base_fault", "over_current", "battery_low", "motors_off", "late_tick",
+  "floor_lost", "floor_fault"] as const;
 export type Halt = (typeof kHalts)[number];
 const kMissions = ["idle", "driving", "arrived", "stuck", "held"] as const;
-const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall"];
+const kKinds: ObstacleKind[] = ["cylinder", "box", "polygon", "wall", "ramp", "trench"];
 
 /** What the simulator knows: the true pose, and the nearest surface from the robot's centre and from its hull [m]. */
-export interface Truth { pose: Pose; collided: boolean; distance: number; clearance: number }
+export interface Truth {
+  pose: Pose; collided: boolean; distance: number; clearance: number;
+  overturned: boolean; // it lies on its side or its back
+  fallen: boolean;     // it came down an edge too high for it
+}
+
+/** How the robot stands: its height above z = 0, left side up and nose down positive [m, rad]. */
+export interface Tilt { z: number; roll: number; pitch: number }
 
 /** One tick of a run; positions in W, metres, radians, seconds. */
 export interface Frame {
@@ -64,8 +72,9 @@ export interface Frame {
   requests: FrameRequest[]; // applied before this tick
   stick: DrivenStick | null; // newly pushed in this tick
   truth: Truth | null;      // simulator only
+  tilt: Tilt | null;        // simulator only, where the ground is not level
   gyro: number | null;      // [rad/s]
-  inclination: { roll: number; pitch: number } | null;
+  inclination: { roll: number; pitch: number } | null; // measured, with the signs of `tilt`
   encoders: { left: number; right: number } | null; // counts
   goal: Goal | null;
   goals_ahead: Point[]; // after that one, in order
@@ -99,7 +108,8 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
   const stamp = clock?.stamp() ?? 0;
   const odometry = f.odometry();
   const truth = f.truth();
-  const tilt = f.inclinometer();
+  const inclination = f.inclinometer();
+  const tilt = f.tilt();
   const encoders = f.encoders();
   const goal = f.goal();
   const decision = f.decision();
@@ -122,9 +132,11 @@ export function decode_frame(bytes: Uint8Array, legends: Legends): Frame {
     stick: stick_of(f),
     truth: truth && {
       pose: pose(truth.pose()), collided: f.collided(), distance: truth.obstacleDistance(), clearance: truth.clearance(),
+      overturned: f.overturned(), fallen: f.fallen(),
     },
     gyro: f.gyro()?.rate() ?? null,
-    inclination: tilt && { roll: tilt.roll(), pitch: tilt.pitch() },
+    tilt: tilt && { z: tilt.z(), roll: tilt.roll(), pitch: tilt.pitch() },
+    inclination: inclination && { roll: inclination.roll(), pitch: inclination.pitch() },
     encoders: encoders && { left: encoders.left(), right: encoders.right() },
     goals_ahead: list(f.goalsAheadLength(), (i) => point(f.goalsAhead(i))),
     goal: goal && { ...point(goal), heading: f.goalHeading() },
@@ -191,7 +203,9 @@ function channel_reading(r: wire.Reading, now: number): ChannelReading {
 }
 
 function obstacle(o: wire.Obstacle): Obstacle {
-  const kind = kKinds[o.kind()] ?? "cylinder";
+  const [low, height] = [o.low(), o.height()];
+  const named = kKinds[o.kind()] ?? "cylinder";
+  const kind = named === "ramp" && low === height ? "step" : named;
   const size = point(o.size());
   return {
     id: o.id(),
@@ -201,7 +215,8 @@ function obstacle(o: wire.Obstacle): Obstacle {
     length: size.x,
     width: size.y,
     points: list(o.pointsLength(), (i) => point(o.points(i))),
-    height: o.height() || 1,
+    height: kind === "trench" ? 0 : kind === "ramp" ? height : height || 1,
+    low,
     path: path(o.path()),
     extra: {},
   };

@@ -1,7 +1,8 @@
 // web/src/plots/picker.tsx: the list of signals to choose from: search, groups, a switch for each.
 import { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
-import { Choices, Signal, is_shown } from "../state/signals";
+import { Choices, is_shown } from "../state/measures";
+import { Signal } from "../state/signals";
 import { matches } from "../words";
 
 export function Picker(props: {

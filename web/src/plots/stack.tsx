@@ -2,10 +2,11 @@
 // one piece of time and one cursor.
 import { JSX } from "preact";
 import { useRef, useState } from "preact/hooks";
-import { is_shown, signals_of_all, store_choices, stored_choices } from "../state/signals";
+import { is_shown, signals_of_all, store_choices, stored_choices } from "../state/measures";
 import { keep, kept } from "../state/store";
 import css from "../style/plots.css?text";
 import { adopt } from "../ui/sheet";
+import "../ui/swatch";
 import { fixed } from "../words";
 import { PlotBar } from "./bar";
 import { PlotCanvas } from "./canvas";

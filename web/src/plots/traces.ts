@@ -2,7 +2,8 @@
 // several runs in the colours of the runs.
 import { Columns } from "../state/columns";
 import { Token } from "../state/layers";
-import { Signal, plots_of } from "../state/signals";
+import { plots_of } from "../state/measures";
+import { Signal } from "../state/signals";
 import { fixed } from "../words";
 import { Chart } from "./chart";
 import { Span } from "./span";

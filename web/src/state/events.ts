@@ -14,6 +14,7 @@ const kHoldWords: Record<string, string> = {
   stale_scan: "Scan too old",
   dazzled: "Laser dazzled",
   not_finite: "A number was not finite",
+  overturned: "Turned over",
   halted: "Held by the robot",
 };
 
@@ -29,7 +30,12 @@ const kHaltWords: Record<Exclude<Halt, "none">, string> = {
   battery_low: "Battery low",
   motors_off: "Motors not on",
   late_tick: "Tick too late",
+  floor_lost: "Floor sensors silent",
+  floor_fault: "Floor sensors not to be trusted",
 };
+
+/** What ends a run, as the simulator knows it. */
+const kEnds = [["collided", "Collision"], ["overturned", "Turned over"], ["fallen", "Fell"]] as const;
 
 export class EventLog {
   readonly list: RunEvent[] = [];
@@ -95,7 +101,9 @@ export class EventLog {
     if (f.hold !== before?.hold || (halt && halt !== before.halt)) {
       if (!no_mark) this.add(f.stamp, "hold", halt ? kHaltWords[halt] : kHoldWords[f.hold] ?? f.hold);
     }
-    if (f.truth?.collided && !before?.truth?.collided) this.add(f.stamp, "bad", "Collision");
+    for (const [end, label] of kEnds) {
+      if (f.truth?.[end] && !before?.truth?.[end]) this.add(f.stamp, "bad", label);
+    }
   }
 
   private add(t: number, kind: EventKind, label: string): void {

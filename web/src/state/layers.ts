@@ -1,5 +1,4 @@
-// web/src/state/layers.ts: the layers of the page and of the controller, their groups in the legend,
-// and which of them are switched off.
+// web/src/state/layers.ts: the layers of the page and of the controller, and which of them are switched off.
 import type { Palette } from "../draw/palette";
 import { LayerKind, LayerStyle, LayerView, Tone } from "../layer";
 import { sweep_age } from "./age";
@@ -39,7 +38,7 @@ export interface LayerKey {
   always: boolean; // has no switch
 }
 
-const own = (name: string, label: string, token: Token, kind: LayerKey["kind"], style: LayerStyle = "solid",
+export const own = (name: string, label: string, token: Token, kind: LayerKey["kind"], style: LayerStyle = "solid",
   always = false): LayerKey => ({ name, label, token, kind, style, scaled: false, always });
 
 /** The layers of every robot, with any controller. */
@@ -58,13 +57,10 @@ export const kOwn = {
   robot: own("robot", "Robot, its hull", "robot", "circles", "solid", true),
   start: own("start", "Start", "muted", "arrows", "solid", true),
   ways: own("ways", "Ways of movers", "obstline", "polyline", "dashed"),
+  ground: own("ground", "Ramps, trenches", "high", "solid"),
   obstacles: own("obstacles", "Obstacles", "obstline", "solid", "solid", true),
   mesh: own("mesh", "Grid, 1 m", "muted", "mesh"),
 };
-
-const kCompared = [
-  { ...kOwn.path, token: "accent" as const }, own("second", "Second run", "elastic", "polyline", "solid", true),
-];
 
 /** True for forces: displacements without a unit, which may be drawn enlarged to be seen. */
 export function is_scaled(layer: LayerView): boolean {
@@ -95,39 +91,6 @@ export function is_sensed(name: string): boolean {
 export function visible_layers(scene: SceneState, hidden: ReadonlySet<string>): LayerView[] {
   const old = scene.sweeps.some((s) => sweep_age(scene, s) !== null);
   return [...scene.layers.values()].filter((l) => !hidden.has(l.name) && !(old && is_sensed(l.name)));
-}
-
-const kGroups = ["Senses", "Forces", "Ways", "World"] as const;
-type Group = (typeof kGroups)[number];
-
-/** Tracks and cells are of the world; the other layers of a controller are ways that it weighs or takes. */
-function group_of(key: LayerKey): Group {
-  if (is_sensed(key.name)) return "Senses";
-  if (key.scaled) return "Forces";
-  return key.token === "warn" || key.kind === "grid" || key.kind === "polar" ? "World" : "Ways";
-}
-
-/**
- * The rows of the legend: everything that is drawn. A log has only sensors and the path. Beside a second run the
- * first one has the accent.
- */
-export function layer_groups(scene: SceneState, compared = false): { title: Group; keys: LayerKey[] }[] {
-  const known = [...scene.known.values()];
-  const { frame, drives, readings } = scene;
-  const when = (drawn: boolean, ...keys: LayerKey[]) => (drawn ? keys : []);
-  const own: Record<Group, [LayerKey[], LayerKey[]]> = {
-    Senses: [[kOwn.scan, kOwn.filtered],
-      [...when(readings.size > 0, kOwn.ranging), ...when((frame?.bumpers.length ?? 0) > 0, kOwn.bumpers)]],
-    Forces: [[], []],
-    Ways: [[], [...(compared ? kCompared : [kOwn.path]), ...when(scene.stick !== null, kOwn.wanted, kOwn.executed),
-      ...when(!!frame?.truth, kOwn.truth), ...when(drives, kOwn.route)]],
-    World: [[...when(drives, kOwn.safety, kOwn.goal), kOwn.robot, ...when(scene.world, kOwn.start, kOwn.obstacles),
-      ...when(scene.obstacles.some((o) => o.path), kOwn.ways)], [kOwn.mesh]],
-  };
-  return kGroups.map((title) => {
-    const [first, last] = own[title];
-    return { title, keys: [...first, ...known.filter((k) => group_of(k) === title), ...last] };
-  }).filter((group) => group.keys.length > 0);
 }
 
 const kHidden = "tautline.layers.hidden";

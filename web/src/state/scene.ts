@@ -4,7 +4,7 @@ import { RobotInfo, SessionState } from "../contract";
 import { Bounds, Point, Pose, distance, empty_bounds, include } from "../geometry";
 import { LayerView } from "../layer";
 import { Frame, FrameRequest, Goal, Words } from "../link/frame";
-import { Obstacle, include_obstacle, obstacle_from_json } from "../obstacle";
+import { Obstacle, include_obstacle, is_ground, obstacle_from_json } from "../obstacle";
 import { Columns } from "./columns";
 import { EventLog } from "./events";
 import { Route, goal_from_json } from "./goals";
@@ -21,6 +21,7 @@ export interface SceneState {
   layers: Map<string, LayerView>;  // of the controller; the newest of each grid
   known: Map<string, LayerKey>;    // of every layer so far, also those without values now
   words: Words | null;             // the newest
+  inclination: Frame["inclination"]; // the newest
   stick: DrivenStick | null;       // of somebody who drives by hand now
   columns: Columns;
   rows: number;           // of the columns, up to the shown instant
@@ -47,7 +48,7 @@ export interface SceneState {
 export function new_scene(most_rows = Infinity): SceneState {
   return {
     frame: null, sweeps: [], filtered: new FilteredScan(), readings: new Map(), layers: new Map(), known: new Map(),
-    words: null, stick: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
+    words: null, inclination: null, stick: null, columns: new Columns(most_rows), rows: 0, obstacles: [], start: null,
     goal: null, goals_ahead: [], route: { goals: [], next: 0, loop: false }, radius: 0.35, hull: null, half_track: 0.25, top: { v: Infinity, omega: Infinity }, safety_distance: 1, parameters: {},
     scan_timeout: 0, events: new EventLog(), run: null, controller: "", heard_at: null, drives: true, world: true,
   };
@@ -70,6 +71,7 @@ export function forget_instant(scene: SceneState): void {
   scene.readings.clear();
   scene.layers.clear();
   scene.words = null;
+  scene.inclination = null;
   scene.stick = null;
 }
 
@@ -126,12 +128,18 @@ export function fold_frame(scene: SceneState, f: Frame): void {
   scene.filtered.see(f);
 }
 
+/** Whether the robot tells of the ground ahead, or of its own tilt where the ground may not be level. */
+export function senses_ground({ frame, inclination, obstacles, world }: SceneState): boolean {
+  return (inclination !== null && (!world || obstacles.some(is_ground))) || !!frame?.measures.some((m) => /^(ground|turnover)\./.test(m.name));
+}
+
 /** Makes `f` the shown instant; the history stays. Values that `f` does not bring hold. */
 export function show_frame(scene: SceneState, f: Frame): void {
   scene.frame = f;
   scene.goal = f.goal;
   scene.goals_ahead = f.goals_ahead;
   scene.words = f.words ?? scene.words;
+  scene.inclination = f.inclination ?? scene.inclination;
   scene.stick = stick_after(scene.stick, f);
   scene.obstacles = moved_by_themselves(scene.obstacles, f);
   for (const [name, layer] of scene.layers) if (layer.kind !== "grid" || !f.goal) scene.layers.delete(name);
@@ -149,6 +157,7 @@ export function held_of(f: Frame): string[] {
   return [
     ...(f.words ? ["words"] : []),
     ...(f.stick ? ["stick"] : []),
+    ...(f.inclination ? [kInclination] : []),
     ...(f.goal ? [] : ["no goal"]),
     ...(f.moved.length > 0 ? ["moved"] : []),
     ...f.layers.filter((l) => l.kind === "grid").map((l) => `grid ${l.name}`),
@@ -158,12 +167,13 @@ export function held_of(f: Frame): string[] {
   ];
 }
 
+const kInclination = "inclination";
 const kStickHolds = 2; // [s] at most: the greatest manual.joystick_timeout
 
 /** [s] For how long the value `name` of `held_of` holds. */
 export function hold_time(name: string): number {
   if (name === "stick") return kStickHolds;
-  return /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
+  return name === kInclination || /^(sonar|infrared) /.test(name) ? kReadingHolds : Infinity;
 }
 
 /** The obstacles with the poses that `f` brings; the same list if it brings none. */

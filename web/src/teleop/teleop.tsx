@@ -4,10 +4,11 @@ import { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { may } from "../people";
-import { SceneState } from "../state/scene";
+import { SceneState, senses_ground } from "../state/scene";
 import { use_pulse } from "../state/store";
 import { Segments, Slider } from "../ui/controls";
 import { use_me } from "../ui/guard";
+import { lazy } from "../ui/lazy";
 import { Legend } from "./corner";
 import { Deck } from "./deck";
 import { Devices } from "./devices";
@@ -17,6 +18,8 @@ import { kTooSlow } from "./operator_link";
 import { driven_words } from "./reasons";
 import { use_second_thumb } from "./second_thumb";
 import { WhoDrives } from "./who_drives";
+
+const Terrain = lazy(async () => (await import("../views/terrain")).Terrain);
 
 export { ReplayDeck } from "./deck"; // of one part of the page: more parts would cost the first load more
 
@@ -59,6 +62,7 @@ export function Teleop(): JSX.Element {
           <Devices hand={hand} disabled={!drives} />
           {!awake && <p class="quiet">This browser may let the screen go dark: it keeps it awake only over https.</p>}
         </div>
+        {senses_ground(app.scene) && <Terrain scene={app.scene} />}
       </Deck>
     </>
   );

@@ -5,7 +5,7 @@ import { Palette } from "../draw/palette";
 import { Pose } from "../geometry";
 import {
   LayerKind, LayerView, Place, arcs, arrows, cells_by_grade, circles, grid_place, kAlpha, kGrades, kGround, kRing, kScanHeight,
-  kStripHeight, kTallest, lines, places, sectors,
+  kStripHeight, kTallest, lines, places, sectors, texts,
 } from "../layer";
 import { is_scaled, is_sketched, token_of } from "../state/layers";
 import { dot, flat, placed, push_arrow, ribbon, vertices } from "./shapes";
@@ -149,9 +149,9 @@ function fill(stage: Stage, xyz: number[], colour: string, alpha: number): void 
 
 /** Lines of text that face the eye. */
 function build_text(stage: Stage, layer: LayerView, colour: string): void {
-  places(layer, stage.robot).forEach((p, i) => {
-    if (layer.text[i]) stage.group.add(label(layer.text[i], p, p.z ?? kStripHeight + 0.2, colour, stage.palette.font));
-  });
+  for (const { at, text } of texts(layer, stage.robot)) {
+    stage.group.add(label(text, at, at.z ?? kStripHeight + 0.2, colour, stage.palette.font));
+  }
 }
 
 export function label(text: string, at: Place, z: number, colour: string, font: string): THREE.Sprite {

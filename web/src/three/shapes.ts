@@ -55,7 +55,7 @@ export function flat(colour: string): THREE.MeshBasicMaterial {
 
 /** A line a metre, stronger every fifth, in pieces of a metre: some drivers drop a line that
  * passes behind the camera. */
-export function grid(p: Palette): THREE.Group {
+export function grid(p: Palette, on_floor: <T extends THREE.Material>(material: T) => T): THREE.Group {
   const group = new THREE.Group();
   const half = 25;
   for (const strong of [false, true]) {
@@ -65,7 +65,7 @@ export function grid(p: Palette): THREE.Group {
       for (let i = -half; i < half; ++i) xyz.push(i, k, 0, i + 1, k, 0, k, i, 0, k, i + 1, 0);
     }
     group.add(new THREE.LineSegments(vertices(xyz),
-      new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 })));
+      on_floor(new THREE.LineBasicMaterial({ color: strong ? p.line : p.grid2 }))));
   }
   return group;
 }
@@ -115,8 +115,8 @@ export function dot(at: Point, radius: number, z: number, colour: string): THREE
   return placed(new THREE.SphereGeometry(radius, 14, 10), flat(colour), at, z);
 }
 
-/** A flat band `width` wide along `line`, at height `z`. */
-export function ribbon(line: Point[], width: number, z: number, colour: string): THREE.Mesh {
+/** A band `width` wide along `line`, at its own heights or at `z`. */
+export function ribbon(line: (Point & { z?: number | null })[], width: number, z: number, colour: string): THREE.Mesh {
   const xyz: number[] = [];
   const faces: number[] = [];
   for (let i = 0; i < line.length; ++i) {
@@ -125,7 +125,8 @@ export function ribbon(line: Point[], width: number, z: number, colour: string):
     const length = Math.hypot(b.x - a.x, b.y - a.y) || 1;
     const nx = (-(b.y - a.y) / length) * (width / 2);
     const ny = ((b.x - a.x) / length) * (width / 2);
-    xyz.push(line[i].x + nx, line[i].y + ny, z, line[i].x - nx, line[i].y - ny, z);
+    const height = line[i].z ?? z;
+    xyz.push(line[i].x + nx, line[i].y + ny, height, line[i].x - nx, line[i].y - ny, height);
     if (i > 0) faces.push(2 * i - 2, 2 * i - 1, 2 * i, 2 * i, 2 * i - 1, 2 * i + 1);
   }
   return new THREE.Mesh(vertices(xyz).setIndex(faces), flat(colour));

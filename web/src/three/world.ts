@@ -6,7 +6,9 @@ import { Palette } from "../draw/palette";
 import { Selection, kDrift } from "../draw/scene";
 import { Eye } from "../edit/inspect";
 import { Point, distance, to_parent } from "../geometry";
-import { kScanHeight } from "../layer";
+import { height_at, tilt_of } from "../ground";
+import { Place, kScanHeight } from "../layer";
+import { is_ground } from "../obstacle";
 import { sweep_age } from "../state/age";
 import { kOwn, visible_layers } from "../state/layers";
 import { drawing } from "../state/meter";
@@ -15,6 +17,7 @@ import { kRing, kWall } from "../state/stick";
 import { SceneState, robot_pose, scene_bounds } from "../state/scene";
 import { PlacedSweep, sweep_points } from "../state/sweeps";
 import { build_sectors, build_wall_words, build_ways_ahead } from "./driven";
+import { beside_holes, ground } from "./ground";
 import { build_layer } from "./layers";
 import {
   body, clear, goal, goals_ahead, grid, outline_of, points, pressed, ranging, ribbon, ring, solid, sun, vertices,
@@ -34,7 +37,7 @@ const kMostLate = 4;    // late ones in a row
 const kCoarser = 0.7, kCoarsest = 0.35; // of the pixels of the page, along each axis
 
 export class World3 {
-  private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true });
+  private readonly renderer_ = new THREE.WebGLRenderer({ antialias: true, stencil: true });
   private readonly world_ = new THREE.Scene();
   private readonly camera_ = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
   private readonly controls_: OrbitControls;
@@ -42,6 +45,8 @@ export class World3 {
   private readonly statics_ = new THREE.Group();  // grid, obstacles, goal
   private readonly moving_ = new THREE.Group();   // path, the controller's layers
   private readonly robot_ = new THREE.Group();
+  /** From the level plane of the robot's senses and plans to the plane on which it stands. */
+  private readonly stand_ = new THREE.Matrix4();
   private readonly raw_ = points(2.5);
   private readonly filtered_ = points(3.5);
   private pending_ = 0;
@@ -107,7 +112,10 @@ export class World3 {
         const robot = ray.intersectObject(this.robot_, true).at(0)?.distance ?? Infinity;
         const solids = this.statics_.children.filter((o) => o.userData.obstacle !== undefined);
         const hit = ray.intersectObjects(solids, false).at(0);
-        if (hit && hit.distance < robot) return { kind: "obstacle", id: hit.object.userData.obstacle as number };
+        if (hit && hit.distance < robot) {
+          const { obstacle: id, ground } = hit.object.userData as { obstacle: number; ground?: boolean };
+          return ground ? { kind: "ground", id, at: { x: hit.point.x, y: hit.point.y } } : { kind: "obstacle", id };
+        }
         return robot < Infinity ? { kind: "robot" } : null;
       },
     };
@@ -148,8 +156,8 @@ export class World3 {
     if (this.chases_) this.keep_pace();
     drawing.around(() => {
       this.build_statics(scene, options.selection, options.hidden);
-      this.build_moving(scene, options);
       this.place_robot(scene, options.follow);
+      this.build_moving(scene, options);
       this.place_points(scene, options.hidden);
       if (this.chases_) this.ride_behind(scene);
       else this.controls_.update();
@@ -188,16 +196,18 @@ export class World3 {
   /** Builds grid, obstacles and goal again only when one of them has changed. */
   private build_statics(scene: SceneState, selection: Selection, hidden: ReadonlySet<string>): void {
     const mesh = !hidden.has(kOwn.mesh.name);
-    const key = [mesh, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
+    const hills = !hidden.has(kOwn.ground.name);
+    const key = [mesh, hills, scene.obstacles, scene.goal?.x, scene.goal?.y, scene.goal?.heading,
       selection?.kind, selection?.kind === "obstacle" ? selection.id : null];
     if (key.length === this.built_.length && key.every((v, i) => v === this.built_[i])) return;
     this.built_ = key;
     clear(this.statics_);
     const p = this.palette_;
-    if (mesh) this.statics_.add(grid(p));
+    if (mesh) this.statics_.add(grid(p, beside_holes));
     for (const o of scene.obstacles) {
       const chosen = selection?.kind === "obstacle" && selection.id === o.id;
-      this.statics_.add(solid(o, p, chosen));
+      if (!is_ground(o)) this.statics_.add(solid(o, p, chosen));
+      else if (hills) this.statics_.add(ground(o, p, chosen));
     }
     if (scene.goal) this.statics_.add(goal(scene.goal, p));
   }
@@ -209,8 +219,11 @@ export class World3 {
     if (on(kOwn.path)) this.build_path(scene, 0.045, 0.012, p.path, false);
     if (on(kOwn.truth)) this.build_path(scene, 0.03, 0.011, p.muted, true);
     const pose = robot_pose(scene);
+    const tilted = new THREE.Group(); // what has no heights of its own
+    placed_by(tilted, this.stand_);
+    this.moving_.add(tilted);
     if (pose && scene.drives && on(kOwn.safety)) {
-      this.moving_.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
+      tilted.add(ring(pose, scene.safety_distance - 0.012, scene.safety_distance + 0.012, 0.014, p.safe));
     }
     if (scene.goal && scene.goals_ahead.length > 0) {
       this.moving_.add(...goals_ahead(scene.goal, scene.goals_ahead, p, on(kOwn.route)));
@@ -222,22 +235,23 @@ export class World3 {
     if (f.truth && on(kOwn.truth) && distance(f.truth.pose, f.pose) > kDrift) {
       this.moving_.add(outline_of(f.truth.pose, scene, p.muted));
     }
-    const stage = { group: this.moving_, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
+    const stage = { group: tilted, palette: p, robot: f.pose, radius: scene.radius, times: options.force_scale };
     const pixel = (2 * Math.tan((this.camera_.fov * Math.PI) / 360)) / Math.max(1, this.box_.clientHeight);
     for (const layer of visible_layers(scene, options.hidden)) {
-      if (layer.name === kRing) this.moving_.add(...build_sectors(scene, p, f.pose, pixel));
-      else build_layer(stage, layer);
-      if (layer.name === kWall) this.moving_.add(...build_wall_words(scene, p, pixel));
+      if (layer.name === kRing) tilted.add(...build_sectors(scene, p, f.pose, pixel));
+      else build_layer(layer.axes > 2 ? { ...stage, group: this.moving_ } : stage, layer);
+      if (layer.name === kWall) tilted.add(...build_wall_words(scene, p, pixel));
     }
-    for (const o of build_ways_ahead(scene, p, options.hidden)) this.moving_.add(o);
+    for (const o of build_ways_ahead(scene, p, options.hidden)) tilted.add(o);
   }
 
   private build_path(scene: SceneState, width: number, z: number, colour: string, truly: boolean): void {
     const rows = Math.min(scene.rows, scene.columns.length);
     if (rows < 2) return;
-    const line: Point[] = [];
+    const line: Place[] = [];
+    const hills = scene.obstacles.filter(is_ground);
     scene.columns.each_place(0, rows, kMostPath, (x, y) => {
-      if (Number.isFinite(x)) line.push({ x, y });
+      if (Number.isFinite(x)) line.push({ x, y, z: z + (hills.length > 0 ? Math.max(0, height_at(hills, { x, y })) : 0) });
     }, truly);
     this.moving_.add(ribbon(line, width, z, colour));
   }
@@ -270,8 +284,12 @@ export class World3 {
       this.robot_.add(...body(scene, this.palette_));
       this.hull_ = scene.hull;
     }
-    this.robot_.position.set(pose.x, pose.y, 0);
-    this.robot_.rotation.z = pose.heading;
+    const { z, roll, pitch } = tilt_of(scene) ?? { z: 0, roll: 0, pitch: 0 };
+    this.robot_.position.set(pose.x, pose.y, z);
+    this.robot_.rotation.set(roll, pitch, pose.heading, "ZYX"); // algo::Tilt says the order
+    this.robot_.updateMatrix();
+    const level = new THREE.Matrix4().makeRotationZ(pose.heading).setPosition(pose.x, pose.y, 0);
+    this.stand_.multiplyMatrices(this.robot_.matrix, level.invert());
     const last = this.last_robot_;
     if (follow && last) {
       const step = new THREE.Vector3(pose.x - last.x, pose.y - last.y, 0);
@@ -289,7 +307,14 @@ export class World3 {
     (this.filtered_.material as THREE.PointsMaterial).color.set(old ? this.palette_.scan : this.palette_.filtered);
     set_points(this.raw_, hidden.has(kOwn.scan.name) ? [] : scene.sweeps);
     set_points(this.filtered_, filtered && !hidden.has(kOwn.filtered.name) ? [filtered] : []);
+    for (const points of [this.raw_, this.filtered_]) placed_by(points, this.stand_);
   }
+}
+
+function placed_by(object: THREE.Object3D, matrix: THREE.Matrix4): void {
+  object.matrixAutoUpdate = false;
+  object.matrix.copy(matrix);
+  object.matrixWorldNeedsUpdate = true;
 }
 
 function set_points(points: THREE.Points, sweeps: PlacedSweep[]): void {

@@ -154,10 +154,10 @@ export function Slider(props: {
 /** A number to type. While the field has the focus it shows the text as typed. */
 export function NumberField(props: {
   label: string; unit?: string; value: number | null; name: string; empty?: string; step?: number;
-  min?: number; on_change: (value: number | null) => void;
+  min?: number; digits?: number; on_change: (value: number | null) => void;
 }): JSX.Element {
   const [typed, set_typed] = useState<string | null>(null);
-  const shown = typed ?? (props.value === null ? "" : String(Number(props.value.toFixed(2))));
+  const shown = typed ?? (props.value === null ? "" : String(Number(props.value.toFixed(props.digits ?? 2))));
   return (
     <label class="field">
       <span>{props.label}</span>

@@ -53,7 +53,7 @@ export function Inspector(props: InspectorProps): JSX.Element {
 }
 
 function is_selected(thing: Thing, selection: Selection): boolean {
-  if (thing.kind === "obstacle") return selection?.kind === "obstacle" && selection.id === thing.id;
+  if (thing.kind === "obstacle" || thing.kind === "ground") return selection?.kind === "obstacle" && selection.id === thing.id;
   return thing.kind === "goal" && thing.index === 0 && selection?.kind === "goal";
 }
 

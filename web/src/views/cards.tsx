@@ -10,7 +10,7 @@ import { SceneState } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
 import { use_me } from "../ui/guard";
 import { StoppedBy } from "./watching";
-import { Tone, frame_word, link_words, stopped_words } from "../words";
+import { Tone, kQuestions, frame_word, link_words, stopped_words } from "../words";
 
 /** The sentences of the controller: the robot's action and its reason, with the numbers. */
 export function Explain(): JSX.Element | null {
@@ -54,8 +54,10 @@ export function Why(props: { trouble: string; on_press: () => void }): JSX.Eleme
 function trouble_word(scene: SceneState, session: SessionState | null): string | null {
   const f = scene.frame;
   if (!f || !session?.robot.drives) return null;
-  if (f.truth?.collided || session.run?.outcome === "collided") return "Why did it touch the obstacle?";
-  if (f.mission === "stuck") return "Why did it get stuck?";
+  const outcome = session.run?.outcome ?? "";
+  const ended = outcome in kEnds ? kQuestions[outcome] : undefined;
+  const question = ended ?? kQuestions[f.truth?.collided ? "collided" : f.mission];
+  if (question) return question;
   return f.mission === "held" && f.hold !== "stopped" ? "Why is it held?" : null;
 }
 
@@ -87,6 +89,11 @@ function Strip(props: { tone: Tone; words: string; children?: ComponentChildren 
   );
 }
 
+const kEnds: Record<string, string> = {
+  collided: "The robot touched an obstacle.", overturned: "The robot has turned over.", fallen: "The robot has driven off an edge.",
+  end_of_log: "The log has ended.", failed: "The run failed.",
+};
+
 /** The state that a person must not miss. */
 export function Banner(): JSX.Element | null {
   const app = use_app();
@@ -114,11 +121,9 @@ export function Banner(): JSX.Element | null {
   if (record && (record.status === "failed" || record.status === "full")) {
     return <Strip tone="bad" words={record.sentence} />;
   }
-  const outcome = session?.run?.outcome;
-  if (outcome === "collided" || outcome === "end_of_log" || outcome === "failed") {
-    const words = { collided: "The robot touched an obstacle.",
-      end_of_log: "The log has ended.",
-      failed: session?.problem ?? "The run failed." }[outcome];
+  const outcome = session?.run?.outcome ?? "";
+  if (outcome in kEnds) {
+    const words = (outcome === "failed" && session?.problem) || kEnds[outcome];
     return (
       <Strip tone={outcome === "end_of_log" ? "info" : "bad"} words={words}>
         {may_drive && <button class="text" onClick={() => void app.editor.reset()}>Start again</button>}

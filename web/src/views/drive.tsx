@@ -3,6 +3,7 @@ import { JSX } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { App, use_app, use_ui } from "../app";
 import { Draft } from "../draw/scene";
+import { is_ground_tool } from "../edit/drawn";
 import { Gestures, Tool } from "../edit/gestures";
 import { scene_bounds } from "../state/scene";
 import { SceneCanvas, scale_insets } from "../ui/canvas";
@@ -139,13 +140,14 @@ function Tools(): JSX.Element {
       onClick={() => app.fit_view()}>{icons.fit}</button>
   );
   if (three) return <div class="tools" role="toolbar" aria-label="Tools">{fit}{layers}{threed}</div>;
-  const button = (name: Tool, label: string, key: string, can: boolean) => can && (
-    <button class={tool === name ? "on" : ""} aria-pressed={tool === name}
-       aria-label={label} title={`${label} (${key})`} data-testid={`tool-${name}`}
+  const button = (name: Tool, label: string, key: string, can: boolean, on = tool === name, mark: string = name) => can && (
+    <button class={on ? "on" : ""} aria-pressed={on}
+       aria-label={label} title={`${label} (${key})`} data-testid={`tool-${mark}`}
       onClick={() => app.pick_tool(name)}>
-      {icons[name as "goal"]}
+      {icons[mark as "goal"]}
     </button>
   );
+  const ground = is_ground_tool(tool);
   return (
     <div class="tools" role="toolbar" aria-label="Tools" aria-orientation="vertical">
       {button("pan", "Select: press an object, drag the view or the selected object", "V", true)}
@@ -156,11 +158,11 @@ function Tools(): JSX.Element {
       {button("box", "Box: press for the position, drag for the size", "B", editable)}
       {button("polygon", "Polygon: press its corners", "O", editable)}
       {button("mover", "Walking person: press the corners of the path", "K", editable)}
+      {button(ground ? tool : "ramp", "Ramp, step or trench: drag the way over it, uphill", "R, E, T", editable, ground, "ground")}
       {button("measure", "Measure a distance", "M", true)}
       {(drives || editable) && <button aria-label={undo ? `Undo: ${undo}` : "Undo"} title={undo ? `Undo: ${undo} (Ctrl+Z)` : "Nothing to undo"}
         disabled={!undo} data-testid="undo" onClick={() => void app.editor.undo()}>{icons.undo}</button>}
-      {(drives || editable) && <button class="wide-only" aria-label={redo ? `Do again: ${redo}` : "Do again"} disabled={!redo}
-        title={redo ? `Do again: ${redo} (Ctrl+Shift+Z)` : "Nothing to do again"}
+      {redo && <button class="wide-only" aria-label={`Do again: ${redo}`} title={`Do again: ${redo} (Ctrl+Shift+Z)`}
         onClick={() => void app.editor.redo()}>{icons.redo}</button>}
       {fit}
       {layers}

@@ -1,10 +1,8 @@
 // web/src/views/keys.ts: the keyboard. Space stops everywhere but in a text field; the other keys
 // act on the view, the tool and the selection.
 import { App } from "../app";
-import {
-  duplicate, kUsualRadius, kUsualSide, move_edit, new_box, new_cylinder, remove_edit, round_cm, shifted,
-} from "../edit/edits";
-import { is_sketch } from "../edit/drawn";
+import { duplicate, move_edit, remove_edit, round_cm, shifted } from "../edit/edits";
+import { dragged_obstacle, is_ground_tool, is_sketch } from "../edit/drawn";
 import { Point, radians, wrap_angle } from "../geometry";
 import { Selection } from "../draw/scene";
 import { Goal } from "../link/frame";
@@ -82,6 +80,9 @@ export function use_scene_keys(app: App, hand: Hand): void {
     k: () => app.pick_tool("mover"),
     c: () => app.pick_tool("cylinder"),
     b: () => app.pick_tool("box"),
+    r: () => app.pick_tool("ramp"),
+    e: () => app.pick_tool("step"),
+    t: () => app.pick_tool("trench"),
     m: () => app.pick_tool("measure"),
     n: () => select_next(app),
     l: () => (app.ui.value.looking ? app.go_live() : app.show_layers(!app.ui.value.layers)),
@@ -213,6 +214,5 @@ function place(app: App, at: Point, further: boolean): void {
   const tool = app.usable_tool;
   if (tool === "goal") app.editor.want_goal({ ...at, heading: null }, further || app.ui.value.appending);
   if (tool === "start" && app.scene.start) app.editor.set_start({ ...at, heading: app.scene.start.heading });
-  if (tool === "cylinder") void app.editor.add(new_cylinder(at.x, at.y, kUsualRadius));
-  if (tool === "box") void app.editor.add(new_box(at.x, at.y, kUsualSide, kUsualSide));
+  if (tool === "cylinder" || tool === "box" || is_ground_tool(tool)) void app.editor.add(dragged_obstacle(tool, at, at, false)!);
 }

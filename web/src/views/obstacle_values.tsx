@@ -3,17 +3,22 @@ import { JSX } from "preact";
 import { use_app } from "../app";
 import { corners_of, duplicate, new_wall, remove_edit, speed_of, walk } from "../edit/edits";
 import { degrees, radians, to_parent } from "../geometry";
+import { slope_of } from "../ground";
 import { Obstacle, is_robot, obstacle_title } from "../obstacle";
 import { NumberField } from "../ui/controls";
 import { icons } from "../ui/icons";
+import { fixed } from "../words";
 import { Form, tenths, use_typed } from "./value_form";
 
 type Values = Record<string, number>;
-interface FieldInfo { name: string; label: string; unit: string; step?: number; min?: number }
+interface FieldInfo { name: string; label: string; unit: string; step?: number; min?: number; digits?: number }
 
 const kPlace: FieldInfo[] = [{ name: "x", label: "x", unit: "m" }, { name: "y", label: "y", unit: "m" }];
 const kTurn: FieldInfo = { name: "turn", label: "turn", unit: "°", step: 5 };
 const length = (name: string, label = name): FieldInfo => ({ name, label, unit: "m", step: 0.05, min: 0 });
+
+/** Of ground: a robot minds a millimetre of a step. */
+const rise = (name: string): FieldInfo => ({ ...length(name), step: 0.01, digits: 3 });
 
 /** The fields of an obstacle of this kind. */
 function fields_of(o: Obstacle): FieldInfo[] {
@@ -27,6 +32,12 @@ function fields_of(o: Obstacle): FieldInfo[] {
       return [...kPlace, kTurn, length("length"), length("width")];
     case "polygon":
       return [...kPlace, kTurn];
+    case "ramp":
+      return [...kPlace, kTurn, length("length"), length("width"), rise("low"), rise("height")];
+    case "step":
+      return [...kPlace, kTurn, length("length"), length("width"), rise("height")];
+    case "trench":
+      return [...kPlace, kTurn, length("length"), length("width"), rise("depth")];
     case "wall":
       return [...["x1", "y1", "x2", "y2"].map((name) => ({ name, label: name, unit: "m" })), length("width", "thick")];
   }
@@ -37,14 +48,16 @@ function values_of(o: Obstacle): Values {
   const b = to_parent(o.pose, o.length / 2, 0);
   return {
     x: o.pose.x, y: o.pose.y, turn: tenths(degrees(o.pose.heading)), radius: o.radius, length: o.length,
-    width: o.width, x1: a.x, y1: a.y, x2: b.x, y2: b.y, speed: o.path ? speed_of(o.path) : 0,
+    width: o.width, low: o.low, height: o.height, depth: -o.low, x1: a.x, y1: a.y, x2: b.x, y2: b.y, speed: o.path ? speed_of(o.path) : 0,
   };
 }
 
 /** `o` with the typed values; the others keep all their digits. */
 function with_values(o: Obstacle, v: Values, typed: (name: string) => boolean): Obstacle {
   const out = { ...o, pose: { ...o.pose } };
-  for (const name of ["radius", "length", "width"] as const) if (typed(name)) out[name] = v[name];
+  for (const name of ["radius", "length", "width", "low", "height"] as const) if (typed(name)) out[name] = v[name];
+  if (o.kind === "step") out.low = out.height;
+  if (typed("depth")) out.low = -v.depth;
   if (o.kind === "wall") {
     if (!["x1", "y1", "x2", "y2"].some(typed)) return out;
     const wall = new_wall({ x: v.x1, y: v.y1 }, { x: v.x2, y: v.y2 }, out.width);
@@ -63,6 +76,7 @@ function with_values(o: Obstacle, v: Values, typed: (name: string) => boolean): 
 function measure_of(o: Obstacle): string {
   if (o.path) return `walks ${speed_of(o.path).toFixed(2)} m/s`;
   if (o.kind === "wall") return `${o.length.toFixed(2)} m long`;
+  if (o.kind === "ramp") return `${fixed(degrees(slope_of(o)), 1)}°`;
   return o.kind === "polygon" ? `${o.points.length} corners` : "";
 }
 
@@ -71,7 +85,7 @@ export function ObstacleValues(props: { obstacle: Obstacle; editable: boolean })
   const o = props.obstacle;
   const now = values_of(o);
   const [v, type, forget, changed] = use_typed(now,
-    [o.path ? 0 : o.pose.x, o.path ? 0 : o.pose.y, o.pose.heading, o.radius, o.length, o.width]);
+    [o.path ? 0 : o.pose.x, o.path ? 0 : o.pose.y, o.pose.heading, o.radius, o.length, o.width, o.low, o.height]);
   const apply = () => {
     if (o.path && !(v.speed > 0)) return app.toast("warn", "A speed must be above 0.");
     const to = with_values(o, v, (name) => v[name] !== now[name]);
@@ -84,7 +98,7 @@ export function ObstacleValues(props: { obstacle: Obstacle; editable: boolean })
       <span class="quiet num">{measure_of(o)}</span>
       {fields_of(o).map((f) => (
         <NumberField key={f.name} label={f.label} unit={f.unit} name={`obstacle-${f.name}`} value={v[f.name]}
-          step={f.step} min={f.min} on_change={(value) => type({ [f.name]: value ?? 0 })} />
+          step={f.step} min={f.min} digits={f.digits} on_change={(value) => type({ [f.name]: value ?? 0 })} />
       ))}
       {can && <>
         <button type="submit" class="small primary" disabled={!changed} data-testid="obstacle-set">Set</button>

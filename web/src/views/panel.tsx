@@ -5,7 +5,7 @@ import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
 import { Catalog, ParameterInfo, SessionState } from "../contract";
 import { Figure, figure_words, kLive, shown_clearance } from "../figures";
-import { goal_distance } from "../state/scene";
+import { goal_distance, senses_ground } from "../state/scene";
 import { use_pulse, use_store } from "../state/store";
 import { Pick, Segments, Slider, Tab, Tabs } from "../ui/controls";
 import { Guard } from "../ui/guard";
@@ -23,6 +23,7 @@ const Signals = lazy(async () => {
     return <Plots time={rewind.time} seek={(t) => rewind.seek(t)} />;
   };
 });
+const Terrain = lazy(async () => (await import("./terrain")).Terrain);
 const World = lazy(async () => (await import("./world")).World);
 
 export function Figures(): JSX.Element {
@@ -34,7 +35,7 @@ export function Figures(): JSX.Element {
   const state = looking ? frame_word(f) : state_word(f, session, open);
   const drives = session?.robot.drives ?? true;
   const clearance = shown_clearance(app.scene, session?.source === "simulation");
-  return (
+  return <>
     <div class="stats" role="group" aria-label="Figures">
       <Stat of={clearance} value={clearance.value} beyond={clearance.beyond} name="clearance" />
       <Stat of={kLive.speed} value={f?.twist.v} name="speed" />
@@ -46,7 +47,8 @@ export function Figures(): JSX.Element {
         <b class={`word tone-${state.tone}`} data-testid="state">{state.word}</b>
       </div>
     </div>
-  );
+    {senses_ground(app.shown) && <Terrain scene={app.shown} />}
+  </>;
 }
 
 function Stat(props: { of: Figure; value: number | null | undefined; beyond?: boolean; name: string }): JSX.Element {

@@ -19,7 +19,7 @@ import { Pick } from "../ui/controls";
 import { icons } from "../ui/icons";
 import { lazy } from "../ui/lazy";
 import { Timeline } from "../ui/timeline";
-import { clock, frame_word, sentence_of, speed_word } from "../words";
+import { clock, frame_word, kQuestions, sentence_of, speed_word } from "../words";
 import { Sentence, Why } from "./cards";
 import { Lanes } from "./lanes";
 import { RunFacts, kLooks } from "./run_facts";
@@ -211,7 +211,7 @@ function Instant(props: { run: StoredRun; on_seek: (t: number) => void }): JSX.E
   const f = scene.frame;
   if (!f) return null;
   const said = scene.words ?? { what: frame_word(f).word, why: "" };
-  const trouble = { stuck: "Why did it get stuck?", collided: "Why did it touch the obstacle?" }[item.outcome];
+  const trouble = kQuestions[item.outcome];
   const at = events.last_trouble?.t;
   return (
     <Sentence name="run-explain" what={scene.world ? said.what : "Replaying the log"} why={said.why}

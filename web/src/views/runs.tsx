@@ -1,4 +1,5 @@
 // web/src/views/runs.tsx: the Runs view: search, chips, the list, the selection, and the open run.
+import "../ui/run_sheet"; // before the styles of the parts below
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app, use_ui } from "../app";
@@ -14,7 +15,7 @@ import { StartRun } from "./start_run";
 import { use_keys } from "./keys";
 
 /** In the order of the chips; one that finds nothing is left out, except the first three. */
-const kResults = ["reached", "stuck", "collided", "out_of_time", "end_of_log", "stopped", "failed", "interrupted",
+const kResults = ["reached", "stuck", "collided", "overturned", "fallen", "out_of_time", "end_of_log", "stopped", "failed", "interrupted",
   "cancelled", "queued", "recording"];
 const kAlways = kResults.slice(0, 3);
 const kNone: Selection = new Map();

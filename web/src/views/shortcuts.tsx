@@ -16,6 +16,7 @@ const kShortcuts: [string[], string][] = [
   [["Shift+click"], "Goal tool: add a goal after the others"],
   [["C"], "Cylinder tool"],
   [["B"], "Box tool"],
+  [["R", "E", "T"], "Ramp, step and trench tools: drag the way over it; a ramp rises along the drag"],
   [["M"], "Measure"],
   [["N"], "Select the next obstacle or the goal"],
   [["Arrows"], "Move the selection by 0.1 m (with Shift 0.01 m); with none, the crosshair, which tells what is there"],

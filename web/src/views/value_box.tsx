@@ -1,7 +1,7 @@
 // web/src/views/value_box.tsx: the numbers of the selected or the next object, to type.
 import { JSX } from "preact";
 import { use_app, use_ui } from "../app";
-import { is_sketch } from "../edit/drawn";
+import { is_ground_tool, is_sketch } from "../edit/drawn";
 import { use_pulse } from "../state/store";
 import { Hand } from "./drive";
 import { lazy } from "../ui/lazy";
@@ -10,6 +10,7 @@ import { lazy } from "../ui/lazy";
 const GoalValues = lazy(async () => (await import("./values")).GoalValues);
 const StartValues = lazy(async () => (await import("./values")).StartValues);
 const NewValues = lazy(async () => (await import("./values")).NewValues);
+const NewGround = lazy(async () => (await import("./values")).NewGround);
 const SketchValues = lazy(async () => (await import("./values")).SketchValues);
 const ObstacleValues = lazy(async () => (await import("./values")).ObstacleValues);
 
@@ -34,6 +35,7 @@ export function ValueBox(props: { hand: Hand }): JSX.Element | null {
     return <GoalValues key={index} goal={draft.goal ?? goal} index={index} selected={selection !== null} />;
   }
   if (tool === "start" && app.scene.start) return <StartValues start={draft.start ?? app.scene.start} />;
+  if (is_ground_tool(tool)) return <NewGround kind={tool} />;
   if (tool === "cylinder" || tool === "box" || tool === "wall") return <NewValues key={tool} kind={tool} />;
   return null;
 }

@@ -41,7 +41,7 @@ function Contents(): JSX.Element {
   }
   count.set("goal", app.scene.route.goals.length);
   const words = [...count].filter(([, n]) => n > 0)
-    .map(([name, n]) => `${n} ${n === 1 ? name : name === "box" ? "boxes" : `${name}s`}`);
+    .map(([name, n]) => `${n} ${n === 1 ? name : name === "box" || name === "trench" ? `${name}es` : `${name}s`}`);
   return <>{words.length > 0 ? words.join(", ") : "Nothing stands here yet. Pick a tool and draw."}</>;
 }
 
