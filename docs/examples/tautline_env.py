@@ -22,8 +22,8 @@ try:
 except ImportError:
     gymnasium = None
 
-RUNNING, REACHED, COLLIDED, STUCK, OUT_OF_TIME = range(5)
-OUTCOMES = ("running", "reached", "collided", "stuck", "out_of_time")
+RUNNING, REACHED, COLLIDED, STUCK, OUT_OF_TIME, OVERTURNED, FALLEN = range(7)
+OUTCOMES = ("running", "reached", "collided", "stuck", "out_of_time", "overturned", "fallen")
 STATE = ("stamp", "x", "y", "heading", "v", "omega", "goal_x", "goal_y", "clearance")
 
 if gymnasium is None:
@@ -155,7 +155,7 @@ class Env(_Single):
         self.worlds.send(array.array("d", (float(action[0]), float(action[1]), -1.0)))
         observation, outcome = self._read()
         reward = float(self.reward(before, self.before, outcome))
-        terminated = outcome in (REACHED, COLLIDED, STUCK)
+        terminated = outcome in (REACHED, COLLIDED, STUCK, OVERTURNED, FALLEN)
         return (observation, reward, terminated, outcome == OUT_OF_TIME,
                 {"outcome": OUTCOMES[outcome], "seed": self.seed})
 
@@ -236,7 +236,7 @@ class VectorEnv(_Vector):
         outcome = self.states[:, -1].astype(int)
         rewards = self.reward(dict(zip(STATE, before.T)), dict(zip(STATE, self.states.T)), outcome)
         rewards = numpy.where(self.done, 0.0, rewards)
-        terminated = (outcome > RUNNING) & (outcome < OUT_OF_TIME)
+        terminated = (outcome > RUNNING) & (outcome != OUT_OF_TIME)
         truncated = outcome == OUT_OF_TIME
         self.done = terminated | truncated
         return self.observation, rewards, terminated, truncated, {"outcome": outcome, "seed": self.seeds.copy()}
