@@ -18,7 +18,7 @@ class GroundBehaviour final : public Behaviour {
   Name name() const override { return behaviours::kGround; }
   void reset(const Pose2& start_W) override;
   Proposal propose(const Resource& resource, ControlOutput& output) override;
-  /// Enters the refused edges into a new scan, so that any controller goes round them.
+  /// Enters the refused edges into a new scan, so that a controller may go round them.
   void enter_edges(const Pose2& pose_W, LaserScan& scan) const {
     survey_.refused().enter(pose_W, scan);
   }
