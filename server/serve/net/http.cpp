@@ -226,15 +226,17 @@ std::string response_head(const Response& response,
   }
   append_header(head, "X-Content-Type-Options", "nosniff");
   append_header(head, "Referrer-Policy", "no-referrer");
-  // The policy binds documents. A script or a style has that of its page.
+  // The policy binds documents. A script or a style has that of its page; data loads nothing.
   const std::string_view type = response.content_type;
+  const bool page = type.starts_with("text/html");
   if (!type.starts_with("text/javascript") && !type.starts_with("text/css")) {
     append_header(head,
                   "Content-Security-Policy",
-                  "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: "
-                  "blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; manifest-src "
-                  "'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors "
-                  "'none'");
+                  page ? "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' "
+                         "data: blob:; font-src 'self'; connect-src 'self'; worker-src 'self'; "
+                         "manifest-src 'self'; object-src 'none'; base-uri 'none'; form-action "
+                         "'none'; frame-ancestors 'none'"
+                       : "default-src 'none'; frame-ancestors 'none'");
   }
   for (const Header& h : response.headers) append_header(head, h.name, h.value);
   append_header(head, "Connection", keep_alive ? "keep-alive" : "close");
