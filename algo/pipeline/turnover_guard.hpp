@@ -1,5 +1,5 @@
-// algo/pipeline/turnover_guard.hpp: keeps a robot with a high centre of mass on its tracks, whoever
-// drives it.
+// algo/pipeline/turnover_guard.hpp: keeps a robot with a high centre of mass on its tracks, under
+// every driver.
 //
 // Source: Park et al. 2005, section 2.2; equations.md G. Ours: the rule along the track, the limit
 // on backing, and the room for a centre of mass that is higher than the robot's file says.
@@ -76,7 +76,7 @@ class TurnoverGuard final : public Behaviour {
   /// Never active; its limits are those of this tick.
   Proposal propose(const Resource& in, ControlOutput& output) override;
 
-  /// The robot's spec, with the acceleration that this slope allows, for whoever plans to brake.
+  /// The robot's spec, with the acceleration that this slope allows: for planning a brake.
   const RobotSpec& spec() const { return spec_; }
   /// True if the newest reading of the inclinometer is older than its parameter at `stamp`.
   bool stale(double stamp, const Parameters& parameters) const;

@@ -133,7 +133,7 @@ json to_json(const LineCamera& camera) {
   return out;
 }
 
-/// What looks at the ground, and how the robot leans. `false` takes either away.
+/// The line camera and the inclinometer. `false` takes either away.
 void read_terrain(const JsonReader& in, sim::Sensors& sensors) {
   const auto read = [&in](const char* key, auto& config, const auto& table) {
     if (!in.has(key)) return;

@@ -134,7 +134,7 @@ test("corners resize ground, and a handle turns it; heights stay", () => {
   near(narrow.width, 1.5);
 });
 
-test("what stands on ground is found before the ground, and ground before nothing", () => {
+test("an obstacle on a ramp is picked before the ramp", () => {
   const [r] = all();
   const box = { ...new_box(2, 0, 0.4, 0.4), id: 9 };
   assert.equal(topmost([box, r], { x: 2, y: 0 }, 0)?.id, 9);

@@ -64,7 +64,7 @@ Joystick raw(double forward, double turn) {
 
 /// Eq. 25 with h 0.90 and a mass that may be 10 % higher:
 /// 9.80665 (0.9848 x 0.48 / 1.98 - 0.1736) = 0.638 m/s2; of it 0.9, at 0.86 m/s.
-TEST(TurnoverGuard, BoundsTheTurnWhoeverDrives) {
+TEST(TurnoverGuard, BoundsTheTurnOfEveryDriver) {
   for (const StickMode mode : {StickMode::Raw, StickMode::Guarded, StickMode::Elastic}) {
     OnSlope robot;
     robot.start();
