@@ -63,7 +63,8 @@ constexpr std::uint8_t kUnknownCell = 255;
 
 /// Appends an empty layer. A controller adds its layers in the same order each tick, empty ones
 /// too, so that each reuses its own buffers. Reserves room for `values`, so that a tick with more
-/// values than the last does not allocate.
+/// values than the last does not allocate. Fill a layer before the next is added: the reference
+/// then no longer holds.
 inline Layer& add_layer(Recycled<Layer>& layers, const LayerInfo& info, std::size_t values = 0) {
   Layer& layer = layers.append();
   static_cast<LayerInfo&>(layer) = info;

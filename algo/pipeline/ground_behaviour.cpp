@@ -97,13 +97,13 @@ void GroundBehaviour::show(Telemetry& t) {
   if (!open) verdict_ += survey_.can_pass() ? ": can drive over it" : ": goes round it";
 
   Layer& edge = add_layer(t.layers, kEdge, 6 * RefusedEdges::kMost + 4);
-  Layer& text = add_layer(t.layers, kVerdict, 2);
   Vec2 at_W = t.observation.odometry.pose.position();
   if (const auto& ends = survey_.edge_W()) {
     put(edge, (*ends)[0], (*ends)[1]);
     at_W = ((*ends)[0] + (*ends)[1]) / 2;
   }
   survey_.refused().show(edge);
+  Layer& text = add_layer(t.layers, kVerdict, 2);
   put(text, at_W);
   text.text = verdict_;
 
