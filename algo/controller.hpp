@@ -25,6 +25,8 @@ struct ControlInput {
   const RobotSpec* spec = nullptr;  // hull, limits, delay
   /// True if a viewer wants grids in this tick; grids are large. Never changes a command.
   bool grids = false;
+  /// True if another behaviour has driven since the last call: the answer to it had no effect.
+  bool interrupted = false;
 };
 
 /// The run that a controller drives.

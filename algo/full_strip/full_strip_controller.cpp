@@ -108,6 +108,18 @@ void FullStripController::forget_way() {
   tight_since_.reset();
 }
 
+/// Forgets what it was doing and for how long, but not the strip: another behaviour has driven.
+void FullStripController::forget_attempts(const ControlInput& in) {
+  search_.reset();
+  maneuver_.reset();
+  back_until_ = -1;
+  escape_until_ = -1;
+  progress_W_ = in.odometry.pose.position();
+  progress_at_ = in.stamp;
+  way_W_ = progress_W_;
+  way_since_ = in.stamp;
+}
+
 double FullStripController::least_clearance() const {
   return stage_.hull().half_width() + kRoom[level_];
 }
@@ -473,11 +485,10 @@ void FullStripController::update(const ControlInput& in,
   if (!goal_W_ || *goal_W_ != in.goal->position_W) {
     goal_W_ = in.goal->position_W;
     forget_way();
+    forget_attempts(in);
     next_plan_ = in.stamp;
-    progress_W_ = in.odometry.pose.position();
-    progress_at_ = in.stamp;
-    way_W_ = progress_W_;
-    way_since_ = in.stamp;
+  } else if (in.interrupted) {
+    forget_attempts(in);
   }
   ease_last_leg(in.odometry.pose.position());
   stretch(in);

@@ -62,6 +62,7 @@ class FullStripController final : public Controller {
 
  private:
   void forget_way();
+  void forget_attempts(const ControlInput& in);
   void prepare(const ControlInput& in, const Parameters& parameters);
   void sense(const ControlInput& in);
   void forget_traces(const ControlInput& in);

@@ -100,6 +100,7 @@ void Pipeline::reset(const Pose2& start_W) {
   blinded_ = false;
   clearance_ = 0;
   joystick_ticks_ = 0;
+  driver_ = behaviours::kRest;
   std::ranges::fill(under_way_, Twist2{});
   grids_.reset();
   narrator_.reset();
@@ -280,12 +281,14 @@ void Pipeline::control(Telemetry& t) {
   resource.mission = t.mission;
   resource.joystick = intent_.stick;
   resource.manual = joystick_ticks_ > 0;
+  resource.interrupted = driver_ != behaviours::kRest && driver_ != behaviours::kAvoid;
   resource.grids = grids_wanted_ && grids_.due(t.observation.stamp);
   const Decision decision = coordinator_.decide(resource, t.output);
   if (resource.grids) grids_.thin(t.observation.stamp, t.output.layers);
   if (manual_ != nullptr) manual_->show(t);
   if (turnover_ != nullptr) turnover_->show(t);
   if (ground_ != nullptr) ground_->show(t);
+  driver_ = decision.winner;
   t.behaviour = decision.winner;
   t.limit = decision.limit;
   t.command = actuate(decision.twist, spec_);

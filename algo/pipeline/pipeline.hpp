@@ -94,6 +94,7 @@ class Pipeline {
   bool blinded_ = false;                // the newest scan is blinded
   double clearance_ = 0;                // [m] of the newest scan
   std::uint64_t joystick_ticks_ = 0;    // ticks for which the stick's value remains valid
+  Name driver_ = behaviours::kRest;     // the behaviour that drove in the tick before
   std::vector<Twist2> under_way_{};     // commands sent that do not act yet, oldest first
   GridThinning grids_{};
   bool grids_wanted_ = false;

@@ -37,6 +37,7 @@ Proposal AvoidBehaviour::propose(const Resource& in, ControlOutput& output) {
 Twist2 AvoidBehaviour::follow(const Resource& in, const SetGoal& pulled, ControlOutput& output) {
   ControlInput input = static_cast<const ControlInput&>(in);
   input.goal = pulled;
+  input.interrupted = false;
   controller_->update(input, *in.parameters, output);
   return output.twist;
 }

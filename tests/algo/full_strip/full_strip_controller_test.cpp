@@ -34,6 +34,7 @@ struct Drive {
   algo::Observation observation{};
   algo::FullStripController controller{};
   algo::ControlOutput out{};
+  bool interrupted = false;  // another behaviour keeps the robot where it is
 
   void tick(const Vec2& goal) {
     worlds::scan_world(pose, world, 8, scene.scan);
@@ -48,7 +49,13 @@ struct Drive {
     in.observation = &observation;
     in.spec = &spec;
     in.goal = algo::SetGoal{goal, std::nullopt};
+    in.interrupted = interrupted;
     controller.update(in, parameters, out);
+    if (interrupted) {
+      twist = {};
+      stamp += spec.period;
+      return;
+    }
     const double dv = spec.max_acceleration * spec.period;
     const double dw = spec.max_angular_acceleration * spec.period;
     twist = {twist.v + std::clamp(out.twist.v - twist.v, -dv, dv),
@@ -68,6 +75,21 @@ TEST(FullStrip, ASlowRobotIsNotReportedStuck) {
     EXPECT_LE(std::abs(drive.out.twist.v), 0.04 + 1e-12);
   }
   EXPECT_GT(drive.pose.x, 1.9);
+}
+
+TEST(FullStrip, TakesNoInterruptionForABlockage) {
+  Drive drive;
+  drive.controller.reset({});
+  for (int k = 0; k < 40; ++k) drive.tick({6, 0});
+  drive.interrupted = true;
+  for (int k = 0; k < 200; ++k) {  // 10 s without a step of its own
+    drive.tick({6, 0});
+    EXPECT_EQ(drive.out.state, algo::FullStripController::kFollowing) << "tick " << k;
+  }
+  drive.interrupted = false;
+  for (int k = 0; k < 40; ++k) drive.tick({6, 0});
+  EXPECT_EQ(drive.out.state, algo::FullStripController::kFollowing);
+  EXPECT_GT(drive.pose.x, 1.0);
 }
 
 TEST(FullStrip, StaysWithinItsLimitsEvenWhenEnclosed) {
