@@ -60,8 +60,10 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* Determinism.SeveralRobots\* FleetRobot.{EachRobot,SoItDoes}\* MapData.\*
-  Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\* TightPlaces.\*)
+long_tests=(AppTest.ABatchOfTenThousand\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
+  FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
+  Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
+  SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
 
 # Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
 # the others would only take time.
