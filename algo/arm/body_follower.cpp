@@ -1,0 +1,168 @@
+#include "algo/arm/body_follower.hpp"
+
+#include <algorithm>
+
+#include "algo/diff_drive.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kAtPoint = 1e-3;    // [m] a shorter way has no direction
+constexpr double kTurnFirst = 0.6;   // [rad] farther off its way the base turns on the spot
+constexpr double kSettle = 0.5;      // [s] in which an error of heading or place is driven away
+constexpr double kLook = 0.1;        // [s] between two looks at the next motion
+constexpr double kSameRoom = 1e-6;   // [m]
+constexpr double kSpeedMemory = 1;   // [s] of the speed that predicts when the body gets where
+constexpr double kLeastSpeed = 0.1;  // [m/s] of the same: a body that waits will go on
+
+/// The point of the strip's base path `way` [m] ahead of its start, and how much of the way is left
+/// behind the end when the path is shorter.
+struct PathPoint {
+  Vec2 point_W = Vec2::Zero();
+  double missing = 0;  // [m]
+};
+PathPoint point_ahead(std::span<const BodyFrames> frames, double way) {
+  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
+    const Vec2 a = frames[i].base_W.translation().head<2>();
+    const Vec2 b = frames[i + 1].base_W.translation().head<2>();
+    const double length = (b - a).norm();
+    if (way < length) return {a + (b - a) * way / length, 0};
+    way -= length;
+  }
+  return {frames.back().base_W.translation().head<2>(), way};
+}
+
+/// The base's part: towards `carrot`, and onto `heading` once it is there.
+Twist2 base_twist(const Pose2& pose,
+                  const PathPoint& carrot,
+                  double left,
+                  double heading,
+                  const BodyLimits& limits) {
+  const Vec2 way = carrot.point_W - pose.position();
+  const auto limited = [](double value, double most) { return std::clamp(value, -most, most); };
+  if (left < kAtPoint) {
+    return {0, limited(wrap_angle(heading - pose.heading) / kSettle, limits.max_omega)};
+  }
+  const double error = wrap_angle(std::atan2(way.y(), way.x()) - pose.heading);
+  const double omega = limited(error / kSettle, limits.max_omega);
+  if (std::abs(error) > kTurnFirst) return {0, omega};
+  return {std::min(limits.max_v, left / kSettle) * std::cos(error), omega};
+}
+
+/// Of the joints on the strip.
+struct ArmAhead {
+  ArmJoints q = ArmJoints::Zero();
+  double time = 0;  // [s] until the joints are there, at the base's speed and theirs
+};
+/// `time` [s] ahead when the base drives at `v` [m/s]; the goal's if the strip ends before.
+ArmAhead arm_ahead(std::span<const BodyJoints> strip,
+                   double v,
+                   const BodyLimits& limits,
+                   double time) {
+  double passed = 0;  // [s] with the joints as fast as the base's way asks,
+  double slowed = 0;  // and as fast as they may
+  for (std::size_t i = 0; i + 1 < strip.size(); ++i) {
+    const double way = (strip[i + 1] - strip[i]).head<2>().norm();
+    const ArmJoints change = arm_of(strip[i + 1]) - arm_of(strip[i]);
+    const double shortest = change.cwiseAbs().maxCoeff() / limits.max_rate;
+    const double planned = v > 0 && way > kAtPoint ? way / v : shortest;
+    if (passed + planned > time) {
+      const double part = (time - passed) / planned;
+      return {arm_of(strip[i]) + part * change, slowed + part * std::max(planned, shortest)};
+    }
+    passed += planned;
+    slowed += std::max(planned, shortest);
+  }
+  return {arm_of(strip.back()), slowed};
+}
+
+}  // namespace
+
+BodyFollower::BodyFollower(const MobileArm& body,
+                           const BodyLimits& limits,
+                           const BodyStripGains& gains,
+                           const FollowRules& rules)
+    : body_(body), limits_(limits), rules_(rules), strip_(body, gains) {}
+
+void BodyFollower::begin(std::span<const BodyJoints> nominal) {
+  strip_.lay(nominal);
+}
+
+BodyCommand BodyFollower::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
+  strip_.follow(now, std::max(speed_, kLeastSpeed));
+  strip_.relax(solids, rules_.sweeps);
+  const BodyCommand command = kept_clear(now, towards_strip(now), solids);
+  speed_ += std::min(dt / kSpeedMemory, 1.0) * (command.base.v - speed_);
+  return command;
+}
+
+BodyCommand BodyFollower::kept_clear(const BodyJoints& now,
+                                     const BodyCommand& wanted,
+                                     std::span<const Solid> solids) const {
+  BodyCommand arm_alone = wanted;
+  arm_alone.base = {};
+  BodyCommand base_alone = wanted;
+  base_alone.rates.setZero();
+  const BodyCommand rest{{}, ArmJoints::Zero(), FollowState::Waits};
+  const std::array candidates{wanted, arm_alone, base_alone, rest};
+  const BodyCommand* best = nullptr;
+  double best_room = 0;
+  for (const BodyCommand& candidate : candidates) {
+    const double room = least_room(now, candidate, solids);
+    if (room >= 0) return candidate;
+    if (best != nullptr && room <= best_room + kSameRoom) continue;
+    best = &candidate;
+    best_room = room;
+  }
+  return *best;
+}
+
+BodyCommand BodyFollower::towards_strip(const BodyJoints& now) const {
+  const auto configurations = strip_.configurations();
+  const BodyJoints& goal = strip_.goal();
+  const ArmJoints to_goal = arm_of(goal) - arm_of(now);
+  const double left = strip_.length();
+  const double turn = wrap_angle(goal[2] - now[2]);
+  BodyCommand command;
+  if (left < rules_.goal_reach && std::abs(turn) < rules_.goal_reach &&
+      to_goal.cwiseAbs().maxCoeff() < rules_.goal_reach) {
+    command.state = FollowState::Arrived;
+  }
+  const PathPoint carrot = point_ahead(strip_.frames(), std::min(rules_.lookahead, left));
+  command.base = base_twist(base_of(now), carrot, left, goal[2], limits_);
+
+  // The joints make for the strip's configuration at the end of the horizon, so that the motion
+  // which is proved clear ends there. Where they cannot keep up, the base slows down.
+  const ArmAhead ahead = arm_ahead(configurations, command.base.v, limits_, rules_.horizon);
+  const ArmJoints change = ahead.q - arm_of(now);
+  const double time = std::max(change.cwiseAbs().maxCoeff() / limits_.max_rate, rules_.horizon);
+  command.rates = change / time;
+  const double slower = std::min(1.0, rules_.horizon / std::max(time, ahead.time));
+  command.base.v *= slower;
+  command.base.omega *= slower;
+  return command;
+}
+
+double BodyFollower::least_room(const BodyJoints& now,
+                                const BodyCommand& command,
+                                std::span<const Solid> solids) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (double time = kLook; time < rules_.horizon + kLook / 2; time += kLook) {
+    const BodyFrames frames = body_frames(body_, moved(now, command, time));
+    least = std::min(least, self_clearance(body_, frames));
+    for (std::size_t k = 0; k < kBodyLinks; ++k) {
+      const LinkAxis link = link_axis(body_, frames, static_cast<BodyLink>(k));
+      for (const Solid& solid : solids) {
+        least = std::min(least, nearest(link, solid.after(time)).distance - rules_.margin);
+      }
+    }
+  }
+  return least;
+}
+
+BodyJoints moved(const BodyJoints& body, const BodyCommand& command, double dt) {
+  return body_joints(integrate_arc(base_of(body), command.base, dt),
+                     arm_of(body) + dt * command.rates);
+}
+
+}  // namespace algo

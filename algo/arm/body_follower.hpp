@@ -1,0 +1,72 @@
+// algo/arm/body_follower.hpp: drives base and arm along a strip that bends before what comes near.
+#pragma once
+
+#include <span>
+
+#include "algo/arm/body_strip.hpp"
+
+namespace algo {
+
+struct BodyLimits {
+  double max_v = 0.5;      // [m/s]
+  double max_omega = 0.8;  // [rad/s]
+  double max_rate = 1.2;   // [rad/s] of each joint
+};
+
+/// How a body follows its strip.
+struct FollowRules {
+  int sweeps = 20;            // in one tick
+  double lookahead = 0.4;     // [m] the base steers for the strip's point this far ahead
+  double margin = 0.05;       // [m] nearer to a solid than this nothing moves on
+  double horizon = 0.4;       // [s] the next motion must keep the margin for this long
+  double goal_reach = 0.005;  // [m, rad] the body is at its goal
+};
+
+/// Why the body moves as it does.
+enum class FollowState : std::uint8_t { Drives, Waits, Arrived };
+
+/// The command of one tick.
+struct BodyCommand {
+  Twist2 base{};
+  ArmJoints rates = ArmJoints::Zero();  // [rad/s]
+  FollowState state = FollowState::Drives;
+};
+
+class BodyFollower {
+ public:
+  BodyFollower(const MobileArm& body,
+               const BodyLimits& limits,
+               const BodyStripGains& gains = {},
+               const FollowRules& rules = {});
+
+  /// A way from the present configuration to the goal; see BodyStrip::lay().
+  void begin(std::span<const BodyJoints> nominal);
+
+  /// One tick of `dt` [s] for a body at `now`. Allocates nothing.
+  BodyCommand update(const BodyJoints& now, std::span<const Solid> solids, double dt);
+
+  const BodyStrip& strip() const { return strip_; }
+
+ private:
+  BodyCommand towards_strip(const BodyJoints& now) const;
+  /// `wanted` if it keeps the margin; else its arm or its base alone, or rest: the first that keeps
+  /// it, or the one with the most room.
+  BodyCommand kept_clear(const BodyJoints& now,
+                         const BodyCommand& wanted,
+                         std::span<const Solid> solids) const;
+  /// [m] Beyond the margin, while `command` goes on for the horizon.
+  double least_room(const BodyJoints& now,
+                    const BodyCommand& command,
+                    std::span<const Solid> solids) const;
+
+  MobileArm body_;
+  BodyLimits limits_;
+  FollowRules rules_;
+  BodyStrip strip_;
+  double speed_ = 0;  // [m/s] of the base, averaged
+};
+
+/// The body after `command` for `dt` [s], without slip or limits.
+BodyJoints moved(const BodyJoints& body, const BodyCommand& command, double dt);
+
+}  // namespace algo
