@@ -7,6 +7,7 @@
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
+#include "server/lab/reproduce/arm_study.hpp"
 #include "server/lab/reproduce/filter_study.hpp"
 #include "server/lab/reproduce/markdown.hpp"
 #include "server/lab/reproduce/masuda_study.hpp"
@@ -26,6 +27,7 @@ struct ReproduceCommand {
   std::string logs{};
   bool robhaz = false;
   bool masuda = false;
+  bool arm = false;
   std::string course{};
 };
 
@@ -61,6 +63,18 @@ int execute_robhaz_study(const ReproduceCommand& options) {
 /// Only Masuda et al.'s tables. A value outside its band is a failure.
 int execute_masuda_study(const ReproduceCommand& options) {
   const reproduce::MasudaStudy study = reproduce::study_masuda();
+  if (options.as_json) {
+    fmt::print("{}\n", to_json(study).dump(2));
+  } else {
+    fmt::print("{}", to_text(study));
+  }
+  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  return all_hold(study) ? kReached : kNotHeld;
+}
+
+/// Only the arm of the sibling thesis. A finding that fails is a failure.
+int execute_arm_study(const ReproduceCommand& options) {
+  const reproduce::ArmStudy study = reproduce::study_arm();
   if (options.as_json) {
     fmt::print("{}\n", to_json(study).dump(2));
   } else {
@@ -154,11 +168,15 @@ void add_reproduce_command(Command app, int& status) {
       "Detect the slopes, steps and trenches of Masuda et al. 2008 (Tables I to VI) instead");
   masuda.excludes(filter);
   masuda.excludes(robhaz);
+  const Option arm = command.add_flag(
+      "--arm", options->arm, "Carry the sibling thesis' arm of seven joints past posts instead");
+  for (const Option& other : {filter, robhaz, masuda}) arm.excludes(other);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
     filter.excludes(command.get_option(tables));
     robhaz.excludes(command.get_option(tables));
     masuda.excludes(command.get_option(tables));
+    arm.excludes(command.get_option(tables));
   }
   command.add_flag("--json", options->as_json, "Print JSON");
   command.footer("Exit status: 0 every limit or asserted finding held, 1 bad input, 3 one failed.");
@@ -166,6 +184,7 @@ void add_reproduce_command(Command app, int& status) {
     status = options->filter   ? execute_filter_study(*options)
              : options->robhaz ? execute_robhaz_study(*options)
              : options->masuda ? execute_masuda_study(*options)
+             : options->arm    ? execute_arm_study(*options)
                                : execute(*options);
   });
 }

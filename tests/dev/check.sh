@@ -60,7 +60,8 @@ verb_fmt() {
 # ---- sanitizers and fuzzing -----------------------------------------------------------------------
 
 # Long drives and heavy loads, whose code shorter tests run as well. A sanitizer would make minutes of each.
-long_tests=(AppTest.ABatchOfTenThousand\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
+long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\*
+  BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
   FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
   Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
   SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
