@@ -9,33 +9,42 @@ namespace {
 // a trace of 6e-17.
 constexpr std::array<int, kArmJoints> kTwist{-1, -1, 1, -1, 1, -1, 0};
 
-Eigen::Matrix3d link_rotation(double theta, int twist) {
+/// `before` times A_i, where twist is the sine of alpha_i.
+Pose3 after_joint(const Pose3& before, double theta, int twist, double along_z, double along_x) {
   const double c = std::cos(theta);
   const double s = std::sin(theta);
-  Eigen::Matrix3d turn;
+  const Vec3 x = before.linear().col(0);
+  const Vec3 y = before.linear().col(1);
+  const Vec3 z = before.linear().col(2);
+  Pose3 after;
+  after.makeAffine();
+  after.linear().col(0) = c * x + s * y;
   if (twist == 0) {
-    turn << c, -s, 0, s, c, 0, 0, 0, 1;
+    after.linear().col(1) = c * y - s * x;
+    after.linear().col(2) = z;
   } else {
-    turn << c, 0, twist * s, s, 0, -twist * c, 0, twist, 0;
+    after.linear().col(1) = twist * z;
+    after.linear().col(2) = twist * (s * x - c * y);
   }
-  return turn;
+  after.translation() = before.translation() + along_z * z + along_x * after.linear().col(0);
+  return after;
 }
 
 }  // namespace
 
-ArmFrames arm_frames(const ArmGeometry& geometry, const ArmJoints& q) {
+ArmFrames arm_frames(const ArmGeometry& geometry,
+                     const ArmJoints& q,
+                     const Pose3& shoulder,
+                     std::size_t joints) {
   const std::array<double, kArmJoints> along_z{
       0, 0, geometry.upper_arm, 0, geometry.forearm, 0, geometry.hand};
   const std::array<double, kArmJoints> along_x{
       geometry.shoulder_offset, 0, 0, geometry.elbow_offset, 0, 0, 0};
   ArmFrames frames;
-  frames.in_shoulder[0] = Pose3::Identity();
-  for (std::size_t i = 0; i < kArmJoints; ++i) {
-    const double theta = q[static_cast<Eigen::Index>(i)];
-    Pose3 link = Pose3::Identity();
-    link.linear() = link_rotation(theta, kTwist[i]);
-    link.translation() << along_x[i] * std::cos(theta), along_x[i] * std::sin(theta), along_z[i];
-    frames.in_shoulder[i + 1] = frames.in_shoulder[i] * link;
+  frames[0] = shoulder;
+  for (std::size_t i = 0; i < joints; ++i) {
+    frames[i + 1] =
+        after_joint(frames[i], q[static_cast<Eigen::Index>(i)], kTwist[i], along_z[i], along_x[i]);
   }
   return frames;
 }
@@ -44,7 +53,7 @@ ArmJacobian arm_jacobian(const ArmFrames& frames) {
   ArmJacobian jacobian;
   jacobian.topRows<3>() = arm_point_jacobian(frames, kArmJoints, frames.hand().translation());
   for (std::size_t i = 0; i < kArmJoints; ++i) {
-    jacobian.block<3, 1>(3, static_cast<Eigen::Index>(i)) = frames.in_shoulder[i].linear().col(2);
+    jacobian.block<3, 1>(3, static_cast<Eigen::Index>(i)) = frames[i].linear().col(2);
   }
   return jacobian;
 }
@@ -52,7 +61,7 @@ ArmJacobian arm_jacobian(const ArmFrames& frames) {
 PointJacobian arm_point_jacobian(const ArmFrames& frames, std::size_t joints, const Vec3& p) {
   PointJacobian jacobian = PointJacobian::Zero();
   for (std::size_t i = 0; i < std::min(joints, kArmJoints); ++i) {
-    const Pose3& before = frames.in_shoulder[i];
+    const Pose3& before = frames[i];
     jacobian.col(static_cast<Eigen::Index>(i)) =
         before.linear().col(2).cross(p - before.translation());
   }

@@ -94,10 +94,10 @@ std::optional<ArmJoints> arm_inverse(const ArmGeometry& geometry,
   const Vec3 elbow = circle->elbow(psi);
   ArmJoints q = present;
   solve_shoulder(elbow, sign_of(branch, ArmBranch::kShoulderBack), q);
-  const Eigen::Matrix3d upper = arm_frames(geometry, q).in_shoulder[2].linear();
+  const Eigen::Matrix3d upper = arm_frames(geometry, q, Pose3::Identity(), 2)[2].linear();
   solve_elbow(
       geometry, upper.transpose() * (wrist - elbow), sign_of(branch, ArmBranch::kElbowBack), q);
-  const Eigen::Matrix3d lower = arm_frames(geometry, q).in_shoulder[4].linear();
+  const Eigen::Matrix3d lower = arm_frames(geometry, q, Pose3::Identity(), 4)[4].linear();
   solve_wrist(lower.transpose() * hand.linear(), sign_of(branch, ArmBranch::kWristBack), q);
   return q.unaryExpr([](double angle) { return wrap_angle(angle); });
 }

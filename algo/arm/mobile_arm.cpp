@@ -44,9 +44,7 @@ std::string_view name(BodyLink link) {
 BodyFrames body_frames(const MobileArm& body, const BodyJoints& q) {
   BodyFrames frames;
   frames.base_W = Eigen::Translation3d(q[0], q[1], 0) * Eigen::AngleAxisd(q[2], Vec3::UnitZ());
-  const Pose3 shoulder_W = frames.base_W * body.mount_R;
-  const ArmFrames arm = arm_frames(body.arm, arm_of(q));
-  for (std::size_t i = 0; i <= kArmJoints; ++i) frames.arm_W[i] = shoulder_W * arm.in_shoulder[i];
+  frames.arm_W = arm_frames(body.arm, arm_of(q), frames.base_W * body.mount_R);
   return frames;
 }
 

@@ -39,12 +39,12 @@ std::string_view name(BodyLink link);
 
 struct BodyFrames {
   Pose3 base_W = Pose3::Identity();
-  std::array<Pose3, kArmJoints + 1> arm_W{};
+  ArmFrames arm_W{};
 
-  Vec3 shoulder() const { return arm_W[0].translation(); }
-  Vec3 elbow() const { return arm_W[3].translation(); }
-  Vec3 wrist() const { return arm_W[5].translation(); }
-  Vec3 hand() const { return arm_W[kArmJoints].translation(); }
+  Vec3 shoulder() const { return arm_W.shoulder(); }
+  Vec3 elbow() const { return arm_W.elbow(); }
+  Vec3 wrist() const { return arm_W.wrist(); }
+  Vec3 hand() const { return arm_W.hand().translation(); }
 };
 BodyFrames body_frames(const MobileArm& body, const BodyJoints& q);
 

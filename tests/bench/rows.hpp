@@ -16,5 +16,6 @@ void headless(Pass& pass);   // P9
 void streaming(Pass& pass);  // P14 P16 P17
 void timers(Pass& pass);     // P22
 void external(Pass& pass);   // P23
+void arms(Pass& pass);       // P24
 
 }  // namespace bench
