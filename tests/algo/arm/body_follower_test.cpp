@@ -15,27 +15,30 @@ using algo::MobileArm;
 using algo::Solid;
 
 constexpr double kReach = 0.70;
-constexpr double kTick = 0.05;  // [s]
+constexpr double kArmTick = 0.05;  // [s]
 
-Solid post(double x, double y, const algo::Vec2& velocity_W = algo::Vec2::Zero()) {
+Solid arm_post(double x, double y, const algo::Vec2& velocity_W = algo::Vec2::Zero()) {
   Solid solid = carried_arm::post_before_arm(kReach, 0);
   solid.centre_W = {x, y};
   solid.velocity_W = velocity_W;
   return solid;
 }
 
-struct Drive {
+struct BodyDrive {
   bool arrived = false;
   double seconds = 0;
   double clearance = 1e9;  // [m]
   BodyJoints end = BodyJoints::Zero();
 };
 
-Drive drive(BodyFollower& follower, BodyJoints q, std::vector<Solid> solids, double longest = 30) {
+BodyDrive drive_body(BodyFollower& follower,
+                     BodyJoints q,
+                     std::vector<Solid> solids,
+                     double longest = 30) {
   const MobileArm body;
-  Drive result;
-  for (; result.seconds < longest; result.seconds += kTick) {
-    const BodyCommand command = follower.update(q, solids, kTick);
+  BodyDrive result;
+  for (; result.seconds < longest; result.seconds += kArmTick) {
+    const BodyCommand command = follower.update(q, solids, kArmTick);
     EXPECT_LE(std::abs(command.base.v), algo::BodyLimits{}.max_v);
     EXPECT_LE(std::abs(command.base.omega), algo::BodyLimits{}.max_omega);
     EXPECT_LE(command.rates.cwiseAbs().maxCoeff(), algo::BodyLimits{}.max_rate + 1e-9);
@@ -43,9 +46,9 @@ Drive drive(BodyFollower& follower, BodyJoints q, std::vector<Solid> solids, dou
       result.arrived = true;
       break;
     }
-    q = moved(q, command, kTick);
+    q = moved(q, command, kArmTick);
     EXPECT_GE(limit_margin(body.arm, algo::arm_of(q)), 0);
-    for (Solid& solid : solids) solid = solid.after(kTick);
+    for (Solid& solid : solids) solid = solid.after(kArmTick);
     result.clearance =
         std::min(result.clearance, clearance(body, body_frames(body, q), solids).smallest());
   }
@@ -53,15 +56,15 @@ Drive drive(BodyFollower& follower, BodyJoints q, std::vector<Solid> solids, dou
   return result;
 }
 
-Drive carried_past(const std::vector<Solid>& solids) {
+BodyDrive carried_past(const std::vector<Solid>& solids) {
   const auto path = carried_arm::straight_path(kReach);
   BodyFollower follower(MobileArm{}, {});
   follower.begin(path);
-  return drive(follower, path.front(), solids);
+  return drive_body(follower, path.front(), solids);
 }
 
 TEST(BodyFollower, GoesToItsGoalWhenNothingIsNear) {
-  const Drive free = carried_past({});
+  const BodyDrive free = carried_past({});
   EXPECT_TRUE(free.arrived);
   EXPECT_LT((free.end - carried_arm::straight_path(kReach).back()).cwiseAbs().maxCoeff(), 0.006);
   EXPECT_LT(free.seconds, 12);
@@ -69,14 +72,15 @@ TEST(BodyFollower, GoesToItsGoalWhenNothingIsNear) {
 
 TEST(BodyFollower, PassesPostsThatStandComeCrossAndAreOvertaken) {
   const double y = -0.22 - kReach;
-  const std::vector<std::vector<Solid>> courses{
-      {post(2, y + 0.1)},
-      {post(4, y + 0.1, {-0.3, 0})},
-      {post(1, y + 0.1, {0.3, 0})},
-      {post(2, y - 1.2, {0, 0.3})},
-      {post(3, y + 0.1, {-0.3, 0}), post(2, y - 1.0, {0, 0.2}), post(3, y - 0.6, {-0.1, 0.1})}};
+  const std::vector<std::vector<Solid>> courses{{arm_post(2, y + 0.1)},
+                                                {arm_post(4, y + 0.1, {-0.3, 0})},
+                                                {arm_post(1, y + 0.1, {0.3, 0})},
+                                                {arm_post(2, y - 1.2, {0, 0.3})},
+                                                {arm_post(3, y + 0.1, {-0.3, 0}),
+                                                 arm_post(2, y - 1.0, {0, 0.2}),
+                                                 arm_post(3, y - 0.6, {-0.1, 0.1})}};
   for (std::size_t k = 0; k < courses.size(); ++k) {
-    const Drive past = carried_past(courses[k]);
+    const BodyDrive past = carried_past(courses[k]);
     EXPECT_TRUE(past.arrived) << "course " << k;
     EXPECT_GT(past.clearance, 0.05) << "course " << k;
   }
@@ -86,10 +90,10 @@ TEST(BodyFollower, WaitsBeforeAWayThatIsBlockedAndGoesOnOnceItIsFree) {
   const auto path = carried_arm::straight_path(kReach);
   BodyFollower follower(MobileArm{}, {});
   follower.begin(path);
-  const Drive blocked = drive(follower, path.front(), {post(2, 0)}, 20);
+  const BodyDrive blocked = drive_body(follower, path.front(), {arm_post(2, 0)}, 20);
   EXPECT_FALSE(blocked.arrived);
   EXPECT_GT(blocked.clearance, 0.04);
-  EXPECT_TRUE(drive(follower, blocked.end, {}).arrived);
+  EXPECT_TRUE(drive_body(follower, blocked.end, {}).arrived);
 }
 
 TEST(BodyFollower, MovesTheArmAloneWhereTheBaseStands) {
@@ -99,7 +103,7 @@ TEST(BodyFollower, MovesTheArmAloneWhereTheBaseStands) {
   for (int i = 0; i <= 10; ++i) path.push_back(from + (to - from) * i / 10.0);
   BodyFollower follower(MobileArm{}, {});
   follower.begin(path);
-  const Drive there = drive(follower, from, {});
+  const BodyDrive there = drive_body(follower, from, {});
   EXPECT_TRUE(there.arrived);
   EXPECT_LT((there.end - to).cwiseAbs().maxCoeff(), 0.006);
 }
@@ -110,11 +114,11 @@ TEST(BodyFollower, TheArmDrawsBackAtItsGoalFromWhatComes) {
   follower.begin(path);
   const MobileArm body;
   BodyJoints q = path.back();
-  std::vector<Solid> solids{post(q[0] - 1.5, -0.22 - kReach + 0.1, {0.3, 0})};
+  std::vector<Solid> solids{arm_post(q[0] - 1.5, -0.22 - kReach + 0.1, {0.3, 0})};
   double least = 1e9;
-  for (double time = 0; time < 8; time += kTick) {
-    q = moved(q, follower.update(q, solids, kTick), kTick);
-    for (Solid& solid : solids) solid = solid.after(kTick);
+  for (double time = 0; time < 8; time += kArmTick) {
+    q = moved(q, follower.update(q, solids, kArmTick), kArmTick);
+    for (Solid& solid : solids) solid = solid.after(kArmTick);
     least = std::min(least, clearance(body, body_frames(body, q), solids).smallest());
   }
   EXPECT_GT(least, 0.05);
@@ -124,10 +128,10 @@ TEST(BodyFollower, ATickAllocatesNothing) {
   const auto path = carried_arm::straight_path(kReach);
   BodyFollower follower(MobileArm{}, {});
   follower.begin(path);
-  const std::array solids{post(2, -0.9)};
+  const std::array solids{arm_post(2, -0.9)};
   BodyJoints q = path.front();
   const auto before = allocations::count();
-  for (int n = 0; n < 60; ++n) q = moved(q, follower.update(q, solids, kTick), kTick);
+  for (int n = 0; n < 60; ++n) q = moved(q, follower.update(q, solids, kArmTick), kArmTick);
   EXPECT_EQ(allocations::count(), before);
   EXPECT_LT(follower.strip().size(), path.size());
 }

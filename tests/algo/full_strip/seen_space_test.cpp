@@ -48,7 +48,7 @@ TEST(SeenSpace, RollsWithTheRobot) {
   EXPECT_FALSE(seen.seen({500, 0}));
 }
 
-algo::RobotSpec rectangle() {
+algo::RobotSpec seen_rectangle() {
   algo::RobotSpec spec;
   spec.half_length = 0.254;
   spec.half_width = 0.215;
@@ -77,7 +77,7 @@ TEST(SeenSpace, ARoundRobotAlwaysTurnsAndBacksOnlyWhereItWas) {
 }
 
 TEST(SeenSpace, ARectangleTurnsAtItsStartAndThenInSeenSpace) {
-  const algo::HullCheck hull(rectangle());
+  const algo::HullCheck hull(seen_rectangle());
   SeenSpace seen;
   hull.take_place(seen, {0, 0, 0});
   for (double heading = -3; heading < 3; heading += 0.1) {
