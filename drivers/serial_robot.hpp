@@ -116,9 +116,4 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   bool memory_locked_ = false;
 };
 
-/// The base of a file, running; it keeps waiting for a missing device.
-std::unique_ptr<Base> open_base(const BaseEntry& entry);
-/// Opens every device of `file`; each keeps waiting while it is missing.
-std::shared_ptr<SerialRobot> open_robot(const RobotFile& file);
-
 }  // namespace drivers

@@ -11,7 +11,7 @@
 #include <spdlog/sinks/ringbuffer_sink.h>
 #include <spdlog/spdlog.h>
 
-#include "drivers/serial_robot.hpp"
+#include "drivers/open_robot.hpp"
 #include "server/cli/cli.hpp"
 #include "server/cli/signals.hpp"
 #include "server/run/hardware.hpp"

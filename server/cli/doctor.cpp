@@ -14,10 +14,11 @@
 #include "algo/dazzle.hpp"
 #include "algo/perceive.hpp"
 #include "drivers/lms200_device.hpp"
+#include "drivers/open_robot.hpp"
 #include "drivers/psd_device.hpp"
+#include "drivers/published_senses.hpp"
 #include "drivers/real_time.hpp"
 #include "drivers/serial_port.hpp"
-#include "drivers/serial_robot.hpp"
 
 namespace server {
 namespace {

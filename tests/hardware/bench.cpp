@@ -9,6 +9,7 @@
 #include "tests/folders.hpp"
 #include <fmt/format.h>
 
+#include "drivers/open_robot.hpp"
 #include "server/cli/cli.hpp"
 #include "server/emulate/clock.hpp"
 #include "server/record/recorder.hpp"
