@@ -73,7 +73,8 @@ struct RobotFile {
   std::vector<std::string> warnings{};  // for the user; no errors
 };
 
-/// Where the sixteen sonars of a Pioneer 3-DX sit, front array then rear, by their numbers.
+/// Where the sixteen sonars of a Pioneer 3-DX sit, seen from the middle of its wheels: front array
+/// then rear, by their numbers.
 std::vector<algo::Pose2> pioneer_sonars();
 
 /// Throws RobotFileError.

@@ -195,7 +195,8 @@ ComediSetup read_card(Section& in) {
   return setup;
 }
 
-void read_track(Section& in, algo::RobotSpec& spec) {
+/// Where the wheels stand, which must be within the hull.
+void read_wheels(Section& in, algo::RobotSpec& spec) {
   const double track = in.number("track", {0.05, 1.5});
   const double width = 2 * (spec.half_length > 0 ? spec.half_width : spec.radius);
   if (track > width) {
@@ -206,6 +207,8 @@ void read_track(Section& in, algo::RobotSpec& spec) {
                     width));
   }
   spec.half_track = track / 2;
+  const double half_length = spec.half_length > 0 ? spec.half_length : spec.radius;
+  spec.axle = in.number_or("axle", 0, {-half_length, half_length});
 }
 
 }  // namespace
@@ -244,13 +247,17 @@ void read_base(Section& in, RobotFile& robot) {
   const std::string type = in.text("type");
   base.port = in.port();
   base.battery_low = in.number_or("battery_low", 0, {0, 60});
-  read_track(in, robot.spec);
+  read_wheels(in, robot.spec);
   if (type == "pioneer") {
     p2os::PioneerSetup setup = read_pioneer(in, robot.limits);
     setup.half_track = robot.spec.half_track;
     setup.limits = robot.limits;
     base.watchdog = setup.watchdog;
-    if (setup.sonar) base.sonar_mounts_R = pioneer_sonars();
+    if (setup.sonar) {
+      for (const algo::Pose2& mount : pioneer_sonars()) {
+        base.sonar_mounts_R.push_back(algo::compose({robot.spec.axle, 0, 0}, mount));
+      }
+    }
     base.setup = setup;
   } else if (type == "roboteq") {
     roboteq::RoboteqSetup setup = read_roboteq(in);

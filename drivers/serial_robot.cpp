@@ -29,16 +29,6 @@ bool needs_a_person(Halt halt) {
          halt == Halt::BatteryLow;
 }
 
-/// `pose` in the frame of `origin`; both are given in the same frame.
-algo::Pose2 seen_from(const algo::Pose2& origin, const algo::Pose2& pose) {
-  const algo::Vec2 d = pose.position() - origin.position();
-  const double c = std::cos(origin.heading);
-  const double s = std::sin(origin.heading);
-  return {c * d.x() + s * d.y(),
-          -s * d.x() + c * d.y(),
-          algo::wrap_angle(pose.heading - origin.heading)};
-}
-
 /// [s] How long `condition` has held. Sets `since` when it begins, clears it when it ends.
 bool lasts(bool condition, double now, double time, double& since) {
   if (!condition) since = 0;
@@ -83,7 +73,7 @@ void SerialRobot::reset(algo::Observation& observation) {
   late_until_ = battery_low_since_ = 0;
   wheels_.restart();
   missed_.store(0);
-  origin_ = base_->state().pose;
+  origin_ = at_R(base_->state().pose);
   {
     const std::lock_guard lock(mutex_);
     lateness_ = {};
@@ -315,6 +305,11 @@ void SerialRobot::observe_floor(algo::Observation& observation) {
   observation.floor = ranges;
 }
 
+/// A base reports the pose of the middle of its wheels.
+algo::Pose2 SerialRobot::at_R(const algo::Pose2& wheels) const {
+  return algo::compose(wheels, {-file_.spec.axle, 0, 0});
+}
+
 void SerialRobot::observe_base(const BaseState& base,
                                double now,
                                algo::Observation& observation) const {
@@ -322,8 +317,8 @@ void SerialRobot::observe_base(const BaseState& base,
   // Extrapolates the pose from the base's last report to now: in a turn, a tenth of a second moves
   // the nearest obstacle's bearing enough to change a controller's choice.
   const double age = base.running ? std::clamp(now - base.stamp, 0.0, kBaseTimeout) : 0.0;
-  const algo::Pose2 pose = algo::integrate_arc(base.pose, base.twist, age);
-  observation.odometry = {stamp + age, seen_from(origin_, pose), base.twist};
+  const algo::Pose2 pose = at_R(algo::integrate_arc(base.pose, base.twist, age));
+  observation.odometry = {stamp + age, algo::pose_step(origin_, pose), base.twist};
   if (base.counts) {
     observation.encoders = algo::Encoders{stamp, (*base.counts)[0], (*base.counts)[1]};
   }

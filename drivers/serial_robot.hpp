@@ -84,6 +84,7 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   void wait_for_deadline(double now);
   void observe(algo::Observation& observation);
   void observe_base(const BaseState& base, double now, algo::Observation& observation) const;
+  algo::Pose2 at_R(const algo::Pose2& wheels) const;
   void observe_floor(algo::Observation& observation);
   std::string words(algo::Halt halt, const std::vector<algo::DeviceReport>& devices) const;
 
@@ -95,7 +96,7 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   PublishedSenses published_;
 
   double epoch_ = 0;              // [s] steady clock at the run's time 0
-  algo::Pose2 origin_{};          // W in the base's own odometry frame
+  algo::Pose2 origin_{};          // of R at the start, in the base's own odometry frame
   double deadline_ = 0;           // [s]
   double late_until_ = 0;         // [s]
   double battery_low_since_ = 0;  // [s]; 0: it is not

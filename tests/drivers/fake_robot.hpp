@@ -156,7 +156,7 @@ inline RobotFile fake_robot_file() {
 
 /// A robot of fake devices, whose clock is `time`.
 struct FakeRobot {
-  explicit FakeRobot(bool with_floor = false) {
+  explicit FakeRobot(bool with_floor = false, const RobotFile& file = fake_robot_file()) {
     auto own_scanner = std::make_unique<FakeScanner>(time);
     auto own_base = std::make_unique<FakeBase>(time);
     auto own_clock = std::make_unique<FakeClock>(time);
@@ -168,11 +168,8 @@ struct FakeRobot {
     std::unique_ptr<FakeFloor> own_floor;
     if (with_floor) own_floor = std::make_unique<FakeFloor>(time);
     floor = own_floor.get();
-    robot = std::make_unique<SerialRobot>(fake_robot_file(),
-                                          std::move(scanners),
-                                          std::move(own_base),
-                                          std::move(own_clock),
-                                          std::move(own_floor));
+    robot = std::make_unique<SerialRobot>(
+        file, std::move(scanners), std::move(own_base), std::move(own_clock), std::move(own_floor));
     robot->reset(seen);
   }
   FakeRobot(const FakeRobot&) = delete;

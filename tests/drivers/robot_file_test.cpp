@@ -156,6 +156,14 @@ TEST(RobotFile, WheelsStandWithinTheHull) {
               HasSubstr("my.toml:9: [base] track is 0.8 m, and the hull is 0.7 m wide"));
 }
 
+TEST(RobotFile, TheWheelsMayStandAheadOfTheHullsMiddleOrBehindIt) {
+  EXPECT_EQ(parse_robot(with("track = 0.5", "track = 0.5"), "my.toml").spec.axle, 0);
+  EXPECT_EQ(parse_robot(with("track = 0.5", "track = 0.5\naxle = -0.09"), "my.toml").spec.axle,
+            -0.09);
+  EXPECT_EQ(error_of(with("track = 0.5", "track = 0.5\naxle = 0.4")),
+            "my.toml:10: [base] axle must be -0.35 to 0.35, not 0.4");
+}
+
 TEST(RobotFile, QuarterDegreesNeedAFastLine) {
   const auto laser = [](const char* keys) {
     return with("port = \"/dev/lms-front\"", std::string("port = \"/dev/lms-front\"\n") + keys);

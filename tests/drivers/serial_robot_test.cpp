@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,21 @@ TEST(SerialRobot, PoseIsExtrapolatedToTheTick) {
   EXPECT_NEAR(f.seen.odometry.stamp, f.seen.stamp, 1e-9);
   f.steps(2);  // only as long as a report is valid
   EXPECT_NEAR(f.seen.odometry.pose.heading, 0.5 * SerialRobot::kBaseTimeout, 1e-9);
+}
+
+/// The base reports its wheels; R swings about them.
+TEST(SerialRobot, ThePoseIsOfTheHullsMiddleWhereverTheWheelsAre) {
+  RobotFile file = fake_robot_file();
+  file.spec.axle = -0.09;
+  FakeRobot f(false, file);
+  f.base->now.pose = {3, 4, 0.7};
+  f.robot->reset(f.seen);
+  EXPECT_EQ(f.seen.odometry.pose, algo::Pose2{});
+  f.base->now.pose.heading += std::numbers::pi / 2;
+  f.step();
+  EXPECT_NEAR(f.seen.odometry.pose.x, -0.09, 1e-12);
+  EXPECT_NEAR(f.seen.odometry.pose.y, 0.09, 1e-12);
+  EXPECT_NEAR(f.seen.odometry.pose.heading, std::numbers::pi / 2, 1e-12);
 }
 
 TEST(SerialRobot, SilentScannerStopsItWithinThreePeriodsAndOneTick) {
