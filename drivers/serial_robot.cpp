@@ -203,9 +203,8 @@ void SerialRobot::latch(Halt halt, double now) {
     too_long = lasts(halt != Halt::None && halt != Halt::MotorsOff, now, kRearm, halted_since_);
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
-  const char* advice = halt == Halt::StopButton ? "" : " Arm it again when all is well.";
-  // The sentence stays until a person arms, and by then the fault may be over.
-  disarm("Motors off. What happened: " + algo::explain(halt).why + advice);
+  // Shown from the end of the fault until a person arms: until then words() names the fault itself.
+  disarm("Motors off. What happened: " + health().trouble + " It is over now. Arm it again.");
 }
 
 /// `command`, restricted to what is allowed now.

@@ -43,8 +43,10 @@ TEST(FloorRobot, SilenceStopsItWithinThreeReadings) {
   f.floor->silent = false;
   f.steps(1);
   EXPECT_FALSE(f.armed());
-  EXPECT_THAT(f.robot->health().trouble,
-              HasSubstr("The sensors that look at the floor are silent."));
+  EXPECT_EQ(
+      f.robot->health().trouble,
+      "Motors off. What happened: The floor sensors at /dev/psd: It has been silent. It is over "
+      "now. Arm it again.");
 }
 
 TEST(FloorRobot, AFaultStopsItInTheTickThatDetectsItAndIsNamed) {
@@ -60,6 +62,13 @@ TEST(FloorRobot, AFaultStopsItInTheTickThatDetectsItAndIsNamed) {
   f.steps(1);
   EXPECT_FALSE(f.armed());
   EXPECT_THAT(*f.robot->arm(), HasSubstr("It cannot be armed now."));
+  f.floor->faulty = false;
+  f.step();
+  EXPECT_EQ(
+      f.robot->health().trouble,
+      "Motors off. What happened: The floor sensors at /dev/psd: The near left sensor is stuck. "
+      "It is over now. Arm it again.");
+  EXPECT_EQ(f.robot->arm(), std::nullopt);
 }
 
 TEST(FloorRobot, AFaultOfTheFloorSensorsIsNotTakenForOneOfTheScanner) {
