@@ -31,8 +31,11 @@ Hold gate(const GateInput& in, const Observation& observation, const Command& co
   if (tilt && is_overturned(tilt->roll, tilt->pitch)) return holds::kOverturned;
   const bool leaves = in.by_hand && leaves_bumpers(observation, command.base.v);
   if (observation.bumper_pressed() && !leaves) return holds::kBumper;
-  if (in.tilt_stale) return holds::kStaleTilt;
-  // Written so that a NaN stamp counts as stale.
+  // Written so that a NaN stamp counts as stale, here and below.
+  if (in.needs_tilt && !in.tilt_stamp) return holds::kNoTilt;
+  if (in.needs_tilt && !(observation.stamp - *in.tilt_stamp <= in.tilt_timeout)) {
+    return holds::kStaleTilt;
+  }
   const bool fresh = in.scan_stamp && observation.stamp - *in.scan_stamp <= in.scan_timeout;
   if (!fresh) return in.blinded ? holds::kDazzled : holds::kStaleScan;
   return in.hidden ? holds::kDazzled : Hold{};

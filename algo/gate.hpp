@@ -25,8 +25,7 @@ inline constexpr ParameterInfo kTiltTimeout{
     .max = 2.0,
     .step = 0.05,
     .initial = 0.2,
-    .help =
-        "A robot that may turn over is held when its inclinometer's reading is older than this."};
+    .help = "A robot that drives by its inclinometer is held when its newest reading is older."};
 
 struct GateInput {
   bool stopped = false;                // Stop is latched
@@ -35,7 +34,9 @@ struct GateInput {
   bool blinded = false;     // most beams of the newest scan measured nothing: it is ignored
   bool hidden = false;      // the command leads into a dazzled scanner's blind cone
   bool by_hand = false;     // a person drives, and may back away from a contact
-  bool tilt_stale = false;  // the robot may turn over, and its inclination is not known
+  bool needs_tilt = false;  // the robot drives by its inclinometer
+  double tilt_timeout = 0;  // [s]
+  std::optional<double> tilt_stamp{};  // [s] of its newest reading; empty before the first
 };
 
 namespace holds {
@@ -55,7 +56,11 @@ inline constexpr Hold kDazzled{
 inline constexpr Hold kStaleTilt{
     "stale_tilt",
     "Waiting for the inclinometer",
-    "Its newest reading is too old. Without it the robot could turn over."};
+    "Its newest reading is too old. Without it the robot does not know how it leans."};
+inline constexpr Hold kNoTilt{
+    "no_tilt",
+    "Waiting for the inclinometer",
+    "No reading has come yet. Without it the robot does not know how it leans."};
 inline constexpr Hold kNotFinite{
     "not_finite", "Holding still", "A sensor or the controller gave a value that is not a number."};
 /// The robot holds itself; observation.halt says why.

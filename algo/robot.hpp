@@ -54,7 +54,8 @@ struct RobotSpec {
   bool raw_stick = false;  // its stick may be obeyed without a guard
   std::vector<ChannelInfo> channels{};  // of further sensors
   double axle = 0;                      // [m] x of the drive axle in R
-  std::optional<Stance> stance{};       // if the robot may turn over: it then needs an inclinometer
+  bool inclinometer = false;            // has one, and is held without its readings
+  std::optional<Stance> stance{};       // if the robot may turn over: as if `inclinometer` were set
   std::optional<LineCamera> line{};
   std::optional<FloorSensors> floor{};
   std::optional<ClimbLimits> climbs{};  // if they were measured

@@ -106,6 +106,7 @@ bool is_published(Section& top, const char* key) {
 
 void read_ground(Section& top, RobotFile& robot) {
   robot.published = {is_published(top, "inclinometer"), is_published(top, "laser_line")};
+  robot.spec.inclinometer = robot.published.inclinometer;
   if (robot.published.line) read_line_camera(top.table("line_camera"), robot.spec);
   if (!robot.published.line && top.has("line_camera")) {
     top.fail("line_camera", "needs laser_line = \"published\": no driver reads a camera");

@@ -97,6 +97,7 @@ void Pipeline::reset(const Pose2& start_W) {
   scene_ = {};
   sensing_.reset();
   scan_stamp_.reset();
+  tilt_stamp_.reset();
   blinded_ = false;
   clearance_ = 0;
   joystick_ticks_ = 0;
@@ -220,6 +221,8 @@ void Pipeline::sense(Telemetry& t) {
     t.scene.scan.stamp = scene_.scan.stamp;
   }
   if (!spec_.has_laser) sense_sonar(t);
+  const auto& tilt = t.observation.inclinometer;
+  if (tilt && std::isfinite(tilt->roll) && std::isfinite(tilt->pitch)) tilt_stamp_ = tilt->stamp;
   t.scene.fresh = scene_.fresh;
   t.scene.echoes = scene_.echoes;
   t.scene.left = scene_.left;
@@ -302,7 +305,9 @@ void Pipeline::hold(Telemetry& t) {
   in.blinded = blinded_;
   in.hidden = t.command.base.v > 0 && hidden(scene_.scan, spec_);
   in.by_hand = t.behaviour == behaviours::kManual;
-  in.tilt_stale = turnover_ != nullptr && turnover_->stale(t.observation.stamp, intent_.parameters);
+  in.needs_tilt = spec_.drives && (spec_.stance || spec_.inclinometer);
+  in.tilt_timeout = intent_.parameters[kTiltTimeout];
+  in.tilt_stamp = tilt_stamp_;
   t.hold = gate(in, t.observation, t.command);
   if (!t.hold) return;
   t.command = {};

@@ -92,6 +92,7 @@ class Pipeline {
   bool by_sonar_ = false;               // the sonar ring replaces the scanner
   std::optional<double> scan_stamp_{};  // or of the newest sonar reading, if by_sonar_
   bool blinded_ = false;                // the newest scan is blinded
+  std::optional<double> tilt_stamp_{};  // of the inclinometer's newest reading
   double clearance_ = 0;                // [m] of the newest scan
   std::uint64_t joystick_ticks_ = 0;    // ticks for which the stick's value remains valid
   Name driver_ = behaviours::kRest;     // the behaviour that drove in the tick before

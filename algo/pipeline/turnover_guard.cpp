@@ -42,7 +42,6 @@ void TurnoverGuard::reset(const Pose2& /*start_W*/) {
   prediction_.reset();
   line_R_.clear();
   line_W_.clear();
-  stamp_.reset();
   measured_ = {};
   sent_ = 0;
   turn_ = {-spec_.max_omega, spec_.max_omega};
@@ -67,7 +66,6 @@ void TurnoverGuard::sense(const Resource& in) {
   const Observation& seen = *in.observation;
   const auto& reading = seen.inclinometer;
   if (reading && std::isfinite(reading->roll) && std::isfinite(reading->pitch)) {
-    stamp_ = reading->stamp;
     measured_ = {reading->roll, reading->pitch};
   }
   const Odometry& odometry = in.odometry;
@@ -169,10 +167,6 @@ Proposal TurnoverGuard::limits_of_tick(const Resource& in) const {
     if (in.joystick.forward < 0) set.reason = limits::kBlindBack;
   }
   return out;
-}
-
-bool TurnoverGuard::stale(double stamp, const Parameters& parameters) const {
-  return !stamp_ || !(stamp - *stamp_ <= parameters[kTiltTimeout]);
 }
 
 double TurnoverGuard::eased(double wanted, const Odometry& odometry) {

@@ -78,8 +78,6 @@ class TurnoverGuard final : public Behaviour {
 
   /// The robot's spec, with the acceleration that this slope allows: for planning a brake.
   const RobotSpec& spec() const { return spec_; }
-  /// True if the newest reading of the inclinometer is older than its parameter at `stamp`.
-  bool stale(double stamp, const Parameters& parameters) const;
   /// [m/s] The speed to command in this tick, towards `wanted` no faster than the slope allows. A
   /// brake begins at the real speed where the robot has not reached the commanded one.
   double eased(double wanted, const Odometry& odometry);
@@ -97,9 +95,8 @@ class TurnoverGuard final : public Behaviour {
   RobotSpec spec_{};
   double max_acceleration_ = 0;  // [m/s2] of the robot itself
   TiltPrediction prediction_;
-  std::vector<Vec3> line_R_{};     // of the newest image
-  std::vector<Vec3> line_W_{};     // the same, for the page
-  std::optional<double> stamp_{};  // [s] of the newest reading
+  std::vector<Vec3> line_R_{};  // of the newest image
+  std::vector<Vec3> line_W_{};  // the same, for the page
   Attitude measured_{};
   double sent_ = 0;  // [m/s] the speed last commanded
 

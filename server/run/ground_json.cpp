@@ -60,6 +60,7 @@ void read_part(const JsonReader& in,
 
 void write_ground(const algo::RobotSpec& robot, json& out) {
   if (robot.axle != 0) out["axle"] = robot.axle;
+  if (robot.inclinometer) out["inclinometer"] = true;
   put_part(kSpecStance, robot.stance, "stance", out);
   put_part(kSpecCamera, robot.line, "line_camera", out);
   if (robot.line) {
@@ -73,6 +74,7 @@ void write_ground(const algo::RobotSpec& robot, json& out) {
 void read_ground(const JsonReader& in, algo::RobotSpec& robot) {
   constexpr std::uint64_t kMostPixels = 65536;
   robot.axle = in.number_or("axle", 0);
+  robot.inclinometer = in.flag_or("inclinometer", false);
   read_part(in, "stance", kSpecStance, robot.stance);
   read_part(in, "line_camera", kSpecCamera, robot.line);
   if (robot.line) {

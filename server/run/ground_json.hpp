@@ -9,8 +9,8 @@
 
 namespace server {
 
-/// Adds `axle`, `stance`, `line_camera`, `floor_sensors` and `climbs` to `out`, in metres, radians
-/// and pixels, each only if the robot has it.
+/// Adds `axle`, `inclinometer`, `stance`, `line_camera`, `floor_sensors` and `climbs` to `out`, in
+/// metres, radians and pixels, each only if the robot has it.
 void write_ground(const algo::RobotSpec& robot, nlohmann::json& out);
 
 /// Reads them without limits: values that a run was once accepted with are read unchanged. Throws

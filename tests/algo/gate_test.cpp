@@ -34,6 +34,19 @@ TEST_F(GateTest, HoldsWhenTheScanIsStaleOrNeverCame) {
   EXPECT_EQ(gate(input, observation, command), holds::kStaleScan);
 }
 
+TEST_F(GateTest, HoldsARobotThatDrivesByItsInclinometerUntilAReadingIsFresh) {
+  input.tilt_timeout = 0.2;
+  EXPECT_FALSE(gate(input, observation, command)) << "it has none";
+  input.needs_tilt = true;
+  EXPECT_EQ(gate(input, observation, command), holds::kNoTilt);
+  input.tilt_stamp = 9.79;  // 0.21 s old
+  EXPECT_EQ(gate(input, observation, command), holds::kStaleTilt);
+  input.tilt_stamp = kNaN;
+  EXPECT_EQ(gate(input, observation, command), holds::kStaleTilt);
+  input.tilt_stamp = 9.9;
+  EXPECT_FALSE(gate(input, observation, command));
+}
+
 TEST_F(GateTest, HoldsOnAnythingThatIsNotANumber) {
   for (double* field : {&observation.odometry.pose.x,
                         &observation.odometry.pose.y,

@@ -34,6 +34,7 @@ const std::string kPsd =
 TEST(RobotFileGround, WithoutItsTablesThereAreNoSenses) {
   const RobotFile robot = parse_robot(with(""), "my.toml");
   EXPECT_FALSE(robot.floor || robot.spec.floor || robot.spec.climbs);
+  EXPECT_FALSE(robot.spec.inclinometer);
 }
 
 TEST(RobotFileGround, FiveLinesDescribeTheFloorSensors) {
@@ -82,6 +83,7 @@ TEST(RobotFileGround, PublishedSensorsAreNamed) {
                 "pitch_deg = 20\nbaseline = 0.2\nangle_deg = 30\nfocal = 600\n"),
       "my.toml");
   EXPECT_TRUE(robot.published.inclinometer && robot.published.line);
+  EXPECT_TRUE(robot.spec.inclinometer) << "its silence holds the robot";
   ASSERT_TRUE(robot.spec.stance && robot.spec.line);
   EXPECT_EQ(*robot.spec.stance, (algo::Stance{0.9, 0.5, 0.4}));
   EXPECT_EQ(robot.spec.line->columns, 640);

@@ -211,7 +211,27 @@ TEST(TurnoverGuard, AStaleInclinometerHoldsTheRobot) {
   never.start();
   never.tilt_comes = false;
   never.drive(raw(1, 0), 0.1, {});
-  EXPECT_EQ(never.t.hold, algo::holds::kStaleTilt);
+  EXPECT_EQ(never.t.hold, algo::holds::kNoTilt);
+  EXPECT_EQ(never.t.words.why,
+            "No reading has come yet. Without it the robot does not know how it leans.");
+}
+
+/// It needs no guard against turning over, but measures slopes by its inclinometer.
+TEST(TurnoverGuard, ALowRobotWithAnInclinometerIsHeldWithoutItToo) {
+  OnSlope robot;
+  robot.spec.stance.reset();
+  robot.spec.inclinometer = true;
+  robot.start();
+  robot.tilt_comes = false;
+  robot.drive(raw(1, 0), 0.1, {});
+  EXPECT_EQ(robot.t.hold, algo::holds::kNoTilt);
+  robot.tilt_comes = true;
+  robot.drive(raw(1, 0), 0.5, {});
+  EXPECT_FALSE(robot.t.hold);
+  robot.tilt_comes = false;
+  robot.drive(raw(1, 0), 0.5, {});
+  EXPECT_EQ(robot.t.hold, algo::holds::kStaleTilt);
+  EXPECT_EQ(robot.t.command.base, algo::Twist2{});
 }
 
 algo::LineCamera camera() {

@@ -18,6 +18,7 @@ algo::RobotSpec plain_robot() {
 TEST(GroundJson, EverySenseComesBackBitForBit) {
   algo::RobotSpec robot = plain_robot();
   robot.axle = -0.09;
+  robot.inclinometer = true;
   robot.stance = algo::Stance{0.9, 1.0 / 3.0, 0.35};
   robot.line = algo::LineCamera{0.1, 0.45, 0.123456789012345, 0.2, 0.7, 600, 640, 480};
   robot.floor = algo::FloorSensors{0.2, 0.15, 0.1, 0.785398163397448, 0.08};
@@ -25,6 +26,7 @@ TEST(GroundJson, EverySenseComesBackBitForBit) {
   const auto document = nlohmann::json::parse(to_json(robot).dump());
   const algo::RobotSpec back = robot_spec_from_json(document);
   EXPECT_EQ(back.axle, robot.axle);
+  EXPECT_TRUE(back.inclinometer);
   EXPECT_EQ(back.stance, robot.stance);
   EXPECT_EQ(back.line, robot.line);
   EXPECT_EQ(back.floor, robot.floor);
@@ -33,12 +35,13 @@ TEST(GroundJson, EverySenseComesBackBitForBit) {
 
 TEST(GroundJson, ARobotWithoutThemHasNoneInItsDocument) {
   const nlohmann::json document = to_json(plain_robot());
-  for (const char* key : {"axle", "stance", "line_camera", "floor_sensors", "climbs"}) {
+  for (const char* key :
+       {"axle", "inclinometer", "stance", "line_camera", "floor_sensors", "climbs"}) {
     EXPECT_FALSE(document.contains(key)) << key;
   }
   const algo::RobotSpec back = robot_spec_from_json(document);
   EXPECT_EQ(back.axle, 0);
-  EXPECT_FALSE(back.stance || back.line || back.floor || back.climbs);
+  EXPECT_FALSE(back.inclinometer || back.stance || back.line || back.floor || back.climbs);
 }
 
 TEST(GroundJson, AnIncompleteSenseIsRefused) {
