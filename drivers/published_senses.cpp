@@ -81,13 +81,22 @@ void PublishedSenses::observe(double epoch, algo::Observation& observation) {
   for (const algo::LinePixel& pixel : pixels_) observation.line.pixels.push_back(pixel);
 }
 
+/// Call with the lock, as report_of().
+bool PublishedSenses::recent(const Taken& newest) const {
+  return newest.count > 0 && clock_.now() - newest.stamp < kRecent;
+}
+
+bool PublishedSenses::tilt_silent() const {
+  const std::lock_guard lock(mutex_);
+  return inclinometer_ && !recent(tilt_);
+}
+
 algo::DeviceReport PublishedSenses::report_of(const char* name, const Taken& newest) const {
-  constexpr double kRecent = 0.5;  // [s]
   const double age = clock_.now() - newest.stamp;
   algo::DeviceReport out;
   out.name = name;
   out.port = "published";
-  out.well = newest.count > 0 && age < kRecent;
+  out.well = recent(newest);
   out.sentence = newest.count == 0 ? "Nobody has published a reading yet."
                  : out.well        ? "Well."
                                    : fmt::format("Its newest reading is {:.1f} s old.", age);

@@ -24,6 +24,7 @@ struct PublishedEntry;
 class PublishedSenses final : public algo::Publishing {
  public:
   static constexpr double kOldest = 10;             // [s] age of a reading that is still taken
+  static constexpr double kRecent = 0.5;            // [s] age of one whose sensor counts as well
   static constexpr std::size_t kMostPixels = 4096;  // of an image's columns, and so of a line
   // Their names in reports.
   static constexpr const char* kInclinometer = "inclinometer";
@@ -48,6 +49,8 @@ class PublishedSenses final : public algo::Publishing {
   /// time 0. Allocates nothing once the line has had all its points.
   void observe(double epoch, algo::Observation& observation);
   void report(std::vector<algo::DeviceReport>& devices) const;
+  /// Whether the inclinometer is published, and no reading of the last kRecent has come.
+  bool tilt_silent() const;
 
  private:
   struct Taken {
@@ -55,6 +58,7 @@ class PublishedSenses final : public algo::Publishing {
     std::uint64_t count = 0;  // readings
   };
   std::optional<std::string> take(bool expected, const char* what, double age, Taken& newest);
+  bool recent(const Taken& newest) const;
   algo::DeviceReport report_of(const char* name, const Taken& newest) const;
 
   const bool inclinometer_;

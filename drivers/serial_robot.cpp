@@ -36,6 +36,13 @@ bool lasts(bool condition, double now, double time, double& since) {
   return condition && now - since > time;
 }
 
+/// What the inclinometer, which is one of `devices`, says of itself.
+std::string tilt_words(const std::vector<algo::DeviceReport>& devices) {
+  const auto tilt =
+      std::ranges::find(devices, PublishedSenses::kInclinometer, &algo::DeviceReport::name);
+  return "The inclinometer: " + tilt->sentence;
+}
+
 }  // namespace
 
 SerialRobot::SerialRobot(RobotFile file,
@@ -171,6 +178,11 @@ Halt SerialRobot::judge(const BaseState& base, double now) {
     disarm("The robot touched something: a bumper was hit. Look at it, then arm it again.");
     armed = false;
   }
+  // Its process may send again at any time, and the robot must not drive off by itself then.
+  if (armed && published_.tilt_silent()) {
+    disarm_after(tilt_words(health().devices));
+    armed = false;
+  }
   if (!wheels_obey(base)) {
     if (armed) {
       disarm(
@@ -203,8 +215,13 @@ void SerialRobot::latch(Halt halt, double now) {
     too_long = lasts(halt != Halt::None && halt != Halt::MotorsOff, now, kRearm, halted_since_);
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
-  // Shown from the end of the fault until a person arms: until then words() names the fault itself.
-  disarm("Motors off. What happened: " + health().trouble + " It is over now. Arm it again.");
+  disarm_after(health().trouble);
+}
+
+/// The sentence is shown from the end of the fault until a person arms. As long as the fault lasts,
+/// words() names it.
+void SerialRobot::disarm_after(const std::string& fault) {
+  disarm("Motors off. What happened: " + fault + " It is over now. Arm it again.");
 }
 
 /// `command`, restricted to what is allowed now.
@@ -392,6 +409,7 @@ std::optional<std::string> SerialRobot::arm() {
   if (halt != Halt::Disarmed && halt != Halt::None) {
     return "It cannot be armed now. " + health().trouble;
   }
+  if (published_.tilt_silent()) return "It cannot be armed now. " + health().trouble;
   if (auto refusal = watchdog_refusal(base)) return refusal;
   const double now = clock_->now();
   base_->enable(true);
@@ -449,6 +467,8 @@ algo::HealthReport SerialRobot::health() const {
 
 /// The sentence of the device at fault, if there is one.
 std::string SerialRobot::words(Halt halt, const std::vector<algo::DeviceReport>& devices) const {
+  const bool off = halt == Halt::Disarmed || (halt == Halt::None && !armed_);
+  if (off && published_.tilt_silent()) return tilt_words(devices);
   // Between a disarming and the next tick nothing else says why.
   if (halt == Halt::None) return armed_ ? "" : disarmed_because_;
   const bool waits_for_a_person = halt == Halt::Disarmed || (halt == Halt::LateTick && !armed_);

@@ -78,6 +78,7 @@ class SerialRobot final : public algo::Robot, public algo::Arming {
   bool bumper_hit(const BaseState& base, double now);
   bool came_late(double now);
   void latch(algo::Halt halt, double now);
+  void disarm_after(const std::string& fault);
   algo::Twist2 permitted(const algo::Command& command, const BaseState& base) const;
   std::optional<std::string> watchdog_refusal(const BaseState& base) const;
   std::string watchdog_warning(const BaseState& base) const;

@@ -101,6 +101,34 @@ TEST(PublishedSenses, ALineIsObservedOnce) {
   EXPECT_TRUE(p.seen().line.fresh);
 }
 
+/// One that drove on whenever its process is started again would drive off by itself.
+TEST(PublishedSenses, ARobotIsArmedWithAnInclinometerOnly) {
+  RobotFile file = fake_robot_file();
+  file.published.inclinometer = true;
+  FakeRobot f(false, file);
+  const std::string never = "The inclinometer: Nobody has published a reading yet.";
+  f.step();
+  EXPECT_EQ(f.robot->health().trouble, never);
+  EXPECT_EQ(f.robot->arm(), "It cannot be armed now. " + never);
+  EXPECT_EQ(f.robot->publishing()->publish_tilt(0, 0, 0), std::nullopt);
+  f.arm();
+  f.steps(0.3);
+  EXPECT_TRUE(f.moves());
+  f.steps(0.3);
+  EXPECT_FALSE(f.moves());
+  EXPECT_FALSE(f.armed());
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("The inclinometer: Its newest reading is 0."));
+  EXPECT_EQ(f.robot->publishing()->publish_tilt(0, 0, 0), std::nullopt);
+  f.step();
+  EXPECT_FALSE(f.moves());
+  EXPECT_EQ(
+      f.robot->health().trouble,
+      "Motors off. What happened: The inclinometer: Its newest reading is 0.5 s old. It is over "
+      "now. Arm it again.");
+  f.arm();
+  EXPECT_TRUE(f.moves());
+}
+
 TEST(PublishedSenses, ARobotOfRealDevicesObservesThem) {
   FakeRobot f;
   EXPECT_EQ(f.robot->publishing(), nullptr);

@@ -96,7 +96,9 @@ class GoodBase final : public drivers::Base {
 
 class HardwareAppTest : public AppTest {
  protected:
-  HardwareAppTest() : HardwareAppTest(std::make_shared<std::atomic<bool>>(false)) {}
+  /// `published`: a process beside the robot publishes its inclination.
+  explicit HardwareAppTest(bool published = false)
+      : HardwareAppTest(std::make_shared<std::atomic<bool>>(false), published) {}
 
   json hardware() const { return get("/session").at("hardware"); }
   std::string disarmed_why() const { return hardware().at("disarmed").at("why"); }
@@ -134,10 +136,10 @@ class HardwareAppTest : public AppTest {
   std::shared_ptr<std::atomic<bool>> button_;
 
  private:
-  explicit HardwareAppTest(std::shared_ptr<std::atomic<bool>> button)
-      : AppTest(spec(button)), button_(std::move(button)) {}
+  HardwareAppTest(std::shared_ptr<std::atomic<bool>> button, bool published)
+      : AppTest(spec(button, published)), button_(std::move(button)) {}
 
-  static RunSpec spec(const std::shared_ptr<std::atomic<bool>>& button) {
+  static RunSpec spec(const std::shared_ptr<std::atomic<bool>>& button, bool published) {
     drivers::RobotFile file;
     file.spec.name = "made-up";
     file.spec.period = 0.05;
@@ -148,7 +150,7 @@ class HardwareAppTest : public AppTest {
     file.spec.max_omega = file.limits.turn = 1;
     file.spec.max_acceleration = file.spec.max_angular_acceleration = 1;
     file.lasers.push_back({.name = "front laser", .port = "none"});
-    file.published.inclinometer = true;
+    file.published.inclinometer = file.spec.inclinometer = published;
     std::vector<std::unique_ptr<drivers::Scanner>> scanners;
     scanners.push_back(std::make_unique<OpenField>());
     return hardware_spec(
@@ -275,7 +277,11 @@ TEST_F(HardwareAppTest, StopsWithoutAnOperatorWhoCouldStopIt) {
   EXPECT_TRUE(eventually([&] { return way() == 0; }));
 }
 
-TEST_F(HardwareAppTest, AProcessBesideTheRobotPublishesItsInclination) {
+struct LeaningAppTest : HardwareAppTest {
+  LeaningAppTest() : HardwareAppTest(true) {}
+};
+
+TEST_F(LeaningAppTest, AProcessBesideTheRobotPublishesItsInclination) {
   const auto publish = [&](const std::string& body) {
     return ask("POST", "/session/published", body);
   };
@@ -296,6 +302,7 @@ TEST_F(HardwareAppTest, AProcessBesideTheRobotPublishesItsInclination) {
   }));
   EXPECT_EQ(get("/session").at("watchers"), 0) << "it is no sign of life";
   EXPECT_TRUE(eventually([&] { return inclinometer().at("well") == false; }));
+  expect_problem(control("arm"), 409, "The inclinometer: Its newest reading is");
 
   expect_problem(publish(R"({"inclinometer":{"roll":0.1,"pitch":0,"age":5}})"), 409, "newer");
   expect_problem(publish(R"({"line":{"pixels":[[1,2]]}})"), 409, "laser line is published");
