@@ -1,6 +1,7 @@
 // drivers/psd_machine.cpp: takes lines, judges them, and reports in words.
 #include "drivers/psd_machine.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@ constexpr double kWake = 0.1;     // [s] between two looks at a silent line
 constexpr double kBroken = 0.25;  // [s] after which the rest of a line does not come any more
 constexpr double kStormShare = 0.5;
 constexpr double kCalmShare = 0.1;
-constexpr double kWeight = 0.1;  // of a line in the share of damaged ones
+constexpr double kWeight = 0.1;  // of a line in the share of damaged ones, and in the mean interval
+constexpr double kSlow = 2 * kPeriod;     // [s] mean interval of an adapter that is too slow
+constexpr double kLongest = 4 * kPeriod;  // [s] a longer one is a silence, and counts as this
 
 }  // namespace
 
@@ -23,6 +26,7 @@ void PsdMachine::opened(double now, unsigned baud) {
   open_ = true;
   running_ = storm_ = false;
   damaged_ = 0;
+  interval_ = kPeriod;
   stray_ = 0;
   port_baud_ = baud;
   last_ = heard_ = 0;
@@ -55,6 +59,7 @@ void PsdMachine::take_line(double now, ByteView line) {
   ++readings_;
   newest_ = reading;
   running_ = true;
+  if (last_ > 0) note_interval(now - last_);
   last_ = now;
   stuck_.see(reading);
   clock_.see(now, reading.clock_ms);
@@ -69,6 +74,10 @@ void PsdMachine::take_line(double now, ByteView line) {
 void PsdMachine::note_damage(bool damaged) {
   damaged_ += kWeight * ((damaged ? 1.0 : 0.0) - damaged_);
   storm_ = damaged_ > (storm_ ? kCalmShare : kStormShare);
+}
+
+void PsdMachine::note_interval(double seconds) {
+  interval_ += kWeight * (std::min(seconds, kLongest) - interval_);
 }
 
 void PsdMachine::advance(double now) {
@@ -95,6 +104,7 @@ PsdMachine::Fault PsdMachine::fault(double now) const {
   if (!running_) return Fault::None;  // the robot sees that it is not
   if (storm_) return Fault::BadLine;
   if (clock_.jump(now)) return Fault::ClockJumped;
+  if (interval_ > kSlow) return Fault::Slow;
   if (stuck_.frozen()) return Fault::Frozen;
   if (stuck_.stuck()) return Fault::Stuck;
   return Fault::None;
@@ -111,6 +121,11 @@ std::string PsdMachine::words(Fault fault, double now) const {
     case Fault::ClockJumped:
       return fmt::format("Its clock jumped by {:.1f} s: it restarted, or it held readings back.",
                          clock_.jump(now).value_or(0));
+    case Fault::Slow:
+      return fmt::format(
+          "{:.0f} readings a second arrive instead of {:.0f}: its program is too slow.",
+          1 / interval_,
+          1 / kPeriod);
     case Fault::Frozen:
       return fmt::format(
           "None of its four counts has changed for {} readings: its converter stands still.",

@@ -56,10 +56,11 @@ class PsdMachine final : public Machine {
   static constexpr double kSilent = 1.0;  // [s] without a line: it is not running
 
   /// Why readings that come are not to be trusted.
-  enum class Fault : std::uint8_t { None, BadLine, ClockJumped, Frozen, Stuck };
+  enum class Fault : std::uint8_t { None, BadLine, ClockJumped, Slow, Frozen, Stuck };
 
   void take_line(double now, ByteView line);
   void note_damage(bool damaged);
+  void note_interval(double seconds);
   double volts(std::size_t sensor) const;
   Fault fault(double now) const;
   std::string words(Fault fault, double now) const;
@@ -71,12 +72,13 @@ class PsdMachine final : public Machine {
   ClockWatch clock_{};
   bool open_ = false;
   bool running_ = false;
-  bool storm_ = false;       // too many lines are damaged, until far fewer are
-  double damaged_ = 0;       // recent share of damaged lines, 0 to 1
-  std::uint64_t stray_ = 0;  // bytes outside of lines since the last line
-  unsigned port_baud_ = 0;   // [bit/s]; 0: unknown
-  double last_ = 0;          // [s] of the newest line; 0: none yet
-  double heard_ = 0;         // [s] of the newest byte; 0: none yet
+  bool storm_ = false;         // too many lines are damaged, until far fewer are
+  double damaged_ = 0;         // recent share of damaged lines, 0 to 1
+  double interval_ = kPeriod;  // [s] recent mean from one line to the next
+  std::uint64_t stray_ = 0;    // bytes outside of lines since the last line
+  unsigned port_baud_ = 0;     // [bit/s]; 0: unknown
+  double last_ = 0;            // [s] of the newest line; 0: none yet
+  double heard_ = 0;           // [s] of the newest byte; 0: none yet
   double wake_ = std::numeric_limits<double>::infinity();
   std::string trouble_ = "The port has not been opened yet.";
   Reading newest_{};

@@ -27,7 +27,7 @@ std::uint16_t Emulator::count_of(double metres) {
 
 void Emulator::work(double now) {
   if (next_ == -emulators::kNever) next_ = started_ = now;
-  for (; next_ <= now; next_ += kPeriod) {
+  for (; next_ <= now; next_ += period_) {
     const double clock = next_ - started_ + clock_offset_;
     reading_.clock_ms = options_.first_ms + static_cast<std::uint32_t>(std::llround(1000 * clock));
     for (std::size_t i = 0; i < kSensors; ++i) {

@@ -18,7 +18,7 @@ struct EmulatorOptions {
   std::uint64_t seed = 1;
 };
 
-/// Sends a line every kPeriod and listens to nothing.
+/// Sends a line every kPeriod, unless it is slow, and listens to nothing.
 class Emulator final : public emulators::Device {
  public:
   explicit Emulator(const EmulatorOptions& options = {});
@@ -29,6 +29,8 @@ class Emulator final : public emulators::Device {
   void restart(double now, double boot_time);
   /// The count of `sensor` stands still until stick() is called with false.
   void stick(std::size_t sensor, bool stuck) { stuck_[sensor] = stuck; }
+  /// A line comes `times` as seldom.
+  void slow(double times) { period_ = times * kPeriod; }
   /// Moves its clock by `seconds`.
   void jump(double seconds) { clock_offset_ += seconds; }
   std::uint64_t lines() const { return lines_; }
@@ -50,6 +52,7 @@ class Emulator final : public emulators::Device {
   double next_ = -emulators::kNever;  // [s] of the next line
   double started_ = 0;                // [s] when its clock was first_ms
   double clock_offset_ = 0;           // [s]
+  double period_ = kPeriod;           // [s] from one line to the next
   std::uint64_t lines_ = 0;
 };
 

@@ -1,6 +1,7 @@
 // server/emulate/emulation.cpp: assembles devices, lines and world, and injects faults.
 #include "server/emulate/emulation.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <limits>
@@ -86,6 +87,7 @@ enum class Verb : std::uint8_t {
   Encoder,
   Stick,
   Jump,
+  Slow,
 };
 enum class Who : std::uint8_t { World, Any, Scanner, Base, Psd };
 
@@ -96,7 +98,7 @@ struct VerbRow {
   std::string_view help{};
 };
 
-constexpr std::array<VerbRow, 22> kVerbs{{
+constexpr std::array<VerbRow, 23> kVerbs{{
     {Verb::Truth, "truth", Who::World, "print the robot's pose and counts of scans as JSON"},
     {Verb::Drop, "drop", Who::Any, "P: lose each byte with this probability"},
     {Verb::Flip, "flip", Who::Any, "P: flip a bit of each byte with this probability"},
@@ -125,6 +127,7 @@ constexpr std::array<VerbRow, 22> kVerbs{{
      Who::Psd,
      "N: the count of floor sensor N stands still; 5: all; 0: none"},
     {Verb::Jump, "jump", Who::Psd, "SECONDS: move the clock of the floor sensors' adapter"},
+    {Verb::Slow, "slow", Who::Psd, "N: the floor sensors' adapter sends N times as seldom"},
 }};
 
 const VerbRow& verb_of(const std::string& word) {
@@ -275,6 +278,7 @@ void inject_psd(const VerbRow& row,
   const auto held = connection.lock();
   if (row.verb == Verb::Restart) device.restart(machine_time(), value);
   if (row.verb == Verb::Jump) device.jump(value);
+  if (row.verb == Verb::Slow) device.slow(std::max(1.0, value));
   if (row.verb != Verb::Stick) return;
   constexpr double kAll = drivers::psd::kSensors + 1;
   for (std::size_t i = 0; i < drivers::psd::kSensors; ++i) {

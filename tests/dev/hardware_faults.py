@@ -23,6 +23,7 @@ AWAKE = 0.05  # [s] for threads to wake up on a busy machine
 SCANS = 3 * 0.0267 + 0.02 + 0.015  # [s] three scan periods, a USB chip, the line
 FLOOR = 3 * 0.0383 + 0.02 + 0.004  # [s] three of the floor sensors' periods, a USB chip, the line
 STUCK = 20 * 0.0383  # [s] readings until a count passes for stuck
+SLOW = 11 * 3 * 0.0383  # [s] eleven slow lines at most until the adapter passes for slow
 REPORT = {"roboteq": 0.165, "p2os": 0.1 + 0.065, "analog": 0.026}  # [s] between two reports, plus the transfer
 SETTLED = 1.0  # [s] after the limit, without new motion
 
@@ -33,6 +34,7 @@ def limit(expected, base):
         "goes on": None,
         "scans": SCANS + TICK + AWAKE,
         "floor": FLOOR + TICK + AWAKE,
+        "slow": SLOW + FLOOR + TICK + AWAKE,
         "stuck": STUCK + FLOOR + TICK + AWAKE,
         "base": 0.3 + TICK + AWAKE,
         "report": REPORT[base] + TICK + AWAKE,

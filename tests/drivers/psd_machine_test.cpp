@@ -123,6 +123,21 @@ TEST(PsdMachine, ADamagedLineIsSaidOnceItIsBad) {
   EXPECT_TRUE(bench.well()) << bench.sentence();
 }
 
+TEST(PsdMachine, ASlowAdapterIsSaid) {
+  Bench bench;
+  bench.line.run(1);
+  bench.emulator.slow(1.5);
+  EXPECT_EQ(bench.faulty_after(20), kNothing) << bench.sentence();
+  for (const double times : {2.5, 3.0, 20.0}) {
+    bench.emulator.slow(times);
+    EXPECT_LT(bench.faulty_after(8), 5) << times;
+    EXPECT_THAT(bench.sentence(), HasSubstr("readings a second arrive instead of 26")) << times;
+    bench.emulator.slow(1);
+    bench.line.run(1);
+    EXPECT_TRUE(bench.well()) << bench.sentence();
+  }
+}
+
 TEST(PsdMachine, AStuckSensorIsNamed) {
   for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
     Bench bench;
