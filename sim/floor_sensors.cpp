@@ -6,8 +6,6 @@
 #include <numbers>
 #include <span>
 
-#include <Eigen/Geometry>
-
 #include "algo/terrain/psd_curve.hpp"
 
 namespace sim {
@@ -20,15 +18,6 @@ constexpr double kSight = 3.0;                         // [m] farther surfaces g
 constexpr double kGlitch = 0.10;                       // [m] largest
 constexpr double kCosine45 = std::numbers::sqrt2 / 2;  // cos 45 degrees
 constexpr double kMostGrazing = 0.05;                  // cosine of the incidence, at least
-
-/// R in W: turned by the heading, then the pitch, then the roll (algo::Tilt).
-Eigen::Matrix3d rotation(const algo::Pose2& pose_W, const algo::Tilt& tilt) {
-  using Eigen::AngleAxisd;
-  using Eigen::Vector3d;
-  return (AngleAxisd(pose_W.heading, Vector3d::UnitZ()) *
-          AngleAxisd(tilt.pitch, Vector3d::UnitY()) * AngleAxisd(tilt.roll, Vector3d::UnitX()))
-      .toRotationMatrix();
-}
 
 }  // namespace
 
@@ -59,43 +48,32 @@ FloorSensorModel::FloorSensorModel(const FloorSensorConfig& config, std::uint64_
 void FloorSensorModel::sense(const Surroundings& around, algo::Observation& observation) {
   if (!every_.due(around.stamp)) return;
   const VehicleState& vehicle = around.vehicle;
-  observation.floor = read(around.stamp, vehicle.pose_W, {vehicle.z, vehicle.roll, vehicle.pitch});
+  observation.floor = read(around.stamp, vehicle.pose_W, vehicle.tilt());
 }
 
 algo::FloorRanges FloorSensorModel::read(double stamp,
                                          const algo::Pose2& pose_W,
                                          const algo::Tilt& tilt) {
-  const Eigen::Matrix3d R_W = rotation(pose_W, tilt);
-  const algo::Vec3 origin_W(pose_W.x, pose_W.y, tilt.z);
-  const double sine = std::sin(config_.angle);
-  const double cosine = std::cos(config_.angle);
-  const algo::Vec3 across_R(sine, 0, cosine);
-  const auto range = [&](double y, double raised) {
-    const algo::Vec3 from_R = algo::Vec3(config_.x, y, config_.height) + raised * across_R;
-    return range_from({.from_W = origin_W + R_W * from_R,
-                       .way_W = R_W * algo::Vec3(cosine, 0, -sine),
-                       .across_W = R_W * across_R});
-  };
-  const double y = config_.half_spacing;
+  const auto beams = floor_beams(geometry_of(config_), space_pose(pose_W, tilt));
   algo::FloorRanges out{.stamp = stamp};
-  out.far_left = range(y, config_.separation);
-  out.far_right = range(-y, config_.separation);
-  out.near_left = range(y, 0);
-  out.near_right = range(-y, 0);
+  out.far_left = range_along(beams[0]);
+  out.far_right = range_along(beams[1]);
+  out.near_left = range_along(beams[2]);
+  out.near_right = range_along(beams[3]);
   return out;
 }
 
 /// The light spot ends at several distances; the sensor sees the middle of its light, which is a
 /// mean of voltages.
-double FloorSensorModel::range_from(const Place& place) {
+double FloorSensorModel::range_along(const FloorBeam& beam) {
   double voltage = 0;
   double least_cosine = 1;
   for (int k = 0; k < kFloorRays; ++k) {
     const double off = config_.spot * (static_cast<double>(k) / (kFloorRays - 1) - 0.5);
-    const auto hit = solids_.cast(place.from_W + off * place.across_W, place.way_W, kSight);
+    const auto hit = solids_.cast(beam.from_W + off * beam.across_W, beam.way_W, kSight);
     if (!hit) continue;
     voltage += algo::psd_voltage(hit->range) / kFloorRays;
-    least_cosine = std::min(least_cosine, -hit->normal_W.dot(place.way_W));
+    least_cosine = std::min(least_cosine, -hit->normal_W.dot(beam.way_W));
   }
   double spread = config_.noise;
   if (config_.grazing) {

@@ -1,12 +1,12 @@
 // sim/floor_sensors.hpp: the model of four infrared distance sensors that look at the floor ahead.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 
 #include "algo/observation.hpp"
+#include "sim/floor_beams.hpp"
 #include "sim/random.hpp"
 #include "sim/sensor.hpp"
 #include "sim/solid_caster.hpp"
@@ -33,12 +33,7 @@ class FloorSensorModel final : public Sensor {
   algo::FloorRanges read(double stamp, const algo::Pose2& pose_W, const algo::Tilt& tilt);
 
  private:
-  struct Place {
-    algo::Vec3 from_W{0, 0, 0};
-    algo::Vec3 way_W{0, 0, 0};
-    algo::Vec3 across_W{0, 0, 0};  // in the upright plane of the beam, at right angles to it
-  };
-  double range_from(const Place& place);
+  double range_along(const FloorBeam& beam);
 
   FloorSensorConfig config_{};
   SolidCaster solids_{};

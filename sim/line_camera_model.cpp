@@ -20,17 +20,6 @@ algo::Vec3 pitched(double angle, const algo::Vec3& p) {
   return {c * p.x() + s * p.z(), p.y(), -s * p.x() + c * p.z()};
 }
 
-/// `way_R` in W, for a robot of that heading, pitch and roll.
-algo::Vec3 turned(const VehicleState& vehicle, const algo::Vec3& way_R) {
-  const double cr = std::cos(vehicle.roll);
-  const double sr = std::sin(vehicle.roll);
-  const algo::Vec3 level = pitched(
-      vehicle.pitch, {way_R.x(), cr * way_R.y() - sr * way_R.z(), sr * way_R.y() + cr * way_R.z()});
-  const double c = std::cos(vehicle.pose_W.heading);
-  const double s = std::sin(vehicle.pose_W.heading);
-  return {c * level.x() - s * level.y(), s * level.x() + c * level.y(), level.z()};
-}
-
 }  // namespace
 
 std::optional<std::string> defect(const LineCameraConfig& config) {
@@ -63,13 +52,15 @@ void LineCameraModel::sense(const Surroundings& around, algo::Observation& obser
   dark_.draw(kColumns, [this](std::size_t k) { missing_.at(k) = true; });
   observation.line.fresh = true;
   observation.line.stamp = around.stamp;
+  const VehicleState& vehicle = around.vehicle;
+  const SpacePose robot = space_pose(vehicle.pose_W, vehicle.tilt());
   const double half_rows = config_.rows / 2.0;
   for (std::size_t k = 0; k < kColumns; ++k) {
     // Whole pixels, the leftmost first.
     const double share = 0.5 - (static_cast<double>(k) + 0.5) / static_cast<double>(kColumns);
     const double u = std::round(share * config_.columns);
     if (missing_.at(k)) continue;
-    const auto row = row_of(u, around.vehicle);
+    const auto row = row_of(u, robot);
     if (!row) continue;
     const double v = std::round(*row + config_.noise * errors_.at(k));
     if (std::abs(v) > half_rows) continue;
@@ -78,18 +69,17 @@ void LineCameraModel::sense(const Surroundings& around, algo::Observation& obser
 }
 
 /// v of the line in the column `u`, exactly; nothing if the camera does not see it there.
-std::optional<double> LineCameraModel::row_of(double u, const VehicleState& vehicle) const {
+std::optional<double> LineCameraModel::row_of(double u, const SpacePose& robot) const {
   const algo::Vec3 camera_R(config_.x, 0, config_.height);
-  const algo::Vec3 robot_W(vehicle.pose_W.x, vehicle.pose_W.y, vehicle.z);
   const auto to_world = [&](const algo::Vec3& p_C) {
-    return algo::Vec3(robot_W + turned(vehicle, camera_R + pitched(config_.pitch, p_C)));
+    return algo::Vec3(robot.origin_W + robot.axes_W * (camera_R + pitched(config_.pitch, p_C)));
   };
   const algo::Vec3 camera_W = to_world({0, 0, 0});
   const algo::Vec3 laser_W = to_world({0, 0, config_.baseline});
   // Where the column's plane, y = x u / f, cuts the laser's: all on one ray from the laser.
   const algo::Vec3 along_C =
       algo::Vec3(1, u / config_.focal, -1 / std::tan(config_.angle)).normalized();
-  const algo::Vec3 along_W = turned(vehicle, pitched(config_.pitch, along_C));
+  const algo::Vec3 along_W = robot.axes_W * pitched(config_.pitch, along_C);
   const auto lit = caster_.cast(laser_W, along_W, kReach);
   if (!lit) return std::nullopt;
   const algo::Vec3 p_C = algo::Vec3(0, 0, config_.baseline) + lit->range * along_C;

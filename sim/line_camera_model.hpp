@@ -10,6 +10,7 @@
 #include "sim/random.hpp"
 #include "sim/sensor.hpp"
 #include "sim/solid_caster.hpp"
+#include "sim/space_pose.hpp"
 
 namespace sim {
 
@@ -32,7 +33,7 @@ class LineCameraModel final : public Sensor {
   void sense(const Surroundings& around, algo::Observation& observation) override;
 
  private:
-  std::optional<double> row_of(double u, const VehicleState& vehicle) const;
+  std::optional<double> row_of(double u, const SpacePose& robot) const;
 
   LineCameraConfig config_{};
   SolidCaster caster_{};

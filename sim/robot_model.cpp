@@ -8,6 +8,7 @@
 
 #include "algo/ring_axes.hpp"
 #include "algo/types.hpp"
+#include "sim/floor_beams.hpp"
 #include "sim/sonar_model.hpp"
 
 namespace sim {
@@ -109,8 +110,7 @@ namespace {
 
 std::optional<algo::FloorSensors> floor_of(const Sensors& sensors) {
   if (!sensors.floor) return std::nullopt;
-  const FloorSensorConfig& f = *sensors.floor;
-  return algo::FloorSensors{f.x, f.height, f.half_spacing, f.angle, f.separation};
+  return geometry_of(*sensors.floor);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "algo/terrain/ground_reader.hpp"
 #include "algo/terrain/ground_trials.hpp"
 #include "algo/terrain/ground_value.hpp"
+#include "sim/floor_beams.hpp"
 #include "sim/floor_sensors.hpp"
 #include "sim/random.hpp"
 
@@ -23,10 +24,6 @@ constexpr double kRunUp = 0.10;       // [m] of flat floor before the near beam 
 constexpr double kFlatWay = 1.0;      // [m] of a drive over flat floor
 constexpr std::uint64_t kPhasePurpose = 0x4d415355;
 constexpr int kAtRest = 200;  // readings of a slope down
-
-algo::FloorSensors geometry_of(const sim::FloorSensorConfig& c) {
-  return {c.x, c.height, c.half_spacing, c.angle, c.separation};
-}
 
 /// [m] x in R where the near beams meet a level floor.
 double foot_of(const sim::FloorSensorConfig& c) {
@@ -154,7 +151,7 @@ std::vector<double> static_trials(const MasudaGround& ground,
                                   std::size_t trials,
                                   std::uint64_t seed) {
   Bench bench(ground, seed);
-  const algo::FloorSensors sensors = geometry_of(bench.config());
+  const algo::FloorSensors sensors = sim::geometry_of(bench.config());
   const double x = -d1 - sensors.x;  // the sensors are at the front edge
   std::vector<double> values;
   for (std::size_t k = 0; k < trials; ++k) {
@@ -169,7 +166,7 @@ MasudaDrive drive_over(const MasudaGround& ground,
                        const MasudaReading& reading,
                        std::uint64_t seed) {
   Bench bench(ground, seed);
-  const algo::FloorSensors sensors = geometry_of(bench.config());
+  const algo::FloorSensors sensors = sim::geometry_of(bench.config());
   const double foot = foot_of(bench.config());
   algo::GroundReader reader(sensors, reading.window, reading.rank());
   algo::GroundTrials trials(sensors, reader.flat());
@@ -206,7 +203,7 @@ MasudaDrive drive_over(const MasudaGround& ground,
 
 MasudaTrace trace_over(const MasudaGround& ground, double from, double to, std::uint64_t seed) {
   Bench bench(ground, seed);
-  const algo::FloorSensors sensors = geometry_of(bench.config());
+  const algo::FloorSensors sensors = sim::geometry_of(bench.config());
   algo::GroundReader reader(sensors);
   MasudaTrace out;
   for (double way = from; way < to; way += kSampleWay) {
