@@ -1,6 +1,7 @@
 // tests/docs_test.cpp: every file that a Markdown page links to exists, and every section that the
 // code cites. Each part built on the coverage page has a file and a test. The page on hardware has
-// the result of every fault that the trials inject.
+// the result of every fault that the trials inject. The web page has words for every hold and
+// limit.
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -187,6 +188,41 @@ TEST(Docs, HardwareHasARowForEveryFaultOnEveryBase) {
     }
   }
   EXPECT_EQ(rows, wanted);
+}
+
+/// Names of the constants of `type` in the headers below algo, as in `Hold kBumper{"bumper", ...`.
+std::set<std::string> names_of(const std::string& type) {
+  const std::regex constant("constexpr " + type + R"re( k\w+\{\s*"(\w+)")re");
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(root() / "algo")) {
+    if (entry.path().extension() != ".hpp") continue;
+    const std::string text = text_of(entry.path());
+    for (std::sregex_iterator it(text.begin(), text.end(), constant), end; it != end; ++it) {
+      names.insert((*it)[1]);
+    }
+  }
+  return names;
+}
+
+/// The keys of the table `name` in a script of the page.
+std::set<std::string> keys_in(const fs::path& script, const std::string& name) {
+  const std::string text = text_of(root() / script);
+  const std::size_t begin = text.find("const " + name + ":");
+  std::istringstream lines(text.substr(begin, text.find("\n};", begin) - begin));
+  static const std::regex entry(R"(^  (\w+): .*)");
+  std::set<std::string> keys;
+  std::smatch match;
+  for (std::string line; std::getline(lines, line);) {
+    if (std::regex_match(line, match, entry)) keys.insert(match[1]);
+  }
+  return keys;
+}
+
+TEST(Docs, ThePageHasWordsForEveryHoldAndLimit) {
+  std::set<std::string> holds = names_of("Hold");
+  EXPECT_EQ(holds.erase("stopped"), 1U) << "which is no mark of the timeline";
+  EXPECT_EQ(keys_in("web/src/state/events.ts", "kHoldWords"), holds);
+  EXPECT_EQ(keys_in("web/src/teleop/reasons.ts", "kLimits"), names_of("Limit"));
 }
 
 }  // namespace

@@ -18,8 +18,6 @@ constexpr LayerInfo kVerdict{
     .name = "ground.verdict", .label = "The ground ahead", .kind = LayerKind::Text};
 constexpr std::size_t kLongestVerdict = 80;
 
-constexpr std::string_view kSilent = "The floor sensors are silent: the robot waits for them.";
-
 /// [m] x in R of the nearest return that the beams at `y` [m] of `sensors` may end on.
 double obstacle_at(const LaserScan& scan, const FloorSensors& sensors, double y) {
   constexpr double kBeside = 0.05;  // [m] of a beam
@@ -71,11 +69,11 @@ Proposal GroundBehaviour::propose(const Resource& in, ControlOutput& /*output*/)
   if (!finite(input.pose_W)) return {};
   const SurveyAnswer answer = survey_.step(input, *in.parameters);
   Proposal out;
-  out.limits.reason = {"ground", answer.why};
+  out.limits.reason = {limits::kGround.name, answer.why};
   // Written so that a NaN stamp counts as silence.
   if (!has_read_ || !(in.stamp - read_at_ < kSilence)) {
     out.limits = {.v_min = 0, .v_max = 0, .omega_min = 0, .omega_max = 0};
-    out.limits.reason = {"ground", kSilent};
+    out.limits.reason = limits::kFloorSilent;
     return out;
   }
   out.limits.v_max = answer.v_max;

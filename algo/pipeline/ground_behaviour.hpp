@@ -9,6 +9,15 @@
 
 namespace algo {
 
+namespace limits {
+
+/// The survey's own sentence replaces this one.
+inline constexpr Limit kGround{"ground", "The floor sensors do not see a level floor."};
+inline constexpr Limit kFloorSilent{"ground_silent",
+                                    "The floor sensors are silent: the robot waits for them."};
+
+}  // namespace limits
+
 /// Takes the base from a goal's controller while it surveys an edge. A driver by hand keeps the
 /// base, within the survey's limits. Before all other behaviours.
 class GroundBehaviour final : public Behaviour {

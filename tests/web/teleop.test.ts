@@ -263,6 +263,15 @@ test("each limit has its reason with numbers, and a robot that only starts has n
   assert.equal(driven_words(at("")).what, "The robot follows your stick");
 });
 
+test("a limit of the ground names what lies ahead", () => {
+  const trench: typeof kMeasures = [["ground.class", "", 4]];
+  const slow = driven_words(driven_scene({ limit: "ground" }, trench));
+  assert.deepEqual([slow.what, slow.why], ["Slower for the ground ahead", "Trench."]);
+  const stands = driven_words(driven_scene({ limit: "ground", command: [0, 0] }, trench));
+  assert.equal(stands.what, "Stopped before the ground ahead");
+  assert.equal(driven_words(driven_scene({ limit: "turnover_ahead" })).what, "Stopped before a slope");
+});
+
 test("the reflected force in numbers and words", () => {
   const force = force_of(driven_scene());
   assert.ok(Math.abs(force.forward + 0.5) < 1e-3 && Math.abs(force.left - 0.25) < 1e-3);

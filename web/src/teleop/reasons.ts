@@ -3,6 +3,7 @@ import { degrees } from "../geometry";
 import { Words } from "../link/frame";
 import { measure, wall_of } from "../state/driven";
 import { SceneState } from "../state/scene";
+import { ground_ahead } from "../state/terrain";
 import { fixed, titled } from "../words";
 
 const kLimits: Record<string, { what: string; why: string }> = {
@@ -11,6 +12,12 @@ const kLimits: Record<string, { what: string; why: string }> = {
   wall: { what: "Following the wall", why: "The robot turns so that it keeps its distance to the wall beside it." },
   guard: { what: "The guard holds back", why: "The robot could not stop before what it sees." },
   link: { what: "Slower over a slow link", why: "Your answer to what you see would come too late for more." },
+  turnover: { what: "Slower on the slope", why: "It would turn over in a faster turn." },
+  turnover_ahead: { what: "Stopped before a slope", why: "The ground ahead is too steep to stand on." },
+  turnover_here: { what: "The slope is too steep", why: "It may turn over where it stands: back away slowly, or turn on the spot." },
+  turnover_back: { what: "Slower backwards", why: "Nothing looks at the ground behind, and the robot is tall." },
+  ground: { what: "Slower for the ground ahead", why: "The floor sensors do not see a level floor." },
+  ground_silent: { what: "The floor sensors are silent", why: "The robot waits for them." },
   elastic: { what: "The robot finds the way", why: "Your stick pulls its goal along; it goes round what is in between." },
 };
 /** Why the command is below the wanted one; null: nothing limits it. */
@@ -71,6 +78,11 @@ export function driven_words(scene: SceneState): Words {
       why: `Wall ${fixed(wall.rho, 2)} m away, nose ${fixed(Math.abs(towards), 0)}° ${towards >= 0 ? "towards" : "away from"} it: ` +
         `turning ${side(turn > 0)} ${fixed(Math.abs(degrees(turn)), 1)} °/s.`,
     };
+  }
+  const ahead = f.limit === "ground" ? ground_ahead(scene) : null;
+  if (ahead) {
+    const stands = Math.abs(f.command.v) < kLess;
+    return { what: stands ? "Stopped before the ground ahead" : words.what, why: `${titled(ahead.words)}.` };
   }
   const near = nearest !== null ? ` The nearest is ${fixed(nearest, 2)} m from its middle.` : "";
   return { what: words.what, why: `${words.why}${near}` };
