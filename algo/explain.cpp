@@ -105,6 +105,7 @@ void explain(const Telemetry& t, const Controller& controller, Explanation& word
     words.what = "Driven by hand";
     say(words.why, "%.2f m/s ahead, %.2f rad/s. ", t.command.base.v, t.command.base.omega);
     say_surroundings(t, words.why);
+    if (t.limit) say(words.why, " %s", std::string(t.limit.why).c_str());
   } else if (!t.goal) {
     words.what = "Waiting for a goal";
     say_surroundings(t, words.why);

@@ -2,6 +2,7 @@
 #include "algo/explain.hpp"
 
 #include <memory>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,18 @@ TEST(Explain, FreeDrivingTellsTheDistanceToGo) {
   const Explanation words = said("modified", driving());
   EXPECT_EQ(words.what, "Driving to the goal");
   EXPECT_EQ(words.why, "5.00 m to go. The nearest return is 1.00 m from the robot's centre.");
+}
+
+TEST(Explain, ADriverIsToldWhatLimitsHim) {
+  Telemetry t = driving();
+  t.behaviour = behaviours::kManual;
+  t.command.base = {0.1, 0};
+  const std::string free = said("modified", t).why;
+  EXPECT_EQ(free,
+            "0.10 m/s ahead, 0.00 rad/s. The nearest return is 1.00 m from the robot's centre.");
+  t.limit = {"ground", "Ground that the robot cannot drive over lies just ahead."};
+  EXPECT_EQ(said("modified", t).why,
+            free + " Ground that the robot cannot drive over lies just ahead.");
 }
 
 TEST(Explain, ThePlannerTellsThePathLength) {
