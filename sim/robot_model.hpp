@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "algo/robot.hpp"
+#include "algo/units.hpp"
 #include "sim/obstacle_set.hpp"
 #include "sim/sensor_configs.hpp"
 
@@ -33,13 +34,15 @@ struct Machine {
   double wheel_radius = 0.10;                    // [m]
   std::vector<double> wheels{0};                 // [m] x of the wheels on each side
   std::vector<Caster> casters{{0.27, 0, 0.04, 0.001}, {-0.27, 0, 0.04, 0.001}};
-  double max_v = 0.5;                         // [m/s]
-  double max_omega = 1.0;                     // [rad/s]
-  double max_acceleration = 0.5;              // [m/s2]
-  double max_angular_acceleration = 4;        // [rad/s2]
-  double friction = 0.8;                      // of the drive wheels on the floor
-  double counts_per_turn = 40000;             // of a wheel's encoder
-  std::optional<algo::ClimbLimits> climbs{};  // if they were measured
+  double max_v = 0.5;                   // [m/s]
+  double max_omega = 1.0;               // [rad/s]
+  double max_acceleration = 0.5;        // [m/s2]
+  double max_angular_acceleration = 4;  // [rad/s2]
+  double friction = 0.8;                // of the drive wheels on the floor
+  double counts_per_turn = 40000;       // of a wheel's encoder
+  /// If they were measured (`tautline climbs`).
+  std::optional<algo::ClimbLimits> climbs =
+      algo::ClimbLimits{0.003, 0.058, 0.270, 0, 42 * algo::units::kRadiansPerDegree};
 
   /// Makes the hull a box; `radius` becomes that of the circle through its corners.
   void set_box(double length, double width);

@@ -124,6 +124,7 @@ sim::RobotModel robot_from_json(const JsonReader& in) {
       "mass_height", std::clamp(middle, kMassHeight.min, kMassHeight.max), kMassHeight);
   read_wheels(in, robot);
   read_only_fields(in.object("limits"), kLimits, robot);
+  robot.climbs.reset();
   if (in.has("climbs")) {
     read_only_fields(in.object("climbs"), kClimbs, robot.climbs.emplace());
   }

@@ -92,6 +92,7 @@ TEST(RobotJson, BuiltInRobotsComeBackFromTheirText) {
     SCOPED_TRACE(entry.name);
     EXPECT_TRUE(entry.builtin && entry.usable);
     const sim::RobotModel robot = builtin_robot(entry.name);
+    EXPECT_TRUE(robot.climbs) << "what it climbs is measured";
     const sim::RobotModel again = read_robot(robot_document(robot));
     EXPECT_TRUE(static_cast<const sim::Machine&>(robot) == again);
     EXPECT_EQ(robot_document(robot), robot_document(again));
@@ -117,6 +118,7 @@ TEST(RobotJson, AFileNeedsOnlyRequiredFields) {
   EXPECT_EQ(robot.wheels, std::vector<double>{0});
   ASSERT_EQ(robot.casters.size(), 2U);
   EXPECT_GT(robot.casters[0].x, 0.3);
+  EXPECT_FALSE(robot.climbs) << "nobody has measured them";
   ASSERT_EQ(robot.sensors.lasers.size(), 2U);
   EXPECT_EQ(robot_document(robot), robot_document(read_robot(robot_document(robot))));
 }
