@@ -15,69 +15,19 @@
 #include "algo/perceive.hpp"
 #include "drivers/lms200_device.hpp"
 #include "drivers/open_robot.hpp"
-#include "drivers/psd_device.hpp"
 #include "drivers/published_senses.hpp"
 #include "drivers/real_time.hpp"
-#include "drivers/serial_port.hpp"
+#include "server/cli/doctor_floor.hpp"
+#include "server/cli/doctor_notes.hpp"
 
 namespace server {
 namespace {
 
+using doctor::Found;
+using doctor::look_at_port;
+using doctor::Notes;
+using doctor::pause;
 using drivers::steady_now;
-using Found = std::function<void(const Finding&)>;
-
-constexpr double kLook = 0.02;  // [s] between two polls of a device
-
-void pause() {
-  std::this_thread::sleep_for(std::chrono::duration<double>(kLook));
-}
-
-/// Findings about one device.
-class Notes {
- public:
-  Notes(std::string device, const Found& found) : device_(std::move(device)), found_(found) {}
-
-  void well(const std::string& sentence) { add(Finding::Verdict::Well, sentence, ""); }
-  void note(const std::string& sentence, const std::string& advice = "") {
-    add(Finding::Verdict::Note, sentence, advice);
-  }
-  void bad(const std::string& sentence, const std::string& advice) {
-    add(Finding::Verdict::Bad, sentence, advice);
-    all_well_ = false;
-  }
-  bool all_well() const { return all_well_; }
-
- private:
-  void add(Finding::Verdict verdict, const std::string& sentence, const std::string& advice) {
-    found_({verdict, device_, sentence, advice});
-  }
-
-  std::string device_;
-  const Found& found_;
-  bool all_well_ = true;
-};
-
-/// Checks whether the port opens, and closes it before the search for the device.
-bool look_at_port(const std::string& path, unsigned baud, Notes& notes) {
-  try {
-    const drivers::SerialPort port(path, baud);
-    if (port.baud() == 0) {
-      notes.well(fmt::format("{} answers; its box knows its own rate.", path));
-      return true;
-    }
-    const double off = std::abs(static_cast<double>(port.baud()) - baud) / baud;
-    if (off > 0.03) {
-      notes.note(fmt::format("{} makes {} bit/s of {}.", path, port.baud(), baud),
-                 "Take an adapter that makes this rate, or a lower `rate` in the file.");
-    } else {
-      notes.well(fmt::format("{} opens, and can do {} bit/s.", path, baud));
-    }
-    return true;
-  } catch (const drivers::LineError& error) {
-    notes.bad(error.what(), "Then look again; `ls -l /dev/serial/by-id` shows what is plugged in.");
-    return false;
-  }
-}
 
 /// Statistics of the scans of some seconds.
 struct Tally {
@@ -201,47 +151,6 @@ bool look_at_laser(const drivers::LaserEntry& entry,
     }
   }
   look_at_scans(laser, options.measuring, notes);
-  return notes.all_well();
-}
-
-bool look_at_floor_sensors(const drivers::FloorEntry& entry,
-                           const DoctorOptions& options,
-                           const Found& found) {
-  Notes notes(drivers::psd::kDeviceName, found);
-  if (!look_at_port(entry.port, entry.setup.baud, notes)) return false;
-  drivers::psd::PsdDevice device(entry.port, entry.setup);
-  const double until = steady_now() + options.patience;
-  while (!device.state().running && steady_now() < until) pause();
-  if (!device.state().running) {
-    notes.bad(device.report().sentence,
-              "docs/hardware.md describes the line that the adapter must send.");
-    return false;
-  }
-  const std::uint64_t before = device.readings();
-  const double begun = steady_now();
-  // At least as long as a stuck count takes to be found.
-  const double measuring = std::max(
-      options.measuring, 1.5 * drivers::psd::StuckWatch::kReadings * drivers::psd::kPeriod);
-  while (steady_now() < begun + measuring) pause();
-  const double rate = static_cast<double>(device.readings() - before) / (steady_now() - begun);
-  const double wanted = 1 / drivers::psd::kPeriod;
-  const algo::DeviceReport report = device.report();
-  if (rate < 0.9 * wanted) {
-    notes.bad(fmt::format("{:.1f} readings a second arrive instead of {:.1f}.", rate, wanted),
-              "Look at the adapter, its cable and the shield.");
-  } else {
-    notes.well(fmt::format("{:.1f} readings a second arrive.", rate));
-  }
-  if (!report.well) notes.bad(report.sentence, "Clear its cause, then look again.");
-  for (const auto& [name, value] : report.facts) {
-    if (value.find(" V)") == std::string::npos) continue;
-    if (value.starts_with("nothing")) {
-      notes.note(fmt::format("The {} sensor sees {}.", name, value),
-                 "On a flat floor each sensor sees it; nearer than 0.1 m it sees nothing.");
-    } else {
-      notes.well(fmt::format("The {} sensor sees the floor at {}.", name, value));
-    }
-  }
   return notes.all_well();
 }
 
@@ -425,7 +334,7 @@ bool examine(const drivers::RobotFile& file, const DoctorOptions& options, const
   for (const drivers::LaserEntry& laser : file.lasers) {
     well = look_at_laser(laser, options, found) && well;
   }
-  if (file.floor) well = look_at_floor_sensors(*file.floor, options, found) && well;
+  if (file.floor) well = doctor::look_at_floor_sensors(file, options, found) && well;
   look_at_published(file.published, found);
   return look_at_base(file, options, found) && well;
 }

@@ -2,7 +2,9 @@
 // a line of a log.
 #include "server/cli/doctor.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include <unistd.h>
 
 #include "server/cli/carmen_line.hpp"
+#include "server/cli/doctor_floor.hpp"
 #include "server/emulate/emulation.hpp"
 #include "sim/replay.hpp"
 
@@ -109,8 +112,32 @@ TEST(Doctor, FloorSensorsAreReadAndTheirFaultsAreBad) {
   const std::string well = floor_words_after("truth", true);
   EXPECT_THAT(well, HasSubstr("readings a second arrive."));
   EXPECT_THAT(well, HasSubstr("The far left sensor sees the floor at 0.2"));
-  EXPECT_THAT(floor_words_after("stick 2", false), HasSubstr("The far right sensor is stuck"));
+  const std::string stuck = floor_words_after("stick 2", false);
+  EXPECT_THAT(stuck, HasSubstr("The far right sensor is stuck"));
+  EXPECT_THAT(stuck, Not(HasSubstr("sees the floor")));
   EXPECT_THAT(floor_words_after("psd drop 0.5", false), HasSubstr("no whole line"));
+}
+
+TEST(Doctor, FloorSensorsThatSeeNoLevelFloorAreNoted) {
+  const algo::FloorSensors sensors{0.3, 0.2, 0.1, std::numbers::pi / 4, 0.08};  // near: 0.283 m
+  const algo::DeviceReport report{.facts = {{"far left", "0.363 m (0.74 V)"},
+                                            {"far right", "0.361 m (0.74 V)"},
+                                            {"near left", "0.200 m (1.26 V)"},
+                                            {"near right", "nothing within range (0.10 V)"}}};
+  const algo::FloorRanges seen{0, 0.363, 0.361, 0.200, std::nan("")};
+  std::vector<Finding> found;
+  const doctor::Found listen = [&](const Finding& f) { found.push_back(f); };
+  doctor::Notes notes("floor sensors", listen);
+  doctor::look_at_distances(report, seen, sensors, notes);
+  EXPECT_TRUE(notes.all_well()) << "it may stand anywhere";
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_EQ(found[1].sentence, "The far right sensor sees the floor at 0.361 m (0.74 V).");
+  EXPECT_EQ(found[2].verdict, Finding::Verdict::Note);
+  EXPECT_EQ(
+      found[2].sentence,
+      "The near left sensor sees something at 0.200 m (1.26 V); a level floor would be at 0.283 "
+      "m.");
+  EXPECT_EQ(found[3].sentence, "The near right sensor sees nothing within range (0.10 V).");
 }
 
 TEST(Doctor, SpikesDifferFromBothNeighbours) {
