@@ -53,6 +53,13 @@ void explain_arrived(const Telemetry& t, const Vec2& goal, Explanation& words) {
   say(words.why, "%.2f m from the goal at (%.2f, %.2f).", to_goal(t), goal.x(), goal.y());
 }
 
+/// Appends why the robot is limited, if it is.
+void say_limit(const Telemetry& t, std::string& text) {
+  if (!t.limit) return;
+  text += ' ';
+  text += t.limit.why;
+}
+
 }  // namespace
 
 Explanation explain(Halt halt) {
@@ -105,7 +112,7 @@ void explain(const Telemetry& t, const Controller& controller, Explanation& word
     words.what = "Driven by hand";
     say(words.why, "%.2f m/s ahead, %.2f rad/s. ", t.command.base.v, t.command.base.omega);
     say_surroundings(t, words.why);
-    if (t.limit) say(words.why, " %s", std::string(t.limit.why).c_str());
+    say_limit(t, words.why);
   } else if (!t.goal) {
     words.what = "Waiting for a goal";
     say_surroundings(t, words.why);
@@ -116,7 +123,7 @@ void explain(const Telemetry& t, const Controller& controller, Explanation& word
     words.why = t.limit.why;
   } else {
     controller.explain(t, words);
-    if (t.limit) say(words.why, " %s", std::string(t.limit.why).c_str());
+    say_limit(t, words.why);
     if (t.mission != Mission::Stuck) return;
     words.what = "Stuck";
     say(words.why, " %.2f m to go. Move an obstacle or the goal.", to_goal(t));
