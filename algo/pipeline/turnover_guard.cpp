@@ -10,7 +10,13 @@ namespace {
 constexpr std::size_t kLongestLine = 128;  // points of a line; more would allocate
 constexpr double kLeastRamp = 0.2;         // [m/s2] even where the slope allows less: it must stop
 constexpr double kReached = 0.02;          // [m/s] between speeds that count as equal
-constexpr double kSlides = 0.5;            // W/(2h) above which a robot slides before it turns over
+// [s] The trend of the measured attitude counts so far ahead. The inclinometer lags by 0.05 s, the
+// roll follows the heading on a slope, and a robot of h 0.9 m tips over by the factor e in 0.33 s.
+constexpr double kTrendLead = 0.35;
+constexpr double kGrip = 0.5;        // friction that the robot counts on
+constexpr double kLeastShare = 0.3;  // of the bound, however steep along the track
+constexpr double kSlow = 0.15;       // [m/s] no turn lifts a track
+constexpr double kSlides = 0.5;      // W/(2h) above which a robot slides before it turns over
 
 constexpr LayerInfo kLine{.name = "terrain.line",
                           .label = "Laser line on the ground",
@@ -43,6 +49,7 @@ void TurnoverGuard::reset(const Pose2& /*start_W*/) {
   line_R_.clear();
   line_W_.clear();
   measured_ = {};
+  trend_.reset();
   sent_ = 0;
   turn_ = {-spec_.max_omega, spec_.max_omega};
   predicted_ = {};
@@ -67,6 +74,7 @@ void TurnoverGuard::sense(const Resource& in) {
   const auto& reading = seen.inclinometer;
   if (reading && std::isfinite(reading->roll) && std::isfinite(reading->pitch)) {
     measured_ = {reading->roll, reading->pitch};
+    trend_.take(reading->stamp, measured_);
   }
   const Odometry& odometry = in.odometry;
   if (!finite(odometry.pose) || !finite(odometry.twist)) return;
@@ -94,9 +102,32 @@ void TurnoverGuard::take_line(const LineImage& image) {
   if (const auto tracks = under_tracks(line_R_, stance_.width)) prediction_.take(*tracks);
 }
 
+/// Eq. 26 with `share` of the bounds, or less where the slope runs along the tracks: the track that
+/// a turn unloads must still hold its half of the weight's pull. Where it slides, the robot turns
+/// about the other one, faster than its encoders know. The turn takes the share q of the bound, so
+/// N (1 - q)/2 is left on that track, and kGrip of it must hold m g |k_X|/2.
 TurnRange TurnoverGuard::turns(const Attitude& attitude, double v, double share) const {
+  const GravityShares k = gravity_shares(attitude);
+  const double holds = 1 - std::abs(k.x) / (kGrip * k.z);
   return turn_range(
-      shared(sideways_range(attitude, stance_), share), v, spec_.max_v, spec_.max_omega);
+      shared(sideways_range(attitude, stance_), std::min(share, std::max(kLeastShare, holds))),
+      v,
+      spec_.max_v,
+      spec_.max_omega);
+}
+
+/// Narrows this tick's turn to what `attitude` allows at the speed `v`. A robot that must turn to
+/// stay up may not turn uphill while it moves.
+void TurnoverGuard::narrow(const Attitude& attitude, double v, double share) {
+  const TurnRange range = turns(attitude, v, share);
+  if (!range.must_turn) {
+    turn_.min = std::max(turn_.min, range.min);
+    turn_.max = std::min(turn_.max, range.max);
+  } else if (std::abs(v) > kSlow) {
+    const bool left = range.min > 0;
+    if (left) turn_.min = std::max(turn_.min, 0.0);
+    if (!left) turn_.max = std::min(turn_.max, 0.0);
+  }
 }
 
 /// Eq. 28, 29: the force about X on a hand that asks for more than the bounds.
@@ -117,7 +148,9 @@ void TurnoverGuard::bound(const Resource& in) {
 
   here_ = standing_margin(measured_, stance_) >= 0;
   ahead_ = true;
-  turn_ = turns(measured_, v, share);
+  turn_ = {.min = -spec_.max_omega, .max = spec_.max_omega};
+  narrow(measured_, v, share);
+  narrow(trend_.after(kTrendLead), v, share);
   predicted_ = measured_;
   margin_ = standing_margin(measured_, *spec_.stance);
   along_ = along_limit(measured_, stance_, share);
@@ -149,14 +182,14 @@ Proposal TurnoverGuard::limits_of_tick(const Resource& in) const {
   Proposal out;
   TwistLimits& set = out.limits;
   set.reason = limits::kTurnover;
+  set.omega_min = turn_.min;
+  set.omega_max = turn_.max;
   if (!here_) {
     set.v_min = -kRetreat;
     set.v_max = 0;
     set.reason = limits::kTooSteepHere;
     return out;
   }
-  set.omega_min = turn_.min;
-  set.omega_max = turn_.max;
   if (!ahead_) {
     set.v_max = 0;
     set.reason = limits::kTooSteepAhead;

@@ -13,6 +13,7 @@
 #include "algo/pipeline/reactive.hpp"
 #include "algo/teleop/reflected_force.hpp"
 #include "algo/terrain/tilt_prediction.hpp"
+#include "algo/terrain/tilt_trend.hpp"
 #include "algo/terrain/turnover.hpp"
 
 namespace algo {
@@ -63,8 +64,9 @@ inline constexpr Limit kBlindBack{
 
 /// Sets limits for every behaviour and never drives. For a robot with RobotSpec::stance. Reads the
 /// inclinometer and, where there is one, the laser line's camera. The turn rate stays within Eq. 26
-/// for the measured attitude and for every predicted one up to D_tp ahead. Where the robot could
-/// not even stand, its speed is zero: it may only back away slowly, and turn.
+/// for the measured attitude, the one that its trend leads to, and every predicted one up to D_tp
+/// ahead. Where the robot could not even stand, its speed is zero: it may only back away slowly,
+/// and turn, but not uphill while it still moves.
 class TurnoverGuard final : public Behaviour {
  public:
   static constexpr double kRetreat = 0.1;    // [m/s] backwards, off ground that is too steep
@@ -88,6 +90,7 @@ class TurnoverGuard final : public Behaviour {
   void sense(const Resource& in);
   void take_line(const LineImage& image);
   void bound(const Resource& in);
+  void narrow(const Attitude& attitude, double v, double share);
   void reflect(const Resource& in);
   TurnRange turns(const Attitude& attitude, double v, double share) const;
   Proposal limits_of_tick(const Resource& in) const;
@@ -98,6 +101,7 @@ class TurnoverGuard final : public Behaviour {
   std::vector<Vec3> line_R_{};  // of the newest image
   std::vector<Vec3> line_W_{};  // the same, for the page
   Attitude measured_{};
+  TiltTrend trend_{};
   double sent_ = 0;  // [m/s] the speed last commanded
 
   // Of this tick.

@@ -130,6 +130,52 @@ TEST(TurnoverGuard, StopsWhereItCannotStand) {
   EXPECT_NEAR(robot.t.command.base.v, -0.1, 1e-12) << "and back away";
 }
 
+/// The left side rises by 10 degrees a second: 8.5 degrees 0.35 s after it has 5.
+TEST(TurnoverGuard, TurnsAsTheTrendOfTheAttitudeDemands) {
+  OnSlope robot;
+  robot.start();
+  robot.drive(raw(1, 0), 2, {});
+  double roll = 0;
+  for (; roll < 5_deg - 1e-9; roll += 10_deg * robot.spec.period)
+    robot.once(raw(1, 0), {.roll = roll});
+  robot.once(raw(1, 1), {.roll = roll});
+  const double soon = roll + 10_deg * 0.35;
+  const double bound = algo::sideways_range({.roll = soon}, {0.99, 0.48, 0.60}).max;
+  EXPECT_NEAR(robot.measured("turnover.w_max"), 0.9 * bound / 0.86, 1e-3);
+  EXPECT_LT(0.9 * bound / 0.86, kTurn);
+}
+
+/// On 10 degrees along the tracks, too, the uphill track must hold its half of the pull with a
+/// friction of 0.5: 1 - 0.1736 / (0.5 x 0.9698) = 0.642 of the bound is left for the turn.
+TEST(TurnoverGuard, LeavesTheUphillTrackItsGrip) {
+  OnSlope robot;
+  robot.start();
+  const Attitude askew{.roll = 8_deg, .pitch = 10_deg};
+  robot.drive(raw(1, 0), 3, askew);
+  robot.once(raw(1, 1), askew);
+  const double share = 1 - std::sin(10_deg) / (0.5 * std::cos(8_deg) * std::cos(10_deg));
+  EXPECT_NEAR(share, 0.64, 0.01);
+  const double bound = algo::sideways_range(askew, {0.99, 0.48, 0.60}).max;
+  EXPECT_NEAR(robot.measured("turnover.w_max"), share * bound / 0.86, 1e-3);
+}
+
+/// The right side is up: a turn to the right pushes the robot over, until it is slow.
+TEST(TurnoverGuard, TurnsNotUphillWhileItLosesItsStand) {
+  OnSlope robot;
+  robot.start();
+  robot.drive(raw(1, 0), 2, {});
+  for (int k = 0; k < 10; ++k) {
+    robot.once(raw(1, -1), {.roll = -14_deg});
+    EXPECT_EQ(robot.t.command.base.omega, 0);
+    EXPECT_GT(robot.t.command.base.v, 0.15);
+    EXPECT_EQ(robot.t.limit, algo::limits::kTooSteepHere);
+  }
+  robot.once(raw(1, 1), {.roll = -14_deg});
+  EXPECT_NEAR(robot.t.command.base.omega, kTurn, 1e-12) << "downhill it may";
+  robot.drive(raw(1, -1), 2, {.roll = -14_deg});
+  EXPECT_NEAR(robot.t.command.base.omega, -kTurn, 1e-12) << "on the spot, too";
+}
+
 TEST(TurnoverGuard, BacksSlowlyWithoutAGuard) {
   OnSlope tall;
   tall.start();
