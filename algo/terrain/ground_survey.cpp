@@ -15,7 +15,12 @@ constexpr double kTrialWay = 0.001;    // [m] between two trials: a robot at res
 constexpr double kTrenchMore = 0.005;  // [m] past the limit, a trench is too wide
 /// [m] The median and the threshold show an edge so late.
 constexpr double kSeenLate = 0.01;
-constexpr double kFolds = 0.12;  // [m] ahead of the sensors, a surface may read as nothing
+constexpr double kFolds = 0.12;     // [m] ahead of the sensors, a surface may read as nothing
+constexpr double kPitchWay = 0.3;   // [m] of way, the mean of the pitch forgets by the factor e
+constexpr double kPitched = 0.005;  // [rad] from it
+/// [m] The near beam of a robot whose casters stand on an unseen step of 4 mm is so far off the
+/// floor, at most. A step that is so far off would be 6 mm high.
+constexpr double kTiltedOff = 0.008;
 /// [m] A refused edge goes on to either side of the robot: nothing looked there.
 constexpr double kBeside = 0.05;
 
@@ -44,6 +49,7 @@ void GroundSurvey::reset() {
   state_ = SurveyState::Watch;
   driver_ = SurveyDriver::Nobody;
   last_W_.reset();
+  stood_at_.reset();
   way_ = 0;
   creep_to_ = 0;
   finding_ = {};
@@ -78,9 +84,22 @@ void GroundSurvey::move(const SurveyInput& in) {
   const auto step = [&](const Vec2& point_R) {
     return (to_parent(in.pose_W, point_R) - to_parent(*last_W_, point_R)).dot(ahead);
   };
-  way_ += step({spec_.axle, 0});
+  const double ahead_by = step({spec_.axle, 0});
+  way_ += ahead_by;
+  pitch_ = in.pitch;
+  if (!stood_at_ || state_ == SurveyState::Cross) stood_at_ = in.pitch;
+  *stood_at_ += (1 - std::exp(-std::abs(ahead_by) / kPitchWay)) * (in.pitch - *stood_at_);
   for (Side* side : {&left_, &right_}) side->past += step({foot_, side->y});
   last_W_ = in.pose_W;
+}
+
+/// True if a small difference to the floor may come from the robot's own pitch (ours). On a step
+/// too low to be seen, its nose is up by a degree until the drive wheels are on it too, and the
+/// floor ahead looks like a trench.
+bool GroundSurvey::wavers(const GroundLook& look) const {
+  const bool looks_on = state_ == SurveyState::Watch || state_ == SurveyState::OneSide;
+  return looks_on && std::abs(pitch_ - *stood_at_) > kPitched &&
+         std::abs(look.near - reader_.flat().near) <= kTiltedOff;
 }
 
 void GroundSurvey::read(const SurveyInput& in) {
@@ -103,8 +122,9 @@ void GroundSurvey::read(const SurveyInput& in) {
   left_.look = look_at(reader_.left(), in.obstacle_left);
   right_.look = look_at(reader_.right(), in.obstacle_right);
   for (Side* side : {&left_, &right_}) {
-    side->off = side->look.near_off ? side->off + 1 : 0;
-    side->level = side->look.near_off ? 0 : side->level + 1;
+    const bool off = side->look.near_off && !wavers(side->look);
+    side->off = off ? side->off + 1 : 0;
+    side->level = off ? 0 : side->level + 1;
   }
 }
 

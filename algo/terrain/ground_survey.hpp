@@ -161,6 +161,7 @@ class GroundSurvey {
     double near_sum = 0;
     int far_count = 0;
     int near_count = 0;
+    double farthest_off = 0;  // [m] of the near beam from the floor, while one side saw an edge
   };
 
   void move(const SurveyInput& in);
@@ -169,6 +170,7 @@ class GroundSurvey {
   void try_side(Side& side);
   void enter(SurveyState state, const SurveyInput& in);
   void forget_edge();
+  bool wavers(const GroundLook& look) const;
   GroundFinding found(const Side& side) const;
   void decide(const SurveyInput& in, const Parameters& p);
   void refuse(const SurveyInput& in);
@@ -176,6 +178,7 @@ class GroundSurvey {
   Vec2 foot_W(const Side& side) const;
   bool still_ahead() const;
   bool meets_unknown(const Side& side) const;
+  void begin_align(const SurveyInput& in);
 
   SurveyAnswer watch(const SurveyInput& in, const Parameters& p);
   SurveyAnswer one_side(const SurveyInput& in, const Parameters& p);
@@ -199,16 +202,19 @@ class GroundSurvey {
   SurveyDriver driver_ = SurveyDriver::Nobody;
   std::optional<Pose2> last_W_{};
   Pose2 pose_W_{};
-  bool fresh_ = false;   // a reading came in this tick
-  double way_ = 0;       // [m] driven ahead since reset; back counts against it
-  double entered_ = 0;   // [s] when the state began,
-  double from_way_ = 0;  // [m] and where
+  double pitch_ = 0;                  // [rad] measured,
+  std::optional<double> stood_at_{};  // [rad] and its mean over the way behind
+  bool fresh_ = false;                // a reading came in this tick
+  double way_ = 0;                    // [m] driven ahead since reset; back counts against it
+  double entered_ = 0;                // [s] when the state began,
+  double from_way_ = 0;               // [m] and where
   double from_heading_ = 0;
-  double tried_at_ = 0;   // [m] way of the newest trial
-  double creep_to_ = 0;   // [m] way up to which something far ahead was seen
-  double away_ = 0;       // [rad] heading to turn to
-  bool to_left_ = true;   // it turns away
-  double pitch_sum_ = 0;  // [rad] over the trials
+  double tried_at_ = 0;    // [m] way of the newest trial
+  double creep_to_ = 0;    // [m] way up to which something far ahead was seen
+  bool parallel_ = false;  // both sides met the edge at once
+  double away_ = 0;        // [rad] heading to turn to
+  bool to_left_ = true;    // it turns away
+  double pitch_sum_ = 0;   // [rad] over the trials
   int pitches_ = 0;
   int levelled_ = 0;  // readings in a row with both wheels still
   GroundFinding finding_{};

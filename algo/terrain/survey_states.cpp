@@ -19,6 +19,9 @@ constexpr double kBesideBeam = 0.03;  // [m]
 constexpr double kBefore = 0.04;      // [m] the hull keeps from a refused edge,
 constexpr double kBesideHull = 0.02;  // [m] also beside it
 constexpr double kCreepOn = 0.15;     // [m] after the far beam left the floor
+constexpr double kParallel = 0.007;   // [m] between the places where the sides met the edge
+/// [m] The near beam of a robot whose casters stand on a step of 3 mm wavers about its threshold.
+constexpr double kWavers = GroundThresholds{}.near + 0.0015;
 
 }  // namespace
 
@@ -46,8 +49,11 @@ SurveyAnswer GroundSurvey::watch(const SurveyInput& in, const Parameters& p) {
     see(left_);
     see(right_);
     const bool both = left_.seen && right_.seen;
-    if (driver_ == SurveyDriver::Goal) {
-      enter(both ? SurveyState::Align : SurveyState::OneSide, in);
+    if (driver_ == SurveyDriver::Goal && both) {
+      begin_align(in);
+    } else if (driver_ == SurveyDriver::Goal) {
+      left_.farthest_off = right_.farthest_off = 0;
+      enter(SurveyState::OneSide, in);
     } else {
       tried_at_ = way_;
       enter(SurveyState::Trials, in);
@@ -68,14 +74,23 @@ SurveyAnswer GroundSurvey::watch(const SurveyInput& in, const Parameters& p) {
   return out;
 }
 
+/// An edge that was never there, since neither beam was clearly off the floor, is forgotten.
 SurveyAnswer GroundSurvey::one_side(const SurveyInput& in, const Parameters& p) {
   if (fresh_) {
-    see(left_);
-    see(right_);
+    for (Side* side : {&left_, &right_}) {
+      see(*side);
+      // Written so that NaN is clearly off the floor.
+      const double off = std::abs(side->look.near - reader_.flat().near);
+      if (!(off <= side->farthest_off)) side->farthest_off = off;
+    }
   }
+  const bool late = in.stamp - entered_ > p[kGroundSkew];
   if (left_.seen && right_.seen) {
-    enter(SurveyState::Align, in);
-  } else if (in.stamp - entered_ > p[kGroundSkew]) {
+    begin_align(in);
+  } else if (late && left_.farthest_off <= kWavers && right_.farthest_off <= kWavers) {
+    forget_edge();
+    enter(SurveyState::Watch, in);
+  } else if (late) {
     finding_ = {.kind = GroundClass::Unknown, .confidence = 0};
     refuse(in);
   }
@@ -83,11 +98,18 @@ SurveyAnswer GroundSurvey::one_side(const SurveyInput& in, const Parameters& p) 
           .why = "One side sees an edge: the robot creeps until the other does too."};
 }
 
+void GroundSurvey::begin_align(const SurveyInput& in) {
+  parallel_ = std::abs(left_.past - right_.past) < kParallel;
+  enter(SurveyState::Align, in);
+}
+
 /// Section 5.2. A side that is past a narrow trench sees flat floor again, but reverses to where it
-/// first saw the edge.
+/// first saw the edge. A robot that is parallel to the edge already backs straight (ours): noise
+/// alone would turn it, and on a slope a turn may begin a slide.
 SurveyAnswer GroundSurvey::align(const SurveyInput& in, const Parameters& p) {
-  const bool left_back = left_.look.near_off || left_.past > 0;
-  const bool right_back = right_.look.near_off || right_.past > 0;
+  bool left_back = left_.look.near_off || left_.past > 0;
+  bool right_back = right_.look.near_off || right_.past > 0;
+  if (parallel_) left_back = right_back = left_back || right_back;
   if (left_back || right_back) {
     levelled_ = 0;
   } else if (fresh_) {

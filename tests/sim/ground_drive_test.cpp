@@ -43,6 +43,17 @@ TEST(GroundDrive, ClimbsWhatItCan) {
   }
 }
 
+/// A step of 3 mm is hardly seen. Once the casters stand on it, the nose is up, and the floor ahead
+/// reads farther, as before a trench.
+TEST(GroundDrive, TakesNoStepItStandsOnForATrench) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Drive drive(kSmall, seed);
+    drive.add(step(1, algo::compose({kEdge, 0, 4_deg}, {1, 0, 0}), 2, 6, 0.0031));
+    drive.start();
+    EXPECT_TRUE(drive.drive_to({1.6, 0}, 90)) << seed << ' ' << drive.verdict();
+  }
+}
+
 /// The riser of a high step looks like a slope while the near beam climbs it.
 TEST(GroundDrive, RefusesStepsAboveItsLimit) {
   for (const double height : {0.0152, 0.02, 0.025, 0.03, 0.035, 0.04, 0.05, 0.07, 0.1, 0.2}) {
