@@ -7,6 +7,7 @@
 
 #include "server/cli/cli.hpp"
 #include "server/cli/pool_options.hpp"
+#include "server/lab/soak/course_study.hpp"
 #include "server/lab/soak/indoor_world.hpp"
 #include "server/lab/soak/operator_study.hpp"
 #include "server/lab/soak/random_world.hpp"
@@ -25,6 +26,7 @@ struct SoakCommand {
   soak::Options options{};
 
   bool slopes = false;
+  bool courses = false;
   bool by_hand = false;
   double seconds = 0;  // 0: by the kind of study
   std::string physics = "bullet";
@@ -142,7 +144,38 @@ int execute_slopes(const SoakCommand& command) {
   return soak::turned_over(rows) > 0 ? kNotHeld : kReached;
 }
 
+int execute_courses(const SoakCommand& command) {
+  soak::CourseOptions options{.first_seed = command.options.first_seed,
+                              .pool = command.options.pool};
+  if (command.options.worlds > 0) options.worlds = command.options.worlds;
+  if (command.seconds > 0) options.seconds = command.seconds;
+  if (!command.scenario.empty()) {
+    const soak::GroundCourse course =
+        soak::random_course(options.first_seed, soak::masuda_limits());
+    write_text(command.scenario, to_json(course.scenario).dump(1) + "\n");
+    return kReached;
+  }
+  std::vector<soak::CourseRow> rows;
+  {
+    ProgressLine progress;
+    options.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} courses", done, all));
+    };
+    rows = run_courses(options);
+  }
+  if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
+  bool fault = false;
+  for (const soak::CourseRow& row : rows) {
+    if (!soak::is_fault(row)) continue;
+    fault = true;
+    fmt::print("course {}: {}{}\n", row.seed, row.end.fell ? "fell, " : "", row.end.words);
+  }
+  fmt::print("{}", to_text(courses_table(rows)));
+  return fault ? kNotHeld : kReached;
+}
+
 int execute(SoakCommand command) {
+  if (command.courses) return execute_courses(command);
   if (command.slopes) return execute_slopes(command);
   if (command.by_hand) return execute_operator(command);
   if (command.options.worlds == 0) command.options.worlds = kWorlds;
@@ -179,7 +212,8 @@ void add_soak_command(Command app, int& status) {
       "without a reason given");
   soak.add_option("--worlds",
                   command->options.worlds,
-                  "Number of worlds (default 1000, with --operator 100, with --slopes 200)")
+                  "Number of worlds (default 1000, with --operator 100, with --slopes 200, with "
+                  "--courses 50)")
       .range(1, 1'000'000);
   add_first_seed_option(soak, command->options.first_seed, "The first world (default 1)");
   soak.add_option("--controller", command->options.controller, "Default: strip");
@@ -201,11 +235,19 @@ void add_soak_command(Command app, int& status) {
                     "stick, with its "
                     "turnover guard and without. Exit status 3 if it turns over with it");
   slopes.excludes(soak.get_option("--operator"));
+  const Option courses = soak.add_flag(
+      "--courses",
+      command->courses,
+      "Instead, drive a robot with floor sensors over random courses of steps, slopes "
+      "and trenches. Exit status 3 if it falls, climbs what is above its limits, or "
+      "refuses what is not");
+  courses.excludes(soak.get_option("--operator"));
+  courses.excludes(soak.get_option("--slopes"));
   soak.add_option(
           "--seconds",
           command->seconds,
           "With --operator: of each robot and mode, in all worlds together (default 10000). "
-          "With --slopes: of each drive (default 30)")
+          "With --slopes and --courses: of each drive (default 30 and 240)")
       .range(1.0, 1e7);
   soak.add_option("--physics", command->physics, "With --operator (default: bullet)")
       .one_of({"bullet", "kinematic"});

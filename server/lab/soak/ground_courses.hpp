@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "algo/robot.hpp"
@@ -30,15 +31,35 @@ struct GroundCourse {
 /// m apart. The edges are up to 10 degrees askew. The same seed gives the same course.
 GroundCourse random_course(std::uint64_t seed, const algo::ClimbLimits& limits);
 
+/// Pieces of these kinds and sizes, 1.2 m apart, with all edges askew by `skew` [rad].
+GroundCourse course_of(const std::vector<std::pair<algo::GroundClass, double>>& pieces,
+                       double skew);
+
+/// How a piece compares with the robot's limit.
+enum class PieceFit : std::uint8_t {
+  Below,   // by more than the margin: the robot should drive over it
+  Within,  // either will do
+  Above,   // the robot must not
+};
+PieceFit fit_of(const CoursePiece& piece, const algo::ClimbLimits& limits);
+
+/// True for a trench under 2 cm, which the sensors see about half the time.
+bool is_narrow(const CoursePiece& piece);
+
+/// A piece that the robot met.
+struct MetPiece {
+  CoursePiece piece{};
+  PieceFit fit = PieceFit::Below;
+  bool passed = false;
+};
+
 /// How one course ended.
 struct CourseEnd {
   bool arrived = false;
-  bool fell = false;        // lies on its side, or is where it refused to go
-  std::size_t passed = 0;   // pieces
-  std::size_t climbed = 0;  // of them, above the robot's limit
-  std::size_t refused = 0;  // pieces below the limit by more than the margin and its accuracy
-  std::size_t narrow = 0;   // trenches under 2 cm among the refused
-  std::string words{};      // of the piece that stopped it
+  bool fell = false;            // overturned
+  std::vector<MetPiece> met{};  // in their order; only the last one may have stopped it
+  std::string words{};          // of the piece that stopped it
+  std::uint64_t hash = 0;       // of every true pose
 };
 
 /// Drives for `seconds` of simulated time at most.
@@ -46,12 +67,6 @@ CourseEnd drive_course(const GroundCourse& course,
                        const algo::ClimbLimits& limits,
                        std::uint64_t seed,
                        double seconds);
-
-/// The sums over courses 1 .. `count`.
-struct CourseSums {
-  std::size_t courses = 0, arrived = 0, fell = 0, passed = 0, climbed = 0, refused = 0, narrow = 0;
-};
-CourseSums drive_courses(const algo::ClimbLimits& limits, std::size_t count, double seconds);
 
 /// The limits of `masuda`, from its file; without any there, ones on the safe side of what it
 /// climbs in Bullet.
