@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace algo {
 namespace {
@@ -102,24 +103,30 @@ void TurnoverGuard::take_line(const LineImage& image) {
   if (const auto tracks = under_tracks(line_R_, stance_.width)) prediction_.take(*tracks);
 }
 
-/// Eq. 26 with `share` of the bounds, or less where the slope runs along the tracks: the track that
-/// a turn unloads must still hold its half of the weight's pull. Where it slides, the robot turns
-/// about the other one, faster than its encoders know. The turn takes the share q of the bound, so
-/// N (1 - q)/2 is left on that track, and kGrip of it must hold m g |k_X|/2.
+/// Eq. 26 with `share` of the bounds.
 TurnRange TurnoverGuard::turns(const Attitude& attitude, double v, double share) const {
-  const GravityShares k = gravity_shares(attitude);
-  const double holds = 1 - std::abs(k.x) / (kGrip * k.z);
   return turn_range(
-      shared(sideways_range(attitude, stance_), std::min(share, std::max(kLeastShare, holds))),
-      v,
-      spec_.max_v,
-      spec_.max_omega);
+      shared(sideways_range(attitude, stance_), share), v, spec_.max_v, spec_.max_omega);
 }
 
-/// Narrows this tick's turn to what `attitude` allows at the speed `v`. A robot that must turn to
-/// stay up may not turn uphill while it moves.
-void TurnoverGuard::narrow(const Attitude& attitude, double v, double share) {
-  const TurnRange range = turns(attitude, v, share);
+/// The bound on a turn uphill alone, which is the nearer one. It has less where the slope runs
+/// along the tracks: the track that this turn unloads must still hold its half of the weight's
+/// pull. Where it slides, the robot turns about the other one, faster than its encoders know. The
+/// turn takes the share q of the bound, so N (1 - q)/2 is left on that track, and kGrip of it must
+/// hold m g |k_X|/2.
+TurnRange TurnoverGuard::turns_uphill(const Attitude& attitude, double v, double share) const {
+  const GravityShares k = gravity_shares(attitude);
+  const double holds = std::max(kLeastShare, 1 - std::abs(k.x) / (kGrip * k.z));
+  SidewaysRange range = sideways_range(attitude, stance_);
+  const bool right = std::abs(range.min) < std::abs(range.max);
+  range = shared(range, std::min(share, holds));
+  (right ? range.max : range.min) = (right ? 1 : -1) * std::numeric_limits<double>::infinity();
+  return turn_range(range, v, spec_.max_v, spec_.max_omega);
+}
+
+/// Narrows this tick's turn to `range` at the speed `v`. A robot that must turn to stay up may not
+/// turn uphill while it moves.
+void TurnoverGuard::narrow(const TurnRange& range, double v) {
   if (!range.must_turn) {
     turn_.min = std::max(turn_.min, range.min);
     turn_.max = std::min(turn_.max, range.max);
@@ -149,8 +156,9 @@ void TurnoverGuard::bound(const Resource& in) {
   here_ = standing_margin(measured_, stance_) >= 0;
   ahead_ = true;
   turn_ = {.min = -spec_.max_omega, .max = spec_.max_omega};
-  narrow(measured_, v, share);
-  narrow(trend_.after(kTrendLead), v, share);
+  narrow(turns(measured_, v, share), v);
+  narrow(turns_uphill(measured_, v, share), v);
+  narrow(turns_uphill(trend_.after(kTrendLead), v, share), v);
   predicted_ = measured_;
   margin_ = standing_margin(measured_, *spec_.stance);
   along_ = along_limit(measured_, stance_, share);
@@ -162,11 +170,11 @@ void TurnoverGuard::bound(const Resource& in) {
   prediction_.within(p[kTurnoverPreview], [&](const PredictedTilt& there) {
     double then = v + speed_change(v, a, there.ahead);
     then = a > 0 ? std::min(then, std::max(v, sent_)) : std::max(then, sent_);
-    const TurnRange range = turns(there.attitude, std::max(0.0, then), share);
     ahead_ = ahead_ && standing_margin(there.attitude, stance_) >= 0;
-    if (!range.must_turn) {
-      turn_.min = std::max(turn_.min, range.min);
-      turn_.max = std::min(turn_.max, range.max);
+    // Where it must turn, it does not drive: see limits_of_tick().
+    for (const TurnRange& range : {turns(there.attitude, std::max(0.0, then), share),
+                                   turns_uphill(there.attitude, std::max(0.0, then), share)}) {
+      if (!range.must_turn) narrow(range, v);
     }
     along_ = std::min(along_, along_limit(there.attitude, stance_, share));
     margin_ = std::min(margin_, standing_margin(there.attitude, *spec_.stance));

@@ -90,9 +90,10 @@ class TurnoverGuard final : public Behaviour {
   void sense(const Resource& in);
   void take_line(const LineImage& image);
   void bound(const Resource& in);
-  void narrow(const Attitude& attitude, double v, double share);
+  void narrow(const TurnRange& range, double v);
   void reflect(const Resource& in);
   TurnRange turns(const Attitude& attitude, double v, double share) const;
+  TurnRange turns_uphill(const Attitude& attitude, double v, double share) const;
   Proposal limits_of_tick(const Resource& in) const;
 
   RobotSpec spec_{};

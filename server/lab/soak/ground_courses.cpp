@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 
 #include "algo/pipeline/pipeline.hpp"
 #include "algo/terrain/ground_verdict.hpp"
 #include "algo/units.hpp"
+#include "server/lab/soak/drive_hash.hpp"
 #include "server/run/robot_library.hpp"
 #include "sim/random.hpp"
 #include "sim/world.hpp"
@@ -119,11 +119,6 @@ class CourseBuilder {
   double level_ = 0;
   std::uint32_t id_ = 0;
 };
-
-void mix(std::uint64_t& hash, double value) {
-  hash ^= std::bit_cast<std::uint64_t>(value);
-  hash *= 0x100000001b3ULL;
-}
 
 std::string verdict_of(const algo::Telemetry& t) {
   for (const algo::Layer& layer : t.layers) {

@@ -2,7 +2,6 @@
 #include "server/lab/soak/slope_study.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "algo/units.hpp"
+#include "server/lab/soak/drive_hash.hpp"
 #include "server/lab/soak/hand_drive.hpp"
 
 namespace server::soak {
@@ -18,11 +18,6 @@ namespace {
 using algo::units::kRadiansPerDegree;
 
 constexpr std::uint64_t kFullStickPurpose = 0xF011;
-
-void mix(std::uint64_t& hash, double value) {
-  hash ^= std::bit_cast<std::uint64_t>(value);
-  hash *= 0x100000001b3ULL;
-}
 
 double in_degrees(double radians) {
   return radians / kRadiansPerDegree;
