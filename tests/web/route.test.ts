@@ -29,7 +29,7 @@ test("what cannot be read of an address counts as not there", () => {
     assert.equal(parse_route(hash).view, "nowhere", hash);
   }
   const open = { ...drive, view: "runs", run: 4 };
-  for (const query of ["t=", "t=-1", "t=x", "t=Infinity", "with=", "with=x,0", "with=4", "view=1,2", "view=1,2,0", "view=a,b,c"]) {
+  for (const query of ["t=", "t=-1", "t=x", "t=Infinity", "with=", "with=x,0", "with=4", "view=1,2", "view=1,2,0", "view=a,b,c", "view=1e300,1,10", "view=1,-1e6,10"]) {
     assert.deepEqual(parse_route(`#/runs/4?${query}`), open, query);
   }
   assert.deepEqual(parse_route("#/runs/4?with=9,9,4,8,7,6").compare, [9, 8, 7], "each once, three at most");

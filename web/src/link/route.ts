@@ -16,6 +16,7 @@ export interface Route {
 }
 
 export const kMostCompared = 3; // beside the open run
+const kFarthest = 1e5;           // [m] of a camera: no place of a world is farther
 
 /** Reads a location's hash. What it cannot read counts as not there. */
 export function parse_route(hash: string): Route {
@@ -33,7 +34,7 @@ export function parse_route(hash: string): Route {
   return {
     view, run, experiment: null, time: time !== null && time >= 0 ? time : null,
     compare: [...new Set(others as number[])].slice(0, kMostCompared),
-    camera: scale > 0 ? { x, y, scale } : null,
+    camera: scale > 0 && Math.max(Math.abs(x), Math.abs(y)) <= kFarthest ? { x, y, scale } : null,
   };
 }
 
