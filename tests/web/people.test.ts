@@ -2,12 +2,21 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { SessionState } from "../../web/src/contract";
+import { clean_name } from "../../web/src/link/name";
 import { Me, may, person_words, refusal } from "../../web/src/people";
 import { disarmed_words } from "../../web/src/views/hardware";
 import { deeds } from "../../web/src/views/watching";
 
 const me = (role: Me["role"], label = "Ann"): Me =>
   ({ role, name: label, address: "10.0.0.7", label, token_required: true, signed_in: true });
+
+test("a name has no control character, no half letter, and at most 32 characters", () => {
+  assert.equal(clean_name(" Ann\u0000 B\n\t"), "Ann B");
+  assert.equal(clean_name("x".repeat(300)).length, 32);
+  const robots = clean_name(`a${"🤖".repeat(40)}`);
+  assert.equal(robots, `a${"🤖".repeat(15)}`);
+  assert.doesNotThrow(() => encodeURIComponent(robots));
+});
 
 test("each role may do what the one before it may", () => {
   assert.equal(may(me("viewer"), "viewer"), true);

@@ -6,9 +6,14 @@ const kName = "tautline.name";
 export const kLongestName = 32;
 
 export function own_name(): string {
-  return kept(kName, "", (text) => text.slice(0, kLongestName));
+  return kept(kName, "", clean_name);
+}
+
+/** Without control characters, which the server refuses, and without half a letter at its end. */
+export function clean_name(text: string): string {
+  return text.slice(0, kLongestName).replace(/[\p{Cc}\p{Cs}]/gu, "").trim();
 }
 
 export function keep_name(name: string): void {
-  keep(kName, name.trim().slice(0, kLongestName));
+  keep(kName, clean_name(name));
 }

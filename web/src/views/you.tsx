@@ -2,7 +2,7 @@
 import { JSX } from "preact";
 import { useState } from "preact/hooks";
 import { use_app } from "../app";
-import { keep_name, kLongestName, own_name } from "../link/name";
+import { clean_name, keep_name, kLongestName, own_name } from "../link/name";
 import { Role, may, view_link } from "../people";
 import { Facts, Problem, use_problem } from "../ui/controls";
 import { use_me } from "../ui/guard";
@@ -52,7 +52,7 @@ function NameForm(): JSX.Element {
       <label><span>Name</span>
         <input type="text" value={name} maxLength={kLongestName} placeholder="shown to the others" autocomplete="nickname"
           data-testid="name" onInput={(e) => set_name(e.currentTarget.value)} /></label>
-      <button type="submit" class="ghost" disabled={name.trim() === own_name()} data-testid="name-set">Use</button>
+      <button type="submit" class="ghost" disabled={clean_name(name) === own_name()} data-testid="name-set">Use</button>
     </form>
   );
 }
