@@ -36,6 +36,8 @@ test("a binary map of 16 bits is read, and a torn one is refused", () => {
   assert.throws(() => read_pgm(both.subarray(0, both.length - 1), "a.pgm"), /ends too early/);
   assert.throws(() => read_pgm(bytes("P6 1 1 255\n"), "b.pgm"), /b.pgm is no PGM/);
   assert.throws(() => read_pgm(bytes("P5 0 1 255\n"), "b.pgm"), /whole numbers above 0/);
+  assert.throws(() => read_pgm(bytes("P2 2 2 255\n0 0 0\n"), "b.pgm"), /b.pgm ends too early/);
+  assert.throws(() => read_pgm(bytes("P2 2 1 255\n0 grey\n"), "b.pgm"), /whole number, not "grey"/);
 });
 
 test("a map that cannot be used says which field is wrong", () => {
@@ -43,6 +45,14 @@ test("a map that cannot be used says which field is wrong", () => {
   assert.throws(() => read_map_info("resolution: 0.05", "m.yaml"), /origin must be/);
   assert.throws(() => read_map_info("resolution: 0.05\norigin: [0, 0, 1]", "m.yaml"), /turned/);
   assert.throws(() => read_worlds([file("m.pgm", "P5")]), /two files/);
+});
+
+test("a file that holds something else says so, in words", () => {
+  const read = (text: string) => () => read_worlds([file("a.json", text)]);
+  for (const text of ["[]", "[7]", "null", "7"]) assert.throws(read(text), /^Error: a.json holds no world/, text);
+  for (const name of ["42", "null", "{}"]) assert.throws(read(`{"name":${name}}`), /a.json: name must be a text/, name);
+  const barn = '{"start":[0,0,0],"goal":[1,1],"obstacles":[]}';
+  assert.deepEqual(read_worlds([file("b.json", `{"worlds":[${barn},${barn}]}`)]).map((w) => w.name), ["barn-1", "barn-2"]);
 });
 
 test("a world drawn as a map and read back stands where it stood", () => {

@@ -62,7 +62,12 @@ export function read_pgm(bytes: Uint8Array, file: string): Picture {
   if (width * height > 64e6) throw new Error(`${file} has ${width} x ${height} cells; 64 million is the limit.`);
   const grey = new Uint16Array(width * height);
   if (magic === "P2") {
-    for (let i = 0; i < grey.length; ++i) grey[i] = Number(word());
+    for (let i = 0; i < grey.length; ++i) {
+      const text = word();
+      if (text === "") throw new Error(`${file} ends too early.`);
+      if (!/^\d+$/.test(text)) throw new Error(`${file}: a grey value must be a whole number, not "${text.slice(0, 20)}".`);
+      grey[i] = Number(text);
+    }
     return { width, height, most, grey };
   }
   ++at; // one white space

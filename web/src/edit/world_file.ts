@@ -28,15 +28,16 @@ export function read_worlds(files: GivenFile[]): ScenarioDocument[] {
   } catch (error) {
     throw new Error(`${json.name} is not JSON: ${error instanceof Error ? error.message : error}.`);
   }
-  if (!document || typeof document !== "object") throw new Error(`${json.name} holds no world.`);
+  if (!document || typeof document !== "object" || Array.isArray(document)) throw new Error(`${json.name} holds no world.`);
   if ("worlds" in document) return barn_worlds(document as BarnFile, json.name);
   const one = document as ScenarioDocument;
+  if (one.name !== undefined && typeof one.name !== "string") throw new Error(`${json.name}: name must be a text.`);
   return [{ ...one, name: name_of(one.name ?? stem(json.name)) || "world" }];
 }
 
 interface BarnFile { worlds: BarnWorld[] }
 interface BarnWorld {
-  id: number; start: number[]; goal: number[]; radius?: number;
+  id?: number; start: number[]; goal: number[]; radius?: number;
   obstacles: (number[] | { radius: number; period: number; keys: [number, number, number][] })[];
 }
 
@@ -48,8 +49,9 @@ function barn_worlds({ worlds }: BarnFile, file: string): ScenarioDocument[] {
     if (!numbers(w.goal, 2)) throw new Error(`${at}: goal must be [x, y].`);
     if (!Array.isArray(w.obstacles)) throw new Error(`${at}: obstacles must be a list.`);
     const [x, y, heading] = w.start;
+    const id = Number.isInteger(w.id) ? w.id : i + 1;
     return {
-      name: `barn-${w.id}`, title: `BARN world ${w.id}`, robot: "jackal", start: { x, y, heading },
+      name: `barn-${id}`, title: `BARN world ${id}`, robot: "jackal", start: { x, y, heading },
       goal: { x: w.goal[0], y: w.goal[1] },
       obstacles: w.obstacles.map((o, k) => barn_obstacle(o, w.radius ?? 0.075, k + 1, at)),
     };
