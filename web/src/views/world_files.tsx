@@ -24,12 +24,12 @@ export function WorldFiles(): JSX.Element {
   useEffect(() => set_typed(null), [scenario.name]);
   const wanted = typed ?? title;
   const name = name_of(wanted);
-  const taken = scenarios.some((s) => s.name === name && name !== scenario.name);
+  const taken = scenarios.find((s) => s.name === name && name !== scenario.name);
 
   const save = () => run(async () => {
-    if (name === "") throw new Error("A world needs a name with a letter or a digit.");
+    set_asking(false); // a refusal stands below the name
+    if (name === "") throw new Error("A world needs a name with a letter from a to z or a digit.");
     await rest.post(session_path("/scenario"), { name, title: wanted.trim() });
-    set_asking(false);
     set_typed(null);
     await app.fetch_lists();
     app.toast("info", `Saved as "${wanted.trim()}".`);
@@ -39,7 +39,7 @@ export function WorldFiles(): JSX.Element {
       <h2>This world{session!.edited && <small class="quiet" data-testid="edited"> changed, not saved</small>}</h2>
       <form class="save" onSubmit={(e) => {
         e.preventDefault();
-        if (taken) set_asking(true);
+        if (taken && !taken.builtin) set_asking(true);
         else void save();
       }}>
         <input type="text" value={wanted} maxLength={64} aria-label="Name of the world" data-testid="world-name"
