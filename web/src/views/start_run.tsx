@@ -8,6 +8,9 @@ import { titled } from "../words";
 
 const kMostRepeats = 100;
 
+const is_whole = (value: number | null, least: number, most: number): value is number =>
+  Number.isInteger(value) && value! >= least && value! <= most;
+
 export function StartRun(props: { on_close: () => void; on_started: () => void }): JSX.Element {
   const app = use_app();
   const { session, catalog, scenarios } = use_ui("session", "catalog", "scenarios");
@@ -21,9 +24,10 @@ export function StartRun(props: { on_close: () => void; on_started: () => void }
     e.preventDefault();
     set_busy(true);
     await attempt(async () => {
+      if (!is_whole(seed, 0, Number.MAX_SAFE_INTEGER)) throw new Error("The seed must be a whole number of at least 0.");
+      if (!is_whole(repeats, 1, kMostRepeats)) throw new Error(`The repeats must be a whole number from 1 to ${kMostRepeats}.`);
       const answer = await rest.post<{ runs: number[] }>("/runs", {
-        scenario, controller, seed: Math.max(0, Math.round(seed ?? 1)),
-        repeats: Math.min(kMostRepeats, Math.max(1, Math.round(repeats ?? 1))),
+        scenario, controller, seed, repeats,
       });
       app.toast("info", answer.runs.length === 1 ? `Run ${answer.runs[0]} is under way.`
         : `Runs ${answer.runs[0]} to ${answer.runs.at(-1)} are under way.`);
