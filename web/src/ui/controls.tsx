@@ -151,7 +151,7 @@ export function Slider(props: {
   );
 }
 
-/** A number to type. While the field has the focus it shows the text as typed. */
+/** A number to type. While the field has the focus it shows the text as typed. An empty field is null. */
 export function NumberField(props: {
   label: string; unit?: string; value: number | null; name: string; empty?: string; step?: number;
   min?: number; digits?: number; on_change: (value: number | null) => void;
@@ -167,9 +167,7 @@ export function NumberField(props: {
           const text = e.currentTarget.value;
           set_typed(text);
           const value = text === "" ? null : Number(text);
-          if (value === null ? props.empty !== undefined : Number.isFinite(value)) {
-            props.on_change(value);
-          }
+          if (value === null || Number.isFinite(value)) props.on_change(value);
         }}
         onBlur={() => set_typed(null)} />
       {props.unit && <em>{props.unit}</em>}

@@ -51,10 +51,10 @@ export function StartValues(props: { start: Pose }): JSX.Element {
     <Form label="Start" name="start-values" on_submit={() => app.editor.set_start({ x: v.x, y: v.y, heading: radians(v.turn) })}>
       <b>Start</b>
       <span class="quiet">taken at the next reset</span>
-      <NumberField label="x" unit="m" name="start-x" value={v.x} on_change={(x) => type({ x: x ?? 0 })} />
-      <NumberField label="y" unit="m" name="start-y" value={v.y} on_change={(y) => type({ y: y ?? 0 })} />
+      <NumberField label="x" unit="m" name="start-x" value={v.x} on_change={(x) => type({ x: x ?? props.start.x })} />
+      <NumberField label="y" unit="m" name="start-y" value={v.y} on_change={(y) => type({ y: y ?? props.start.y })} />
       <NumberField label="heading" unit="°" name="start-heading" value={v.turn} step={5}
-        on_change={(turn) => type({ turn: turn ?? 0 })} />
+        on_change={(turn) => type({ turn: turn ?? tenths(degrees(heading)) })} />
       <button type="submit" class="small primary" disabled={!changed} data-testid="start-set">Set</button>
     </Form>
   );

@@ -26,9 +26,10 @@ export function NewGround(props: { kind: GroundKind }): JSX.Element {
   const pose = robot_pose(app.scene);
   const { x, y } = pose ? to_parent(pose, kAhead, 0) : { x: 0, y: 0 };
   const usual = kUsualGround[kind];
-  const [v, type, forget] = use_typed({
+  const first = {
     x: tenths(x), y: tenths(y), turn: 0, length: usual.length, width: usual.width, low: 0, height: usual.rise, depth: usual.rise,
-  });
+  };
+  const [v, type, forget] = use_typed(first);
   const apply = async () => {
     const made = { ...new_ground(kind, { x: v.x, y: v.y, heading: radians(v.turn) }, v.length), width: v.width };
     const ends = kind === "trench" ? { low: -v.depth } : { low: kind === "step" ? v.height : v.low, height: v.height };
@@ -36,7 +37,7 @@ export function NewGround(props: { kind: GroundKind }): JSX.Element {
   };
   const field = (name: keyof typeof v, unit = "m", step = 0.05, digits = 2) => (
     <NumberField key={name} label={name} unit={unit} name={`new-${name}`} value={v[name]} step={step} digits={digits}
-      on_change={(value) => type({ [name]: value ?? 0 })} />
+      on_change={(value) => type({ [name]: value ?? first[name] })} />
   );
   const rises = kind === "ramp" ? ["low", "height"] as const : kind === "step" ? ["height"] as const : ["depth"] as const;
   return (

@@ -15,10 +15,11 @@ export function NewValues(props: { kind: "cylinder" | "box" | "wall" }): JSX.Ele
   const app = use_app();
   const pose = robot_pose(app.scene);
   const { x, y } = pose ? to_parent(pose, kAhead, 0) : { x: 0, y: 0 };
-  const [v, type, forget] = use_typed({
+  const usual = {
     x: tenths(x), y: tenths(y), radius: kUsualRadius, length: kUsualSide, width: kUsualSide, turn: 0,
     x1: tenths(x), y1: tenths(y), x2: tenths(x), y2: tenths(y + 1), thick: kThickness,
-  });
+  };
+  const [v, type, forget] = use_typed(usual);
   const apply = async () => {
     const made = props.kind === "cylinder" ? new_cylinder(v.x, v.y, v.radius)
       : props.kind === "box" ? new_box(v.x, v.y, v.length, v.width, radians(v.turn))
@@ -27,7 +28,7 @@ export function NewValues(props: { kind: "cylinder" | "box" | "wall" }): JSX.Ele
   };
   const field = (name: keyof typeof v, unit = "m", step = 0.1) => (
     <NumberField key={name} label={name} unit={unit} name={`new-${name}`} value={v[name]} step={step}
-      on_change={(value) => type({ [name]: value ?? 0 })} />
+      on_change={(value) => type({ [name]: value ?? usual[name] })} />
   );
   return (
     <Form label={`New ${props.kind}`} name="new-values" class="unasked" on_submit={() => void apply()}>

@@ -98,7 +98,7 @@ export function ObstacleValues(props: { obstacle: Obstacle; editable: boolean })
       <span class="quiet num">{measure_of(o)}</span>
       {fields_of(o).map((f) => (
         <NumberField key={f.name} label={f.label} unit={f.unit} name={`obstacle-${f.name}`} value={v[f.name]}
-          step={f.step} min={f.min} digits={f.digits} on_change={(value) => type({ [f.name]: value ?? 0 })} />
+          step={f.step} min={f.min} digits={f.digits} on_change={(value) => type({ [f.name]: value ?? now[f.name] })} />
       ))}
       {can && <>
         <button type="submit" class="small primary" disabled={!changed} data-testid="obstacle-set">Set</button>
