@@ -44,7 +44,7 @@ test("from a template to the table, with Check before Start", { timeout: 120_000
   await p.get("new-experiment").click();
   await p.get("experiment-check").click();
   await p.get("experiment-estimate").waitFor();
-  assert.match(await p.get("experiment-estimate").textContent(), /^81 runs:/);
+  assert.match(await p.get("experiment-estimate").textContent(), /^81 runs: *9 scenarios × 3 controllers × 1 setting × 3 seeds/);
   // What is wrong is said beside the document, which stays.
   await write(p, "{\"name\": ");
   await p.get("experiment-start").click();

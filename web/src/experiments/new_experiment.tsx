@@ -5,7 +5,7 @@ import * as rest from "../link/rest";
 import { Dialog, Problem, Segments, use_problem } from "../ui/controls";
 import { Estimate, ExperimentInfo } from "./contract";
 import { templates } from "./templates";
-import { count, span_words } from "./words";
+import { counted, span_words } from "./words";
 
 export function NewExperiment(props: { document: unknown; on_close: () => void; on_started: (id: string) => void }): JSX.Element {
   const given = Object.keys(props.document as object).length > 0;
@@ -44,8 +44,8 @@ export function NewExperiment(props: { document: unknown; on_close: () => void; 
               set_estimate(null);
             }} /></label>
         <Problem text={problem} name="experiment-problem" />
-        {estimate && <p role="status" data-testid="experiment-estimate"><b class="num">{count(estimate.runs)} runs:</b> {" "}
-          {count(estimate.scenarios)} scenarios × {estimate.controllers} controllers × {estimate.settings} settings × {estimate.seeds} seeds;
+        {estimate && <p role="status" data-testid="experiment-estimate"><b class="num">{counted(estimate.runs, "run")}:</b> {" "}
+          {counted(estimate.scenarios, "scenario")} × {counted(estimate.controllers, "controller")} × {counted(estimate.settings, "setting")} × {counted(estimate.seeds, "seed")};
           at most {span_words(estimate.cpu_time)} of one core.</p>}
         <div class="experiment-acts">
           <button type="button" class="ghost" disabled={busy !== ""} data-testid="experiment-check" onClick={() => void check()}>

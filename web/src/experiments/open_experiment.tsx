@@ -13,7 +13,7 @@ import { ResultsTable } from "./results_table";
 import { Paths } from "./paths";
 import { RunsOf, open_again } from "./runs_of";
 import { use_calm, use_detail, use_progress, use_results } from "./watch";
-import { count, incomplete_words, span_words, state_of } from "./words";
+import { counted, incomplete_words, span_words, state_of } from "./words";
 
 export function OpenExperiment(props: { id: string; on_gone: () => void; on_again: (document: unknown) => void }): JSX.Element {
   const { id } = props;
@@ -90,7 +90,7 @@ function Head(props: {
     <header class="experiment-head">
       <button class="icon back" aria-label="Back to the list" onClick={() => app.open_experiment(null)}>{icons.back}</button>
       <h2>{info.name}</h2>
-      <span class="quiet">{count(info.runs)} runs{info.by && ` by ${info.by}`}, {began}</span>
+      <span class="quiet">{counted(info.runs, "run")}{info.by && ` by ${info.by}`}, {began}</span>
       <span class="experiment-acts">
         <Guard need="operator"><button class="ghost small" data-testid="experiment-again"
           onClick={() => props.on_again(detail.document)}>Document</button></Guard>

@@ -3,7 +3,7 @@
 import { JSX } from "preact";
 import { result_word } from "../words";
 import { Arm, Comparison } from "./contract";
-import { count, interval_words, mean_words, median_words, p_words, percent } from "./words";
+import { count, counted, interval_words, mean_words, median_words, p_words, percent } from "./words";
 
 interface Props {
   arms: Arm[]; comparisons: Comparison[]; baseline: string | null; picked: string | null; on_pick: (label: string) => void;
@@ -41,7 +41,7 @@ function Line(props: Props & { arm: Arm; rare: string[] }): JSX.Element {
     <tr class={`tone-${tone_of(arm.label, baseline, picked)} ${arm.label === picked ? "on" : ""}`} onClick={() => props.on_pick(arm.label)}>
       <th scope="row">
         <button class="text" onClick={() => props.on_pick(arm.label)} aria-pressed={arm.label === picked}>{arm.label}</button>
-        <small>{arm.label === baseline ? "baseline, " : ""}{count(arm.runs)} runs{arm.missing > 0 && `, ${count(arm.missing)} missing`}</small>
+        <small>{arm.label === baseline ? "baseline, " : ""}{counted(arm.runs, "run")}{arm.missing > 0 && `, ${count(arm.missing)} missing`}</small>
       </th>
       <td class="num"><b>{percent(reached)}</b> <small>{interval_words(reached)}</small>
         <Versus tests={props.comparisons.find((c) => c.label === arm.label)} of="reached" /></td>

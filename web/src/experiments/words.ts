@@ -28,11 +28,16 @@ export function count(n: number): string {
   return n.toLocaleString("en");
 }
 
+/** "1 run", "3,000 runs". */
+export function counted(n: number, noun: string): string {
+  return `${count(n)} ${noun}${n === 1 ? "" : "s"}`;
+}
+
 /** The line below the name in the list. */
 export function progress_words(info: ExperimentInfo): string {
-  if (info.done === info.runs) return `${count(info.runs)} runs${info.failed > 0 ? `, ${info.failed} failed` : ""}`;
+  if (info.done === info.runs) return `${counted(info.runs, "run")}${info.failed > 0 ? `, ${info.failed} failed` : ""}`;
   const share = `${Math.floor((100 * info.done) / info.runs)} %`;
-  return info.time_left === null ? `${count(info.done)} of ${count(info.runs)} runs`
+  return info.time_left === null ? `${count(info.done)} of ${counted(info.runs, "run")}`
     : `${share}, ${span_words(info.time_left)} left`;
 }
 
@@ -41,8 +46,8 @@ export function incomplete_words(info: ExperimentInfo): string | null {
   const missing = info.runs - info.done;
   if (missing === 0 && info.failed === 0) return null;
   const parts = [
-    ...(missing > 0 ? [`${count(info.done)} of ${count(info.runs)} runs`] : []),
-    ...(info.failed > 0 ? [`${count(info.failed)} ${info.failed === 1 ? "run" : "runs"} failed`] : []),
+    ...(missing > 0 ? [`${count(info.done)} of ${counted(info.runs, "run")}`] : []),
+    ...(info.failed > 0 ? [`${counted(info.failed, "run")} failed`] : []),
   ];
   return parts.join(", ");
 }
