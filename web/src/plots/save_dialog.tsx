@@ -4,6 +4,7 @@ import { useState } from "preact/hooks";
 import { use_ui } from "../app";
 import { Dialog, Problem, use_problem } from "../ui/controls";
 import { icons } from "../ui/icons";
+import "../ui/switch";
 import { ScenePart, Sheet, scene_picture, sheet_picture } from "./pictures";
 import { save_picture } from "./save";
 

@@ -11,6 +11,7 @@ import css from "../style/layers.css?text";
 import { icons } from "../ui/icons";
 import { adopt } from "../ui/sheet";
 import "../ui/swatch";
+import "../ui/switch";
 
 adopt(css);
 
