@@ -236,6 +236,7 @@ test("scene and plots are saved as SVG and PNG, the ticks as CSV with units", { 
     const id = where === "stored" ? run : (await json(server.base, "/session")).run.id;
     await p.get("plot-save").click();
     assert.deepEqual(await p.accessibility(), []);
+    assert.equal(await p.get("save-light").evaluate((e) => getComputedStyle(e).display), "grid", "a line with a switch, whatever was opened before");
     const title = `Run ${id}: Case 1, Modified`;
     for (const what of ["plots", "scene"]) {
       const svg = await downloaded(p, () => p.get(`save-${what}-svg`).click());
@@ -287,6 +288,15 @@ test("the plots fit every window", { timeout: 180_000 }, async () => {
       const wide = await p.page.evaluate(() => document.documentElement.scrollWidth);
       assert.ok(wide <= width, `${width} x ${height}: ${wide} px wide`);
       await p.shot(`plots-${width}x${height}-${theme}`);
+      if (await p.get("pick-signals").isVisible()) { // they are folded where the height is small
+        await p.page.locator(".lanes .plots").evaluate((e) => e.scrollTo(0, e.scrollHeight));
+        await p.get("pick-signals").click();
+        const hidden = await p.get("picker-find").evaluate((e) => {
+          const b = e.getBoundingClientRect();
+          return !e.contains(document.elementFromPoint(b.left + b.width / 2, b.top + b.height / 2));
+        });
+        assert.equal(hidden, false, `${width} x ${height}: the list of signals opens out of sight`);
+      }
       assert.deepEqual(await p.accessibility(), [], `${width} x ${height}, ${theme}`);
       await p.close();
     }

@@ -11,7 +11,11 @@ export function Picker(props: {
   const { signals, choices } = props;
   const [text, set_text] = useState("");
   const find = useRef<HTMLInputElement>(null);
-  useEffect(() => find.current?.focus({ preventScroll: true }), []);
+  useEffect(() => {
+    find.current?.focus({ preventScroll: true });
+    find.current?.closest(".plots")?.scrollTo(0, 0); // it stands above the plots
+    find.current?.scrollIntoView({ block: "nearest" });
+  }, []);
   const found = signals.filter((s) => matches(`${s.label} ${s.name} ${s.unit} ${s.group} ${s.meaning}`, text));
   const groups = [...new Set(found.map((s) => s.group))];
   return (
@@ -30,7 +34,7 @@ export function Picker(props: {
         {found.length === 0 && <p class="quiet">No signal of this run has these words.</p>}
         {groups.map((group) => (
           <div role="group" aria-label={group} key={group}>
-            <h3>{group}</h3>
+            <h2>{group}</h2>
             {found.filter((s) => s.group === group).map((s) => (
               <SignalRow key={s.name} of={s} on={is_shown(s, choices)}
                 on_press={(on) => props.on_choose({ ...choices, [s.name]: on })} />
