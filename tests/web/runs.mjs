@@ -82,6 +82,23 @@ test("the heads sort; unknown figures come last; live and background runs are to
     assert.ok(["71", "72", "73", "74"].every((seed) => seeds.includes(seed)), seeds.join(" "));
   }));
 
+test("a run is not started with numbers that cannot be", { timeout: 60_000 }, () =>
+  with_page({ size: phone, touch: true }, async (p) => {
+    const { total } = await list("kind=background");
+    await p.get("start-run").tap();
+    const refused = async (seed, repeats, words) => {
+      await p.get("start-seed").fill(seed);
+      await p.get("start-repeats").fill(repeats);
+      await p.get("start-go").tap();
+      await until("it says why", 5, () => p.get("start-dialog").locator(".problem").textContent().catch(() => ""), (w) => words.test(w));
+    };
+    await refused("-5", "1", /seed must be a whole number/);
+    await refused("1", "1000000000", /repeats must be a whole number from 1 to 100/);
+    await refused("1e300", "1", /seed must be/);
+    await refused("1", "2.7", /repeats must be/);
+    assert.equal((await list("kind=background")).total, total);
+  }));
+
 test("a batch is one line that opens; many are tagged at once", { timeout: 60_000 }, () =>
   with_page({}, async (p) => {
     const line = p.get(`batch-${batch[0]}`);
@@ -222,13 +239,18 @@ for (const theme of ["dark", "light"]) {
         // axe takes a line that is scrolled below the head for a covered one.
         await p.page.evaluate(() => document.querySelectorAll(".rows, .runs").forEach((e) => e.scrollTo(0, 0)));
         assert.deepEqual(await p.accessibility(), [], name);
-        const wide = await p.page.evaluate(() => document.documentElement.scrollWidth);
-        assert.ok(wide <= size.width, `${name} is ${wide} px wide`);
+        const [wide, high] = await p.page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]);
+        assert.ok(wide <= size.width && high <= size.height, `${name} is ${wide} x ${high} px large: Stop can be scrolled away`);
         await p.get("selection-compare").click();
         await p.page.waitForSelector('[data-testid="run-view"][aria-busy="false"]', { timeout: 30_000 });
         await p.get(`measures-${alone[1]}`).waitFor();
         await p.page.waitForTimeout(300);
         await p.shot(`${name}-compare`);
+        const cut = await p.page.evaluate(() => [...document.querySelectorAll(".facts > .quiet, .measures thead th")]
+          .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.textContent));
+        assert.deepEqual(cut, [], `${name} cuts off words`);
+        const { width } = await p.get("timeline").boundingBox();
+        assert.ok(width > 90, `${name}: the time is ${width} px wide`);
         assert.deepEqual(await p.accessibility(), [], `${name}, compared`);
       });
     }

@@ -17,6 +17,8 @@ import { clock, driver_word, fixed, kind_words, later_words, result_word, titled
 import { DriveAgain } from "./drive_again";
 import { delete_runs, tags_in } from "./run_actions";
 
+const kLongNote = 300; // letters: above it the note may have to be scrolled
+
 /** The colours of the open run and of those drawn over it. */
 export const kLooks: RunLook[] = [
   { letter: "A", colour: "accent", dash: [] },
@@ -59,7 +61,7 @@ export function RunFacts(props: {
       </span>
       {(item.reason || item.later) && <p class="reason" data-testid="facts-reason">
         {[item.reason, later_words(item), item.later?.reason].filter(Boolean).join(" ")}</p>}
-      {(item.tags.length > 0 || item.note) && <p class="reason" data-testid="facts-note">
+      {(item.tags.length > 0 || item.note) && <p class="reason" data-testid="facts-note" tabIndex={item.note.length > kLongNote ? 0 : undefined}>
         {item.tags.map((tag) => <em class="label" key={tag}>{tag}</em>)} {item.note}</p>}
       <Figures runs={[item, ...props.others]} on_uncompare={(id) => props.on_compare(others.filter((one) => one !== id))} />
       {editing && <Remarks run={item} on_close={() => set_editing(false)} on_saved={(saved) => {
