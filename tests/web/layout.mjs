@@ -161,6 +161,7 @@ for (const theme of ["dark", "light"]) {
       }
       await obstacle.waitFor();
       await check("obstacle-values");
+      assert.equal(await p.get("steps").isVisible(), size === "desktop", `${size}: where room is short the steps make way for the numbers`);
       await p.page.keyboard.press("Escape");
 
       await p.get("stop").click();
@@ -356,6 +357,46 @@ test("what a finger presses is 44 px large", { timeout: 120_000 }, () =>
     await p.get("goal-values").waitFor();
     assert.deepEqual(await small(), [], `${size}, values`);
   }, kTouch));
+
+test("on a phone: no word of help, tabs, System and the list of scenarios is cut off, and no number lies under a button", { timeout: 120_000 }, () =>
+  at_each_size({ scenario: "demo" }, async (p, size) => {
+    const within = (selector) => p.page.evaluate((selector) => {
+      const faults = [];
+      if (document.documentElement.scrollWidth > innerWidth) faults.push("the page scrolls sideways");
+      for (const e of document.querySelectorAll(selector)) {
+        const b = e.getBoundingClientRect();
+        if (b.left < -0.5 || b.right > innerWidth + 0.5) faults.push(`${e.textContent.slice(0, 20)} leaves the window`);
+        if (e.scrollWidth > e.clientWidth + 1) faults.push(`${e.textContent.slice(0, 20)} is cut off`);
+      }
+      return faults;
+    }, selector);
+    const rail = await p.page.locator(".rail span").evaluateAll((all) => all.map((e) => e.getBoundingClientRect()).map(({ left, right }) => [left, right]));
+    rail.slice(1).forEach(([left], i) => assert.ok(left > rail[i][1] + 2, `${size}: tab ${i + 1} touches the next one`));
+    await p.get("scenario-menu").click();
+    await p.page.locator(".menu-list").waitFor();
+    assert.deepEqual(await within(".menu-list, .menu-list input"), [], `${size}, scenarios`);
+    await p.page.keyboard.press("Escape");
+    const keys = await p.page.locator(".tools button[title]").evaluateAll((all) =>
+      all.flatMap((e) => e.title.match(/\((.*)\)$/)?.[1].split(", ") ?? []));
+    await p.get("help").click();
+    await p.get("shortcuts").waitFor();
+    assert.deepEqual(await within('[data-testid="shortcuts"], [data-testid="shortcuts"] td'), [], `${size}, help`);
+    const told = await p.page.locator('[data-testid="shortcuts"] tr:not(:has(td:text("Teleop"))) kbd').allTextContents();
+    assert.ok(keys.length > 10 && keys.every((key) => told.includes(key)), `the help tells the keys of all tools: ${keys}; it tells ${told}`);
+    await p.page.keyboard.press("Escape");
+    await p.get("tune").click();
+    await p.get("tab-robot").last().waitFor();
+    await p.get("sheet").evaluate((e) => e.scrollTo(0, e.scrollHeight));
+    assert.ok(await p.get("tab-robot").last().evaluate((e) => {
+      const b = e.getBoundingClientRect();
+      return e.contains(document.elementFromPoint(b.left + b.width / 2, b.top + b.height / 2));
+    }), `${size}: the tabs stay where their button is`);
+    await p.get("tune").click();
+    await p.page.evaluate(() => (location.hash = "#/system"));
+    await p.get("clients").waitFor();
+    assert.deepEqual(await within(".topbar .menu-name, .keys-block td"), [], `${size}, system`);
+    assert.ok(await p.page.locator(".clients th").first().evaluate((e) => e.clientHeight < 40), `${size}: a word of the table is broken`);
+  }, kPhones));
 
 test("a first visit: three steps that lead on, are dismissed and remembered; help in the bar", { timeout: 120_000 }, () =>
   at_each_size({ scenario: "demo" }, async (p, size, { base }) => {
