@@ -314,9 +314,12 @@ test("waypoints are reordered and looped in the list, and sizes are typed", { ti
   await p.get("new-y").fill("3");
   await p.get("new-add").click();
   await until("a box", 5, obstacles, (list) => list.length === 1);
+  await p.get("obstacle-width").fill("2");
+  await p.get("obstacle-width").fill(""); // what was deleted is not set
   await p.get("obstacle-length").fill("1.5");
   await p.get("obstacle-set").click();
-  await until("longer", 5, obstacles, ([o]) => o.length === 1.5);
+  const [{ width }] = await until("longer", 5, obstacles, ([o]) => o.length === 1.5);
+  assert.notEqual(width, 2);
   await p.get("obstacle-copy").click();
   await until("two", 5, obstacles, (list) => list.length === 2);
   await p.close();
@@ -339,6 +342,12 @@ test("worlds are imported and exported, copied, deleted and brought back; bad fi
   await p.page.getByText(/obstacles\/0\/(y|radius)/).waitFor();
   p.forgive(/422/);
   await p.page.getByLabel("Dismiss").first().click();
+  await p.get("world-name").fill("Case1"); // built in: that it cannot be replaced is said, not asked
+  await p.get("world-save").click();
+  await until("it says why", 5, () => p.get("world-problem").textContent().catch(() => ""), (w) => /built in/.test(w));
+  assert.equal(await p.get("replace-dialog").count(), 0);
+  p.forgive(/409/);
+  await p.get("world-name").fill("hall");
   const [file] = await Promise.all([p.page.waitForEvent("download"), p.get("world-export").selectOption("json")]);
   assert.equal(JSON.parse(readFileSync(await file.path())).name, "hall");
   await p.get("world-open").click();
