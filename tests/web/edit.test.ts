@@ -13,6 +13,7 @@ import { snapped } from "../../web/src/edit/snap";
 import { change_since } from "../../web/src/edit/stands";
 import { GestureTarget, Gestures, Tool } from "../../web/src/edit/gestures";
 import { EditHistory } from "../../web/src/edit/history";
+import { NoAnswer } from "../../web/src/link/no_answer";
 import { wrap_angle } from "../../web/src/geometry";
 import { covers, obstacle_from_json, obstacle_to_json, outline } from "../../web/src/obstacle";
 import { new_scene } from "../../web/src/state/scene";
@@ -348,6 +349,32 @@ test("a refused edit is not kept; a refused undo can be tried again", async () =
   set_refuse(true);
   await assert.rejects(history.undo(), /Not now/);
   assert.equal(history.can_undo, "Add box");
+});
+
+test("an undo whose answer is late counts as done where the world shows it", async () => {
+  let late = false, x = 1;
+  const place = (at: number) => ({ x: at, y: 0, heading: 0 });
+  const history = new EditHistory({
+    send: async (step) => {
+      if (step.type === "move_obstacle") x = step.x;
+      if (late) throw new NoAnswer("Late.");
+      return {};
+    },
+    stands: async (step) => (step.type === "move_obstacle" && step.x !== x ? "It has been moved since." : null),
+    changed: () => undefined,
+  });
+  const here = { ...new_cylinder(1, 0, 0.3), id: 11 };
+  await history.perform(move_edit(here, place(1), place(2)));
+  await history.perform(move_edit(here, place(2), place(3)));
+  late = true;
+  await history.undo();
+  assert.equal(x, 2);
+  late = false;
+  await history.undo();
+  assert.equal(x, 1, "the next press takes back the edit before");
+  await history.redo();
+  await history.redo();
+  assert.equal(x, 3);
 });
 
 test("an edit that somebody else has changed since is left, with the reason", async () => {

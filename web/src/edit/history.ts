@@ -1,6 +1,7 @@
 // web/src/edit/history.ts: edits as values to do, undo and do again. A value holds the steps for
 // both ways; a drag is one edit. What somebody else has changed since is left as it is.
 import { Accepted } from "../contract";
+import { NoAnswer } from "../link/no_answer";
 import { Step } from "./edits";
 
 export interface Edit {
@@ -46,7 +47,7 @@ export class EditHistory {
   /** Sends the edit and keeps it for undo when the server accepts it; rejects when refused. */
   perform(edit: Edit): Promise<Accepted> {
     return this.in_turn(async () => {
-      const answer = await this.t_.send(edit.forward);
+      const answer = await this.send(edit.forward);
       this.record(complete(edit, answer.id));
       return answer;
     });
@@ -82,6 +83,16 @@ export class EditHistory {
     });
   }
 
+  /** Sends `step`. Where the answer is late, the world tells whether it was carried out. */
+  private async send(step: Step): Promise<Accepted> {
+    try {
+      return await this.t_.send(step);
+    } catch (error) {
+      if (!(error instanceof NoAnswer) || (await this.t_.stands(step)) !== null) throw error;
+      return {};
+    }
+  }
+
   /** Runs `act` after the answer to the edit before. */
   private in_turn<T>(act: () => Promise<T>): Promise<T> {
     const next = this.last_.then(act, act);
@@ -94,7 +105,7 @@ export class EditHistory {
     try {
       const changed = await this.t_.stands(last);
       if (changed) throw new EditDropped(`${changed} "${edit.label}" is left as it is.`);
-      await this.t_.send(step);
+      await this.send(step);
       to.push(edit);
       return edit.label;
     } catch (error) {

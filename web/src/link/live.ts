@@ -7,6 +7,7 @@ import {
   service_request,
 } from "./foxglove";
 import { Legends } from "./legend";
+import { NoAnswer } from "./no_answer";
 
 export interface LinkStatus {
   phase: "connecting" | "open" | "lost";
@@ -129,7 +130,7 @@ export class LiveLink {
       return Promise.reject(new Error("There is no connection to the server. Nothing was sent."));
     }
     return new Promise<T>((resolve, reject) => {
-      const late = new Error("The server did not answer within 10 s.");
+      const late = new NoAnswer("The server did not answer within 10 s.");
       const timer = setTimeout(() => this.settle(id, (call) => call.reject(late)), kCallTimeout);
       this.pending_.set(id, { resolve: resolve as (value: unknown) => void, reject, timer });
       send();
