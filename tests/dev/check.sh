@@ -63,7 +63,8 @@ verb_fmt() {
 long_tests=(AppTest.ABatchOfTenThousand\* ArmInverse.EveryBranch\* ArmStudy.\* BodyFollower.Passes\*
   BodyStrip.TheArmYields\* Compare.TheBlindOne\* Determinism.SeveralRobots\*
   FleetRobot.{EachRobot,SoItDoes}\* GroundCourses.ARobotClimbs\* GroundDrive.RefusesSteps\* MapData.\*
-  Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
+  MasudaStudy.{BandsCanFail,DocumentsName,DownwardSlopes,HasTheLines,PrintedRules}\*
+  FilterStudy.RepeatsExactly\* Operator.IsTheSame\* Physics/RecordedSwap.\* RunListLoadTest.\* RunQueueTest.WaitingWorlds\*
   SlopeStudy.TheGuardKeeps\* TightPlaces.\* Turnover.BeginsWhere\*)
 
 # Tests run in shards here, many in a process. ThreadSanitizer runs only the tests of rooms that start threads;
