@@ -215,6 +215,11 @@ void SerialRobot::latch(Halt halt, double now) {
     too_long = lasts(halt != Halt::None && halt != Halt::MotorsOff, now, kRearm, halted_since_);
   }
   if (!armed || (!needs_a_person(halt) && !too_long)) return;
+  if (halt == Halt::StopButton) {
+    // With its motors off, a base may not tell whether the button is still pressed.
+    disarm("Motors off. What happened: " + algo::explain(halt).why);
+    return;
+  }
   disarm_after(health().trouble);
 }
 

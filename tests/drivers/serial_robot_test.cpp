@@ -20,6 +20,7 @@ namespace {
 
 using algo::Halt;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(SerialRobot, DoesNotMoveUntilItIsArmed) {
   FakeRobot f;
@@ -181,6 +182,18 @@ TEST(SerialRobot, EveryFaultStopsInTheTickThatDetectsIt) {
     EXPECT_EQ(f.seen.halt, halt) << algo::name(halt);
     EXPECT_EQ(f.armed(), !person) << algo::name(halt);
   }
+}
+
+TEST(SerialRobot, NeverSaysThatAStopButtonIsReleased) {
+  FakeRobot f;
+  f.arm();
+  f.base->now.stop_button = true;
+  f.step();
+  EXPECT_FALSE(f.armed());
+  f.base->now.stop_button = false;  // a base with its motors off reports the button no more
+  f.step();
+  EXPECT_THAT(f.robot->health().trouble, HasSubstr("stop button"));
+  EXPECT_THAT(f.robot->health().trouble, Not(HasSubstr("over now")));
 }
 
 TEST(SerialRobot, WheelsThatTurnWithoutACommandAreCutOff) {
