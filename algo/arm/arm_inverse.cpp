@@ -110,7 +110,7 @@ std::optional<ArmJoints> six_joint_inverse(const ArmGeometry& geometry,
   // degrees: the sign at the elbow decides.
   for (const std::uint8_t elbow : {std::uint8_t{0}, ArmBranch::kElbowBack}) {
     branch.bits = static_cast<std::uint8_t>((branch.bits & ~ArmBranch::kElbowBack) | elbow);
-    const auto q = arm_inverse(geometry, hand, 0, branch, present);
+    auto q = arm_inverse(geometry, hand, 0, branch, present);
     if (q && std::abs((*q)[2]) < std::numbers::pi / 2) return q;
   }
   return std::nullopt;
