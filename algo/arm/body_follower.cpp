@@ -7,46 +7,51 @@
 namespace algo {
 namespace {
 
-constexpr double kAtPoint = 1e-3;    // [m] a shorter way has no direction
-constexpr double kTurnFirst = 0.6;   // [rad] farther off its way the base turns on the spot
-constexpr double kSettle = 0.5;      // [s] in which an error of heading or place is driven away
-constexpr double kLook = 0.1;        // [s] between two looks at the next motion
-constexpr double kSameRoom = 1e-6;   // [m]
-constexpr double kSpeedMemory = 1;   // [s] of the speed that predicts when the body gets where
-constexpr double kLeastSpeed = 0.1;  // [m/s] of the same: a body that waits will go on
+constexpr double kAtPoint = 1e-3;       // [m] a shorter way has no direction
+constexpr double kShortest = 0.05;      // [s] of a motion of the joints: it ends without a jerk
+constexpr double kStopsWithin = 0.003;  // [m] of its goal, along its way, the base stops
+constexpr double kSameHeading = 0.02;   // [rad] a smaller turn takes the base no time
+constexpr double kTurnFirst = 0.6;      // [rad] farther off its way the base turns on the spot
+constexpr double kSettle = 0.5;         // [s] in which an error of heading or place is driven away
+constexpr double kLook = 0.1;           // [s] between two looks at the next motion
+constexpr double kSameRoom = 1e-6;      // [m]
+constexpr double kSpeedMemory = 1;      // [s] of the speed that predicts when the body gets where
+constexpr double kLeastSpeed = 0.1;     // [m/s] of the same: a body that waits will go on
 
-/// The point of the strip's base path `way` [m] ahead of its start, and how much of the way is left
-/// behind the end when the path is shorter.
-struct PathPoint {
-  Vec2 point_W = Vec2::Zero();
-  double missing = 0;  // [m]
+/// Where the base's way leads.
+struct BaseTarget {
+  Vec2 carrot_W = Vec2::Zero();  // to steer for
+  double left = 0;               // [m]
 };
-PathPoint point_ahead(std::span<const BodyFrames> frames, double way) {
-  for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
-    const Vec2 a = frames[i].base_W.translation().head<2>();
-    const Vec2 b = frames[i + 1].base_W.translation().head<2>();
-    const double length = (b - a).norm();
-    if (way < length) return {a + (b - a) * way / length, 0};
+
+/// The carrot lies `lookahead` ahead on the strip. Beyond its end the way goes straight on, so that
+/// the base does not circle about its goal.
+BaseTarget base_target(const BodyStrip& strip, double lookahead) {
+  const auto q = strip.configurations();
+  const Vec2 goal = q.back().head<2>();
+  const Vec2 onwards = strip.end_direction();
+  double way = lookahead;
+  for (std::size_t i = 0; i + 1 < q.size(); ++i) {
+    const Vec2 step = (q[i + 1] - q[i]).head<2>();
+    const double length = step.norm();
+    if (way < length) return {q[i].head<2>() + step * way / length, strip.length()};
     way -= length;
   }
-  return {frames.back().base_W.translation().head<2>(), way};
+  return {goal + way * onwards, std::max(0.0, onwards.dot(goal - q.front().head<2>()))};
 }
 
-/// The base's part: towards `carrot`, and onto `heading` once it is there.
+/// The base's part: towards the target, and onto `heading` once it is there.
 Twist2 base_twist(const Pose2& pose,
-                  const PathPoint& carrot,
-                  double left,
+                  const BaseTarget& target,
                   double heading,
                   const BodyLimits& limits) {
-  const Vec2 way = carrot.point_W - pose.position();
   const auto limited = [](double value, double most) { return std::clamp(value, -most, most); };
-  if (left < kAtPoint) {
-    return {0, limited(wrap_angle(heading - pose.heading) / kSettle, limits.max_omega)};
-  }
+  const auto turning = [&](double error) { return limited(error / kSettle, limits.max_omega); };
+  if (target.left < kStopsWithin) return {0, turning(wrap_angle(heading - pose.heading))};
+  const Vec2 way = target.carrot_W - pose.position();
   const double error = wrap_angle(std::atan2(way.y(), way.x()) - pose.heading);
-  const double omega = limited(error / kSettle, limits.max_omega);
-  if (std::abs(error) > kTurnFirst) return {0, omega};
-  return {std::min(limits.max_v, left / kSettle) * std::cos(error), omega};
+  if (std::abs(error) > kTurnFirst) return {0, turning(error)};
+  return {std::min(limits.max_v, target.left / kSettle) * std::cos(error), turning(error)};
 }
 
 /// Of the joints on the strip.
@@ -62,13 +67,17 @@ ArmAhead arm_ahead(std::span<const BodyJoints> strip,
   double passed = 0;  // [s] with the joints as fast as the base's way asks,
   double slowed = 0;  // and as fast as they may
   for (std::size_t i = 0; i + 1 < strip.size(); ++i) {
-    const double way = (strip[i + 1] - strip[i]).head<2>().norm();
-    const ArmJoints change = arm_of(strip[i + 1]) - arm_of(strip[i]);
-    const double shortest = change.cwiseAbs().maxCoeff() / limits.max_rate;
-    const double planned = v > 0 && way > kAtPoint ? way / v : shortest;
+    const BodyJoints change = strip[i + 1] - strip[i];
+    const double way = change.head<2>().norm();
+    const double turn = std::abs(wrap_angle(change[2]));
+    const ArmJoints joints = arm_of(strip[i + 1]) - arm_of(strip[i]);
+    const double shortest = joints.cwiseAbs().maxCoeff() / limits.max_rate;
+    const bool stands = way < kAtPoint && turn < kSameHeading;
+    const double planned =
+        stands ? shortest : std::max(way / std::max(v, kLeastSpeed), turn / limits.max_omega);
     if (passed + planned > time) {
       const double part = (time - passed) / planned;
-      return {arm_of(strip[i]) + part * change, slowed + part * std::max(planned, shortest)};
+      return {arm_of(strip[i]) + part * joints, slowed + part * std::max(planned, shortest)};
     }
     passed += planned;
     slowed += std::max(planned, shortest);
@@ -103,7 +112,7 @@ BodyCommand BodyFollower::kept_clear(const BodyJoints& now,
   arm_alone.base = {};
   BodyCommand base_alone = wanted;
   base_alone.rates.setZero();
-  const BodyCommand rest{{}, ArmJoints::Zero(), FollowState::Waits};
+  const BodyCommand rest{.state = FollowState::Waits};
   const std::array candidates{wanted, arm_alone, base_alone, rest};
   const BodyCommand* best = nullptr;
   double best_room = 0;
@@ -121,16 +130,22 @@ BodyCommand BodyFollower::towards_strip(const BodyJoints& now) const {
   const auto configurations = strip_.configurations();
   const BodyJoints& goal = strip_.goal();
   const ArmJoints to_goal = arm_of(goal) - arm_of(now);
-  const double left = strip_.length();
   const double turn = wrap_angle(goal[2] - now[2]);
+  const BaseTarget target = base_target(strip_, rules_.lookahead);
   BodyCommand command;
-  if (left < rules_.goal_reach && std::abs(turn) < rules_.goal_reach &&
-      to_goal.cwiseAbs().maxCoeff() < rules_.goal_reach) {
+  if (target.left < kStopsWithin && strip_.length() < rules_.base_reach &&
+      std::abs(turn) < rules_.goal_reach && to_goal.cwiseAbs().maxCoeff() < rules_.goal_reach) {
     command.state = FollowState::Arrived;
   }
-  const PathPoint carrot = point_ahead(strip_.frames(), std::min(rules_.lookahead, left));
-  command.base = base_twist(base_of(now), carrot, left, goal[2], limits_);
+  command.base = base_twist(base_of(now), target, goal[2], limits_);
 
+  if (strip_.stands()) {
+    // The arm works among things: from one configuration of its planned way straight to the next.
+    const ArmJoints change = arm_of(configurations[1]) - arm_of(now);
+    command.rates_last = std::max(change.cwiseAbs().maxCoeff() / limits_.max_rate, kShortest);
+    command.rates = change / command.rates_last;
+    return command;
+  }
   // The joints make for the strip's configuration at the end of the horizon, so that the motion
   // which is proved clear ends there. Where they cannot keep up, the base slows down.
   const ArmAhead ahead = arm_ahead(configurations, command.base.v, limits_, rules_.horizon);
@@ -149,7 +164,7 @@ double BodyFollower::least_room(const BodyJoints& now,
   double least = std::numeric_limits<double>::infinity();
   for (double time = kLook; time < rules_.horizon + kLook / 2; time += kLook) {
     const BodyFrames frames = body_frames(body_, moved(now, command, time));
-    least = std::min(least, self_clearance(body_, frames));
+    least = std::min(least, self_clearance(body_, frames) - rules_.own_margin);
     for (std::size_t k = 0; k < kBodyLinks; ++k) {
       const LinkAxis link = link_axis(body_, frames, static_cast<BodyLink>(k));
       for (const Solid& solid : solids) {
@@ -162,7 +177,7 @@ double BodyFollower::least_room(const BodyJoints& now,
 
 BodyJoints moved(const BodyJoints& body, const BodyCommand& command, double dt) {
   return body_joints(integrate_arc(base_of(body), command.base, dt),
-                     arm_of(body) + dt * command.rates);
+                     arm_of(body) + std::min(dt, command.rates_last) * command.rates);
 }
 
 }  // namespace algo

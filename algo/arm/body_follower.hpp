@@ -1,6 +1,7 @@
 // algo/arm/body_follower.hpp: drives base and arm along a strip that bends before what comes near.
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "algo/arm/body_strip.hpp"
@@ -18,8 +19,10 @@ struct FollowRules {
   int sweeps = 20;            // in one tick
   double lookahead = 0.4;     // [m] the base steers for the strip's point this far ahead
   double margin = 0.05;       // [m] nearer to a solid than this nothing moves on
-  double horizon = 0.4;       // [s] the next motion must keep the margin for this long
-  double goal_reach = 0.005;  // [m, rad] the body is at its goal
+  double own_margin = 0.01;   // [m] the same of the arm to its body
+  double horizon = 0.4;       // [s] the next motion must keep the margins for this long
+  double goal_reach = 0.005;  // [rad] joints and heading are at their goal when they are so near,
+  double base_reach = 0.05;   // [m] and the base when it is so near across its way
 };
 
 /// Why the body moves as it does.
@@ -29,6 +32,8 @@ enum class FollowState : std::uint8_t { Drives, Waits, Arrived };
 struct BodyCommand {
   Twist2 base{};
   ArmJoints rates = ArmJoints::Zero();  // [rad/s]
+  // [s] until the joints are where they go, and stop.
+  double rates_last = std::numeric_limits<double>::infinity();
   FollowState state = FollowState::Drives;
 };
 
@@ -54,7 +59,7 @@ class BodyFollower {
   BodyCommand kept_clear(const BodyJoints& now,
                          const BodyCommand& wanted,
                          std::span<const Solid> solids) const;
-  /// [m] Beyond the margin, while `command` goes on for the horizon.
+  /// [m] Beyond the margins, while `command` goes on for the horizon.
   double least_room(const BodyJoints& now,
                     const BodyCommand& command,
                     std::span<const Solid> solids) const;

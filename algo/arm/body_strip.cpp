@@ -9,6 +9,7 @@ namespace {
 constexpr double kAtRest = 1e-5;     // [m, rad] a smaller change of every entry ends the sweeps
 constexpr double kOwnStiffness = 4;  // beside the force of solids: its reach is short
 constexpr double kNoLength = 1e-12;  // [m]
+constexpr double kOffPlace = 0.03;   // [m] a start off its place by less is no way to drive
 constexpr double kStands = 1e-3;     // [m] the base stands between configurations nearer than this
 constexpr double kReached = 0.02;    // [rad] of each joint
 
@@ -38,6 +39,11 @@ void BodyStrip::lay(std::span<const BodyJoints> nominal) {
   frames_.resize(now_.size());
   points_.resize(now_.size());
   ahead_.assign(now_.size(), 0.0);
+  end_direction_.setZero();
+  for (std::size_t i = now_.size() - 1; i > 0 && end_direction_.isZero(); --i) {
+    const Vec2 way = (now_[i] - now_[i - 1]).head<2>();
+    if (way.norm() > kOffPlace) end_direction_ = way.normalized();
+  }
   for (std::size_t i = 0; i < now_.size(); ++i) place(i);
 }
 
@@ -66,12 +72,12 @@ double BodyStrip::length() const {
 
 bool BodyStrip::passed_next() const {
   const Vec3 onwards = points_[2][0] - points_[1][0];
-  if (onwards.norm() > kStands) return (points_[0][0] - points_[1][0]).dot(onwards) >= 0;
-  // Only the arm moves on: it has passed a configuration that is behind it, or that it has reached.
-  const ArmJoints to_next = arm_of(now_[1]) - arm_of(now_[0]);
-  const bool there =
-      to_next.cwiseAbs().maxCoeff() < kReached && (points_[1][0] - points_[0][0]).norm() < kStands;
-  return there || to_next.dot(arm_of(now_[2]) - arm_of(now_[1])) < 0;
+  // Where only the arm moves on, it goes from one configuration to the next: its way may turn back,
+  // and then it has no side on which a configuration is passed.
+  if (onwards.norm() < kStands) {
+    return (arm_of(now_[1]) - arm_of(now_[0])).cwiseAbs().maxCoeff() < kReached;
+  }
+  return (points_[0][0] - points_[1][0]).dot(onwards) >= 0;
 }
 
 int BodyStrip::relax(std::span<const Solid> solids, int sweeps) {
@@ -79,7 +85,7 @@ int BodyStrip::relax(std::span<const Solid> solids, int sweeps) {
     double largest = 0;
     for (std::size_t i = 1; i + 1 < now_.size(); ++i) {
       BodyJoints force = BodyJoints::Zero();
-      add_internal(i, force);
+      if (!stands()) add_internal(i, force);
       add_external(i, solids, force);
       push_off_itself(i, force);
       largest = std::max(largest, move(i, force));
@@ -116,7 +122,7 @@ void BodyStrip::add_external(std::size_t i,
                              BodyJoints& force) const {
   const Vec3 path = points_[i + 1][0] - points_[i - 1][0];
   const double length = path.norm();
-  const bool drives = length > kNoLength;
+  const bool drives = !stands() && length > kNoLength;
   const Vec3 ahead = drives ? Vec3(path / length) : Vec3(Vec3::Zero());
   for (const Solid& solid_now : solids) {
     const Solid solid = solid_now.after(ahead_[i]);
@@ -167,10 +173,13 @@ void BodyStrip::push_nearest(std::size_t i,
                              const Vec3& ahead,
                              const Solid& solid,
                              BodyJoints& force) const {
+  // What stands was there when the arm's way was planned; what moves was not.
+  const bool planned_for = ahead.isZero() && solid.velocity_W.isZero();
+  const double reach = planned_for ? gains_.standing_reach : gains_.reach;
   for (std::size_t k = 0; k < kBodyLinks; ++k) {
     const LinkAxis link = link_axis(body_, frames_[i], static_cast<BodyLink>(k));
     const NearestOnLink there = nearest(link, solid);
-    const double inside = gains_.reach - there.distance;
+    const double inside = reach - there.distance;
     if (inside <= 0) continue;
     const Vec3 across = there.away - there.away.dot(ahead) * ahead;
     add_force(frames_[i], link.joints, there.point_W, gains_.external * inside * across, force);
@@ -214,9 +223,11 @@ double BodyStrip::move(std::size_t i, const BodyJoints& force) {
   BodyJoints change = force;
   BodyJoints back = nominal_[i] - now_[i];
   change.head<3>() = gains_.base_weight * change.head<3>() + gains_.base_spring * back.head<3>();
+  if (stands()) change.head<3>().setZero();
   constexpr auto kArm = static_cast<int>(kArmJoints);
-  change.tail<kArm>() += gains_.joint_spring * back.tail<kArm>();
-  if (i + 1 < now_.size()) {
+  change.tail<kArm>() +=
+      (stands() ? gains_.standing_spring : gains_.joint_spring) * back.tail<kArm>();
+  if (i + 1 < now_.size() && !stands()) {
     const BodyJoints between = (now_[i - 1] + now_[i + 1]) / 2;
     change.tail<kArm>() += gains_.smoothing * (between - now_[i]).tail<kArm>();
   }

@@ -20,16 +20,18 @@ enum class ExternalForce : std::uint8_t {
 /// Docs: equations.md, "Strip of arm and base".
 struct BodyStripGains {
   ExternalForce external_force = ExternalForce::Shadow;
-  double internal = 0.4;    // K_c
-  double smoothing = 0.3;   // of each joint to the mean of its neighbours (ours)
-  double external = 3.0;    // K_r
-  double reach = 0.35;      // [m] d_0: solids farther from a link's surface push nothing
+  double internal = 0.4;         // K_c
+  double smoothing = 0.3;        // of each joint to the mean of its neighbours (ours)
+  double external = 3.0;         // K_r
+  double reach = 0.35;           // [m] d_0: solids farther from a link's surface push nothing
+  double standing_reach = 0.05;  // [m] the same of solids that stand, where the base stands as well
   double own_reach = 0.03;  // [m] the arm keeps off base and mast, and the hand off the upper arm
   double base_weight = 0.005;  // of the base beside 1 of the joints: the arm yields first
   double base_spring = 0.05;   // back to the nominal configuration
   double joint_spring = 0.01;
-  double step = 0.4;      // part of a sweep's change that is made
-  double longest = 0.05;  // [m, rad] of one entry in one sweep
+  double standing_spring = 0.5;  // the same where the base stands: the arm keeps to its planned way
+  double step = 0.4;             // part of a sweep's change that is made
+  double longest = 0.05;         // [m, rad] of one entry in one sweep
 };
 
 /// The gains the sibling thesis prints, for comparison.
@@ -56,6 +58,10 @@ class BodyStrip {
   /// [m] Of the base's way from start to goal.
   double length() const;
   std::span<const BodyJoints> configurations() const { return now_; }
+  /// Of length 1, in which the base arrives at its goal; 0 if it stands.
+  const Vec2& end_direction() const { return end_direction_; }
+  /// The base stands all the way, and the arm alone moves.
+  bool stands() const { return end_direction_.isZero(); }
   const BodyJoints& goal() const { return nominal_.back(); }
   std::span<const BodyFrames> frames() const { return frames_; }
 
@@ -85,6 +91,7 @@ class BodyStrip {
   std::vector<BodyJoints> now_{};
   std::vector<BodyFrames> frames_{};
   std::vector<Points> points_{};
+  Vec2 end_direction_ = Vec2::Zero();
   std::vector<double> ahead_{};  // [s] until the body is at each configuration
 };
 

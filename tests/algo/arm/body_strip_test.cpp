@@ -128,6 +128,30 @@ TEST(BodyStrip, ReturnsWhenThePostIsGone) {
   }
 }
 
+TEST(BodyStrip, WhereTheBaseStandsTheArmKeepsToItsWayAndYieldsToWhatMoves) {
+  const MobileArm body;
+  const BodyJoints from = carried_arm::stretched_aside(0.70);
+  const BodyJoints to = carried_arm::stretched_aside(0.60);
+  std::vector<BodyJoints> way;
+  for (int i = 0; i <= 4; ++i) way.push_back(from + (to - from) * i / 4.0);
+  Solid post = carried_arm::post_before_arm(0.70, 0);
+  post.centre_W.x() = 0.34;  // 0.20 m from the arm
+  BodyStrip strip(body);
+  strip.lay(way);
+  ASSERT_TRUE(strip.stands());
+  // The base stands a little off its place, which is no way to drive.
+  BodyJoints now = from;
+  now[0] += 0.004;
+  strip.follow(now, 0.1);
+  strip.relax(std::array{post}, 100);
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    EXPECT_LT((strip.configurations()[i] - way[i]).cwiseAbs().maxCoeff(), 1e-3) << i;
+  }
+  post.velocity_W = {-0.01, 0};
+  strip.relax(std::array{post}, 100);
+  EXPECT_GT((strip.configurations()[2] - way[2]).cwiseAbs().maxCoeff(), 0.05);
+}
+
 TEST(BodyStrip, KeepsItsEndsAndTheJointsLimits) {
   const MobileArm body;
   const auto nominal = carried_arm::straight_path(0.70);
