@@ -1,0 +1,251 @@
+#include "algo/arm/reach_planner.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "algo/grid_search.hpp"
+
+namespace algo {
+namespace {
+
+constexpr double kStraightOn = 0.01;  // [rad] a smaller turn is left to the drive
+constexpr double kNoWay = 1e-6;       // [m]
+constexpr double kCheap = 0.6;        // [m] of room beyond which a cell costs no more
+constexpr double kLeaves = 1e-3;      // [m] the way from the start may come nearer by this
+constexpr double kDear = 3;           // that a cell without room costs more than one with it
+
+/// The folded base's grid about start and goal.
+class BaseGrid {
+ public:
+  BaseGrid(const MobileArm& body,
+           const Vec2& middle,
+           std::span<const Solid> solids,
+           const ReachRules& rules)
+      : cells_(static_cast<int>(std::ceil(2 * rules.room / rules.cell))),
+        cell_(rules.cell),
+        corner_(middle - Vec2::Constant(rules.room)) {
+    const FoldedBody folded(body);
+    costs_.reserve(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_));
+    for (int row = 0; row < cells_; ++row) {
+      for (int column = 0; column < cells_; ++column) {
+        const double room = folded.room(centre({column, row}), solids);
+        const double tight = std::clamp(1 - room / kCheap, 0.0, 1.0);
+        costs_.push_back(room < rules.base_margin ? CostGrid::kBlocked
+                                                  : static_cast<float>(1 + kDear * tight));
+      }
+    }
+    search_.resize(costs_.size());
+  }
+
+  /// Points from `from` to `to`, both included; none if there is no way.
+  std::optional<std::vector<Vec2>> way(const Vec2& from, const Vec2& to) {
+    const CostGrid grid{cells_, cells_, costs_};
+    const GridCell goal = cell_of(to);
+    if (grid.blocked(goal)) return std::nullopt;
+    if (!search_.find(grid, cell_of(from), goal)) {
+      costs_[grid.index(goal)] = CostGrid::kBlocked;  // many places share a cell: ask for it once
+      return std::nullopt;
+    }
+    std::vector<Vec2> points{from};
+    for (const GridCell& cell : search_.path()) points.push_back(centre(cell));
+    points.push_back(to);
+    return points;
+  }
+
+ private:
+  Vec2 centre(GridCell c) const { return corner_ + cell_ * Vec2(c.column + 0.5, c.row + 0.5); }
+  GridCell cell_of(const Vec2& p) const {
+    const Vec2 at = (p - corner_) / cell_;
+    return {static_cast<int>(std::floor(at.x())), static_cast<int>(std::floor(at.y()))};
+  }
+
+  int cells_;
+  double cell_;
+  Vec2 corner_;
+  std::vector<float> costs_{};
+  GridSearch search_{};
+};
+
+/// Straightens `points` where the folded body has room.
+std::vector<Vec2> straightened(const MobileArm& body,
+                               const std::vector<Vec2>& points,
+                               std::span<const Solid> solids,
+                               const ReachRules& rules) {
+  const FoldedBody folded(body);
+  const auto open = [&](const Vec2& a, const Vec2& b) {
+    const int parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / (rules.cell / 2))));
+    for (int k = 0; k <= parts; ++k) {
+      const Vec2 p = a + (b - a) * k / parts;
+      if (folded.room(p, solids) < rules.base_margin) return false;
+    }
+    return true;
+  };
+  std::vector<Vec2> out{points.front()};
+  for (std::size_t i = 0; i + 1 < points.size();) {
+    std::size_t far = i + 1;
+    for (std::size_t k = points.size() - 1; k > i + 1; --k) {
+      if (open(points[i], points[k])) {
+        far = k;
+        break;
+      }
+    }
+    out.push_back(points[far]);
+    i = far;
+  }
+  return out;
+}
+
+/// A plan that grows leg by leg.
+class Legs {
+ public:
+  explicit Legs(const BodyJoints& start) : last_(start) {}
+
+  void turn(double heading) {
+    const double way = wrap_angle(heading - last_[2]);
+    if (std::abs(way) < kStraightOn) return;
+    BodyJoints to = last_;
+    to[2] += way;
+    add(ReachLeg::Kind::Turn, to, 1);
+  }
+  /// Straight to `point_W`, after a turn towards it.
+  void drive(const Vec2& point_W, double spacing) {
+    const Vec2 way = point_W - last_.head<2>();
+    if (way.norm() < kNoWay) return;
+    turn(std::atan2(way.y(), way.x()));
+    BodyJoints to = last_;
+    to.head<2>() = point_W;
+    add(ReachLeg::Kind::Drive, to, static_cast<int>(std::ceil(way.norm() / spacing)));
+  }
+  void arm(const std::vector<ArmJoints>& way, double stride) {
+    ReachLeg leg{ReachLeg::Kind::Arm, {last_}};
+    for (const ArmJoints& q : way) {
+      BodyJoints to = last_;
+      to.tail<static_cast<int>(kArmJoints)>() = q;
+      const double longest =
+          (to - last_).tail<static_cast<int>(kArmJoints)>().cwiseAbs().maxCoeff();
+      append(leg, to, static_cast<int>(std::ceil(longest / stride)));
+    }
+    if (leg.path.size() > 1) legs_.push_back(std::move(leg));
+  }
+  std::vector<ReachLeg> done() { return std::move(legs_); }
+
+ private:
+  void append(ReachLeg& leg, const BodyJoints& to, int parts) {
+    const BodyJoints from = last_;
+    for (int k = 1; k <= parts; ++k) leg.path.push_back(from + (to - from) * k / parts);
+    if (parts > 0) last_ = to;
+  }
+  void add(ReachLeg::Kind kind, const BodyJoints& to, int parts) {
+    ReachLeg leg{kind, {last_}};
+    append(leg, to, parts);
+    legs_.push_back(std::move(leg));
+  }
+
+  BodyJoints last_;
+  std::vector<ReachLeg> legs_{};
+};
+
+std::vector<ReachLeg> legs_of(const BodyJoints& start,
+                              const std::vector<ArmJoints>& fold,
+                              const std::vector<Vec2>& corners,
+                              const ReachPlace& place,
+                              const std::vector<ArmJoints>& reach,
+                              const ReachRules& rules) {
+  Legs legs(start);
+  legs.arm(fold, rules.arm.stride);
+  for (const Vec2& corner : corners) legs.drive(corner, rules.spacing);
+  legs.turn(place.base_W.heading);
+  legs.arm(reach, rules.arm.stride);
+  return legs.done();
+}
+
+/// Where the body stands nearer to something than `rules` allow, it may leave from there.
+ArmPlanRules leaving(const MobileArm& body,
+                     const BodyJoints& start,
+                     std::span<const Solid> solids,
+                     const ArmPlanRules& rules) {
+  const BodyFrames frames = body_frames(body, start);
+  const double room = clearance(body, frames, solids).smallest() - kLeaves;
+  const double own_room = self_clearance(body, frames) - kLeaves;
+  ArmPlanRules nearer = rules;
+  nearer.margin = std::min(rules.margin, std::max(room, rules.margin / 2));
+  nearer.own_margin = std::min(rules.own_margin, std::max(own_room, 0.0));
+  return nearer;
+}
+
+ReachPlan no_plan(std::string why) {
+  ReachPlan plan;
+  plan.why = std::move(why);
+  return plan;
+}
+
+}  // namespace
+
+std::string_view name(ReachLeg::Kind kind) {
+  switch (kind) {
+    case ReachLeg::Kind::Arm:
+      return "moves its arm";
+    case ReachLeg::Kind::Turn:
+      return "turns";
+    case ReachLeg::Kind::Drive:
+      return "drives";
+  }
+  return "";
+}
+
+ReachPlan plan_reach(const MobileArm& body,
+                     const BodyJoints& start,
+                     const Pose3& hand_W,
+                     std::span<const Solid> solids,
+                     std::uint64_t seed,
+                     const ReachRules& rules) {
+  const ArmPlanRules nearer = leaving(body, start, solids, rules.arm);
+  if (!is_clear(body, start, solids, nearer)) {
+    return no_plan("The robot stands too near to something to move its arm.");
+  }
+  const auto fold =
+      plan_arm(body, base_of(start), arm_of(start), folded_arm(), solids, seed, nearer);
+  if (!fold) return no_plan("The arm finds no way to fold itself at the start.");
+  const Vec2 from = start.head<2>();
+  std::vector<ReachPlace> places = reach_places(body, from, hand_W, solids, rules);
+  if (places.empty()) {
+    return no_plan("From no place of the base does the hand reach its goal clear of everything.");
+  }
+  BaseGrid grid(body, (from + hand_W.translation().head<2>()) / 2, solids, rules);
+  int tried = 0;
+  std::ranges::rotate(places,
+                      places.begin() + static_cast<std::ptrdiff_t>(rules.skip % places.size()));
+  for (const ReachPlace& place : places) {
+    if (tried == rules.places) break;
+    const auto way = grid.way(from, place.base_W.position());
+    if (!way) continue;
+    ++tried;
+    const auto reach = plan_arm(body, place.base_W, folded_arm(), place.q, solids, seed, rules.arm);
+    if (!reach) continue;
+    return {.legs = legs_of(
+                start, *fold, straightened(body, *way, solids, rules), place, *reach, rules)};
+  }
+  return no_plan(tried > 0
+                     ? "The arm finds no way to its goal past what stands there."
+                     : "The base finds no way to a place from which the hand reaches its goal.");
+}
+
+std::optional<ReachLeg> plan_last_reach(const MobileArm& body,
+                                        const BodyJoints& now,
+                                        const Pose3& hand_W,
+                                        std::span<const Solid> solids,
+                                        std::uint64_t seed,
+                                        const ReachRules& rules) {
+  const auto q = reaching_joints(body, base_of(now), hand_W, solids, rules.arm);
+  if (!q) return std::nullopt;
+  const ArmPlanRules nearer = leaving(body, now, solids, rules.arm);
+  const auto way = plan_arm(body, base_of(now), arm_of(now), *q, solids, seed, nearer);
+  if (!way) return std::nullopt;
+  Legs legs(now);
+  legs.arm(*way, rules.arm.stride);
+  std::vector<ReachLeg> one = legs.done();
+  if (one.empty()) return std::nullopt;
+  return std::move(one.front());
+}
+
+}  // namespace algo
