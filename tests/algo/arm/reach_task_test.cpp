@@ -1,0 +1,115 @@
+// tests/algo/arm/reach_task_test.cpp: a reach from its plan to the hand at its goal, also where the
+// world does not keep to the plan.
+#include "algo/arm/reach_task.hpp"
+
+#include "tests/algo/allocations.hpp"
+#include "tests/algo/arm/reach_scene.hpp"
+#include <gtest/gtest.h>
+
+namespace {
+
+using algo::BodyJoints;
+using algo::ReachTask;
+using reach_scene::Scene;
+
+constexpr double kReachTick = 0.05;  // [s]
+
+/// A body that moves as commanded, while things move on.
+struct ReachDrive {
+  explicit ReachDrive(const Scene& which) : scene(which), task(which.body, {}) {
+    task.begin(scene.start, scene.hand_W, scene.solids, 5);
+  }
+  void tick() {
+    const algo::BodyCommand command = task.update(q, scene.solids, kReachTick);
+    waited = waited || task.state() == ReachTask::State::Waits;
+    q = moved(q, command, kReachTick);
+    for (algo::Solid& solid : scene.solids) solid = solid.after(kReachTick);
+    const auto frames = body_frames(scene.body, q);
+    room = std::min(room, clearance(scene.body, frames, scene.solids).smallest());
+  }
+  /// Until `done()`, or the task has ended, or `longest` [s] have passed.
+  template <typename Done>
+  void run_until(Done&& done, double longest = 90) {
+    for (double time = 0; time < longest && !ended() && !done(); time += kReachTick) tick();
+  }
+  void run() {
+    run_until([] { return false; });
+  }
+  bool ended() const {
+    return task.state() == ReachTask::State::Arrived || task.state() == ReachTask::State::GivenUp;
+  }
+  double hand_error() const {
+    return (body_frames(scene.body, q).hand() - scene.hand_W.translation()).norm();
+  }
+
+  Scene scene;
+  ReachTask task;
+  BodyJoints q = scene.start;
+  bool waited = false;
+  double room = 1e9;  // [m] least
+};
+
+TEST(ReachTask, BringsTheHandToItsGoalPastWhatStands) {
+  ReachDrive drive(reach_scene::over_a_table());
+  drive.run();
+  EXPECT_EQ(drive.task.words(), "The hand is at its goal.");
+  EXPECT_LT(drive.hand_error(), 0.005);
+  EXPECT_GT(drive.room, 0.04);
+  EXPECT_EQ(drive.task.plans(), 1);
+}
+
+TEST(ReachTask, PlansAnewWhenTheBaseIsPushedOffItsPlace) {
+  ReachDrive drive(reach_scene::free_goal(0.95));
+  drive.run_until([&] { return drive.task.words() == "The robot drives."; });
+  drive.run_until([&] { return drive.task.words() == "The robot moves its arm."; });
+  ASSERT_EQ(drive.task.words(), "The robot moves its arm.");
+  drive.q[0] -= 0.8;
+  drive.run();
+  EXPECT_EQ(drive.task.words(), "The hand is at its goal.");
+  EXPECT_LT(drive.hand_error(), 0.005);
+  EXPECT_EQ(drive.task.plans(), 2);
+}
+
+TEST(ReachTask, WaitsForAPostThatCrossesAndGoesOn) {
+  Scene scene = reach_scene::free_goal(0.95);
+  scene.solids = {reach_scene::post({1.0, -1.2}, {0, 0.2})};
+  ReachDrive drive(scene);
+  drive.run();
+  EXPECT_TRUE(drive.waited);
+  EXPECT_EQ(drive.task.words(), "The hand is at its goal.");
+  EXPECT_GT(drive.room, 0);
+}
+
+TEST(ReachTask, KeepsItsPlanWhereThereIsNoOther) {
+  ReachDrive drive(reach_scene::free_goal(0.95));
+  drive.run_until([&] { return drive.q[0] > 0.5; });
+  // A gate shuts before the robot for longer than its patience.
+  const algo::Vec2 ahead = algo::base_of(drive.q).position() + algo::Vec2(0.44, 0);
+  drive.scene.solids = {reach_scene::board(ahead, {0.05, 2.0}, 0, 1.6)};
+  drive.run_until([] { return false; }, 6);
+  EXPECT_EQ(drive.task.words(), "The robot waits: something is too near to go on.");
+  EXPECT_EQ(drive.task.plans(), 2);
+  drive.scene.solids.clear();
+  drive.run();
+  EXPECT_EQ(drive.task.words(), "The hand is at its goal.");
+}
+
+TEST(ReachTask, GivesUpWithTheReason) {
+  Scene high = reach_scene::free_goal(3);
+  ReachDrive drive(high);
+  EXPECT_EQ(drive.task.state(), ReachTask::State::GivenUp);
+  EXPECT_EQ(drive.task.words(),
+            "From no place of the base does the hand reach its goal clear of everything.");
+  drive.tick();
+  EXPECT_EQ(drive.q, drive.scene.start);
+}
+
+TEST(ReachTask, ATickOfALegAllocatesNothing) {
+  ReachDrive drive(reach_scene::free_goal(0.95));
+  drive.run_until([&] { return drive.q[0] > 0.5; });
+  const auto before = allocations::count();
+  for (int n = 0; n < 5; ++n) drive.task.update(drive.q, drive.scene.solids, kReachTick);
+  EXPECT_EQ(allocations::count(), before);
+}
+
+}  // namespace
