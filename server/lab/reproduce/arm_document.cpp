@@ -19,6 +19,10 @@ std::string metres(double value) {
   return fmt::format("{:.3f}", value);
 }
 
+std::string counted(std::size_t value) {
+  return fmt::format("{}", value);
+}
+
 Table strips_table(const ArmStudy& study) {
   return experiment::tabulated<BentStrip>(
       study.strips,
@@ -62,6 +66,37 @@ Table trials_table(const ArmStudy& study) {
        {"least clearance [m]", [](const ArmTrials& r) { return metres(r.clearance); }}});
 }
 
+Table reach_table(const ReachStudy& study) {
+  std::vector<ReachTrials> rows = study.scenes;
+  rows.push_back(study.all);
+  return experiment::tabulated<ReachTrials>(
+      rows,
+      1,
+      {{"goal", [](const ReachTrials& r) { return r.scene; }},
+       {"worlds", [](const ReachTrials& r) { return counted(r.worlds); }},
+       {"reached", [](const ReachTrials& r) { return counted(r.reached); }},
+       {"touched", [](const ReachTrials& r) { return counted(r.touched); }},
+       {"refused", [](const ReachTrials& r) { return counted(r.refused); }},
+       {"given up", [](const ReachTrials& r) { return counted(r.given_up); }},
+       {"straight motion touches",
+        [](const ReachTrials& r) { return counted(r.straight_touched); }},
+       {"least clearance [m]", [](const ReachTrials& r) { return metres(r.clearance); }},
+       {"time [s]", [](const ReachTrials& r) { return fmt::format("{:.1f}", r.seconds); }},
+       {"plans", [](const ReachTrials& r) { return fmt::format("{:.2f}", r.plans); }},
+       {"hand off [m]", [](const ReachTrials& r) { return fmt::format("{:.4f}", r.hand_error); }}});
+}
+
+using Reason = std::pair<const std::string, std::size_t>;
+Table reasons_table(const ReachStudy& study) {
+  const std::vector<Reason> rows(study.why.begin(), study.why.end());
+  return experiment::tabulated<Reason>(
+      rows,
+      1,
+      {{"where the hand does not get there, the robot says",
+        [](const Reason& r) { return r.first; }},
+       {"worlds", [](const Reason& r) { return counted(r.second); }}});
+}
+
 Table arm_findings_table(const ArmStudy& study) {
   return experiment::tabulated<ArmFinding>(
       study.findings,
@@ -75,10 +110,13 @@ Table arm_findings_table(const ArmStudy& study) {
 
 std::string to_text(const ArmStudy& study) {
   return fmt::format(
-      "An arm carried past posts: the elastic strip of arm and base\n\n{}\n{}\n{}\n{}\n{}\n",
+      "An arm carried past posts: the elastic strip of arm and "
+      "base\n\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n",
       experiment::to_text(strips_table(study)),
       experiment::to_text(drives_table(study)),
       experiment::to_text(trials_table(study)),
+      experiment::to_text(reach_table(study.reach)),
+      experiment::to_text(reasons_table(study.reach)),
       experiment::to_text(arm_findings_table(study)),
       all_hold(study) ? "Each finding holds." : "A finding FAILS.");
 }
@@ -88,6 +126,8 @@ nlohmann::json to_json(const ArmStudy& study) {
           {"strips", experiment::to_json(strips_table(study))},
           {"drives", experiment::to_json(drives_table(study))},
           {"trials", experiment::to_json(trials_table(study))},
+          {"reaches", experiment::to_json(reach_table(study.reach))},
+          {"reasons", experiment::to_json(reasons_table(study.reach))},
           {"findings", experiment::to_json(arm_findings_table(study))}};
 }
 
@@ -97,6 +137,9 @@ std::string to_markdown(const ArmStudy& study, const std::string& pictures) {
   out += fmt::format("![Both strips from above]({}/{})\n", pictures, kArmPicture);
   out += fmt::format("\n## Courses\n\n{}", experiment::to_markdown(drives_table(study)));
   out += fmt::format("## At random\n\n{}", experiment::to_markdown(trials_table(study)));
+  out += fmt::format("## A hand among things\n\n{}{}",
+                     experiment::to_markdown(reach_table(study.reach)),
+                     experiment::to_markdown(reasons_table(study.reach)));
   out += fmt::format("## Findings\n\n{}", experiment::to_markdown(arm_findings_table(study)));
   while (out.ends_with("\n\n")) out.pop_back();
   out += kArmMarks.end;

@@ -20,6 +20,8 @@ constexpr double kEnough = 0.2;      // [m]
 constexpr double kNoContact = 0.05;  // [m]
 constexpr double kBaseStays = 0.01;  // [m]
 constexpr double kComesBack = 0.01;  // [m, rad]
+constexpr double kMostReached = 0.97;
+constexpr double kHandThere = 0.005;  // [m]
 
 /// The post's centre, in metres from the hand towards the base.
 struct PostPlace {
@@ -139,6 +141,22 @@ bool ours(const std::string& reading) {
   return reading == arm_readings().back().name;
 }
 
+void judge_reach(const ReachTrials& all, std::vector<ArmFinding>& findings) {
+  findings.push_back(
+      {"The hand reaches at least 97 % of its goals",
+       fmt::format("{} of {}", all.reached, all.worlds),
+       static_cast<double>(all.reached) >= kMostReached * static_cast<double>(all.worlds)});
+  findings.push_back({"No link touches anything on the way to them",
+                      fmt::format("{} of {} touched", all.touched, all.worlds),
+                      all.touched == 0});
+  findings.push_back({"In half of these worlds the joints' straight motion touches something",
+                      fmt::format("in {} of {}", all.straight_touched, all.worlds),
+                      2 * all.straight_touched >= all.worlds});
+  findings.push_back({"The hand is within 5 mm of the goals it reaches",
+                      fmt::format("{:.4f} m at most", all.hand_error),
+                      all.hand_error <= kHandThere});
+}
+
 void judge(ArmStudy& study) {
   double cleared = kInfinite;
   double printed = -kInfinite;
@@ -192,6 +210,7 @@ void judge(ArmStudy& study) {
        fmt::format("{:.3f} m", touching),
        touching < 0},
   };
+  judge_reach(study.reach.all, study.findings);
 }
 
 }  // namespace
@@ -205,7 +224,7 @@ std::vector<ArmReading> arm_readings() {
       {"ours", "forces out of the shadow along the path", algo::BodyStripGains{}}};
 }
 
-ArmStudy study_arm(std::size_t drives) {
+ArmStudy study_arm(std::size_t drives, std::size_t worlds) {
   ArmStudy study;
   const ArmCarried carried = carried_arm();
   const std::vector<ArmReading> readings = arm_readings();
@@ -228,6 +247,7 @@ ArmStudy study_arm(std::size_t drives) {
       study.trials.push_back(try_random(carried, kind, *reading, drives));
     }
   }
+  study.reach = study_reach(worlds);
   judge(study);
   return study;
 }

@@ -1,5 +1,6 @@
 // server/lab/reproduce/arm_study.hpp: an arm carried past posts: what the elastic strip of arm and
-// base clears, with the forces as the sibling thesis prints them and with ours.
+// base clears, with the forces as the sibling thesis prints them and with ours. And a hand brought
+// to a pose among things.
 #pragma once
 
 #include <array>
@@ -11,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "algo/arm/body_follower.hpp"
+#include "server/lab/reproduce/reach_study.hpp"
 
 namespace server::reproduce {
 
@@ -69,13 +71,15 @@ struct ArmStudy {
   std::vector<BentStrip> strips{};
   std::vector<ArmDrive> drives{};
   std::vector<ArmTrials> trials{};
+  ReachStudy reach{};
   std::vector<ArmFinding> findings{};
   // For the picture: the strips of a post before the forearm.
   std::array<std::vector<algo::BodyFrames>, 2> pictured{};  // as printed, ours
 };
 
-/// The same study each time, bit for bit. `drives`: random ones of each kind.
-ArmStudy study_arm(std::size_t drives = 100);
+/// The same study each time, bit for bit. `drives`: random ones of each kind; `worlds`: of each
+/// scene in which the hand shall get to a pose.
+ArmStudy study_arm(std::size_t drives = 100, std::size_t worlds = 50);
 
 bool all_hold(const ArmStudy& study);
 std::string to_text(const ArmStudy& study);
