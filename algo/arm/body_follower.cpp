@@ -1,6 +1,7 @@
 #include "algo/arm/body_follower.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "algo/diff_drive.hpp"
 
@@ -100,7 +101,7 @@ void BodyFollower::begin(std::span<const BodyJoints> nominal) {
 BodyCommand BodyFollower::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
   strip_.follow(now, std::max(speed_, kLeastSpeed));
   strip_.relax(solids, rules_.sweeps);
-  const BodyCommand command = kept_clear(now, towards_strip(now), solids);
+  BodyCommand command = kept_clear(now, towards_strip(now), solids);
   speed_ += std::min(dt / kSpeedMemory, 1.0) * (command.base.v - speed_);
   return command;
 }
@@ -162,7 +163,9 @@ double BodyFollower::least_room(const BodyJoints& now,
                                 const BodyCommand& command,
                                 std::span<const Solid> solids) const {
   double least = std::numeric_limits<double>::infinity();
-  for (double time = kLook; time < rules_.horizon + kLook / 2; time += kLook) {
+  const int looks = static_cast<int>(std::round(rules_.horizon / kLook));
+  for (int look = 1; look <= looks; ++look) {
+    const double time = kLook * look;
     const BodyFrames frames = body_frames(body_, moved(now, command, time));
     least = std::min(least, self_clearance(body_, frames) - rules_.own_margin);
     for (std::size_t k = 0; k < kBodyLinks; ++k) {

@@ -169,7 +169,9 @@ void add_reproduce_command(Command app, int& status) {
   masuda.excludes(filter);
   masuda.excludes(robhaz);
   const Option arm = command.add_flag(
-      "--arm", options->arm, "Carry the sibling thesis' arm of seven joints past posts instead");
+      "--arm",
+      options->arm,
+      "Carry the sibling thesis' arm of seven joints past posts, and let it reach, instead");
   for (const Option& other : {filter, robhaz, masuda}) arm.excludes(other);
   for (const char* tables :
        {"--scenarios", "--seeds", "--first-seed", "--paper-only", "--sweeps"}) {
