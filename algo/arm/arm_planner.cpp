@@ -3,22 +3,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 
 namespace algo {
 namespace {
 
-/// Numbers in [0, 1) that are the same on every machine.
+/// Numbers in [0, 1) that follow from the seed alone: SplitMix64 (Steele, Lea and Flood 2014).
 class JointDice {
  public:
-  explicit JointDice(std::uint64_t seed) : bits_(seed) {}
-  double operator()() { return static_cast<double>(bits_() >> 11) * 0x1p-53; }
+  explicit JointDice(std::uint64_t seed) : state_(seed) {}
+  double operator()() {
+    std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1p-53;
+  }
   std::size_t below(std::size_t count) {
     return std::min(static_cast<std::size_t>((*this)() * static_cast<double>(count)), count - 1);
   }
 
  private:
-  std::mt19937_64 bits_;
+  std::uint64_t state_;
 };
 
 /// Configurations of the arm, each with the one from which it was reached.
