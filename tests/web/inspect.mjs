@@ -233,11 +233,11 @@ test("a stored run tells the same numbers, and its figures are those of the reco
     await find(p, "the robot", back, ({ kind }) => kind === "robot");
     assert.ok(near(number(await row(p, "True clearance")), frame.truth.clearance, 0.0051));
     await p.shot("inspect-stored");
-    // By the keyboard: the crosshair goes from the middle of the view to the robot.
+    // By the keyboard: the crosshair goes from the middle of the view to the robot, off the strip's nodes.
     await p.page.mouse.move(5, 5);
     await p.get("scene").focus();
     const [x, y] = (await p.get("scene").getAttribute("data-view")).split(" ").map(Number);
-    for (const [way, more, less] of [[session.pose.x - x, "ArrowRight", "ArrowLeft"], [session.pose.y - y, "ArrowUp", "ArrowDown"]]) {
+    for (const [way, more, less] of [[back.x - x, "ArrowRight", "ArrowLeft"], [back.y - y, "ArrowUp", "ArrowDown"]]) {
       for (let i = 0; i < Math.round(Math.abs(way) * 10); ++i) await p.page.keyboard.press(way > 0 ? more : less);
     }
     await until("the robot's card", 5, () => card(p).locator("h2").innerText(), (t) => t.startsWith("Robot"));
