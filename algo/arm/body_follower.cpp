@@ -30,7 +30,7 @@ struct BaseTarget {
 BaseTarget base_target(const BodyStrip& strip, double lookahead) {
   const auto q = strip.configurations();
   const Vec2 goal = q.back().head<2>();
-  const Vec2 onwards = strip.end_direction();
+  const Vec2& onwards = strip.end_direction();
   double way = lookahead;
   for (std::size_t i = 0; i + 1 < q.size(); ++i) {
     const Vec2 step = (q[i + 1] - q[i]).head<2>();
