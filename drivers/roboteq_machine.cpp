@@ -381,7 +381,8 @@ algo::DeviceReport RoboteqMachine::report(double now) const {
     out.sentence = "The controller reports: " + fault_text(others) + ".";
   if (state_.stalled) out.sentence = "A wheel is blocked: a motor cannot follow its command.";
   if (state_.over_current) out.sentence = "A motor takes more current than the file allows.";
-  if (state_.stop_button) out.sentence = "Its stop input is active: release the stop button, then arm.";
+  if (state_.stop_button)
+    out.sentence = "Its stop input is active: release the stop button, then arm.";
   if (out.sentence.empty()) {
     out.sentence = state_.motors_on ? "Well, motors on." : "Well, motors off.";
   }
