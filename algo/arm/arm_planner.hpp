@@ -11,7 +11,7 @@
 
 namespace algo {
 
-/// What counts as a way, and how long it is looked for.
+/// The margins of a way, and the bounds of the search for it.
 struct ArmPlanRules {
   double margin = 0.05;      // [m] from the links to solids
   double own_margin = 0.02;  // [m] from the arm to the body and the hand to the upper arm

@@ -65,8 +65,9 @@ void BodyStrip::follow(const BodyJoints& now, double speed) {
 
 double BodyStrip::length() const {
   double sum = 0;
-  for (std::size_t i = 0; i + 1 < points_.size(); ++i)
+  for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
     sum += (points_[i + 1][0] - points_[i][0]).norm();
+  }
   return sum;
 }
 
@@ -173,7 +174,8 @@ void BodyStrip::push_nearest(std::size_t i,
                              const Vec3& ahead,
                              const Solid& solid,
                              BodyJoints& force) const {
-  // What stands was there when the arm's way was planned; what moves was not.
+  // The plan of the arm's way knew the solids that stand. It did not know the paths of those that
+  // move.
   const bool planned_for = ahead.isZero() && solid.velocity_W.isZero();
   const double reach = planned_for ? gains_.standing_reach : gains_.reach;
   for (std::size_t k = 0; k < kBodyLinks; ++k) {

@@ -55,7 +55,7 @@ struct LinkAxis {
   Vec3 to_W = Vec3::Zero();
   double radius = 0;  // [m]
   double height = 0;  // [m] of an upright cylinder; 0: rounded
-  /// The joints that move it are those before this one.
+  /// Number of joints that move the link, counted from the shoulder.
   std::size_t joints = 0;
 };
 LinkAxis link_axis(const MobileArm& body, const BodyFrames& frames, BodyLink link);

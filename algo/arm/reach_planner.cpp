@@ -226,7 +226,7 @@ ReachPlan plan_reach(const MobileArm& body,
                 start, *fold, straightened(body, *way, solids, rules), place, *reach, rules)};
   }
   return no_plan(tried > 0
-                     ? "The arm finds no way to its goal past what stands there."
+                     ? "The arm finds no way between the obstacles to its goal."
                      : "The base finds no way to a place from which the hand reaches its goal.");
 }
 

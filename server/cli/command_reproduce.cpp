@@ -31,17 +31,23 @@ struct ReproduceCommand {
   std::string course{};
 };
 
-/// Only chapter 3. Its verdicts are findings, not limits.
-int execute_filter_study(const ReproduceCommand& options) {
-  FilterStudyOptions wanted;
-  if (!options.logs.empty()) wanted.logs = options.logs;
-  const FilterStudy study = study_filters(wanted);
+/// Prints a study as text or JSON, and writes its document if one is asked for.
+template <typename StudyType>
+void report(const StudyType& study, const ReproduceCommand& options) {
   if (options.as_json) {
     fmt::print("{}\n", to_json(study).dump(2));
   } else {
     fmt::print("{}", to_text(study));
   }
   if (!options.markdown.empty()) write_markdown(study, options.markdown);
+}
+
+/// Only chapter 3. Its verdicts are findings, not limits.
+int execute_filter_study(const ReproduceCommand& options) {
+  FilterStudyOptions wanted;
+  if (!options.logs.empty()) wanted.logs = options.logs;
+  const FilterStudy study = study_filters(wanted);
+  report(study, options);
   return kReached;
 }
 
@@ -51,36 +57,21 @@ int execute_robhaz_study(const ReproduceCommand& options) {
                                              ? reproduce::embedded_robhaz_course()
                                              : reproduce::read_robhaz_course(options.course);
   const reproduce::RobhazStudy study = reproduce::study_robhaz(course);
-  if (options.as_json) {
-    fmt::print("{}\n", to_json(study).dump(2));
-  } else {
-    fmt::print("{}", to_text(study));
-  }
-  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  report(study, options);
   return all_hold(study) ? kReached : kNotHeld;
 }
 
 /// Only Masuda et al.'s tables. A value outside its band is a failure.
 int execute_masuda_study(const ReproduceCommand& options) {
   const reproduce::MasudaStudy study = reproduce::study_masuda();
-  if (options.as_json) {
-    fmt::print("{}\n", to_json(study).dump(2));
-  } else {
-    fmt::print("{}", to_text(study));
-  }
-  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  report(study, options);
   return all_hold(study) ? kReached : kNotHeld;
 }
 
 /// Only the arm of the sibling thesis. A finding that fails is a failure.
 int execute_arm_study(const ReproduceCommand& options) {
   const reproduce::ArmStudy study = reproduce::study_arm();
-  if (options.as_json) {
-    fmt::print("{}\n", to_json(study).dump(2));
-  } else {
-    fmt::print("{}", to_text(study));
-  }
-  if (!options.markdown.empty()) write_markdown(study, options.markdown);
+  report(study, options);
   return all_hold(study) ? kReached : kNotHeld;
 }
 

@@ -117,6 +117,16 @@ int execute_operator(const SoakCommand& command) {
   return soak::counted_contacts(study) > 0 ? kNotHeld : kReached;
 }
 
+/// `run` of `options`, which shows on a line how many of the `noun` are done.
+template <typename Options, typename Run>
+auto with_progress(Options options, std::string_view noun, Run run) {
+  ProgressLine progress;
+  options.pool.progress = [&](std::size_t done, std::size_t all) {
+    progress.show(fmt::format("{} of {} {}", done, all, noun));
+  };
+  return run(options);
+}
+
 int execute_slopes(const SoakCommand& command) {
   soak::SlopeOptions options{.first_seed = command.options.first_seed,
                              .pool = command.options.pool};
@@ -127,14 +137,8 @@ int execute_slopes(const SoakCommand& command) {
     write_text(command.scenario, to_json(world).dump(1) + "\n");
     return kReached;
   }
-  std::vector<soak::SlopeRow> rows;
-  {
-    ProgressLine progress;
-    options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} worlds", done, all));
-    };
-    rows = run_slopes(options);
-  }
+  const std::vector<soak::SlopeRow> rows =
+      with_progress(options, "worlds", [](const auto& wanted) { return run_slopes(wanted); });
   if (!command.rows.empty()) write_table(slope_rows(rows), command.rows);
   for (const soak::SlopeRow& row : rows) {
     if (!row.counts() || !row.guarded.overturned) continue;
@@ -155,14 +159,8 @@ int execute_courses(const SoakCommand& command) {
     write_text(command.scenario, to_json(course.scenario).dump(1) + "\n");
     return kReached;
   }
-  std::vector<soak::CourseRow> rows;
-  {
-    ProgressLine progress;
-    options.pool.progress = [&](std::size_t done, std::size_t all) {
-      progress.show(fmt::format("{} of {} courses", done, all));
-    };
-    rows = run_courses(options);
-  }
+  const std::vector<soak::CourseRow> rows =
+      with_progress(options, "courses", [](const auto& wanted) { return run_courses(wanted); });
   if (!command.rows.empty()) write_table(course_rows(rows), command.rows);
   bool fault = false;
   for (const soak::CourseRow& row : rows) {

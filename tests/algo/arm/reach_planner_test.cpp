@@ -106,7 +106,7 @@ TEST(ReachPlanner, SaysThatTheArmsSearchEnded) {
   rules.arm.samples = 0;
   const ReachPlan plan = planned_in(reach_scene::in_a_shelf(), rules);
   EXPECT_TRUE(plan.legs.empty());
-  EXPECT_EQ(plan.why, "The arm finds no way to its goal past what stands there.");
+  EXPECT_EQ(plan.why, "The arm finds no way between the obstacles to its goal.");
 }
 
 }  // namespace
