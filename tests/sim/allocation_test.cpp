@@ -1,29 +1,9 @@
 // tests/sim/allocation_test.cpp: a steady tick of the simulated robot allocates nothing.
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "tests/algo/allocations.hpp"
 #include "tests/sim/reference_world.hpp"
 #include <gtest/gtest.h>
 
 #include "sim/world.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations{0};  // a replaced operator new has nowhere else to count
-}
-
-// Not inlined, or the compiler sees malloc() and free() paired with new and delete and warns.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-[[gnu::noinline]] void operator delete(void* memory, std::size_t /*size*/) noexcept {
-  std::free(memory);
-}
 
 namespace sim {
 namespace {
@@ -43,9 +23,9 @@ TEST(Allocation, ASteadyTickAllocatesNothing) {
       }
     };
     drive(800);  // twice round the circle: every buffer has had its largest size
-    const std::size_t before = allocations;
+    const std::size_t before = allocations::count();
     drive(800);
-    EXPECT_EQ(allocations - before, 0u);
+    EXPECT_EQ(allocations::count() - before, 0u);
   }
 }
 

@@ -24,12 +24,7 @@ using Spot = std::array<Echo, sim::kSpotRays>;
 /// The definition in the comment of judge_spots(), literally.
 Echo judged(Spot spot) {
   const Echo own = spot.back();
-  // Equal ranges keep their order. std::stable_sort would bypass the counted operator new.
-  for (std::size_t k = 1; k < spot.size(); ++k) {
-    for (std::size_t i = k; i > 0 && spot[i].range < spot[i - 1].range; --i) {
-      std::swap(spot[i], spot[i - 1]);
-    }
-  }
+  std::ranges::stable_sort(spot, {}, &Echo::range);
   std::size_t split = 0;
   double widest = kRule.jump;
   for (std::size_t k = 1; k < spot.size(); ++k) {
