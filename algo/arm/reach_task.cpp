@@ -39,7 +39,7 @@ void ReachTask::begin(const BodyJoints& now,
 
 BodyCommand ReachTask::update(const BodyJoints& now, std::span<const Solid> solids, double dt) {
   if (state_ == State::GivenUp || legs_.empty()) return {.state = FollowState::Waits};
-  const BodyCommand command = follower_.update(now, solids, dt);
+  BodyCommand command = follower_.update(now, solids, dt);
   if (command.state == FollowState::Arrived && leg_ + 1 < legs_.size()) {
     next_leg(now, solids);
     return {};
