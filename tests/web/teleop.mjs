@@ -403,8 +403,7 @@ test("a frozen tab and a closed one stop the robot within the watchdog's time", 
     (p) => p.page.close(),
   ]) {
     const p = await seat({ size: desktop });
-    await p.page.keyboard.down("w");
-    await until("on its way", 10, session, (s) => s.command.v > 0.1);
+    await hold_key(p, "w");
     await end(p);
     await until("at rest", 10, session, rests);
     await p.context.close();
