@@ -66,7 +66,7 @@ function Body(props: {
       </div>
     </>}
     <Paths id={props.id} scenario={scenario === "" ? detail.scenarios[0] : scenario} done={props.done}
-      on_replay={(run) => open_again(app, props.id, run)} />
+      baseline={baseline} picked={picked} on_replay={(run) => open_again(app, props.id, run)} />
     <RunsOf id={props.id} detail={detail} done={props.done} scenario={scenario} />
   </>;
 }

@@ -6,13 +6,17 @@ import { may } from "../people";
 import { Guard, use_me } from "../ui/guard";
 import { result_word, titled } from "../words";
 import { PathsOf, Point } from "./contract";
+import { tone_of } from "./results_table";
 import { use_paths } from "./watch";
 
 const kEdge = 0.6;  // [m] around the drawing
 const kDashes = ["", "8 4", "2 4", "10 4 2 4"] /* [px] */;
-const kTones = 6;   // colours of paths in experiments.css
+const kTones = 4;   // colours of paths in experiments.css; the baseline's and the picked one's are those of the table
 
-export function Paths(props: { id: string; scenario: string; done: number | null; on_replay: (run: number) => Promise<void> }): JSX.Element | null {
+export function Paths(props: {
+  id: string; scenario: string; done: number | null; baseline: string | null; picked: string | null;
+  on_replay: (run: number) => Promise<void>;
+}): JSX.Element | null {
   const { value } = use_paths(props.id, props.scenario, props.done);
   const [pointed, set_pointed] = useState<number | null>(null);
   const [busy, set_busy] = useState<number | null>(null);
@@ -25,7 +29,11 @@ export function Paths(props: { id: string; scenario: string; done: number | null
     await props.on_replay(run);
     set_busy(null);
   };
-  const path = (i: number) => `path tone-path-${i % kTones} ${pointed === null ? "" : pointed === i ? "pointed" : "other"}`;
+  const tone = (i: number) => {
+    const named = tone_of(value.paths[i].controller, props.baseline, props.picked);
+    return named === "muted" ? `path-${i % kTones}` : named;
+  };
+  const path = (i: number) => `path tone-${tone(i)} ${pointed === null ? "" : pointed === i ? "pointed" : "other"}`;
   const [x, y, width, height] = box_of(value);
   return (
     <section class="experiment-paths" aria-label="Paths over the world" data-testid="experiment-paths">
