@@ -21,7 +21,7 @@ struct Family {
   std::string_view rows{};
   void (*run)(Pass&) = nullptr;
 };
-constexpr std::array<Family, 12> kFamilies{{
+constexpr std::array<Family, 13> kFamilies{{
     {"P1 P1r P2 P3 P4 P5", bench::scans},
     {"P6 P7 P11", bench::ticks},
     {"P9", bench::headless},
@@ -34,6 +34,7 @@ constexpr std::array<Family, 12> kFamilies{{
     {"P22", bench::timers},
     {"P23", bench::external},
     {"P24", bench::arms},
+    {"P25", bench::terrain},
 }};
 constexpr std::string_view kElsewhere =
     "Not here: P8 and P15 compare with other programs and are measured outside this repository.";

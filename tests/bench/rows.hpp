@@ -17,5 +17,6 @@ void streaming(Pass& pass);  // P14 P16 P17
 void timers(Pass& pass);     // P22
 void external(Pass& pass);   // P23
 void arms(Pass& pass);       // P24
+void terrain(Pass& pass);    // P25
 
 }  // namespace bench
