@@ -35,6 +35,7 @@ void add_climbs_command(Command app, int& status);
 void add_soak_command(Command app, int& status);
 void add_emulate_command(Command app, int& status);
 void add_compare_command(Command app, int& status);
+void add_crowd_command(Command app, int& status);
 void add_doctor_command(Command app, int& status);
 void add_lms200_command(Command app, int& status);
 void add_map_command(Command app, int& status);

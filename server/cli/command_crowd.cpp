@@ -1,0 +1,64 @@
+// server/cli/command_crowd.cpp: `tautline crowd`: lets the robot cross a scene of recorded people.
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "server/cli/cli.hpp"
+#include "server/cli/pool_options.hpp"
+#include "server/lab/crowd/crowd_study.hpp"
+
+namespace server {
+namespace {
+
+/// Robot, scanner, controller and parameters of the crossings.
+constexpr const char* kScenario = "people";
+
+struct CrowdCommand {
+  std::string file{};
+  std::string tracks{};
+  bool as_json = false;
+  RunFlags flags{};
+  experiment::PoolOptions pool{};
+};
+
+int execute(CrowdCommand command) {
+  const crowd::Recording recording = crowd::read_people(std::filesystem::path(command.file));
+  const RunSpec robot = make_spec(find_scenario(kScenario), command.flags.resolved(), own_robots());
+  crowd::CrowdStudy study;
+  {
+    ProgressLine progress;
+    command.pool.progress = [&](std::size_t done, std::size_t all) {
+      progress.show(fmt::format("{} of {} crossings", done, all));
+    };
+    study = crowd::study_crowd(recording, robot, command.pool);
+  }
+  if (!command.tracks.empty()) crowd::write_tracks(study, robot.scenario.period, command.tracks);
+  fmt::print("{}\n", command.as_json ? to_json(study).dump(2) : to_text(study));
+  return kReached;
+}
+
+}  // namespace
+
+void add_crowd_command(Command app, int& status) {
+  auto command = std::make_shared<CrowdCommand>();
+  const Command crowd = app.add_subcommand(
+      "crowd",
+      "Let the robot of the scenario 'people' cross a scene of recorded people from side to side, "
+      "at 100 moments; they yield to nobody");
+  crowd
+      .add_option(
+          "FILE", command->file, "The people: lines `frame id x y`, 25 frames a second, metres")
+      .required();
+  crowd
+      .add_option(
+          "--tracks", command->tracks, "Also write the robot's true pose at each tick, as CSV")
+      .check(refuse_folder)
+      .type_name("FILE");
+  crowd.add_flag("--json", command->as_json, "Print JSON");
+  command->flags.add_to(crowd);
+  add_threads_option(crowd, command->pool.threads);
+  crowd.callback([command, &status] { status = execute(*command); });
+}
+
+}  // namespace server
