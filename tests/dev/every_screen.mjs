@@ -29,7 +29,7 @@ const faults = [];
 
 const post = (base, path, body = {}) => json(base, path, { method: "POST", body: JSON.stringify(body) });
 const session = (base) => json(base, "/session");
-const drives = (base) => until("it drives", 20, () => session(base), (s) => Math.abs(s.command.v) > 0.05);
+const drives = (base) => until("it drives", 20, () => session(base), (s) => Math.abs(s.command?.v ?? 0) > 0.05); // none while a world is loaded
 
 /** What a person does in one view; `shot` after each state. Each step stands alone: a failed one is told of. */
 const kSteps = {
